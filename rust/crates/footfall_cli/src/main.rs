@@ -1,0 +1,3 @@
+//! The footfall command line.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! Skeleton, pose, clip, rotations, forward kinematics and the humanoid profile.

@@ -1,0 +1,1 @@
+//! Runtime: leg inverse kinematics and foot locking.

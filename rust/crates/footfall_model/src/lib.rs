@@ -1,0 +1,1 @@
+//! Feature layout, gait models and their versioned files.

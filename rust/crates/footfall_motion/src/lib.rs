@@ -1,0 +1,1 @@
+//! Offline: BVH files, retargeting, contacts, steps and corpora.

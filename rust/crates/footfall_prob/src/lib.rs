@@ -1,0 +1,1 @@
+//! Probability and inference on slices: Gaussians, HSMM, MLPG, global variance.

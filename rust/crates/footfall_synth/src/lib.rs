@@ -1,0 +1,1 @@
+//! Runtime: model to pose.

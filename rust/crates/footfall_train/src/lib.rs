@@ -1,0 +1,1 @@
+//! Offline: corpus to model.
