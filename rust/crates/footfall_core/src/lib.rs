@@ -1,1 +1,20 @@
-//! Skeleton, pose, clip, rotations, forward kinematics and the humanoid profile.
+//! The vocabulary that every other crate shares: joints, skeletons, poses, clips, rotations, forward kinematics and
+//! foot contacts.
+//!
+//! Space and units: metres, seconds, radians; Y up, right-handed; a character faces +Z and its left is +X. Every
+//! transform is named `target_from_source`. Nothing here reads a file, a clock or a random number.
+//!
+//! Modules in suggested reading order: [`joint`], [`skeleton`], [`pose`], [`rotation`], [`clip`], [`contact`].
+
+pub mod clip;
+pub mod contact;
+pub mod joint;
+pub mod pose;
+pub mod rotation;
+pub mod skeleton;
+
+pub use clip::Clip;
+pub use contact::{EventKind, FrameSpan, GaitEvent};
+pub use joint::{JOINT_COUNT, Joint, Side};
+pub use pose::{ModelPose, Pose, forward_kinematics};
+pub use skeleton::{FootShape, Skeleton, SkeletonError};

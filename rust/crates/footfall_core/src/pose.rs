@@ -1,0 +1,147 @@
+//! Poses in local space, and forward kinematics to model space.
+
+use crate::joint::{JOINT_COUNT, Joint};
+use crate::skeleton::Skeleton;
+use glam::{Quat, Vec3};
+
+/// One frame of motion: where the hips are and how every joint is turned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
+    /// Position of the hips in the space of the clip, metres.
+    pub root_position: Vec3,
+    /// `parent_from_joint` rotation of each joint (for the hips: of the clip's space), identity in the T-pose.
+    pub rotations: [Quat; JOINT_COUNT],
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self {
+            root_position: Vec3::ZERO,
+            rotations: [Quat::IDENTITY; JOINT_COUNT],
+        }
+    }
+}
+
+impl Pose {
+    /// The T-pose of a body that stands at the origin.
+    pub fn rest(skeleton: &Skeleton) -> Self {
+        Self {
+            root_position: skeleton.offset(Joint::Hips),
+            ..Self::default()
+        }
+    }
+
+    /// Local rotation of one joint.
+    pub fn rotation(&self, joint: Joint) -> Quat {
+        self.rotations[joint.index()]
+    }
+
+    /// Blends towards `other`: 0 keeps this pose, 1 takes the other. Rotations take the short way.
+    #[must_use]
+    pub fn interpolate(&self, other: &Self, weight: f32) -> Self {
+        let mut blended = self.clone();
+        blended.root_position = self.root_position.lerp(other.root_position, weight);
+        for (rotation, target) in blended.rotations.iter_mut().zip(&other.rotations) {
+            *rotation = rotation.slerp(*target, weight);
+        }
+        blended
+    }
+}
+
+/// A pose in model space: where every joint is and how it is turned there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelPose {
+    /// Position of each joint, metres.
+    pub positions: [Vec3; JOINT_COUNT],
+    /// `model_from_joint` rotation of each joint.
+    pub rotations: [Quat; JOINT_COUNT],
+}
+
+impl Default for ModelPose {
+    fn default() -> Self {
+        Self {
+            positions: [Vec3::ZERO; JOINT_COUNT],
+            rotations: [Quat::IDENTITY; JOINT_COUNT],
+        }
+    }
+}
+
+impl ModelPose {
+    /// Position of one joint.
+    pub fn position(&self, joint: Joint) -> Vec3 {
+        self.positions[joint.index()]
+    }
+
+    /// `model_from_joint` rotation of one joint.
+    pub fn rotation(&self, joint: Joint) -> Quat {
+        self.rotations[joint.index()]
+    }
+
+    /// A point given in a joint's space, in model space.
+    pub fn point(&self, joint: Joint, joint_space: Vec3) -> Vec3 {
+        self.position(joint) + self.rotation(joint) * joint_space
+    }
+}
+
+/// Turns local rotations into positions and rotations in model space.
+pub fn forward_kinematics(skeleton: &Skeleton, pose: &Pose, out: &mut ModelPose) {
+    for joint in Joint::ALL {
+        let index = joint.index();
+        match joint.parent() {
+            None => {
+                out.positions[index] = pose.root_position;
+                out.rotations[index] = pose.rotations[index];
+            }
+            Some(parent) => {
+                let parent_rotation = out.rotations[parent.index()];
+                out.positions[index] =
+                    out.positions[parent.index()] + parent_rotation * skeleton.offsets[index];
+                out.rotations[index] = (parent_rotation * pose.rotations[index]).normalize();
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rotation::exp_map;
+    use proptest::prelude::*;
+
+    fn any_pose() -> impl Strategy<Value = Pose> {
+        proptest::collection::vec(-2.0_f32..2.0, JOINT_COUNT * 3 + 3).prop_map(|values| {
+            let mut pose = Pose {
+                root_position: Vec3::from_slice(&values),
+                ..Pose::default()
+            };
+            for (rotation, value) in pose.rotations.iter_mut().zip(values[3..].chunks_exact(3)) {
+                *rotation = exp_map(Vec3::from_slice(value));
+            }
+            pose
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn segments_keep_their_length(pose in any_pose()) {
+            let skeleton = Skeleton::standard();
+            let mut model = ModelPose::default();
+            forward_kinematics(&skeleton, &pose, &mut model);
+            for joint in Joint::ALL {
+                if let Some(parent) = joint.parent() {
+                    let length = model.position(joint).distance(model.position(parent));
+                    prop_assert!((length - skeleton.offset(joint).length()).abs() < 1e-5);
+                }
+            }
+        }
+
+        #[test]
+        fn interpolation_ends_at_its_ends(a in any_pose(), b in any_pose()) {
+            for (blend, target) in [(a.interpolate(&b, 0.0), &a), (a.interpolate(&b, 1.0), &b)] {
+                for (rotation, expected) in blend.rotations.iter().zip(&target.rotations) {
+                    prop_assert!(rotation.angle_between(*expected) < 2e-3);
+                }
+            }
+        }
+    }
+}

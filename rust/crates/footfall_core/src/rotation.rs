@@ -1,0 +1,104 @@
+//! Rotations: exponential map, heading, and the shortest turn between directions.
+//!
+//! The exponential map writes a rotation as axis times angle (Tilmanne et al. 2012, equation 1). It is locally linear
+//! and has no singularity below a full turn, so statistics over it mean something.
+
+use core::f32::consts::{PI, TAU};
+use glam::{Quat, Vec3};
+
+/// The rotation about `axis_angle`'s direction by its length in radians.
+pub fn exp_map(axis_angle: Vec3) -> Quat {
+    Quat::from_scaled_axis(axis_angle)
+}
+
+/// Axis times angle of a rotation, with the angle in [0, π].
+pub fn log_map(rotation: Quat) -> Vec3 {
+    let shortest = if rotation.w < 0.0 {
+        -rotation
+    } else {
+        rotation
+    };
+    shortest.to_scaled_axis()
+}
+
+/// Axis times angle of a rotation, among all that mean the same rotation the one nearest to `reference`.
+///
+/// Keeps a series continuous where the angle crosses π.
+pub fn log_map_near(rotation: Quat, reference: Vec3) -> Vec3 {
+    let base = log_map(rotation);
+    let angle = base.length();
+    if angle < 1e-6 {
+        return base;
+    }
+    let axis = base / angle;
+    [-1.0, 0.0, 1.0]
+        .map(|turns| axis * (angle + turns * TAU))
+        .into_iter()
+        .min_by(|a, b| {
+            a.distance_squared(reference)
+                .total_cmp(&b.distance_squared(reference))
+        })
+        .unwrap_or(base)
+}
+
+/// Heading of a rotation: its twist about +Y in radians, positive from +Z towards +X (to the character's left).
+pub fn heading(world_from_body: Quat) -> f32 {
+    wrap_angle(2.0 * world_from_body.y.atan2(world_from_body.w))
+}
+
+/// The rotation about +Y by `heading` radians.
+pub fn from_heading(heading: f32) -> Quat {
+    Quat::from_rotation_y(heading)
+}
+
+/// The same angle in (-π, π].
+pub fn wrap_angle(angle: f32) -> f32 {
+    let wrapped = angle - TAU * (angle / TAU).round();
+    if wrapped <= -PI {
+        wrapped + TAU
+    } else {
+        wrapped
+    }
+}
+
+/// The shortest rotation that turns the direction `from` into the direction `to`; neither need be a unit vector.
+pub fn shortest_arc(from: Vec3, to: Vec3) -> Quat {
+    match (from.try_normalize(), to.try_normalize()) {
+        (Some(from), Some(to)) => Quat::from_rotation_arc(from, to),
+        _ => Quat::IDENTITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn log_undoes_exp(x in -1.8_f32..1.8, y in -1.8_f32..1.8, z in -1.8_f32..1.8) {
+            let vector = Vec3::new(x, y, z);
+            prop_assume!(vector.length() < PI - 1e-2);
+            prop_assert!(log_map(exp_map(vector)).distance(vector) < 1e-3);
+        }
+
+        #[test]
+        fn unwrapping_stays_near_the_reference(x in -3.0_f32..3.0, y in -3.0_f32..3.0, z in -3.0_f32..3.0) {
+            let vector = Vec3::new(x, y, z);
+            let near = log_map_near(exp_map(vector), vector);
+            prop_assert!(near.distance(vector) < 5e-3, "{near} is not {vector}");
+        }
+
+        #[test]
+        fn heading_survives_the_round_trip(angle in -3.1_f32..3.1) {
+            prop_assert!((heading(from_heading(angle)) - angle).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn heading_is_positive_to_the_left() {
+        let forward = from_heading(0.5) * Vec3::Z;
+        assert!(forward.x > 0.0);
+        assert!((wrap_angle(3.0 * PI) - PI).abs() < 1e-5);
+    }
+}
