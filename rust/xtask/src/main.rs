@@ -10,6 +10,7 @@
 
 mod display;
 mod godot;
+mod library;
 mod link;
 mod open;
 mod paths;
@@ -36,6 +37,8 @@ enum Command {
         #[arg(long)]
         template: bool,
     },
+    /// Build the add-on's library and put it into `addons/footfall/bin`.
+    Library(library::Options),
     /// Make the add-on visible inside `demo_project` and `tests/godot`, without a second copy.
     Link,
     /// Start Godot on a project folder, on a display in memory where there is none.
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
 fn run(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Godot { template } => godot::command(*template),
+        Command::Library(options) => library::build(options),
         Command::Link => link::command(),
         Command::Open { project, arguments } => open::command(project, arguments),
     }

@@ -12,6 +12,13 @@ pub(crate) fn shown(command: &Command) -> String {
         .join(" ")
 }
 
+/// Cargo in the workspace: the one that runs this program, where it does.
+pub(crate) fn cargo() -> Command {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(crate::paths::workspace());
+    cargo
+}
+
 /// Runs to the end with the terminal's own output, sent to stderr so that stdout stays clean.
 ///
 /// # Errors
