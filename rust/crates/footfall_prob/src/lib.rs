@@ -1,1 +1,14 @@
 //! Probability and inference on slices: Gaussians, HSMM, MLPG, global variance.
+//!
+//! Pure functions from slices to records: no input or output, no clock, no randomness. Matrices are
+//! row-major slices with their shape in the documentation of each argument; probabilities are f64.
+//!
+//! In suggested reading order: [`gaussian`] and [`duration`] (what a state is), [`hsmm`] (which
+//! frames belong to which state), then from states back to motion.
+
+pub mod duration;
+pub mod error;
+pub mod gaussian;
+pub mod hsmm;
+
+pub use error::ProbError;
