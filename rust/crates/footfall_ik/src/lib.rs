@@ -1,1 +1,8 @@
-//! Runtime: leg inverse kinematics and foot locking.
+//! Leg inverse kinematics: the runtime's way of keeping a foot where it was put.
+//!
+//! Godot 4.6 has a `TwoBoneIK3D`, but it ignores the target's rotation and knows nothing of contacts; this crate turns
+//! the ankle too and is the same code in the editor, in tests and on the command line.
+
+pub mod leg;
+
+pub use leg::{FootTarget, reach_height, solve_leg};

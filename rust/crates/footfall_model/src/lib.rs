@@ -1,1 +1,19 @@
-//! Feature layout, gait models and their versioned files.
+//! What training hands to the runtime: the feature layout, the gait model, and its versioned file.
+//!
+//! Probability is in f64 and poses are in f32; the two meet in [`layout`]. The crate works on bytes: it reads and
+//! writes no file.
+//!
+//! Modules in suggested reading order: [`layout`], [`gait_model`], [`provenance`], [`file`].
+
+pub mod file;
+pub mod gait_model;
+pub mod layout;
+pub mod provenance;
+
+pub use file::{FORMAT_VERSION, ModelFileError};
+pub use gait_model::{
+    DynamicWindows, GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse,
+    StateModel, StepModel, StepOffset, Variation,
+};
+pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
+pub use provenance::Provenance;

@@ -1,0 +1,205 @@
+//! The container that every model file shares, and the `.footfall` file.
+//!
+//! | bytes | content |
+//! | --- | --- |
+//! | 8 | magic `FOOTFALL` |
+//! | 4 | format version, unsigned, little endian |
+//! | 4 | length of the header in bytes |
+//! | … | header: JSON with `kind`, `written_by` and `provenance`; readable in every version |
+//! | 8 | length of the payload in bytes |
+//! | … | payload: postcard encoding of the version's own types (`v1`) |
+//! | 4 | CRC-32 of all that precedes |
+
+mod v1;
+
+use crate::gait_model::{GaitModel, ModelError};
+use crate::provenance::Provenance;
+use serde::{Deserialize, Serialize};
+
+/// The version that this build writes. It reads all versions up to this one.
+pub const FORMAT_VERSION: u32 = 1;
+
+const MAGIC: &[u8; 8] = b"FOOTFALL";
+const GAIT_KIND: &str = "gait";
+
+/// The part of a file that every version can read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header {
+    /// What the payload is: `gait`.
+    pub kind: String,
+    /// The version of Footfall that wrote the file.
+    pub written_by: String,
+    /// Where the model comes from.
+    pub provenance: Provenance,
+}
+
+/// Why bytes are not a model that can be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ModelFileError {
+    /// The magic bytes are missing.
+    #[error("not a Footfall model: it does not begin with FOOTFALL")]
+    NotAModel,
+    /// The bytes end too early.
+    #[error("the model is cut short after {found} bytes; copy or train it again")]
+    Truncated {
+        /// How many bytes there are.
+        found: usize,
+    },
+    /// The file was written by a later version.
+    #[error(
+        "the model has format {version}, written by Footfall {written_by}; this build reads up to {FORMAT_VERSION}: update Footfall"
+    )]
+    Newer {
+        /// The file's format version.
+        version: u32,
+        /// The version of Footfall that wrote it.
+        written_by: String,
+    },
+    /// The bytes were changed after they were written.
+    #[error("the model is damaged (its checksum does not match); copy or train it again")]
+    Damaged,
+    /// The header or payload cannot be decoded.
+    #[error("the model's {part} cannot be decoded: {reason}")]
+    Undecodable {
+        /// `header` or `payload`.
+        part: &'static str,
+        /// What the decoder says.
+        reason: String,
+    },
+    /// The file holds another kind of model.
+    #[error("the file holds a model of kind '{found}' where '{expected}' is needed")]
+    WrongKind {
+        /// The kind that was asked for.
+        expected: &'static str,
+        /// The kind that the file holds.
+        found: String,
+    },
+    /// The content makes no sense.
+    #[error("the model cannot be used: {0}")]
+    Content(#[from] ModelError),
+}
+
+impl GaitModel {
+    /// The bytes of a `.footfall` file. Numbers are stored as f32.
+    ///
+    /// # Errors
+    /// [`ModelFileError::Content`] when the model would not load again.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
+        self.check()?;
+        let payload = v1::encode(self)?;
+        write_container(GAIT_KIND, &self.provenance, &payload)
+    }
+
+    /// The model in the bytes of a `.footfall` file.
+    ///
+    /// # Errors
+    /// [`ModelFileError`] says what is wrong with the bytes; no input panics.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
+        let (header, payload) = read_container(bytes)?;
+        if header.kind != GAIT_KIND {
+            return Err(ModelFileError::WrongKind {
+                expected: GAIT_KIND,
+                found: header.kind,
+            });
+        }
+        let model = v1::decode(payload, header.provenance)?;
+        model.check()?;
+        Ok(model)
+    }
+}
+
+/// The header of any model file, also of one that a later version wrote.
+///
+/// # Errors
+/// [`ModelFileError`] when the bytes are no model file or are cut short.
+pub fn read_header(bytes: &[u8]) -> Result<(u32, Header), ModelFileError> {
+    let truncated = || ModelFileError::Truncated { found: bytes.len() };
+    let rest = bytes.strip_prefix(MAGIC).ok_or(ModelFileError::NotAModel)?;
+    let (version, rest) = rest.split_first_chunk::<4>().ok_or_else(truncated)?;
+    let (length, rest) = rest.split_first_chunk::<4>().ok_or_else(truncated)?;
+    let header = rest
+        .get(..u32::from_le_bytes(*length) as usize)
+        .ok_or_else(truncated)?;
+    let header = serde_json::from_slice(header).map_err(|error| undecodable("header", &error))?;
+    Ok((u32::from_le_bytes(*version), header))
+}
+
+fn write_container(
+    kind: &str,
+    provenance: &Provenance,
+    payload: &[u8],
+) -> Result<Vec<u8>, ModelFileError> {
+    let header = serde_json::to_vec(&Header {
+        kind: kind.to_owned(),
+        written_by: env!("CARGO_PKG_VERSION").to_owned(),
+        provenance: provenance.clone(),
+    })
+    .map_err(|error| undecodable("header", &error))?;
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend_from_slice(&FORMAT_VERSION.to_le_bytes());
+    bytes.extend_from_slice(&(header.len() as u32).to_le_bytes());
+    bytes.extend_from_slice(&header);
+    bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(payload);
+    let checksum = crc32fast::hash(&bytes);
+    bytes.extend_from_slice(&checksum.to_le_bytes());
+    Ok(bytes)
+}
+
+fn read_container(bytes: &[u8]) -> Result<(Header, &[u8]), ModelFileError> {
+    if !bytes.starts_with(MAGIC) {
+        return Err(ModelFileError::NotAModel);
+    }
+    let truncated = || ModelFileError::Truncated { found: bytes.len() };
+    // The checksum comes before the header is decoded: a damaged length or header must not be taken at its word. A
+    // newer file is the exception, for it may end differently.
+    let version = bytes
+        .get(MAGIC.len()..)
+        .and_then(<[u8]>::first_chunk::<4>)
+        .ok_or_else(truncated)?;
+    let version = u32::from_le_bytes(*version);
+    if version > FORMAT_VERSION {
+        let written_by = read_header(bytes).map_or_else(
+            |_| "an unknown version".to_owned(),
+            |(_, header)| header.written_by,
+        );
+        return Err(ModelFileError::Newer {
+            version,
+            written_by,
+        });
+    }
+    let header_length = bytes
+        .get(MAGIC.len() + 4..)
+        .and_then(<[u8]>::first_chunk::<4>)
+        .ok_or_else(truncated)?;
+    let payload_length_at = MAGIC.len() + 8 + u32::from_le_bytes(*header_length) as usize;
+    let payload_length = bytes
+        .get(payload_length_at..)
+        .and_then(<[u8]>::first_chunk::<8>)
+        .ok_or_else(truncated)?;
+    let payload_at = payload_length_at + 8;
+    let payload_end = usize::try_from(u64::from_le_bytes(*payload_length))
+        .ok()
+        .and_then(|length| payload_at.checked_add(length))
+        .ok_or_else(truncated)?;
+    let payload = bytes.get(payload_at..payload_end).ok_or_else(truncated)?;
+    let checksum = bytes
+        .get(payload_end..)
+        .and_then(<[u8]>::first_chunk::<4>)
+        .ok_or_else(truncated)?;
+    if crc32fast::hash(&bytes[..payload_end]) != u32::from_le_bytes(*checksum) {
+        return Err(ModelFileError::Damaged);
+    }
+    let (_, header) = read_header(bytes)?;
+    Ok((header, payload))
+}
+
+fn undecodable(part: &'static str, error: &dyn core::fmt::Display) -> ModelFileError {
+    ModelFileError::Undecodable {
+        part,
+        reason: error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,114 @@
+use super::*;
+use crate::gait_model::{
+    DynamicWindows, GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepModel,
+    StepOffset, Variation,
+};
+use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
+use footfall_core::Skeleton;
+use proptest::prelude::*;
+
+/// A model whose numbers are all different and exact in f32.
+fn sample() -> GaitModel {
+    let row = |scale: f64, len: usize| (0..len).map(|i| scale * (i + 1) as f64).collect::<Vec<_>>();
+    let offset = |scale: f64| StepOffset::from_row(&row(scale, StepOffset::LEN)).unwrap();
+    let step = |scale: f64| StepModel {
+        states: (0..STATES_PER_STEP)
+            .map(|state| StateModel {
+                mean: row(scale * (state + 1) as f64, OBSERVATION_COUNT),
+                variance: row(0.25, OBSERVATION_COUNT),
+                duration_mean: 6.5,
+                duration_variance: 1.5,
+            })
+            .collect(),
+        other_terminal: 0.25,
+    };
+    GaitModel {
+        frame_rate_hz: 60.0,
+        skeleton: Skeleton::standard(),
+        windows: DynamicWindows::Compact,
+        steps: [step(0.5), step(-0.5)],
+        global_variance: GlobalVarianceModel {
+            mean: row(0.5, FEATURE_COUNT),
+            variance: row(0.125, FEATURE_COUNT),
+        },
+        speed: SpeedResponse {
+            reference_mps: 1.25,
+            min_mps: 0.75,
+            max_mps: 1.75,
+            cadence_range_hz: [1.5, 2.25],
+            slopes: [offset(0.5), offset(0.25)],
+        },
+        variation: Variation {
+            walker: vec![[offset(0.5), offset(1.0)]],
+            step: vec![[offset(2.0), offset(4.0)], [offset(0.125), offset(8.0)]],
+            step_correlation: 0.5,
+        },
+        provenance: Provenance {
+            corpus: "made by a test".to_owned(),
+            clips: 3,
+            ..Provenance::default()
+        },
+    }
+}
+
+#[test]
+fn a_model_survives_the_round_trip() {
+    let model = sample();
+    let bytes = model.to_bytes().unwrap();
+    assert_eq!(GaitModel::from_bytes(&bytes).unwrap(), model);
+    let (version, header) = read_header(&bytes).unwrap();
+    assert_eq!((version, header.kind.as_str()), (FORMAT_VERSION, "gait"));
+}
+
+#[test]
+fn a_newer_file_names_its_writer() {
+    let mut bytes = sample().to_bytes().unwrap();
+    bytes[8..12].copy_from_slice(&99_u32.to_le_bytes());
+    let error = GaitModel::from_bytes(&bytes).unwrap_err().to_string();
+    assert!(
+        error.contains("format 99") && error.contains(env!("CARGO_PKG_VERSION")),
+        "{error}"
+    );
+}
+
+#[test]
+fn every_cut_is_noticed() {
+    let bytes = sample().to_bytes().unwrap();
+    for length in (0..bytes.len())
+        .step_by(997)
+        .chain([7, 11, 15, bytes.len() - 1])
+    {
+        let error = GaitModel::from_bytes(&bytes[..length]).unwrap_err();
+        let expected = if length < MAGIC.len() {
+            matches!(error, ModelFileError::NotAModel)
+        } else {
+            matches!(error, ModelFileError::Truncated { .. })
+        };
+        assert!(expected, "cut at {length}: {error}");
+    }
+}
+
+#[test]
+fn wrong_content_is_refused_before_it_is_written() {
+    let mut model = sample();
+    model.steps[1].states[2].variance[7] = 0.0;
+    let error = model.to_bytes().unwrap_err().to_string();
+    assert!(error.contains("state 2 of the right step"), "{error}");
+}
+
+proptest! {
+    #[test]
+    fn a_changed_byte_is_noticed(position in 0_usize..1_000_000, flip in 1_u8..=255) {
+        let mut bytes = sample().to_bytes().unwrap();
+        let position = position % bytes.len();
+        bytes[position] ^= flip;
+        prop_assert!(GaitModel::from_bytes(&bytes).is_err());
+    }
+
+    #[test]
+    fn garbage_never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        let mut framed = MAGIC.to_vec();
+        framed.extend(bytes);
+        prop_assert!(GaitModel::from_bytes(&framed).is_err());
+    }
+}

@@ -1,0 +1,309 @@
+//! The average walk: two step models of five states each, how they follow speed, and how walkers and steps differ.
+
+use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
+use crate::provenance::Provenance;
+use footfall_core::{Side, Skeleton};
+
+/// States of a step's left-to-right hidden semi-Markov model (Tilmanne et al. 2012, section 5.1.1).
+pub const STATES_PER_STEP: usize = 5;
+
+/// Which time differences the observations hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DynamicWindows {
+    /// Equations 2 and 3 of the paper: Δ = {-½, 0, ½}, Δ² = {¼, 0, -½, 0, ¼}.
+    Paper,
+    /// Δ as in the paper, Δ² = {1, -2, 1}: couples neighbouring frames too.
+    Compact,
+}
+
+/// A walk as a hidden semi-Markov model.
+///
+/// A step runs from one foot's initial contact to the other foot's. It has [`STATES_PER_STEP`] states in a row without
+/// skips; each has one Gaussian with a diagonal covariance over the observation ([`OBSERVATION_COUNT`] numbers) and one
+/// over its duration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaitModel {
+    /// Frames per second of features and durations.
+    pub frame_rate_hz: f64,
+    /// The body that it was trained on.
+    pub skeleton: Skeleton,
+    /// Which time differences the observations hold.
+    pub windows: DynamicWindows,
+    /// The step that begins with the left foot's initial contact, then the one with the right's.
+    pub steps: [StepModel; 2],
+    /// How much the features of one walk vary in total.
+    pub global_variance: GlobalVarianceModel,
+    /// How a step changes with speed.
+    pub speed: SpeedResponse,
+    /// How walkers, and the steps of one walker, differ.
+    pub variation: Variation,
+    /// Where the model comes from.
+    pub provenance: Provenance,
+}
+
+/// One step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepModel {
+    /// The states in order.
+    pub states: Vec<StateModel>,
+    /// When the other foot's terminal contact falls, as a fraction of the step's duration.
+    pub other_terminal: f64,
+}
+
+/// One state of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateModel {
+    /// Mean of the observation: statics, Δ, Δ².
+    pub mean: Vec<f64>,
+    /// Variance of the observation, all positive.
+    pub variance: Vec<f64>,
+    /// Mean duration in frames.
+    pub duration_mean: f64,
+    /// Variance of the duration in frames².
+    pub duration_variance: f64,
+}
+
+/// Gaussian over the variance that one walk's static features have over time (equations 12 to 14).
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlobalVarianceModel {
+    /// Mean over walks.
+    pub mean: Vec<f64>,
+    /// Variance over walks.
+    pub variance: Vec<f64>,
+}
+
+/// What can differ between one step and the mean step: an offset to every state's mean, to the logarithm of its
+/// duration, and to the time of the other foot's terminal contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepOffset {
+    /// [`STATES_PER_STEP`] × [`OBSERVATION_COUNT`] offsets of the means, state by state.
+    pub means: Vec<f64>,
+    /// One offset a state to the logarithm of its duration.
+    pub log_durations: Vec<f64>,
+    /// Offset of [`StepModel::other_terminal`].
+    pub other_terminal: f64,
+}
+
+impl StepOffset {
+    /// How many numbers an offset has.
+    pub const LEN: usize = STATES_PER_STEP * OBSERVATION_COUNT + STATES_PER_STEP + 1;
+
+    /// No offset.
+    pub fn zero() -> Self {
+        Self {
+            means: vec![0.0; STATES_PER_STEP * OBSERVATION_COUNT],
+            log_durations: vec![0.0; STATES_PER_STEP],
+            other_terminal: 0.0,
+        }
+    }
+
+    /// Adds `weight` times another offset.
+    pub fn add_scaled(&mut self, other: &Self, weight: f64) {
+        for (value, addend) in self.means.iter_mut().zip(&other.means) {
+            *value += weight * addend;
+        }
+        for (value, addend) in self.log_durations.iter_mut().zip(&other.log_durations) {
+            *value += weight * addend;
+        }
+        self.other_terminal += weight * other.other_terminal;
+    }
+
+    /// All numbers in one row: means, log-durations, terminal contact.
+    pub fn to_row(&self) -> Vec<f64> {
+        let mut row = self.means.clone();
+        row.extend_from_slice(&self.log_durations);
+        row.push(self.other_terminal);
+        row
+    }
+
+    /// The offset whose [`to_row`](Self::to_row) is `row`; `None` when the length differs from [`Self::LEN`].
+    pub fn from_row(row: &[f64]) -> Option<Self> {
+        (row.len() == Self::LEN).then(|| {
+            let (means, rest) = row.split_at(STATES_PER_STEP * OBSERVATION_COUNT);
+            let (log_durations, last) = rest.split_at(STATES_PER_STEP);
+            Self {
+                means: means.to_vec(),
+                log_durations: log_durations.to_vec(),
+                other_terminal: last[0],
+            }
+        })
+    }
+}
+
+/// How a step changes with the speed of the walk: a linear regression over the steps of the corpus.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpeedResponse {
+    /// The speed at which the offset is zero, m/s.
+    pub reference_mps: f64,
+    /// Slowest walk of the corpus, m/s.
+    pub min_mps: f64,
+    /// Fastest walk of the corpus, m/s.
+    pub max_mps: f64,
+    /// Slowest and fastest cadence of the corpus, steps per second.
+    pub cadence_range_hz: [f64; 2],
+    /// Offset per m/s, for the left and for the right step.
+    pub slopes: [StepOffset; 2],
+}
+
+/// How walkers differ from each other and steps of one walker among themselves: principal components, each scaled so
+/// that its weight is a standard normal number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variation {
+    /// Components that belong to a walker: one offset for the left and one for the right step.
+    pub walker: Vec<[StepOffset; 2]>,
+    /// Components that belong to a single step.
+    pub step: Vec<[StepOffset; 2]>,
+    /// Correlation of a step component's weight from one step to the next of the same foot.
+    pub step_correlation: f64,
+}
+
+/// What is wrong with a model's content.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ModelError {
+    /// A part has the wrong size.
+    #[error(
+        "{part}: has {found} numbers where {expected} belong; make the model anew with `footfall train`"
+    )]
+    Shape {
+        /// Which part.
+        part: String,
+        /// How many numbers it should have.
+        expected: usize,
+        /// How many it has.
+        found: usize,
+    },
+    /// A number is not finite, or not positive where it must be.
+    #[error(
+        "{part}: a number is not finite or out of range; make the model anew with `footfall train`"
+    )]
+    Value {
+        /// Which part.
+        part: String,
+    },
+}
+
+impl GaitModel {
+    /// The step that begins with this foot's initial contact.
+    pub fn step(&self, side: Side) -> &StepModel {
+        &self.steps[side.index()]
+    }
+
+    /// Slowest and fastest walk of the corpus, m/s on the model's body.
+    pub fn speed_range(&self) -> [f64; 2] {
+        [self.speed.min_mps, self.speed.max_mps]
+    }
+
+    /// Checks every shape and value, so that whatever uses the model afterwards cannot fail on it.
+    ///
+    /// # Errors
+    /// [`ModelError`] names the first part at fault.
+    pub fn check(&self) -> Result<(), ModelError> {
+        check_positive("frame rate", &[self.frame_rate_hz])?;
+        let soles = self
+            .skeleton
+            .feet
+            .iter()
+            .flat_map(|foot| [foot.heel, foot.ball, foot.toe_tip]);
+        for offset in self.skeleton.offsets.iter().copied().chain(soles) {
+            check_finite("skeleton", &offset.as_dvec3().to_array())?;
+        }
+        if self.skeleton.check().is_err() {
+            return Err(ModelError::Value {
+                part: "skeleton".to_owned(),
+            });
+        }
+        for side in Side::BOTH {
+            self.check_step(side)?;
+        }
+        check_len(
+            "global variance mean",
+            &self.global_variance.mean,
+            FEATURE_COUNT,
+        )?;
+        check_len(
+            "global variance variance",
+            &self.global_variance.variance,
+            FEATURE_COUNT,
+        )?;
+        check_positive("global variance mean", &self.global_variance.mean)?;
+        check_positive("global variance variance", &self.global_variance.variance)?;
+        check_positive(
+            "speeds",
+            &[
+                self.speed.reference_mps,
+                self.speed.min_mps,
+                self.speed.max_mps,
+            ],
+        )?;
+        check_positive("cadences", &self.speed.cadence_range_hz)?;
+        check_finite("step correlation", &[self.variation.step_correlation])?;
+        let components = self.variation.walker.iter().chain(&self.variation.step);
+        for offset in self.speed.slopes.iter().chain(components.flatten()) {
+            check_len(
+                "step offset",
+                &offset.means,
+                STATES_PER_STEP * OBSERVATION_COUNT,
+            )?;
+            check_len(
+                "step offset durations",
+                &offset.log_durations,
+                STATES_PER_STEP,
+            )?;
+            check_finite("step offset", &offset.to_row())?;
+        }
+        Ok(())
+    }
+
+    fn check_step(&self, side: Side) -> Result<(), ModelError> {
+        let step = self.step(side);
+        let name = side.name();
+        if step.states.len() != STATES_PER_STEP {
+            return Err(ModelError::Shape {
+                part: format!("states of the {name} step"),
+                expected: STATES_PER_STEP,
+                found: step.states.len(),
+            });
+        }
+        check_finite(
+            &format!("terminal contact of the {name} step"),
+            &[step.other_terminal],
+        )?;
+        for (index, state) in step.states.iter().enumerate() {
+            let part = format!("state {index} of the {name} step");
+            check_len(&part, &state.mean, OBSERVATION_COUNT)?;
+            check_len(&part, &state.variance, OBSERVATION_COUNT)?;
+            check_finite(&part, &state.mean)?;
+            check_positive(&part, &state.variance)?;
+            check_positive(&part, &[state.duration_mean, state.duration_variance])?;
+        }
+        Ok(())
+    }
+}
+
+fn check_len(part: &str, values: &[f64], expected: usize) -> Result<(), ModelError> {
+    if values.len() == expected {
+        return Ok(());
+    }
+    Err(ModelError::Shape {
+        part: part.to_owned(),
+        expected,
+        found: values.len(),
+    })
+}
+
+fn check_finite(part: &str, values: &[f64]) -> Result<(), ModelError> {
+    check_values(part, values, f64::is_finite)
+}
+
+fn check_positive(part: &str, values: &[f64]) -> Result<(), ModelError> {
+    check_values(part, values, |value| value.is_finite() && value > 0.0)
+}
+
+fn check_values(part: &str, values: &[f64], holds: impl Fn(f64) -> bool) -> Result<(), ModelError> {
+    if values.iter().all(|value| holds(*value)) {
+        return Ok(());
+    }
+    Err(ModelError::Value {
+        part: part.to_owned(),
+    })
+}
