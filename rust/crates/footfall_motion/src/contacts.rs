@@ -1,0 +1,186 @@
+//! When the heel and the toes of each foot bear on the ground, and the gait events that follow.
+
+mod hysteresis;
+mod signals;
+
+use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Side};
+use hysteresis::{Gate, close_gaps, drop_short, gate, spans};
+use signals::FootSignals;
+
+/// Limits of the detector. Heights are above the level at which the point itself rests in this clip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactConfig {
+    /// Frames before this one are no motion and have no contact.
+    pub first_frame: usize,
+    /// A point comes into contact below this height, metres.
+    pub height_on_m: f32,
+    /// And leaves it above this one.
+    pub height_off_m: f32,
+    /// A heel comes into contact below this speed, as a share of the speed of a swinging foot in this clip.
+    pub heel_speed_on: f32,
+    /// The toes come into contact below this share.
+    pub toe_speed_on: f32,
+    /// Both leave it above this share.
+    pub speed_off: f32,
+    /// A contact lasts at least this long, seconds.
+    pub least_contact_secs: f64,
+    /// A shorter break within a contact does not count, seconds.
+    pub least_gap_secs: f64,
+}
+
+impl ContactConfig {
+    /// The limits that were measured to agree best with published detectors, for a clip whose motion starts at `first_frame`.
+    pub const fn from_frame(first_frame: usize) -> Self {
+        Self {
+            first_frame,
+            height_on_m: 0.035,
+            height_off_m: 0.05,
+            heel_speed_on: 0.35,
+            toe_speed_on: 0.25,
+            speed_off: 0.35,
+            least_contact_secs: 0.08,
+            least_gap_secs: 0.06,
+        }
+    }
+}
+
+/// Contact of one foot, frame by frame.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FootContacts {
+    /// Whether the heel bears on the ground.
+    pub heel: Vec<bool>,
+    /// Whether the ball of the foot or the toes bear on the ground.
+    pub toe: Vec<bool>,
+    /// Runs of frames in which any part of the foot bears on the ground, in order.
+    pub stances: Vec<FrameSpan>,
+}
+
+/// Contacts of both feet with the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contacts {
+    /// Frames per second of the clip.
+    pub frame_rate_hz: f64,
+    /// How many frames the clip has.
+    pub frames: usize,
+    /// First frame of the motion proper.
+    pub first_frame: usize,
+    /// Left, then right.
+    pub feet: [FootContacts; 2],
+}
+
+impl Contacts {
+    /// One foot.
+    pub fn foot(&self, side: Side) -> &FootContacts {
+        &self.feet[side.index()]
+    }
+
+    /// Whether any part of a foot bears on the ground in a frame.
+    pub fn bears(&self, side: Side, frame: usize) -> bool {
+        let foot = self.foot(side);
+        let flag = |flags: &[bool]| flags.get(frame).copied().unwrap_or(false);
+        flag(&foot.heel) || flag(&foot.toe)
+    }
+
+    /// Initial and terminal contacts in the order of their frames.
+    ///
+    /// A stance that already lasts when the motion begins has no initial contact, one that lasts to its end no terminal one.
+    pub fn events(&self) -> Vec<GaitEvent> {
+        let mut events = Vec::new();
+        for side in Side::BOTH {
+            for stance in &self.foot(side).stances {
+                let ends = [
+                    (stance.first, EventKind::InitialContact, self.first_frame),
+                    (stance.last, EventKind::TerminalContact, self.frames - 1),
+                ];
+                for (frame, kind, edge) in ends {
+                    if frame != edge {
+                        events.push(GaitEvent { frame, side, kind });
+                    }
+                }
+            }
+        }
+        events.sort_by_key(|event| (event.frame, event.kind, event.side));
+        events
+    }
+}
+
+/// Detects contacts from height and speed of heel, ball and toe tip. Frame numbers are the clip's.
+pub fn detect_contacts(clip: &Clip, config: &ContactConfig) -> Contacts {
+    let frames = clip.poses.len();
+    let first_frame = config.first_frame.min(frames.saturating_sub(1));
+    let signals = Side::BOTH.map(|side| FootSignals::of(clip, side, first_frame));
+    // Both feet swing alike, and in a short clip one of them may not swing at all.
+    let swing_speed = signals
+        .iter()
+        .map(|foot| foot.swing_speed)
+        .fold(0.0, f32::max)
+        .max(signals::LEAST_SWING_SPEED);
+    let feet = signals.map(|foot| contacts_of(&foot, swing_speed, clip.frame_rate_hz, config));
+    Contacts {
+        frame_rate_hz: clip.frame_rate_hz,
+        frames,
+        first_frame,
+        feet: feet.map(|(heel, toe)| {
+            let pad = |flags: Vec<bool>| {
+                let mut all = vec![false; first_frame];
+                all.extend(flags);
+                all
+            };
+            let (heel, toe) = (pad(heel), pad(toe));
+            let any: Vec<bool> = heel
+                .iter()
+                .zip(&toe)
+                .map(|(heel, toe)| *heel || *toe)
+                .collect();
+            FootContacts {
+                heel,
+                toe,
+                stances: spans(&any),
+            }
+        }),
+    }
+}
+
+fn contacts_of(
+    foot: &FootSignals,
+    swing_speed: f32,
+    frame_rate_hz: f64,
+    config: &ContactConfig,
+) -> (Vec<bool>, Vec<bool>) {
+    let frames_of = |secs: f64| (secs * frame_rate_hz).round() as usize;
+    let gate_for = |speed_on: f32| Gate {
+        height_on: config.height_on_m,
+        height_off: config.height_off_m,
+        speed_on: speed_on * swing_speed,
+        speed_off: config.speed_off.max(speed_on) * swing_speed,
+    };
+    let mut heel = gate(&foot.heel, &gate_for(config.heel_speed_on));
+    let mut toe = gate(&foot.toe, &gate_for(config.toe_speed_on));
+    for flags in [&mut heel, &mut toe] {
+        close_gaps(flags, frames_of(config.least_gap_secs));
+    }
+    // What counts as a contact is the foot's, not the point's: a heel may touch for a moment before the ball does.
+    let mut any: Vec<bool> = heel
+        .iter()
+        .zip(&toe)
+        .map(|(heel, toe)| *heel || *toe)
+        .collect();
+    let gaps = any.clone();
+    close_gaps(&mut any, frames_of(config.least_gap_secs));
+    for frame in 0..any.len() {
+        // In a closed gap the lower part bears.
+        if any[frame] && !gaps[frame] {
+            if foot.heel.height[frame] < foot.toe.height[frame] {
+                heel[frame] = true;
+            } else {
+                toe[frame] = true;
+            }
+        }
+    }
+    drop_short(&mut any, frames_of(config.least_contact_secs));
+    for frame in 0..any.len() {
+        heel[frame] &= any[frame];
+        toe[frame] &= any[frame];
+    }
+    (heel, toe)
+}

@@ -1,0 +1,66 @@
+//! Flags from two signals with hysteresis, and runs of flags.
+
+use super::signals::PointSignal;
+use footfall_core::FrameSpan;
+
+/// Limits of one point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gate {
+    pub(super) height_on: f32,
+    pub(super) height_off: f32,
+    pub(super) speed_on: f32,
+    pub(super) speed_off: f32,
+}
+
+/// On from a frame below both lower limits, off from one above either upper limit.
+pub(super) fn gate(signal: &PointSignal, limits: &Gate) -> Vec<bool> {
+    let mut is_on = false;
+    signal
+        .height
+        .iter()
+        .zip(&signal.speed)
+        .map(|(&height, &speed)| {
+            is_on = if is_on {
+                height < limits.height_off && speed < limits.speed_off
+            } else {
+                height < limits.height_on && speed < limits.speed_on
+            };
+            is_on
+        })
+        .collect()
+}
+
+/// Runs of set flags.
+pub(super) fn spans(flags: &[bool]) -> Vec<FrameSpan> {
+    let mut spans: Vec<FrameSpan> = Vec::new();
+    for (frame, _) in flags.iter().enumerate().filter(|(_, flag)| **flag) {
+        match spans.last_mut() {
+            Some(span) if span.last + 1 == frame => span.last = frame,
+            _ => spans.push(FrameSpan {
+                first: frame,
+                last: frame,
+            }),
+        }
+    }
+    spans
+}
+
+/// Sets the flags in gaps of fewer than `least` frames between set ones.
+pub(super) fn close_gaps(flags: &mut [bool], least: usize) {
+    let runs = spans(flags);
+    for pair in runs.windows(2) {
+        if pair[1].first - pair[0].last - 1 < least {
+            flags[pair[0].last..pair[1].first].fill(true);
+        }
+    }
+}
+
+/// Clears runs of fewer than `least` frames, except at the ends, where the clip may have cut them.
+pub(super) fn drop_short(flags: &mut [bool], least: usize) {
+    let end = flags.len();
+    for span in spans(flags) {
+        if span.frames() < least && span.first > 0 && span.last + 1 < end {
+            flags[span.first..=span.last].fill(false);
+        }
+    }
+}

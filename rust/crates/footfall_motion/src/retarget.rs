@@ -1,0 +1,273 @@
+//! Any captured body to the canonical body.
+//!
+//! Segment directions are what a retargeted clip keeps: trunk (hips to neck), arms, legs and feet point exactly where they
+//! point in the source. Lengths are the canonical body's; travel and height are scaled by leg length over the source's leg
+//! length, so the file's unit need not be known. The foot alone keeps the source's slope from ankle to ball (see
+//! [`footfall_core::FootShape`]), so that a zero rotation is a flat sole and yet the foot points as in the source.
+
+mod feet;
+mod floor;
+mod joint_map;
+mod rest;
+mod source;
+
+pub use joint_map::{JointMap, Placement};
+
+pub(crate) use floor::sole_points;
+
+use crate::bvh::BvhFile;
+use feet::FlatFoot;
+use footfall_core::rotation::{from_heading, heading, shortest_arc};
+use footfall_core::{Clip, JOINT_COUNT, Joint, Pose, Side, Skeleton};
+use glam::{Quat, Vec3};
+use rest::{RestRotations, canonical_direction};
+use source::{SourceFrame, SourceMotion};
+
+/// What to do beyond the defaults.
+#[derive(Clone, Debug, Default)]
+pub struct RetargetOptions {
+    /// Names of the joints; chosen among [`JointMap::known`] when absent.
+    pub map: Option<JointMap>,
+    /// Rate of the clip, frames per second; the file's own when absent.
+    pub frame_rate_hz: Option<f64>,
+}
+
+/// A clip on the canonical body, and how it came about.
+#[derive(Clone, Debug)]
+pub struct Retargeted {
+    /// The motion. Frame numbers are those of the file unless another rate was asked for.
+    pub clip: Clip,
+    /// Frames before this one are not part of the motion (a T-pose that an exporter put in front); leave them out of contacts
+    /// and training.
+    pub first_frame: usize,
+    /// What was found out on the way.
+    pub report: RetargetReport,
+}
+
+/// What retargeting found out about a file.
+#[derive(Clone, Debug)]
+pub struct RetargetReport {
+    /// Label of the joint map.
+    pub map: String,
+    /// Name in the file of each canonical joint that it has, in the order of [`Joint::ALL`].
+    pub source_joints: [Option<String>; JOINT_COUNT],
+    /// Metres of the canonical body for one unit of the file.
+    pub scale: f32,
+    /// Frames in which the left and the right foot lay flat, from which the foot's zero was learned.
+    pub flat_foot_frames: [usize; 2],
+}
+
+/// Why a file cannot be retargeted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RetargetError {
+    /// The joints' names fit no map.
+    #[error(
+        "no joint of the file is known to be {missing}; the closest map is \"{map}\"; write a map with lines such as \
+         `{example} = \"name in the file\"` and give it with --map; the file's joints are {joints}",
+        missing = missing.iter().map(|joint| joint.name()).collect::<Vec<_>>().join(", "),
+        example = missing.first().map_or("Hips", |joint| joint.name()),
+        joints = joints.join(", ")
+    )]
+    UnknownSkeleton {
+        /// Needed canonical joints that were not found.
+        missing: Vec<Joint>,
+        /// The map that fits best.
+        map: String,
+        /// All joints of the file.
+        joints: Vec<String>,
+    },
+    /// The joint map cannot be used.
+    #[error("joint map: {0}")]
+    Map(String),
+    /// The legs have no length, so there is no scale.
+    #[error(
+        "the legs of the file are {length} units long in all frames; check that {knee} and {ankle} are knee and ankle"
+    )]
+    NoLegs {
+        /// Thigh plus shank.
+        length: f32,
+        /// The file's joint at the left knee.
+        knee: String,
+        /// The file's joint at the left ankle.
+        ankle: String,
+    },
+    /// The rate asked for is no rate.
+    #[error("{0} frames per second is no frame rate; give a number above zero")]
+    FrameRate(f64),
+}
+
+/// Turns a file into a clip on the canonical body.
+///
+/// # Errors
+/// [`RetargetError`] for a skeleton whose joints cannot be placed, legs without length, and a rate that is not above zero.
+pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted, RetargetError> {
+    if let Some(rate) = options.frame_rate_hz
+        && !(rate.is_finite() && rate > 0.0)
+    {
+        return Err(RetargetError::FrameRate(rate));
+    }
+    let (map, placement) = match &options.map {
+        Some(map) => {
+            let placement = map.place(file);
+            map.check(file, &placement)?;
+            (map.clone(), placement)
+        }
+        None => JointMap::best_fit(file)?,
+    };
+    let name_of = |joint: Joint| placement.joint(joint).map(|n| file.joints[n].name.clone());
+    let source = SourceMotion::new(file, &placement);
+    if !(source.leg_length.is_finite() && source.leg_length > 1e-6) {
+        return Err(RetargetError::NoLegs {
+            length: source.leg_length,
+            knee: name_of(Joint::LeftLowerLeg).unwrap_or_default(),
+            ankle: name_of(Joint::LeftFoot).unwrap_or_default(),
+        });
+    }
+    let mut rest = rest::rest_rotations(&source);
+    let flat = feet::flat_feet(&source, &mut rest);
+    let skeleton = skeleton_with_feet(&flat);
+    let scale = skeleton.mean_leg_length() / source.leg_length;
+    let poses = source
+        .frames
+        .iter()
+        .map(|frame| pose_of(frame, &rest, &skeleton, scale, &source.has))
+        .collect();
+    let mut clip = Clip {
+        skeleton,
+        frame_rate_hz: source.frame_rate_hz,
+        poses,
+    };
+    floor::put_on_floor(&mut clip, source.first_motion_frame);
+    let mut first_frame = source.first_motion_frame;
+    if let Some(rate) = options.frame_rate_hz {
+        first_frame = (first_frame as f64 / clip.frame_rate_hz * rate).ceil() as usize;
+        clip = clip.resampled(rate);
+        first_frame = first_frame.min(clip.poses.len().saturating_sub(1));
+    }
+    Ok(Retargeted {
+        clip,
+        first_frame,
+        report: RetargetReport {
+            map: map.label,
+            source_joints: Joint::ALL.map(name_of),
+            scale,
+            flat_foot_frames: flat.map(|foot| foot.frames),
+        },
+    })
+}
+
+/// The canonical body with the source's slope from ankle to ball, standing on its soles.
+fn skeleton_with_feet(flat: &[FlatFoot; 2]) -> Skeleton {
+    let mut skeleton = Skeleton::standard();
+    let mut lowered = 0.0;
+    for side in Side::BOTH {
+        let standard = skeleton.offset(side.toes());
+        let direction = flat[side.index()]
+            .direction
+            .with_x(0.0)
+            .normalize_or(standard);
+        let offset = direction * standard.length();
+        let rise = standard.y - offset.y;
+        skeleton.offsets[side.toes().index()] = offset;
+        skeleton.feet[side.index()].heel.y -= rise;
+        lowered += 0.5 * rise;
+    }
+    skeleton.offsets[Joint::Hips.index()].y += lowered;
+    skeleton
+}
+
+/// One frame on the canonical body.
+fn pose_of(
+    frame: &SourceFrame,
+    rest: &RestRotations,
+    skeleton: &Skeleton,
+    scale: f32,
+    has: &[bool; JOINT_COUNT],
+) -> Pose {
+    let mut world: [Quat; JOINT_COUNT] =
+        core::array::from_fn(|n| (frame.rotations[n] * rest[n].inverse()).normalize());
+    for joint in Joint::ALL {
+        let index = joint.index();
+        let is_trunk = joint < Joint::LeftShoulder;
+        let is_end = matches!(
+            joint,
+            Joint::LeftShoulder
+                | Joint::RightShoulder
+                | Joint::LeftHand
+                | Joint::RightHand
+                | Joint::LeftToes
+                | Joint::RightToes
+        );
+        if is_end && !has[index] {
+            // The file does not know: no turn against the parent.
+            world[index] = joint
+                .parent()
+                .map_or(world[index], |parent| world[parent.index()]);
+        } else if !is_trunk && !is_end {
+            let axis = match joint {
+                Joint::LeftFoot => skeleton.offset(Joint::LeftToes),
+                Joint::RightFoot => skeleton.offset(Joint::RightToes),
+                _ => canonical_direction(joint),
+            };
+            // Exact even where position channels move the joints of the source.
+            world[index] = shortest_arc(world[index] * axis, frame.direction(joint)) * world[index];
+        }
+    }
+    straighten_trunk(frame, skeleton, &mut world);
+    let mut pose = Pose::default();
+    for joint in Joint::ALL {
+        let index = joint.index();
+        pose.rotations[index] = match joint.parent() {
+            None => world[index],
+            Some(parent) => (world[parent.index()].inverse() * world[index]).normalize(),
+        };
+    }
+    // The point between the hip joints is what carries the legs; the pelvis joint sits elsewhere in every skeleton.
+    let source_centre =
+        0.5 * (frame.position(Joint::LeftUpperLeg) + frame.position(Joint::RightUpperLeg));
+    let centre =
+        0.5 * (skeleton.offset(Joint::LeftUpperLeg) + skeleton.offset(Joint::RightUpperLeg));
+    pose.root_position = source_centre * scale - world[Joint::Hips.index()] * centre;
+    pose
+}
+
+/// Turns spine and chest together until the line from hips to neck points as in the source.
+fn straighten_trunk(frame: &SourceFrame, skeleton: &Skeleton, world: &mut [Quat; JOINT_COUNT]) {
+    let target = (frame.position(Joint::Neck) - frame.position(Joint::Hips)).normalize_or_zero();
+    if target == Vec3::ZERO {
+        return;
+    }
+    let chain = [Joint::Hips, Joint::Spine, Joint::Chest, Joint::UpperChest];
+    let above = [Joint::Spine, Joint::Chest, Joint::UpperChest, Joint::Neck];
+    for _ in 0..6 {
+        let line: Vec3 = chain
+            .into_iter()
+            .zip(above)
+            .map(|(joint, next)| world[joint.index()] * skeleton.offset(next))
+            .sum();
+        let turn = shortest_arc(line, target);
+        for joint in &chain[1..] {
+            world[joint.index()] = (turn * world[joint.index()]).normalize();
+        }
+    }
+}
+
+/// The same motion with its start at the origin, facing +Z. Frames before `first_frame` (no part of the motion) are
+/// placed there one by one.
+///
+/// "Facing" is the direction of the hips, seen from above.
+#[must_use]
+pub fn normalised_start(clip: &Clip, first_frame: usize) -> Clip {
+    let mut normalised = clip.clone();
+    let place = |pose: &mut Pose, start: &Pose| {
+        let turn = from_heading(-heading(start.rotation(Joint::Hips)));
+        let origin = start.root_position.with_y(0.0);
+        pose.root_position = turn * (pose.root_position - origin);
+        pose.rotations[0] = (turn * pose.rotations[0]).normalize();
+    };
+    let first_frame = first_frame.min(clip.poses.len().saturating_sub(1));
+    for (n, pose) in normalised.poses.iter_mut().enumerate() {
+        place(pose, &clip.poses[n.min(first_frame)]);
+    }
+    normalised
+}
