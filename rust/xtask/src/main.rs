@@ -12,6 +12,7 @@ mod display;
 mod godot;
 mod library;
 mod link;
+mod mannequin;
 mod open;
 mod paths;
 mod process;
@@ -41,6 +42,8 @@ enum Command {
     Library(library::Options),
     /// Make the add-on visible inside `demo_project` and `tests/godot`, without a second copy.
     Link,
+    /// Make the demo's character, `demo_project/characters/mannequin.glb`.
+    Mannequin,
     /// Start Godot on a project folder, on a display in memory where there is none.
     Open {
         /// The project's folder, from the repository's root.
@@ -66,6 +69,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Godot { template } => godot::command(*template),
         Command::Library(options) => library::build(options),
         Command::Link => link::command(),
+        Command::Mannequin => mannequin::command(),
         Command::Open { project, arguments } => open::command(project, arguments),
     }
 }

@@ -1,0 +1,88 @@
+//! `cargo xtask mannequin`: the character of the demo, made from the canonical body.
+//!
+//! A distance field gives the shape, surface nets its triangles, diffusion its skin weights; glTF binary carries it to Godot
+//! in three levels of detail. The same program always writes the same bytes.
+
+mod body;
+mod field;
+mod glb;
+mod paint;
+mod rest;
+mod surface_nets;
+mod weights;
+
+use crate::{paths, progress};
+use anyhow::{Context as _, Result};
+use body::Body;
+use footfall_core::Skeleton;
+use std::fs;
+use surface_nets::Grid;
+
+/// Spacing of the grid in metres, level by level.
+const SPACINGS_M: [f32; 3] = [0.0155, 0.024, 0.038];
+
+/// Writes `demo_project/characters/mannequin.glb`.
+///
+/// # Errors
+/// When the file cannot be written.
+pub(crate) fn command() -> Result<()> {
+    let folder = paths::repository_root().join("demo_project/characters");
+    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    let file = folder.join("mannequin.glb");
+    let bytes = make()?;
+    fs::write(&file, &bytes).with_context(|| format!("cannot write {}", file.display()))?;
+    eprintln!("{} ({} kB)", file.display(), bytes.len() / 1000);
+    Ok(())
+}
+
+fn make() -> Result<Vec<u8>> {
+    let skeleton = Skeleton::standard();
+    let body = Body::new(&skeleton);
+    let bar = progress::count(SPACINGS_M.len() as u64, "sculpting the mannequin");
+    let mut levels = Vec::new();
+    for spacing in SPACINGS_M {
+        let mesh = surface_nets::polygonise(&|point| body.distance(point), &grid(spacing));
+        let weights = weights::compute(&skeleton, &mesh);
+        let painted = paint::paint(&body, mesh, weights);
+        eprintln!(
+            "{} vertices, {} triangles",
+            painted.mesh.positions.len(),
+            painted.mesh.triangles.len()
+        );
+        levels.push(painted);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    glb::encode(&skeleton, &levels)
+}
+
+/// Lines closer together where the shape is finer: the face, the hands, the feet.
+fn grid(spacing: f32) -> Grid {
+    let fine = |value: f32, from: f32, to: f32, factor: f32| {
+        1.0 + (factor - 1.0) * field::smoothstep(0.0, 0.04, (value - from).min(to - value) + 0.02)
+    };
+    let half: Vec<f32> = lines(0.5 * spacing, 0.94, |x| {
+        spacing * fine(x, 0.66, 1.0, 0.75) * fine(x, -1.0, 0.14, 0.85)
+    });
+    let x = half
+        .iter()
+        .rev()
+        .map(|x| -x)
+        .chain(half.iter().copied())
+        .collect();
+    let y = lines(-0.02, 1.8, |y| {
+        spacing * fine(y, -0.1, 0.1, 0.7) * fine(y, 1.54, 1.9, 0.75) * fine(y, 1.38, 1.46, 0.7)
+    });
+    let z = lines(-0.2, 0.25, |_| spacing * 0.85);
+    Grid { lines: [x, y, z] }
+}
+
+fn lines(from: f32, to: f32, step: impl Fn(f32) -> f32) -> Vec<f32> {
+    let mut lines = vec![from];
+    let mut last = from;
+    while last < to {
+        last += step(last);
+        lines.push(last);
+    }
+    lines
+}

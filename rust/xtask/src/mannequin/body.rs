@@ -1,0 +1,467 @@
+//! The mannequin's shape: lofted limbs and trunk, an ellipsoid head, hands and shoes, over the canonical body.
+//!
+//! Only the left half (+X) is described; the field mirrors it. Sizes follow an adult of average build and 1.77 m.
+
+use super::field::{Loft, Shape, Station, smooth_difference, smooth_union, smoothstep};
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use glam::Vec3;
+
+/// The parts of the surface that differ in colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Region {
+    /// The light shells.
+    Shell,
+    /// Dark: joints, hands, face.
+    Joint,
+    /// Shoe and cuff of the left side.
+    Left,
+    /// Shoe and cuff of the right side.
+    Right,
+}
+
+/// A stretch of a limb with its own colour, set in a little.
+struct Band {
+    /// A point in the middle, the direction along the limb and half the length.
+    middle: Vec3,
+    along: Vec3,
+    half_length: f32,
+    /// How far from the middle it counts, so that it stays on its limb.
+    reach: f32,
+    accent: bool,
+}
+
+/// The solid of which the mannequin is made.
+pub(super) struct Body {
+    /// Shapes of the left half and over what length each melts into those before.
+    parts: Vec<(Shape, f32)>,
+    hollows: Vec<(Shape, f32)>,
+    bands: Vec<Band>,
+}
+
+/// How deep a band lies below the shells, metres.
+const INSET_M: f32 = 0.003;
+
+impl Body {
+    /// The body over a skeleton's T-pose.
+    pub(super) fn new(skeleton: &Skeleton) -> Self {
+        let mut model = ModelPose::default();
+        forward_kinematics(skeleton, &Pose::rest(skeleton), &mut model);
+        let at = |joint: Joint| model.position(joint);
+        let mut body = Self {
+            parts: Vec::new(),
+            hollows: Vec::new(),
+            bands: Vec::new(),
+        };
+        body.trunk(&at);
+        body.head(&at);
+        body.arm(&at);
+        body.leg(&at);
+        body.foot(&at, skeleton);
+        body.add_bands(&at);
+        body
+    }
+
+    /// Signed distance to the surface.
+    pub(super) fn distance(&self, point: Vec3) -> f32 {
+        let half = Vec3::new(point.x.abs(), point.y, point.z);
+        let solid = self.parts.iter().fold(f32::MAX, |solid, (shape, blend)| {
+            if solid == f32::MAX {
+                shape.distance(half)
+            } else {
+                smooth_union(solid, shape.distance(half), *blend)
+            }
+        });
+        let hollowed = self.hollows.iter().fold(solid, |solid, (shape, blend)| {
+            smooth_difference(solid, shape.distance(half), *blend)
+        });
+        let inset = hollowed + INSET_M * smoothstep(-0.002, 0.014, self.in_band(half));
+        // Soles are flat.
+        smooth_difference(inset, half.y, 0.012)
+    }
+
+    /// How many bands there are.
+    pub(super) fn bands(&self) -> usize {
+        self.bands.len()
+    }
+
+    /// Above zero in one band: the distance to its nearer edge, metres.
+    pub(super) fn in_one_band(&self, band: usize, point: Vec3) -> f32 {
+        self.bands[band].inside(Vec3::new(point.x.abs(), point.y, point.z))
+    }
+
+    /// Above zero in any band.
+    fn in_band(&self, point: Vec3) -> f32 {
+        let half = Vec3::new(point.x.abs(), point.y, point.z);
+        self.bands
+            .iter()
+            .map(|band| band.inside(half))
+            .fold(f32::MIN, f32::max)
+    }
+
+    /// The region of a point on the surface.
+    pub(super) fn region(&self, point: Vec3) -> Region {
+        let half = Vec3::new(point.x.abs(), point.y, point.z);
+        let strongest = self
+            .bands
+            .iter()
+            .max_by(|a, b| a.inside(half).total_cmp(&b.inside(half)));
+        match strongest {
+            Some(band) if band.inside(half) > 0.0 => match (band.accent, point.x > 0.0) {
+                (false, _) => Region::Joint,
+                (true, true) => Region::Left,
+                (true, false) => Region::Right,
+            },
+            _ => Region::Shell,
+        }
+    }
+
+    fn add(&mut self, blend: f32, shape: Shape) {
+        self.parts.push((shape, blend));
+    }
+
+    fn trunk(&mut self, at: &impl Fn(Joint) -> Vec3) {
+        let floor = at(Joint::Hips);
+        let station = |height: f32, side: f32, front: f32, back: f32| Station {
+            along: height - 0.985,
+            extents: [side, side, front, back],
+        };
+        let stations = vec![
+            station(0.880, 0.050, 0.050, 0.055),
+            station(0.915, 0.110, 0.078, 0.090),
+            station(0.955, 0.146, 0.094, 0.112),
+            station(1.005, 0.154, 0.099, 0.110),
+            station(1.075, 0.142, 0.096, 0.088),
+            station(1.135, 0.131, 0.094, 0.080),
+            station(1.200, 0.135, 0.100, 0.086),
+            station(1.290, 0.153, 0.113, 0.100),
+            station(1.360, 0.164, 0.117, 0.108),
+            station(1.415, 0.160, 0.102, 0.106),
+            station(1.455, 0.130, 0.076, 0.090),
+            station(1.490, 0.080, 0.052, 0.070),
+        ];
+        self.add(
+            0.0,
+            Shape::Loft(Loft::new(floor, Vec3::Y, Vec3::Z, [0.02, 0.03], stations)),
+        );
+        // Chest muscles and shoulder blades: hints only.
+        self.add(
+            0.05,
+            Shape::Ellipsoid(
+                Vec3::new(0.075, 1.365, 0.075),
+                Vec3::new(0.075, 0.055, 0.045),
+            ),
+        );
+        self.add(
+            0.05,
+            Shape::Ellipsoid(
+                Vec3::new(0.075, 1.375, -0.075),
+                Vec3::new(0.06, 0.08, 0.038),
+            ),
+        );
+        // Buttocks.
+        self.add(
+            0.04,
+            Shape::Ellipsoid(
+                Vec3::new(0.078, 0.93, -0.055),
+                Vec3::new(0.078, 0.085, 0.08),
+            ),
+        );
+        // From the neck down to the shoulders.
+        let neck = at(Joint::Neck);
+        self.add(
+            0.06,
+            Shape::RoundCone {
+                from: neck + Vec3::new(0.025, 0.0, -0.018),
+                to: at(Joint::LeftUpperArm) + Vec3::new(-0.02, 0.022, -0.008),
+                radii: [0.042, 0.046],
+            },
+        );
+    }
+
+    fn head(&mut self, at: &impl Fn(Joint) -> Vec3) {
+        let head = at(Joint::Head);
+        let neck = at(Joint::Neck);
+        self.add(
+            0.03,
+            Shape::RoundCone {
+                from: neck + Vec3::new(0.0, -0.02, -0.012),
+                to: head + Vec3::new(0.0, 0.03, 0.004),
+                radii: [0.060, 0.053],
+            },
+        );
+        let part = |x: f32, y: f32, z: f32| head + Vec3::new(x, y, z);
+        // Cranium, face and jaw.
+        self.add(
+            0.018,
+            Shape::Ellipsoid(part(0.0, 0.088, -0.006), Vec3::new(0.077, 0.098, 0.096)),
+        );
+        self.add(
+            0.03,
+            Shape::Ellipsoid(part(0.0, 0.040, 0.030), Vec3::new(0.060, 0.075, 0.066)),
+        );
+        self.add(
+            0.025,
+            Shape::Ellipsoid(part(0.0, -0.020, 0.064), Vec3::new(0.030, 0.020, 0.024)),
+        );
+        self.add(
+            0.03,
+            Shape::Ellipsoid(part(0.0, 0.008, 0.066), Vec3::new(0.032, 0.030, 0.028)),
+        );
+        // A nose and shallow hollows for the eyes: enough to see where it looks.
+        self.add(
+            0.03,
+            Shape::RoundCone {
+                from: part(0.0, 0.078, 0.084),
+                to: part(0.0, 0.036, 0.097),
+                radii: [0.008, 0.0125],
+            },
+        );
+        self.hollows.push((
+            Shape::Ellipsoid(part(0.034, 0.064, 0.108), Vec3::new(0.026, 0.019, 0.024)),
+            0.035,
+        ));
+    }
+
+    fn arm(&mut self, at: &impl Fn(Joint) -> Vec3) {
+        let (shoulder, elbow, wrist) = (
+            at(Joint::LeftUpperArm),
+            at(Joint::LeftLowerArm),
+            at(Joint::LeftHand),
+        );
+        // Along +X with the front at +Z, the side is up: +side is +Y … of `along × front` = X × Z = −Y.
+        let station = |along: f32, up: f32, down: f32, front: f32, back: f32| Station {
+            along,
+            extents: [down, up, front, back],
+        };
+        let upper = elbow.x - shoulder.x;
+        let stations = vec![
+            station(-0.05, 0.040, 0.058, 0.052, 0.052),
+            station(0.0, 0.052, 0.064, 0.058, 0.058),
+            station(0.05, 0.056, 0.057, 0.057, 0.056),
+            station(0.12, 0.048, 0.047, 0.049, 0.048),
+            station(0.19, 0.043, 0.043, 0.044, 0.044),
+            station(upper - 0.03, 0.037, 0.037, 0.039, 0.039),
+            station(upper, 0.037, 0.036, 0.039, 0.039),
+        ];
+        self.add(
+            0.045,
+            Shape::Loft(Loft::new(
+                shoulder,
+                Vec3::X,
+                Vec3::Z,
+                [0.02, 0.02],
+                stations,
+            )),
+        );
+        let lower = wrist.x - elbow.x;
+        let stations = vec![
+            station(0.0, 0.036, 0.036, 0.039, 0.038),
+            station(0.03, 0.038, 0.038, 0.042, 0.040),
+            station(0.075, 0.039, 0.039, 0.044, 0.041),
+            station(0.15, 0.031, 0.031, 0.036, 0.034),
+            station(lower - 0.02, 0.022, 0.022, 0.029, 0.028),
+            station(lower, 0.021, 0.021, 0.028, 0.027),
+        ];
+        self.add(
+            0.02,
+            Shape::Loft(Loft::new(elbow, Vec3::X, Vec3::Z, [0.02, 0.012], stations)),
+        );
+        self.hand(wrist);
+    }
+
+    /// A relaxed mitten: palm down, fingers together and slightly bent, thumb to the front.
+    fn hand(&mut self, wrist: Vec3) {
+        let station = |along: f32, up: f32, down: f32, front: f32, back: f32| Station {
+            along,
+            extents: [down, up, front, back],
+        };
+        let palm = vec![
+            station(-0.01, 0.018, 0.018, 0.026, 0.026),
+            station(0.02, 0.017, 0.018, 0.031, 0.031),
+            station(0.06, 0.015, 0.018, 0.041, 0.039),
+            station(0.095, 0.014, 0.015, 0.041, 0.040),
+        ];
+        self.add(
+            0.015,
+            Shape::Loft(Loft::new(wrist, Vec3::X, Vec3::Z, [0.012, 0.012], palm)),
+        );
+        let knuckles = wrist + Vec3::new(0.09, 0.0, 0.0);
+        let along = Vec3::new(0.975, -0.222, 0.0).normalize();
+        let fingers = vec![
+            station(0.0, 0.0140, 0.0150, 0.040, 0.039),
+            station(0.045, 0.0130, 0.0130, 0.037, 0.035),
+            station(0.080, 0.0115, 0.0115, 0.028, 0.026),
+        ];
+        self.add(
+            0.012,
+            Shape::Loft(Loft::new(knuckles, along, Vec3::Z, [0.01, 0.016], fingers)),
+        );
+        let base = wrist + Vec3::new(0.025, -0.006, 0.022);
+        let knuckle = wrist + Vec3::new(0.062, -0.012, 0.056);
+        let tip = wrist + Vec3::new(0.098, -0.018, 0.066);
+        self.add(
+            0.02,
+            Shape::RoundCone {
+                from: base,
+                to: knuckle,
+                radii: [0.017, 0.0125],
+            },
+        );
+        self.add(
+            0.012,
+            Shape::RoundCone {
+                from: knuckle,
+                to: tip,
+                radii: [0.0125, 0.0095],
+            },
+        );
+    }
+
+    fn leg(&mut self, at: &impl Fn(Joint) -> Vec3) {
+        let (hip, knee, ankle) = (
+            at(Joint::LeftUpperLeg),
+            at(Joint::LeftLowerLeg),
+            at(Joint::LeftFoot),
+        );
+        // Along −Y with the front at +Z, `along × front` is −X: the first extent is the inner side.
+        let station = |along: f32, outer: f32, inner: f32, front: f32, back: f32| Station {
+            along,
+            extents: [inner, outer, front, back],
+        };
+        let upper = hip.y - knee.y;
+        let stations = vec![
+            station(-0.02, 0.064, 0.068, 0.078, 0.085),
+            station(0.06, 0.074, 0.075, 0.083, 0.087),
+            station(0.14, 0.075, 0.073, 0.082, 0.080),
+            station(0.24, 0.066, 0.066, 0.074, 0.068),
+            station(0.34, 0.056, 0.057, 0.062, 0.056),
+            station(upper - 0.03, 0.052, 0.053, 0.058, 0.052),
+            station(upper, 0.051, 0.052, 0.058, 0.049),
+        ];
+        self.add(
+            0.045,
+            Shape::Loft(Loft::new(hip, Vec3::NEG_Y, Vec3::Z, [0.05, 0.03], stations)),
+        );
+        let lower = knee.y - ankle.y;
+        let stations = vec![
+            station(0.0, 0.050, 0.051, 0.056, 0.049),
+            station(0.05, 0.051, 0.050, 0.049, 0.056),
+            station(0.12, 0.054, 0.051, 0.046, 0.070),
+            station(0.19, 0.050, 0.046, 0.043, 0.064),
+            station(0.28, 0.038, 0.037, 0.038, 0.043),
+            station(lower - 0.05, 0.032, 0.031, 0.035, 0.033),
+            station(lower, 0.034, 0.033, 0.036, 0.036),
+        ];
+        self.add(
+            0.025,
+            Shape::Loft(Loft::new(
+                knee,
+                Vec3::NEG_Y,
+                Vec3::Z,
+                [0.03, 0.02],
+                stations,
+            )),
+        );
+    }
+
+    /// A plain shoe: heel, arch, ball and toe box on a flat sole.
+    fn foot(&mut self, at: &impl Fn(Joint) -> Vec3, skeleton: &Skeleton) {
+        let ankle = at(Joint::LeftFoot);
+        let toes = at(Joint::LeftToes);
+        let shape = skeleton.foot(Side::Left);
+        let heel = (ankle + shape.heel).z;
+        let tip = (toes + shape.toe_tip).z;
+        let base = Vec3::new(ankle.x, 0.022, 0.0);
+        // Along +Z with the front up, `along × front` is −X: the first extent is the inner side.
+        let station = |along: f32, outer: f32, inner: f32, height: f32| Station {
+            along,
+            extents: [inner, outer, height, 0.034],
+        };
+        let stations = vec![
+            station(heel + 0.014, 0.028, 0.028, 0.048),
+            station(heel + 0.045, 0.036, 0.035, 0.068),
+            station(heel + 0.085, 0.038, 0.034, 0.072),
+            station(heel + 0.125, 0.042, 0.036, 0.056),
+            station(heel + 0.165, 0.049, 0.043, 0.041),
+            station(toes.z + 0.015, 0.050, 0.047, 0.033),
+            station(tip - 0.035, 0.041, 0.042, 0.028),
+            station(tip - 0.012, 0.027, 0.030, 0.022),
+        ];
+        self.add(
+            0.022,
+            Shape::Loft(Loft::new(base, Vec3::Z, Vec3::Y, [0.014, 0.012], stations)),
+        );
+    }
+
+    fn add_bands(&mut self, at: &impl Fn(Joint) -> Vec3) {
+        let mut band = |middle: Vec3, along: Vec3, half_length: f32, reach: f32, accent: bool| {
+            self.bands.push(Band {
+                middle,
+                along,
+                half_length,
+                reach,
+                accent,
+            });
+        };
+        let (elbow, wrist) = (at(Joint::LeftLowerArm), at(Joint::LeftHand));
+        let (knee, ankle) = (at(Joint::LeftLowerLeg), at(Joint::LeftFoot));
+        band(elbow, Vec3::X, 0.026, 0.12, false);
+        band(wrist + Vec3::X * 0.1, Vec3::X, 0.11, 0.25, false);
+        band(wrist - Vec3::X * 0.032, Vec3::X, 0.022, 0.12, true);
+        band(knee, Vec3::Y, 0.034, 0.15, false);
+        band(
+            at(Joint::Neck) + Vec3::new(0.0, 0.042, -0.01),
+            Vec3::new(0.0, 0.94, 0.34).normalize(),
+            0.023,
+            0.09,
+            false,
+        );
+        band(Vec3::new(0.0, 1.118, 0.0), Vec3::Y, 0.024, 0.25, false);
+        // The shoe, from just above the ankle down, and the toe hinge within it.
+        band(Vec3::new(ankle.x, 0.0, 0.06), Vec3::Y, 0.1, 0.3, true);
+    }
+}
+
+impl Band {
+    fn inside(&self, point: Vec3) -> f32 {
+        let from_middle = point - self.middle;
+        let edge = self.half_length - from_middle.dot(self.along).abs();
+        edge.min(self.reach - from_middle.length())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_joint_lies_inside_and_soles_are_flat() {
+        let skeleton = Skeleton::standard();
+        let body = Body::new(&skeleton);
+        let mut model = ModelPose::default();
+        forward_kinematics(&skeleton, &Pose::rest(&skeleton), &mut model);
+        for joint in Joint::ALL {
+            assert!(
+                body.distance(model.position(joint)) < 0.0,
+                "{} is outside",
+                joint.name()
+            );
+        }
+        assert!(body.distance(Vec3::new(0.09, -0.002, 0.05)) > 0.0);
+        assert!(body.distance(Vec3::new(0.09, 0.008, 0.12)) < 0.0);
+        let top = model.position(Joint::Head) + skeleton.head_top;
+        assert!(body.distance(top).abs() < 0.01, "{}", body.distance(top));
+    }
+
+    #[test]
+    fn sides_differ_in_colour_only() {
+        let body = Body::new(&Skeleton::standard());
+        let (left, right) = (Vec3::new(0.09, 0.03, 0.1), Vec3::new(-0.09, 0.03, 0.1));
+        assert_eq!(
+            (body.region(left), body.region(right)),
+            (Region::Left, Region::Right)
+        );
+        assert!((body.distance(left) - body.distance(right)).abs() < 1e-7);
+        assert_eq!(body.region(Vec3::new(0.0, 1.3, 0.1)), Region::Shell);
+    }
+}
