@@ -3,18 +3,10 @@
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 use crate::provenance::Provenance;
 use footfall_core::{Side, Skeleton};
+use footfall_prob::windows::Windows;
 
 /// States of a step's left-to-right hidden semi-Markov model (Tilmanne et al. 2012, section 5.1.1).
 pub const STATES_PER_STEP: usize = 5;
-
-/// Which time differences the observations hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DynamicWindows {
-    /// Equations 2 and 3 of the paper: Δ = {-½, 0, ½}, Δ² = {¼, 0, -½, 0, ¼}.
-    Paper,
-    /// Δ as in the paper, Δ² = {1, -2, 1}: couples neighbouring frames too.
-    Compact,
-}
 
 /// A walk as a hidden semi-Markov model.
 ///
@@ -28,7 +20,7 @@ pub struct GaitModel {
     /// The body that it was trained on.
     pub skeleton: Skeleton,
     /// Which time differences the observations hold.
-    pub windows: DynamicWindows,
+    pub windows: Windows,
     /// The step that begins with the left foot's initial contact, then the one with the right's.
     pub steps: [StepModel; 2],
     /// How much the features of one walk vary in total.

@@ -12,7 +12,7 @@ pub mod provenance;
 
 pub use file::{FORMAT_VERSION, ModelFileError};
 pub use gait_model::{
-    DynamicWindows, GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse,
+    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse,
     StateModel, StepModel, StepOffset, Variation,
 };
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};

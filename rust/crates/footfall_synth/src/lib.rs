@@ -1,1 +1,19 @@
-//! Runtime: model to pose.
+//! Runtime: a gait model becomes poses.
+//!
+//! A step is planned ([`plan`]: durations and means, with chance and speed), turned into a smooth trajectory of joint
+//! rotations ([`trajectory`]), and put on the ground ([`planting`], on [`rocker`] feet). [`GaitGenerator`] does so in
+//! real time; [`synthesize`] solves a whole walk at once.
+
+mod error;
+mod generator;
+mod pace;
+mod plan;
+mod planting;
+mod raw;
+mod rocker;
+mod trajectory;
+mod variance;
+mod walker;
+
+pub use error::SynthError;
+pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};

@@ -1,10 +1,11 @@
 use super::*;
 use crate::gait_model::{
-    DynamicWindows, GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepModel,
+    GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepModel,
     StepOffset, Variation,
 };
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 use footfall_core::Skeleton;
+use footfall_prob::windows::Windows;
 use proptest::prelude::*;
 
 /// A model whose numbers are all different and exact in f32.
@@ -25,7 +26,7 @@ fn sample() -> GaitModel {
     GaitModel {
         frame_rate_hz: 60.0,
         skeleton: Skeleton::standard(),
-        windows: DynamicWindows::Compact,
+        windows: Windows::Compact,
         steps: [step(0.5), step(-0.5)],
         global_variance: GlobalVarianceModel {
             mean: row(0.5, FEATURE_COUNT),

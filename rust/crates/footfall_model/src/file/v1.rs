@@ -2,11 +2,12 @@
 
 use super::{ModelFileError, undecodable};
 use crate::gait_model::{
-    DynamicWindows, GaitModel, GlobalVarianceModel, SpeedResponse, StateModel, StepModel,
+    GaitModel, GlobalVarianceModel, SpeedResponse, StateModel, StepModel,
     StepOffset, Variation,
 };
 use crate::layout::OBSERVATION_COUNT;
 use crate::provenance::Provenance;
+use footfall_prob::windows::Windows;
 use footfall_core::{FootShape, JOINT_COUNT, Skeleton};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -65,7 +66,7 @@ pub(super) fn encode(model: &GaitModel) -> Result<Vec<u8>, ModelFileError> {
     let dto = ModelV1 {
         frame_rate_hz: model.frame_rate_hz,
         skeleton: encode_skeleton(&model.skeleton),
-        compact_windows: model.windows == DynamicWindows::Compact,
+        compact_windows: model.windows == Windows::Compact,
         steps: model.steps.each_ref().map(encode_step),
         global_variance_mean: narrow(&model.global_variance.mean),
         global_variance_variance: narrow(&model.global_variance.variance),
@@ -94,9 +95,9 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitModel
         frame_rate_hz: dto.frame_rate_hz,
         skeleton: decode_skeleton(&dto.skeleton)?,
         windows: if dto.compact_windows {
-            DynamicWindows::Compact
+            Windows::Compact
         } else {
-            DynamicWindows::Paper
+            Windows::Paper
         },
         steps: dto.steps.each_ref().map(decode_step),
         global_variance: GlobalVarianceModel {

@@ -1,0 +1,27 @@
+//! Why a walk cannot be generated.
+
+use footfall_core::SkeletonError;
+use footfall_model::ModelError;
+use footfall_prob::ProbError;
+
+/// Why a walk cannot be generated.
+#[derive(Debug, thiserror::Error)]
+pub enum SynthError {
+    /// The model's content makes no sense.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The body cannot walk.
+    #[error(transparent)]
+    Skeleton(#[from] SkeletonError),
+    /// A setting is not finite.
+    #[error("{setting} is {value}; give a finite number")]
+    Setting {
+        /// Which setting.
+        setting: &'static str,
+        /// Its value.
+        value: f32,
+    },
+    /// The model gives no trajectory.
+    #[error("the model gives no trajectory: {0}; make it anew with `footfall train`")]
+    Inference(#[from] ProbError),
+}

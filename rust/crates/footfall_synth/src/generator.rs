@@ -1,0 +1,220 @@
+//! The streaming generator: one walker, for as long as you like.
+
+use crate::error::SynthError;
+use crate::pace::PaceTable;
+use crate::plan::Planner;
+use crate::planting::PlantedFrame;
+use crate::rocker::RockerFoot;
+use crate::variance;
+use crate::walker::Walker;
+use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_core::{Joint, Pose, Side, Skeleton};
+use footfall_model::GaitModel;
+use glam::{Quat, Vec3};
+use std::sync::Arc;
+
+/// Initial contacts that one call of [`GaitGenerator::step`] reports at most.
+const MAX_FOOTSTEPS: usize = 64;
+
+/// A single call advances by this much at most, seconds.
+const MAX_DT_SECS: f32 = 10.0;
+
+/// Slowest speed that is walked: below it steps would last for seconds.
+const MIN_SPEED_MPS: f32 = 0.25;
+
+/// What makes one walker differ from another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GeneratorConfig {
+    /// Seed of the walker's own way of walking and of the variation of its steps.
+    pub seed: u64,
+    /// Where in the stride to begin: 0 is the left foot's initial contact, 0.5 the right's.
+    pub phase: f32,
+    /// How far walkers and steps stray from the average: 0 not at all, 1 as in the recordings.
+    pub variation: f32,
+}
+
+/// What the walker is asked to do. Takes effect with the next step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Controls {
+    /// Speed over the ground, m/s.
+    pub speed_mps: f32,
+    /// Turning, rad/s, positive to the left.
+    pub turn_rate_radps: f32,
+}
+
+/// A place on the ground with a heading: `start_from_character` and the like.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GroundTransform {
+    /// Position with y = 0, metres.
+    pub position: Vec3,
+    /// Heading in radians, positive to the left.
+    pub heading: f32,
+}
+
+/// An initial contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footstep {
+    /// Which foot.
+    pub side: Side,
+    /// The ground under the ankle, in the space where the walk began, metres.
+    pub position: Vec3,
+    /// Heading of the foot in that space, radians.
+    pub heading: f32,
+}
+
+/// Walks one body in real time.
+///
+/// All checks are in [`new`](Self::new); [`step`](Self::step) cannot fail and does not allocate. The same model, seed
+/// and sequence of calls give the same poses, bit for bit on one machine.
+#[derive(Debug)]
+pub struct GaitGenerator {
+    planner: Planner,
+    walker: Walker,
+    paces: PaceTable,
+    frame_rate_hz: f32,
+    /// Frames since the current step began.
+    position: f32,
+    plan_from_start: GroundTransform,
+    footsteps: Vec<Footstep>,
+    start_from_character: GroundTransform,
+    contact: [bool; 2],
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "controls will hold more than speed and turning"
+)]
+impl GaitGenerator {
+    /// A walker of `model` with the proportions of `skeleton`, standing at the origin and facing +Z.
+    ///
+    /// # Errors
+    /// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
+    pub fn new(
+        model: &Arc<GaitModel>,
+        skeleton: &Skeleton,
+        config: &GeneratorConfig,
+    ) -> Result<Self, SynthError> {
+        model.check()?;
+        skeleton.check()?;
+        for (setting, value) in [("phase", config.phase), ("variation", config.variation)] {
+            if !value.is_finite() {
+                return Err(SynthError::Setting { setting, value });
+            }
+        }
+        let variation = f64::from(config.variation.clamp(0.0, 2.0));
+        let mut planner = Planner::new(model, config.seed, variation);
+        let solver = variance::solver_with_pull(model)?;
+        let mut walker = Walker::new(model, skeleton, solver);
+        let paces = PaceTable::measure(model, &mut planner, &mut walker)?;
+        let phase = config.phase.rem_euclid(1.0);
+        let first = if phase < 0.5 { Side::Left } else { Side::Right };
+        let pace = paces.pace(model.speed.reference_mps);
+        walker.start(&mut planner, pace, first, Planner::draw)?;
+        let position = (2.0 * phase).fract() * walker.step().timing.frames as f32;
+        let mut generator = Self {
+            planner,
+            walker,
+            paces,
+            frame_rate_hz: model.frame_rate_hz as f32,
+            position,
+            plan_from_start: GroundTransform::default(),
+            footsteps: Vec::with_capacity(MAX_FOOTSTEPS),
+            start_from_character: GroundTransform::default(),
+            contact: [true; 2],
+        };
+        generator.plan_from_start = generator.plan_from_character();
+        Ok(generator)
+    }
+
+    /// Advances by `dt_secs` and writes the pose, in the character's own space: above the ground point that
+    /// [`start_from_character`](Self::start_from_character) tells, facing +Z.
+    ///
+    /// A `dt_secs` of 0 gives the same pose again.
+    pub fn step(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
+        self.footsteps.clear();
+        if dt_secs > 0.0 {
+            self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
+        }
+        while self.position >= self.walker.step().timing.frames as f32 {
+            self.position -= self.walker.step().timing.frames as f32;
+            self.next_step(controls);
+        }
+        let plan_from_character = self.plan_from_character();
+        let character_from_plan = from_heading(-plan_from_character.heading);
+        let (frame, next, weight) = self.frames();
+        let contact = frame.contact;
+        *out = frame.pose.interpolate(&next.pose, weight);
+        out.root_position =
+            character_from_plan * (out.root_position - plan_from_character.position);
+        let root = Joint::Hips.index();
+        out.rotations[root] = (character_from_plan * out.rotations[root]).normalize();
+        self.contact = contact;
+        self.start_from_character = self.to_start(&plan_from_character);
+    }
+
+    /// Where the character is and where it faces, from where it began.
+    pub fn start_from_character(&self) -> GroundTransform {
+        self.start_from_character
+    }
+
+    /// The initial contacts during the last [`step`](Self::step), oldest first.
+    pub fn footsteps(&self) -> &[Footstep] {
+        &self.footsteps
+    }
+
+    /// Whether the left and the right foot bear on the ground.
+    pub fn feet_in_contact(&self) -> [bool; 2] {
+        self.contact
+    }
+
+    fn next_step(&mut self, controls: &Controls) {
+        let speed = finite_or(controls.speed_mps, 0.0).max(MIN_SPEED_MPS);
+        let turn_rate = finite_or(controls.turn_rate_radps, 0.0);
+        let pace = self.paces.pace(f64::from(speed));
+        self.walker
+            .advance(&mut self.planner, pace, turn_rate, Planner::draw);
+        let side = self.walker.step().timing.leading;
+        if let Some(planter) = self.walker.planter()
+            && self.footsteps.len() < MAX_FOOTSTEPS
+        {
+            let plant = planter.plant(side);
+            let place = self.to_start(&GroundTransform {
+                position: RockerFoot::footprint(plant),
+                heading: plant.heading,
+            });
+            self.footsteps.push(Footstep {
+                side,
+                position: place.position,
+                heading: place.heading,
+            });
+        }
+    }
+
+    /// The frames on both sides of now, and the weight of the later one.
+    fn frames(&self) -> (&PlantedFrame, &PlantedFrame, f32) {
+        let frames = &self.walker.frames;
+        let first = (self.position.floor() as usize).min(frames.len() - 2);
+        let weight = self.position - first as f32;
+        (&frames[first], &frames[first + 1], weight)
+    }
+
+    fn plan_from_character(&self) -> GroundTransform {
+        let (frame, next, weight) = self.frames();
+        GroundTransform {
+            position: frame.ground_position.lerp(next.ground_position, weight),
+            heading: frame.heading + weight * (next.heading - frame.heading),
+        }
+    }
+
+    fn to_start(&self, plan: &GroundTransform) -> GroundTransform {
+        let start_from_plan: Quat = from_heading(-self.plan_from_start.heading);
+        GroundTransform {
+            position: start_from_plan * (plan.position - self.plan_from_start.position),
+            heading: wrap_angle(plan.heading - self.plan_from_start.heading),
+        }
+    }
+}
+
+fn finite_or(value: f32, otherwise: f32) -> f32 {
+    if value.is_finite() { value } else { otherwise }
+}

@@ -1,0 +1,181 @@
+//! What the coming steps are: how long their states last and what their means are.
+
+use crate::planting::StepTiming;
+use footfall_core::Side;
+use footfall_model::{GaitModel, OBSERVATION_COUNT, STATES_PER_STEP, StepOffset};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, StandardNormal};
+use std::sync::Arc;
+
+/// Components of the variation that a step can hold; a model has no more.
+const MAX_COMPONENTS: usize = 16;
+
+/// Weights of components stay within this many standard deviations, so that every walker is a plausible one.
+const MAX_WEIGHT: f64 = 2.0;
+
+/// A step lasts at most this long, seconds.
+const MAX_STEP_SECS: f64 = 3.0;
+
+/// How fast a step is to be: what the speed response and the limits of the model make of a speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pace {
+    /// Where on the model's speed response, m/s.
+    pub(crate) covariate_mps: f64,
+    /// Factor on the rate at which states pass.
+    pub(crate) tempo: f64,
+    /// Factor on the legs' reach forwards and backwards.
+    pub(crate) stride: f64,
+}
+
+/// What chance decided about a step; its pace may still change.
+#[derive(Clone, Debug)]
+pub(crate) struct StepDraw {
+    pub(crate) side: Side,
+    weights: [f64; MAX_COMPONENTS],
+}
+
+/// A step ready to be generated.
+#[derive(Clone, Debug)]
+pub(crate) struct StepPlan {
+    pub(crate) timing: StepTiming,
+    /// Frames of each state.
+    pub(crate) state_frames: [usize; STATES_PER_STEP],
+    /// The means of every state, state by state.
+    pub(crate) means: Vec<f64>,
+    /// Factor on the legs' reach.
+    pub(crate) stride: f64,
+}
+
+impl StepPlan {
+    /// A plan that [`Planner::realise`] can fill without allocating.
+    pub(crate) fn empty() -> Self {
+        Self {
+            timing: StepTiming {
+                leading: Side::Left,
+                frames: 0,
+                terminal: 0,
+            },
+            state_frames: [0; STATES_PER_STEP],
+            means: vec![0.0; STATES_PER_STEP * OBSERVATION_COUNT],
+            stride: 1.0,
+        }
+    }
+}
+
+/// One walker: draws steps that vary as the corpus does.
+#[derive(Clone, Debug)]
+pub(crate) struct Planner {
+    model: Arc<GaitModel>,
+    rng: ChaCha8Rng,
+    variation: f64,
+    /// How this walker differs from the average, left and right step.
+    walker: [StepOffset; 2],
+    /// The last step's weights, per side.
+    weights: [[f64; MAX_COMPONENTS]; 2],
+    /// Room for the sum of all offsets.
+    offset: StepOffset,
+}
+
+impl Planner {
+    /// A walker drawn by `seed`; `variation` scales how far it and its steps stray from the average.
+    pub(crate) fn new(model: &Arc<GaitModel>, seed: u64, variation: f64) -> Self {
+        let mut planner = Self {
+            model: Arc::clone(model),
+            rng: ChaCha8Rng::seed_from_u64(seed),
+            variation,
+            walker: [StepOffset::zero(), StepOffset::zero()],
+            weights: [[0.0; MAX_COMPONENTS]; 2],
+            offset: StepOffset::zero(),
+        };
+        for component in &model.variation.walker {
+            let weight = variation * planner.normal();
+            for (walker, offset) in planner.walker.iter_mut().zip(component) {
+                walker.add_scaled(offset, weight);
+            }
+        }
+        for side in 0..2 {
+            for component in 0..MAX_COMPONENTS {
+                planner.weights[side][component] = planner.normal();
+            }
+        }
+        planner
+    }
+
+    /// Draws the next step that begins with this foot's initial contact.
+    pub(crate) fn draw(&mut self, side: Side) -> StepDraw {
+        let memory = self.model.variation.step_correlation.clamp(0.0, 0.99);
+        let news = (1.0 - memory * memory).sqrt();
+        for component in 0..MAX_COMPONENTS {
+            let fresh = self.normal();
+            let weight = &mut self.weights[side.index()][component];
+            *weight = (memory * *weight + news * fresh).clamp(-MAX_WEIGHT, MAX_WEIGHT);
+        }
+        StepDraw {
+            side,
+            weights: self.weights[side.index()],
+        }
+    }
+
+    /// Frames of the longest step that [`realise`](Self::realise) can make.
+    pub(crate) fn longest_step(model: &GaitModel) -> usize {
+        (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize + STATES_PER_STEP
+    }
+
+    /// The step of this walker without chance, for measuring.
+    pub(crate) fn mean_draw(side: Side) -> StepDraw {
+        StepDraw {
+            side,
+            weights: [0.0; MAX_COMPONENTS],
+        }
+    }
+
+    /// Works out a drawn step at a pace.
+    pub(crate) fn realise(&mut self, draw: &StepDraw, pace: Pace, plan: &mut StepPlan) {
+        let side = draw.side.index();
+        let model = &self.model;
+        self.offset.means.copy_from_slice(&self.walker[side].means);
+        self.offset
+            .log_durations
+            .copy_from_slice(&self.walker[side].log_durations);
+        self.offset.other_terminal = self.walker[side].other_terminal;
+        let deviation = pace.covariate_mps - model.speed.reference_mps;
+        self.offset.add_scaled(&model.speed.slopes[side], deviation);
+        for (component, weight) in model.variation.step.iter().zip(draw.weights) {
+            self.offset
+                .add_scaled(&component[side], self.variation * weight);
+        }
+
+        let step = &model.steps[side];
+        let mut elapsed = 0.0;
+        let mut passed = 0;
+        for (state, parameters) in step.states.iter().enumerate() {
+            let block = state * OBSERVATION_COUNT..(state + 1) * OBSERVATION_COUNT;
+            let means = plan.means[block.clone()].iter_mut();
+            for ((mean, base), offset) in means.zip(&parameters.mean).zip(&self.offset.means[block])
+            {
+                *mean = base + offset;
+            }
+            let longest = MAX_STEP_SECS * model.frame_rate_hz / STATES_PER_STEP as f64;
+            let stretch = self.offset.log_durations[state].clamp(-1.5, 1.5).exp();
+            let frames = parameters.duration_mean * stretch / pace.tempo;
+            // Rounding the running sum keeps the step's duration true to half a frame.
+            elapsed += frames.clamp(1.0, longest);
+            let end = (elapsed.round() as usize).max(passed + 1);
+            plan.state_frames[state] = end - passed;
+            passed = end;
+        }
+        let terminal = (step.other_terminal + self.offset.other_terminal).clamp(0.02, 0.6);
+        plan.timing = StepTiming {
+            leading: draw.side,
+            frames: passed,
+            terminal: ((terminal * passed as f64).round() as usize).clamp(1, passed - 2),
+        };
+        plan.stride = pace.stride;
+    }
+
+    fn normal(&mut self) -> f64 {
+        let value: f64 = StandardNormal.sample(&mut self.rng);
+        value.clamp(-MAX_WEIGHT, MAX_WEIGHT)
+    }
+}

@@ -1,0 +1,311 @@
+//! Puts generated rotations on the ground, one step at a time: root travel, planted feet, legs that reach them.
+//!
+//! The model generates rotations only; the travel of the body follows from the foot that stands (Tilmanne et al. 2012,
+//! section 5.2.3). Here the standing foot rolls on its plant without sliding ([`crate::rocker`]), the hips follow from
+//! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
+//! generated rotations and planted feet disagree about is spread over the swing.
+
+mod swing;
+
+use crate::raw::RawFrame;
+use crate::rocker::{Plant, RockerFoot};
+use footfall_core::rotation::from_heading;
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
+use footfall_ik::{FootTarget, reach_height, solve_leg};
+use glam::{Quat, Vec3};
+use swing::Swing;
+
+/// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
+const SETTLE_SECS: f32 = 0.07;
+
+/// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
+const MAX_STANCE_EXTENSION: f32 = 0.997;
+
+/// Over how many metres the pelvis yields to that limit.
+const REACH_SOFTNESS_M: f32 = 0.005;
+
+/// Over how many frames the landing leg's reach comes to bear on the pelvis.
+const REACH_FADE_FRAMES: f32 = 5.0;
+
+/// One frame of a walk on the ground.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PlantedFrame {
+    /// The pose in the space where the walk began.
+    pub(crate) pose: Pose,
+    /// Place of the walker on the ground: its travel without sway.
+    pub(crate) ground_position: Vec3,
+    /// Heading of the walker, radians.
+    pub(crate) heading: f32,
+    /// Whether the left and the right foot bear on the ground.
+    pub(crate) contact: [bool; 2],
+}
+
+/// One step in frames of the model.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepTiming {
+    /// The foot whose initial contact begins the step, at frame 0.
+    pub(crate) leading: Side,
+    /// Frames until the other foot's initial contact.
+    pub(crate) frames: usize,
+    /// The last frame in which the other foot is still on the ground from its step before.
+    pub(crate) terminal: usize,
+}
+
+/// Carries plants, hips and heading from step to step.
+#[derive(Clone, Debug)]
+pub(crate) struct Planter {
+    skeleton: Skeleton,
+    feet: [RockerFoot; 2],
+    frame_secs: f32,
+    plants: [Plant; 2],
+    hips: Vec3,
+    /// Travel of the hips in the last frame; none before the first step.
+    hips_velocity: Option<Vec3>,
+    heading: f32,
+    ground_position: Vec3,
+    ground_velocity: Option<Vec3>,
+}
+
+impl Planter {
+    /// Puts the first frame on the ground: both feet down, hips above the origin, heading along +Z.
+    pub(crate) fn new(
+        skeleton: &Skeleton,
+        frame_secs: f32,
+        first: &RawFrame,
+        leading: Side,
+    ) -> Self {
+        let feet = Side::BOTH.map(|side| RockerFoot::new(skeleton, side));
+        let plants = Side::BOTH.map(|side| {
+            let leg = &first.legs[side.index()];
+            feet[side.index()].plant_under(leg.ankle, leg.heading, leg.pitch)
+        });
+        let mut planter = Self {
+            skeleton: skeleton.clone(),
+            feet,
+            frame_secs,
+            plants,
+            hips: Vec3::ZERO,
+            hips_velocity: None,
+            heading: 0.0,
+            ground_position: Vec3::ZERO,
+            ground_velocity: None,
+        };
+        let standing = leading.other();
+        let hips = planter.hips_above(first, standing, Quat::IDENTITY);
+        planter.hips = Vec3::new(0.0, hips.y, 0.0);
+        planter
+    }
+
+    /// Where this foot was put last.
+    pub(crate) fn plant(&self, side: Side) -> &Plant {
+        &self.plants[side.index()]
+    }
+
+    /// Puts a step on the ground. `raw` has one frame more than the step: the next initial contact.
+    ///
+    /// Writes `timing.frames + 1` frames to `out`, the last of which is the first of the next step.
+    pub(crate) fn plant_step(
+        &mut self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        turn_rate: f32,
+        out: &mut Vec<PlantedFrame>,
+    ) {
+        out.clear();
+        self.travel(raw, timing, turn_rate, out);
+        let last = &out[timing.frames];
+        let (hips, heading) = (last.pose.root_position, last.heading);
+        let trailing = timing.leading.other();
+        let next_plant = self.next_plant(raw, timing, hips, heading, turn_rate);
+        let swing = Swing::new(&self.swing_ends(raw, timing, out, &next_plant), timing);
+        for (index, (frame, raw)) in out.iter_mut().zip(raw).enumerate() {
+            let level = from_heading(frame.heading);
+            let mut model = ModelPose::default();
+            model.positions[0] = frame.pose.root_position;
+            model.rotations[0] = frame.pose.rotations[Joint::Hips.index()];
+            for side in Side::BOTH {
+                let foot = &self.feet[side.index()];
+                let leg = &raw.legs[side.index()];
+                let target = if side == timing.leading || index <= timing.terminal {
+                    foot.stand(self.plant(side), leg.pitch)
+                } else if index == timing.frames {
+                    foot.stand(&next_plant, leg.pitch)
+                } else {
+                    let free = free_foot(raw, side, frame.pose.root_position, level);
+                    swing.guide(index, &free, foot)
+                };
+                solve_leg(&self.skeleton, side, &target, &mut frame.pose, &mut model);
+            }
+        }
+        self.plants[trailing.index()] = next_plant;
+    }
+
+    /// Fills hips, heading, ground position and contacts of every frame, and carries them to the next step.
+    fn travel(
+        &mut self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        turn_rate: f32,
+        out: &mut Vec<PlantedFrame>,
+    ) {
+        let start = self.hips_above(&raw[0], timing.leading, from_heading(self.heading));
+        let next_level = from_heading(self.heading + turn_rate * self.frame_secs);
+        let follow = self.hips_above(&raw[1], timing.leading, next_level);
+        let offset = self.hips - start;
+        let velocity = self
+            .hips_velocity
+            .map_or(Vec3::ZERO, |velocity| velocity - (follow - start));
+        let decay = self.frame_secs / SETTLE_SECS;
+        let mut settled = self.hips;
+        for (index, raw) in raw.iter().enumerate().take(timing.frames + 1) {
+            let time = index as f32;
+            let heading = self.heading + turn_rate * self.frame_secs * time;
+            let level = from_heading(heading);
+            // A critically damped return from where the hips were to where the landed foot has them.
+            let remains = (offset + (velocity + offset * decay) * time) * (-decay * time).exp();
+            let hips = self.hips_above(raw, timing.leading, level) + remains;
+            self.hips_velocity = Some(hips - settled);
+            settled = hips;
+            let mut frame = PlantedFrame {
+                heading,
+                ..PlantedFrame::default()
+            };
+            frame.contact[timing.leading.index()] = true;
+            frame.contact[timing.leading.other().index()] =
+                index <= timing.terminal || index == timing.frames;
+            let hips = self.within_reach(hips, raw, timing, index, level);
+            raw.pose(hips, level, &mut frame.pose);
+            out.push(frame);
+        }
+        self.glide(timing, settled, out);
+        self.hips = settled;
+        self.heading += turn_rate * self.frame_secs * timing.frames as f32;
+    }
+
+    /// The walker's place on the ground: a cubic path through the hips' places at initial contacts.
+    fn glide(&mut self, timing: &StepTiming, hips: Vec3, out: &mut [PlantedFrame]) {
+        let from = self.ground_position;
+        let to = Vec3::new(hips.x, 0.0, hips.z);
+        let arrival = to - from;
+        let departure = self
+            .ground_velocity
+            .map_or(arrival, |velocity| velocity * timing.frames as f32);
+        for (index, frame) in out.iter_mut().enumerate() {
+            let s = index as f32 / timing.frames as f32;
+            frame.ground_position = hermite(from, departure, to, arrival, s);
+        }
+        self.ground_position = to;
+        self.ground_velocity = Some(arrival / timing.frames as f32);
+    }
+
+    /// Where the hips are when this foot stands on its plant and the leg is as generated.
+    fn hips_above(&self, raw: &RawFrame, side: Side, level: Quat) -> Vec3 {
+        let leg = &raw.legs[side.index()];
+        let target = self.feet[side.index()].stand(self.plant(side), leg.pitch);
+        target.ankle - level * leg.ankle
+    }
+
+    /// Lowers the hips, softly, to where every standing leg reaches its ankle.
+    fn within_reach(
+        &self,
+        hips: Vec3,
+        raw: &RawFrame,
+        timing: &StepTiming,
+        index: usize,
+        level: Quat,
+    ) -> Vec3 {
+        let mut height = hips.y;
+        for side in Side::BOTH {
+            if side != timing.leading && index > timing.terminal {
+                continue;
+            }
+            let leg = &raw.legs[side.index()];
+            let ankle = self.feet[side.index()]
+                .stand(self.plant(side), leg.pitch)
+                .ankle;
+            let length = self.skeleton.leg_length(side);
+            let limit = reach_height(hips, level * leg.hip, ankle, length, MAX_STANCE_EXTENSION);
+            let fade = if side == timing.leading {
+                (1.0 - index as f32 / REACH_FADE_FRAMES).max(0.0)
+            } else {
+                0.0
+            };
+            // Out of reach sideways at any height: the solver stretches the leg, and the pelvis stays human.
+            if let Some(limit) = limit {
+                height = soft_min(height, limit + 0.1 * length * fade * fade);
+            }
+        }
+        Vec3::new(hips.x, height, hips.z)
+    }
+
+    /// Where the trailing foot lands at the end of the step.
+    fn next_plant(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        hips: Vec3,
+        heading: f32,
+        turn_rate: f32,
+    ) -> Plant {
+        let side = timing.leading.other();
+        let leg = &raw[timing.frames].legs[side.index()];
+        let ankle = hips + from_heading(heading) * leg.ankle;
+        // The foot points to where the body will have turned by the middle of its stance.
+        let lead = 0.5 * turn_rate * self.frame_secs * timing.frames as f32;
+        self.feet[side.index()].plant_under(ankle, heading + lead + leg.heading, leg.pitch)
+    }
+
+    /// Where the trailing foot is planted and where it would be free, at the ends of its swing.
+    fn swing_ends(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+        next_plant: &Plant,
+    ) -> [(FootTarget, FootTarget); 3] {
+        let side = timing.leading.other();
+        let foot = &self.feet[side.index()];
+        let before = timing.terminal.saturating_sub(1);
+        [before, timing.terminal, timing.frames].map(|index| {
+            let frame = &frames[index];
+            let plant = if index == timing.frames {
+                next_plant
+            } else {
+                self.plant(side)
+            };
+            let level = from_heading(frame.heading);
+            let free = free_foot(&raw[index], side, frame.pose.root_position, level);
+            let pitch = raw[index].legs[side.index()].pitch;
+            (foot.stand(plant, pitch), free)
+        })
+    }
+}
+
+/// Where a foot is when the leg is as generated.
+fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget {
+    let leg = &raw.legs[side.index()];
+    let foot = level * leg.foot;
+    FootTarget {
+        ankle: hips + level * leg.ankle,
+        foot,
+        toes: foot * leg.toes_local,
+    }
+}
+
+/// The smaller of two numbers, rounded off where they meet.
+fn soft_min(value: f32, limit: f32) -> f32 {
+    let excess = (value - limit) / REACH_SOFTNESS_M;
+    if excess > 20.0 {
+        return limit;
+    }
+    value - REACH_SOFTNESS_M * excess.exp().ln_1p()
+}
+
+/// Cubic Hermite curve at `s` in 0..1; the tangents are per unit of `s`.
+fn hermite(from: Vec3, departure: Vec3, to: Vec3, arrival: Vec3, s: f32) -> Vec3 {
+    let (s2, s3) = (s * s, s * s * s);
+    from * (2.0 * s3 - 3.0 * s2 + 1.0)
+        + departure * (s3 - 2.0 * s2 + s)
+        + to * (3.0 * s2 - 2.0 * s3)
+        + arrival * (s3 - s2)
+}

@@ -1,0 +1,94 @@
+//! The swinging foot: from where it stood to where it lands, along the generated path.
+
+use super::{StepTiming, hermite};
+use crate::rocker::RockerFoot;
+use core::f32::consts::PI;
+use footfall_core::rotation::{exp_map, log_map};
+use footfall_ik::FootTarget;
+use glam::{Quat, Vec3};
+
+/// Least clearance of the sole in the middle of the swing, metres.
+const CLEARANCE_M: f32 = 0.012;
+
+/// Over how many metres the foot yields to that clearance.
+const CLEARANCE_SOFTNESS_M: f32 = 0.004;
+
+/// What planted and generated foot disagree about, from the foot's last frame on the ground to its next first.
+pub(super) struct Swing {
+    first: usize,
+    frames: f32,
+    position: Correction,
+    rotation: Correction,
+    toes: Correction,
+}
+
+/// A correction at both ends of the swing, and how fast it changes when the foot leaves the ground (per swing).
+struct Correction {
+    start: Vec3,
+    departure: Vec3,
+    end: Vec3,
+}
+
+impl Correction {
+    fn at(&self, s: f32) -> Vec3 {
+        hermite(self.start, self.departure, self.end, Vec3::ZERO, s)
+    }
+}
+
+impl Swing {
+    /// `ends`: the planted and the free foot one frame before the swing, at its start and at its end.
+    pub(super) fn new(ends: &[(FootTarget, FootTarget); 3], timing: &StepTiming) -> Self {
+        let first = timing.terminal;
+        let frames = (timing.frames - first).max(1) as f32;
+        let correction = |difference: &dyn Fn(&FootTarget, &FootTarget) -> Vec3| {
+            let [before, start, end] = ends
+                .each_ref()
+                .map(|(planted, free)| difference(planted, free));
+            let departure = if first == 0 {
+                Vec3::ZERO
+            } else {
+                (start - before) * frames
+            };
+            Correction {
+                start,
+                // A correction that is already settling must not be thrown further than it is long.
+                departure: departure.clamp_length_max(2.0 * start.distance(end) + 0.1),
+                end,
+            }
+        };
+        Self {
+            first,
+            frames,
+            position: correction(&|planted, free| planted.ankle - free.ankle),
+            rotation: correction(&|planted, free| log_map(planted.foot * free.foot.inverse())),
+            toes: correction(&|planted, free| {
+                log_map(toes_local(free).inverse() * toes_local(planted))
+            }),
+        }
+    }
+
+    /// The foot at a frame of the step, from where it would be free.
+    pub(super) fn guide(&self, index: usize, free: &FootTarget, foot: &RockerFoot) -> FootTarget {
+        let s = (index - self.first) as f32 / self.frames;
+        let rotation = (exp_map(self.rotation.at(s)) * free.foot).normalize();
+        let mut target = FootTarget {
+            ankle: free.ankle + self.position.at(s),
+            foot: rotation,
+            toes: rotation * toes_local(free) * exp_map(self.toes.at(s)),
+        };
+        let clearance = CLEARANCE_M * (PI * s).sin().powi(2);
+        let softness = CLEARANCE_SOFTNESS_M * (PI * s).sin() + 1e-6;
+        let short = (clearance - foot.lowest_point(&target)) / softness;
+        target.ankle.y += softness
+            * if short > 20.0 {
+                short
+            } else {
+                short.exp().ln_1p()
+            };
+        target
+    }
+}
+
+fn toes_local(foot: &FootTarget) -> Quat {
+    foot.foot.inverse() * foot.toes
+}

@@ -1,0 +1,204 @@
+//! The standing foot: it rolls over heel, ball and toe tip without sliding.
+//!
+//! A standing foot has a fixed heading and one degree of freedom, its pitch. With the toes up it turns about the back
+//! edge of the heel; flat, it rests; with the heel up it turns about the toe joint while the toes stay flat; past the
+//! toes' range it turns about their tip. Every pivot is a point of the ground, so a foot driven by pitch alone cannot
+//! slide or sink.
+
+use core::f32::consts::FRAC_PI_3;
+use footfall_core::rotation::from_heading;
+use footfall_core::{FootShape, Side, Skeleton};
+use footfall_ik::FootTarget;
+use glam::{Quat, Vec3};
+
+/// How far the toes bend up before the foot rises on their tips, radians.
+const MAX_TOE_FLEXION: f32 = 0.9 * FRAC_PI_3;
+
+/// Pitches much smaller than this count as flat, radians: captured soles are not level to a degree.
+const FLAT_PITCH: f32 = 0.09;
+
+/// Where a foot was put.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Plant {
+    /// Position of the ankle when the sole is flat on the ground, metres.
+    pub(crate) flat_ankle: Vec3,
+    /// Heading of the foot, radians.
+    pub(crate) heading: f32,
+}
+
+/// The parts of a foot that the rocker needs, in the axes of the foot.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RockerFoot {
+    heel: Vec3,
+    toe_joint: Vec3,
+    ball: Vec3,
+    toe_tip: Vec3,
+}
+
+impl RockerFoot {
+    pub(crate) fn new(skeleton: &Skeleton, side: Side) -> Self {
+        let FootShape {
+            heel,
+            ball,
+            toe_tip,
+        } = *skeleton.foot(side);
+        Self {
+            heel,
+            toe_joint: skeleton.offset(side.toes()),
+            ball,
+            toe_tip,
+        }
+    }
+
+    /// Height of the ankle above the ground when the sole is flat.
+    pub(crate) fn ankle_height(&self) -> f32 {
+        -self.heel.y
+    }
+
+    /// The plant that has the ankle above this point of the ground at this pitch.
+    pub(crate) fn plant_under(&self, ankle: Vec3, heading: f32, pitch: f32) -> Plant {
+        let origin = Plant {
+            flat_ankle: Vec3::new(0.0, self.ankle_height(), 0.0),
+            heading,
+        };
+        let offset = self.stand(&origin, pitch).ankle;
+        Plant {
+            flat_ankle: Vec3::new(ankle.x - offset.x, self.ankle_height(), ankle.z - offset.z),
+            heading,
+        }
+    }
+
+    /// Where the foot is when it stands on its plant at this pitch (positive: heel up).
+    pub(crate) fn stand(&self, plant: &Plant, pitch: f32) -> FootTarget {
+        let level = from_heading(plant.heading);
+        let foot = level * Quat::from_rotation_x(pitch);
+        if pitch <= 0.0 {
+            let heel = plant.flat_ankle + level * self.heel;
+            return FootTarget {
+                ankle: heel - foot * self.heel,
+                foot,
+                toes: foot,
+            };
+        }
+        let toe_joint = plant.flat_ankle + level * self.toe_joint;
+        let excess = (pitch - MAX_TOE_FLEXION).max(0.0);
+        let toes = level * Quat::from_rotation_x(excess);
+        let tip = toe_joint + level * self.toe_tip;
+        let toe_joint = tip - toes * self.toe_tip;
+        FootTarget {
+            ankle: toe_joint - foot * self.toe_joint,
+            foot,
+            toes,
+        }
+    }
+
+    /// Height of the sole's lowest point, metres.
+    pub(crate) fn lowest_point(&self, target: &FootTarget) -> f32 {
+        let toe_joint = target.ankle + target.foot * self.toe_joint;
+        let heel = target.ankle + target.foot * self.heel;
+        let ball = toe_joint + target.toes * self.ball;
+        let tip = toe_joint + target.toes * self.toe_tip;
+        heel.y.min(ball.y).min(tip.y)
+    }
+
+    /// The ground under the ankle of a flat foot: where a footprint is drawn.
+    pub(crate) fn footprint(plant: &Plant) -> Vec3 {
+        Vec3::new(plant.flat_ankle.x, 0.0, plant.flat_ankle.z)
+    }
+}
+
+/// A generated foot pitch with small angles pulled to zero, so that a foot that means to be flat is flat.
+pub(crate) fn settled_pitch(pitch: f32) -> f32 {
+    let squared = pitch * pitch;
+    pitch * squared / (squared + FLAT_PITCH * FLAT_PITCH)
+}
+
+/// Pitch (positive: heel up) and heading of a foot from its rotation.
+pub(crate) fn pitch_and_heading(rotation: Quat) -> (f32, f32) {
+    let forward = rotation * Vec3::Z;
+    let pitch = (-forward.y).clamp(-1.0, 1.0).asin();
+    (pitch, forward.x.atan2(forward.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use footfall_core::{Joint, Pose, forward_kinematics};
+    use footfall_ik::solve_leg;
+
+    fn plant() -> Plant {
+        Plant {
+            flat_ankle: Vec3::new(0.2, 0.085, 1.0),
+            heading: 0.3,
+        }
+    }
+
+    #[test]
+    fn the_rocker_never_sinks_and_its_pivot_never_moves() {
+        let foot = RockerFoot::new(&Skeleton::standard(), Side::Left);
+        let mut previous: Option<FootTarget> = None;
+        for step in -60..=140 {
+            let target = foot.stand(&plant(), step as f32 * 0.01);
+            let lowest = foot.lowest_point(&target);
+            assert!(lowest.abs() < 1e-5, "sole at {lowest} at step {step}");
+            if let Some(previous) = previous {
+                let moved = target.ankle.distance(previous.ankle);
+                assert!(
+                    moved < 0.01 * 0.25,
+                    "the ankle jumps by {moved} at step {step}"
+                );
+                let points = |target: &FootTarget| {
+                    let joint = target.ankle + target.foot * foot.toe_joint;
+                    [
+                        target.ankle + target.foot * foot.heel,
+                        joint,
+                        joint + target.toes * foot.toe_tip,
+                    ]
+                };
+                let slip = points(&target)
+                    .into_iter()
+                    .zip(points(&previous))
+                    .map(|(now, then)| now.distance(then))
+                    .fold(f32::INFINITY, f32::min);
+                assert!(
+                    slip < 1e-5,
+                    "every pivot moves, by {slip} at least, at step {step}"
+                );
+            }
+            previous = Some(target);
+        }
+    }
+
+    #[test]
+    fn a_plant_is_found_from_the_ankle_above_it() {
+        let foot = RockerFoot::new(&Skeleton::standard(), Side::Right);
+        for pitch in [-0.4, 0.0, 0.5, 1.2] {
+            let ankle = foot.stand(&plant(), pitch).ankle;
+            let found = foot.plant_under(ankle, plant().heading, pitch);
+            assert!(found.flat_ankle.distance(plant().flat_ankle) < 1e-5);
+        }
+    }
+
+    #[test]
+    fn the_leg_solver_puts_the_sole_on_the_ground() {
+        let skeleton = Skeleton::standard();
+        let foot = RockerFoot::new(&skeleton, Side::Left);
+        let mut pose = Pose::rest(&skeleton);
+        pose.root_position = Vec3::new(0.1, 0.93, 1.0);
+        pose.rotations[Joint::LeftLowerLeg.index()] = Quat::from_rotation_x(0.4);
+        let mut model = footfall_core::ModelPose::default();
+        forward_kinematics(&skeleton, &pose, &mut model);
+        let target = foot.stand(&plant(), 0.3);
+        assert!(solve_leg(&skeleton, Side::Left, &target, &mut pose, &mut model) < 1e-4);
+        let tip = model.point(Joint::LeftToes, skeleton.foot(Side::Left).toe_tip);
+        assert!(tip.y.abs() < 1e-4, "{tip}");
+    }
+
+    #[test]
+    fn small_pitches_settle_and_large_ones_stay() {
+        assert!(settled_pitch(0.03).abs() < 0.004);
+        assert!((settled_pitch(-0.5) + 0.5).abs() < 0.02);
+        let (pitch, heading) = pitch_and_heading(from_heading(0.4) * Quat::from_rotation_x(0.2));
+        assert!((pitch - 0.2).abs() < 1e-5 && (heading - 0.4).abs() < 1e-5);
+    }
+}

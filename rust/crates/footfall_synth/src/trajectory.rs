@@ -1,0 +1,131 @@
+//! From planned steps to smooth features: maximum-likelihood parameter generation with the global variance kept.
+
+use crate::error::SynthError;
+use crate::plan::StepPlan;
+use footfall_core::Side;
+use footfall_model::{FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, STATES_PER_STEP};
+use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, mlpg};
+use footfall_prob::windows::Windows;
+
+/// How far below zero the pull that restores variance may go, as a fraction of the least static precision: beyond 1
+/// a trajectory need not be determined.
+const MAX_PUSH: f64 = 0.9;
+
+/// Solves trajectories of one model; owns every buffer that this takes.
+#[derive(Debug)]
+pub(crate) struct TrajectorySolver {
+    windows: Windows,
+    /// Per side, the precisions of the five states.
+    precisions: [Vec<f64>; 2],
+    pull_strength: Vec<f64>,
+    pull_towards: Vec<f64>,
+    workspace: MlpgWorkspace<f64>,
+    window_means: Vec<f64>,
+    window_precisions: Vec<f64>,
+    state_of_frame: Vec<u32>,
+}
+
+impl TrajectorySolver {
+    /// A solver with room for `steps` steps and `frames` frames.
+    pub(crate) fn new(model: &GaitModel, steps: usize, frames: usize) -> Self {
+        let precisions = Side::BOTH.map(|side| {
+            let states = &model.step(side).states;
+            let variances = states.iter().flat_map(|state| &state.variance);
+            variances.map(|variance| variance.recip()).collect()
+        });
+        let room = steps * STATES_PER_STEP * OBSERVATION_COUNT;
+        Self {
+            windows: model.windows,
+            precisions,
+            pull_strength: vec![0.0; FEATURE_COUNT],
+            pull_towards: vec![0.0; FEATURE_COUNT],
+            workspace: MlpgWorkspace::with_capacity(frames),
+            window_means: Vec::with_capacity(room),
+            window_precisions: Vec::with_capacity(room),
+            state_of_frame: Vec::with_capacity(frames),
+        }
+    }
+
+    /// Sets the pull that restores variance: its strength and the feature values that it acts about.
+    pub(crate) fn set_pull(&mut self, strength: &[f64], towards: &[f64]) {
+        let states = self
+            .precisions
+            .iter()
+            .flat_map(|side| side.chunks_exact(OBSERVATION_COUNT));
+        let mut least = vec![f64::INFINITY; FEATURE_COUNT];
+        for state in states {
+            for (least, precision) in least.iter_mut().zip(state) {
+                *least = least.min(*precision);
+            }
+        }
+        for (dim, pull) in self.pull_strength.iter_mut().enumerate() {
+            *pull = strength[dim].max(-MAX_PUSH * least[dim]);
+        }
+        self.pull_towards.copy_from_slice(towards);
+    }
+
+    /// States of a row of steps without their first `skip` frames, as the pieces that MLPG and global variance take.
+    pub(crate) fn load<'a>(
+        &mut self,
+        plans: impl Iterator<Item = &'a StepPlan>,
+        skip: usize,
+    ) -> usize {
+        self.window_means.clear();
+        self.window_precisions.clear();
+        self.state_of_frame.clear();
+        let mut skipped = 0;
+        for (step, plan) in plans.enumerate() {
+            self.window_means.extend_from_slice(&plan.means);
+            self.window_precisions
+                .extend_from_slice(&self.precisions[plan.timing.leading.index()]);
+            for (state, frames) in plan.state_frames.iter().enumerate() {
+                for _ in 0..*frames {
+                    if skipped < skip {
+                        skipped += 1;
+                    } else {
+                        self.state_of_frame
+                            .push((step * STATES_PER_STEP + state) as u32);
+                    }
+                }
+            }
+        }
+        self.state_of_frame.len()
+    }
+
+    /// What is loaded, as a problem whose first `n_fixed` frames are given.
+    pub(crate) fn problem(&self, n_fixed: usize, with_pull: bool) -> MlpgProblem<'_, f64> {
+        MlpgProblem {
+            windows: self.windows,
+            dim: FEATURE_COUNT,
+            means: &self.window_means,
+            precisions: &self.window_precisions,
+            state_of_frame: &self.state_of_frame,
+            n_fixed,
+            pull: with_pull.then_some(Pull {
+                strength: &self.pull_strength,
+                towards: &self.pull_towards,
+            }),
+        }
+    }
+
+    /// Solves what is loaded. `trajectory` (T × [`FEATURE_COUNT`]) holds the given frames already.
+    pub(crate) fn solve(
+        &mut self,
+        trajectory: &mut [f64],
+        n_fixed: usize,
+    ) -> Result<(), SynthError> {
+        let mut workspace = core::mem::take(&mut self.workspace);
+        let solved = mlpg(&self.problem(n_fixed, true), &mut workspace, trajectory);
+        self.workspace = workspace;
+        Ok(solved?)
+    }
+
+    /// Fills the frames that are not given with the means of their states: rough, but always there.
+    pub(crate) fn fill_with_means(&self, trajectory: &mut [f64], n_fixed: usize) {
+        let rows = trajectory.chunks_exact_mut(FEATURE_COUNT);
+        for (row, state) in rows.zip(&self.state_of_frame).skip(n_fixed) {
+            let mean = &self.window_means[*state as usize * OBSERVATION_COUNT..][..FEATURE_COUNT];
+            row.copy_from_slice(mean);
+        }
+    }
+}

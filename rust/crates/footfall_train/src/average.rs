@@ -1,0 +1,242 @@
+//! The average walk: expectation-maximisation over whole walks.
+//!
+//! Step boundaries only initialise the states; after that every walk is one chain of states whose boundaries are
+//! re-estimated by explicit-duration forward-backward (Tilmanne et al. 2012, sections 5.1.1 and 5.1.2).
+
+use crate::error::TrainError;
+use crate::progress::Progress;
+use crate::sequence::{LabelledStep, Sequence};
+use footfall_core::Side;
+use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP, StateModel};
+use footfall_prob::duration::{DurationDist, GaussianDuration};
+use footfall_prob::gaussian::{DiagonalGaussian, GaussianStats, log_densities};
+use footfall_prob::hsmm::{Boundary, ChainState, HsmmStats, hsmm_forward_backward, hsmm_viterbi};
+use rayon::prelude::*;
+
+/// States of both steps together.
+const STATES: usize = 2 * STATES_PER_STEP;
+
+/// Least variance of a feature in a state, as a fraction of its variance over the whole corpus.
+const VARIANCE_FLOOR: f64 = 1e-3;
+
+/// Least variance of a feature, for those that never change.
+const ABSOLUTE_VARIANCE_FLOOR: f64 = 1e-8;
+
+/// Least variance of a state's duration, frames².
+const DURATION_VARIANCE_FLOOR: f64 = 0.25;
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmConfig {
+    /// At most this many iterations.
+    pub max_iterations: usize,
+    /// Stop when an iteration gains less than this much log-likelihood a frame.
+    pub min_gain_per_frame: f64,
+}
+
+/// Both step models as the trainer holds them, and how training went.
+#[derive(Clone, Debug)]
+pub struct AverageWalk {
+    gaussians: Vec<DiagonalGaussian>,
+    durations: Vec<GaussianDuration>,
+    max_duration: usize,
+    /// Total log-likelihood of the corpus before each M-step; never falls.
+    pub log_likelihoods: Vec<f64>,
+}
+
+impl AverageWalk {
+    /// Trains on a corpus.
+    ///
+    /// # Errors
+    /// [`TrainError`] when the corpus lacks left or right steps, or a sequence cannot be explained.
+    pub fn train(
+        corpus: &[Sequence],
+        config: &EmConfig,
+        progress: &mut dyn Progress,
+    ) -> Result<Self, TrainError> {
+        let floor = variance_floor(corpus);
+        let longest = corpus
+            .iter()
+            .flat_map(|sequence| &sequence.steps)
+            .map(|step| step.end - step.first)
+            .max()
+            .ok_or(TrainError::NoSteps)?;
+        let mut walk = Self::maximise(&even_split(corpus)?, longest, &floor)?;
+        for iteration in 0..config.max_iterations {
+            progress.advance("training", iteration, config.max_iterations);
+            let stats = walk.expect(corpus)?;
+            let gain = walk
+                .log_likelihoods
+                .last()
+                .map(|previous| (stats.log_likelihood - previous) / stats.n_frames as f64);
+            let mut likelihoods = core::mem::take(&mut walk.log_likelihoods);
+            likelihoods.push(stats.log_likelihood);
+            walk = Self {
+                log_likelihoods: likelihoods,
+                ..Self::maximise(&stats, longest, &floor)?
+            };
+            if gain.is_some_and(|gain| gain < config.min_gain_per_frame) {
+                break;
+            }
+        }
+        progress.advance("training", config.max_iterations, config.max_iterations);
+        Ok(walk)
+    }
+
+    /// The states of one step, as the model stores them.
+    pub fn states(&self, side: Side) -> Vec<StateModel> {
+        (0..STATES_PER_STEP)
+            .map(|state| {
+                let index = state_index(side, state);
+                StateModel {
+                    mean: self.gaussians[index].mean().to_vec(),
+                    variance: self.gaussians[index].variance().to_vec(),
+                    duration_mean: self.durations[index].mean.max(1.0),
+                    duration_variance: self.durations[index].variance,
+                }
+            })
+            .collect()
+    }
+
+    /// The most probable boundaries between a sequence's states: [`STATES_PER_STEP`] a step, plus the end.
+    ///
+    /// # Errors
+    /// [`TrainError::Inference`] when the sequence cannot be explained.
+    pub fn align(&self, sequence: &Sequence) -> Result<Vec<usize>, TrainError> {
+        let mut log_emissions = Vec::new();
+        log_densities(&self.gaussians, &sequence.observations, &mut log_emissions)?;
+        let durations = self.discretised()?;
+        let chain = chain(&sequence.steps);
+        let path = hsmm_viterbi(
+            &log_emissions,
+            STATES,
+            &chain,
+            &durations,
+            Boundary::default(),
+        )?;
+        Ok(path.boundaries)
+    }
+
+    fn expect(&self, corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
+        let durations = self.discretised()?;
+        let parts: Vec<HsmmStats> = corpus
+            .par_iter()
+            .map(|sequence| self.expect_one(sequence, &durations))
+            .collect::<Result<_, _>>()?;
+        let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
+        for part in &parts {
+            stats.merge(part);
+        }
+        Ok(stats)
+    }
+
+    fn expect_one(
+        &self,
+        sequence: &Sequence,
+        durations: &[DurationDist],
+    ) -> Result<HsmmStats, TrainError> {
+        let mut log_emissions = Vec::new();
+        log_densities(&self.gaussians, &sequence.observations, &mut log_emissions)?;
+        let chain = chain(&sequence.steps);
+        let posterior = hsmm_forward_backward(
+            &log_emissions,
+            STATES,
+            &chain,
+            durations,
+            Boundary::default(),
+        )?;
+        let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
+        stats.add(&chain, &posterior, &sequence.observations)?;
+        Ok(stats)
+    }
+
+    fn maximise(stats: &HsmmStats, max_duration: usize, floor: &[f64]) -> Result<Self, TrainError> {
+        Ok(Self {
+            gaussians: stats
+                .emissions
+                .iter()
+                .map(|moments| moments.estimate(floor))
+                .collect::<Result<_, _>>()?,
+            durations: stats
+                .durations
+                .iter()
+                .map(|moments| moments.estimate(max_duration, DURATION_VARIANCE_FLOOR))
+                .collect::<Result<_, _>>()?,
+            max_duration,
+            log_likelihoods: Vec::new(),
+        })
+    }
+
+    fn discretised(&self) -> Result<Vec<DurationDist>, TrainError> {
+        let discretise = |duration: &GaussianDuration| duration.discretise(self.max_duration);
+        Ok(self
+            .durations
+            .iter()
+            .map(discretise)
+            .collect::<Result<_, _>>()?)
+    }
+}
+
+/// Where a state's parameters are.
+fn state_index(side: Side, state: usize) -> usize {
+    side.index() * STATES_PER_STEP + state
+}
+
+/// The states of a walk in a row.
+fn chain(steps: &[LabelledStep]) -> Vec<ChainState> {
+    steps
+        .iter()
+        .flat_map(|step| (0..STATES_PER_STEP).map(|state| state_index(step.side, state)))
+        .map(|index| ChainState {
+            emission: index,
+            duration: index,
+        })
+        .collect()
+}
+
+/// Statistics of the corpus with every step cut into states of equal length.
+fn even_split(corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
+    let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
+    for sequence in corpus {
+        let rows: Vec<&[f64]> = sequence
+            .observations
+            .chunks_exact(OBSERVATION_COUNT)
+            .collect();
+        for step in &sequence.steps {
+            let cut = |state: usize| step.first + (step.end - step.first) * state / STATES_PER_STEP;
+            for state in 0..STATES_PER_STEP {
+                let index = state_index(step.side, state);
+                let frames = cut(state)..cut(state + 1);
+                if frames.is_empty() {
+                    return Err(TrainError::StepTooShort {
+                        frames: step.end - step.first,
+                    });
+                }
+                stats.durations[index].add(frames.len(), 1.0);
+                for frame in frames {
+                    stats.emissions[index].add(rows[frame], 1.0);
+                }
+            }
+        }
+    }
+    for side in Side::BOTH {
+        if stats.emissions[state_index(side, 0)].weight() <= 0.0 {
+            return Err(TrainError::MissingSide { side });
+        }
+    }
+    Ok(stats)
+}
+
+fn variance_floor(corpus: &[Sequence]) -> Vec<f64> {
+    let mut moments = GaussianStats::new(OBSERVATION_COUNT);
+    for sequence in corpus {
+        for observation in sequence.observations.chunks_exact(OBSERVATION_COUNT) {
+            moments.add(observation, 1.0);
+        }
+    }
+    moments
+        .variance()
+        .iter()
+        .map(|variance| (VARIANCE_FLOOR * variance).max(ABSOLUTE_VARIANCE_FLOOR))
+        .collect()
+}

@@ -1,0 +1,170 @@
+//! From a clip with its steps to training sequences.
+
+use crate::error::TrainError;
+use crate::sequence::{LabelledStep, Sequence};
+use footfall_core::rotation::{heading, wrap_angle};
+use footfall_core::{Clip, Joint};
+use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT, layout};
+use footfall_motion::steps::Walk;
+use footfall_prob::windows::Windows;
+
+/// Standard deviation of the window that smooths the heading, seconds: the pelvis' swing within a stride stays in the
+/// features, a turn of the walker does not.
+const HEADING_WINDOW_SECS: f64 = 0.35;
+
+/// How a clip is encoded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EncodeConfig {
+    /// Frames per second of the features.
+    pub frame_rate_hz: f64,
+    /// Time differences of the observations.
+    pub windows: Windows,
+}
+
+/// Encodes the walks of a clip, each from its first initial contact to its last.
+///
+/// `skip_frames` leading frames of the clip are left out (an artificial T-pose, for example). Walks of fewer than two
+/// steps are left out.
+///
+/// # Errors
+/// [`TrainError::FrameRate`] for a rate that is not usable; [`TrainError::Inference`] when a pose is not finite.
+pub fn encode_clip(
+    clip: &Clip,
+    skip_frames: usize,
+    walks: &[Walk],
+    walker: usize,
+    config: &EncodeConfig,
+) -> Result<Vec<Sequence>, TrainError> {
+    if !(20.0..=240.0).contains(&config.frame_rate_hz) {
+        return Err(TrainError::FrameRate {
+            frame_rate_hz: config.frame_rate_hz,
+        });
+    }
+    let moving = Clip {
+        poses: clip.poses.get(skip_frames..).unwrap_or_default().to_vec(),
+        ..clip.clone()
+    };
+    let resampled = moving.resampled(config.frame_rate_hz);
+    let observations = observe(&resampled, config.windows)?;
+    let scale = config.frame_rate_hz / clip.frame_rate_hz;
+    let frame_at = |frame: usize| {
+        let position = frame.saturating_sub(skip_frames) as f64 * scale;
+        (position.round() as usize).min(resampled.poses.len())
+    };
+    let sequences = walks.iter().filter(|walk| walk.steps.len() >= 2);
+    Ok(sequences
+        .filter_map(|walk| {
+            let first = frame_at(walk.steps.first()?.first);
+            let end = frame_at(walk.steps.last()?.end);
+            let steps = walk
+                .steps
+                .iter()
+                .map(|step| {
+                    let (from, to) = (frame_at(step.first), frame_at(step.end));
+                    let length = (step.end - step.first) as f64;
+                    LabelledStep {
+                        side: step.side,
+                        first: from - first,
+                        end: to - first,
+                        other_terminal: step
+                            .other_terminal
+                            .map(|frame| (frame as f64 - step.first as f64) / length),
+                        speed_mps: speed(clip, step.first, step.end),
+                    }
+                })
+                .collect();
+            Some(Sequence {
+                walker,
+                observations: observations[first * OBSERVATION_COUNT..end * OBSERVATION_COUNT].to_vec(),
+                steps,
+            })
+        })
+        .collect())
+}
+
+/// Observations of a whole clip, T × [`OBSERVATION_COUNT`].
+fn observe(clip: &Clip, windows: Windows) -> Result<Vec<f64>, TrainError> {
+    let headings = smooth_headings(clip);
+    let mut statics = vec![0.0; clip.poses.len() * FEATURE_COUNT];
+    for (frame, pose) in clip.poses.iter().enumerate() {
+        let (before, rest) = statics.split_at_mut(frame * FEATURE_COUNT);
+        let previous = before.rchunks_exact(FEATURE_COUNT).next();
+        layout::encode(pose, headings[frame] as f32, previous, &mut rest[..FEATURE_COUNT]);
+    }
+    let mut observations = Vec::new();
+    windows.append_dynamics(&statics, FEATURE_COUNT, &mut observations)?;
+    Ok(observations)
+}
+
+/// The heading of the hips, smoothed over time. Beyond the ends it is taken to go on as it began and ended.
+fn smooth_headings(clip: &Clip) -> Vec<f64> {
+    let mut raw: Vec<f64> = Vec::with_capacity(clip.poses.len());
+    for pose in &clip.poses {
+        let now = f64::from(heading(pose.rotation(Joint::Hips)));
+        let last = raw.last().copied().unwrap_or(now);
+        raw.push(last + f64::from(wrap_angle((now - last) as f32)));
+    }
+    let Some(last) = raw.len().checked_sub(1) else {
+        return raw;
+    };
+    let width = HEADING_WINDOW_SECS * clip.frame_rate_hz;
+    let reach = (3.0 * width).ceil() as isize;
+    // Point reflection at the ends keeps the trend of a turn.
+    let at = |index: isize| {
+        let last = last as isize;
+        if index < 0 {
+            2.0 * raw[0] - raw[(-index).min(last) as usize]
+        } else if index > last {
+            2.0 * raw[last as usize] - raw[(2 * last - index).max(0) as usize]
+        } else {
+            raw[index as usize]
+        }
+    };
+    (0..=last as isize)
+        .map(|frame| {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for offset in -reach..=reach {
+                let weight = (-0.5 * (offset as f64 / width).powi(2)).exp();
+                sum += weight * at(frame + offset);
+                weights += weight;
+            }
+            sum / weights
+        })
+        .collect()
+}
+
+/// Mean speed of the hips over the ground between two frames, m/s.
+fn speed(clip: &Clip, first: usize, end: usize) -> f64 {
+    let place = |frame: usize| clip.poses[frame.min(clip.poses.len() - 1)].root_position;
+    let travel = place(end) - place(first);
+    f64::from(travel.x.hypot(travel.z)) * clip.frame_rate_hz / (end - first) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use footfall_core::rotation::from_heading;
+    use footfall_core::{Pose, Skeleton};
+
+    #[test]
+    fn smoothing_keeps_a_turn_and_removes_the_swing() {
+        let poses = (0..300)
+            .map(|frame| {
+                let time = f64::from(frame) / 60.0;
+                let swing = 0.1 * (core::f64::consts::TAU * 0.9 * time).sin();
+                let mut pose = Pose::default();
+                pose.rotations[0] = from_heading((3.0 + 0.3 * time + swing) as f32);
+                pose
+            })
+            .collect();
+        let clip = Clip {
+            skeleton: Skeleton::standard(),
+            frame_rate_hz: 60.0,
+            poses,
+        };
+        for (frame, smooth) in smooth_headings(&clip).iter().enumerate().skip(60).take(180) {
+            let expected = 3.0 + 0.3 * frame as f64 / 60.0;
+            assert!((smooth - expected).abs() < 0.025, "frame {frame}: {smooth} for {expected}");
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! How steps differ from the mean step: with speed, between walkers, and from step to step.
+
+use crate::average::AverageWalk;
+use crate::error::TrainError;
+use crate::sequence::Sequence;
+use footfall_core::Side;
+use footfall_model::{
+    OBSERVATION_COUNT, STATES_PER_STEP, SpeedResponse, StepModel, StepOffset, Variation,
+};
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Components of a walker and of a step that a model holds at most.
+const WALKER_COMPONENTS: usize = 6;
+const STEP_COMPONENTS: usize = 6;
+
+/// Steps that a walker's mean must outweigh: with few steps it is drawn towards the corpus mean.
+const WALKER_PRIOR_STEPS: f64 = 3.0;
+
+/// Least spread of speeds (variance in (m/s)² times steps) below which speed explains nothing.
+const SPEED_PRIOR: f64 = 0.05;
+
+/// How one step of the corpus differs from the mean step.
+struct Difference {
+    walker: usize,
+    sequence: usize,
+    side: Side,
+    speed_mps: f64,
+    row: Vec<f64>,
+}
+
+/// Estimates the response to speed and the variation that remains, from the corpus as the walk aligns it.
+///
+/// # Errors
+/// [`TrainError`] when a sequence cannot be aligned.
+pub fn estimate(
+    walk: &AverageWalk,
+    steps: &[StepModel; 2],
+    corpus: &[Sequence],
+    frame_rate_hz: f64,
+) -> Result<(SpeedResponse, Variation), TrainError> {
+    let mut differences = Vec::new();
+    for (index, sequence) in corpus.iter().enumerate() {
+        differences.extend(sequence_differences(walk, steps, sequence, index)?);
+    }
+    let speed = speed_response(&mut differences, corpus, frame_rate_hz);
+    let walker = walker_components(&mut differences);
+    let (step, step_correlation) = step_components(&differences);
+    let variation = Variation {
+        walker,
+        step,
+        step_correlation,
+    };
+    Ok((speed, variation))
+}
+
+fn sequence_differences(
+    walk: &AverageWalk,
+    steps: &[StepModel; 2],
+    sequence: &Sequence,
+    index: usize,
+) -> Result<Vec<Difference>, TrainError> {
+    let boundaries = walk.align(sequence)?;
+    let differences = sequence.steps.iter().enumerate().map(|(number, labels)| {
+        let model = &steps[labels.side.index()];
+        let mut offset = StepOffset::zero();
+        for (state, parameters) in model.states.iter().enumerate() {
+            let segment = number * STATES_PER_STEP + state;
+            let (first, end) = (boundaries[segment], boundaries[segment + 1]);
+            let frames = (end - first) as f64;
+            let block = state * OBSERVATION_COUNT..(state + 1) * OBSERVATION_COUNT;
+            let means = &mut offset.means[block];
+            for frame in first..end {
+                let row = &sequence.observations[frame * OBSERVATION_COUNT..];
+                for ((mean, value), centre) in means.iter_mut().zip(row).zip(&parameters.mean) {
+                    *mean += (value - centre) / frames;
+                }
+            }
+            offset.log_durations[state] = (frames / parameters.duration_mean).ln();
+        }
+        offset.other_terminal = labels
+            .other_terminal
+            .map_or(0.0, |fraction| fraction - model.other_terminal);
+        Difference {
+            walker: sequence.walker,
+            sequence: index,
+            side: labels.side,
+            speed_mps: labels.speed_mps,
+            row: offset.to_row(),
+        }
+    });
+    Ok(differences.collect())
+}
+
+/// Regresses the differences on speed and leaves the residuals behind.
+fn speed_response(
+    differences: &mut [Difference],
+    corpus: &[Sequence],
+    frame_rate_hz: f64,
+) -> SpeedResponse {
+    let count = differences.len().max(1) as f64;
+    let reference_mps = differences.iter().map(|d| d.speed_mps).sum::<f64>() / count;
+    let slopes = Side::BOTH.map(|side| {
+        let mut slope = vec![0.0; StepOffset::LEN];
+        let mut spread = SPEED_PRIOR;
+        for difference in differences.iter().filter(|d| d.side == side) {
+            let deviation = difference.speed_mps - reference_mps;
+            spread += deviation * deviation;
+            for (slope, value) in slope.iter_mut().zip(&difference.row) {
+                *slope += deviation * value;
+            }
+        }
+        for slope in &mut slope {
+            *slope /= spread;
+        }
+        slope
+    });
+    for difference in differences.iter_mut() {
+        let deviation = difference.speed_mps - reference_mps;
+        let slope = &slopes[difference.side.index()];
+        for (value, slope) in difference.row.iter_mut().zip(slope) {
+            *value -= deviation * slope;
+        }
+    }
+    let speeds = range(corpus.iter().map(Sequence::speed_mps));
+    let cadences =
+        range(corpus.iter().map(|sequence| {
+            sequence.steps.len() as f64 * frame_rate_hz / sequence.frames() as f64
+        }));
+    SpeedResponse {
+        reference_mps,
+        min_mps: speeds[0],
+        max_mps: speeds[1],
+        cadence_range_hz: cadences,
+        slopes: slopes.map(|slope| offset_from(&slope)),
+    }
+}
+
+/// Principal components of the walkers' mean steps; subtracts each walker's mean from its steps.
+fn walker_components(differences: &mut [Difference]) -> Vec<[StepOffset; 2]> {
+    let walkers = differences.iter().map(|d| d.walker + 1).max().unwrap_or(0);
+    let mut rows = vec![vec![0.0; 2 * StepOffset::LEN]; walkers];
+    let mut counts = vec![[WALKER_PRIOR_STEPS; 2]; walkers];
+    for difference in differences.iter() {
+        let block = difference.side.index() * StepOffset::LEN;
+        counts[difference.walker][difference.side.index()] += 1.0;
+        let row = &mut rows[difference.walker][block..block + StepOffset::LEN];
+        for (sum, value) in row.iter_mut().zip(&difference.row) {
+            *sum += value;
+        }
+    }
+    for (row, counts) in rows.iter_mut().zip(&counts) {
+        for (half, count) in row.chunks_exact_mut(StepOffset::LEN).zip(counts) {
+            for sum in half {
+                *sum /= count;
+            }
+        }
+    }
+    for difference in differences.iter_mut() {
+        let block = difference.side.index() * StepOffset::LEN;
+        for (value, mean) in difference
+            .row
+            .iter_mut()
+            .zip(&rows[difference.walker][block..])
+        {
+            *value -= mean;
+        }
+    }
+    principal_components(&rows, WALKER_COMPONENTS)
+        .into_iter()
+        .map(|component| {
+            let (left, right) = component.split_at(StepOffset::LEN);
+            [offset_from(left), offset_from(right)]
+        })
+        .collect()
+}
+
+/// Principal components of what is left of each step, and their correlation between a foot's consecutive steps.
+fn step_components(differences: &[Difference]) -> (Vec<[StepOffset; 2]>, f64) {
+    let of_side = |side: Side| {
+        let rows: Vec<Vec<f64>> = differences
+            .iter()
+            .filter(|d| d.side == side)
+            .map(|d| d.row.clone())
+            .collect();
+        principal_components(&rows, STEP_COMPONENTS)
+    };
+    let [left, right] = Side::BOTH.map(of_side);
+    let correlation = consecutive_correlation(differences, [&left, &right]);
+    let components = left
+        .into_iter()
+        .zip(right)
+        .map(|(left, right)| [offset_from(&left), offset_from(&right)])
+        .collect();
+    (components, correlation)
+}
+
+/// Correlation of a foot's consecutive steps along the components, in [0, 0.95].
+fn consecutive_correlation(differences: &[Difference], components: [&Vec<Vec<f64>>; 2]) -> f64 {
+    let (mut together, mut apart) = (0.0, 1e-12);
+    for pair in differences.windows(3) {
+        let (first, next) = (&pair[0], &pair[2]);
+        if first.sequence != next.sequence || first.side != next.side {
+            continue;
+        }
+        for component in components[first.side.index()] {
+            let weight = |row: &[f64]| dot(row, component) / dot(component, component).max(1e-12);
+            let (a, b) = (weight(&first.row), weight(&next.row));
+            together += a * b;
+            apart += 0.5 * (a * a + b * b);
+        }
+    }
+    (together / apart).clamp(0.0, 0.95)
+}
+
+/// The strongest principal components of rows, each scaled to its standard deviation; the mean counts as zero.
+fn principal_components(rows: &[Vec<f64>], most: usize) -> Vec<Vec<f64>> {
+    let count = rows.len();
+    if count < 2 {
+        return Vec::new();
+    }
+    // There are fewer rows than columns: the small Gram matrix has the same spectrum as the covariance.
+    let gram = DMatrix::from_fn(count, count, |a, b| dot(&rows[a], &rows[b]) / count as f64);
+    let eigen = SymmetricEigen::new(gram);
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    let largest = eigen.eigenvalues[order[0]];
+    order
+        .into_iter()
+        .take(most)
+        .filter(|index| eigen.eigenvalues[*index] > 1e-6 * largest.max(1e-12))
+        .map(|index| {
+            let weights = eigen.eigenvectors.column(index);
+            let mut component = vec![0.0; rows[0].len()];
+            for (row, weight) in rows.iter().zip(weights.iter()) {
+                for (value, addend) in component.iter_mut().zip(row) {
+                    *value += weight * addend / (count as f64).sqrt();
+                }
+            }
+            component
+        })
+        .collect()
+}
+
+fn offset_from(row: &[f64]) -> StepOffset {
+    StepOffset::from_row(row).unwrap_or_else(StepOffset::zero)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn components_have_the_spread_of_the_data() {
+        // Rows along one direction with standard deviation 3, and a little along another.
+        let rows: Vec<Vec<f64>> = (0..40)
+            .map(|i| {
+                let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+                let other = if i % 4 < 2 { 0.1 } else { -0.1 };
+                vec![3.0 * sign, 0.0, other, 0.0]
+            })
+            .collect();
+        let components = principal_components(&rows, 3);
+        assert_eq!(components.len(), 2);
+        assert!((components[0][0].abs() - 3.0).abs() < 1e-9);
+        assert!((components[1][2].abs() - 0.1).abs() < 1e-9);
+    }
+}

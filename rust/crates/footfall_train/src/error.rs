@@ -1,0 +1,33 @@
+//! Why training cannot go on.
+
+use footfall_core::Side;
+use footfall_prob::ProbError;
+
+/// Why training cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum TrainError {
+    /// No clip has a usable step.
+    #[error("no clip holds two steps in a row; choose walks with `--where category=…`")]
+    NoSteps,
+    /// Only one foot was seen stepping.
+    #[error("the corpus has no step that begins with the {} foot; add walks of several steps", side.name())]
+    MissingSide {
+        /// The foot that is missing.
+        side: Side,
+    },
+    /// A step is shorter than the states that must explain it.
+    #[error("a step of {frames} frames is too short; train at a higher --fps")]
+    StepTooShort {
+        /// Frames of the step.
+        frames: usize,
+    },
+    /// The frame rate is not usable.
+    #[error("a frame rate of {frame_rate_hz} fps cannot be trained at; use 20 to 240")]
+    FrameRate {
+        /// What was asked for.
+        frame_rate_hz: f64,
+    },
+    /// Inference failed.
+    #[error("the walk cannot be explained by the model: {0}")]
+    Inference(#[from] ProbError),
+}
