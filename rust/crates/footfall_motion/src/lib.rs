@@ -5,5 +5,6 @@
 
 pub mod bvh;
 pub mod contacts;
+pub mod corpus;
 pub mod retarget;
 pub mod steps;

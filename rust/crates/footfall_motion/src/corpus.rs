@@ -1,0 +1,190 @@
+//! Many recordings at once, chosen from an index by what its columns say.
+
+mod selection;
+
+pub use selection::{IndexRow, Where, read_index};
+
+use crate::bvh;
+use crate::contacts::{ContactConfig, Contacts, detect_contacts};
+use crate::retarget::{RetargetOptions, Retargeted, retarget};
+use crate::steps::{Walk, segment_walks};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// A recording, ready for training.
+#[derive(Clone, Debug)]
+pub struct CorpusClip {
+    /// Its row of the index.
+    pub row: IndexRow,
+    /// The motion on the canonical body.
+    pub retargeted: Retargeted,
+    /// Contacts of its feet.
+    pub contacts: Contacts,
+    /// Its walks.
+    pub walks: Vec<Walk>,
+}
+
+/// A recording that could not be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SkippedClip {
+    /// The file.
+    pub path: PathBuf,
+    /// Its line in the index.
+    pub line: u64,
+    /// Why.
+    pub reason: String,
+}
+
+/// What became of the rows that were chosen.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CorpusReport {
+    /// Rows that meet all conditions.
+    pub selected: usize,
+    /// Those among them that could not be used, in the order of the index.
+    pub skipped: Vec<SkippedClip>,
+}
+
+/// Recordings chosen from an index.
+#[derive(Clone, Debug)]
+pub struct Corpus {
+    /// In the order of the index; at least one.
+    pub clips: Vec<CorpusClip>,
+    /// What was left out, and why.
+    pub report: CorpusReport,
+}
+
+/// Why a corpus cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum CorpusError {
+    /// The index cannot be opened or is no CSV file.
+    #[error("{}: {source}", index.display())]
+    Csv {
+        /// The index.
+        index: PathBuf,
+        /// What is wrong, with the line if there is one.
+        source: csv::Error,
+    },
+    /// The index lacks a column that is needed.
+    #[error(
+        "{}, line 1: no column \"{column}\"; its columns are {}",
+        index.display(),
+        columns.join(", ")
+    )]
+    MissingColumn {
+        /// The index.
+        index: PathBuf,
+        /// The column that is not there.
+        column: String,
+        /// Those that are.
+        columns: Vec<String>,
+    },
+    /// A row has nothing where a value is needed.
+    #[error("{}, line {line}: column \"{column}\" is empty", index.display())]
+    EmptyField {
+        /// The index.
+        index: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// The column.
+        column: String,
+    },
+    /// A condition is not `column=value`.
+    #[error(
+        "\"{0}\" is no condition; write column=value, for example category=neutral_walk or path=walks/*"
+    )]
+    Condition(String),
+    /// No row meets the conditions.
+    #[error("{}: no row has {conditions}; column \"{column}\" has {}", index.display(), values.join(", "))]
+    NothingSelected {
+        /// The index.
+        index: PathBuf,
+        /// All conditions.
+        conditions: String,
+        /// The column whose condition leaves nothing.
+        column: String,
+        /// The values of that column among the rows that meet the conditions before it.
+        values: Vec<String>,
+    },
+    /// All chosen recordings are broken.
+    #[error("{}: none of the {count} chosen recordings can be used; the first: {first}", index.display())]
+    NothingUsable {
+        /// The index.
+        index: PathBuf,
+        /// How many were chosen.
+        count: usize,
+        /// What is wrong with the first.
+        first: String,
+    },
+}
+
+impl Corpus {
+    /// Reads the recordings of an index that meet all conditions, retargets them and finds contacts and walks.
+    ///
+    /// # Errors
+    /// [`CorpusError`] for an index that cannot be used and for a choice without a usable recording. A single broken
+    /// recording is no error: it is listed in the report.
+    pub fn read(index: impl AsRef<Path>, conditions: &[Where]) -> Result<Self, CorpusError> {
+        Self::read_with(index, conditions, &RetargetOptions::default())
+    }
+
+    /// The same with a joint map or a frame rate of one's own.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_with(
+        index: impl AsRef<Path>,
+        conditions: &[Where],
+        options: &RetargetOptions,
+    ) -> Result<Self, CorpusError> {
+        let index = index.as_ref();
+        let rows = read_index(index)?;
+        let chosen = selection::select(index, rows, conditions)?;
+        let selected = chosen.len();
+        // In parallel, but collected in order: the same corpus every time.
+        let results: Vec<Result<CorpusClip, SkippedClip>> = chosen
+            .into_par_iter()
+            .map(|row| read_clip(row, options))
+            .collect();
+        let mut corpus = Self {
+            clips: Vec::with_capacity(selected),
+            report: CorpusReport {
+                selected,
+                skipped: Vec::new(),
+            },
+        };
+        for result in results {
+            match result {
+                Ok(clip) => corpus.clips.push(clip),
+                Err(skipped) => corpus.report.skipped.push(skipped),
+            }
+        }
+        match corpus.report.skipped.first() {
+            Some(first) if corpus.clips.is_empty() => Err(CorpusError::NothingUsable {
+                index: index.to_owned(),
+                count: selected,
+                first: first.reason.clone(),
+            }),
+            _ => Ok(corpus),
+        }
+    }
+}
+
+fn read_clip(row: IndexRow, options: &RetargetOptions) -> Result<CorpusClip, SkippedClip> {
+    let skipped = |reason: String| SkippedClip {
+        path: row.path.clone(),
+        line: row.line,
+        reason,
+    };
+    let file = bvh::read(&row.path).map_err(|error| skipped(error.to_string()))?;
+    let retargeted = retarget(&file, options)
+        .map_err(|error| skipped(format!("{}: {error}", row.path.display())))?;
+    let config = ContactConfig::from_frame(retargeted.first_frame);
+    let contacts = detect_contacts(&retargeted.clip, &config);
+    let walks = segment_walks(&retargeted.clip, &contacts);
+    Ok(CorpusClip {
+        row,
+        retargeted,
+        contacts,
+        walks,
+    })
+}
