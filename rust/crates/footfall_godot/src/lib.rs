@@ -1,1 +1,37 @@
-//! The Godot nodes.
+//! The Godot nodes: the only crate that names `godot`.
+//!
+//! [`gait_model`] is the resource that holds a trained walk, [`gait_generator_3d`] the node that walks a character with it.
+//! Between the engine and the runtime stand [`rest_body`] (proportions of any character from its rest pose),
+//! [`skeleton_binding`] (joints to bones and back), [`character`] (which node travels) and [`convert`] (vectors).
+//!
+//! Two flavours are built. With the feature `editor` the library also holds the import plugin for `.footfall` files and the
+//! class reference that the editor shows; exported games get the library without. Both register the same runtime classes.
+
+#![expect(
+    unsafe_code,
+    reason = "gdext's entry point is an unsafe trait: it vouches for the library's lifecycle"
+)]
+#![expect(
+    unreachable_pub,
+    reason = "gdext makes public accessors for exported fields"
+)]
+
+mod character;
+mod convert;
+#[cfg(feature = "editor")]
+mod editor_plugin;
+mod gait_generator_3d;
+mod gait_model;
+#[cfg(feature = "editor")]
+mod import_plugin;
+mod rest_body;
+mod skeleton_binding;
+
+use godot::prelude::{ExtensionLibrary, gdextension};
+
+/// The entry point that `footfall.gdextension` names.
+struct FootfallExtension;
+
+#[gdextension(entry_symbol = footfall_init)]
+// SAFETY: nothing is overridden, so gdext's own initialisation runs.
+unsafe impl ExtensionLibrary for FootfallExtension {}

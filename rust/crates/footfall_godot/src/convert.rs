@@ -1,0 +1,52 @@
+//! Vectors and rotations between Godot and glam. Both are right-handed with Y up, so only the types differ.
+
+use glam::{Affine3A, Quat, Vec3};
+use godot::builtin::{Basis, Quaternion, Transform3D, Vector3};
+
+/// A point or direction, Godot to glam.
+pub(crate) fn vec3(vector: Vector3) -> Vec3 {
+    Vec3::new(vector.x, vector.y, vector.z)
+}
+
+/// A point or direction, glam to Godot.
+pub(crate) fn vector3(vector: Vec3) -> Vector3 {
+    Vector3::new(vector.x, vector.y, vector.z)
+}
+
+/// A rotation, glam to Godot.
+pub(crate) fn quaternion(rotation: Quat) -> Quaternion {
+    Quaternion::new(rotation.x, rotation.y, rotation.z, rotation.w)
+}
+
+/// A rotation, Godot to glam.
+pub(crate) fn quat(rotation: Quaternion) -> Quat {
+    Quat::from_xyzw(rotation.x, rotation.y, rotation.z, rotation.w).normalize()
+}
+
+/// A transform with its scale, Godot to glam.
+pub(crate) fn affine(transform: Transform3D) -> Affine3A {
+    let [x, y, z] = [
+        transform.basis.col_a(),
+        transform.basis.col_b(),
+        transform.basis.col_c(),
+    ]
+    .map(vec3);
+    Affine3A::from_mat3_translation(glam::Mat3::from_cols(x, y, z), vec3(transform.origin))
+}
+
+/// A rotation and translation, glam to Godot.
+pub(crate) fn transform(rotation: Quat, translation: Vec3) -> Transform3D {
+    Transform3D::new(
+        Basis::from_quaternion(quaternion(rotation)),
+        vector3(translation),
+    )
+}
+
+/// The rotation of a transform, its scale removed.
+pub(crate) fn rotation(transform: &Affine3A) -> Quat {
+    let columns = glam::Mat3::from(transform.matrix3);
+    // Gram-Schmidt in Godot's own order, so that the frame is the one that `Basis.orthonormalized()` gives.
+    let x = columns.x_axis.normalize_or(Vec3::X);
+    let y = (columns.y_axis - x * x.dot(columns.y_axis)).normalize_or(x.any_orthonormal_vector());
+    Quat::from_mat3(&glam::Mat3::from_cols(x, y, x.cross(y))).normalize()
+}

@@ -1,0 +1,275 @@
+//! Joints to bones and back: what a `Skeleton3D` has, where its floor is, and how a pose is written to it.
+
+use crate::convert;
+use crate::rest_body::{RestBody, RestJoints, is_optional};
+use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use glam::{Affine3A, Quat, Vec3};
+use godot::classes::{BoneMap, Skeleton3D};
+use godot::prelude::*;
+
+/// Facing is measured at the hips and rounded to this: a rest pose is seldom symmetric to the last degree.
+const FACING_GRAIN: f32 = 5.0_f32.to_radians();
+
+/// Why a skeleton cannot walk, for the user. Each says what to do.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum BindingError {
+    /// Required bones are missing.
+    #[error(
+        "The skeleton lacks {names}. Reimport the character with a BoneMap (Advanced Import Settings, Skeleton3D, Retarget), \
+         or give this node a Bone Map that tells which bones these are.",
+        names = .0.iter().map(|joint| joint.name()).collect::<Vec<_>>().join(", ")
+    )]
+    MissingBones(Vec<Joint>),
+    /// A bone does not hang where a body needs it.
+    #[error(
+        "Bone {bone} ({joint}) does not hang from {expected}. Correct the Bone Map, or the hierarchy of the skeleton.",
+        joint = joint.name(),
+        expected = expected.name()
+    )]
+    WrongParent {
+        /// Name of the bone.
+        bone: String,
+        /// The joint that it is.
+        joint: Joint,
+        /// The joint that it should hang from.
+        expected: Joint,
+    },
+    /// Left and right hip are not beside each other.
+    #[error(
+        "The rest pose does not stand upright: LeftUpperLeg and RightUpperLeg must be side by side in the Character's axes. \
+         Give the skeleton a standing T-pose as its rest pose, or turn its node upright."
+    )]
+    NotStanding,
+    /// A segment has no length.
+    #[error("The rest pose cannot stand: {0}.")]
+    Skeleton(#[from] footfall_core::SkeletonError),
+}
+
+/// A skeleton's bones as joints, with its body measured.
+#[derive(Debug)]
+pub(crate) struct SkeletonBinding {
+    key: BindingKey,
+    /// Proportions in metres of the world.
+    pub(crate) body: Skeleton,
+    /// From the floor under the body, facing +Z, to the character's node without its scale.
+    pub(crate) character_from_ground: Affine3A,
+    ground_from_skeleton: Affine3A,
+    bones: Vec<BoundBone>,
+    model_pose: ModelPose,
+}
+
+/// What the binding was made from. Where it differs, the binding has to be made anew.
+#[derive(Debug, Clone, Copy)]
+struct BindingKey {
+    skeleton: InstanceId,
+    version: u64,
+    character_from_skeleton: Affine3A,
+}
+
+#[derive(Debug)]
+struct BoundBone {
+    bone: i32,
+    /// The joint whose rotation it takes.
+    turned_by: Joint,
+    /// Its rotation in the T-pose, in the axes of the ground.
+    ground_from_bone: Quat,
+    /// The bone above that is a joint too, as a position in the list.
+    parent: Option<usize>,
+    /// The bones between it and that parent, highest first; above the hips, all.
+    links: Vec<i32>,
+}
+
+impl SkeletonBinding {
+    /// Measures a skeleton that is in the tree.
+    ///
+    /// # Errors
+    /// What is wrong with the skeleton, for the user.
+    pub(crate) fn new(
+        skeleton: &Gd<Skeleton3D>,
+        character: &Gd<Node3D>,
+        bone_map: Option<&Gd<BoneMap>>,
+    ) -> Result<Self, BindingError> {
+        let key = BindingKey::of(skeleton, character);
+        let bones = bones_of_joints(skeleton, bone_map)?;
+        let character_from_bone = |bone: i32| {
+            key.character_from_skeleton * convert::affine(skeleton.get_bone_global_rest(bone))
+        };
+        let place = |joint: Joint| {
+            bones[joint.index()].map(|bone| Vec3::from(character_from_bone(bone).translation))
+        };
+        let to_left = place(Joint::LeftUpperLeg).unwrap_or_default()
+            - place(Joint::RightUpperLeg).unwrap_or_default();
+        let facing = facing(to_left).ok_or(BindingError::NotStanding)?;
+        let turn = Quat::from_rotation_y(facing);
+        let hips = place(Joint::Hips).unwrap_or_default();
+        let level = Affine3A::from_rotation_translation(turn, Vec3::new(hips.x, 0.0, hips.z));
+        let to_level = level.inverse();
+
+        let joints = RestJoints {
+            positions: core::array::from_fn(|index| {
+                place(Joint::ALL[index]).map(|position| to_level.transform_point3(position))
+            }),
+            toe_ends: Side::BOTH.map(|side| {
+                let toes = bones[side.toes().index()]?;
+                let end = *skeleton.get_bone_children(toes).as_slice().first()?;
+                Some(to_level.transform_point3(character_from_bone(end).translation.into()))
+            }),
+            origin_height: key.character_from_skeleton.translation.y,
+        };
+        let rest = RestBody::new(&joints)?;
+        let floor = Vec3::Y * rest.floor_height;
+        let character_from_ground = level * Affine3A::from_translation(floor);
+        let bones = bound_bones(skeleton, &bones, &rest, |bone| {
+            turn.inverse() * convert::rotation(&character_from_bone(bone))
+        })?;
+        Ok(Self {
+            key,
+            body: rest.skeleton,
+            character_from_ground,
+            ground_from_skeleton: character_from_ground.inverse() * key.character_from_skeleton,
+            bones,
+            model_pose: ModelPose::default(),
+        })
+    }
+
+    /// Whether it still holds for this skeleton and character.
+    pub(crate) fn fits(&self, skeleton: &Gd<Skeleton3D>, character: &Gd<Node3D>) -> bool {
+        self.key.equals(&BindingKey::of(skeleton, character))
+    }
+
+    /// Writes a pose, given on the ground, to the bones. Unmapped bones keep the pose that they have.
+    pub(crate) fn write(&mut self, skeleton: &mut Gd<Skeleton3D>, pose: &Pose) {
+        forward_kinematics(&self.body, pose, &mut self.model_pose);
+        let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
+        for (index, bound) in self.bones.iter().enumerate() {
+            let above = if let Some(parent) = bound.parent {
+                bound.links.iter().fold(rotations[parent], |above, link| {
+                    above * convert::quat(skeleton.get_bone_pose_rotation(*link))
+                })
+            } else {
+                let above = bound
+                    .links
+                    .iter()
+                    .fold(self.ground_from_skeleton, |above, link| {
+                        above * convert::affine(skeleton.get_bone_pose(*link))
+                    });
+                let hips = self.model_pose.position(Joint::Hips);
+                let position = above.inverse().transform_point3(hips);
+                skeleton.set_bone_pose_position(bound.bone, convert::vector3(position));
+                convert::rotation(&above)
+            };
+            rotations[index] = self.model_pose.rotation(bound.turned_by) * bound.ground_from_bone;
+            let local = (above.inverse() * rotations[index]).normalize();
+            skeleton.set_bone_pose_rotation(bound.bone, convert::quaternion(local));
+        }
+    }
+}
+
+impl BindingKey {
+    fn of(skeleton: &Gd<Skeleton3D>, character: &Gd<Node3D>) -> Self {
+        let world_from_character = character.get_global_transform().orthonormalized();
+        let world_from_skeleton = skeleton.get_global_transform();
+        Self {
+            skeleton: skeleton.instance_id(),
+            version: skeleton.get_version(),
+            character_from_skeleton: convert::affine(
+                world_from_character.affine_inverse() * world_from_skeleton,
+            ),
+        }
+    }
+
+    /// Equal up to what a walk through a large world does to single precision.
+    fn equals(&self, other: &Self) -> bool {
+        let (a, b) = (
+            &self.character_from_skeleton,
+            &other.character_from_skeleton,
+        );
+        let scale = a.matrix3.x_axis.length().max(f32::MIN_POSITIVE);
+        self.skeleton == other.skeleton
+            && self.version == other.version
+            && a.matrix3.abs_diff_eq(b.matrix3, 1e-3 * scale)
+            && a.translation.abs_diff_eq(b.translation, 1e-2)
+    }
+}
+
+/// Heading of a body whose left hip joint is in this direction from the right one.
+fn facing(to_left: Vec3) -> Option<f32> {
+    let level = Vec3::new(to_left.x, 0.0, to_left.z);
+    if level.length() < 0.5 * to_left.length() || to_left.length() < 1e-6 {
+        return None;
+    }
+    // Heading 0 has +X to its left; turning left brings that towards -Z.
+    let heading = (-level.z).atan2(level.x);
+    Some((heading / FACING_GRAIN).round() * FACING_GRAIN)
+}
+
+/// The bone of each joint, by profile name or by the map.
+fn bones_of_joints(
+    skeleton: &Gd<Skeleton3D>,
+    bone_map: Option<&Gd<BoneMap>>,
+) -> Result<[Option<i32>; JOINT_COUNT], BindingError> {
+    let bones = Joint::ALL.map(|joint| {
+        let mapped = bone_map
+            .map(|map| map.get_skeleton_bone_name(joint.name()))
+            .filter(|name| !name.is_empty());
+        let bone = match mapped {
+            Some(name) => skeleton.find_bone(&GString::from(&name)),
+            None => skeleton.find_bone(joint.name()),
+        };
+        (bone >= 0).then_some(bone)
+    });
+    let missing: Vec<Joint> = Joint::ALL
+        .into_iter()
+        .filter(|joint| bones[joint.index()].is_none() && !is_optional(*joint))
+        .collect();
+    if missing.is_empty() {
+        Ok(bones)
+    } else {
+        Err(BindingError::MissingBones(missing))
+    }
+}
+
+/// Links each bone to the joint's bone above it.
+fn bound_bones(
+    skeleton: &Gd<Skeleton3D>,
+    bones: &[Option<i32>; JOINT_COUNT],
+    rest: &RestBody,
+    ground_from_resting: impl Fn(i32) -> Quat,
+) -> Result<Vec<BoundBone>, BindingError> {
+    let mut bound: Vec<BoundBone> = Vec::with_capacity(JOINT_COUNT);
+    for joint in Joint::ALL {
+        let Some(bone) = bones[joint.index()] else {
+            continue;
+        };
+        let mut links = Vec::new();
+        let mut above = skeleton.get_bone_parent(bone);
+        while above >= 0 && !bones.contains(&Some(above)) {
+            links.insert(0, above);
+            above = skeleton.get_bone_parent(above);
+        }
+        let mut expected = joint.parent();
+        while let Some(parent) = expected
+            && bones[parent.index()].is_none()
+        {
+            expected = parent.parent();
+        }
+        let expected_bone = expected.and_then(|parent| bones[parent.index()]);
+        if expected_bone.unwrap_or(-1) != above {
+            return Err(BindingError::WrongParent {
+                bone: skeleton.get_bone_name(bone).to_string(),
+                joint,
+                expected: expected.unwrap_or(Joint::Hips),
+            });
+        }
+        bound.push(BoundBone {
+            bone,
+            turned_by: rest.turned_by[joint.index()],
+            ground_from_bone: rest.t_pose_from_rest[joint.index()] * ground_from_resting(bone),
+            parent: bound
+                .iter()
+                .position(|parent| Some(parent.bone) == expected_bone),
+            links,
+        });
+    }
+    Ok(bound)
+}
