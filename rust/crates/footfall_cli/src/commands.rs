@@ -1,0 +1,43 @@
+//! The commands, one module each, and what they share.
+
+mod contacts;
+mod inspect;
+mod retarget;
+mod sheet;
+mod synth;
+mod train;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+
+/// Learn a gait from motion capture, and walk with it.
+#[derive(Debug, Parser)]
+#[command(name = "footfall", version, about, max_term_width = 110)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Inspect(inspect::InspectArgs),
+    Retarget(retarget::RetargetArgs),
+    Contacts(contacts::ContactsArgs),
+    Train(train::TrainArgs),
+    Synth(synth::SynthArgs),
+    Sheet(sheet::SheetArgs),
+}
+
+impl Cli {
+    /// Runs the command that was asked for.
+    pub(crate) fn run(&self) -> Result<()> {
+        match &self.command {
+            Command::Inspect(args) => inspect::run(args),
+            Command::Retarget(args) => retarget::run(args),
+            Command::Contacts(args) => contacts::run(args),
+            Command::Train(args) => train::run(args),
+            Command::Synth(args) => synth::run(args),
+            Command::Sheet(args) => sheet::run(args),
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! `footfall contacts`: when each foot stands, and the steps.
+
+use crate::contact_report::ContactReport;
+use crate::motion_input::{MapArgs, MotionInput, Walking};
+use crate::output;
+use anyhow::Result;
+use std::path::PathBuf;
+
+/// Find ground contacts, gait events and steps
+///
+/// An initial contact is the first frame in which any part of the foot bears on the ground, a terminal contact the last.
+/// Frames and times refer to the file as given, frame 0 included. Steps carry their place in the walk: first, second,
+/// inside, last_but_one, last.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall contacts walk.bvh\n  \
+    footfall contacts walk.bvh --json > contacts.json")]
+pub(crate) struct ContactsArgs {
+    /// The recording
+    #[arg(value_name = "IN.bvh")]
+    input: PathBuf,
+    #[command(flatten)]
+    map: MapArgs,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
+    let motion = MotionInput::read(&args.input, args.map.read()?, None)?.retargeted;
+    let walking = Walking::of(&motion);
+    let report = ContactReport::new(&walking.contacts, &walking.walks);
+    if args.json {
+        return output::print_json(&report);
+    }
+    let mut lines = vec![format!(
+        "{}: {} frames at {} fps, {} steps",
+        args.input.display(),
+        report.frames,
+        report.fps,
+        report.steps.len()
+    )];
+    lines.extend(report.events.iter().map(|event| {
+        let kind = event.kind.replace('_', " ");
+        format!(
+            "{:8.3} s  frame {:5}  {:5}  {kind}",
+            event.time_s, event.frame, event.foot
+        )
+    }));
+    lines.extend(report.steps.iter().map(|step| {
+        format!(
+            "step on the {:5} foot, frames {:5} to {:5}  {}",
+            step.foot,
+            step.first,
+            step.last,
+            step.position.replace('_', " ")
+        )
+    }));
+    output::print_text(&lines.join("\n"))
+}

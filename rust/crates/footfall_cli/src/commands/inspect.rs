@@ -1,0 +1,93 @@
+//! `footfall inspect`: what is in a file.
+
+mod corpus_index;
+mod model;
+mod motion;
+
+use crate::motion_input::MapArgs;
+use crate::output;
+use anyhow::{Context as _, Result};
+use serde::Serialize;
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+/// Tell what is in a file
+///
+/// A recording (.bvh): skeleton, frames, rate, speed, contacts and steps. A model (.footfall): where it comes from, states,
+/// durations, speeds. An index (.csv): clips by category, style and subject.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall inspect walk.bvh\n  \
+    footfall inspect walk.footfall --json\n  \
+    footfall inspect index.csv")]
+pub(crate) struct InspectArgs {
+    /// A .bvh, a .footfall or an index.csv
+    #[arg(value_name = "FILE")]
+    input: PathBuf,
+    #[command(flatten)]
+    map: MapArgs,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// What a file turned out to be.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+enum Finding {
+    Motion(motion::MotionFacts),
+    GaitModel(Box<model::ModelFacts>),
+    CorpusIndex(corpus_index::IndexFacts),
+}
+
+pub(crate) fn run(args: &InspectArgs) -> Result<()> {
+    let finding = match kind_of(&args.input)? {
+        Kind::Model => Finding::GaitModel(Box::new(model::inspect(&args.input)?)),
+        Kind::Index => Finding::CorpusIndex(corpus_index::inspect(&args.input)?),
+        Kind::Motion => Finding::Motion(motion::inspect(&args.input, args.map.read()?)?),
+    };
+    if args.json {
+        return output::print_json(&finding);
+    }
+    let lines = match &finding {
+        Finding::Motion(facts) => facts.lines(),
+        Finding::GaitModel(facts) => facts.lines(),
+        Finding::CorpusIndex(facts) => facts.lines(),
+    };
+    output::print_text(&lines.join("\n"))
+}
+
+enum Kind {
+    Motion,
+    Model,
+    Index,
+}
+
+/// The first bytes decide, then the name: a damaged model is still to be read as a model.
+fn kind_of(path: &Path) -> Result<Kind> {
+    let mut start = [0; 8];
+    let read = File::open(path)
+        .and_then(|mut file| file.read(&mut start))
+        .with_context(|| format!("{}: cannot read the file", path.display()))?;
+    let extension = path
+        .extension()
+        .map(|extension| extension.to_ascii_lowercase());
+    let has = |name: &str| {
+        extension
+            .as_deref()
+            .is_some_and(|extension| extension == name)
+    };
+    Ok(if start[..read] == *b"FOOTFALL" || has("footfall") {
+        Kind::Model
+    } else if has("csv") {
+        Kind::Index
+    } else {
+        Kind::Motion
+    })
+}
+
+/// `name   value`, aligned.
+fn fact(name: &str, value: impl std::fmt::Display) -> String {
+    format!("{name:<14} {value}")
+}

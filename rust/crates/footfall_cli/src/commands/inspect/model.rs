@@ -1,0 +1,177 @@
+//! Facts of a gait model.
+
+use super::fact;
+use crate::model_file::read_model;
+use anyhow::{Context as _, Result};
+use footfall_core::Side;
+use footfall_model::{GaitModel, OBSERVATION_COUNT, Provenance, file::read_header};
+use serde::Serialize;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Facts of a model.
+#[derive(Serialize)]
+pub(super) struct ModelFacts {
+    file: PathBuf,
+    bytes: u64,
+    format_version: u32,
+    written_by: String,
+    provenance: Provenance,
+    fps: f64,
+    windows: String,
+    leg_length_m: f32,
+    observation_numbers: usize,
+    /// Slowest, mean and fastest walk of the corpus.
+    speed_range_mps: [f64; 2],
+    mean_speed_mps: f64,
+    /// Slowest and fastest of the corpus.
+    cadence_range_per_minute: [f64; 2],
+    left_step: StepFacts,
+    right_step: StepFacts,
+    walker_components: usize,
+    step_components: usize,
+}
+
+#[derive(Serialize)]
+struct StepFacts {
+    /// Mean of each state.
+    state_seconds: Vec<f64>,
+    /// Standard deviation of each state.
+    state_deviation_seconds: Vec<f64>,
+    seconds: f64,
+    /// When the other foot leaves the ground, as a share of the step.
+    other_terminal: f64,
+}
+
+/// Reads a model.
+pub(super) fn inspect(path: &Path) -> Result<ModelFacts> {
+    let model = read_model(path)?;
+    let bytes = fs::read(path).with_context(|| path.display().to_string())?;
+    let (format_version, header) =
+        read_header(&bytes).with_context(|| path.display().to_string())?;
+    let step = |side: Side| {
+        let step = model.step(side);
+        let secs = |frames: f64| frames / model.frame_rate_hz;
+        StepFacts {
+            state_seconds: step
+                .states
+                .iter()
+                .map(|state| secs(state.duration_mean))
+                .collect(),
+            state_deviation_seconds: step
+                .states
+                .iter()
+                .map(|state| secs(state.duration_variance.sqrt()))
+                .collect(),
+            seconds: step
+                .states
+                .iter()
+                .map(|state| secs(state.duration_mean))
+                .sum(),
+            other_terminal: step.other_terminal,
+        }
+    };
+    let GaitModel {
+        speed, variation, ..
+    } = &model;
+    Ok(ModelFacts {
+        file: path.to_owned(),
+        bytes: bytes.len() as u64,
+        format_version,
+        written_by: header.written_by,
+        fps: model.frame_rate_hz,
+        windows: format!("{:?}", model.windows).to_lowercase(),
+        leg_length_m: model.skeleton.mean_leg_length(),
+        observation_numbers: OBSERVATION_COUNT,
+        speed_range_mps: model.speed_range(),
+        mean_speed_mps: speed.reference_mps,
+        cadence_range_per_minute: speed.cadence_range_hz.map(|hz| 60.0 * hz),
+        left_step: step(Side::Left),
+        right_step: step(Side::Right),
+        walker_components: variation.walker.len(),
+        step_components: variation.step.len(),
+        provenance: header.provenance,
+    })
+}
+
+impl ModelFacts {
+    pub(super) fn lines(&self) -> Vec<String> {
+        let provenance = &self.provenance;
+        let mut lines = vec![
+            fact(
+                "gait model",
+                format!("{} ({} bytes)", self.file.display(), self.bytes),
+            ),
+            fact(
+                "format",
+                format!(
+                    "{}, written by Footfall {}",
+                    self.format_version, self.written_by
+                ),
+            ),
+            fact("trained on", &provenance.corpus),
+            fact(
+                "corpus",
+                format!(
+                    "{} clips, {} subjects, {} steps",
+                    provenance.clips, provenance.subjects, provenance.steps
+                ),
+            ),
+            fact("terms", &provenance.terms),
+            fact("made by", &provenance.command),
+        ];
+        if !provenance.commit.is_empty() {
+            lines.push(fact("commit", &provenance.commit));
+        }
+        let [slowest, fastest] = self.speed_range_mps;
+        let [fewest, most] = self.cadence_range_per_minute;
+        lines.extend([
+            fact(
+                "rate",
+                format!("{} fps, {} windows", self.fps, self.windows),
+            ),
+            fact("body", format!("legs of {:.3} m", self.leg_length_m)),
+            fact(
+                "speed",
+                format!(
+                    "{slowest:.2} to {fastest:.2} m/s, mean {:.2}",
+                    self.mean_speed_mps
+                ),
+            ),
+            fact(
+                "cadence",
+                format!("{fewest:.0} to {most:.0} steps a minute"),
+            ),
+        ]);
+        for (name, step) in [
+            ("left step", &self.left_step),
+            ("right step", &self.right_step),
+        ] {
+            let states: Vec<String> = step
+                .state_seconds
+                .iter()
+                .zip(&step.state_deviation_seconds)
+                .map(|(mean, deviation)| {
+                    format!("{:.0} ± {:.0}", 1000.0 * mean, 1000.0 * deviation)
+                })
+                .collect();
+            lines.push(fact(
+                name,
+                format!(
+                    "{:.3} s, states of {} ms, the other foot leaves at {:.0} %",
+                    step.seconds,
+                    states.join(", "),
+                    100.0 * step.other_terminal
+                ),
+            ));
+        }
+        lines.push(fact(
+            "variation",
+            format!(
+                "{} components between walkers, {} between steps",
+                self.walker_components, self.step_components
+            ),
+        ));
+        lines
+    }
+}

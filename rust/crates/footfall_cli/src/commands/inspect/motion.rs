@@ -1,0 +1,138 @@
+//! Facts of a recording.
+
+use super::fact;
+use crate::motion_input::{MotionInput, Walking};
+use anyhow::Result;
+use footfall_core::{Joint, Side};
+use footfall_motion::retarget::JointMap;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Facts of a recording; lengths and speeds as the recorded person's.
+#[derive(Serialize)]
+pub(super) struct MotionFacts {
+    file: PathBuf,
+    skeleton: String,
+    joints: usize,
+    /// Canonical joints that the file does not have.
+    absent_joints: Vec<&'static str>,
+    frames: usize,
+    fps: f64,
+    seconds: f64,
+    /// Frames before this one are no motion (a T-pose).
+    first_motion_frame: usize,
+    /// Metres of the canonical body for one unit of the file.
+    metres_per_unit: f32,
+    /// Median height of the hips above the floor, on the canonical body.
+    hip_height_m: f32,
+    /// On the canonical body.
+    mean_speed_mps: f64,
+    walks: usize,
+    steps: usize,
+    steps_per_minute: Option<f64>,
+    left_stances: usize,
+    right_stances: usize,
+    /// Share of the motion in which each foot stands.
+    left_stance_share: f64,
+    right_stance_share: f64,
+}
+
+/// Reads a recording.
+pub(super) fn inspect(path: &Path, map: Option<JointMap>) -> Result<MotionFacts> {
+    let input = MotionInput::read(path, map, None)?;
+    let motion = &input.retargeted;
+    let walking = Walking::of(motion);
+    let clip = &motion.clip;
+    let mut heights: Vec<f32> = clip.poses[motion.first_frame..]
+        .iter()
+        .map(|pose| pose.root_position.y)
+        .collect();
+    heights.sort_by(f32::total_cmp);
+    let frames = (clip.poses.len() - motion.first_frame).max(1);
+    let [left, right] = Side::BOTH.map(|side| {
+        let stances = &walking.contacts.foot(side).stances;
+        let standing: usize = stances.iter().map(|stance| stance.frames()).sum();
+        (stances.len(), standing as f64 / frames as f64)
+    });
+    Ok(MotionFacts {
+        file: path.to_owned(),
+        skeleton: motion.report.map.clone(),
+        joints: input.file.joints.len(),
+        absent_joints: Joint::ALL
+            .into_iter()
+            .filter(|joint| motion.report.source_joints[joint.index()].is_none())
+            .map(Joint::name)
+            .collect(),
+        frames: input.file.frame_count,
+        fps: input.file.frame_rate_hz(),
+        seconds: clip.duration_secs(),
+        first_motion_frame: motion.first_frame,
+        metres_per_unit: motion.report.scale,
+        hip_height_m: heights.get(heights.len() / 2).copied().unwrap_or_default(),
+        mean_speed_mps: walking.speed_mps,
+        walks: walking.walks.len(),
+        steps: walking.step_count(),
+        steps_per_minute: walking.cadence_per_min,
+        left_stances: left.0,
+        right_stances: right.0,
+        left_stance_share: left.1,
+        right_stance_share: right.1,
+    })
+}
+
+impl MotionFacts {
+    pub(super) fn lines(&self) -> Vec<String> {
+        let mut lines = vec![
+            fact("recording", self.file.display()),
+            fact(
+                "skeleton",
+                format!("{}, {} joints", self.skeleton, self.joints),
+            ),
+            fact(
+                "length",
+                format!(
+                    "{:.2} s: {} frames at {} fps",
+                    self.seconds, self.frames, self.fps
+                ),
+            ),
+            fact(
+                "scale",
+                format!(
+                    "{:.4} m a unit, hips at {:.3} m",
+                    self.metres_per_unit, self.hip_height_m
+                ),
+            ),
+            fact("speed", format!("{:.2} m/s", self.mean_speed_mps)),
+            fact(
+                "contacts",
+                format!(
+                    "left {} stances ({:.0} % of the time), right {} ({:.0} %)",
+                    self.left_stances,
+                    100.0 * self.left_stance_share,
+                    self.right_stances,
+                    100.0 * self.right_stance_share
+                ),
+            ),
+            fact(
+                "steps",
+                match self.steps_per_minute {
+                    Some(cadence) => format!(
+                        "{} in {} walks, {cadence:.0} a minute",
+                        self.steps, self.walks
+                    ),
+                    None => "none".to_owned(),
+                },
+            ),
+        ];
+        if self.first_motion_frame > 0 {
+            lines.push(fact(
+                "motion from",
+                format!("frame {} on (a T-pose before)", self.first_motion_frame),
+            ));
+        }
+        if !self.absent_joints.is_empty() {
+            lines.push(fact("without", self.absent_joints.join(", ")));
+        }
+        lines
+    }
+}

@@ -1,0 +1,141 @@
+//! `footfall sheet`: motion on one page.
+
+use crate::contact_report::ContactReport;
+use crate::motion_input::{MapArgs, MotionInput, Walking};
+use crate::output;
+use crate::sheet::{SheetOptions, Subject, draw_sheet};
+use anyhow::{Context as _, Result, ensure};
+use footfall_core::Side;
+use footfall_motion::retarget::Retargeted;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder as _};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Draw motion on one page
+///
+/// For each file: figures at true scale travelling over the floor, the path from above with its footfalls, poses over time
+/// from the side and from the front, contact bars, and joint curves. Files of any known skeleton.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall sheet walk.bvh -o sheet.png\n  \
+    footfall sheet captured.bvh synthetic.bvh -o compare.png --seconds 3\n  \
+    footfall sheet walk.bvh -o sheet.png --contacts contacts.json      (from `footfall contacts walk.bvh --json`)")]
+pub(crate) struct SheetArgs {
+    /// One or more recordings, drawn one below the other
+    #[arg(value_name = "A.bvh", required = true)]
+    inputs: Vec<PathBuf>,
+    /// Where to write the picture
+    #[arg(short, long, value_name = "SHEET.png")]
+    output: PathBuf,
+    /// Where to begin, in seconds from frame 0; the first frame of the motion when absent
+    #[arg(long)]
+    start: Option<f64>,
+    /// How many seconds to draw; all when absent
+    #[arg(long)]
+    seconds: Option<f64>,
+    /// Figures in each pose strip
+    #[arg(long, default_value_t = 14, value_parser = clap::value_parser!(u16).range(2..=60))]
+    poses: u16,
+    /// Width of the picture in pixels
+    #[arg(long, default_value_t = 1800, value_parser = clap::value_parser!(u32).range(600..=8000))]
+    width: u32,
+    /// Contacts to draw instead of detected ones: what `footfall contacts --json` or `synth --contacts` wrote, one for each
+    /// recording
+    #[arg(long, value_name = "CONTACTS.json")]
+    contacts: Vec<PathBuf>,
+    #[command(flatten)]
+    map: MapArgs,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    output: &'a Path,
+    width: u32,
+    height: u32,
+    clips: usize,
+}
+
+pub(crate) fn run(args: &SheetArgs) -> Result<()> {
+    let inputs: Vec<&Path> = args.inputs.iter().map(PathBuf::as_path).collect();
+    output::refuse_overwrite(&inputs, &args.output)?;
+    ensure!(
+        args.contacts.is_empty() || args.contacts.len() == args.inputs.len(),
+        "{} recordings but {} files of contacts; give --contacts once for each recording, in the same order",
+        args.inputs.len(),
+        args.contacts.len()
+    );
+    let map = args.map.read()?;
+    let mut options = SheetOptions {
+        start_secs: args.start.unwrap_or(0.0),
+        seconds: args.seconds,
+        poses: usize::from(args.poses),
+        width: args.width,
+    };
+    let mut subjects = Vec::new();
+    for (index, input) in inputs.into_iter().enumerate() {
+        let motion = MotionInput::read(input, map.clone(), None)?.retargeted;
+        let walking = Walking::of(&motion);
+        let stances = match args.contacts.get(index) {
+            Some(path) => ContactReport::read(path, &motion.clip)?.stances(),
+            None => Side::BOTH.map(|side| walking.contacts.foot(side).stances.clone()),
+        };
+        if args.start.is_none() {
+            options.start_secs = motion.first_frame as f64 / motion.clip.frame_rate_hz;
+        }
+        subjects.push(Subject {
+            title: file_name(input),
+            note: facts(&motion, &walking),
+            clip: motion.clip,
+            stances,
+        });
+    }
+    let (width, height, rgb) = draw_sheet(&subjects, &options)?;
+    let mut png = Vec::new();
+    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
+        .write_image(&rgb, width, height, ExtendedColorType::Rgb8)
+        .context("the picture does not fit PNG")?;
+    output::write_atomic(&args.output, &png)?;
+    if args.json {
+        return output::print_json(&Report {
+            output: &args.output,
+            width,
+            height,
+            clips: subjects.len(),
+        });
+    }
+    output::note(&format!(
+        "{}: {width} x {height} pixels, {} clips",
+        args.output.display(),
+        subjects.len()
+    ));
+    Ok(())
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+fn facts(motion: &Retargeted, walking: &Walking) -> String {
+    let clip = &motion.clip;
+    let mut facts = vec![
+        motion.report.map.clone(),
+        format!(
+            "{:.2} s at {} fps",
+            clip.duration_secs(),
+            clip.frame_rate_hz
+        ),
+        format!("{:.2} m/s", walking.speed_mps),
+        format!("{} steps", walking.step_count()),
+    ];
+    facts.extend(
+        walking
+            .cadence_per_min
+            .map(|cadence| format!("{cadence:.0} steps/min")),
+    );
+    facts.join(" · ")
+}

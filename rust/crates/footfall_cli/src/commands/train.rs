@@ -1,0 +1,197 @@
+//! `footfall train`: a corpus becomes a model.
+
+mod provenance;
+
+use crate::output::{self, write_atomic};
+use anyhow::{Context as _, Result, ensure};
+use clap::ValueEnum;
+use footfall_motion::corpus::{Corpus, CorpusClip, Where};
+use footfall_prob::windows::Windows;
+use footfall_train::{EmConfig, TrainConfig, Trained, TrainingClip, train_average};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Train an average walk
+///
+/// Reads the recordings that an index lists (columns path, category, style and subject, paths relative to the index), finds
+/// their steps and learns one model of the left and the right step. `*` in a condition stands for any run of characters;
+/// all conditions must hold.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall train --corpus index.csv --where category=neutral_walk -o walk.footfall\n  \
+    footfall train --corpus index.csv --where category=neutral_walk --where 'path=cmu/*' -o walk.footfall")]
+pub(crate) struct TrainArgs {
+    /// Table of the recordings
+    #[arg(long, value_name = "INDEX.csv")]
+    corpus: PathBuf,
+    /// Condition on a column, for example category=neutral_walk; may repeat
+    #[arg(long = "where", value_name = "COLUMN=VALUE")]
+    conditions: Vec<Where>,
+    /// Where to write the model
+    #[arg(short, long, value_name = "WALK.footfall")]
+    output: PathBuf,
+    /// Frames per second of the model
+    #[arg(long, default_value_t = 60.0)]
+    fps: f64,
+    /// Time differences that the model holds
+    #[arg(long, value_enum, default_value_t = WindowsArg::Compact)]
+    windows: WindowsArg,
+    /// What the model is trained on, in your words, for its provenance; the conditions when absent
+    #[arg(long, value_name = "TEXT")]
+    describe: Option<String>,
+    /// Most iterations of expectation-maximisation
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=500))]
+    iterations: u16,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum WindowsArg {
+    /// Δ² over frames t−2, t, t+2, as printed in the paper
+    Paper,
+    /// Δ² over frames t−1, t, t+1
+    Compact,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    output: &'a Path,
+    clips: usize,
+    subjects: usize,
+    steps: usize,
+    frames: usize,
+    /// Total log-likelihood at every iteration.
+    log_likelihoods: &'a [f64],
+    speed_range_mps: [f64; 2],
+    cadence_range_per_minute: [f64; 2],
+    /// Recordings that could not be used, and why.
+    skipped: Vec<Skipped>,
+    warnings: Vec<String>,
+    seconds: f64,
+}
+
+#[derive(Serialize)]
+struct Skipped {
+    file: PathBuf,
+    reason: String,
+}
+
+#[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
+pub(crate) fn run(args: &TrainArgs) -> Result<()> {
+    let begun = Instant::now();
+    output::refuse_overwrite(&[&args.corpus], &args.output)?;
+    ensure!(
+        (20.0..=240.0).contains(&args.fps),
+        "a model at {} frames per second cannot be trained; give --fps a number from 20 to 240",
+        args.fps
+    );
+    let mut progress = TrainingProgress(output::Progress::new());
+    progress.0.stage("reading the corpus", 0);
+    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
+    for clip in &corpus.clips {
+        output::refuse_overwrite(&[&clip.row.path], &args.output)?;
+    }
+    let clips: Vec<TrainingClip> = corpus.clips.iter().map(training_clip).collect();
+    let trained = train_average(
+        &clips,
+        &config(args),
+        provenance::of(&corpus, args),
+        &mut progress,
+    )
+    .with_context(|| args.corpus.display().to_string())?;
+    let bytes = trained.model.to_bytes().context("the trained model")?;
+    write_atomic(&args.output, &bytes)?;
+    progress.0.finish();
+    report(args, &corpus, &trained, begun.elapsed().as_secs_f64())
+}
+
+fn config(args: &TrainArgs) -> TrainConfig {
+    TrainConfig {
+        frame_rate_hz: args.fps,
+        windows: match args.windows {
+            WindowsArg::Paper => Windows::Paper,
+            WindowsArg::Compact => Windows::Compact,
+        },
+        mirror: true,
+        em: EmConfig {
+            max_iterations: usize::from(args.iterations),
+            min_gain_per_frame: 1e-3,
+        },
+    }
+}
+
+fn training_clip(clip: &CorpusClip) -> TrainingClip {
+    TrainingClip {
+        subject: clip.row.subject().to_owned(),
+        clip: clip.retargeted.clip.clone(),
+        skip_frames: clip.retargeted.first_frame,
+        walks: clip.walks.clone(),
+    }
+}
+
+fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) -> Result<()> {
+    let made_from = &trained.model.provenance;
+    let mut warnings = Vec::new();
+    if made_from.subjects == 1 {
+        warnings.push(
+            "all steps are of one subject: walkers will differ only as that one's steps do; add recordings of others"
+                .to_owned(),
+        );
+    }
+    let report = Report {
+        output: &args.output,
+        clips: made_from.clips,
+        subjects: made_from.subjects,
+        steps: made_from.steps,
+        frames: trained.frames,
+        log_likelihoods: &trained.log_likelihoods,
+        speed_range_mps: trained.model.speed_range(),
+        cadence_range_per_minute: trained.model.speed.cadence_range_hz.map(|hz| 60.0 * hz),
+        skipped: corpus
+            .report
+            .skipped
+            .iter()
+            .map(|skipped| Skipped {
+                file: skipped.path.clone(),
+                reason: skipped.reason.clone(),
+            })
+            .collect(),
+        warnings,
+        seconds,
+    };
+    for skipped in &report.skipped {
+        output::note(&format!("warning: left out {}", skipped.reason));
+    }
+    for warning in &report.warnings {
+        output::note(&format!("warning: {warning}"));
+    }
+    if args.json {
+        return output::print_json(&report);
+    }
+    let [slowest, fastest] = report.speed_range_mps;
+    output::note(&format!(
+        "{}: {} steps of {} subjects in {} clips, {slowest:.2} to {fastest:.2} m/s, {} iterations, {:.1} s",
+        args.output.display(),
+        report.steps,
+        report.subjects,
+        report.clips,
+        report.log_likelihoods.len(),
+        report.seconds
+    ));
+    Ok(())
+}
+
+/// Shows what the trainer tells.
+struct TrainingProgress(output::Progress);
+
+impl footfall_train::Progress for TrainingProgress {
+    fn advance(&mut self, task: &str, done: usize, total: usize) {
+        if done == 0 {
+            self.0.stage(task, total as u64);
+        }
+        self.0.reach(done as u64);
+    }
+}

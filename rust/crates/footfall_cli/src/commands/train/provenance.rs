@@ -1,0 +1,62 @@
+//! What a model's file says about where it comes from.
+
+use super::{TrainArgs, WindowsArg};
+use footfall_model::Provenance;
+use footfall_motion::corpus::Corpus;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// The column of an index that states the terms of each recording.
+const LICENSE_COLUMN: &str = "license";
+
+/// Corpus, terms and command; the trainer fills in the counts. Names of files without their folders, so that a model tells
+/// nothing about the machine that made it.
+pub(super) fn of(corpus: &Corpus, args: &TrainArgs) -> Provenance {
+    let conditions: Vec<String> = args.conditions.iter().map(ToString::to_string).collect();
+    let index = name_of(&args.corpus);
+    let described = match (&args.describe, conditions.is_empty()) {
+        (Some(text), _) => text.clone(),
+        (None, true) => format!("all of {index}"),
+        (None, false) => format!("{index} where {}", conditions.join(" and ")),
+    };
+    let terms: BTreeSet<&str> = corpus
+        .clips
+        .iter()
+        .filter_map(|clip| clip.row.column(LICENSE_COLUMN))
+        .filter(|terms| !terms.is_empty())
+        .collect();
+    Provenance {
+        corpus: described,
+        terms: if terms.is_empty() {
+            "not stated by the index".to_owned()
+        } else {
+            terms.into_iter().collect::<Vec<_>>().join("; ")
+        },
+        command: command(args, &index, &conditions),
+        commit: std::env::var("FOOTFALL_COMMIT").unwrap_or_default(),
+        ..Provenance::default()
+    }
+}
+
+fn command(args: &TrainArgs, index: &str, conditions: &[String]) -> String {
+    let mut words = vec!["footfall train --corpus".to_owned(), index.to_owned()];
+    for condition in conditions {
+        words.push(format!("--where '{condition}'"));
+    }
+    words.push(format!("--fps {}", args.fps));
+    words.push(format!(
+        "--windows {}",
+        match args.windows {
+            WindowsArg::Paper => "paper",
+            WindowsArg::Compact => "compact",
+        }
+    ));
+    words.push(format!("--iterations {}", args.iterations));
+    words.push(format!("-o {}", name_of(&args.output)));
+    words.join(" ")
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}

@@ -1,0 +1,13 @@
+//! Gait models on disk.
+
+use anyhow::{Context as _, Result};
+use footfall_model::GaitModel;
+use std::fs;
+use std::path::Path;
+
+/// Reads a `.footfall` file; errors name it.
+pub(crate) fn read_model(path: &Path) -> Result<GaitModel> {
+    let bytes =
+        fs::read(path).with_context(|| format!("{}: cannot read the model", path.display()))?;
+    GaitModel::from_bytes(&bytes).with_context(|| path.display().to_string())
+}

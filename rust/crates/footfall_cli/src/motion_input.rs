@@ -1,0 +1,105 @@
+//! A motion file as every command needs it: read, placed on the canonical body, with its contacts.
+
+use anyhow::{Context as _, Result};
+use footfall_core::Clip;
+use footfall_motion::bvh::{self, BvhFile};
+use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
+use footfall_motion::retarget::{JointMap, RetargetOptions, Retargeted, retarget};
+use footfall_motion::steps::{Step, Walk, segment_walks};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Which joint is which, for skeletons that are not known by name.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(crate) struct MapArgs {
+    /// Names of an unknown skeleton's joints: a TOML file of lines such as `Hips = "pelvis"`
+    #[arg(long, value_name = "NAMES.toml")]
+    map: Option<PathBuf>,
+}
+
+impl MapArgs {
+    /// The joint map that was given, read.
+    pub(crate) fn read(&self) -> Result<Option<JointMap>> {
+        let Some(path) = &self.map else {
+            return Ok(None);
+        };
+        let text = fs::read_to_string(path)
+            .with_context(|| format!("{}: cannot read the joint map", path.display()))?;
+        let map = JointMap::from_toml(&text).with_context(|| path.display().to_string())?;
+        Ok(Some(map))
+    }
+}
+
+/// A BVH file on the canonical body.
+pub(crate) struct MotionInput {
+    /// The file as it stands.
+    pub(crate) file: BvhFile,
+    /// On the canonical body.
+    pub(crate) retargeted: Retargeted,
+}
+
+impl MotionInput {
+    /// Reads a file and retargets it, at its own rate unless another is given.
+    pub(crate) fn read(
+        path: &Path,
+        map: Option<JointMap>,
+        frame_rate_hz: Option<f64>,
+    ) -> Result<Self> {
+        let file = bvh::read(path)?;
+        let options = RetargetOptions { map, frame_rate_hz };
+        let retargeted = retarget(&file, &options).with_context(|| path.display().to_string())?;
+        Ok(Self { file, retargeted })
+    }
+}
+
+/// Contacts and steps of a recording, with the figures that describe its walking.
+pub(crate) struct Walking {
+    /// Contacts of both feet.
+    pub(crate) contacts: Contacts,
+    /// Runs of steps.
+    pub(crate) walks: Vec<Walk>,
+    /// Mean speed of the hips along the ground over the motion, m/s on the canonical body.
+    pub(crate) speed_mps: f64,
+    /// Steps per minute while walking; `None` without a step.
+    pub(crate) cadence_per_min: Option<f64>,
+}
+
+impl Walking {
+    /// Detects contacts and steps.
+    pub(crate) fn of(retargeted: &Retargeted) -> Self {
+        let clip = &retargeted.clip;
+        let contacts = detect_contacts(clip, &ContactConfig::from_frame(retargeted.first_frame));
+        let walks = segment_walks(clip, &contacts);
+        let steps = || walks.iter().flat_map(|walk| &walk.steps);
+        let frames: usize = steps().map(Step::frames).sum();
+        let cadence_per_min = (frames > 0)
+            .then(|| 60.0 * steps().count() as f64 * clip.frame_rate_hz / frames as f64);
+        Self {
+            speed_mps: mean_speed(clip, retargeted.first_frame),
+            cadence_per_min,
+            contacts,
+            walks,
+        }
+    }
+
+    /// How many steps all walks have.
+    pub(crate) fn step_count(&self) -> usize {
+        self.walks.iter().map(|walk| walk.steps.len()).sum()
+    }
+}
+
+/// Length of the way of the hips over time, sampled coarsely so that capture noise adds nothing.
+fn mean_speed(clip: &Clip, first_frame: usize) -> f64 {
+    let stride = ((0.25 * clip.frame_rate_hz).round() as usize).max(1);
+    let last = clip.poses.len().saturating_sub(1);
+    let mut way = 0.0_f64;
+    let mut from = first_frame;
+    while from < last {
+        let to = (from + stride).min(last);
+        let offset = clip.poses[to].root_position - clip.poses[from].root_position;
+        way += f64::from(offset.with_y(0.0).length());
+        from = to;
+    }
+    let secs = last.saturating_sub(first_frame) as f64 / clip.frame_rate_hz;
+    if secs > 0.0 { way / secs } else { 0.0 }
+}

@@ -1,0 +1,166 @@
+//! What leaves the program: files that appear whole or not at all, JSON on stdout, progress on stderr.
+
+use anyhow::{Context as _, Result, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use std::fs::{self, File};
+use std::io::{self, IsTerminal as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Writes a file under a temporary name beside it and renames it, so that a reader never sees half of it and a failure
+/// leaves what was there.
+pub(crate) fn write_atomic(path: &Path, bytes: &[u8]) -> Result<()> {
+    let temporary = temporary_beside(path)?;
+    let written = (|| -> io::Result<()> {
+        let mut file = File::create_new(&temporary)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        drop(file);
+        fs::rename(&temporary, path)
+    })();
+    if written.is_err() {
+        // The first error is the one to report; a leftover is harmless.
+        drop(fs::remove_file(&temporary));
+    }
+    written.with_context(|| {
+        format!(
+            "cannot write {}; check that its folder exists and that you may write there",
+            path.display()
+        )
+    })
+}
+
+fn temporary_beside(path: &Path) -> Result<PathBuf> {
+    let Some(name) = path.file_name() else {
+        bail!(
+            "{} names no file; give the output a file name",
+            path.display()
+        );
+    };
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".{}.part", std::process::id()));
+    Ok(path.with_file_name(hidden))
+}
+
+/// Refuses an output that is one of the inputs.
+pub(crate) fn refuse_overwrite(inputs: &[&Path], output: &Path) -> Result<()> {
+    let Ok(target) = output.canonicalize() else {
+        // What does not exist yet cannot be an input.
+        return Ok(());
+    };
+    for input in inputs {
+        if input.canonicalize().is_ok_and(|source| source == target) {
+            bail!(
+                "{} is the input; choose another name for the output",
+                output.display()
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Prints one JSON object and a line end on stdout.
+pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string(value).context("the result does not fit JSON")?;
+    print_text(&text)
+}
+
+/// Prints text and a line end on stdout; a reader that went away is no error.
+pub(crate) fn print_text(text: &str) -> Result<()> {
+    let mut out = io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        other => other.context("cannot write to stdout"),
+    }
+}
+
+/// A line on stderr: what was done, or a warning.
+pub(crate) fn note(text: &str) {
+    // Nobody is left to tell when stderr is gone.
+    drop(writeln!(io::stderr().lock(), "{text}"));
+}
+
+/// Progress on stderr: a bar on a terminal, a line for each stage elsewhere.
+pub(crate) struct Progress {
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// Begins; nothing shows before the first stage.
+    pub(crate) fn new() -> Self {
+        let bar = io::stderr().is_terminal().then(|| {
+            let bar = ProgressBar::new_spinner();
+            bar.enable_steady_tick(Duration::from_millis(120));
+            bar
+        });
+        Self { bar }
+    }
+
+    /// A new stage of `length` units; 0 for one without a known length.
+    pub(crate) fn stage(&self, message: &str, length: u64) {
+        let Some(bar) = &self.bar else {
+            return note(message);
+        };
+        let template = if length == 0 {
+            "{spinner} {msg} {elapsed}"
+        } else {
+            "{msg} [{bar:30}] {pos}/{len} {elapsed}"
+        };
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        bar.set_length(length);
+        bar.set_position(0);
+        bar.set_message(message.to_owned());
+    }
+
+    /// How many units of the stage are done.
+    pub(crate) fn reach(&self, position: u64) {
+        if let Some(bar) = &self.bar {
+            bar.set_position(position);
+        }
+    }
+
+    /// Removes the bar.
+    pub(crate) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_whole_and_nothing_is_left_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.txt");
+        write_atomic(&path, b"one").unwrap();
+        write_atomic(&path, b"two").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"two");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_missing_folder_is_named_and_no_part_is_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = write_atomic(&folder.path().join("no/such/out.txt"), b"x").unwrap_err();
+        assert!(error.to_string().contains("out.txt"), "{error}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn the_input_is_safe_under_another_spelling() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("in.bvh");
+        fs::write(&path, "x").unwrap();
+        let other = folder.path().join("./in.bvh");
+        let error = refuse_overwrite(&[&path], &other).unwrap_err();
+        assert!(error.to_string().contains("is the input"), "{error}");
+        refuse_overwrite(&[&path], &folder.path().join("out.bvh")).unwrap();
+    }
+}
