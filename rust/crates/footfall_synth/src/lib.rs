@@ -13,7 +13,9 @@ mod raw;
 mod rocker;
 mod trajectory;
 mod variance;
+mod walk;
 mod walker;
 
 pub use error::SynthError;
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};
+pub use walk::{SynthesizedWalk, WalkConfig, synthesize};

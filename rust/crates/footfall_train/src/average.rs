@@ -84,16 +84,21 @@ impl AverageWalk {
     }
 
     /// The states of one step, as the model stores them.
-    pub fn states(&self, side: Side) -> Vec<StateModel> {
+    ///
+    /// # Errors
+    /// [`TrainError::Inference`] when a duration cannot be told, which a trained walk excludes.
+    pub fn states(&self, side: Side) -> Result<Vec<StateModel>, TrainError> {
         (0..STATES_PER_STEP)
             .map(|state| {
                 let index = state_index(side, state);
-                StateModel {
+                // A Gaussian that is cut off at one frame has another mean than its centre.
+                let duration = self.durations[index].discretise(self.max_duration)?;
+                Ok(StateModel {
                     mean: self.gaussians[index].mean().to_vec(),
                     variance: self.gaussians[index].variance().to_vec(),
-                    duration_mean: self.durations[index].mean.max(1.0),
-                    duration_variance: self.durations[index].variance,
-                }
+                    duration_mean: duration.mean(),
+                    duration_variance: duration.variance().max(DURATION_VARIANCE_FLOOR),
+                })
             })
             .collect()
     }

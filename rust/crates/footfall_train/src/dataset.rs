@@ -75,7 +75,8 @@ pub fn encode_clip(
                 .collect();
             Some(Sequence {
                 walker,
-                observations: observations[first * OBSERVATION_COUNT..end * OBSERVATION_COUNT].to_vec(),
+                observations: observations[first * OBSERVATION_COUNT..end * OBSERVATION_COUNT]
+                    .to_vec(),
                 steps,
             })
         })
@@ -89,7 +90,12 @@ fn observe(clip: &Clip, windows: Windows) -> Result<Vec<f64>, TrainError> {
     for (frame, pose) in clip.poses.iter().enumerate() {
         let (before, rest) = statics.split_at_mut(frame * FEATURE_COUNT);
         let previous = before.rchunks_exact(FEATURE_COUNT).next();
-        layout::encode(pose, headings[frame] as f32, previous, &mut rest[..FEATURE_COUNT]);
+        layout::encode(
+            pose,
+            headings[frame] as f32,
+            previous,
+            &mut rest[..FEATURE_COUNT],
+        );
     }
     let mut observations = Vec::new();
     windows.append_dynamics(&statics, FEATURE_COUNT, &mut observations)?;
@@ -164,7 +170,10 @@ mod tests {
         };
         for (frame, smooth) in smooth_headings(&clip).iter().enumerate().skip(60).take(180) {
             let expected = 3.0 + 0.3 * frame as f64 / 60.0;
-            assert!((smooth - expected).abs() < 0.025, "frame {frame}: {smooth} for {expected}");
+            assert!(
+                (smooth - expected).abs() < 0.025,
+                "frame {frame}: {smooth} for {expected}"
+            );
         }
     }
 }

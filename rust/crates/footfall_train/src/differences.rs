@@ -28,7 +28,8 @@ struct Difference {
     row: Vec<f64>,
 }
 
-/// Estimates the response to speed and the variation that remains, from the corpus as the walk aligns it.
+/// Estimates the response to speed and the variation that remains. `aligned` is the corpus as the walk was trained on it:
+/// it tells which frames belong to which state.
 ///
 /// # Errors
 /// [`TrainError`] when a sequence cannot be aligned.
@@ -36,11 +37,13 @@ pub fn estimate(
     walk: &AverageWalk,
     steps: &[StepModel; 2],
     corpus: &[Sequence],
+    aligned: &[Sequence],
     frame_rate_hz: f64,
 ) -> Result<(SpeedResponse, Variation), TrainError> {
     let mut differences = Vec::new();
-    for (index, sequence) in corpus.iter().enumerate() {
-        differences.extend(sequence_differences(walk, steps, sequence, index)?);
+    for (index, (sequence, aligned)) in corpus.iter().zip(aligned).enumerate() {
+        let boundaries = walk.align(aligned)?;
+        differences.extend(sequence_differences(&boundaries, steps, sequence, index));
     }
     let speed = speed_response(&mut differences, corpus, frame_rate_hz);
     let walker = walker_components(&mut differences);
@@ -54,12 +57,11 @@ pub fn estimate(
 }
 
 fn sequence_differences(
-    walk: &AverageWalk,
+    boundaries: &[usize],
     steps: &[StepModel; 2],
     sequence: &Sequence,
     index: usize,
-) -> Result<Vec<Difference>, TrainError> {
-    let boundaries = walk.align(sequence)?;
+) -> Vec<Difference> {
     let differences = sequence.steps.iter().enumerate().map(|(number, labels)| {
         let model = &steps[labels.side.index()];
         let mut offset = StepOffset::zero();
@@ -88,7 +90,7 @@ fn sequence_differences(
             row: offset.to_row(),
         }
     });
-    Ok(differences.collect())
+    differences.collect()
 }
 
 /// Regresses the differences on speed and leaves the residuals behind.

@@ -1,13 +1,18 @@
 //! Offline: a corpus of walks becomes a model.
 //!
-//! Modules in suggested reading order: [`sequence`] (what is trained on), [`average`] (the hidden semi-Markov model),
-//! [`differences`] (speed, walkers and steps).
+//! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
+//! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps).
 
 pub mod average;
+pub mod dataset;
 pub mod differences;
 pub mod error;
+pub mod normalise;
 pub mod progress;
 pub mod sequence;
+pub mod train;
 
+pub use average::EmConfig;
 pub use error::TrainError;
 pub use progress::Progress;
+pub use train::{TrainConfig, Trained, TrainingClip, train_average};

@@ -1,0 +1,191 @@
+//! The average walk from labelled clips, as one function.
+
+use crate::average::{AverageWalk, EmConfig};
+use crate::dataset::{EncodeConfig, encode_clip};
+use crate::differences;
+use crate::error::TrainError;
+use crate::normalise::without_walker;
+use crate::progress::Progress;
+use crate::sequence::Sequence;
+use footfall_core::{Clip, Side, Skeleton};
+use footfall_model::{FEATURE_COUNT, GaitModel, GlobalVarianceModel, Provenance, StepModel};
+use footfall_motion::steps::{StepPosition, Walk};
+use footfall_prob::windows::Windows;
+
+/// Least spread (relative to the mean, squared) of the global variance: a corpus of few walks knows it badly.
+const GLOBAL_VARIANCE_SPREAD: f64 = 0.01;
+
+/// Least global variance of a feature, rad².
+const GLOBAL_VARIANCE_FLOOR: f64 = 1e-7;
+
+/// A clip on the canonical body with its steps marked.
+#[derive(Clone, Debug)]
+pub struct TrainingClip {
+    /// Who walks.
+    pub subject: String,
+    /// The motion.
+    pub clip: Clip,
+    /// Leading frames to leave out: an artificial T-pose, for example.
+    pub skip_frames: usize,
+    /// The walks in the clip, in its own frames.
+    pub walks: Vec<Walk>,
+}
+
+/// How to train.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrainConfig {
+    /// Frames per second of the model.
+    pub frame_rate_hz: f64,
+    /// Time differences of the observations.
+    pub windows: Windows,
+    /// Whether every walk is also used with left and right exchanged, which makes the average walk symmetric.
+    pub mirror: bool,
+    /// When to stop.
+    pub em: EmConfig,
+}
+
+/// A trained model and how training went.
+#[derive(Clone, Debug)]
+pub struct Trained {
+    /// The average walk.
+    pub model: GaitModel,
+    /// Total log-likelihood of the corpus at every iteration; never falls.
+    pub log_likelihoods: Vec<f64>,
+    /// Frames that were trained on, mirrored ones included.
+    pub frames: usize,
+}
+
+/// Trains the average walk. `provenance` gets the counts of clips, subjects and steps filled in.
+///
+/// # Errors
+/// [`TrainError`] when the clips hold too few steps or cannot be explained.
+pub fn train_average(
+    clips: &[TrainingClip],
+    config: &TrainConfig,
+    provenance: Provenance,
+    progress: &mut dyn Progress,
+) -> Result<Trained, TrainError> {
+    let (corpus, counts) = encode(clips, config)?;
+    if corpus.is_empty() {
+        return Err(TrainError::NoSteps);
+    }
+    let aligned = without_walker(&corpus);
+    let walk = AverageWalk::train(&aligned, &config.em, progress)?;
+    let step = |side| -> Result<StepModel, TrainError> {
+        Ok(StepModel {
+            states: walk.states(side)?,
+            other_terminal: mean_terminal(&corpus, side),
+        })
+    };
+    let steps = [step(Side::Left)?, step(Side::Right)?];
+    let (speed, variation) = differences::estimate(&walk, &steps, &corpus, &aligned, config.frame_rate_hz)?;
+    let model = GaitModel {
+        frame_rate_hz: config.frame_rate_hz,
+        skeleton: Skeleton::standard(),
+        windows: config.windows,
+        steps,
+        global_variance: global_variance(&corpus),
+        speed,
+        variation,
+        provenance: Provenance {
+            clips: counts.clips,
+            subjects: counts.subjects,
+            steps: counts.steps,
+            ..provenance
+        },
+    };
+    Ok(Trained {
+        model,
+        log_likelihoods: walk.log_likelihoods.clone(),
+        frames: corpus.iter().map(Sequence::frames).sum(),
+    })
+}
+
+struct Counts {
+    clips: usize,
+    subjects: usize,
+    steps: usize,
+}
+
+fn encode(
+    clips: &[TrainingClip],
+    config: &TrainConfig,
+) -> Result<(Vec<Sequence>, Counts), TrainError> {
+    let encoding = EncodeConfig {
+        frame_rate_hz: config.frame_rate_hz,
+        windows: config.windows,
+    };
+    let mut subjects: Vec<&str> = Vec::new();
+    let mut corpus = Vec::new();
+    let mut used = 0;
+    for clip in clips {
+        let walker = subjects
+            .iter()
+            .position(|subject| *subject == clip.subject)
+            .unwrap_or_else(|| {
+                subjects.push(&clip.subject);
+                subjects.len() - 1
+            });
+        let walks: Vec<Walk> = clip.walks.iter().map(steady_part).collect();
+        let sequences = encode_clip(&clip.clip, clip.skip_frames, &walks, 2 * walker, &encoding)?;
+        used += usize::from(!sequences.is_empty());
+        for sequence in sequences {
+            if config.mirror {
+                corpus.push(sequence.mirrored(2 * walker + 1));
+            }
+            corpus.push(sequence);
+        }
+    }
+    let original = corpus.iter().filter(|sequence| sequence.walker % 2 == 0);
+    let counts = Counts {
+        clips: used,
+        subjects: subjects.len(),
+        steps: original.map(|sequence| sequence.steps.len()).sum(),
+    };
+    Ok((corpus, counts))
+}
+
+/// A walk without the steps in which it starts and stops.
+fn steady_part(walk: &Walk) -> Walk {
+    let is_edge = |position| matches!(position, StepPosition::First | StepPosition::Last);
+    Walk {
+        steps: walk
+            .steps
+            .iter()
+            .filter(|step| !is_edge(step.position))
+            .copied()
+            .collect(),
+    }
+}
+
+fn mean_terminal(corpus: &[Sequence], side: Side) -> f64 {
+    let fractions: Vec<f64> = corpus
+        .iter()
+        .flat_map(|sequence| &sequence.steps)
+        .filter(|step| step.side == side)
+        .filter_map(|step| step.other_terminal)
+        .collect();
+    // A fifth of a step is what people do: what is left when no clip shows a foot leaving the ground.
+    if fractions.is_empty() {
+        return 0.2;
+    }
+    fractions.iter().sum::<f64>() / fractions.len() as f64
+}
+
+fn global_variance(corpus: &[Sequence]) -> GlobalVarianceModel {
+    let rows: Vec<Vec<f64>> = corpus.iter().map(Sequence::variance).collect();
+    let count = rows.len() as f64;
+    let mean: Vec<f64> = (0..FEATURE_COUNT)
+        .map(|dim| {
+            let sum: f64 = rows.iter().map(|row| row[dim]).sum();
+            (sum / count).max(GLOBAL_VARIANCE_FLOOR)
+        })
+        .collect();
+    let variance = (0..FEATURE_COUNT)
+        .map(|dim| {
+            let sum: f64 = rows.iter().map(|row| (row[dim] - mean[dim]).powi(2)).sum();
+            (sum / count).max(GLOBAL_VARIANCE_SPREAD * mean[dim] * mean[dim])
+        })
+        .collect();
+    GlobalVarianceModel { mean, variance }
+}
