@@ -91,12 +91,10 @@ pub enum ProbError {
     },
     /// A matrix that must be positive definite is not.
     #[error(
-        "the trajectory of dimension {dim} is not determined at frame {frame}: give every state a \
-         positive static precision"
+        "the trajectory of dimension {dim} is not determined: give every state a static precision \
+         above zero, or a weaker pull"
     )]
     NotPositiveDefinite {
-        /// Frame at which the factorisation broke down.
-        frame: usize,
         /// Feature dimension.
         dim: usize,
     },

@@ -4,11 +4,17 @@
 //! row-major slices with their shape in the documentation of each argument; probabilities are f64.
 //!
 //! In suggested reading order: [`gaussian`] and [`duration`] (what a state is), [`hsmm`] (which
-//! frames belong to which state), then from states back to motion.
+//! frames belong to which state); then from states back to motion, [`windows`], [`mlpg`] and
+//! [`global_variance`].
 
 pub mod duration;
 pub mod error;
 pub mod gaussian;
+pub mod global_variance;
 pub mod hsmm;
+pub mod mlpg;
+pub mod windows;
+#[doc(hidden)]
+pub mod workload;
 
 pub use error::ProbError;

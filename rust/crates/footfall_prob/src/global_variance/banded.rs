@@ -1,0 +1,194 @@
+//! The normal equations of one dimension, and their solution with κ J added.
+
+use crate::mlpg::MlpgProblem;
+
+/// R and r over the free frames, the fixed ones moved to the right-hand side.
+pub(super) struct Banded {
+    stride: usize,
+    /// R at lags 0, stride and 2 stride.
+    diagonal: Vec<f64>,
+    near: Vec<f64>,
+    far: Vec<f64>,
+    rhs: Vec<f64>,
+    /// All frames, fixed ones included.
+    n_frames: usize,
+    fixed: Vec<f64>,
+    /// The free frames of the last solution.
+    pub(super) trajectory: Vec<f64>,
+    /// (R + κ I)⁻¹ applied to the ones.
+    ones: Vec<f64>,
+    scratch: Vec<f64>,
+    factors: Vec<[f64; 3]>,
+}
+
+/// What one value of κ leads to.
+#[derive(Clone, Copy)]
+pub(super) struct Solution {
+    /// Mean over all frames.
+    pub(super) mean: f64,
+    /// Variance over all frames.
+    pub(super) variance: f64,
+    /// Its derivative with respect to κ.
+    pub(super) variance_slope: f64,
+}
+
+impl Banded {
+    /// Dimension `d` of a problem that has been checked.
+    pub(super) fn new(problem: &MlpgProblem<'_, f64>, d: usize, trajectory: &[f64]) -> Self {
+        let n_frames = problem.state_of_frame.len();
+        let (n_fixed, dim) = (problem.n_fixed, problem.dim);
+        let stride = problem.windows.stride();
+        let mut lags = [
+            vec![0.0; n_frames],
+            vec![0.0; n_frames],
+            vec![0.0; n_frames],
+        ];
+        let mut rhs = vec![0.0; n_frames];
+        let windows = problem
+            .windows
+            .coefficients()
+            .into_iter()
+            .zip(problem.windows.reach());
+        for (window, (coefficients, reach)) in windows.enumerate() {
+            for s in reach..n_frames.saturating_sub(reach) {
+                let at = (problem.state_of_frame[s] as usize * 3 + window) * dim + d;
+                let (precision, mean) = (problem.precisions[at], problem.means[at]);
+                let offsets = (2 - reach)..=(2 + reach);
+                for i in offsets.clone().filter(|i| coefficients[*i] != 0.0) {
+                    let t = s + i - 2;
+                    rhs[t] += coefficients[i] * precision * mean;
+                    for lag in 0..3 {
+                        let j = i + lag * stride;
+                        if offsets.contains(&j) {
+                            lags[lag][t] += coefficients[i] * precision * coefficients[j];
+                        }
+                    }
+                }
+            }
+        }
+        let fixed: Vec<f64> = (0..n_fixed).map(|t| trajectory[t * dim + d]).collect();
+        for (t, value) in fixed.iter().enumerate() {
+            for lag in 1..3 {
+                if let Some(rhs) = rhs.get_mut(t + lag * stride) {
+                    *rhs -= lags[lag][t] * value;
+                }
+            }
+        }
+        let [diagonal, near, far] = lags.map(|mut lag| lag.split_off(n_fixed));
+        let n_free = n_frames - n_fixed;
+        Self {
+            stride,
+            diagonal,
+            near,
+            far,
+            rhs: rhs.split_off(n_fixed),
+            n_frames,
+            fixed,
+            trajectory: vec![0.0; n_free],
+            ones: vec![0.0; n_free],
+            scratch: vec![0.0; n_free],
+            factors: vec![[0.0; 3]; n_free],
+        }
+    }
+
+    /// Below this κ a diagonal entry of R + κ J is negative.
+    pub(super) fn lowest_strength(&self) -> f64 {
+        let n_frames = self.n_frames as f64;
+        -self.diagonal.iter().copied().fold(f64::INFINITY, f64::min) * n_frames / (n_frames - 1.0)
+    }
+
+    /// Solves (R + κ J) c = r. `None` where R + κ J is not positive definite.
+    ///
+    /// J c = c - c̄, so (R + κ I) c = r + κ c̄ 1: two banded solutions x = (..)⁻¹ r and u = (..)⁻¹ 1
+    /// give c = x + κ c̄ u, and its mean gives c̄.
+    pub(super) fn solve(&mut self, strength: f64) -> Option<Solution> {
+        let n_negative = self.factorise(strength)?;
+        let n_frames = self.n_frames as f64;
+        self.trajectory.copy_from_slice(&self.rhs);
+        substitute(&self.factors, self.stride, &mut self.trajectory);
+        self.ones.fill(1.0);
+        substitute(&self.factors, self.stride, &mut self.ones);
+        let denominator = n_frames - strength * self.ones.iter().sum::<f64>();
+        // det(R + κ J) = det(R + κ I) denominator / T, and for κ < 0 the rank-one term can lift
+        // one negative eigenvalue, no more.
+        let is_positive_definite =
+            (n_negative == 0 && denominator > 0.0) || (n_negative == 1 && denominator < 0.0);
+        if !is_positive_definite {
+            return None;
+        }
+        let total = self.fixed.iter().sum::<f64>() + self.trajectory.iter().sum::<f64>();
+        let mean = total / denominator;
+        for (c, u) in self.trajectory.iter_mut().zip(&self.ones) {
+            *c += strength * mean * u;
+        }
+        let square = |c: &f64| (c - mean) * (c - mean);
+        let variance = (self.fixed.iter().map(square).sum::<f64>()
+            + self.trajectory.iter().map(square).sum::<f64>())
+            / n_frames;
+        // dc/dκ = -(R + κ J)⁻¹ J c, by the same two steps.
+        for (z, c) in self.scratch.iter_mut().zip(&self.trajectory) {
+            *z = c - mean;
+        }
+        substitute(&self.factors, self.stride, &mut self.scratch);
+        let change = strength * self.scratch.iter().sum::<f64>() / denominator;
+        let product: f64 = self
+            .scratch
+            .iter()
+            .zip(&self.ones)
+            .zip(&self.trajectory)
+            .map(|((z, u), c)| (z + change * u) * (c - mean))
+            .sum();
+        let variance_slope = -2.0 * product / n_frames;
+        variance_slope.is_finite().then_some(Solution {
+            mean,
+            variance,
+            variance_slope,
+        })
+    }
+
+    /// L D Lᵀ of R + κ I; the number of negative pivots, `None` when one vanishes.
+    fn factorise(&mut self, strength: f64) -> Option<usize> {
+        let stride = self.stride;
+        let mut n_negative = 0;
+        for t in 0..self.diagonal.len() {
+            let mut pivot = self.diagonal[t] + strength;
+            let mut near = self.near[t];
+            if t >= stride {
+                let [inverse, near_before, far_before] = self.factors[t - stride];
+                // Entries of L times pivot: near_before / inverse is the unscaled coupling.
+                pivot -= near_before * near_before / inverse;
+                near -= near_before * far_before / inverse;
+            }
+            if t >= 2 * stride {
+                let [inverse, _, far_before] = self.factors[t - 2 * stride];
+                pivot -= far_before * far_before / inverse;
+            }
+            let inverse = pivot.recip();
+            if !inverse.is_finite() || !pivot.is_finite() {
+                return None;
+            }
+            n_negative += usize::from(pivot < 0.0);
+            self.factors[t] = [inverse, near * inverse, self.far[t] * inverse];
+        }
+        Some(n_negative)
+    }
+}
+
+/// Solves L D Lᵀ x = b in place.
+fn substitute(factors: &[[f64; 3]], stride: usize, x: &mut [f64]) {
+    for t in 0..x.len() {
+        for lag in 1..3 {
+            if let Some(before) = t.checked_sub(lag * stride) {
+                x[t] -= factors[before][lag] * x[before];
+            }
+        }
+    }
+    for t in (0..x.len()).rev() {
+        x[t] *= factors[t][0];
+        for lag in 1..3 {
+            if let Some(after) = x.get(t + lag * stride) {
+                x[t] -= factors[t][lag] * after;
+            }
+        }
+    }
+}
