@@ -8,15 +8,23 @@
 )]
 #![expect(clippy::disallowed_methods, reason = "steps are timed for the user")]
 
+mod addon;
+mod contact_sheet;
+mod demo;
 mod display;
+mod engine_run;
 mod godot;
+mod golden;
 mod library;
 mod link;
 mod mannequin;
+mod models;
 mod open;
 mod paths;
 mod process;
 mod progress;
+mod tidy;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -44,6 +52,22 @@ enum Command {
     Link,
     /// Make the demo's character, `demo_project/characters/mannequin.glb`.
     Mannequin,
+    /// Pack the add-on into `rust/target/footfall-addon.zip`.
+    Addon,
+    /// Train the models that the add-on ships; `FOOTFALL_DATA` names the motion data.
+    Models,
+    /// Compare results with those kept in `tests/golden`.
+    Golden {
+        /// Keep the new results instead.
+        #[arg(long)]
+        update: bool,
+    },
+    /// Check the design's invariants.
+    Tidy,
+    /// Check everything: format, rules, lints, tests, docs, the nodes in Godot, the demo.
+    Verify,
+    /// Build all and open the demo; without a display, leave pictures of it.
+    Demo,
     /// Start Godot on a project folder, on a display in memory where there is none.
     Open {
         /// The project's folder, from the repository's root.
@@ -70,6 +94,12 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Library(options) => library::build(options),
         Command::Link => link::command(),
         Command::Mannequin => mannequin::command(),
+        Command::Addon => addon::command(),
+        Command::Models => models::command(),
+        Command::Golden { update } => golden::command(*update),
+        Command::Tidy => tidy::command(),
+        Command::Verify => verify::command(),
+        Command::Demo => demo::command(),
         Command::Open { project, arguments } => open::command(project, arguments),
     }
 }

@@ -15,6 +15,7 @@ use crate::{paths, progress};
 use anyhow::{Context as _, Result};
 use body::Body;
 use footfall_core::Skeleton;
+use paint::Painted;
 use std::fs;
 use surface_nets::Grid;
 
@@ -41,9 +42,7 @@ fn make() -> Result<Vec<u8>> {
     let bar = progress::count(SPACINGS_M.len() as u64, "sculpting the mannequin");
     let mut levels = Vec::new();
     for spacing in SPACINGS_M {
-        let mesh = surface_nets::polygonise(&|point| body.distance(point), &grid(spacing));
-        let weights = weights::compute(&skeleton, &mesh);
-        let painted = paint::paint(&body, mesh, weights);
+        let painted = sculpt(&skeleton, &body, spacing);
         eprintln!(
             "{} vertices, {} triangles",
             painted.mesh.positions.len(),
@@ -54,6 +53,13 @@ fn make() -> Result<Vec<u8>> {
     }
     bar.finish_and_clear();
     glb::encode(&skeleton, &levels)
+}
+
+/// One level of detail.
+fn sculpt(skeleton: &Skeleton, body: &Body, spacing: f32) -> Painted {
+    let mesh = surface_nets::polygonise(&|point| body.distance(point), &grid(spacing));
+    let weights = weights::compute(skeleton, &mesh);
+    paint::paint(body, mesh, weights)
 }
 
 /// Lines closer together where the shape is finer: the face, the hands, the feet.
@@ -85,4 +91,78 @@ fn lines(from: f32, to: f32, step: impl Fn(f32) -> f32) -> Vec<f32> {
         lines.push(last);
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use body::Region;
+    use footfall_core::{JOINT_COUNT, Joint};
+    use glam::Vec3;
+    use std::collections::BTreeMap;
+
+    fn coarse() -> Painted {
+        let skeleton = Skeleton::standard();
+        sculpt(&skeleton, &Body::new(&skeleton), SPACINGS_M[2])
+    }
+
+    #[test]
+    fn the_skin_is_closed_after_it_was_cut() {
+        let painted = coarse();
+        let mut edges = BTreeMap::new();
+        for triangle in &painted.mesh.triangles {
+            for corner in 0..3 {
+                *edges
+                    .entry((triangle[corner], triangle[(corner + 1) % 3]))
+                    .or_insert(0) += 1;
+            }
+        }
+        let open = edges
+            .iter()
+            .filter(|((from, to), count)| **count != 1 || edges.get(&(*to, *from)) != Some(&1));
+        assert_eq!(open.count(), 0);
+        for region in [Region::Shell, Region::Joint, Region::Left, Region::Right] {
+            assert!(painted.regions.contains(&region), "{region:?}");
+        }
+    }
+
+    #[test]
+    fn every_bone_moves_skin_and_only_near_itself() {
+        let painted = coarse();
+        let mut moved = [0.0; JOINT_COUNT];
+        for (position, weights) in painted.mesh.positions.iter().zip(&painted.weights) {
+            assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+            assert!(weights.iter().filter(|&&weight| weight > 0.0).count() <= 4);
+            for joint in Joint::ALL {
+                moved[joint.index()] += weights[joint.index()];
+                // A leg never pulls the other leg; between them the skin is one, over a cell of this grid.
+                if weights[joint.index()] > 0.05 && joint.name().starts_with("Left") {
+                    assert!(position.x > -0.045, "{} moves {position}", joint.name());
+                }
+            }
+        }
+        for joint in Joint::ALL {
+            assert!(moved[joint.index()] > 1.0, "{} moves nothing", joint.name());
+        }
+    }
+
+    #[test]
+    fn a_fine_grid_is_even_and_mirrored() {
+        let grid = grid(0.02);
+        let [x, y, z] = &grid.lines;
+        for lines in [x, y, z] {
+            assert!(
+                lines
+                    .windows(2)
+                    .all(|pair| pair[1] > pair[0] && pair[1] - pair[0] < 0.021)
+            );
+        }
+        assert!(
+            x.iter()
+                .zip(x.iter().rev())
+                .all(|(left, right)| (left + right).abs() < 1e-6)
+        );
+        let reach = Vec3::new(x[x.len() - 1], y[y.len() - 1], z[z.len() - 1]);
+        assert!(reach.cmpgt(Vec3::new(0.9, 1.78, 0.22)).all());
+    }
 }

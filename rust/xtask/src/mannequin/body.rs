@@ -38,6 +38,8 @@ pub(super) struct Body {
     bands: Vec<Band>,
 }
 
+/// Further away than any part of the body, metres.
+const FAR_M: f32 = 100.0;
 /// How deep a band lies below the shells, metres.
 const INSET_M: f32 = 0.003;
 
@@ -64,12 +66,8 @@ impl Body {
     /// Signed distance to the surface.
     pub(super) fn distance(&self, point: Vec3) -> f32 {
         let half = Vec3::new(point.x.abs(), point.y, point.z);
-        let solid = self.parts.iter().fold(f32::MAX, |solid, (shape, blend)| {
-            if solid == f32::MAX {
-                shape.distance(half)
-            } else {
-                smooth_union(solid, shape.distance(half), *blend)
-            }
+        let solid = self.parts.iter().fold(FAR_M, |solid, (shape, blend)| {
+            smooth_union(solid, shape.distance(half), *blend)
         });
         let hollowed = self.hollows.iter().fold(solid, |solid, (shape, blend)| {
             smooth_difference(solid, shape.distance(half), *blend)
@@ -140,7 +138,7 @@ impl Body {
             station(1.490, 0.080, 0.052, 0.070),
         ];
         self.add(
-            0.0,
+            0.01,
             Shape::Loft(Loft::new(floor, Vec3::Y, Vec3::Z, [0.02, 0.03], stations)),
         );
         // Chest muscles and shoulder blades: hints only.

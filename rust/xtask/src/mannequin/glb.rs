@@ -69,7 +69,7 @@ impl Buffer {
     fn push_vectors(&mut self, vectors: &[Vec3]) -> usize {
         let data: Vec<u8> = vectors
             .iter()
-            .flat_map(|v| v.to_array())
+            .flat_map(Vec3::to_array)
             .flat_map(f32::to_le_bytes)
             .collect();
         self.push(

@@ -15,13 +15,11 @@ pub(super) fn model_from_bone(joint: Joint) -> Mat3 {
         | Joint::Neck
         | Joint::Head => Mat3::IDENTITY,
         Joint::LeftShoulder => axes(Vec3::Z, Vec3::X),
-        Joint::LeftUpperArm => axes(Vec3::NEG_Z, Vec3::X),
+        Joint::LeftUpperArm | Joint::LeftHand => axes(Vec3::NEG_Z, Vec3::X),
         Joint::LeftLowerArm => axes(Vec3::NEG_Y, Vec3::X),
-        Joint::LeftHand => axes(Vec3::NEG_Z, Vec3::X),
         Joint::RightShoulder => axes(Vec3::NEG_Z, Vec3::NEG_X),
-        Joint::RightUpperArm => axes(Vec3::Z, Vec3::NEG_X),
+        Joint::RightUpperArm | Joint::RightHand => axes(Vec3::Z, Vec3::NEG_X),
         Joint::RightLowerArm => axes(Vec3::Y, Vec3::NEG_X),
-        Joint::RightHand => axes(Vec3::Z, Vec3::NEG_X),
         Joint::LeftUpperLeg | Joint::RightUpperLeg => axes(Vec3::NEG_X, Vec3::NEG_Y),
         Joint::LeftLowerLeg | Joint::RightLowerLeg => axes(Vec3::X, Vec3::NEG_Y),
         Joint::LeftFoot | Joint::RightFoot => axes(Vec3::NEG_X, Vec3::Z),
@@ -38,17 +36,17 @@ mod tests {
         match joint {
             Joint::LeftShoulder => [[0., 1., 0.], [0., 0., 1.], [1., 0., 0.]],
             Joint::RightShoulder => [[0., -1., 0.], [0., 0., 1.], [-1., 0., 0.]],
-            Joint::LeftUpperArm | Joint::RightUpperArm => {
-                [[-1., 0., 0.], [0., 1., 0.], [0., 0., -1.]]
-            }
             Joint::LeftLowerArm | Joint::RightHand => [[0., 0., -1.], [0., 1., 0.], [1., 0., 0.]],
             Joint::RightLowerArm | Joint::LeftHand => [[0., 0., 1.], [0., 1., 0.], [-1., 0., 0.]],
             Joint::LeftUpperLeg | Joint::RightUpperLeg => {
                 [[-1., 0., 0.], [0., -1., 0.], [0., 0., 1.]]
             }
-            Joint::LeftLowerLeg | Joint::RightLowerLeg | Joint::LeftToes | Joint::RightToes => {
-                [[-1., 0., 0.], [0., 1., 0.], [0., 0., -1.]]
-            }
+            Joint::LeftUpperArm
+            | Joint::RightUpperArm
+            | Joint::LeftLowerLeg
+            | Joint::RightLowerLeg
+            | Joint::LeftToes
+            | Joint::RightToes => [[-1., 0., 0.], [0., 1., 0.], [0., 0., -1.]],
             Joint::LeftFoot | Joint::RightFoot => [[-1., 0., 0.], [0., 0., -1.], [0., -1., 0.]],
             _ => [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.]],
         }

@@ -43,7 +43,7 @@ fn territories(skeleton: &Skeleton, model: &ModelPose) -> Vec<Territory> {
             from,
             to,
             radius,
-        })
+        });
     };
     let up = |metres: f32| Vec3::Y * metres;
     let hips = at(Joint::Hips) - up(0.015);

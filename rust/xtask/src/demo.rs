@@ -1,0 +1,66 @@
+//! `cargo demo`: builds the add-on and opens the demo, or leaves pictures of it where there is no display.
+
+use crate::{contact_sheet, display, engine_run, godot, library, link, open, paths, process};
+use anyhow::{Context as _, Result, bail};
+use std::fs;
+
+/// Builds all that the demo needs and shows it.
+///
+/// # Errors
+/// When a part cannot be built or had, or the demo leaves no pictures.
+pub(crate) fn command() -> Result<()> {
+    library::build(&library::Options::default())?;
+    let engine = godot::provision()?;
+    eprintln!("Godot {}", engine.version);
+    link::ensure()?;
+    let display = display::ensure()?;
+    let project = paths::repository_root().join("demo_project");
+    let folder = paths::target_folder().join("demo");
+    import(&engine, &project, "demo")?;
+    if !display.is_virtual() {
+        eprintln!("the demo runs in its window; close it to come back");
+        return process::run(&mut open::on(&engine, &display, &project));
+    }
+    if folder.exists() {
+        fs::remove_dir_all(&folder)
+            .with_context(|| format!("cannot clear {}", folder.display()))?;
+    }
+    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    eprintln!("no display: rendering pictures in software …");
+    let mut command = open::on(&engine, &display, &project);
+    // Time in the scene runs by frames, however long one takes to draw.
+    command
+        .args(["--fixed-fps", "60", "--", "--pictures"])
+        .arg(&folder);
+    let log = folder.join("godot.log");
+    engine_run::judged(&mut command, &log)?;
+    let pictures = contact_sheet::pictures(&folder)?;
+    if pictures.is_empty() {
+        bail!(
+            "the demo left no pictures; what Godot said is in {}",
+            log.display()
+        );
+    }
+    let sheet = folder.join("contact_sheet.png");
+    contact_sheet::write(&pictures, &sheet)?;
+    eprintln!("{} pictures in {}", pictures.len(), folder.display());
+    println!("{}", sheet.display());
+    Ok(())
+}
+
+/// Lets Godot import a project's files, so that it knows the add-on and the character.
+///
+/// # Errors
+/// As [`engine_run::judged`].
+pub(crate) fn import(engine: &godot::Engine, project: &std::path::Path, name: &str) -> Result<()> {
+    let log = paths::target_folder()
+        .join("verify")
+        .join(format!("{name}_import.log"));
+    eprintln!("importing {} …", project.display());
+    let known = project.join(".godot/extension_list.cfg").is_file();
+    if !known {
+        // The first import only learns of the extension; files that its classes import need a second one.
+        engine_run::started(open::headless(engine, project).arg("--import"), &log)?;
+    }
+    engine_run::judged(open::headless(engine, project).arg("--import"), &log).map(drop)
+}

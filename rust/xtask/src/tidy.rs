@@ -1,0 +1,91 @@
+//! `cargo xtask tidy`: the design's invariants, checked from `cargo metadata` and the sources' text.
+
+mod dependencies;
+mod files;
+mod rules;
+mod source;
+
+use crate::{paths, process};
+use anyhow::{Context as _, Result, bail};
+use std::fmt;
+use std::process::Command;
+
+/// One breach of a rule.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Violation {
+    /// The file, from the repository's root.
+    file: String,
+    /// The line, counted from 1; 0 for the whole file.
+    line: usize,
+    /// What the rule says.
+    rule: String,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => write!(f, "{}: {}", self.file, self.rule),
+            line => write!(f, "{}:{line}: {}", self.file, self.rule),
+        }
+    }
+}
+
+/// Prints every violation.
+///
+/// # Errors
+/// When there is one, or the repository cannot be read.
+pub(crate) fn command() -> Result<()> {
+    let violations = check()?;
+    for violation in &violations {
+        eprintln!("{violation}");
+    }
+    if !violations.is_empty() {
+        bail!(
+            "{} breach(es) of the design's rules; rust/ARCHITECTURE.md has the reasons",
+            violations.len()
+        );
+    }
+    Ok(())
+}
+
+fn check() -> Result<Vec<Violation>> {
+    let root = paths::repository_root();
+    let metadata = process::read(process::cargo().args([
+        "metadata",
+        "--format-version",
+        "1",
+        "--no-deps",
+        "--locked",
+    ]))?;
+    let metadata = serde_json::from_str(&metadata).context("cargo metadata is no JSON")?;
+    let mut violations = dependencies::check(&metadata);
+    let listed = process::read(Command::new("git").current_dir(&root).args([
+        "ls-files",
+        "-z",
+        "--cached",
+        "--others",
+        "--exclude-standard",
+    ]))
+    .context("tidy reads the list of files from git")?;
+    let names: Vec<&str> = listed.split('\0').filter(|name| !name.is_empty()).collect();
+    violations.extend(files::top_level(&names));
+    for name in names {
+        let path = root.join(name);
+        // A file that was deleted but not yet committed is still listed.
+        let Ok(data) = path.symlink_metadata() else {
+            continue;
+        };
+        if data.is_symlink() || data.is_dir() {
+            continue;
+        }
+        violations.extend(files::size(name, data.len()));
+        let bytes = std::fs::read(&path).with_context(|| format!("cannot read {name}"))?;
+        let Ok(text) = String::from_utf8(bytes) else {
+            continue;
+        };
+        violations.extend(files::machine_paths(name, &text));
+        violations.extend(rules::check(name, &text));
+    }
+    violations.sort();
+    Ok(violations)
+}

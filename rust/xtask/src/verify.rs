@@ -1,0 +1,173 @@
+//! `cargo verify`: everything that must hold before a change goes in, in the order in which it fails soonest.
+
+use crate::{demo, engine_run, godot, library, link, open, paths, process, tidy};
+use anyhow::{Context as _, Result, bail};
+use std::path::Path;
+use std::time::Instant;
+
+/// How many frames the demo runs.
+const DEMO_FRAMES: &str = "300";
+
+/// One thing to check.
+struct Step {
+    name: &'static str,
+    check: fn() -> Result<()>,
+}
+
+const STEPS: [Step; 9] = [
+    Step {
+        name: "format",
+        check: format,
+    },
+    Step {
+        name: "tidy",
+        check: tidy::command,
+    },
+    Step {
+        name: "clippy",
+        check: clippy,
+    },
+    Step {
+        name: "tests",
+        check: tests,
+    },
+    Step {
+        name: "docs",
+        check: docs,
+    },
+    Step {
+        name: "library",
+        check: build_library,
+    },
+    Step {
+        name: "Godot",
+        check: provision,
+    },
+    Step {
+        name: "tests in Godot",
+        check: tests_in_godot,
+    },
+    Step {
+        name: "demo in Godot",
+        check: demo_in_godot,
+    },
+];
+
+/// Runs every step and stops at the first that fails.
+///
+/// # Errors
+/// The first failure.
+pub(crate) fn command() -> Result<()> {
+    let begin = Instant::now();
+    for (index, step) in STEPS.iter().enumerate() {
+        eprintln!("── {}/{} {}", index + 1, STEPS.len(), step.name);
+        let begin = Instant::now();
+        (step.check)().with_context(|| {
+            format!(
+                "{} failed after {:.0} s",
+                step.name,
+                begin.elapsed().as_secs_f32()
+            )
+        })?;
+        eprintln!(
+            "── {} passed in {:.0} s",
+            step.name,
+            begin.elapsed().as_secs_f32()
+        );
+    }
+    eprintln!("── all passed in {:.0} s", begin.elapsed().as_secs_f32());
+    Ok(())
+}
+
+fn format() -> Result<()> {
+    process::run(process::cargo().args(["fmt", "--all", "--check"]))
+        .context("run `cargo fmt --all` in rust/")
+}
+
+fn clippy() -> Result<()> {
+    let features = ["--features", "footfall_godot/editor"];
+    process::run(
+        process::cargo()
+            .args(["clippy", "--locked", "--workspace", "--all-targets"])
+            .args(features)
+            .args(["--", "-D", "warnings"]),
+    )
+}
+
+/// The nodes need the engine around them: their tests run in Godot.
+fn tests() -> Result<()> {
+    let mut cargo = process::cargo();
+    cargo.args([
+        "test",
+        "--locked",
+        "--workspace",
+        "--exclude",
+        "footfall_godot",
+    ]);
+    let status = cargo.status().context("cannot start cargo")?;
+    if !status.success() {
+        bail!("`{}` failed ({status})", process::shown(&cargo));
+    }
+    Ok(())
+}
+
+fn docs() -> Result<()> {
+    process::run(
+        process::cargo()
+            .args([
+                "doc",
+                "--quiet",
+                "--locked",
+                "--workspace",
+                "--no-deps",
+                "--features",
+                "footfall_godot/editor",
+            ])
+            .env("RUSTDOCFLAGS", "-D warnings"),
+    )
+}
+
+fn build_library() -> Result<()> {
+    library::build(&library::Options::default())
+}
+
+fn provision() -> Result<()> {
+    let engine = godot::provision()?;
+    eprintln!("Godot {} at {}", engine.version, engine.program.display());
+    link::ensure()
+}
+
+fn tests_in_godot() -> Result<()> {
+    let said = in_godot("tests/godot", "tests", &[])?;
+    // The tests' own report is worth seeing.
+    eprintln!("{}", process::tail(&said, 12));
+    Ok(())
+}
+
+fn demo_in_godot() -> Result<()> {
+    in_godot(
+        "demo_project",
+        "demo",
+        &["--fixed-fps", "60", "--quit-after", DEMO_FRAMES],
+    )
+    .map(drop)
+}
+
+/// Imports a project and runs its main scene without a window.
+fn in_godot(project: &str, name: &str, arguments: &[&str]) -> Result<String> {
+    let engine = godot::provision()?;
+    let folder = paths::repository_root().join(project);
+    require(&folder.join("project.godot"))?;
+    demo::import(&engine, &folder, name)?;
+    let log = paths::target_folder()
+        .join("verify")
+        .join(format!("{name}.log"));
+    engine_run::judged(open::headless(&engine, &folder).args(arguments), &log)
+}
+
+fn require(file: &Path) -> Result<()> {
+    if !file.is_file() {
+        bail!("{} is missing", file.display());
+    }
+    Ok(())
+}
