@@ -14,14 +14,16 @@ pub struct ContactConfig {
     pub first_frame: usize,
     /// A point comes into contact below this height, metres.
     pub height_on_m: f32,
-    /// And leaves it above this one.
-    pub height_off_m: f32,
-    /// A heel comes into contact below this speed, as a share of the speed of a swinging foot in this clip.
-    pub heel_speed_on: f32,
-    /// The toes come into contact below this share.
-    pub toe_speed_on: f32,
-    /// Both leave it above this share.
-    pub speed_off: f32,
+    /// The heel leaves it above this one.
+    pub heel_off_m: f32,
+    /// The toes leave it above this one.
+    pub toe_off_m: f32,
+    /// A point comes into contact below this speed, as a share of the speed of a swinging foot in this clip.
+    pub speed_on: f32,
+    /// The heel leaves it above this share.
+    pub heel_speed_off: f32,
+    /// The toes leave it above this share: they slide while they push off.
+    pub toe_speed_off: f32,
     /// A contact lasts at least this long, seconds.
     pub least_contact_secs: f64,
     /// A shorter break within a contact does not count, seconds.
@@ -34,10 +36,11 @@ impl ContactConfig {
         Self {
             first_frame,
             height_on_m: 0.035,
-            height_off_m: 0.05,
-            heel_speed_on: 0.35,
-            toe_speed_on: 0.25,
-            speed_off: 0.35,
+            heel_off_m: 0.04,
+            toe_off_m: 0.05,
+            speed_on: 0.17,
+            heel_speed_off: 0.2,
+            toe_speed_off: 0.27,
             least_contact_secs: 0.08,
             least_gap_secs: 0.06,
         }
@@ -148,14 +151,16 @@ fn contacts_of(
     config: &ContactConfig,
 ) -> (Vec<bool>, Vec<bool>) {
     let frames_of = |secs: f64| (secs * frame_rate_hz).round() as usize;
-    let gate_for = |speed_on: f32| Gate {
+    let gate_with = |height_off: f32, speed_off: f32| Gate {
         height_on: config.height_on_m,
-        height_off: config.height_off_m,
-        speed_on: speed_on * swing_speed,
-        speed_off: config.speed_off.max(speed_on) * swing_speed,
+        height_off: height_off.max(config.height_on_m),
+        speed_on: config.speed_on * swing_speed,
+        speed_off: speed_off.max(config.speed_on) * swing_speed,
     };
-    let mut heel = gate(&foot.heel, &gate_for(config.heel_speed_on));
-    let mut toe = gate(&foot.toe, &gate_for(config.toe_speed_on));
+    let heel_gate = gate_with(config.heel_off_m, config.heel_speed_off);
+    let toe_gate = gate_with(config.toe_off_m, config.toe_speed_off);
+    let mut heel = gate(&foot.heel, &heel_gate);
+    let mut toe = gate(&foot.toe, &toe_gate);
     for flags in [&mut heel, &mut toe] {
         close_gaps(flags, frames_of(config.least_gap_secs));
     }

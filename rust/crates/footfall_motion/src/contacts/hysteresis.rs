@@ -18,12 +18,12 @@ pub(super) fn gate(signal: &PointSignal, limits: &Gate) -> Vec<bool> {
     signal
         .height
         .iter()
-        .zip(&signal.speed)
-        .map(|(&height, &speed)| {
+        .zip(signal.speed.iter().zip(&signal.settling))
+        .map(|(&height, (&speed, &settling))| {
             is_on = if is_on {
                 height < limits.height_off && speed < limits.speed_off
             } else {
-                height < limits.height_on && speed < limits.speed_on
+                height < limits.height_on && settling < limits.speed_on
             };
             is_on
         })

@@ -12,8 +12,10 @@ pub(super) const LEAST_SWING_SPEED: f32 = 1.5;
 pub(super) struct PointSignal {
     /// Above its own resting level, metres.
     pub(super) height: Vec<f32>,
-    /// Metres a second.
+    /// Metres a second, over about 33 ms around the frame.
     pub(super) speed: Vec<f32>,
+    /// Metres a second before or after the frame, whichever is less: small from the frame on in which a point comes to rest.
+    pub(super) settling: Vec<f32>,
 }
 
 /// One foot over time, from the first frame of the motion on.
@@ -47,6 +49,7 @@ impl FootSignals {
             toe: PointSignal {
                 height: lesser(&ball.height, &tip.height),
                 speed: lesser(&ball.speed, &tip.speed),
+                settling: lesser(&ball.settling, &tip.settling),
             },
             swing_speed,
         }
@@ -59,17 +62,39 @@ fn point_signal(track: &[Vec3], rate: f32) -> PointSignal {
     PointSignal {
         height: track.iter().map(|point| point.y - level).collect(),
         speed,
+        settling: settling_speeds(track, rate),
     }
 }
 
-/// Speed over about 33 ms around each frame: one frame of noise is no speed.
+/// Speed from some frames before to as many after each frame. At high rates over 33 ms, for one frame of noise is no speed.
 fn speeds(track: &[Vec3], rate: f32) -> Vec<f32> {
-    let reach = ((rate / 60.0).round() as usize).max(1);
+    let reach = reach(rate);
     let last = track.len().saturating_sub(1);
     (0..track.len())
         .map(|frame| {
             let (from, to) = (frame.saturating_sub(reach), (frame + reach).min(last));
             track[to].distance(track[from]) * rate / (to - from).max(1) as f32
+        })
+        .collect()
+}
+
+fn reach(rate: f32) -> usize {
+    ((rate / 60.0).round() as usize).max(1)
+}
+
+/// The lesser of the speeds before and after each frame.
+fn settling_speeds(track: &[Vec3], rate: f32) -> Vec<f32> {
+    let reach = reach(rate);
+    let speed = |from: usize, to: usize| track[to].distance(track[from]) * rate / reach as f32;
+    (0..track.len())
+        .map(|frame| {
+            let before = frame.checked_sub(reach).map(|from| speed(from, frame));
+            let to = frame + reach;
+            let after = (to < track.len()).then(|| speed(frame, to));
+            match (before, after) {
+                (Some(before), Some(after)) => before.min(after),
+                (before, after) => before.or(after).unwrap_or(0.0),
+            }
         })
         .collect()
 }

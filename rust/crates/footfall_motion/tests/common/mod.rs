@@ -1,8 +1,10 @@
 //! What the tests on recordings share.
-#![allow(dead_code, reason = "each test binary uses a part")]
 #![allow(
+    dead_code,
     clippy::allow_attributes,
-    reason = "expect would fail where all is used"
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "each test binary uses a part of this"
 )]
 
 use std::path::{Path, PathBuf};
