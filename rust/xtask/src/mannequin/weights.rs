@@ -66,12 +66,21 @@ fn territories(skeleton: &Skeleton, model: &ModelPose) -> Vec<Territory> {
         at(Joint::Neck) - up(0.085),
         0.13,
     );
-    add(Joint::Neck, at(Joint::Neck), at(Joint::Head), 0.055);
+    let head = at(Joint::Head);
+    add(Joint::Neck, at(Joint::Neck), head, 0.08);
     add(
         Joint::Head,
-        at(Joint::Head) + up(0.015),
-        at(Joint::Head) + skeleton.head_top - up(0.07),
+        head + up(0.02),
+        head + skeleton.head_top - up(0.07),
         0.09,
+    );
+    // The jaw, which hangs in front of the neck.
+    let front = Vec3::Z;
+    add(
+        Joint::Head,
+        head + up(0.015) + front * 0.04,
+        head - up(0.01) + front * 0.06,
+        0.06,
     );
     for side in Side::BOTH {
         let outward = Vec3::X * side.sign();
