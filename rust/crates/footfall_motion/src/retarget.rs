@@ -138,6 +138,7 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
         poses,
     };
     floor::put_on_floor(&mut clip, source.first_motion_frame);
+    floor::lift_toes(&mut clip);
     let mut first_frame = source.first_motion_frame;
     if let Some(rate) = options.frame_rate_hz {
         first_frame = (first_frame as f64 / clip.frame_rate_hz * rate).ceil() as usize;

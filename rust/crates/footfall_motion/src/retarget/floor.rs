@@ -1,7 +1,7 @@
 //! Where the ground of a clip is: under the feet that stand.
 
 use footfall_core::{Clip, ModelPose, Side, forward_kinematics};
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Mat3, Quat, Vec2, Vec3};
 
 /// Lowest point of a pose's soles.
 fn lowest_point(clip: &Clip, model: &ModelPose) -> Vec3 {
@@ -138,5 +138,36 @@ pub(super) fn put_on_floor(clip: &mut Clip, first: usize) {
             floor.at(clip.poses[frame].root_position)
         };
         clip.poses[frame].root_position.y -= rise;
+    }
+}
+
+/// Bends toes that point into the ground up until their tips touch it.
+///
+/// Many captured bodies have stiff toes: they push off on the tip of the toes where a person's toes lie flat.
+pub(super) fn lift_toes(clip: &mut Clip) {
+    /// The toes never point up more than this on account of the ground, radians.
+    const MOST_RAISED: f32 = 0.5;
+    let mut model = ModelPose::default();
+    for pose in &mut clip.poses {
+        forward_kinematics(&clip.skeleton, pose, &mut model);
+        for side in Side::BOTH {
+            let toes = side.toes();
+            let tip = model.rotation(toes) * clip.skeleton.foot(side).toe_tip;
+            let height = model.position(toes).y;
+            let length = tip.length();
+            if tip.y + height >= 0.0 || length < 1e-4 {
+                continue;
+            }
+            let raised = (-height / length).clamp(-1.0, 1.0).asin().min(MOST_RAISED);
+            let turn = raised - (tip.y / length).clamp(-1.0, 1.0).asin();
+            // Positive about this axis turns a level direction upward.
+            let Some(axis) = tip.cross(Vec3::Y).try_normalize() else {
+                continue;
+            };
+            let foot = model.rotation(side.foot());
+            let raise = Quat::from_axis_angle(axis, turn.max(0.0));
+            pose.rotations[toes.index()] =
+                (foot.inverse() * raise * model.rotation(toes)).normalize();
+        }
     }
 }
