@@ -103,7 +103,7 @@ impl GaitGenerator {
         }
         let variation = f64::from(config.variation.clamp(0.0, 2.0));
         let mut planner = Planner::new(model, config.seed, variation);
-        let solver = variance::solver_with_pull(model)?;
+        let solver = variance::streaming_solver(model)?;
         let mut walker = Walker::new(model, skeleton, solver);
         let paces = PaceTable::measure(model, &mut planner, &mut walker)?;
         let phase = config.phase.rem_euclid(1.0);

@@ -24,8 +24,17 @@ const MAX_STANCE_EXTENSION: f32 = 0.997;
 /// Over how many metres the pelvis yields to that limit.
 const REACH_SOFTNESS_M: f32 = 0.005;
 
-/// Over how many frames the landing leg's reach comes to bear on the pelvis.
-const REACH_FADE_FRAMES: f32 = 5.0;
+/// Generated legs disagree by a few centimetres about the hips' height when a foot lands. This share of the gap is closed
+/// before the landing, from this part of the step on, and the rest after it.
+const MEETING_SHARE: f32 = 0.5;
+const MEETING_FROM: f32 = 0.4;
+
+/// Over how long the landing leg's reach comes to bear on the pelvis, and the leaving leg's ceases to, seconds.
+const REACH_FADE_SECS: f32 = 0.07;
+
+/// How far the generated leg may carry the ankle away from where the foot stands before the foot leaves the ground, as a
+/// share of the leg's length.
+const RELEASE_SHARE: f32 = 0.03;
 
 /// One frame of a walk on the ground.
 #[derive(Clone, Debug, Default)]
@@ -103,16 +112,23 @@ impl Planter {
 
     /// Puts a step on the ground. `raw` has one frame more than the step: the next initial contact.
     ///
-    /// Writes `timing.frames + 1` frames to `out`, the last of which is the first of the next step.
+    /// Writes `timing.frames + 1` frames to `out`, the last of which is the first of the next step. The trailing foot
+    /// leaves the ground at `timing.terminal`, or earlier when the generated
+    /// leg takes it away; returns when it does.
     pub(crate) fn plant_step(
         &mut self,
         raw: &[RawFrame],
         timing: &StepTiming,
         turn_rate: f32,
         out: &mut Vec<PlantedFrame>,
-    ) {
+    ) -> usize {
         out.clear();
         self.travel(raw, timing, turn_rate, out);
+        let timing = &StepTiming {
+            terminal: self.release(raw, timing, out),
+            ..*timing
+        };
+        self.bear(raw, timing, out);
         let last = &out[timing.frames];
         let (hips, heading) = (last.pose.root_position, last.heading);
         let trailing = timing.leading.other();
@@ -138,9 +154,10 @@ impl Planter {
             }
         }
         self.plants[trailing.index()] = next_plant;
+        timing.terminal
     }
 
-    /// Fills hips, heading, ground position and contacts of every frame, and carries them to the next step.
+    /// Fills hips, heading and ground position of every frame, and carries them to the next step.
     fn travel(
         &mut self,
         raw: &[RawFrame],
@@ -156,6 +173,7 @@ impl Planter {
             .hips_velocity
             .map_or(Vec3::ZERO, |velocity| velocity - (follow - start));
         let decay = self.frame_secs / SETTLE_SECS;
+        let meeting = MEETING_SHARE * self.landing_height_gap(raw, timing);
         let mut settled = self.hips;
         for (index, raw) in raw.iter().enumerate().take(timing.frames + 1) {
             let time = index as f32;
@@ -163,23 +181,34 @@ impl Planter {
             let level = from_heading(heading);
             // A critically damped return from where the hips were to where the landed foot has them.
             let remains = (offset + (velocity + offset * decay) * time) * (-decay * time).exp();
-            let hips = self.hips_above(raw, timing.leading, level) + remains;
+            let approach =
+                smooth_step((time / timing.frames as f32 - MEETING_FROM) / (1.0 - MEETING_FROM));
+            let hips = self.hips_above(raw, timing.leading, level)
+                + remains
+                + Vec3::Y * (meeting * approach);
             self.hips_velocity = Some(hips - settled);
             settled = hips;
             let mut frame = PlantedFrame {
                 heading,
                 ..PlantedFrame::default()
             };
-            frame.contact[timing.leading.index()] = true;
-            frame.contact[timing.leading.other().index()] =
-                index <= timing.terminal || index == timing.frames;
-            let hips = self.within_reach(hips, raw, timing, index, level);
             raw.pose(hips, level, &mut frame.pose);
             out.push(frame);
         }
         self.glide(timing, settled, out);
         self.hips = settled;
         self.heading += turn_rate * self.frame_secs * timing.frames as f32;
+    }
+
+    /// How much higher the landing foot's leg would have the hips at the end of the step than the standing foot's has them.
+    fn landing_height_gap(&self, raw: &[RawFrame], timing: &StepTiming) -> f32 {
+        let last = &raw[timing.frames];
+        let landing = timing.leading.other();
+        let leg = &last.legs[landing.index()];
+        let foot = &self.feet[landing.index()];
+        let plant = foot.plant_under(Vec3::ZERO, 0.0, leg.pitch);
+        let above_landing = foot.stand(&plant, leg.pitch).ankle.y - leg.ankle.y;
+        above_landing - self.hips_above(last, timing.leading, Quat::IDENTITY).y
     }
 
     /// The walker's place on the ground: a cubic path through the hips' places at initial contacts.
@@ -200,42 +229,60 @@ impl Planter {
 
     /// Where the hips are when this foot stands on its plant and the leg is as generated.
     fn hips_above(&self, raw: &RawFrame, side: Side, level: Quat) -> Vec3 {
-        let leg = &raw.legs[side.index()];
-        let target = self.feet[side.index()].stand(self.plant(side), leg.pitch);
-        target.ankle - level * leg.ankle
+        self.standing(side, raw).ankle - level * raw.legs[side.index()].ankle
     }
 
-    /// Lowers the hips, softly, to where every standing leg reaches its ankle.
-    fn within_reach(
-        &self,
-        hips: Vec3,
-        raw: &RawFrame,
-        timing: &StepTiming,
-        index: usize,
-        level: Quat,
-    ) -> Vec3 {
-        let mut height = hips.y;
-        for side in Side::BOTH {
-            if side != timing.leading && index > timing.terminal {
-                continue;
-            }
-            let leg = &raw.legs[side.index()];
-            let ankle = self.feet[side.index()]
-                .stand(self.plant(side), leg.pitch)
-                .ankle;
-            let length = self.skeleton.leg_length(side);
-            let limit = reach_height(hips, level * leg.hip, ankle, length, MAX_STANCE_EXTENSION);
-            let fade = if side == timing.leading {
-                (1.0 - index as f32 / REACH_FADE_FRAMES).max(0.0)
-            } else {
-                0.0
-            };
-            // Out of reach sideways at any height: the solver stretches the leg, and the pelvis stays human.
-            if let Some(limit) = limit {
-                height = soft_min(height, limit + 0.1 * length * fade * fade);
+    /// The last frame up to `timing.terminal` in which the trailing foot can stay where it stands.
+    fn release(&self, raw: &[RawFrame], timing: &StepTiming, frames: &[PlantedFrame]) -> usize {
+        let trailing = timing.leading.other();
+        let allowance = RELEASE_SHARE * self.skeleton.leg_length(trailing);
+        (2..=timing.terminal)
+            .find(|index| {
+                let frame = &frames[*index];
+                let level = from_heading(frame.heading);
+                let free = free_foot(&raw[*index], trailing, frame.pose.root_position, level);
+                let ankle = self.standing(trailing, &raw[*index]).ankle;
+                free.ankle.distance(ankle) > allowance
+            })
+            .map_or(timing.terminal, |beyond| beyond - 1)
+    }
+
+    /// Fills the contacts, and lowers the hips, softly, to where every standing leg reaches its ankle.
+    fn bear(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) {
+        let fade_frames = REACH_FADE_SECS / self.frame_secs;
+        for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
+            let level = from_heading(frame.heading);
+            let hips = frame.pose.root_position;
+            for side in Side::BOTH {
+                let is_leading = side == timing.leading;
+                frame.contact[side.index()] =
+                    is_leading || index <= timing.terminal || index == timing.frames;
+                if !is_leading && index > timing.terminal {
+                    continue;
+                }
+                let fade = if is_leading {
+                    index as f32
+                } else {
+                    (timing.terminal - index) as f32
+                };
+                let fade = (1.0 - fade / fade_frames).max(0.0);
+                let length = self.skeleton.leg_length(side);
+                let hip = level * raw.legs[side.index()].hip;
+                let ankle = self.standing(side, raw).ankle;
+                let limit = reach_height(hips, hip, ankle, length, MAX_STANCE_EXTENSION);
+                // Out of reach sideways at any height: the solver stretches the leg, and the pelvis stays human.
+                if let Some(limit) = limit {
+                    let height = &mut frame.pose.root_position.y;
+                    *height = soft_min(*height, limit + 0.1 * length * fade * fade);
+                }
             }
         }
-        Vec3::new(hips.x, height, hips.z)
+    }
+
+    /// Where this foot stands on its plant at the generated pitch.
+    fn standing(&self, side: Side, raw: &RawFrame) -> FootTarget {
+        let pitch = raw.legs[side.index()].pitch;
+        self.feet[side.index()].stand(self.plant(side), pitch)
     }
 
     /// Where the trailing foot lands at the end of the step.
@@ -290,6 +337,12 @@ fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget 
         foot,
         toes: foot * leg.toes_local,
     }
+}
+
+/// From 0 at 0 to 1 at 1, level at both ends and beyond.
+fn smooth_step(s: f32) -> f32 {
+    let s = s.clamp(0.0, 1.0);
+    s * s * (3.0 - 2.0 * s)
 }
 
 /// The smaller of two numbers, rounded off where they meet.

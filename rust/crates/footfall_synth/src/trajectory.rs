@@ -46,14 +46,11 @@ impl TrajectorySolver {
         }
     }
 
-    /// Sets the pull that restores variance: its strength and the feature values that it acts about.
-    pub(crate) fn set_pull(&mut self, strength: &[f64], towards: &[f64]) {
-        let states = self
-            .precisions
-            .iter()
-            .flat_map(|side| side.chunks_exact(OBSERVATION_COUNT));
+    /// Sets the strength of the pull that keeps variance. It acts about the mean of what is loaded.
+    pub(crate) fn set_pull(&mut self, strength: &[f64]) {
         let mut least = vec![f64::INFINITY; FEATURE_COUNT];
-        for state in states {
+        let states = self.precisions.iter();
+        for state in states.flat_map(|side| side.chunks_exact(OBSERVATION_COUNT)) {
             for (least, precision) in least.iter_mut().zip(state) {
                 *least = least.min(*precision);
             }
@@ -61,39 +58,46 @@ impl TrajectorySolver {
         for (dim, pull) in self.pull_strength.iter_mut().enumerate() {
             *pull = strength[dim].max(-MAX_PUSH * least[dim]);
         }
-        self.pull_towards.copy_from_slice(towards);
     }
 
-    /// States of a row of steps without their first `skip` frames, as the pieces that MLPG and global variance take.
-    pub(crate) fn load<'a>(
-        &mut self,
-        plans: impl Iterator<Item = &'a StepPlan>,
-        skip: usize,
-    ) -> usize {
+    /// Loads the states of steps in a row without their first `skip` frames; returns the number of frames.
+    pub(crate) fn load(&mut self, plans: &[StepPlan], skip: usize) -> usize {
         self.window_means.clear();
         self.window_precisions.clear();
         self.state_of_frame.clear();
-        let mut skipped = 0;
-        for (step, plan) in plans.enumerate() {
+        for (step, plan) in plans.iter().enumerate() {
             self.window_means.extend_from_slice(&plan.means);
             self.window_precisions
                 .extend_from_slice(&self.precisions[plan.timing.leading.index()]);
             for (state, frames) in plan.state_frames.iter().enumerate() {
-                for _ in 0..*frames {
-                    if skipped < skip {
-                        skipped += 1;
-                    } else {
-                        self.state_of_frame
-                            .push((step * STATES_PER_STEP + state) as u32);
-                    }
-                }
+                let state = (step * STATES_PER_STEP + state) as u32;
+                self.state_of_frame
+                    .extend(core::iter::repeat_n(state, *frames));
             }
         }
+        self.state_of_frame.drain(..skip);
+        self.centre(plans.last_chunk());
         self.state_of_frame.len()
     }
 
-    /// What is loaded, as a problem whose first `n_fixed` frames are given.
-    pub(crate) fn problem(&self, n_fixed: usize, with_pull: bool) -> MlpgProblem<'_, f64> {
+    /// Moves the centre of the pull to the mean of a stride: a left and a right step.
+    fn centre(&mut self, stride: Option<&[StepPlan; 2]>) {
+        self.pull_towards.fill(0.0);
+        let Some(stride) = stride else { return };
+        let frames: usize = stride.iter().map(|plan| plan.timing.frames).sum();
+        for plan in stride {
+            let means = plan.means.chunks_exact(OBSERVATION_COUNT);
+            for (mean, duration) in means.zip(plan.state_frames) {
+                let share = duration as f64 / frames as f64;
+                for (centre, value) in self.pull_towards.iter_mut().zip(mean) {
+                    *centre += share * value;
+                }
+            }
+        }
+    }
+
+    /// What is loaded, as a problem whose first `n_fixed` frames are given, without the pull.
+    pub(crate) fn problem(&self, n_fixed: usize) -> MlpgProblem<'_, f64> {
         MlpgProblem {
             windows: self.windows,
             dim: FEATURE_COUNT,
@@ -101,10 +105,7 @@ impl TrajectorySolver {
             precisions: &self.window_precisions,
             state_of_frame: &self.state_of_frame,
             n_fixed,
-            pull: with_pull.then_some(Pull {
-                strength: &self.pull_strength,
-                towards: &self.pull_towards,
-            }),
+            pull: None,
         }
     }
 
@@ -115,7 +116,14 @@ impl TrajectorySolver {
         n_fixed: usize,
     ) -> Result<(), SynthError> {
         let mut workspace = core::mem::take(&mut self.workspace);
-        let solved = mlpg(&self.problem(n_fixed, true), &mut workspace, trajectory);
+        let problem = MlpgProblem {
+            pull: Some(Pull {
+                strength: &self.pull_strength,
+                towards: &self.pull_towards,
+            }),
+            ..self.problem(n_fixed)
+        };
+        let solved = mlpg(&problem, &mut workspace, trajectory);
         self.workspace = workspace;
         Ok(solved?)
     }

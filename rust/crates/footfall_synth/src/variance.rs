@@ -1,26 +1,97 @@
-//! Keeps the global variance of the corpus.
+//! Keeps the global variance of the corpus: generated joints swing as far as captured ones (equations 12 to 15 of the
+//! paper, solved to their optimum).
+//!
+//! A whole walk is solved with the global variance in its objective. The streaming generator cannot: it never sees the
+//! whole. But the optimum is a plain trajectory under a constant pull per feature, so the pull is found once on a
+//! sample walk and then used on every window.
 
 use crate::error::SynthError;
-use crate::plan::{Planner, StepPlan};
+use crate::plan::{Pace, Planner, StepPlan};
 use crate::trajectory::TrajectorySolver;
+use footfall_core::Side;
 use footfall_model::{FEATURE_COUNT, GaitModel};
+use footfall_prob::global_variance::{
+    GlobalVarianceTarget, global_variance, hts_weight, temporal_moments,
+};
+use std::sync::Arc;
 
-/// A solver.
-pub(crate) fn solver_with_pull(model: &GaitModel) -> Result<TrajectorySolver, SynthError> {
-    Ok(TrajectorySolver::new(
-        model,
-        4,
-        4 * Planner::longest_step(model),
-    ))
+/// Steps of the sample walk: enough that its ends do not count.
+const SAMPLE_STEPS: usize = 12;
+
+/// How much farther or less a walk may swing than the corpus, as a ratio of variances: styles and speeds differ.
+const VARIANCE_RATIO: [f64; 2] = [0.25, 4.0];
+
+/// A solver for windows of a walk, with the pull that keeps the corpus' variance.
+pub(crate) fn streaming_solver(model: &Arc<GaitModel>) -> Result<TrajectorySolver, SynthError> {
+    let mut solver = TrajectorySolver::new(model, SAMPLE_STEPS, 4 * Planner::longest_step(model));
+    let plans = sample_walk(model);
+    let frames = solver.load(&plans, 0);
+    let mut trajectory = vec![0.0; frames * FEATURE_COUNT];
+    let target = GlobalVarianceTarget {
+        mean: &model.global_variance.mean,
+        variance: &model.global_variance.variance,
+        trajectory_weight: hts_weight(frames),
+    };
+    let fit = global_variance(&solver.problem(0), &target, &mut trajectory)?;
+    solver.set_pull(&fit.strength);
+    Ok(solver)
 }
 
-pub(crate) fn solve_sentence(
-    model: &GaitModel,
+/// The trajectory of a whole walk, T × [`FEATURE_COUNT`].
+///
+/// The corpus' variance belongs to its mean walk. A walk that is planned to swing farther or less than that, because it
+/// is faster or slower or another walker's, is given as much more or less variance.
+pub(crate) fn solve_walk(
+    model: &Arc<GaitModel>,
     plans: &[StepPlan],
 ) -> Result<Vec<f64>, SynthError> {
-    let mut solver = solver_with_pull(model)?;
-    let frames = solver.load(plans.iter(), 0);
+    let mut solver = TrajectorySolver::new(model, plans.len(), 0);
+    let sample = sample_walk(model);
+    let sample_variance = plain_variance(&mut solver, &sample)?;
+    let variance = plain_variance(&mut solver, plans)?;
+    let mean: Vec<f64> = (0..FEATURE_COUNT)
+        .map(|dim| {
+            let ratio = variance[dim] / sample_variance[dim].max(f64::MIN_POSITIVE);
+            model.global_variance.mean[dim] * ratio.clamp(VARIANCE_RATIO[0], VARIANCE_RATIO[1])
+        })
+        .collect();
+    let frames = solver.load(plans, 0);
+    let mut trajectory = vec![0.0; frames * FEATURE_COUNT];
+    let target = GlobalVarianceTarget {
+        mean: &mean,
+        variance: &model.global_variance.variance,
+        trajectory_weight: hts_weight(frames),
+    };
+    global_variance(&solver.problem(0), &target, &mut trajectory)?;
+    Ok(trajectory)
+}
+
+/// Variance over time of every feature without any correction.
+fn plain_variance(
+    solver: &mut TrajectorySolver,
+    plans: &[StepPlan],
+) -> Result<Vec<f64>, SynthError> {
+    let frames = solver.load(plans, 0);
     let mut trajectory = vec![0.0; frames * FEATURE_COUNT];
     solver.solve(&mut trajectory, 0)?;
-    Ok(trajectory)
+    Ok(temporal_moments(&trajectory, FEATURE_COUNT).1)
+}
+
+/// The average walk without chance.
+fn sample_walk(model: &Arc<GaitModel>) -> Vec<StepPlan> {
+    let mut planner = Planner::new(model, 0, 0.0);
+    let pace = Pace {
+        covariate_mps: model.speed.reference_mps,
+        tempo: 1.0,
+        stride: 1.0,
+    };
+    let mut side = Side::Left;
+    (0..SAMPLE_STEPS)
+        .map(|_| {
+            let mut plan = StepPlan::empty();
+            planner.realise(&Planner::mean_draw(side), pace, &mut plan);
+            side = side.other();
+            plan
+        })
+        .collect()
 }

@@ -33,12 +33,7 @@ pub(crate) struct Walker {
 }
 
 impl Walker {
-    pub(crate) fn new(
-        model: &GaitModel,
-        skeleton: &Skeleton,
-        mut solver: TrajectorySolver,
-    ) -> Self {
-        solver.load(core::iter::empty(), 0);
+    pub(crate) fn new(model: &GaitModel, skeleton: &Skeleton, solver: TrajectorySolver) -> Self {
         let longest = Planner::longest_step(model);
         Self {
             skeleton: skeleton.clone(),
@@ -73,12 +68,14 @@ impl Walker {
             planner.realise(slot, pace, plan);
             side = side.other();
         }
-        let frames = self.solver.load(self.plans.iter(), 0);
+        let frames = self.solver.load(&self.plans, 0);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
         self.solver.solve(&mut self.trajectory, 0)?;
-        self.current = self.plans[0].timing.frames;
         self.planter = None;
-        self.put_on_ground(0.0);
+        self.current = 0;
+        self.put_on_ground(0, 0.0);
+        self.current = self.plans[0].timing.frames;
+        self.put_on_ground(1, 0.0);
         Ok(())
     }
 
@@ -102,7 +99,7 @@ impl Walker {
             planner.realise(slot, pace, plan);
         }
         let skip = self.plans[0].timing.frames + 1 - TIE;
-        let frames = self.solver.load(self.plans.iter(), skip);
+        let frames = self.solver.load(&self.plans, skip);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
         self.trajectory[..TIE * FEATURE_COUNT].copy_from_slice(&self.tie);
         if self.solver.solve(&mut self.trajectory, TIE).is_err() {
@@ -110,7 +107,7 @@ impl Walker {
             self.solver.fill_with_means(&mut self.trajectory, TIE);
         }
         self.current = TIE - 1;
-        self.put_on_ground(turn_rate);
+        self.put_on_ground(1, turn_rate);
     }
 
     /// The step that is on the ground now.
@@ -123,8 +120,9 @@ impl Walker {
         self.planter.as_ref()
     }
 
-    fn put_on_ground(&mut self, turn_rate: f32) {
-        let plan = &self.plans[1];
+    /// Puts a step of the window, which begins at `current`, on the ground.
+    fn put_on_ground(&mut self, step: usize, turn_rate: f32) {
+        let plan = &self.plans[step];
         let rows = self.trajectory[self.current * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let raw = &mut self.raw[..=plan.timing.frames];
         for (raw, features) in raw.iter_mut().zip(rows) {

@@ -77,8 +77,12 @@ fn sequence_differences(
                     *mean += (value - centre) / frames;
                 }
             }
-            offset.log_durations[state] = (frames / parameters.duration_mean).ln();
         }
+        // Where within a step one state ends and the next begins is uncertain by more than it differs; how long the
+        // whole step lasts is not. So the states share the step's tempo.
+        let mean_frames: f64 = model.states.iter().map(|state| state.duration_mean).sum();
+        let tempo = ((labels.end - labels.first) as f64 / mean_frames).ln();
+        offset.log_durations.fill(tempo);
         offset.other_terminal = labels
             .other_terminal
             .map_or(0.0, |fraction| fraction - model.other_terminal);

@@ -23,9 +23,12 @@ pub fn without_walker(corpus: &[Sequence]) -> Vec<Sequence> {
         }
     }
     let spreads: Vec<Vec<f64>> = moments.iter().map(spread).collect();
-    let known: Vec<usize> = (0..walkers).filter(|w| moments[*w].weight() > 0.0).collect();
+    let known: Vec<usize> = (0..walkers)
+        .filter(|w| moments[*w].weight() > 0.0)
+        .collect();
     let average = |of: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
-        let mean = |dim| known.iter().map(|walker| of(*walker, dim)).sum::<f64>() / known.len() as f64;
+        let mean =
+            |dim| known.iter().map(|walker| of(*walker, dim)).sum::<f64>() / known.len() as f64;
         (0..FEATURE_COUNT).map(mean).collect()
     };
     let common_mean = average(&|walker, dim| moments[walker].mean()[dim]);

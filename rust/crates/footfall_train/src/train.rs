@@ -78,7 +78,8 @@ pub fn train_average(
         })
     };
     let steps = [step(Side::Left)?, step(Side::Right)?];
-    let (speed, variation) = differences::estimate(&walk, &steps, &corpus, &aligned, config.frame_rate_hz)?;
+    let (speed, variation) =
+        differences::estimate(&walk, &steps, &corpus, &aligned, config.frame_rate_hz)?;
     let model = GaitModel {
         frame_rate_hz: config.frame_rate_hz,
         skeleton: Skeleton::standard(),

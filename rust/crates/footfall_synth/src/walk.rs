@@ -1,0 +1,205 @@
+//! A whole walk at once.
+
+use crate::error::SynthError;
+use crate::pace::PaceTable;
+use crate::plan::{Planner, StepDraw, StepPlan};
+use crate::planting::Planter;
+use crate::raw::RawFrame;
+use crate::variance;
+use crate::walker::Walker;
+use footfall_core::rotation::from_heading;
+use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton};
+use footfall_model::{FEATURE_COUNT, GaitModel};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// Steps at either end of the sentence that are solved but not shown.
+const LEAD_STEPS: usize = 1;
+
+/// What walk to make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WalkConfig {
+    /// How many steps.
+    pub steps: usize,
+    /// Seed of the walker and of the variation of its steps.
+    pub seed: u64,
+    /// How far walkers and steps stray from the average: 0 not at all, 1 as in the recordings.
+    pub variation: f32,
+    /// Speed over the ground, m/s; the corpus' mean when absent.
+    pub speed_mps: Option<f32>,
+    /// Turning, rad/s, positive to the left.
+    pub turn_rate_radps: f32,
+    /// Frames per second of the clip; the model's when absent.
+    pub frame_rate_hz: Option<f64>,
+}
+
+/// A generated walk.
+#[derive(Clone, Debug)]
+pub struct SynthesizedWalk {
+    /// The motion: first frame at the origin and facing +Z, an initial contact of the left foot.
+    pub clip: Clip,
+    /// When the left and the right foot bear on the ground.
+    pub contacts: [Vec<FrameSpan>; 2],
+}
+
+impl SynthesizedWalk {
+    /// The ends of the contacts, but for those at the clip's own ends.
+    pub fn events(&self) -> Vec<GaitEvent> {
+        let last = self.clip.poses.len() - 1;
+        let mut events = Vec::new();
+        for side in Side::BOTH {
+            for span in &self.contacts[side.index()] {
+                let ends = [
+                    (span.first, EventKind::InitialContact, 0),
+                    (span.last, EventKind::TerminalContact, last),
+                ];
+                for (frame, kind, edge) in ends {
+                    if frame != edge {
+                        events.push(GaitEvent { frame, side, kind });
+                    }
+                }
+            }
+        }
+        events.sort_by_key(|event| (event.frame, event.kind, event.side));
+        events
+    }
+}
+
+/// Generates a walk; the trajectory is solved over the whole sentence of steps (equations 9 to 15 of the paper).
+///
+/// # Errors
+/// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
+pub fn synthesize(
+    model: &Arc<GaitModel>,
+    skeleton: &Skeleton,
+    config: &WalkConfig,
+) -> Result<SynthesizedWalk, SynthError> {
+    model.check()?;
+    skeleton.check()?;
+    check_finite("speed", config.speed_mps.unwrap_or(0.0))?;
+    check_finite("turn rate", config.turn_rate_radps)?;
+    check_finite("variation", config.variation)?;
+    let mut planner = Planner::new(
+        model,
+        config.seed,
+        f64::from(config.variation.clamp(0.0, 2.0)),
+    );
+    let speed = config
+        .speed_mps
+        .map_or(model.speed.reference_mps, f64::from);
+    let mut walker = Walker::new(model, skeleton, variance::streaming_solver(model)?);
+    let pace = PaceTable::measure(model, &mut planner, &mut walker)?.pace(speed.max(0.25));
+
+    let mut side = if LEAD_STEPS.is_multiple_of(2) {
+        Side::Left
+    } else {
+        Side::Right
+    };
+    let plans: Vec<StepPlan> = (0..config.steps.max(1) + 2 * LEAD_STEPS)
+        .map(|_| {
+            let draw: StepDraw = planner.draw(side);
+            side = side.other();
+            let mut plan = StepPlan::empty();
+            planner.realise(&draw, pace, &mut plan);
+            plan
+        })
+        .collect();
+    let trajectory = variance::solve_walk(model, &plans)?;
+    Ok(put_on_ground(model, skeleton, config, &plans, &trajectory))
+}
+
+fn put_on_ground(
+    model: &GaitModel,
+    skeleton: &Skeleton,
+    config: &WalkConfig,
+    plans: &[StepPlan],
+    trajectory: &[f64],
+) -> SynthesizedWalk {
+    let frame_secs = 1.0 / model.frame_rate_hz;
+    let mut planter: Option<Planter> = None;
+    let mut poses: Vec<Pose> = Vec::new();
+    let mut frames = Vec::new();
+    let mut stances: [Vec<[f64; 2]>; 2] = [vec![], vec![]];
+    let shown = LEAD_STEPS..plans.len() - LEAD_STEPS;
+    let mut begin = 0;
+    let mut elapsed = 0.0;
+    let mut start_heading = 0.0;
+    for (index, plan) in plans[..shown.end].iter().enumerate() {
+        let timing = &plan.timing;
+        let mut raw = vec![RawFrame::default(); timing.frames + 1];
+        let rows = trajectory[begin * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
+        for (raw, features) in raw.iter_mut().zip(rows) {
+            raw.decode(features, skeleton, plan.stride as f32);
+        }
+        begin += timing.frames;
+        let terminal = planter
+            .get_or_insert_with(|| {
+                Planter::new(skeleton, frame_secs as f32, &raw[0], timing.leading)
+            })
+            .plant_step(&raw, timing, config.turn_rate_radps, &mut frames);
+        if index < shown.start {
+            continue;
+        }
+        if index == shown.start {
+            start_heading = frames[0].heading;
+        }
+        poses.truncate(poses.len().saturating_sub(1));
+        poses.extend(frames.iter().map(|frame| frame.pose.clone()));
+        let leaves = elapsed + terminal as f64 * frame_secs;
+        match stances[timing.leading.other().index()].last_mut() {
+            Some(stance) => stance[1] = leaves,
+            None => stances[timing.leading.other().index()].push([0.0, leaves]),
+        }
+        stances[timing.leading.index()].push([elapsed, f64::INFINITY]);
+        elapsed += timing.frames as f64 * frame_secs;
+    }
+    let shown = &plans[shown];
+    if let Some(last) = shown.last() {
+        // The last frame is the next initial contact.
+        stances[last.timing.leading.other().index()].push([elapsed, f64::INFINITY]);
+    }
+    start_at_origin(&mut poses, start_heading);
+    let clip = Clip {
+        skeleton: skeleton.clone(),
+        frame_rate_hz: model.frame_rate_hz,
+        poses,
+    };
+    let clip = match config.frame_rate_hz {
+        Some(rate) if (rate - model.frame_rate_hz).abs() > 1e-9 => clip.resampled(rate),
+        _ => clip,
+    };
+    let last = clip.poses.len() - 1;
+    let frame = |time: f64, round: fn(f64) -> f64| {
+        round(time.min(elapsed) * clip.frame_rate_hz).clamp(0.0, last as f64) as usize
+    };
+    let contacts = stances.map(|stances| {
+        stances
+            .iter()
+            .map(|[first, end]| FrameSpan {
+                first: frame(*first - 1e-9, f64::ceil),
+                last: frame(*end + 1e-9, f64::floor),
+            })
+            .collect()
+    });
+    SynthesizedWalk { clip, contacts }
+}
+
+/// Moves a walk that begins under a heading to the origin and to +Z.
+fn start_at_origin(poses: &mut [Pose], heading: f32) {
+    let Some(first) = poses.first() else { return };
+    let from = Vec3::new(first.root_position.x, 0.0, first.root_position.z);
+    let level = from_heading(-heading);
+    for pose in poses {
+        pose.root_position = level * (pose.root_position - from);
+        let hips = Joint::Hips.index();
+        pose.rotations[hips] = (level * pose.rotations[hips]).normalize();
+    }
+}
+
+fn check_finite(setting: &'static str, value: f32) -> Result<(), SynthError> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(SynthError::Setting { setting, value })
+    }
+}
