@@ -1,5 +1,6 @@
 //! The commands, one module each, and what they share.
 
+mod bench;
 mod contacts;
 mod inspect;
 mod retarget;
@@ -26,6 +27,7 @@ enum Command {
     Train(train::TrainArgs),
     Synth(synth::SynthArgs),
     Sheet(sheet::SheetArgs),
+    Bench(bench::BenchArgs),
 }
 
 impl Cli {
@@ -38,6 +40,7 @@ impl Cli {
             Command::Train(args) => train::run(args),
             Command::Synth(args) => synth::run(args),
             Command::Sheet(args) => sheet::run(args),
+            Command::Bench(args) => bench::run(args),
         }
     }
 }

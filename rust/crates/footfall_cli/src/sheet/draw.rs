@@ -119,22 +119,6 @@ impl Canvas {
         self.disc(b, radii[1], color, opacity);
     }
 
-    /// A closed polygon.
-    pub(crate) fn polygon(&mut self, points: &[Vec2], color: Rgb, opacity: f32) {
-        let mut path = PathBuilder::new();
-        for (index, point) in points.iter().enumerate() {
-            if index == 0 {
-                path.move_to(point.x, point.y);
-            } else {
-                path.line_to(point.x, point.y);
-            }
-        }
-        path.close();
-        if let Some(path) = path.finish() {
-            self.fill(&path, color, opacity);
-        }
-    }
-
     /// Text on a baseline; `size` is the height of a line in pixels.
     pub(crate) fn text(&mut self, anchor: Vec2, text: &str, size: f32, color: Rgb, align: Align) {
         let width = self.text_width(text, size);

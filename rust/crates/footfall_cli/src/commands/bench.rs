@@ -1,0 +1,203 @@
+//! `footfall bench`: each kernel beside its peer, in one process.
+
+mod inference;
+mod mlpg;
+mod runtime;
+
+use crate::model_file::read_model;
+use crate::output;
+use anyhow::{Context as _, Result};
+use footfall_model::GaitModel;
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// A small model that the project's own generator and trainer made: speed does not depend on what a model learned.
+const BUILT_IN_MODEL: &[u8] = include_bytes!("../../../../../tests/model_versions/v1.footfall");
+
+/// Time the kernels, each beside its peer
+///
+/// Best of several repetitions, taken in turns, so that a busy moment hits all alike. Times in microseconds.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall bench\n  \
+    footfall bench --json --repetitions 50\n  \
+    footfall bench --model walk.footfall")]
+pub(crate) struct BenchArgs {
+    /// Model for the walker; a small built-in one when absent
+    #[arg(long, value_name = "WALK.footfall")]
+    model: Option<PathBuf>,
+    /// How often each kernel is timed; the best counts
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    repetitions: u16,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// Times in microseconds.
+#[derive(Serialize)]
+struct Report {
+    /// Frames and static dimensions of the trajectory problem.
+    mlpg_frames: usize,
+    mlpg_dimensions: usize,
+    /// f64, one thread, the paper's windows: the same arithmetic as the peer's.
+    mlpg_us_per_frame: f64,
+    mlpg_f32_us_per_frame: f64,
+    mlpg_compact_us_per_frame: f64,
+    /// jbonsai 0.4.2, `MlpgAdjust`, the same data.
+    jbonsai_us_per_frame: f64,
+    /// jbonsai's time over ours.
+    ratio: f64,
+    /// Largest difference from jbonsai's trajectory.
+    jbonsai_max_difference: f64,
+    /// Largest difference from a dense solve of the normal equations.
+    dense_max_difference: f64,
+    hsmm_frames: usize,
+    hsmm_segments: usize,
+    /// Explicit-duration forward-backward.
+    hsmm_us_per_frame: f64,
+    /// One `GaitGenerator::step` at the model's rate, planning included: mean over 100 steps.
+    walker_us_per_frame: f64,
+    /// The longest call of those, in the best repetition.
+    walker_worst_us: f64,
+    forward_kinematics_us: f64,
+    repetitions: u16,
+}
+
+pub(crate) fn run(args: &BenchArgs) -> Result<()> {
+    let model = match &args.model {
+        Some(path) => read_model(path)?,
+        None => GaitModel::from_bytes(BUILT_IN_MODEL).context("the built-in model")?,
+    };
+    let mut ours = mlpg::Ours::new()?;
+    let peer = mlpg::Peer::new();
+    let peer_solve = peer.solver();
+    let mut hsmm = inference::ForwardBackward::new()?;
+    let mut walker = runtime::WalkerBench::new(model)?;
+    let jbonsai_max_difference = ours.max_difference(&peer.trajectory());
+    let dense_max_difference = ours.max_difference_from_dense()?;
+
+    let progress = output::Progress::new();
+    progress.stage("timing", u64::from(args.repetitions));
+    let mut best = Best::default();
+    for repetition in 0..args.repetitions {
+        progress.reach(u64::from(repetition));
+        best.ours.take(time(|| ours.solve())?);
+        best.jbonsai.take(time(&peer_solve)?);
+        best.single.take(time(|| ours.solve_single())?);
+        best.compact.take(time(|| ours.solve_compact())?);
+        best.hsmm.take(time(|| hsmm.run())?);
+        let walked = walker.walk();
+        best.walker.take(walked.mean);
+        best.walker_worst.take(walked.worst);
+        best.kinematics.take(walker.forward_kinematics());
+    }
+    progress.finish();
+
+    let mlpg_frames = ours.frames() as f64;
+    let report = Report {
+        mlpg_frames: ours.frames(),
+        mlpg_dimensions: ours.dimensions(),
+        mlpg_us_per_frame: best.ours.0 / mlpg_frames,
+        mlpg_f32_us_per_frame: best.single.0 / mlpg_frames,
+        mlpg_compact_us_per_frame: best.compact.0 / mlpg_frames,
+        jbonsai_us_per_frame: best.jbonsai.0 / mlpg_frames,
+        ratio: best.jbonsai.0 / best.ours.0,
+        jbonsai_max_difference,
+        dense_max_difference,
+        hsmm_frames: hsmm.frames(),
+        hsmm_segments: hsmm.segments(),
+        hsmm_us_per_frame: best.hsmm.0 / hsmm.frames() as f64,
+        walker_us_per_frame: best.walker.0,
+        walker_worst_us: best.walker_worst.0,
+        forward_kinematics_us: best.kinematics.0,
+        repetitions: args.repetitions,
+    };
+    if args.json {
+        return output::print_json(&report);
+    }
+    output::print_text(&report.lines().join("\n"))
+}
+
+impl Report {
+    fn lines(&self) -> Vec<String> {
+        vec![
+            format!(
+                "MLPG, {} frames x {} dimensions, f64       {:9.4} µs a frame",
+                self.mlpg_frames, self.mlpg_dimensions, self.mlpg_us_per_frame
+            ),
+            format!(
+                "  jbonsai 0.4.2, the same data             {:9.4} µs a frame: {:.1} times ours, at most {:.1e} apart",
+                self.jbonsai_us_per_frame, self.ratio, self.jbonsai_max_difference
+            ),
+            format!(
+                "  dense solve                              at most {:.1e} apart",
+                self.dense_max_difference
+            ),
+            format!(
+                "  f32                                      {:9.4} µs a frame",
+                self.mlpg_f32_us_per_frame
+            ),
+            format!(
+                "  f64, compact windows                     {:9.4} µs a frame",
+                self.mlpg_compact_us_per_frame
+            ),
+            format!(
+                "HSMM forward-backward, {} frames, {} segments {:6.4} µs a frame",
+                self.hsmm_frames, self.hsmm_segments, self.hsmm_us_per_frame
+            ),
+            format!(
+                "one walker                                 {:9.4} µs a frame, {:.1} µs at worst",
+                self.walker_us_per_frame, self.walker_worst_us
+            ),
+            format!(
+                "forward kinematics, 22 joints              {:9.4} µs",
+                self.forward_kinematics_us
+            ),
+        ]
+    }
+}
+
+/// The least of all times that it was given, microseconds.
+struct Least(f64);
+
+impl Default for Least {
+    fn default() -> Self {
+        Self(f64::INFINITY)
+    }
+}
+
+impl Least {
+    fn take(&mut self, us: f64) {
+        self.0 = self.0.min(us);
+    }
+}
+
+#[derive(Default)]
+struct Best {
+    ours: Least,
+    single: Least,
+    compact: Least,
+    jbonsai: Least,
+    hsmm: Least,
+    walker: Least,
+    walker_worst: Least,
+    kinematics: Least,
+}
+
+/// How long one run takes, microseconds.
+fn time(run: impl FnOnce() -> Result<()>) -> Result<f64> {
+    let begun = now();
+    run()?;
+    Ok(microseconds(begun.elapsed()))
+}
+
+#[expect(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
+fn now() -> Instant {
+    Instant::now()
+}
+
+fn microseconds(duration: Duration) -> f64 {
+    1e6 * duration.as_secs_f64()
+}

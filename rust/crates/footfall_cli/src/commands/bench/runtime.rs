@@ -1,0 +1,80 @@
+//! What a game pays for each frame of a walker.
+
+use super::{microseconds, now};
+use anyhow::{Context as _, Result};
+use footfall_core::{ModelPose, Pose, Skeleton, forward_kinematics};
+use footfall_model::GaitModel;
+use footfall_synth::{Controls, GaitGenerator, GeneratorConfig};
+use std::hint::black_box;
+use std::sync::Arc;
+
+/// About a hundred steps.
+const FRAMES: usize = 3500;
+const KINEMATICS_RUNS: usize = 10_000;
+
+/// A walker and its body.
+pub(super) struct WalkerBench {
+    generator: GaitGenerator,
+    skeleton: Skeleton,
+    controls: Controls,
+    dt_secs: f32,
+    pose: Pose,
+}
+
+/// Times of one walk, microseconds.
+pub(super) struct Walked {
+    pub(super) mean: f64,
+    pub(super) worst: f64,
+}
+
+impl WalkerBench {
+    pub(super) fn new(model: GaitModel) -> Result<Self> {
+        let skeleton = model.skeleton.clone();
+        let controls = Controls {
+            speed_mps: model.speed.reference_mps as f32,
+            turn_rate_radps: 0.1,
+        };
+        let dt_secs = (1.0 / model.frame_rate_hz) as f32;
+        let config = GeneratorConfig {
+            seed: 1,
+            phase: 0.0,
+            variation: 1.0,
+        };
+        let generator = GaitGenerator::new(&Arc::new(model), &skeleton, &config)
+            .context("the model does not walk")?;
+        Ok(Self {
+            generator,
+            skeleton,
+            controls,
+            dt_secs,
+            pose: Pose::default(),
+        })
+    }
+
+    pub(super) fn walk(&mut self) -> Walked {
+        let mut worst = 0.0_f64;
+        let begun = now();
+        for _ in 0..FRAMES {
+            let frame_begun = now();
+            self.generator
+                .step(self.dt_secs, &self.controls, &mut self.pose);
+            worst = worst.max(microseconds(frame_begun.elapsed()));
+        }
+        black_box(&self.pose);
+        Walked {
+            mean: microseconds(begun.elapsed()) / FRAMES as f64,
+            worst,
+        }
+    }
+
+    /// Microseconds of one pass.
+    pub(super) fn forward_kinematics(&self) -> f64 {
+        let mut model = ModelPose::default();
+        let begun = now();
+        for _ in 0..KINEMATICS_RUNS {
+            forward_kinematics(&self.skeleton, black_box(&self.pose), &mut model);
+            black_box(&model);
+        }
+        microseconds(begun.elapsed()) / KINEMATICS_RUNS as f64
+    }
+}

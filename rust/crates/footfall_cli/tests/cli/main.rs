@@ -1,0 +1,6 @@
+//! The program from the outside: exit codes, what it prints, what it writes.
+
+mod bad_input;
+mod common;
+mod pipeline;
+mod recordings;

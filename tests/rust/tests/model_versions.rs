@@ -1,0 +1,62 @@
+//! A model of every released format version still loads, and says where it comes from.
+
+use footfall_model::file::read_header;
+use footfall_model::{FORMAT_VERSION, GaitModel, ModelFileError};
+use footfall_tests::data::repository;
+use std::fs;
+
+fn bytes_of(version: u32) -> Vec<u8> {
+    let path = repository().join(format!("tests/model_versions/v{version}.footfall"));
+    fs::read(&path).unwrap_or_else(|error| {
+        panic!(
+            "{}: {error}; every format version needs a model here",
+            path.display()
+        )
+    })
+}
+
+#[test]
+fn every_version_loads() {
+    for version in 1..=FORMAT_VERSION {
+        let bytes = bytes_of(version);
+        assert_eq!(read_header(&bytes).unwrap().0, version);
+        let model = GaitModel::from_bytes(&bytes).unwrap();
+        assert!(model.provenance.steps > 20, "{:?}", model.provenance);
+        assert!(model.speed_range()[0] < model.speed_range()[1]);
+        // What was read is written again without loss.
+        let again = GaitModel::from_bytes(&model.to_bytes().unwrap()).unwrap();
+        assert_eq!(again, model);
+    }
+}
+
+#[test]
+fn a_newer_model_names_its_writer() {
+    let mut bytes = bytes_of(FORMAT_VERSION);
+    bytes[8..12].copy_from_slice(&(FORMAT_VERSION + 1).to_le_bytes());
+    let error = GaitModel::from_bytes(&bytes).unwrap_err();
+    assert!(matches!(error, ModelFileError::Newer { .. }), "{error}");
+    let said = error.to_string();
+    assert!(
+        said.contains(env!("CARGO_PKG_VERSION")) && said.contains("update"),
+        "{said}"
+    );
+}
+
+#[test]
+fn no_damage_goes_unnoticed_and_none_panics() {
+    let bytes = bytes_of(FORMAT_VERSION);
+    for length in (0..bytes.len()).step_by(bytes.len() / 97) {
+        assert!(
+            GaitModel::from_bytes(&bytes[..length]).is_err(),
+            "cut after {length} bytes"
+        );
+    }
+    for at in (0..bytes.len()).step_by(bytes.len() / 197) {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0x40;
+        assert!(
+            GaitModel::from_bytes(&damaged).is_err(),
+            "byte {at} changed"
+        );
+    }
+}

@@ -1,0 +1,86 @@
+//! `GaitGenerator::step` allocates nothing, whatever it is asked to do.
+#![expect(unsafe_code, reason = "counting allocations takes an allocator")]
+
+use footfall_core::Pose;
+use footfall_model::GaitModel;
+use footfall_synth::{Controls, GaitGenerator, GeneratorConfig};
+use footfall_tests::data::repository;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::sync::Arc;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+fn count() {
+    // Gone while a thread ends; nothing is counted then.
+    let _counted = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
+}
+
+// SAFETY: every call is handed on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller keeps `alloc`'s contract.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps `dealloc`'s contract.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: the caller keeps `realloc`'s contract.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+fn allocations() -> usize {
+    ALLOCATIONS.with(Cell::get)
+}
+
+#[test]
+fn a_step_of_the_generator_allocates_nothing() {
+    let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall")).unwrap();
+    let model = Arc::new(GaitModel::from_bytes(&bytes).unwrap());
+    let skeleton = model.skeleton.clone();
+    for seed in 0..4 {
+        let config = GeneratorConfig {
+            seed,
+            phase: 0.3,
+            variation: 1.0,
+        };
+        let mut generator = GaitGenerator::new(&model, &skeleton, &config).unwrap();
+        let mut pose = Pose::default();
+        let before = allocations();
+        for frame in 0..6000_u16 {
+            // Faster and slower, left and right, small and large steps in time, and nonsense.
+            let wave = (f32::from(frame) * 0.01).sin();
+            let controls = Controls {
+                speed_mps: if frame == 4000 {
+                    f32::NAN
+                } else {
+                    1.2 + 1.5 * wave
+                },
+                turn_rate_radps: 2.0 * wave,
+            };
+            let dt_secs = if frame % 1000 == 999 { 3.0 } else { 1.0 / 60.0 };
+            generator.step(dt_secs, &controls, &mut pose);
+            assert!(generator.footsteps().len() <= 64);
+        }
+        assert_eq!(allocations() - before, 0, "seed {seed}");
+        assert!(pose.root_position.is_finite());
+    }
+    // The counter counts.
+    let before = allocations();
+    drop(std::hint::black_box(vec![0_u8; 100]));
+    assert!(allocations() > before);
+}
