@@ -221,6 +221,16 @@ pub fn mlpg<R: Real>(
     workspace: &mut MlpgWorkspace<R>,
     trajectory: &mut [R],
 ) -> Result<(), ProbError> {
+    mlpg_with(R::solve, problem, workspace, trajectory)
+}
+
+/// [`mlpg`] with a given kernel.
+fn mlpg_with<R: Real>(
+    solve: fn(&Plan, &mut Job<'_, R>),
+    problem: &MlpgProblem<'_, R>,
+    workspace: &mut MlpgWorkspace<R>,
+    trajectory: &mut [R],
+) -> Result<(), ProbError> {
     check(problem, trajectory)?;
     let dim = problem.dim;
     let n_frames = problem.state_of_frame.len();
@@ -252,7 +262,7 @@ pub fn mlpg<R: Real>(
             trajectory: &mut *trajectory,
             lowest_pivot: R::Block::splat(R::narrow(f64::INFINITY)),
         };
-        R::solve(&workspace.plan, &mut job);
+        solve(&workspace.plan, &mut job);
         let lowest = job.lowest_pivot.lanes()[..n_dims]
             .iter()
             .position(|p| p.widen() <= 0.0);
@@ -272,5 +282,45 @@ pub fn mlpg<R: Real>(
             index,
             value: first[index].widen(),
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::workload::MlpgWorkload;
+
+    #[test]
+    fn fallback_agrees_with_the_dispatched_kernel() {
+        let workload = MlpgWorkload::new(60, 10, 11);
+        let (precisions, state_of_frame) = (workload.precisions(), workload.state_of_frame());
+        for windows in [Windows::Paper, Windows::Compact] {
+            let problem = MlpgProblem {
+                windows,
+                dim: workload.dim,
+                means: &workload.means,
+                precisions: &precisions,
+                state_of_frame: &state_of_frame,
+                n_fixed: 3,
+                pull: None,
+            };
+            let mut workspace = MlpgWorkspace::with_capacity(60);
+            let capacities = |w: &MlpgWorkspace<f64>| (w.rows.capacity(), w.factors.capacity());
+            let before = capacities(&workspace);
+            let mut expected = vec![0.1; 60 * workload.dim];
+            let mut plain = expected.clone();
+            mlpg(&problem, &mut workspace, &mut expected).unwrap();
+            mlpg_with(
+                kernel::solve::<f64, false>,
+                &problem,
+                &mut workspace,
+                &mut plain,
+            )
+            .unwrap();
+            for (a, b) in plain.iter().zip(&expected) {
+                assert!((a - b).abs() < 1e-11, "{a} {b}");
+            }
+            assert_eq!(capacities(&workspace), before, "the workspace grew");
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! Forward and backward messages over boundaries.
 
+use multiversion::multiversion;
+
 use super::Problem;
 use crate::error::ProbError;
 
@@ -125,37 +127,48 @@ fn backward_through(
 }
 
 /// ln Σ exp(a + b) over the length of `a`; `b` may be longer.
+#[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
 fn log_dot(a: &[f64], b: &[f64], terms: &mut Vec<f64>) -> f64 {
+    const LANES: usize = 8;
+    let b = &b[..a.len()];
+    // Padded to whole blocks with -∞, which adds nothing.
     terms.clear();
-    terms.extend(a.iter().zip(b).map(|(a, b)| a + b));
-    let max = max(terms);
+    terms.resize(a.len().next_multiple_of(LANES), f64::NEG_INFINITY);
+    // Plain comparisons in lanes turn into vector instructions, `f64::max` does not.
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let mut lanes = [f64::NEG_INFINITY; LANES];
+    let (blocks_a, rest_a) = a.as_chunks::<LANES>();
+    let (blocks_b, rest_b) = b.as_chunks::<LANES>();
+    let (blocks, _) = terms.as_chunks_mut::<LANES>();
+    for ((block, a), b) in blocks.iter_mut().zip(blocks_a).zip(blocks_b) {
+        for i in 0..LANES {
+            block[i] = a[i] + b[i];
+            lanes[i] = larger(lanes[i], block[i]);
+        }
+    }
+    if let Some(block) = blocks.get_mut(blocks_a.len()) {
+        for i in 0..rest_a.len() {
+            block[i] = rest_a[i] + rest_b[i];
+            lanes[i] = larger(lanes[i], block[i]);
+        }
+    }
+    let max = lanes.into_iter().fold(f64::NEG_INFINITY, larger);
     if max == f64::NEG_INFINITY {
         return max;
     }
     // Most boundaries are sharply placed: nearly all exponentials are skipped here.
     let cut = max - NEGLIGIBLE;
     let mut sum = 0.0;
-    for &term in &*terms {
-        if term > cut {
-            sum += (term - max).exp();
+    for block in &*blocks {
+        let mut counts = false;
+        for term in block {
+            counts |= *term > cut;
+        }
+        if counts {
+            for term in block.iter().filter(|term| **term > cut) {
+                sum += (term - max).exp();
+            }
         }
     }
     max + sum.ln()
-}
-
-/// The largest value, -∞ for none. Lanes with a plain comparison turn into vector instructions.
-fn max(x: &[f64]) -> f64 {
-    let larger = |a: f64, b: f64| if a > b { a } else { b };
-    let (blocks, rest) = x.as_chunks::<8>();
-    let mut lanes = [f64::NEG_INFINITY; 8];
-    for block in blocks {
-        for i in 0..8 {
-            lanes[i] = larger(lanes[i], block[i]);
-        }
-    }
-    lanes
-        .iter()
-        .chain(rest)
-        .copied()
-        .fold(f64::NEG_INFINITY, larger)
 }

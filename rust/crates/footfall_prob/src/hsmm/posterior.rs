@@ -112,10 +112,19 @@ pub fn hsmm_forward_backward(
 
 /// P(boundary j at each of its reachable frames), normalised: rounding at T = 10 000 goes away.
 fn boundary_probs(messages: &Messages, j: usize) -> Vec<f64> {
+    let prob = |(forward, backward): (&f64, &f64)| {
+        let log_prob = forward + backward - messages.log_likelihood;
+        // Underflowing exponentials are slow, and add nothing.
+        if log_prob > -NEGLIGIBLE {
+            log_prob.exp()
+        } else {
+            0.0
+        }
+    };
     let mut probs: Vec<f64> = messages.forward[j]
         .iter()
         .zip(&messages.backward[j])
-        .map(|(f, b)| (f + b - messages.log_likelihood).exp())
+        .map(prob)
         .collect();
     let total: f64 = probs.iter().sum();
     for p in &mut probs {

@@ -41,8 +41,9 @@ pub(super) fn solve_f32(plan: &Plan, job: &mut Job<'_, f32>) {
     }
 }
 
+/// What is compiled for each instruction set; on its own, the fallback for every target.
 #[inline(always)]
-fn solve<R: Real, const FUSED: bool>(plan: &Plan, job: &mut Job<'_, R>) {
+pub(super) fn solve<R: Real, const FUSED: bool>(plan: &Plan, job: &mut Job<'_, R>) {
     match plan.windows {
         Windows::Paper => {
             fill_rows::<R, FUSED>(plan, job, [0.25, 0.0625], [0.5, 0.25]);
