@@ -17,23 +17,30 @@ const NEEDED: [&str; 5] = [
     "models/walk.footfall",
 ];
 
-/// Builds the library in both flavours and writes `rust/target/footfall-addon.zip`.
+/// Writes `rust/target/footfall-addon.zip`, with this machine's library in both flavours, or with `packed` with those of
+/// all platforms, which must be in `bin/` already.
 ///
 /// # Errors
 /// When the build fails or the add-on is not complete.
-pub(crate) fn command() -> Result<()> {
-    library::build(&Options {
-        all: true,
-        ..Options::default()
-    })?;
+pub(crate) fn command(packed: bool) -> Result<()> {
+    if !packed {
+        library::build(&Options {
+            all: true,
+            ..Options::default()
+        })?;
+    }
     let addon = paths::addon();
     for name in NEEDED {
         if !addon.join(name).is_file() {
             bail!("the add-on is not complete: addons/footfall/{name} is missing");
         }
     }
-    for missing in missing_libraries(&addon)? {
-        eprintln!("not in the archive, since it is not built here: {missing}");
+    let missing = missing_libraries(&addon)?;
+    if packed && !missing.is_empty() {
+        bail!("the add-on is not complete: {} missing", missing.join(", "));
+    }
+    for name in missing {
+        eprintln!("not in the archive, since it is not built here: {name}");
     }
     let archive = paths::target_folder().join("footfall-addon.zip");
     let files = pack(&addon, &archive)?;

@@ -53,7 +53,11 @@ enum Command {
     /// Make the demo's character, `demo_project/characters/mannequin.glb`.
     Mannequin,
     /// Pack the add-on into `rust/target/footfall-addon.zip`.
-    Addon,
+    Addon {
+        /// Build nothing: the libraries of all platforms are in `addons/footfall/bin` already.
+        #[arg(long)]
+        packed: bool,
+    },
     /// Train the models that the add-on ships; `FOOTFALL_DATA` names the motion data.
     Models,
     /// Compare results with those kept in `tests/golden`.
@@ -94,7 +98,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Library(options) => library::build(options),
         Command::Link => link::command(),
         Command::Mannequin => mannequin::command(),
-        Command::Addon => addon::command(),
+        Command::Addon { packed } => addon::command(*packed),
         Command::Models => models::command(),
         Command::Golden { update } => golden::command(*update),
         Command::Tidy => tidy::command(),
