@@ -202,7 +202,7 @@ impl GaitGenerator {
         let (frame, next, weight) = self.frames();
         GroundTransform {
             position: frame.ground_position.lerp(next.ground_position, weight),
-            heading: frame.heading + weight * (next.heading - frame.heading),
+            heading: frame.heading + weight * (next.heading - frame.heading) - self.walker.facing,
         }
     }
 

@@ -24,22 +24,23 @@ pub(crate) struct PaceTable {
 }
 
 impl PaceTable {
-    /// Measures a walker over the model's range of speeds.
+    /// Measures a walker over the model's range of speeds, and makes it walk along +Z.
     pub(crate) fn measure(
         model: &GaitModel,
         planner: &mut Planner,
         walker: &mut Walker,
     ) -> Result<Self, SynthError> {
+        let (way, _) = travel(planner, walker, model.speed.reference_mps)?;
+        walker.facing = -way.x.atan2(way.z);
         let [slowest, fastest] = model.speed_range();
         let margin = EXTRAPOLATION * (fastest - slowest);
         let (low, high) = ((slowest - margin).max(0.3 * slowest), fastest + margin);
         let mut samples = [[0.0; 2]; SAMPLES];
         for (index, sample) in samples.iter_mut().enumerate() {
             let covariate = low + (high - low) * index as f64 / (SAMPLES - 1) as f64;
-            *sample = [
-                covariate,
-                realised_speed(model, planner, walker, covariate)?,
-            ];
+            let (travel, frames) = travel(planner, walker, covariate)?;
+            let secs = frames as f64 / model.frame_rate_hz;
+            *sample = [covariate, f64::from(travel.length()) / secs];
         }
         for index in 1..SAMPLES {
             // A corpus of one speed has a flat response: the order must still be strict.
@@ -69,13 +70,12 @@ impl PaceTable {
     }
 }
 
-/// Speed over the second stride of a walk without chance.
-fn realised_speed(
-    model: &GaitModel,
+/// Travel over the ground and frames of the second stride of a walk without chance.
+fn travel(
     planner: &mut Planner,
     walker: &mut Walker,
     covariate_mps: f64,
-) -> Result<f64, SynthError> {
+) -> Result<(Vec3, usize), SynthError> {
     let pace = Pace {
         covariate_mps,
         tempo: 1.0,
@@ -96,6 +96,5 @@ fn realised_speed(
         }
         walker.advance(planner, pace, 0.0, draw);
     }
-    let level = Vec3::new(travel.x, 0.0, travel.z);
-    Ok(f64::from(level.length()) * model.frame_rate_hz / frames as f64)
+    Ok((travel * Vec3::new(1.0, 0.0, 1.0), frames))
 }

@@ -43,7 +43,7 @@ pub(crate) struct PlantedFrame {
     pub(crate) pose: Pose,
     /// Place of the walker on the ground: its travel without sway.
     pub(crate) ground_position: Vec3,
-    /// Heading of the walker, radians.
+    /// Heading under which the generated features are put, radians.
     pub(crate) heading: f32,
     /// Whether the left and the right foot bear on the ground.
     pub(crate) contact: [bool; 2],
@@ -76,17 +76,20 @@ pub(crate) struct Planter {
 }
 
 impl Planter {
-    /// Puts the first frame on the ground: both feet down, hips above the origin, heading along +Z.
+    /// Puts the first frame on the ground: both feet down, hips above the origin, under this heading.
     pub(crate) fn new(
         skeleton: &Skeleton,
         frame_secs: f32,
         first: &RawFrame,
         leading: Side,
+        heading: f32,
     ) -> Self {
+        let level = from_heading(heading);
         let feet = Side::BOTH.map(|side| RockerFoot::new(skeleton, side));
         let plants = Side::BOTH.map(|side| {
             let leg = &first.legs[side.index()];
-            feet[side.index()].plant_under(leg.ankle, leg.heading, leg.pitch)
+            let foot = &feet[side.index()];
+            foot.plant_under(level * leg.ankle, heading + leg.heading, leg.pitch)
         });
         let mut planter = Self {
             skeleton: skeleton.clone(),
@@ -95,12 +98,12 @@ impl Planter {
             plants,
             hips: Vec3::ZERO,
             hips_velocity: None,
-            heading: 0.0,
+            heading,
             ground_position: Vec3::ZERO,
             ground_velocity: None,
         };
         let standing = leading.other();
-        let hips = planter.hips_above(first, standing, Quat::IDENTITY);
+        let hips = planter.hips_above(first, standing, level);
         planter.hips = Vec3::new(0.0, hips.y, 0.0);
         planter
     }
@@ -335,7 +338,7 @@ fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget 
     FootTarget {
         ankle: hips + level * leg.ankle,
         foot,
-        toes: foot * leg.toes_local,
+        toes: foot,
     }
 }
 

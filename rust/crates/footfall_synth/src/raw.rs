@@ -23,8 +23,6 @@ pub(crate) struct RawLeg {
     pub(crate) ankle: Vec3,
     /// Rotation of the foot.
     pub(crate) foot: Quat,
-    /// Local rotation of the toes.
-    pub(crate) toes_local: Quat,
     /// Pitch of the foot (positive: heel up), settled.
     pub(crate) pitch: f32,
     /// Heading of the foot relative to the walker's.
@@ -37,7 +35,6 @@ impl Default for RawFrame {
             hip: Vec3::ZERO,
             ankle: Vec3::ZERO,
             foot: Quat::IDENTITY,
-            toes_local: Quat::IDENTITY,
             pitch: 0.0,
             heading: 0.0,
         };
@@ -68,7 +65,6 @@ impl RawFrame {
                 hip,
                 ankle: ankle + Vec3::Z * reach,
                 foot,
-                toes_local: pose.rotation(side.toes()),
                 pitch: settled_pitch(pitch),
                 heading,
             };

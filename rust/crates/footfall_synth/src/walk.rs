@@ -105,7 +105,14 @@ pub fn synthesize(
         })
         .collect();
     let trajectory = variance::solve_walk(model, &plans)?;
-    Ok(put_on_ground(model, skeleton, config, &plans, &trajectory))
+    Ok(put_on_ground(
+        model,
+        skeleton,
+        config,
+        &plans,
+        &trajectory,
+        walker.facing,
+    ))
 }
 
 fn put_on_ground(
@@ -114,6 +121,7 @@ fn put_on_ground(
     config: &WalkConfig,
     plans: &[StepPlan],
     trajectory: &[f64],
+    facing: f32,
 ) -> SynthesizedWalk {
     let frame_secs = 1.0 / model.frame_rate_hz;
     let mut planter: Option<Planter> = None;
@@ -134,14 +142,14 @@ fn put_on_ground(
         begin += timing.frames;
         let terminal = planter
             .get_or_insert_with(|| {
-                Planter::new(skeleton, frame_secs as f32, &raw[0], timing.leading)
+                Planter::new(skeleton, frame_secs as f32, &raw[0], timing.leading, facing)
             })
             .plant_step(&raw, timing, config.turn_rate_radps, &mut frames);
         if index < shown.start {
             continue;
         }
         if index == shown.start {
-            start_heading = frames[0].heading;
+            start_heading = frames[0].heading - facing;
         }
         poses.truncate(poses.len().saturating_sub(1));
         poses.extend(frames.iter().map(|frame| frame.pose.clone()));

@@ -28,6 +28,8 @@ pub(crate) struct Walker {
     raw: Vec<RawFrame>,
     planter: Option<Planter>,
     frame_secs: f32,
+    /// Heading under which the walk goes along +Z, radians: people hold their hips a little askew.
+    pub(crate) facing: f32,
     /// The current step on the ground, one frame longer than the step.
     pub(crate) frames: Vec<PlantedFrame>,
 }
@@ -46,6 +48,7 @@ impl Walker {
             raw: vec![RawFrame::default(); longest + 1],
             planter: None,
             frame_secs: (1.0 / model.frame_rate_hz) as f32,
+            facing: 0.0,
             frames: Vec::with_capacity(longest + 1),
         }
     }
@@ -134,6 +137,7 @@ impl Walker {
                 self.frame_secs,
                 &raw[0],
                 plan.timing.leading,
+                self.facing,
             )
         });
         planter.plant_step(raw, &plan.timing, turn_rate, &mut self.frames);

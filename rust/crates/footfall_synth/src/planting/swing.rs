@@ -5,7 +5,7 @@ use crate::rocker::RockerFoot;
 use core::f32::consts::PI;
 use footfall_core::rotation::{exp_map, log_map};
 use footfall_ik::FootTarget;
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 /// Least clearance of the sole in the middle of the swing, metres.
 const CLEARANCE_M: f32 = 0.012;
@@ -13,12 +13,17 @@ const CLEARANCE_M: f32 = 0.012;
 /// Over how many metres the foot yields to that clearance.
 const CLEARANCE_SOFTNESS_M: f32 = 0.004;
 
+/// Part of the swing over which the toes, bent when the foot leaves the ground, straighten. Captured toes are too noisy to
+/// follow: most marker sets guess them.
+const TOES_STRAIGHTEN_BY: f32 = 0.4;
+
 /// What planted and generated foot disagree about, from the foot's last frame on the ground to its next first.
 pub(super) struct Swing {
     first: usize,
     frames: f32,
     position: Correction,
     rotation: Correction,
+    /// The toes' own rotation; straight at its end.
     toes: Correction,
 }
 
@@ -44,11 +49,7 @@ impl Swing {
             let [before, start, end] = ends
                 .each_ref()
                 .map(|(planted, free)| difference(planted, free));
-            let departure = if first == 0 {
-                Vec3::ZERO
-            } else {
-                (start - before) * frames
-            };
+            let departure = (start - before) * frames;
             Correction {
                 start,
                 // A correction that is already settling must not be thrown further than it is long.
@@ -56,14 +57,17 @@ impl Swing {
                 end,
             }
         };
+        let toes = correction(&|planted, _| log_map(planted.foot.inverse() * planted.toes));
         Self {
             first,
             frames,
             position: correction(&|planted, free| planted.ankle - free.ankle),
             rotation: correction(&|planted, free| log_map(planted.foot * free.foot.inverse())),
-            toes: correction(&|planted, free| {
-                log_map(toes_local(free).inverse() * toes_local(planted))
-            }),
+            toes: Correction {
+                departure: toes.departure * TOES_STRAIGHTEN_BY,
+                end: Vec3::ZERO,
+                ..toes
+            },
         }
     }
 
@@ -74,7 +78,7 @@ impl Swing {
         let mut target = FootTarget {
             ankle: free.ankle + self.position.at(s),
             foot: rotation,
-            toes: rotation * toes_local(free) * exp_map(self.toes.at(s)),
+            toes: rotation * exp_map(self.toes.at((s / TOES_STRAIGHTEN_BY).min(1.0))),
         };
         let clearance = CLEARANCE_M * (PI * s).sin().powi(2);
         let softness = CLEARANCE_SOFTNESS_M * (PI * s).sin() + 1e-6;
@@ -87,8 +91,4 @@ impl Swing {
             };
         target
     }
-}
-
-fn toes_local(foot: &FootTarget) -> Quat {
-    foot.foot.inverse() * foot.toes
 }
