@@ -5,7 +5,7 @@ use footfall_tests::data::own_file;
 use footfall_tests::evaluator::evaluate;
 
 fn walk() -> BvhFile {
-    bvh::read(own_file("walker_1_slow.bvh")).unwrap()
+    bvh::read(own_file("walker_1_slow.bvh")).expect("our own recording")
 }
 
 /// Adds to one channel of the root in every frame.

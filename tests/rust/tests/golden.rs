@@ -11,8 +11,9 @@ use footfall_tests::golden::assert_golden;
 use std::sync::Arc;
 
 fn model() -> Arc<GaitModel> {
-    let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall")).unwrap();
-    Arc::new(GaitModel::from_bytes(&bytes).unwrap())
+    let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall"))
+        .expect("the kept model");
+    Arc::new(GaitModel::from_bytes(&bytes).expect("the kept model loads"))
 }
 
 /// Root position, then the quaternions of hips, one leg and one arm.

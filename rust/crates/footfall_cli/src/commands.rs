@@ -13,7 +13,15 @@ use clap::{Parser, Subcommand};
 
 /// Learn a gait from motion capture, and walk with it.
 #[derive(Debug, Parser)]
-#[command(name = "footfall", version, about, max_term_width = 110)]
+#[command(
+    name = "footfall",
+    version,
+    after_help = "Examples:\n  \
+        footfall train --corpus index.csv --where category=neutral_walk -o walk.footfall\n  \
+        footfall synth --model walk.footfall --steps 20 --seed 1 -o out.bvh\n  \
+        footfall sheet out.bvh -o sheet.png\n\n\
+        Every command has --help with examples, and --json for one JSON object on stdout."
+)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 ///
 /// An initial contact is the first frame in which any part of the foot bears on the ground, a terminal contact the last.
 /// Frames and times refer to the file as given, frame 0 included. Steps carry their place in the walk: first, second,
-/// inside, last_but_one, last.
+/// inside, `last_but_one`, last.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall contacts walk.bvh\n  \

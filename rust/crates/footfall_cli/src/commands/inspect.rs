@@ -8,6 +8,7 @@ use crate::motion_input::MapArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use serde::Serialize;
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -70,9 +71,7 @@ fn kind_of(path: &Path) -> Result<Kind> {
     let read = File::open(path)
         .and_then(|mut file| file.read(&mut start))
         .with_context(|| format!("{}: cannot read the file", path.display()))?;
-    let extension = path
-        .extension()
-        .map(|extension| extension.to_ascii_lowercase());
+    let extension = path.extension().map(OsStr::to_ascii_lowercase);
     let has = |name: &str| {
         extension
             .as_deref()

@@ -25,7 +25,7 @@ pub(crate) struct TrainArgs {
     /// Table of the recordings
     #[arg(long, value_name = "INDEX.csv")]
     corpus: PathBuf,
-    /// Condition on a column, for example category=neutral_walk; may repeat
+    /// Condition on a column, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
     /// Where to write the model

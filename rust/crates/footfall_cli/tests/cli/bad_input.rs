@@ -2,6 +2,7 @@
 
 use crate::common::footfall;
 use footfall_tests::data::{own_file, repository};
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -28,7 +29,7 @@ fn broken_recording_is_refused(text: &str, parts: &[&str]) {
         run.fails_with(&["bad.bvh"]);
         run.fails_with(parts);
         assert_eq!(
-            fs::read_dir(folder.path()).unwrap().count(),
+            fs::read_dir(folder.path()).expect("a folder").count(),
             1,
             "{arguments:?} left a file"
         );
@@ -111,7 +112,7 @@ fn an_unknown_skeleton_walks_with_a_map() {
                 &format!("{keyword} q{index}\n"),
             );
         }
-        map.push_str(&format!("{joint} = \"q{index}\"\n"));
+        writeln!(map, "{joint} = \"q{index}\"").unwrap();
     }
     fs::write(folder.path().join("strange.bvh"), strange).unwrap();
     fs::write(folder.path().join("names.toml"), map).unwrap();
@@ -150,7 +151,7 @@ fn corpus(folder: &Path, rows: &[(&str, &str)]) {
         if own_file(name).is_file() {
             fs::copy(own_file(name), folder.join(name)).expect("a copy");
         }
-        table.push_str(&format!("{name},walk,neutral,{subject}\n"));
+        writeln!(table, "{name},walk,neutral,{subject}").expect("a string takes all text");
     }
     fs::write(folder.join("index.csv"), table).expect("an index");
 }

@@ -46,7 +46,7 @@ impl ForwardBackward {
     }
 
     pub(super) fn frames(&self) -> usize {
-        FRAMES
+        self.log_emissions.len() / EMISSIONS
     }
 
     pub(super) fn segments(&self) -> usize {
