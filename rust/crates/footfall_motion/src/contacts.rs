@@ -1,4 +1,27 @@
 //! When the heel and the toes of each foot bear on the ground, and the gait events that follow.
+//!
+//! A point of the sole comes into contact when it is low and has come to rest, and leaves it when it is high or fast, with
+//! hysteresis. Heights are above the level at which the point itself rests in the clip; speeds are shares of the speed of a
+//! swinging foot in the clip, so that a runner's sliding stance and an old man's slow swing are told apart.
+//!
+//! **Definition.** An initial contact is the first frame in which any part of the foot bears on the ground, a terminal contact
+//! the last. Published kinematic detectors differ from each other by 20 to 50 ms; the limits here were chosen to lie between
+//! them. Mean delay and spread of ours against two of them (negative: ours is earlier), milliseconds, on public recordings:
+//!
+//! | recordings | event | Zeni et al. 2008 (farthest ahead of and behind the hips) | O'Connor et al. 2007 (vertical speed of the foot) |
+//! | --- | --- | --- | --- |
+//! | CMU neutral walks, 120 fps | initial | +16 ± 9, F1 0.99 at ±50 ms | -29 ± 13 |
+//! | | terminal | 0 ± 20, F1 0.99 | -3 ± 27 |
+//! | Bandai neutral walks, 30 fps | initial | +25 ± 15, F1 0.99 | -20 ± 17, F1 0.98 |
+//! | | terminal | 0 ± 10, F1 1.00 | +9 ± 16, F1 0.99 |
+//! | Bandai styled walks, 30 fps | initial | +19 ± 18, F1 0.98 | -17 ± 18 |
+//! | | terminal | -1 ± 13, F1 1.00 | +3 ± 22, F1 0.96 |
+//! | CMU runs, 120 fps | initial | +48 ± 11 | -2 ± 42 |
+//! | | terminal | -81 ± 21 | -48 ± 30 |
+//!
+//! Neither reference is made for runs: there a foot reaches farthest ahead before it lands and farthest behind after it
+//! lifts. Against the time for which the body falls freely (centre of mass below -0.5 g), landings of CMU runs are 17 ms
+//! early to 8 ms late and lifts 40 ms late, part of which is the push that is weaker than half the body's weight.
 
 mod hysteresis;
 mod signals;
@@ -38,7 +61,7 @@ impl ContactConfig {
             height_on_m: 0.035,
             heel_off_m: 0.04,
             toe_off_m: 0.05,
-            speed_on: 0.17,
+            speed_on: 0.15,
             heel_speed_off: 0.2,
             toe_speed_off: 0.27,
             least_contact_secs: 0.08,

@@ -205,10 +205,10 @@ fn hierarchy(cursor: &mut Cursor<'_>) -> Result<Vec<BvhJoint>, BvhError> {
                 } else if is("CHANNELS") && joints[index].channels.is_empty() {
                     cursor.at += word.len();
                     joints[index].channels = channels(cursor)?;
-                } else if is("JOINT") {
+                } else if *has_offset && is("JOINT") {
                     cursor.at += word.len();
                     open.push(begin_joint(cursor, &mut joints, Some(index))?);
-                } else if is("End") || is("EndSite") {
+                } else if *has_offset && (is("End") || is("EndSite")) {
                     cursor.at += word.len();
                     cursor.rest_of_line();
                     cursor.keyword("{")?;

@@ -7,6 +7,8 @@
     reason = "each test binary uses a part of this"
 )]
 
+pub(crate) mod walker;
+
 use std::path::{Path, PathBuf};
 
 /// The folder of recordings, if it is there: `FOOTFALL_DATA`, else `../shared/data` beside the repository.

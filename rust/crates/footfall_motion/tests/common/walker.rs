@@ -1,0 +1,105 @@
+//! A walker of known steps: level hips, flat feet that stand exactly still, legs solved in closed form.
+
+use footfall_core::{Clip, Joint, Pose, Side, Skeleton};
+use glam::{Quat, Vec3};
+use std::f32::consts::TAU;
+
+/// Seconds from one landing of a foot to its next.
+pub(crate) const STRIDE_SECS: f32 = 1.2;
+/// Share of the stride for which a foot stands.
+pub(crate) const STANCE: f32 = 0.62;
+/// Metres a second.
+pub(crate) const SPEED: f32 = 0.8;
+
+/// When, in strides, the given foot lands for the first time (the left one at 0.2).
+pub(crate) fn first_landing(side: Side) -> f32 {
+    0.2 + 0.5 * side.index() as f32
+}
+
+/// Forward position and height of the ankle over its place on the ground, for a time in strides.
+fn foot_at(side: Side, strides: f32) -> (f32, f32) {
+    let stride_m = SPEED * STRIDE_SECS;
+    let since = strides - first_landing(side);
+    let landing = since.floor();
+    let phase = since - landing;
+    // Halfway through the stance the hips are over the ankle.
+    let landed_at = (landing + first_landing(side) + 0.5 * STANCE) * stride_m;
+    if phase < STANCE {
+        (landed_at, 0.0)
+    } else {
+        let swing = (phase - STANCE) / (1.0 - STANCE);
+        (
+            landed_at + swing * stride_m,
+            0.1 * (TAU * 0.5 * swing).sin(),
+        )
+    }
+}
+
+/// `frames` frames of level walking along +Z, arms swinging with bent elbows.
+pub(crate) fn walker(frame_rate_hz: f64, frames: usize) -> Clip {
+    let skeleton = Skeleton::standard();
+    let ankle_height = -skeleton.foot(Side::Left).heel.y;
+    let poses = (0..frames)
+        .map(|frame| {
+            let secs = frame as f32 / frame_rate_hz as f32;
+            let strides = secs / STRIDE_SECS;
+            let mut pose = Pose {
+                root_position: Vec3::new(0.0, skeleton.hip_height() - 0.09, SPEED * secs),
+                ..Pose::default()
+            };
+            for side in Side::BOTH {
+                let (forward, rise) = foot_at(side, strides);
+                let hip = pose.root_position + skeleton.offset(side.upper_leg());
+                let down = ankle_height + rise - hip.y;
+                bend_leg(&skeleton, &mut pose, side, forward - hip.z, down);
+                swing_arm(&mut pose, side, (strides - first_landing(side)) * TAU);
+            }
+            pose.rotations[Joint::Chest.index()] =
+                Quat::from_rotation_y(0.1 * (strides * TAU).sin());
+            pose
+        })
+        .collect();
+    Clip {
+        skeleton,
+        frame_rate_hz,
+        poses,
+    }
+}
+
+fn bend_leg(skeleton: &Skeleton, pose: &mut Pose, side: Side, forward: f32, down: f32) {
+    let thigh = skeleton.offset(side.lower_leg()).length();
+    let shank = skeleton.offset(side.foot()).length();
+    let reach = forward.hypot(down).min(thigh + shank - 1e-4);
+    let at_hip = ((thigh * thigh + reach * reach - shank * shank) / (2.0 * thigh * reach)).acos();
+    let bend = std::f32::consts::PI
+        - ((thigh * thigh + shank * shank - reach * reach) / (2.0 * thigh * shank)).acos();
+    let line = forward.atan2(-down);
+    // Positive turns about +X swing the leg back.
+    pose.rotations[side.upper_leg().index()] = Quat::from_rotation_x(-(line + at_hip));
+    pose.rotations[side.lower_leg().index()] = Quat::from_rotation_x(bend);
+    pose.rotations[side.foot().index()] = Quat::from_rotation_x(line + at_hip - bend);
+}
+
+fn swing_arm(pose: &mut Pose, side: Side, phase: f32) {
+    let upper = match side {
+        Side::Left => Joint::LeftUpperArm,
+        Side::Right => Joint::RightUpperArm,
+    };
+    let sign = side.sign();
+    let hang = Quat::from_rotation_z(-1.3 * sign);
+    pose.rotations[upper.index()] = Quat::from_rotation_x(0.4 * phase.cos()) * hang;
+    pose.rotations[upper.index() + 1] = Quat::from_rotation_y(-sign * (0.5 + 0.2 * phase.cos()));
+}
+
+/// The mirror image of a clip: left and right change places.
+pub(crate) fn mirrored(clip: &Clip) -> Clip {
+    let mut mirrored = clip.clone();
+    for (pose, original) in mirrored.poses.iter_mut().zip(&clip.poses) {
+        pose.root_position.x = -original.root_position.x;
+        for joint in Joint::ALL {
+            let turn = original.rotation(joint.mirrored());
+            pose.rotations[joint.index()] = Quat::from_xyzw(turn.x, -turn.y, -turn.z, turn.w);
+        }
+    }
+    mirrored
+}
