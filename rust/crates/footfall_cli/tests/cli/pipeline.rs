@@ -208,6 +208,61 @@ fn contacts_have_the_contract_s_shape_and_agree_with_the_generator() {
 }
 
 #[test]
+fn contacts_of_any_walk_lie_in_it_and_can_be_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = repository().join("tests/model_versions/v1.footfall");
+    let model = model.to_str().unwrap();
+    // Lengths whose sums of frame times round up and down.
+    for steps in 5..45 {
+        let steps = steps.to_string();
+        let fps = if steps.ends_with('7') { "24" } else { "60" };
+        let arguments = [
+            "synth",
+            "--model",
+            model,
+            "--steps",
+            &steps,
+            "--fps",
+            fps,
+            "-o",
+            "out.bvh",
+            "--contacts",
+            "out.json",
+        ];
+        assert_eq!(footfall(folder.path(), &arguments).code, 0);
+        let text = fs::read_to_string(folder.path().join("out.json")).unwrap();
+        let report: Value = serde_json::from_str(&text).unwrap();
+        for foot in ["left", "right"] {
+            // A foot lifts before it comes down again.
+            let ends: Vec<u64> = report[foot]
+                .as_array()
+                .unwrap()
+                .iter()
+                .flat_map(|stance| [stance[0].as_u64().unwrap(), stance[1].as_u64().unwrap() + 1])
+                .collect();
+            assert!(
+                ends.is_sorted_by(|a, b| a < b),
+                "{steps} steps at {fps} fps, {foot}: {ends:?}"
+            );
+            assert!(
+                ends.last() <= report["frames"].as_u64().as_ref(),
+                "{steps} steps: {ends:?}"
+            );
+        }
+    }
+    let arguments = [
+        "sheet",
+        "out.bvh",
+        "--contacts",
+        "out.json",
+        "-o",
+        "out.png",
+    ];
+    let run = footfall(folder.path(), &arguments);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+}
+
+#[test]
 fn a_recording_is_inspected_retargeted_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let walk = own_file("walker_2_fast.bvh");

@@ -164,7 +164,10 @@ fn captured_feet_slip_as_much_as_the_calibration_says() {
             .collect();
         slips.sort_by(f64::total_cmp);
         let median = slips[slips.len() / 2];
-        eprintln!("{walks}: median slip {median:.4} m/s over {} clips", slips.len());
+        eprintln!(
+            "{walks}: median slip {median:.4} m/s over {} clips",
+            slips.len()
+        );
         assert!(
             range.contains(&median),
             "{walks}: {median} m/s of {slips:?}"
