@@ -91,6 +91,14 @@ pub enum RetargetError {
         /// The file's joint at the left ankle.
         ankle: String,
     },
+    /// The numbers of the file are too large to place the body.
+    #[error(
+        "frame {frame}: the body cannot be placed; its lengths or positions are beyond all measure"
+    )]
+    NotFinite {
+        /// The first such frame.
+        frame: usize,
+    },
     /// The rate asked for is no rate.
     #[error("{0} frames per second is no frame rate; give a number above zero")]
     FrameRate(f64),
@@ -99,7 +107,8 @@ pub enum RetargetError {
 /// Turns a file into a clip on the canonical body.
 ///
 /// # Errors
-/// [`RetargetError`] for a skeleton whose joints cannot be placed, legs without length, and a rate that is not above zero.
+/// [`RetargetError`] for a skeleton whose joints cannot be placed, legs without length, numbers beyond all measure,
+/// and a rate that is not above zero.
 pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted, RetargetError> {
     if let Some(rate) = options.frame_rate_hz
         && !(rate.is_finite() && rate > 0.0)
@@ -127,7 +136,7 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
     let flat = feet::flat_feet(&source, &mut rest);
     let skeleton = skeleton_with_feet(&flat);
     let scale = skeleton.mean_leg_length() / source.leg_length;
-    let poses = source
+    let poses: Vec<Pose> = source
         .frames
         .iter()
         .map(|frame| pose_of(frame, &rest, &skeleton, scale, &source.has))
@@ -139,6 +148,12 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
     };
     floor::put_on_floor(&mut clip, source.first_motion_frame);
     floor::lift_toes(&mut clip);
+    let is_finite = |pose: &Pose| {
+        pose.root_position.is_finite() && pose.rotations.iter().all(|turn| turn.is_finite())
+    };
+    if let Some(frame) = clip.poses.iter().position(|pose| !is_finite(pose)) {
+        return Err(RetargetError::NotFinite { frame });
+    }
     let mut first_frame = source.first_motion_frame;
     if let Some(rate) = options.frame_rate_hz {
         first_frame = (first_frame as f64 / clip.frame_rate_hz * rate).ceil() as usize;

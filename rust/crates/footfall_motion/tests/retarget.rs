@@ -9,6 +9,7 @@ use footfall_motion::retarget::{
     JointMap, RetargetError, RetargetOptions, Retargeted, normalised_start, retarget,
 };
 use glam::{EulerRot, Quat, Vec3};
+use proptest::prelude::*;
 
 fn options() -> RetargetOptions {
     RetargetOptions::default()
@@ -536,4 +537,30 @@ fn one_frame_and_odd_channels_are_no_trouble() {
         }
     }
     expect_near(&clip, &retarget(&wide, &options()).unwrap(), 1.0);
+}
+
+proptest! {
+    #[test]
+    fn nonsense_is_refused_or_finite(
+        changes in proptest::collection::vec((any::<proptest::sample::Index>(), -1.0_f32..1.0, 0_i32..39), 0..40),
+        frames in 1_usize..40,
+    ) {
+        let mut file = clip_to_bvh(&walker(60.0, frames));
+        for (at, value, power) in changes {
+            let value = value * 10_f32.powi(power);
+            let count = file.values.len();
+            match at.index(count + 22).checked_sub(count) {
+                Some(joint) => file.joints[joint].offset.y = value,
+                None => file.values[at.index(count)] = value,
+            }
+        }
+        if let Ok(retargeted) = retarget(&file, &options()) {
+            let config = footfall_motion::contacts::ContactConfig::from_frame(retargeted.first_frame);
+            let contacts = footfall_motion::contacts::detect_contacts(&retargeted.clip, &config);
+            footfall_motion::steps::segment_walks(&retargeted.clip, &contacts);
+            for pose in &retargeted.clip.poses {
+                prop_assert!(pose.root_position.is_finite());
+            }
+        }
+    }
 }

@@ -115,7 +115,7 @@ fn resting_level(track: &[Vec3], speed: &[f32]) -> f32 {
     let Some(&low) = heights.get(heights.len() / 10) else {
         return 0.0;
     };
-    heights.retain(|height| *height < low + 0.04);
+    heights.retain(|height| *height <= low + 0.04);
     // A point that never comes near the ground of the clip rests on the ground, not in the air.
     heights[heights.len() / 2].clamp(-0.05, 0.05)
 }
