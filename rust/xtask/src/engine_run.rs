@@ -36,14 +36,19 @@ pub(crate) fn judged(command: &mut Command, log: &Path) -> Result<String> {
         Some(status) if !status.success() => Some(format!("failed ({status})")),
         Some(_) => complaint(&said).map(|line| format!("complained: {line}")),
     };
-    match problem {
-        None => Ok(said),
-        Some(problem) => bail!(
-            "`{shown}` {problem}\n{}\n(all of it: {})",
-            process::tail(&said, 40),
-            log.display()
-        ),
-    }
+    let Some(problem) = problem else {
+        return Ok(said);
+    };
+    let failed: Vec<&str> = said
+        .lines()
+        .filter(|line| line.starts_with("FAILED"))
+        .collect();
+    bail!(
+        "`{shown}` {problem}\n{}\n{}\n(all of it: {})",
+        process::tail(&said, 30),
+        failed.join("\n"),
+        log.display()
+    )
 }
 
 /// Runs Godot and keeps its output in `log`. Returns how it ended, `None` when it hung, and what it said.

@@ -150,27 +150,8 @@ fn build_one(
         cargo.arg("--release");
         folder.push("release");
     }
-    forget_other_flavour(&folder, flavour, platform)?;
     process::run(&mut cargo)?;
     Ok(folder.join(platform.built()))
-}
-
-/// Cargo gives both flavours the same file and may take one for the other: remove it when the last one was not ours.
-fn forget_other_flavour(folder: &Path, flavour: Flavour, platform: &Platform) -> Result<()> {
-    let marker = folder.join("footfall_godot.flavour");
-    if fs::read_to_string(&marker).ok().as_deref() == Some(flavour.name()) {
-        return Ok(());
-    }
-    for file in [
-        folder.join("deps").join(platform.built()),
-        folder.join(platform.built()),
-    ] {
-        if file.exists() {
-            fs::remove_file(&file).with_context(|| format!("cannot remove {}", file.display()))?;
-        }
-    }
-    fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
-    fs::write(&marker, flavour.name()).with_context(|| format!("cannot write {}", marker.display()))
 }
 
 fn build_universal(flavour: Flavour, options: &Options, platform: &Platform) -> Result<PathBuf> {

@@ -69,7 +69,10 @@ enum Command {
     /// Check the design's invariants.
     Tidy,
     /// Check everything: format, rules, lints, tests, docs, the nodes in Godot, the demo.
-    Verify,
+    Verify {
+        /// Only these steps, for example `clippy` or `godot-tests`.
+        steps: Vec<String>,
+    },
     /// Build all and open the demo; without a display, leave pictures of it.
     Demo,
     /// Start Godot on a project folder, on a display in memory where there is none.
@@ -102,7 +105,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Models => models::command(),
         Command::Golden { update } => golden::command(*update),
         Command::Tidy => tidy::command(),
-        Command::Verify => verify::command(),
+        Command::Verify { steps } => verify::command(steps),
         Command::Demo => demo::command(),
         Command::Open { project, arguments } => open::command(project, arguments),
     }

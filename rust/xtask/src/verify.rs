@@ -40,27 +40,37 @@ const STEPS: [Step; 9] = [
         check: build_library,
     },
     Step {
-        name: "Godot",
+        name: "godot",
         check: provision,
     },
     Step {
-        name: "tests in Godot",
+        name: "godot-tests",
         check: tests_in_godot,
     },
     Step {
-        name: "demo in Godot",
+        name: "godot-demo",
         check: demo_in_godot,
     },
 ];
 
-/// Runs every step and stops at the first that fails.
+/// Runs every step, or only those that are named, and stops at the first that fails.
 ///
 /// # Errors
-/// The first failure.
-pub(crate) fn command() -> Result<()> {
+/// The first failure, or a name that is no step's.
+pub(crate) fn command(only: &[String]) -> Result<()> {
+    let known = |name: &String| STEPS.iter().any(|step| step.name == name);
+    if let Some(unknown) = only.iter().find(|name| !known(name)) {
+        let names: Vec<&str> = STEPS.iter().map(|step| step.name).collect();
+        bail!(
+            "there is no step `{unknown}`: they are {}",
+            names.join(", ")
+        );
+    }
+    let wanted = |step: &&Step| only.is_empty() || only.iter().any(|name| name == step.name);
+    let steps: Vec<&Step> = STEPS.iter().filter(wanted).collect();
     let begin = Instant::now();
-    for (index, step) in STEPS.iter().enumerate() {
-        eprintln!("── {}/{} {}", index + 1, STEPS.len(), step.name);
+    for (index, step) in steps.iter().enumerate() {
+        eprintln!("── {}/{} {}", index + 1, steps.len(), step.name);
         let begin = Instant::now();
         (step.check)().with_context(|| {
             format!(
