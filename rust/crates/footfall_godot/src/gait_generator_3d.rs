@@ -122,7 +122,9 @@ impl ISkeletonModifier3D for GaitGenerator3D {
         }
         match self.take_session(&skeleton) {
             Ok(session) => self.walk(session, skeleton, delta),
-            Err(problem) => self.report(problem),
+            // Without time passing the node may still be about to get what it lacks.
+            Err(problem) if delta > 0.0 => self.report(problem),
+            Err(_) => {}
         }
     }
 

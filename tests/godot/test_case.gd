@@ -1,0 +1,58 @@
+class_name TestCase
+extends Node
+## What a test file extends: checks that note a failure and go on.
+
+## What went wrong, with the line of the check.
+var failures := PackedStringArray()
+## How many checks were made.
+var checks := 0
+
+
+func check(condition: bool, what: String) -> void:
+	checks += 1
+	if not condition:
+		_fail(what)
+
+
+func check_equal(found: Variant, expected: Variant, what: String) -> void:
+	checks += 1
+	if found != expected:
+		_fail("%s: found %s, expected %s" % [what, found, expected])
+
+
+func check_near(found: float, expected: float, tolerance: float, what: String) -> void:
+	checks += 1
+	if not absf(found - expected) <= tolerance:
+		_fail("%s: found %s, expected %s ± %s" % [what, found, expected, tolerance])
+
+
+## Checks that `found` is below a limit; not a number counts as above.
+func check_below(found: float, limit: float, what: String) -> void:
+	checks += 1
+	if not found < limit:
+		_fail("%s: found %s, expected less than %s" % [what, found, limit])
+
+
+func check_contains(text: String, part: String, what: String) -> void:
+	checks += 1
+	if not text.contains(part):
+		_fail("%s: \"%s\" is not in \"%s\"" % [what, part, text])
+
+
+## Errors and warnings between this and `end_expected_errors()` are provoked by the test.
+func begin_expected_errors() -> void:
+	print("expected errors: begin")
+
+
+func end_expected_errors() -> void:
+	print("expected errors: end")
+
+
+func _fail(what: String) -> void:
+	var line := ""
+	for frame: Dictionary in get_stack():
+		if frame.source != get_script().resource_path and frame.source.contains("test_case.gd"):
+			continue
+		line = "line %d: " % frame.line
+		break
+	failures.append(line + what)
