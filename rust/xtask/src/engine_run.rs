@@ -42,6 +42,7 @@ pub(crate) fn judged(command: &mut Command, log: &Path) -> Result<String> {
     let failed: Vec<&str> = said
         .lines()
         .filter(|line| line.starts_with("FAILED"))
+        .take(10)
         .collect();
     bail!(
         "`{shown}` {problem}\n{}\n{}\n(all of it: {})",
