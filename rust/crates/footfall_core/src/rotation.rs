@@ -63,10 +63,16 @@ pub fn wrap_angle(angle: f32) -> f32 {
 
 /// The shortest rotation that turns the direction `from` into the direction `to`; neither need be a unit vector.
 pub fn shortest_arc(from: Vec3, to: Vec3) -> Quat {
-    match (from.try_normalize(), to.try_normalize()) {
-        (Some(from), Some(to)) => Quat::from_rotation_arc(from, to),
-        _ => Quat::IDENTITY,
+    let (Some(from), Some(to)) = (from.try_normalize(), to.try_normalize()) else {
+        return Quat::IDENTITY;
+    };
+    // glam's own takes angles below 0.7 mrad for none, which at the end of a leg is half a millimetre.
+    let w = 1.0 + from.dot(to);
+    if w < 1e-6 {
+        return Quat::from_axis_angle(from.any_orthonormal_vector(), PI);
     }
+    let axis = from.cross(to);
+    Quat::from_xyzw(axis.x, axis.y, axis.z, w).normalize()
 }
 
 #[cfg(test)]
@@ -93,6 +99,18 @@ mod tests {
         fn heading_survives_the_round_trip(angle in -3.1_f32..3.1) {
             prop_assert!((heading(from_heading(angle)) - angle).abs() < 1e-4);
         }
+    }
+
+    #[test]
+    fn shortest_arcs_are_exact_for_small_and_for_opposite_directions() {
+        for angle in [1e-5_f32, 1e-4, 0.3, 3.0] {
+            let to = Quat::from_rotation_x(angle) * Vec3::Y;
+            let turned = shortest_arc(Vec3::Y, to) * Vec3::Y;
+            assert!(turned.distance(to) < 2e-7, "{angle}: {turned} is not {to}");
+        }
+        let back = shortest_arc(Vec3::Z, Vec3::NEG_Z * 2.0) * Vec3::Z;
+        assert!(back.distance(Vec3::NEG_Z) < 1e-6);
+        assert_eq!(shortest_arc(Vec3::ZERO, Vec3::X), Quat::IDENTITY);
     }
 
     #[test]

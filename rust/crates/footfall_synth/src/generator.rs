@@ -22,6 +22,13 @@ const MAX_DT_SECS: f32 = 10.0;
 /// Slowest speed that is walked: below it steps would last for seconds.
 const MIN_SPEED_MPS: f32 = 0.25;
 
+/// Fastest speed and turning that are walked.
+const MAX_SPEED_MPS: f32 = 3.0;
+const MAX_TURN_RATE_RADPS: f32 = 2.0;
+
+/// Closer than this share of a frame counts as on it: time adds up with rounding.
+const SAME_FRAME: f32 = 1e-2;
+
 /// What makes one walker differ from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GeneratorConfig {
@@ -142,7 +149,11 @@ impl GaitGenerator {
         let plan_from_character = self.plan_from_character();
         let character_from_plan = from_heading(-plan_from_character.heading);
         let (frame, next, weight) = self.frames();
-        let contact = frame.contact;
+        // Between two frames a foot stands only if it does in both.
+        let contact = core::array::from_fn(|side| {
+            (frame.contact[side] || weight > 1.0 - SAME_FRAME)
+                && (next.contact[side] || weight < SAME_FRAME)
+        });
         *out = frame.pose.interpolate(&next.pose, weight);
         out.root_position =
             character_from_plan * (out.root_position - plan_from_character.position);
@@ -168,8 +179,9 @@ impl GaitGenerator {
     }
 
     fn next_step(&mut self, controls: &Controls) {
-        let speed = finite_or(controls.speed_mps, 0.0).max(MIN_SPEED_MPS);
-        let turn_rate = finite_or(controls.turn_rate_radps, 0.0);
+        let speed = finite_or(controls.speed_mps, 0.0).clamp(MIN_SPEED_MPS, MAX_SPEED_MPS);
+        let turn_rate = finite_or(controls.turn_rate_radps, 0.0)
+            .clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS);
         let pace = self.paces.pace(f64::from(speed));
         self.walker
             .advance(&mut self.planner, pace, turn_rate, Planner::draw);

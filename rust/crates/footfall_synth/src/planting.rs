@@ -21,6 +21,9 @@ const SETTLE_SECS: f32 = 0.07;
 /// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
 const MAX_STANCE_EXTENSION: f32 = 0.997;
 
+/// Fraction of the straight leg beyond which a foot cannot be held: just below what the solver reaches.
+const LET_GO_EXTENSION: f32 = 0.999;
+
 /// Over how many metres the pelvis yields to that limit.
 const REACH_SOFTNESS_M: f32 = 0.005;
 
@@ -29,7 +32,10 @@ const REACH_SOFTNESS_M: f32 = 0.005;
 const MEETING_SHARE: f32 = 0.5;
 const MEETING_FROM: f32 = 0.4;
 
-/// Over how long the landing leg's reach comes to bear on the pelvis, and the leaving leg's ceases to, seconds.
+/// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
+const MAX_LANDING_EXTENSION: f32 = 0.985;
+
+/// Over how long a leaving leg's reach ceases to bear on the pelvis, seconds.
 const REACH_FADE_SECS: f32 = 0.07;
 
 /// How far the generated leg may carry the ankle away from where the foot stands before the foot leaves the ground, as a
@@ -132,6 +138,10 @@ impl Planter {
             ..*timing
         };
         self.bear(raw, timing, out);
+        let timing = &StepTiming {
+            terminal: self.let_go(raw, timing, out),
+            ..*timing
+        };
         let last = &out[timing.frames];
         let (hips, heading) = (last.pose.root_position, last.heading);
         let trailing = timing.leading.other();
@@ -263,12 +273,13 @@ impl Planter {
                 if !is_leading && index > timing.terminal {
                     continue;
                 }
-                let fade = if is_leading {
-                    index as f32
+                let fade = if is_leading || index == 0 {
+                    0.0
                 } else {
-                    (timing.terminal - index) as f32
+                    let onset = index as f32 / timing.terminal as f32;
+                    let remaining = (timing.terminal - index) as f32;
+                    onset * (1.0 - remaining / fade_frames).max(0.0)
                 };
-                let fade = (1.0 - fade / fade_frames).max(0.0);
                 let length = self.skeleton.leg_length(side);
                 let hip = level * raw.legs[side.index()].hip;
                 let ankle = self.standing(side, raw).ankle;
@@ -280,6 +291,25 @@ impl Planter {
                 }
             }
         }
+    }
+
+    /// Ends the trailing foot's contact where its leg, stretched, does not reach any more; returns its last frame.
+    fn let_go(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) -> usize {
+        let trailing = timing.leading.other();
+        let reach = LET_GO_EXTENSION * self.skeleton.leg_length(trailing);
+        let beyond = (1..=timing.terminal).find(|index| {
+            let frame = &frames[*index];
+            let hip = from_heading(frame.heading) * raw[*index].legs[trailing.index()].hip;
+            let ankle = self.standing(trailing, &raw[*index]).ankle;
+            (frame.pose.root_position + hip).distance(ankle) > reach
+        });
+        let Some(beyond) = beyond else {
+            return timing.terminal;
+        };
+        for frame in &mut frames[beyond..=timing.terminal] {
+            frame.contact[trailing.index()] = false;
+        }
+        beyond - 1
     }
 
     /// Where this foot stands on its plant at the generated pitch.
@@ -302,7 +332,12 @@ impl Planter {
         let ankle = hips + from_heading(heading) * leg.ankle;
         // The foot points to where the body will have turned by the middle of its stance.
         let lead = 0.5 * turn_rate * self.frame_secs * timing.frames as f32;
-        self.feet[side.index()].plant_under(ankle, heading + lead + leg.heading, leg.pitch)
+        let foot = &self.feet[side.index()];
+        let mut plant = foot.plant_under(ankle, heading + lead + leg.heading, leg.pitch);
+        let hip = hips + from_heading(heading) * leg.hip;
+        let reach = MAX_LANDING_EXTENSION * self.skeleton.leg_length(side);
+        plant.flat_ankle += within_reach(foot.stand(&plant, leg.pitch).ankle - hip, reach);
+        plant
     }
 
     /// Where the trailing foot is planted and where it would be free, at the ends of its swing.
@@ -340,6 +375,13 @@ fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget 
         foot,
         toes: foot,
     }
+}
+
+/// The shift over the ground that brings the end of a leg within reach of the hip.
+fn within_reach(ankle_from_hip: Vec3, reach: f32) -> Vec3 {
+    let level = Vec3::new(ankle_from_hip.x, 0.0, ankle_from_hip.z);
+    let level_reach = (reach * reach - ankle_from_hip.y.powi(2)).max(0.0).sqrt();
+    level.clamp_length_max(level_reach) - level
 }
 
 /// From 0 at 0 to 1 at 1, level at both ends and beyond.

@@ -1,0 +1,370 @@
+//! What the generator promises, on the model that the add-on ships.
+
+use footfall_core::rotation::heading;
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_model::GaitModel;
+use footfall_synth::{
+    Controls, Footstep, GaitGenerator, GeneratorConfig, SynthError, WalkConfig, synthesize,
+};
+use glam::{Quat, Vec3};
+use std::sync::{Arc, OnceLock};
+
+const DT: f32 = 1.0 / 60.0;
+
+fn model() -> Arc<GaitModel> {
+    static MODEL: OnceLock<Arc<GaitModel>> = OnceLock::new();
+    let load = || {
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../../addons/footfall/models/walk.footfall"
+        );
+        Arc::new(GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap())
+    };
+    Arc::clone(MODEL.get_or_init(load))
+}
+
+fn config(seed: u64) -> GeneratorConfig {
+    GeneratorConfig {
+        seed,
+        phase: 0.0,
+        variation: 1.0,
+    }
+}
+
+fn generator(seed: u64) -> GaitGenerator {
+    GaitGenerator::new(&model(), &Skeleton::standard(), &config(seed)).unwrap()
+}
+
+fn walking(speed_mps: f32) -> Controls {
+    Controls {
+        speed_mps,
+        turn_rate_radps: 0.0,
+    }
+}
+
+/// A frame in the space where the walk began.
+struct Frame {
+    model: ModelPose,
+    contact: [bool; 2],
+    heading: f32,
+    place: Vec3,
+}
+
+fn run(
+    generator: &mut GaitGenerator,
+    skeleton: &Skeleton,
+    controls: &Controls,
+    frames: usize,
+) -> (Vec<Frame>, Vec<Footstep>) {
+    let mut pose = Pose::default();
+    let mut footsteps = Vec::new();
+    let frames = (0..frames)
+        .map(|_| {
+            generator.step(DT, controls, &mut pose);
+            footsteps.extend_from_slice(generator.footsteps());
+            let place = generator.start_from_character();
+            let level = Quat::from_rotation_y(place.heading);
+            pose.root_position = place.position + level * pose.root_position;
+            pose.rotations[0] = level * pose.rotations[0];
+            let mut model = ModelPose::default();
+            forward_kinematics(skeleton, &pose, &mut model);
+            Frame {
+                model,
+                contact: generator.feet_in_contact(),
+                heading: place.heading,
+                place: place.position,
+            }
+        })
+        .collect();
+    (frames, footsteps)
+}
+
+/// Heel, ball and toe tip of a foot.
+fn sole(skeleton: &Skeleton, frame: &Frame, side: Side) -> [Vec3; 3] {
+    let foot = skeleton.foot(side);
+    [
+        frame.model.point(side.foot(), foot.heel),
+        frame.model.point(side.toes(), foot.ball),
+        frame.model.point(side.toes(), foot.toe_tip),
+    ]
+}
+
+/// A standing foot keeps one of heel, ball and toe tip where it is; nothing sinks.
+fn assert_planted(skeleton: &Skeleton, frames: &[Frame]) {
+    let mut standing = 0;
+    for (index, pair) in frames.windows(2).enumerate() {
+        for side in Side::BOTH {
+            let (then, now) = (
+                sole(skeleton, &pair[0], side),
+                sole(skeleton, &pair[1], side),
+            );
+            let lowest = now
+                .iter()
+                .map(|point| point.y)
+                .fold(f32::INFINITY, f32::min);
+            assert!(lowest > -0.002, "sole {lowest} m below the ground");
+            if pair[0].contact[side.index()] && pair[1].contact[side.index()] {
+                standing += 1;
+                let moved = then.iter().zip(&now).map(|(then, now)| then.distance(*now));
+                let slip = moved.fold(f32::INFINITY, f32::min) / DT;
+                assert!(
+                    slip < 0.02,
+                    "standing {side:?} foot slips at {slip} m/s in frame {index}: {then:?} {now:?}"
+                );
+                assert!(lowest < 0.004, "standing foot {lowest} m above the ground");
+            }
+        }
+    }
+    assert!(
+        standing > frames.len() / 2,
+        "feet stood in only {standing} frames"
+    );
+}
+
+#[test]
+fn standing_feet_do_not_move() {
+    let skeleton = Skeleton::standard();
+    for (seed, speed, turn_rate_radps) in
+        [(1, 1.2, 0.0), (2, 0.8, 0.3), (3, 1.7, -0.4), (4, 1.3, 0.0)]
+    {
+        let controls = Controls {
+            speed_mps: speed,
+            turn_rate_radps,
+        };
+        let (frames, _) = run(&mut generator(seed), &skeleton, &controls, 900);
+        assert_planted(&skeleton, &frames);
+    }
+}
+
+#[test]
+fn other_bodies_stand_as_well() {
+    let mut long_shanks = Skeleton::standard().scaled(1.3);
+    for side in Side::BOTH {
+        long_shanks.offsets[side.lower_leg().index()] *= 0.85;
+        long_shanks.offsets[side.foot().index()] *= 1.1;
+    }
+    for skeleton in [Skeleton::standard().scaled(0.5), long_shanks] {
+        let mut generator = GaitGenerator::new(&model(), &skeleton, &config(5)).unwrap();
+        let (frames, _) = run(&mut generator, &skeleton, &walking(1.0), 600);
+        assert_planted(&skeleton, &frames);
+    }
+}
+
+#[test]
+fn the_wanted_speed_is_walked_straight_ahead() {
+    for (seed, speed) in [(1, 0.7), (2, 1.0), (3, 1.3), (4, 1.6), (5, 2.0)] {
+        let mut generator = generator(seed);
+        let skeleton = Skeleton::standard();
+        run(&mut generator, &skeleton, &walking(speed), 120);
+        let from = generator.start_from_character().position;
+        let (frames, _) = run(&mut generator, &skeleton, &walking(speed), 3600);
+        let travel = frames.last().unwrap().place - from;
+        let realised = travel.length() / 60.0;
+        assert!(
+            (realised / speed - 1.0).abs() < 0.05,
+            "{realised} for {speed} m/s"
+        );
+        assert!(travel.x.abs() < 0.04 * travel.z, "strays by {travel}");
+    }
+}
+
+#[test]
+fn turning_turns_by_the_wanted_angle() {
+    let controls = Controls {
+        speed_mps: 1.1,
+        turn_rate_radps: 0.3,
+    };
+    let mut generator = generator(3);
+    let skeleton = Skeleton::standard();
+    run(&mut generator, &skeleton, &controls, 60);
+    let before = generator.start_from_character().heading;
+    let (frames, _) = run(&mut generator, &skeleton, &controls, 300);
+    let turned = frames.last().unwrap().heading - before;
+    assert!((turned - 1.5).abs() < 0.02, "{turned}");
+    for frame in &frames {
+        let hips = heading(frame.model.rotation(Joint::Hips));
+        assert!(
+            (hips - frame.heading).abs() < 0.35,
+            "hips face {hips}, walker {}",
+            frame.heading
+        );
+    }
+}
+
+#[test]
+fn every_contact_is_told_once_and_feet_alternate() {
+    let skeleton = Skeleton::standard();
+    let (frames, footsteps) = run(&mut generator(7), &skeleton, &walking(1.2), 1200);
+    let begun: usize = frames
+        .windows(2)
+        .map(|pair| {
+            let begins = |side: usize| !pair[0].contact[side] && pair[1].contact[side];
+            usize::from(begins(0)) + usize::from(begins(1))
+        })
+        .sum();
+    assert_eq!(footsteps.len(), begun);
+    assert!(
+        footsteps
+            .windows(2)
+            .all(|pair| pair[0].side != pair[1].side)
+    );
+    for pair in footsteps.windows(2) {
+        let step = (pair[1].position - pair[0].position).z;
+        assert!((0.3..1.1).contains(&step), "a step of {step} m");
+        assert!(pair[0].position.y.abs() < 1e-6);
+    }
+}
+
+#[test]
+fn equal_seeds_walk_equally_and_others_do_not() {
+    let skeleton = Skeleton::standard();
+    let positions = |seed: u64| -> Vec<Vec3> {
+        let (frames, _) = run(&mut generator(seed), &skeleton, &walking(1.2), 300);
+        frames
+            .iter()
+            .map(|f| f.model.position(Joint::LeftHand))
+            .collect()
+    };
+    assert_eq!(positions(11), positions(11));
+    let (first, other) = (positions(11), positions(12));
+    let apart: f32 = first.iter().zip(&other).map(|(a, b)| a.distance(*b)).sum();
+    assert!(apart / 300.0 > 0.02, "two walkers keep step");
+}
+
+#[test]
+fn motion_is_continuous_through_changes_of_control() {
+    let skeleton = Skeleton::standard();
+    let mut generator = generator(21);
+    let mut all = Vec::new();
+    for (speed, turn) in [(1.2, 0.0), (1.8, 0.5), (0.6, -0.5), (1.4, 0.0)] {
+        let controls = Controls {
+            speed_mps: speed,
+            turn_rate_radps: turn,
+        };
+        all.extend(run(&mut generator, &skeleton, &controls, 180).0);
+    }
+    for triple in all.windows(3) {
+        for joint in Joint::ALL {
+            let [a, b, c] = [&triple[0], &triple[1], &triple[2]].map(|f| f.model.position(joint));
+            let jerk = (a - 2.0 * b + c).length();
+            // 120 m/s² at 60 fps: an impact of the toes is below it, a pop is not.
+            assert!(jerk < 0.034, "{joint:?} jumps by {jerk} m");
+        }
+    }
+}
+
+#[test]
+fn a_pose_is_given_again_when_no_time_passes() {
+    let mut generator = generator(1);
+    let (mut first, mut again) = (Pose::default(), Pose::default());
+    generator.step(0.7, &walking(1.2), &mut first);
+    generator.step(0.0, &walking(1.2), &mut again);
+    assert_eq!(first, again);
+    assert!(generator.footsteps().is_empty());
+}
+
+#[test]
+fn senseless_controls_still_give_a_human_pose() {
+    let skeleton = Skeleton::standard();
+    for speed in [f32::NAN, f32::INFINITY, -3.0, 0.0, 50.0] {
+        for turn_rate_radps in [f32::NAN, 100.0, 0.0] {
+            let controls = Controls {
+                speed_mps: speed,
+                turn_rate_radps,
+            };
+            let mut generator = generator(1);
+            let (frames, _) = run(&mut generator, &skeleton, &controls, 200);
+            for frame in frames {
+                let height = frame.model.position(Joint::Hips).y;
+                assert!(
+                    (0.4..1.1).contains(&height),
+                    "hips at {height} for {controls:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_phase_is_where_the_stride_begins() {
+    for (phase, leading) in [(0.0, Side::Left), (0.5, Side::Right)] {
+        let settings = GeneratorConfig { phase, ..config(1) };
+        let skeleton = Skeleton::standard();
+        let mut generator = GaitGenerator::new(&model(), &skeleton, &settings).unwrap();
+        let (frames, footsteps) = run(&mut generator, &skeleton, &walking(1.2), 60);
+        let ahead = frames[0].model.position(leading.foot()).z;
+        assert!(ahead > frames[0].model.position(leading.other().foot()).z + 0.3);
+        assert_eq!(footsteps[0].side, leading.other());
+    }
+}
+
+#[test]
+fn bad_settings_are_refused() {
+    let skeleton = Skeleton::standard();
+    let settings = GeneratorConfig {
+        phase: f32::NAN,
+        ..config(1)
+    };
+    let error = GaitGenerator::new(&model(), &skeleton, &settings).unwrap_err();
+    assert!(matches!(
+        error,
+        SynthError::Setting {
+            setting: "phase",
+            ..
+        }
+    ));
+    let mut legless = Skeleton::standard();
+    legless.offsets[Joint::LeftFoot.index()] = Vec3::ZERO;
+    let error = GaitGenerator::new(&model(), &legless, &config(1)).unwrap_err();
+    assert!(error.to_string().contains("LeftFoot"), "{error}");
+}
+
+#[test]
+fn a_whole_walk_has_its_steps_its_speed_and_its_contacts() {
+    let walk = |speed_mps: Option<f32>, frame_rate_hz: Option<f64>| {
+        let settings = WalkConfig {
+            steps: 20,
+            seed: 4,
+            variation: 1.0,
+            speed_mps,
+            turn_rate_radps: 0.0,
+            frame_rate_hz,
+        };
+        synthesize(&model(), &Skeleton::standard(), &settings).unwrap()
+    };
+    let usual = walk(None, None);
+    let travel = usual.clip.poses.last().unwrap().root_position.z;
+    let speed = f64::from(travel) / usual.clip.duration_secs();
+    let [slowest, fastest] = model().speed_range();
+    assert!((slowest..fastest).contains(&speed), "{speed} m/s");
+    assert!(usual.clip.poses[0].root_position.x.abs() < 1e-6);
+    // 20 steps: the last frame is the 21st initial contact, the first that of the left foot.
+    assert_eq!(usual.contacts[0].len() + usual.contacts[1].len(), 22);
+
+    let doubled = walk(Some(1.5), Some(120.0));
+    let speed = f64::from(doubled.clip.poses.last().unwrap().root_position.z)
+        / doubled.clip.duration_secs();
+    assert!((speed / 1.5 - 1.0).abs() < 0.05, "{speed} m/s");
+    for (frame, pose) in doubled.clip.poses.iter().enumerate() {
+        let mut model = ModelPose::default();
+        forward_kinematics(&doubled.clip.skeleton, pose, &mut model);
+        for side in Side::BOTH {
+            let stands = doubled.contacts[side.index()]
+                .iter()
+                .any(|span| span.contains(frame));
+            let frame = Frame {
+                model: model.clone(),
+                contact: [true; 2],
+                heading: 0.0,
+                place: Vec3::ZERO,
+            };
+            let points = sole(&doubled.clip.skeleton, &frame, side);
+            let lowest = points
+                .iter()
+                .map(|point| point.y)
+                .fold(f32::INFINITY, f32::min);
+            assert!(lowest > -0.002, "sole at {lowest}");
+            assert!(!stands || lowest < 0.005, "standing foot at {lowest}");
+        }
+    }
+}
