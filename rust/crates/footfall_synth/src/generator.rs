@@ -26,6 +26,9 @@ const MIN_SPEED_MPS: f32 = 0.25;
 const MAX_SPEED_MPS: f32 = 3.0;
 const MAX_TURN_RATE_RADPS: f32 = 2.0;
 
+/// A step's speed differs by at most this much from the speed of the step before, m/s: nobody brakes faster.
+const MAX_SPEED_CHANGE_MPS: f32 = 0.5;
+
 /// Closer than this share of a frame counts as on it: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;
 
@@ -79,6 +82,8 @@ pub struct GaitGenerator {
     walker: Walker,
     paces: PaceTable,
     frame_rate_hz: f32,
+    /// Speed of the current step.
+    speed_mps: f32,
     /// Frames since the current step began.
     position: f32,
     plan_from_start: GroundTransform,
@@ -123,6 +128,7 @@ impl GaitGenerator {
             walker,
             paces,
             frame_rate_hz: model.frame_rate_hz as f32,
+            speed_mps: model.speed.reference_mps as f32,
             position,
             plan_from_start: GroundTransform::default(),
             footsteps: Vec::with_capacity(MAX_FOOTSTEPS),
@@ -182,7 +188,9 @@ impl GaitGenerator {
         let speed = finite_or(controls.speed_mps, 0.0).clamp(MIN_SPEED_MPS, MAX_SPEED_MPS);
         let turn_rate = finite_or(controls.turn_rate_radps, 0.0)
             .clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS);
-        let pace = self.paces.pace(f64::from(speed));
+        self.speed_mps +=
+            (speed - self.speed_mps).clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
+        let pace = self.paces.pace(f64::from(self.speed_mps));
         self.walker
             .advance(&mut self.planner, pace, turn_rate, Planner::draw);
         let side = self.walker.step().timing.leading;

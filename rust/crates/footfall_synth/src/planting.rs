@@ -18,11 +18,14 @@ use swing::Swing;
 /// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
 const SETTLE_SECS: f32 = 0.07;
 
+/// Part of a step over which a new turn rate sets in.
+const TURN_ONSET: f32 = 0.6;
+
 /// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
 const MAX_STANCE_EXTENSION: f32 = 0.997;
 
-/// Fraction of the straight leg beyond which a foot cannot be held: just below what the solver reaches.
-const LET_GO_EXTENSION: f32 = 0.999;
+/// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
+const LET_GO_EXTENSION: f32 = 0.996;
 
 /// Over how many metres the pelvis yields to that limit.
 const REACH_SOFTNESS_M: f32 = 0.005;
@@ -77,6 +80,7 @@ pub(crate) struct Planter {
     /// Travel of the hips in the last frame; none before the first step.
     hips_velocity: Option<Vec3>,
     heading: f32,
+    turn_rate: f32,
     ground_position: Vec3,
     ground_velocity: Option<Vec3>,
 }
@@ -105,6 +109,7 @@ impl Planter {
             hips: Vec3::ZERO,
             hips_velocity: None,
             heading,
+            turn_rate: 0.0,
             ground_position: Vec3::ZERO,
             ground_velocity: None,
         };
@@ -144,6 +149,8 @@ impl Planter {
         };
         let last = &out[timing.frames];
         let (hips, heading) = (last.pose.root_position, last.heading);
+        self.hips = hips;
+        self.hips_velocity = Some(hips - out[timing.frames - 1].pose.root_position);
         let trailing = timing.leading.other();
         let next_plant = self.next_plant(raw, timing, hips, heading, turn_rate);
         let swing = Swing::new(&self.swing_ends(raw, timing, out, &next_plant), timing);
@@ -170,7 +177,7 @@ impl Planter {
         timing.terminal
     }
 
-    /// Fills hips, heading and ground position of every frame, and carries them to the next step.
+    /// Fills hips, heading and ground position of every frame, and carries the latter two to the next step.
     fn travel(
         &mut self,
         raw: &[RawFrame],
@@ -179,7 +186,7 @@ impl Planter {
         out: &mut Vec<PlantedFrame>,
     ) {
         let start = self.hips_above(&raw[0], timing.leading, from_heading(self.heading));
-        let next_level = from_heading(self.heading + turn_rate * self.frame_secs);
+        let next_level = from_heading(self.heading + self.turn_rate * self.frame_secs);
         let follow = self.hips_above(&raw[1], timing.leading, next_level);
         let offset = self.hips - start;
         let velocity = self
@@ -188,9 +195,10 @@ impl Planter {
         let decay = self.frame_secs / SETTLE_SECS;
         let meeting = MEETING_SHARE * self.landing_height_gap(raw, timing);
         let mut settled = self.hips;
+        let from_rate = self.turn_rate;
         for (index, raw) in raw.iter().enumerate().take(timing.frames + 1) {
             let time = index as f32;
-            let heading = self.heading + turn_rate * self.frame_secs * time;
+            let heading = self.heading;
             let level = from_heading(heading);
             // A critically damped return from where the hips were to where the landed foot has them.
             let remains = (offset + (velocity + offset * decay) * time) * (-decay * time).exp();
@@ -199,8 +207,12 @@ impl Planter {
             let hips = self.hips_above(raw, timing.leading, level)
                 + remains
                 + Vec3::Y * (meeting * approach);
-            self.hips_velocity = Some(hips - settled);
             settled = hips;
+            if index < timing.frames {
+                let onset = smooth_step(time / (TURN_ONSET * timing.frames as f32));
+                self.turn_rate = from_rate + onset * (turn_rate - from_rate);
+                self.heading += self.turn_rate * self.frame_secs;
+            }
             let mut frame = PlantedFrame {
                 heading,
                 ..PlantedFrame::default()
@@ -209,8 +221,6 @@ impl Planter {
             out.push(frame);
         }
         self.glide(timing, settled, out);
-        self.hips = settled;
-        self.heading += turn_rate * self.frame_secs * timing.frames as f32;
     }
 
     /// How much higher the landing foot's leg would have the hips at the end of the step than the standing foot's has them.

@@ -1,6 +1,6 @@
 //! The swinging foot: from where it stood to where it lands, along the generated path.
 
-use super::{StepTiming, hermite};
+use super::{StepTiming, smooth_step};
 use crate::rocker::RockerFoot;
 use core::f32::consts::PI;
 use footfall_core::rotation::{exp_map, log_map};
@@ -13,9 +13,8 @@ const CLEARANCE_M: f32 = 0.012;
 /// Over how many metres the foot yields to that clearance.
 const CLEARANCE_SOFTNESS_M: f32 = 0.004;
 
-/// Part of the swing over which the toes, bent when the foot leaves the ground, straighten. Captured toes are too noisy to
-/// follow: most marker sets guess them.
-const TOES_STRAIGHTEN_BY: f32 = 0.4;
+/// How fast the disagreement from the last stance dies away, per swing.
+const SETTLE_RATE: f32 = 8.0;
 
 /// What planted and generated foot disagree about, from the foot's last frame on the ground to its next first.
 pub(super) struct Swing {
@@ -35,8 +34,10 @@ struct Correction {
 }
 
 impl Correction {
+    /// A critically damped farewell to the start, and a smooth approach to the end.
     fn at(&self, s: f32) -> Vec3 {
-        hermite(self.start, self.departure, self.end, Vec3::ZERO, s)
+        let farewell = self.start + (self.departure + self.start * SETTLE_RATE) * s;
+        farewell * (-SETTLE_RATE * s).exp() + self.end * smooth_step(s)
     }
 }
 
@@ -49,14 +50,14 @@ impl Swing {
             let [before, start, end] = ends
                 .each_ref()
                 .map(|(planted, free)| difference(planted, free));
-            let departure = (start - before) * frames;
             Correction {
                 start,
-                // A correction that is already settling must not be thrown further than it is long.
-                departure: departure.clamp_length_max(2.0 * start.distance(end) + 0.1),
+                departure: (start - before) * frames,
                 end,
             }
         };
+        // Captured toes are too noisy to follow, as most marker sets guess them: from their bend at the end of the stance
+        // they straighten.
         let toes = correction(&|planted, _| log_map(planted.foot.inverse() * planted.toes));
         Self {
             first,
@@ -64,7 +65,6 @@ impl Swing {
             position: correction(&|planted, free| planted.ankle - free.ankle),
             rotation: correction(&|planted, free| log_map(planted.foot * free.foot.inverse())),
             toes: Correction {
-                departure: toes.departure * TOES_STRAIGHTEN_BY,
                 end: Vec3::ZERO,
                 ..toes
             },
@@ -78,7 +78,7 @@ impl Swing {
         let mut target = FootTarget {
             ankle: free.ankle + self.position.at(s),
             foot: rotation,
-            toes: rotation * exp_map(self.toes.at((s / TOES_STRAIGHTEN_BY).min(1.0))),
+            toes: rotation * exp_map(self.toes.at(s)),
         };
         let clearance = CLEARANCE_M * (PI * s).sin().powi(2);
         let softness = CLEARANCE_SOFTNESS_M * (PI * s).sin() + 1e-6;
