@@ -38,7 +38,7 @@ pub struct WalkQuality {
     pub cadence_hz: f64,
     /// Initial contacts of both feet.
     pub initial_contacts: usize,
-    /// Energy of x[t−1] − 2x[t] + x[t+1] over that of x's own motion, worst joint's rotation: parity ripple shows here.
+    /// Energy of `x[t−1] − 2x[t] + x[t+1]` over that of x's own motion, worst joint's rotation: parity ripple shows here.
     pub ripple: f64,
 }
 

@@ -174,3 +174,47 @@ fn captured_feet_slip_as_much_as_the_calibration_says() {
         );
     }
 }
+
+/// Δ² over neighbouring frames is the default because the paper's, which couples frames of equal parity alone, is no
+/// smoother from frame to frame.
+#[test]
+fn the_default_windows_ripple_no_more_than_the_paper_s() {
+    let Some(data) = recordings("ripple") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let index = data.join("index.csv");
+    let [paper, compact] = ["paper", "compact"].map(|windows| {
+        let arguments = [
+            "train",
+            "--corpus",
+            index.to_str().unwrap(),
+            "--where",
+            "category=neutral_walk",
+            "--where",
+            "path=cmu/*",
+            "--windows",
+            windows,
+            "-o",
+            "walk.footfall",
+        ];
+        assert_eq!(footfall(folder.path(), &arguments).code, 0);
+        let ripples = (1..=8).map(|seed: u32| {
+            let seed = seed.to_string();
+            let arguments = [
+                "synth",
+                "--model",
+                "walk.footfall",
+                "--seed",
+                &seed,
+                "-o",
+                "out.bvh",
+            ];
+            assert_eq!(footfall(folder.path(), &arguments).code, 0);
+            evaluate(&bvh::read(folder.path().join("out.bvh")).unwrap()).ripple
+        });
+        ripples.sum::<f64>() / 8.0
+    });
+    eprintln!("ripple: paper {paper:.2e}, compact {compact:.2e}");
+    assert!(compact <= 1.05 * paper, "compact {compact}, paper {paper}");
+}
