@@ -4,6 +4,8 @@ extends Node
 ## After `--`, a word narrows the run to tests whose `file:method` contains it.
 
 const CASES := "res://cases"
+## Failed checks shown for each test.
+const MOST_SHOWN := 5
 
 
 func _ready() -> void:
@@ -31,8 +33,10 @@ func _ready() -> void:
 				print("ok     ", name_of_test)
 			else:
 				failed += 1
-				for failure: String in failures:
+				for failure: String in failures.slice(0, MOST_SHOWN):
 					printerr("FAILED %s: %s" % [name_of_test, failure])
+				if failures.size() > MOST_SHOWN:
+					printerr("FAILED %s: and %d checks more" % [name_of_test, failures.size() - MOST_SHOWN])
 	print("%d passed, %d failed" % [passed, failed])
 	get_tree().quit(0 if failed == 0 and passed > 0 else 1)
 

@@ -8,11 +8,11 @@ extends Node
 
 const PICTURES := 16
 const FRAMES_BETWEEN := 15
-## Name → heading and height in degrees and distance in metres of the camera around the first walker.
+## Name → a walker whom nobody hides, and heading and height in degrees and distance in metres of the camera around it.
 const CLOSE_UPS := {
-	"side": [90.0, 6.0, 3.6],
-	"front": [4.0, 5.0, 3.4],
-	"three_quarter": [38.0, 12.0, 3.9],
+	"side": [4, 90.0, 5.0, 3.4],
+	"front": [4, 3.0, 6.0, 3.4],
+	"three_quarter": [0, 38.0, 12.0, 3.9],
 }
 
 @onready var _scene := get_parent()
@@ -39,11 +39,12 @@ func _take_pictures(folder: String) -> void:
 	camera.set_process(false)
 	%Interface.hide()
 	for view: String in CLOSE_UPS:
-		camera.heading = deg_to_rad(CLOSE_UPS[view][0])
-		camera.height = deg_to_rad(CLOSE_UPS[view][1])
-		camera.distance_m = CLOSE_UPS[view][2]
+		var close_up: Array = CLOSE_UPS[view]
+		camera.heading = deg_to_rad(close_up[1])
+		camera.height = deg_to_rad(close_up[2])
+		camera.distance_m = close_up[3]
 		await _frames(8)
-		camera.look_from(_scene.walkers[0].global_position + Vector3.UP * 0.9)
+		camera.look_from(_scene.walkers[close_up[0]].global_position + Vector3.UP * 0.9)
 		await _save(folder.path_join("hero_%s.png" % view))
 	print("DEMO OK")
 	get_tree().quit()

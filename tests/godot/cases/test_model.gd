@@ -33,7 +33,10 @@ func test_a_character_is_loaded_on_a_thread_and_walks() -> void:
 	while ResourceLoader.load_threaded_get_status(path) == ResourceLoader.THREAD_LOAD_IN_PROGRESS:
 		await get_tree().process_frame
 	var scene: PackedScene = ResourceLoader.load_threaded_get(path)
-	var loaded: Node3D = scene.instantiate()
+	var loaded: Walker = scene.instantiate()
+	# What the script makes besides what the scene holds.
+	loaded.skeleton.free()
+	loaded.gait.free()
 	add_child(loaded)
 	var skeleton: Skeleton3D = loaded.find_children("*", "Skeleton3D", true, false)[0]
 	for frame: int in 30:

@@ -96,17 +96,18 @@ func test_optional_bones_are_folded_in() -> void:
 	var walker := _walker(func(made: Walker) -> void: made.missing = OPTIONAL)
 	check_equal(walker.gait.get_problems(), PackedStringArray(), "no problem")
 	var reference := _walker()
-	var stood := [false]
+	var trunk_bends := 0.0
 	for frame: int in 240:
 		walker.step(1.0 / 60.0)
 		reference.step(1.0 / 60.0)
 		# The one trunk bone has the whole trunk's rotation, the arms and the head their own.
 		for pair: Array in [["Spine", "UpperChest"], ["Head", "Head"], ["LeftUpperArm", "LeftUpperArm"], ["LeftHand", "LeftHand"]]:
-			check_below(walker.turn_of(pair[0]).angle_to(reference.turn_of(pair[1])), 2e-3, "turn of %s" % pair[0])
-		var stands := walker.gait.is_foot_on_ground(&"left")
+			# Feet without toes make steps a little different, so not all is equal to the last digit.
+			check_below(walker.turn_of(pair[0]).angle_to(reference.turn_of(pair[1])), 0.025, "turn of %s" % pair[0])
+		trunk_bends = maxf(trunk_bends, reference.turn_of("Spine").angle_to(reference.turn_of("UpperChest")))
 		for point: Vector3 in walker.sole(&"left"):
 			check(point.y > -0.015, "a foot without toes stays above the floor: %.4f" % point.y)
-		stood[0] = stood[0] or stands
+	check(trunk_bends > 0.06, "the comparison tells the trunk's bones apart: %s" % trunk_bends)
 	check(walker.global_position.z > 3.0, "it walked")
 
 

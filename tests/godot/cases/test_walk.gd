@@ -140,7 +140,7 @@ func test_not_playing_holds_the_pose() -> void:
 func test_root_motion_by_the_node_and_by_the_game_agree() -> void:
 	var moved := _walker()
 	var told := _walker()
-	var start := Transform3D(Basis(Vector3.UP, 0.8), Vector3(3, 1, -2))
+	var start := Transform3D(Basis(Vector3.UP, 0.8).scaled(Vector3.ONE * 1.25), Vector3(3, 1, -2))
 	for walker: Walker in [moved, told]:
 		walker.global_transform = start
 		walker.gait.turn_rate = 0.5

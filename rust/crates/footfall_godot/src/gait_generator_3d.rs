@@ -141,7 +141,7 @@ impl GaitGenerator3D {
     #[signal]
     fn footstep(foot: StringName, position: Vector3);
 
-    /// How far and about what the character travelled in the last frame, in its own axes and in metres.
+    /// How far and about what the character travelled in the last frame, in its own space: axes and scale are those of its node.
     ///
     /// With `root_motion` off, move the character by it in a function connected to `modification_processed`, so that body and feet
     /// move in the same frame: `character.global_transform *= gait.get_root_motion_delta()`, or with collisions
@@ -304,7 +304,7 @@ impl GaitGenerator3D {
         };
         let travels = self.root_motion && !in_editor;
         let travel = session.advance(dt_secs, controls);
-        self.root_motion_delta = session.character_delta(&travel);
+        self.root_motion_delta = session.local_delta(&travel);
         {
             // Scripts may answer to what happens here and come back to this node: no borrow may be held.
             let _released = self.base_mut();

@@ -1,8 +1,8 @@
 //! The Godot nodes: the only crate that names `godot`.
 //!
-//! [`gait_model`] is the resource that holds a trained walk, [`gait_generator_3d`] the node that walks a character with it.
-//! Between the engine and the runtime stand [`rest_body`] (proportions of any character from its rest pose),
-//! [`skeleton_binding`] (joints to bones and back), [`character`] (which node travels) and [`convert`] (vectors).
+//! `gait_model` is the resource that holds a trained walk, `gait_generator_3d` the node that walks a character with it.
+//! Between the engine and the runtime stand `rest_body` (proportions of any character from its rest pose),
+//! `skeleton_binding` (joints to bones and back), `character` (which node travels) and `convert` (vectors).
 //!
 //! Two flavours are built. With the feature `editor` the library also holds the import plugin for `.footfall` files and the
 //! class reference that the editor shows; exported games get the library without. Both register the same runtime classes.

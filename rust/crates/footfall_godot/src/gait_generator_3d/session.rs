@@ -78,11 +78,24 @@ impl Session {
         }
     }
 
-    /// The same travel in the axes of the character.
-    pub(super) fn character_delta(&self, travel: &Travel) -> Transform3D {
+    /// The same travel in the axes of the character, in metres.
+    fn character_delta(&self, travel: &Travel) -> Transform3D {
         let character_from_ground = self.binding.character_from_ground;
         let delta = character_from_ground * travel.ground * character_from_ground.inverse();
         convert::transform(Quat::from_rotation_y(travel.turn), delta.translation.into())
+    }
+
+    /// The same travel in the character's own space, in which a scaled character has other units than metres.
+    pub(super) fn local_delta(&self, travel: &Travel) -> Transform3D {
+        let mut delta = self.character_delta(travel);
+        let scale = self.character.get_global_transform().basis.get_scale();
+        if scale != Vector3::ONE {
+            let per_metre = |scale: f32| if scale == 0.0 { 0.0 } else { scale.recip() };
+            delta.origin.x *= per_metre(scale.x);
+            delta.origin.y *= per_metre(scale.y);
+            delta.origin.z *= per_metre(scale.z);
+        }
+        delta
     }
 
     /// Moves the character as the ground under it moved; its scale stays.
