@@ -5,6 +5,7 @@ use anyhow::{Context as _, Result, bail};
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Where the data are when `FOOTFALL_DATA` does not say so, from the repository's root.
 const DATA: &str = "../shared/data";
@@ -41,9 +42,23 @@ pub(crate) fn command() -> Result<()> {
             "-o",
             WALK,
         ]);
+    if let Some(commit) = current_commit(&root) {
+        cargo.env("FOOTFALL_COMMIT", commit);
+    }
     process::run(&mut cargo)?;
     eprintln!("{WALK} is made from the data: the tests check it, then commit it");
     Ok(())
+}
+
+/// The commit that the models are made with, as their provenance records it; `None` outside a checkout.
+fn current_commit(root: &Path) -> Option<String> {
+    let output = Command::new("git")
+        .current_dir(root)
+        .args(["rev-parse", "--short=12", "HEAD"])
+        .output()
+        .ok()?;
+    let commit = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| commit.trim().to_owned())
 }
 
 fn data_folder(root: &Path) -> Result<PathBuf> {

@@ -16,6 +16,9 @@ use std::sync::Arc;
 /// Steps at either end of the sentence that are solved but not shown.
 const LEAD_STEPS: usize = 1;
 
+/// Times add up with rounding: a frame this close counts as reached.
+const TIME_SLACK_SECS: f64 = 1e-9;
+
 /// What walk to make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WalkConfig {
@@ -178,14 +181,15 @@ fn put_on_ground(
     };
     let last = clip.poses.len() - 1;
     let frame = |time: f64, round: fn(f64) -> f64| {
-        round(time.min(elapsed) * clip.frame_rate_hz).clamp(0.0, last as f64) as usize
+        round(time.min(elapsed + TIME_SLACK_SECS) * clip.frame_rate_hz).clamp(0.0, last as f64)
+            as usize
     };
     let contacts = stances.map(|stances| {
         stances
             .iter()
             .map(|[first, end]| FrameSpan {
-                first: frame(*first - 1e-9, f64::ceil),
-                last: frame(*end + 1e-9, f64::floor),
+                first: frame(*first - TIME_SLACK_SECS, f64::ceil),
+                last: frame(*end + TIME_SLACK_SECS, f64::floor),
             })
             .collect()
     });

@@ -1,5 +1,11 @@
 //! What the generator promises, on the model that the add-on ships.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::trivially_copy_pass_by_ref,
+    reason = "tests may fail, and they pass controls on as the generator takes them"
+)]
+
 use footfall_core::rotation::heading;
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_model::GaitModel;
