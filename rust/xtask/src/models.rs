@@ -39,6 +39,8 @@ pub(crate) fn command() -> Result<()> {
             "category=neutral_walk",
             "--where",
             "path=cmu/*",
+            "--describe",
+            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), neutral walks",
             "-o",
             WALK,
         ]);
