@@ -5,6 +5,7 @@ use crate::pace::PaceTable;
 use crate::plan::Planner;
 use crate::planting::PlantedFrame;
 use crate::rocker::RockerFoot;
+use crate::standing::Amplitude;
 use crate::variance;
 use crate::walker::Walker;
 use footfall_core::rotation::{from_heading, wrap_angle};
@@ -19,8 +20,9 @@ const MAX_FOOTSTEPS: usize = 64;
 /// A single call advances by this much at most, seconds.
 const MAX_DT_SECS: f32 = 10.0;
 
-/// Slowest speed that is walked: below it steps would last for seconds.
-const MIN_SPEED_MPS: f32 = 0.25;
+/// Slower and turning less than this is standing.
+const STANDING_SPEED_MPS: f32 = 0.1;
+const STANDING_TURN_RATE_RADPS: f32 = 0.05;
 
 /// Fastest speed and turning that are walked.
 const MAX_SPEED_MPS: f32 = 3.0;
@@ -44,6 +46,9 @@ pub struct GeneratorConfig {
 }
 
 /// What the walker is asked to do. Takes effect with the next step.
+///
+/// A speed and turn rate near zero stop the walker within two steps; it stands until one of them rises. Turning without
+/// speed turns in place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Controls {
     /// Speed over the ground, m/s.
@@ -121,7 +126,7 @@ impl GaitGenerator {
         let phase = config.phase.rem_euclid(1.0);
         let first = if phase < 0.5 { Side::Left } else { Side::Right };
         let pace = paces.pace(model.speed.reference_mps);
-        walker.start(&mut planner, pace, first, Planner::draw)?;
+        walker.start(&mut planner, pace, first, Amplitude::WALK, Planner::draw)?;
         let position = (2.0 * phase).fract() * walker.step().timing.frames as f32;
         let mut generator = Self {
             planner,
@@ -139,6 +144,25 @@ impl GaitGenerator {
         Ok(generator)
     }
 
+    /// Starts over at the origin, standing still.
+    pub fn stand(&mut self) {
+        let pace = self.paces.pace(f64::from(STANDING_SPEED_MPS));
+        let side = self.walker.step().timing.leading;
+        let started = self.walker.start(
+            &mut self.planner,
+            pace,
+            side,
+            Amplitude::STAND,
+            Planner::draw,
+        );
+        // The model gave a trajectory when the generator was made, so it gives one now.
+        if started.is_ok() {
+            self.speed_mps = 0.0;
+            self.position = self.walker.step().timing.frames as f32;
+            self.plan_from_start = self.plan_from_character();
+        }
+    }
+
     /// Advances by `dt_secs` and writes the pose, in the character's own space: above the ground point that
     /// [`start_from_character`](Self::start_from_character) tells, facing +Z.
     ///
@@ -149,7 +173,12 @@ impl GaitGenerator {
             self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
         }
         while self.position >= self.walker.step().timing.frames as f32 {
-            self.position -= self.walker.step().timing.frames as f32;
+            let frames = self.walker.step().timing.frames as f32;
+            if self.walker.step().amplitude.to < 1.0 && is_standing(*controls) {
+                self.position = frames;
+                break;
+            }
+            self.position -= frames;
             self.next_step(controls);
         }
         let plan_from_character = self.plan_from_character();
@@ -185,14 +214,18 @@ impl GaitGenerator {
     }
 
     fn next_step(&mut self, controls: &Controls) {
-        let speed = finite_or(controls.speed_mps, 0.0).clamp(MIN_SPEED_MPS, MAX_SPEED_MPS);
+        let speed = finite_or(controls.speed_mps, 0.0).clamp(0.0, MAX_SPEED_MPS);
         let turn_rate = finite_or(controls.turn_rate_radps, 0.0)
             .clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS);
         self.speed_mps +=
             (speed - self.speed_mps).clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
         let pace = self.paces.pace(f64::from(self.speed_mps));
+        let amplitude = Amplitude {
+            from: self.walker.step().amplitude.to,
+            to: if is_standing(*controls) { 0.0 } else { 1.0 },
+        };
         self.walker
-            .advance(&mut self.planner, pace, turn_rate, Planner::draw);
+            .advance(&mut self.planner, pace, turn_rate, amplitude, Planner::draw);
         let side = self.walker.step().timing.leading;
         if let Some(planter) = self.walker.planter()
             && self.footsteps.len() < MAX_FOOTSTEPS
@@ -233,6 +266,11 @@ impl GaitGenerator {
             heading: wrap_angle(plan.heading - self.plan_from_start.heading),
         }
     }
+}
+
+fn is_standing(controls: Controls) -> bool {
+    finite_or(controls.speed_mps, 0.0) < STANDING_SPEED_MPS
+        && finite_or(controls.turn_rate_radps, 0.0).abs() < STANDING_TURN_RATE_RADPS
 }
 
 fn finite_or(value: f32, otherwise: f32) -> f32 {

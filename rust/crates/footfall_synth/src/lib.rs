@@ -11,6 +11,7 @@ mod plan;
 mod planting;
 mod raw;
 mod rocker;
+mod standing;
 mod trajectory;
 mod variance;
 mod walk;

@@ -2,6 +2,7 @@
 
 use crate::error::SynthError;
 use crate::plan::{Pace, Planner};
+use crate::standing::Amplitude;
 use crate::walker::Walker;
 use footfall_core::Side;
 use footfall_model::GaitModel;
@@ -13,8 +14,11 @@ const SAMPLES: usize = 7;
 /// How far beyond the speeds of the corpus the speed response is trusted, as a fraction of their range.
 const EXTRAPOLATION: f64 = 0.15;
 
-/// Limits of the factor by which tempo and stride together leave what was measured.
-const RESIDUAL_RANGE: [f64; 2] = [0.2, 1.5];
+/// Largest factor by which tempo and stride together exceed what was measured.
+const MAX_RESIDUAL: f64 = 1.6;
+
+/// Least factor on the tempo: slower walks take shorter strides instead.
+const MIN_TEMPO: f64 = 0.8;
 
 /// Which speed each pace of the model gives one walker.
 #[derive(Clone, Debug)]
@@ -61,11 +65,12 @@ impl PaceTable {
                 let share = (within - pair[0][1]) / (pair[1][1] - pair[0][1]);
                 pair[0][0] + share * (pair[1][0] - pair[0][0])
             });
-        let residual = (speed_mps / within.max(1e-3)).clamp(RESIDUAL_RANGE[0], RESIDUAL_RANGE[1]);
+        let residual = (speed_mps / within.max(1e-3)).clamp(0.0, MAX_RESIDUAL);
+        let tempo = residual.sqrt().max(MIN_TEMPO);
         Pace {
             covariate_mps,
-            tempo: residual.sqrt(),
-            stride: residual.sqrt(),
+            tempo,
+            stride: residual / tempo,
         }
     }
 }
@@ -82,7 +87,7 @@ fn travel(
         stride: 1.0,
     };
     let draw = |_: &mut Planner, side: Side| Planner::mean_draw(side);
-    walker.start(planner, pace, Side::Left, draw)?;
+    walker.start(planner, pace, Side::Left, Amplitude::WALK, draw)?;
     let mut travel = Vec3::ZERO;
     let mut frames = 0;
     for step in 0..4 {
@@ -94,7 +99,7 @@ fn travel(
             travel += to - from;
             frames += walker.step().timing.frames;
         }
-        walker.advance(planner, pace, 0.0, draw);
+        walker.advance(planner, pace, 0.0, Amplitude::WALK, draw);
     }
     Ok((travel * Vec3::new(1.0, 0.0, 1.0), frames))
 }

@@ -1,6 +1,7 @@
 //! What the coming steps are: how long their states last and what their means are.
 
 use crate::planting::StepTiming;
+use crate::standing::{Amplitude, START_TERMINAL};
 use footfall_core::Side;
 use footfall_model::{GaitModel, OBSERVATION_COUNT, STATES_PER_STEP, StepOffset};
 use rand::SeedableRng as _;
@@ -45,6 +46,8 @@ pub(crate) struct StepPlan {
     pub(crate) means: Vec<f64>,
     /// Factor on the legs' reach.
     pub(crate) stride: f64,
+    /// How much of the walk there is in the step.
+    pub(crate) amplitude: Amplitude,
 }
 
 impl StepPlan {
@@ -59,6 +62,16 @@ impl StepPlan {
             state_frames: [0; STATES_PER_STEP],
             means: vec![0.0; STATES_PER_STEP * OBSERVATION_COUNT],
             stride: 1.0,
+            amplitude: Amplitude::WALK,
+        }
+    }
+
+    /// Makes the step start or end a walk, or stand.
+    pub(crate) fn set_amplitude(&mut self, amplitude: Amplitude) {
+        self.amplitude = amplitude;
+        if amplitude.from < amplitude.to {
+            let least = (START_TERMINAL * self.timing.frames as f64).round() as usize;
+            self.timing.terminal = self.timing.terminal.max(least);
         }
     }
 }
@@ -172,6 +185,7 @@ impl Planner {
             terminal: ((terminal * passed as f64).round() as usize).clamp(1, passed - 2),
         };
         plan.stride = pace.stride;
+        plan.amplitude = Amplitude::WALK;
     }
 
     fn normal(&mut self) -> f64 {

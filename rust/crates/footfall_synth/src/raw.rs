@@ -65,7 +65,8 @@ impl RawFrame {
                 hip,
                 ankle: ankle + Vec3::Z * reach,
                 foot,
-                pitch: settled_pitch(pitch),
+                // A shorter stride lands flatter and pushes off less.
+                pitch: settled_pitch(pitch * stride_scale.min(1.0)),
                 heading,
             };
         }

@@ -16,6 +16,9 @@ use std::sync::Arc;
 /// Steps at either end of the sentence that are solved but not shown.
 const LEAD_STEPS: usize = 1;
 
+/// Slowest speed of a whole walk, m/s.
+const MIN_SPEED_MPS: f64 = 0.1;
+
 /// Times add up with rounding: a frame this close counts as reached.
 const TIME_SLACK_SECS: f64 = 1e-9;
 
@@ -91,7 +94,7 @@ pub fn synthesize(
         .speed_mps
         .map_or(model.speed.reference_mps, f64::from);
     let mut walker = Walker::new(model, skeleton, variance::streaming_solver(model)?);
-    let pace = PaceTable::measure(model, &mut planner, &mut walker)?.pace(speed.max(0.25));
+    let pace = PaceTable::measure(model, &mut planner, &mut walker)?.pace(speed.max(MIN_SPEED_MPS));
 
     let mut side = if LEAD_STEPS.is_multiple_of(2) {
         Side::Left

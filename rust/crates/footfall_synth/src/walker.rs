@@ -4,6 +4,7 @@ use crate::error::SynthError;
 use crate::plan::{Pace, Planner, StepDraw, StepPlan};
 use crate::planting::{PlantedFrame, Planter};
 use crate::raw::RawFrame;
+use crate::standing::{Amplitude, standing_features};
 use crate::trajectory::TrajectorySolver;
 use footfall_core::{Side, Skeleton};
 use footfall_model::{FEATURE_COUNT, GaitModel};
@@ -25,6 +26,7 @@ pub(crate) struct Walker {
     trajectory: Vec<f64>,
     current: usize,
     tie: [f64; TIE * FEATURE_COUNT],
+    standing: [f64; FEATURE_COUNT],
     raw: Vec<RawFrame>,
     planter: Option<Planter>,
     frame_secs: f32,
@@ -45,6 +47,7 @@ impl Walker {
             trajectory: Vec::with_capacity((WINDOW * longest + TIE) * FEATURE_COUNT),
             current: 0,
             tie: [0.0; TIE * FEATURE_COUNT],
+            standing: standing_features(model),
             raw: vec![RawFrame::default(); longest + 1],
             planter: None,
             frame_secs: (1.0 / model.frame_rate_hz) as f32,
@@ -62,6 +65,7 @@ impl Walker {
         planner: &mut Planner,
         pace: Pace,
         first: Side,
+        amplitude: Amplitude,
         draw: fn(&mut Planner, Side) -> StepDraw,
     ) -> Result<(), SynthError> {
         // A step before the first, never shown, brings the first into its stride.
@@ -69,6 +73,7 @@ impl Walker {
         for (slot, plan) in self.draws.iter_mut().zip(&mut self.plans) {
             *slot = draw(planner, side);
             planner.realise(slot, pace, plan);
+            plan.set_amplitude(amplitude);
             side = side.other();
         }
         let frames = self.solver.load(&self.plans, 0);
@@ -88,6 +93,7 @@ impl Walker {
         planner: &mut Planner,
         pace: Pace,
         turn_rate: f32,
+        amplitude: Amplitude,
         draw: fn(&mut Planner, Side) -> StepDraw,
     ) {
         let frames = self.plans[1].timing.frames;
@@ -101,6 +107,7 @@ impl Walker {
         for (slot, plan) in self.draws.iter().zip(&mut self.plans).skip(1) {
             planner.realise(slot, pace, plan);
         }
+        self.plans[1].set_amplitude(amplitude);
         let skip = self.plans[0].timing.frames + 1 - TIE;
         let frames = self.solver.load(&self.plans, skip);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
@@ -128,8 +135,13 @@ impl Walker {
         let plan = &self.plans[step];
         let rows = self.trajectory[self.current * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let raw = &mut self.raw[..=plan.timing.frames];
-        for (raw, features) in raw.iter_mut().zip(rows) {
-            raw.decode(features, &self.skeleton, plan.stride as f32);
+        for (index, (raw, features)) in raw.iter_mut().zip(rows).enumerate() {
+            let amplitude = plan.amplitude.at(index as f32 / plan.timing.frames as f32);
+            let mut blended = self.standing;
+            for (standing, walking) in blended.iter_mut().zip(features) {
+                *standing += f64::from(amplitude) * (walking - *standing);
+            }
+            raw.decode(&blended, &self.skeleton, plan.stride as f32);
         }
         let planter = self.planter.get_or_insert_with(|| {
             Planter::new(

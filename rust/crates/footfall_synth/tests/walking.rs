@@ -158,7 +158,7 @@ fn other_bodies_stand_as_well() {
 
 #[test]
 fn the_wanted_speed_is_walked_straight_ahead() {
-    for (seed, speed) in [(1, 0.7), (2, 1.0), (3, 1.3), (4, 1.6), (5, 2.0)] {
+    for (seed, speed) in [(1, 0.4), (2, 0.7), (3, 1.0), (4, 1.3), (5, 1.6), (6, 2.0)] {
         let mut generator = generator(seed);
         let skeleton = Skeleton::standard();
         run(&mut generator, &skeleton, &walking(speed), 120);
@@ -249,14 +249,93 @@ fn motion_is_continuous_through_changes_of_control() {
         };
         all.extend(run(&mut generator, &skeleton, &controls, 180).0);
     }
-    for triple in all.windows(3) {
+    assert_continuous(&all);
+}
+
+fn assert_continuous(frames: &[Frame]) {
+    for (index, triple) in frames.windows(3).enumerate() {
         for joint in Joint::ALL {
             let [a, b, c] = [&triple[0], &triple[1], &triple[2]].map(|f| f.model.position(joint));
-            let jerk = (a - 2.0 * b + c).length();
+            let jump = (a - 2.0 * b + c).length();
             // 120 m/s² at 60 fps: an impact of the toes is below it, a pop is not.
-            assert!(jerk < 0.034, "{joint:?} jumps by {jerk} m");
+            assert!(jump < 0.034, "{joint:?} jumps by {jump} m in frame {index}");
         }
     }
+}
+
+const STILL: Controls = Controls {
+    speed_mps: 0.0,
+    turn_rate_radps: 0.0,
+};
+
+/// How far apart two frames are at their most distant joint.
+fn distance(a: &Frame, b: &Frame) -> f32 {
+    let joints = a.model.positions.iter().zip(&b.model.positions);
+    joints.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+}
+
+#[test]
+fn a_walker_stops_within_two_steps_stands_and_walks_on() {
+    let skeleton = Skeleton::standard();
+    for seed in 1..5 {
+        let mut generator = generator(seed);
+        run(&mut generator, &skeleton, &walking(1.3), 200);
+        let (mut frames, footsteps) = run(&mut generator, &skeleton, &STILL, 240);
+        assert!(footsteps.len() <= 2, "{} steps to stop", footsteps.len());
+        let (first, last) = (&frames[150], &frames[239]);
+        assert!(distance(first, last) < 1e-6, "it does not stand still");
+        assert_eq!(last.contact, [true; 2]);
+        let feet = Side::BOTH.map(|side| last.model.position(side.foot()));
+        let apart = (feet[0] - feet[1]).dot(last.model.rotation(Joint::Hips) * Vec3::Z);
+        assert!(apart.abs() < 0.12, "feet stand {apart} m apart");
+        let hips = last.model.position(Joint::Hips).y;
+        assert!(
+            (0.95..1.0).contains(&hips),
+            "it stands with its hips at {hips} m"
+        );
+        let (on, footsteps) = run(&mut generator, &skeleton, &walking(1.3), 300);
+        assert!(footsteps.len() > 6);
+        frames.extend(on);
+        assert_planted(&skeleton, &frames);
+        assert_continuous(&frames);
+    }
+}
+
+#[test]
+fn it_can_begin_standing() {
+    let skeleton = Skeleton::standard();
+    let mut generator = generator(2);
+    generator.stand();
+    let (mut frames, footsteps) = run(&mut generator, &skeleton, &STILL, 30);
+    assert!(footsteps.is_empty());
+    assert!(distance(&frames[0], &frames[29]) < 1e-6);
+    assert!(frames[0].place.length() < 1e-6);
+    frames.extend(run(&mut generator, &skeleton, &walking(1.0), 120).0);
+    assert!(frames[149].place.z > 0.8);
+    assert_planted(&skeleton, &frames);
+    assert_continuous(&frames);
+}
+
+#[test]
+fn turning_without_speed_turns_in_place() {
+    let skeleton = Skeleton::standard();
+    let mut generator = generator(6);
+    generator.stand();
+    let controls = Controls {
+        speed_mps: 0.0,
+        turn_rate_radps: 1.0,
+    };
+    let (frames, footsteps) = run(&mut generator, &skeleton, &controls, 300);
+    let last = frames.last().unwrap();
+    assert!(last.place.length() < 0.35, "it went {}", last.place);
+    assert!(footsteps.len() >= 4);
+    let mut turned = 0.0;
+    for pair in frames.windows(2) {
+        turned += footfall_core::rotation::wrap_angle(pair[1].heading - pair[0].heading);
+    }
+    assert!((4.0..5.2).contains(&turned), "it turned by {turned}");
+    assert_planted(&skeleton, &frames);
+    assert_continuous(&frames);
 }
 
 #[test]
