@@ -34,6 +34,26 @@ func test_arms_hang_and_the_head_stays_up() -> void:
 		check_near((walker.joint("Head") - walker.joint("Hips")).normalized().y, 1.0, 0.05, "the trunk is upright"))
 
 
+func test_without_speed_it_stands_and_with_speed_it_walks_off() -> void:
+	var walker := _walker(func(made: Walker) -> void: made.gait.speed = 0.0)
+	walker.walk(2)
+	var hand := walker.joint("LeftHand")
+	walker.walk(60)
+	check(hand.distance_to(walker.joint("LeftHand")) < 1e-4, "it stands still")
+	check(walker.footsteps.is_empty(), "it makes no steps")
+	check_near(walker.joint("LeftFoot").z, walker.joint("RightFoot").z, 0.1, "feet side by side")
+	walker.gait.speed = 1.2
+	walker.walk(240)
+	check(walker.global_position.z > 2.0, "it walks off: %s" % walker.global_position)
+	walker.gait.speed = 0.0
+	walker.footsteps.clear()
+	walker.walk(120)
+	check(walker.footsteps.size() <= 2, "it stops within two steps: %d" % walker.footsteps.size())
+	var place := walker.joint("Head")
+	walker.walk(60)
+	check(place.distance_to(walker.joint("Head")) < 1e-4, "it stands again")
+
+
 func test_left_is_left_and_forward_is_forward() -> void:
 	var walker := _walker()
 	walker.walk(120, func() -> void:

@@ -32,7 +32,7 @@ pub(crate) struct GaitGenerator3D {
     /// How fast the character walks, in metres per second. Cadence and step length follow as they do in people.
     ///
     /// May change at any time; the walk takes it up with the next step. `GaitModel.get_speed_range()` tells what the model was
-    /// trained on. Nobody walks slower than 0.25 m/s: to stand, turn `playing` off.
+    /// trained on. At 0 the character stops within two steps and stands, or turns in place by `turn_rate`.
     #[export(range = (0.0, 2.5, 0.01, or_greater, suffix = "m/s"))]
     #[var(set = set_speed)]
     #[init(val = 1.3)]
@@ -264,7 +264,14 @@ impl GaitGenerator3D {
             phase: self.phase.rem_euclid(1.0) as f32,
             variation: self.variation as f32,
         };
-        Session::new(&trained, character, binding, &config)
+        Session::new(&trained, character, binding, &config, self.controls())
+    }
+
+    fn controls(&self) -> Controls {
+        Controls {
+            speed_mps: self.speed as f32,
+            turn_rate_radps: self.turn_rate as f32,
+        }
     }
 
     fn trained(&self) -> Result<std::sync::Arc<footfall_model::GaitModel>, String> {
@@ -293,17 +300,13 @@ impl GaitGenerator3D {
     fn walk(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
         self.reported = None;
         let in_editor = Engine::singleton().is_editor_hint();
-        let controls = Controls {
-            speed_mps: self.speed as f32,
-            turn_rate_radps: self.turn_rate as f32,
-        };
         let dt_secs = if self.playing {
             delta.max(0.0) as f32
         } else {
             0.0
         };
         let travels = self.root_motion && !in_editor;
-        let travel = session.advance(dt_secs, controls);
+        let travel = session.advance(dt_secs, self.controls());
         self.root_motion_delta = session.local_delta(&travel);
         {
             // Scripts may answer to what happens here and come back to this node: no borrow may be held.

@@ -57,6 +57,14 @@ pub struct Controls {
     pub turn_rate_radps: f32,
 }
 
+impl Controls {
+    /// Whether this asks for neither travel nor turning, so that the walker stands.
+    pub fn is_standing(self) -> bool {
+        finite_or(self.speed_mps, 0.0) < STANDING_SPEED_MPS
+            && finite_or(self.turn_rate_radps, 0.0).abs() < STANDING_TURN_RATE_RADPS
+    }
+}
+
 /// A place on the ground with a heading: `start_from_character` and the like.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GroundTransform {
@@ -174,7 +182,7 @@ impl GaitGenerator {
         }
         while self.position >= self.walker.step().timing.frames as f32 {
             let frames = self.walker.step().timing.frames as f32;
-            if self.walker.step().amplitude.to < 1.0 && is_standing(*controls) {
+            if self.walker.step().amplitude.to < 1.0 && controls.is_standing() {
                 self.position = frames;
                 break;
             }
@@ -222,7 +230,7 @@ impl GaitGenerator {
         let pace = self.paces.pace(f64::from(self.speed_mps));
         let amplitude = Amplitude {
             from: self.walker.step().amplitude.to,
-            to: if is_standing(*controls) { 0.0 } else { 1.0 },
+            to: if controls.is_standing() { 0.0 } else { 1.0 },
         };
         self.walker
             .advance(&mut self.planner, pace, turn_rate, amplitude, Planner::draw);
@@ -266,11 +274,6 @@ impl GaitGenerator {
             heading: wrap_angle(plan.heading - self.plan_from_start.heading),
         }
     }
-}
-
-fn is_standing(controls: Controls) -> bool {
-    finite_or(controls.speed_mps, 0.0) < STANDING_SPEED_MPS
-        && finite_or(controls.turn_rate_radps, 0.0).abs() < STANDING_TURN_RATE_RADPS
 }
 
 fn finite_or(value: f32, otherwise: f32) -> f32 {

@@ -31,7 +31,7 @@ pub(super) struct Travel {
 }
 
 impl Session {
-    /// Starts a walk where the character stands.
+    /// Starts a walk where the character stands; when `controls` ask for none, it stands there.
     ///
     /// # Errors
     /// Why the generator refuses, for the user.
@@ -40,9 +40,13 @@ impl Session {
         character: Gd<Node3D>,
         binding: SkeletonBinding,
         config: &GeneratorConfig,
+        controls: Controls,
     ) -> Result<Self, String> {
-        let generator = GaitGenerator::new(trained, &binding.body, config)
+        let mut generator = GaitGenerator::new(trained, &binding.body, config)
             .map_err(|error| format!("The walk cannot start: {error}"))?;
+        if controls.is_standing() {
+            generator.stand();
+        }
         let start_from_ground = generator.start_from_character();
         Ok(Self {
             pose: Pose::rest(&binding.body),
