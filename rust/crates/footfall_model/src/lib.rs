@@ -12,8 +12,8 @@ pub mod provenance;
 
 pub use file::{FORMAT_VERSION, ModelFileError};
 pub use gait_model::{
-    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse,
-    StateModel, StepModel, StepOffset, Variation,
+    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,
+    StepModel, StepOffset, Variation,
 };
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::gait_model::{
-    GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepModel,
-    StepOffset, Variation,
+    GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepModel, StepOffset,
+    Variation,
 };
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 use footfall_core::Skeleton;

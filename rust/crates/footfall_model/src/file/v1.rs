@@ -2,13 +2,12 @@
 
 use super::{ModelFileError, undecodable};
 use crate::gait_model::{
-    GaitModel, GlobalVarianceModel, SpeedResponse, StateModel, StepModel,
-    StepOffset, Variation,
+    GaitModel, GlobalVarianceModel, SpeedResponse, StateModel, StepModel, StepOffset, Variation,
 };
 use crate::layout::OBSERVATION_COUNT;
 use crate::provenance::Provenance;
-use footfall_prob::windows::Windows;
 use footfall_core::{FootShape, JOINT_COUNT, Skeleton};
+use footfall_prob::windows::Windows;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
