@@ -197,7 +197,7 @@ impl GaitGenerator {
             (frame.contact[side] || weight > 1.0 - SAME_FRAME)
                 && (next.contact[side] || weight < SAME_FRAME)
         });
-        *out = frame.pose.interpolate(&next.pose, weight);
+        frame.pose.interpolate_near(&next.pose, weight, out);
         out.root_position =
             character_from_plan * (out.root_position - plan_from_character.position);
         let root = Joint::Hips.index();

@@ -1,7 +1,7 @@
 //! What a frame of generated features says about the body before it is put on the ground.
 
 use crate::rocker::{pitch_and_heading, settled_pitch};
-use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_core::{JOINT_COUNT, Joint, Pose, Side, Skeleton};
 use footfall_model::layout;
 use glam::{Quat, Vec3};
 
@@ -49,17 +49,17 @@ impl RawFrame {
     /// Fills the frame from static features. `stride_scale` stretches the legs' reach forwards and backwards.
     pub(crate) fn decode(&mut self, features: &[f64], skeleton: &Skeleton, stride_scale: f32) {
         layout::decode(features, &mut self.rotations);
-        let pose = Pose {
-            root_position: Vec3::ZERO,
-            rotations: self.rotations,
-        };
-        let mut model = ModelPose::default();
-        forward_kinematics(skeleton, &pose, &mut model);
+        let hips = self.rotations[Joint::Hips.index()];
         for side in Side::BOTH {
-            let foot = model.rotation(side.foot());
+            let local = |joint: Joint| self.rotations[joint.index()];
+            let thigh = hips * local(side.upper_leg());
+            let shank = thigh * local(side.lower_leg());
+            let foot = shank * local(side.foot());
             let (pitch, heading) = pitch_and_heading(foot);
-            let hip = model.position(side.upper_leg());
-            let ankle = model.position(side.foot());
+            let hip = hips * skeleton.offset(side.upper_leg());
+            let ankle = hip
+                + thigh * skeleton.offset(side.lower_leg())
+                + shank * skeleton.offset(side.foot());
             let reach = (ankle.z - hip.z) * (stride_scale - 1.0);
             self.legs[side.index()] = RawLeg {
                 hip,

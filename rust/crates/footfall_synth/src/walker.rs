@@ -9,8 +9,9 @@ use crate::trajectory::TrajectorySolver;
 use footfall_core::{Side, Skeleton};
 use footfall_model::{FEATURE_COUNT, GaitModel};
 
-/// Steps in a window: the one before, the one to be put on the ground, and two ahead, which shape its end.
-const WINDOW: usize = 4;
+/// Steps in a window: the one before, the one to be put on the ground, and one ahead, which shapes its end. What lies
+/// beyond does not show: a frame's influence has died away after half a step.
+const WINDOW: usize = 3;
 
 /// Frames that tie a window to the one before: the longest dynamic window couples no more.
 const TIE: usize = 4;
@@ -22,6 +23,8 @@ pub(crate) struct Walker {
     solver: TrajectorySolver,
     draws: [StepDraw; WINDOW],
     plans: [StepPlan; WINDOW],
+    /// The pace of the steps ahead.
+    pace: Option<Pace>,
     /// Features of the window, and where the current step begins in it.
     trajectory: Vec<f64>,
     current: usize,
@@ -44,6 +47,7 @@ impl Walker {
             solver,
             draws: [(); WINDOW].map(|()| Planner::mean_draw(Side::Left)),
             plans: [(); WINDOW].map(|()| StepPlan::empty()),
+            pace: None,
             trajectory: Vec::with_capacity((WINDOW * longest + TIE) * FEATURE_COUNT),
             current: 0,
             tie: [0.0; TIE * FEATURE_COUNT],
@@ -68,6 +72,7 @@ impl Walker {
         amplitude: Amplitude,
         draw: fn(&mut Planner, Side) -> StepDraw,
     ) -> Result<(), SynthError> {
+        self.pace = (amplitude == Amplitude::WALK).then_some(pace);
         // A step before the first, never shown, brings the first into its stride.
         let mut side = first.other();
         for (slot, plan) in self.draws.iter_mut().zip(&mut self.plans) {
@@ -103,8 +108,14 @@ impl Walker {
         self.draws.rotate_left(1);
         self.plans.rotate_left(1);
         self.draws[WINDOW - 1] = draw(planner, self.draws[WINDOW - 2].side.other());
-        // The pace is taken anew for every step ahead: what the controls say now takes effect at once.
-        for (slot, plan) in self.draws.iter().zip(&mut self.plans).skip(1) {
+        // A new pace is taken up by every step ahead: what the controls say now takes effect at once.
+        let known = if self.pace == Some(pace) {
+            WINDOW - 1
+        } else {
+            1
+        };
+        self.pace = Some(pace);
+        for (slot, plan) in self.draws.iter().zip(&mut self.plans).skip(known) {
             planner.realise(slot, pace, plan);
         }
         self.plans[1].set_amplitude(amplitude);
@@ -136,6 +147,10 @@ impl Walker {
         let rows = self.trajectory[self.current * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let raw = &mut self.raw[..=plan.timing.frames];
         for (index, (raw, features)) in raw.iter_mut().zip(rows).enumerate() {
+            if plan.amplitude == Amplitude::WALK {
+                raw.decode(features, &self.skeleton, plan.stride as f32);
+                continue;
+            }
             let amplitude = plan.amplitude.at(index as f32 / plan.timing.frames as f32);
             let mut blended = self.standing;
             for (standing, walking) in blended.iter_mut().zip(features) {
