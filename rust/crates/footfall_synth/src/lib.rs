@@ -1,7 +1,7 @@
 //! Runtime: a gait model becomes poses.
 //!
-//! A step is planned ([`plan`]: durations and means, with chance and speed), turned into a smooth trajectory of joint
-//! rotations ([`trajectory`]), and put on the ground ([`planting`], on [`rocker`] feet). [`GaitGenerator`] does so in
+//! A step is planned (`plan`: durations and means, with chance and speed), turned into a smooth trajectory of joint
+//! rotations (`trajectory`), and put on the ground (`planting`, on `rocker` feet). [`GaitGenerator`] does so in
 //! real time; [`synthesize`] solves a whole walk at once.
 
 mod error;
