@@ -5,13 +5,14 @@
 //! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
 //! generated rotations and planted feet disagree about is spread over the swing.
 
+mod support;
 mod swing;
 
 use crate::raw::RawFrame;
 use crate::rocker::{Plant, RockerFoot};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
-use footfall_ik::{FootTarget, reach_height, solve_leg};
+use footfall_ik::{FootTarget, solve_leg};
 use glam::{Quat, Vec3};
 use swing::Swing;
 
@@ -21,15 +22,6 @@ const SETTLE_SECS: f32 = 0.07;
 /// Part of a step over which a new turn rate sets in.
 const TURN_ONSET: f32 = 0.6;
 
-/// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
-const MAX_STANCE_EXTENSION: f32 = 0.997;
-
-/// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
-const LET_GO_EXTENSION: f32 = 0.996;
-
-/// Over how many metres the pelvis yields to that limit.
-const REACH_SOFTNESS_M: f32 = 0.005;
-
 /// Generated legs disagree by a few centimetres about the hips' height when a foot lands. This share of the gap is closed
 /// before the landing, from this part of the step on, and the rest after it.
 const MEETING_SHARE: f32 = 0.5;
@@ -37,13 +29,6 @@ const MEETING_FROM: f32 = 0.4;
 
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
 const MAX_LANDING_EXTENSION: f32 = 0.985;
-
-/// Over how long a leaving leg's reach ceases to bear on the pelvis, seconds.
-const REACH_FADE_SECS: f32 = 0.07;
-
-/// How far the generated leg may carry the ankle away from where the foot stands before the foot leaves the ground, as a
-/// share of the leg's length.
-const RELEASE_SHARE: f32 = 0.03;
 
 /// One frame of a walk on the ground.
 #[derive(Clone, Debug, Default)]
@@ -255,73 +240,6 @@ impl Planter {
         self.standing(side, raw).ankle - level * raw.legs[side.index()].ankle
     }
 
-    /// The last frame up to `timing.terminal` in which the trailing foot can stay where it stands.
-    fn release(&self, raw: &[RawFrame], timing: &StepTiming, frames: &[PlantedFrame]) -> usize {
-        let trailing = timing.leading.other();
-        let allowance = RELEASE_SHARE * self.skeleton.leg_length(trailing);
-        (2..=timing.terminal)
-            .find(|index| {
-                let frame = &frames[*index];
-                let level = from_heading(frame.heading);
-                let free = free_foot(&raw[*index], trailing, frame.pose.root_position, level);
-                let ankle = self.standing(trailing, &raw[*index]).ankle;
-                free.ankle.distance(ankle) > allowance
-            })
-            .map_or(timing.terminal, |beyond| beyond - 1)
-    }
-
-    /// Fills the contacts, and lowers the hips, softly, to where every standing leg reaches its ankle.
-    fn bear(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) {
-        let fade_frames = REACH_FADE_SECS / self.frame_secs;
-        for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
-            let level = from_heading(frame.heading);
-            let hips = frame.pose.root_position;
-            for side in Side::BOTH {
-                let is_leading = side == timing.leading;
-                frame.contact[side.index()] =
-                    is_leading || index <= timing.terminal || index == timing.frames;
-                if !is_leading && index > timing.terminal {
-                    continue;
-                }
-                let fade = if is_leading || index == 0 {
-                    0.0
-                } else {
-                    let onset = index as f32 / timing.terminal as f32;
-                    let remaining = (timing.terminal - index) as f32;
-                    onset * (1.0 - remaining / fade_frames).max(0.0)
-                };
-                let length = self.skeleton.leg_length(side);
-                let hip = level * raw.legs[side.index()].hip;
-                let ankle = self.standing(side, raw).ankle;
-                let limit = reach_height(hips, hip, ankle, length, MAX_STANCE_EXTENSION);
-                // Out of reach sideways at any height: the solver stretches the leg, and the pelvis stays human.
-                if let Some(limit) = limit {
-                    let height = &mut frame.pose.root_position.y;
-                    *height = soft_min(*height, limit + 0.1 * length * fade * fade);
-                }
-            }
-        }
-    }
-
-    /// Ends the trailing foot's contact where its leg, stretched, does not reach any more; returns its last frame.
-    fn let_go(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) -> usize {
-        let trailing = timing.leading.other();
-        let reach = LET_GO_EXTENSION * self.skeleton.leg_length(trailing);
-        let beyond = (1..=timing.terminal).find(|index| {
-            let frame = &frames[*index];
-            let hip = from_heading(frame.heading) * raw[*index].legs[trailing.index()].hip;
-            let ankle = self.standing(trailing, &raw[*index]).ankle;
-            (frame.pose.root_position + hip).distance(ankle) > reach
-        });
-        let Some(beyond) = beyond else {
-            return timing.terminal;
-        };
-        for frame in &mut frames[beyond..=timing.terminal] {
-            frame.contact[trailing.index()] = false;
-        }
-        beyond - 1
-    }
-
     /// Where this foot stands on its plant at the generated pitch.
     fn standing(&self, side: Side, raw: &RawFrame) -> FootTarget {
         let pitch = raw.legs[side.index()].pitch;
@@ -398,15 +316,6 @@ fn within_reach(ankle_from_hip: Vec3, reach: f32) -> Vec3 {
 fn smooth_step(s: f32) -> f32 {
     let s = s.clamp(0.0, 1.0);
     s * s * (3.0 - 2.0 * s)
-}
-
-/// The smaller of two numbers, rounded off where they meet.
-fn soft_min(value: f32, limit: f32) -> f32 {
-    let excess = (value - limit) / REACH_SOFTNESS_M;
-    if excess > 20.0 {
-        return limit;
-    }
-    value - REACH_SOFTNESS_M * excess.exp().ln_1p()
 }
 
 /// Cubic Hermite curve at `s` in 0..1; the tangents are per unit of `s`.

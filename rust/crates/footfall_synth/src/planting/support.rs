@@ -1,0 +1,111 @@
+//! Which feet bear the body, and how high their legs let the hips be.
+
+use super::{PlantedFrame, Planter, StepTiming, free_foot};
+use crate::raw::RawFrame;
+use footfall_core::Side;
+use footfall_core::rotation::from_heading;
+use footfall_ik::reach_height;
+
+/// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
+const MAX_STANCE_EXTENSION: f32 = 0.997;
+
+/// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
+const LET_GO_EXTENSION: f32 = 0.996;
+
+/// Over how many metres the pelvis yields to that limit.
+const REACH_SOFTNESS_M: f32 = 0.005;
+
+/// Over how long a leaving leg's reach ceases to bear on the pelvis, seconds.
+const REACH_FADE_SECS: f32 = 0.07;
+
+/// How far the generated leg may carry the ankle away from where the foot stands before the foot leaves the ground, as a
+/// share of the leg's length.
+const RELEASE_SHARE: f32 = 0.03;
+
+impl Planter {
+    /// The last frame up to `timing.terminal` in which the trailing foot can stay where it stands.
+    pub(super) fn release(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+    ) -> usize {
+        let trailing = timing.leading.other();
+        let allowance = RELEASE_SHARE * self.skeleton.leg_length(trailing);
+        (2..=timing.terminal)
+            .find(|index| {
+                let frame = &frames[*index];
+                let level = from_heading(frame.heading);
+                let free = free_foot(&raw[*index], trailing, frame.pose.root_position, level);
+                let ankle = self.standing(trailing, &raw[*index]).ankle;
+                free.ankle.distance(ankle) > allowance
+            })
+            .map_or(timing.terminal, |beyond| beyond - 1)
+    }
+
+    /// Fills the contacts, and lowers the hips, softly, to where every standing leg reaches its ankle.
+    pub(super) fn bear(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) {
+        let fade_frames = REACH_FADE_SECS / self.frame_secs;
+        for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
+            let level = from_heading(frame.heading);
+            let hips = frame.pose.root_position;
+            for side in Side::BOTH {
+                let is_leading = side == timing.leading;
+                frame.contact[side.index()] =
+                    is_leading || index <= timing.terminal || index == timing.frames;
+                if !is_leading && index > timing.terminal {
+                    continue;
+                }
+                let fade = if is_leading || index == 0 {
+                    0.0
+                } else {
+                    let onset = index as f32 / timing.terminal as f32;
+                    let remaining = (timing.terminal - index) as f32;
+                    onset * (1.0 - remaining / fade_frames).max(0.0)
+                };
+                let length = self.skeleton.leg_length(side);
+                let hip = level * raw.legs[side.index()].hip;
+                let ankle = self.standing(side, raw).ankle;
+                let limit = reach_height(hips, hip, ankle, length, MAX_STANCE_EXTENSION);
+                // Out of reach sideways at any height: the solver stretches the leg, and the pelvis stays human.
+                if let Some(limit) = limit {
+                    let height = &mut frame.pose.root_position.y;
+                    *height = soft_min(*height, limit + 0.1 * length * fade * fade);
+                }
+            }
+        }
+    }
+
+    /// Ends the trailing foot's contact where its leg, stretched, does not reach any more; returns its last frame.
+    pub(super) fn let_go(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &mut [PlantedFrame],
+    ) -> usize {
+        let trailing = timing.leading.other();
+        let reach = LET_GO_EXTENSION * self.skeleton.leg_length(trailing);
+        let beyond = (1..=timing.terminal).find(|index| {
+            let frame = &frames[*index];
+            let hip = from_heading(frame.heading) * raw[*index].legs[trailing.index()].hip;
+            let ankle = self.standing(trailing, &raw[*index]).ankle;
+            (frame.pose.root_position + hip).distance(ankle) > reach
+        });
+        let Some(beyond) = beyond else {
+            return timing.terminal;
+        };
+        for frame in &mut frames[beyond..=timing.terminal] {
+            frame.contact[trailing.index()] = false;
+        }
+        beyond - 1
+    }
+}
+
+/// The smaller of two numbers, rounded off where they meet.
+fn soft_min(value: f32, limit: f32) -> f32 {
+    let excess = (value - limit) / REACH_SOFTNESS_M;
+    if excess > 20.0 {
+        return limit;
+    }
+    value - REACH_SOFTNESS_M * excess.exp().ln_1p()
+}
