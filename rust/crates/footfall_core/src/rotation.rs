@@ -31,7 +31,7 @@ pub fn exp_map(axis_angle: Vec3) -> Quat {
         -1.0 / 5_040.0,
         1.0 / 362_880.0,
         -1.0 / 39_916_800.0,
-        1.0 / 6_227_020_800.0,
+        1.605_904_4e-10, // 1 / 13!
     ]);
     Quat::from_vec4((axis_angle * (0.5 * sine_over_angle)).extend(cosine))
 }
