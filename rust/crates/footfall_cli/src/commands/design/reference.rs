@@ -36,19 +36,17 @@ pub(super) fn page() -> String {
     for spec in StyleSheet::keys() {
         if spec.section != section {
             section = spec.section;
-            page.push_str(&format!(
-                "\n## `[{section}]`\n\n| key | unit | range | as captured | what it does |\n| --- | --- | --- | --- | --- |\n"
-            ));
+            page.extend([
+                format!("\n## `[{section}]`\n\n"),
+                "| key | unit | range | as captured | what it does |\n| --- | --- | --- | --- | --- |\n".to_owned(),
+            ]);
         }
-        page.push_str(&format!(
-            "| `{}` | {} | {} to {} | {} | {} |\n",
-            spec.key,
-            spec.unit,
-            spec.range.start(),
-            spec.range.end(),
-            spec.neutral,
-            spec.text
-        ));
+        let (low, high) = (spec.range.start(), spec.range.end());
+        let row = format!(
+            "| `{}` | {} | {low} to {high} | {} | {} |\n",
+            spec.key, spec.unit, spec.neutral, spec.text
+        );
+        page.push_str(&row);
     }
     page.push_str(AFTERWORD);
     page
