@@ -268,12 +268,14 @@ impl Ground<'_> {
             };
             let rotation = (exp_map(blend(1)) * free[frame].foot).normalize();
             let hump = (PI * s).sin().powi(2);
-            // Captured toes are guessed by most marker sets; from their bend at the end of the stance they straighten.
-            let straighten = start[2] * (1.0 - smooth_step(2.0 * s));
+            // Captured toes are guessed by most marker sets: from their bend at the end of the stance they straighten, and
+            // they take on the bend with which they land, or a foot that lands on its toes would push them into the floor.
+            let toes =
+                start[2] * (1.0 - smooth_step(2.0 * s)) + end[2] * smooth_step(2.0 * s - 1.0);
             let mut target = FootTarget {
                 ankle: free[frame].ankle + blend(0) + Vec3::Y * raise * hump,
                 foot: rotation,
-                toes: rotation * exp_map(straighten),
+                toes: rotation * exp_map(toes),
             };
             let short = CLEARANCE_M * hump - foot.lowest(&target);
             target.ankle.y += soft_positive(short, 0.004 * (PI * s).sin() + 1e-5);
