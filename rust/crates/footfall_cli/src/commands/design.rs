@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 ///
 /// A style sheet is a short TOML file that says what to change: posture, swing, stride, cadence, sway, how the feet land.
 /// One recording becomes one file; a corpus becomes a folder with an index, from which `footfall adapt` learns the style.
-/// Names of shipped sheets: proud, decided, sad, topmodel, drunk, cool, afraid, tiptoeing, heavy, in_a_hurry, manly, and
+/// Names of shipped sheets: proud, decided, sad, topmodel, drunk, cool, afraid, tiptoeing, heavy, `in_a_hurry`, manly, and
 /// template.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
