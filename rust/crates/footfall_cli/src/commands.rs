@@ -2,6 +2,7 @@
 
 mod bench;
 mod contacts;
+mod design;
 mod inspect;
 mod retarget;
 mod sheet;
@@ -34,6 +35,7 @@ enum Command {
     Contacts(contacts::ContactsArgs),
     Train(train::TrainArgs),
     Synth(synth::SynthArgs),
+    Design(Box<design::DesignArgs>),
     Sheet(sheet::SheetArgs),
     Bench(bench::BenchArgs),
 }
@@ -47,6 +49,7 @@ impl Cli {
             Command::Contacts(args) => contacts::run(args),
             Command::Train(args) => train::run(args),
             Command::Synth(args) => synth::run(args),
+            Command::Design(args) => design::run(args),
             Command::Sheet(args) => sheet::run(args),
             Command::Bench(args) => bench::run(args),
         }

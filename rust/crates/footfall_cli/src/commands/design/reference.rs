@@ -1,0 +1,53 @@
+//! The page of all keys, made from the table that the parser uses.
+
+use footfall_design::StyleSheet;
+
+const INTRODUCTION: &str = "# Keys of a style sheet
+
+A style sheet is a TOML file. Every key may be left out: what is not named stays as it was captured. `name` and `summary` are
+texts at the top; all other values are numbers, in degrees, centimetres, percent (100 is as captured) and seconds.
+Angles and lengths are added to what was captured, percentages multiply it.
+";
+
+const AFTERWORD: &str = "
+`NAME` in `[joints.NAME]` is a joint of the humanoid profile above the legs: Hips, Spine, Chest, UpperChest, Neck, Head, and
+LeftShoulder, LeftUpperArm, LeftLowerArm, LeftHand and their right counterparts. Without Left or Right, as in
+`[joints.UpperArm]`, both sides are edited, the right one mirrored. Legs follow from where hips and feet are.
+
+## `[[curve]]`
+
+An edit that follows the gait cycle; may repeat. `joint` is a name as above, `axis` is `pitch`, `yaw` or `roll`, and `points` are
+`[percent of the cycle, degrees]`, with a third number if wanted: the percentage (0 to 300) of the joint's own movement about
+its mean there. At least two points, in order, from 0 to below 100; between them the curve is smooth, and it closes. The cycle
+of a joint of the left side or the middle starts when the left foot lands, that of the right side when the right foot does.
+
+```toml
+[[curve]]
+joint = \"LowerArm\"            # both elbows
+axis = \"pitch\"
+points = [[0, 0], [50, -10]]
+```
+";
+
+/// The page, Markdown.
+pub(super) fn page() -> String {
+    let mut page = INTRODUCTION.to_owned();
+    let mut section = "";
+    for spec in StyleSheet::keys() {
+        if spec.section != section {
+            section = spec.section;
+            page.extend([
+                format!("\n## `[{section}]`\n\n"),
+                "| key | unit | range | as captured | what it does |\n| --- | --- | --- | --- | --- |\n".to_owned(),
+            ]);
+        }
+        let (low, high) = (spec.range.start(), spec.range.end());
+        let row = format!(
+            "| `{}` | {} | {low} to {high} | {} | {} |\n",
+            spec.key, spec.unit, spec.neutral, spec.text
+        );
+        page.push_str(&row);
+    }
+    page.push_str(AFTERWORD);
+    page
+}

@@ -1,0 +1,246 @@
+//! The style sheet: what is to change about a captured walk, in numbers that a person would use.
+//!
+//! Every key is declared once, in the table below; the parser, the range check, the defaults and the documentation that
+//! `footfall design --keys` prints all come from it.
+
+mod parse;
+
+use crate::curve::PeriodicCurve;
+use core::ops::RangeInclusive;
+use footfall_core::Joint;
+
+/// A key of the sheet, for documentation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeySpec {
+    /// Table of the sheet, for example `walk`.
+    pub section: &'static str,
+    /// Key in the table.
+    pub key: &'static str,
+    /// Unit of the value.
+    pub unit: &'static str,
+    /// The value that changes nothing.
+    pub neutral: f32,
+    /// Least and greatest value.
+    pub range: RangeInclusive<f32>,
+    /// What it does.
+    pub text: &'static str,
+}
+
+/// A table of numbers.
+trait Section {
+    fn value_mut(&mut self, key: &str) -> Option<&mut f32>;
+}
+
+macro_rules! sections {
+    ($($(#[$about:meta])* $section:ident $name:literal {
+        $($key:ident: $neutral:literal, $range:expr, $unit:literal, $text:literal;)*
+    })*) => {
+        $($(#[$about])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $section {
+            $(#[doc = $text] pub $key: f32,)*
+        }
+
+        impl Default for $section {
+            fn default() -> Self {
+                Self { $($key: $neutral,)* }
+            }
+        }
+
+        impl $section {
+            /// Every key of the table under the name that it has in the sheet.
+            pub fn keys(section: &'static str) -> Vec<KeySpec> {
+                vec![$(KeySpec {
+                    section,
+                    key: stringify!($key),
+                    unit: $unit,
+                    neutral: $neutral,
+                    range: $range,
+                    text: $text,
+                },)*]
+            }
+
+        }
+
+        impl Section for $section {
+            fn value_mut(&mut self, key: &str) -> Option<&mut f32> {
+                match key {
+                    $(stringify!($key) => Some(&mut self.$key),)*
+                    _ => None,
+                }
+            }
+        })*
+    };
+}
+
+sections! {
+    /// `[walk]`: steps in space and time.
+    Walk "walk" {
+        stride: 100.0, 30.0..=150.0, "%", "Length of the steps, of the captured one.";
+        cadence: 100.0, 40.0..=170.0, "%", "Steps a minute, of the captured cadence.";
+        stance_share: 0.0, -8.0..=15.0, "% of the stride", "How much longer each foot stands; more means both feet are down for longer.";
+        width: 0.0, -25.0..=30.0, "cm", "Added to the distance between the feet, side to side; below zero narrows, to a cross-over at most.";
+        toe_out: 0.0, -30.0..=40.0, "degrees", "Turns the toes of both feet out.";
+    }
+    /// `[feet]`: how they land, push off and swing.
+    Feet "feet" {
+        landing: 0.0, -40.0..=20.0, "degrees", "Foot pitch at landing: above zero the toes are higher and the heel strikes harder, -20 lands about flat, -35 on the toes.";
+        push_off: 100.0, 0.0..=150.0, "%", "How far the heel rises before the foot leaves the ground.";
+        heel_raise: 0.0, 0.0..=45.0, "degrees", "Raises the heels all the time: on tiptoe.";
+        lift: 0.0, -3.0..=25.0, "cm", "Lifts the swinging foot, and with it the knee, higher.";
+    }
+    /// `[pelvis]`: height, sway and turns of the hips.
+    Pelvis "pelvis" {
+        height: 0.0, -25.0..=5.0, "cm", "Raises or lowers the hips; lower bends the knees. Straight legs set an upper limit.";
+        bounce: 100.0, 0.0..=300.0, "%", "How much the hips go up and down. Shorter steps lessen it by themselves.";
+        sway: 100.0, 0.0..=300.0, "%", "How much the hips go from side to side.";
+        sway_more: 0.0, -5.0..=10.0, "cm", "Added sway to each side, towards the standing foot.";
+        tilt: 0.0, -20.0..=25.0, "degrees", "Tilts the pelvis forward; the trunk stays as it is.";
+        list: 0.0, -10.0..=20.0, "degrees", "Added drop of the swinging side, to each side: hips that roll.";
+        turn: 0.0, -10.0..=20.0, "degrees", "Added turn that brings the hip of the stepping leg forward, to each side.";
+    }
+    /// `[trunk]`: from waist to shoulders.
+    Trunk "trunk" {
+        lean: 0.0, -20.0..=45.0, "degrees", "Leans the trunk forward from the waist.";
+        slump: 0.0, -25.0..=45.0, "degrees", "Rounds the upper back; below zero pushes the chest out.";
+        side_lean: 0.0, -25.0..=25.0, "degrees", "Leans the trunk to its left all the time.";
+        sway: 0.0, -10.0..=15.0, "degrees", "Added lean over the standing foot, to each side.";
+        turn: 0.0, -15.0..=20.0, "degrees", "Added turn of the shoulders against the hips, to each side.";
+        amplitude: 100.0, 0.0..=300.0, "%", "How much the trunk moves about its mean posture.";
+    }
+    /// `[head]`: where the face points.
+    Head "head" {
+        pitch: 0.0, -35.0..=50.0, "degrees", "Lowers the face, whatever the trunk does: 30 looks at the ground.";
+        turn: 0.0, -60.0..=60.0, "degrees", "Turns the face to its left.";
+        tilt: 0.0, -30.0..=30.0, "degrees", "Tilts the head towards the left shoulder.";
+        amplitude: 100.0, 0.0..=300.0, "%", "How much the head moves about its mean posture.";
+    }
+    /// `[shoulders]`: the shoulder girdle.
+    Shoulders "shoulders" {
+        raise: 0.0, -15.0..=30.0, "degrees", "Raises both shoulders; below zero lets them drop.";
+        forward: 0.0, -25.0..=30.0, "degrees", "Brings both shoulders forward; below zero draws them back.";
+    }
+    /// `[arms]`: swing and carriage of both arms.
+    Arms "arms" {
+        swing: 100.0, 0.0..=250.0, "%", "How far the upper arms swing.";
+        elbow_swing: 100.0, 0.0..=250.0, "%", "How much the elbows bend and stretch with the swing.";
+        forward: 0.0, -40.0..=90.0, "degrees", "Carries the upper arms further forward.";
+        out: 0.0, -15.0..=70.0, "degrees", "Carries the upper arms further from the body.";
+        elbow: 0.0, -30.0..=120.0, "degrees", "Bends the elbows more.";
+        turn_in: 0.0, -60.0..=90.0, "degrees", "Turns the arms about their own length so that bent forearms point inward.";
+    }
+    /// `[left]` and `[right]`: what one side does differently, for limps and habits.
+    OneSide "left" {
+        step_length: 100.0, 50.0..=130.0, "%", "Length of the step that ends with this foot.";
+        step_time: 100.0, 60.0..=150.0, "%", "Time for which this foot carries the body: shorter spares it.";
+        drop: 0.0, -5.0..=10.0, "cm", "How much the hips sink while this foot carries the body.";
+        lift: 0.0, -3.0..=20.0, "cm", "Lifts this foot higher when it swings.";
+        arm_swing: 100.0, 0.0..=250.0, "%", "How far this arm swings.";
+    }
+    /// `[irregular]`: chance, anew for every step; the numbers are standard deviations.
+    Irregular "irregular" {
+        step_length: 0.0, 0.0..=25.0, "%", "Of the length of the steps.";
+        step_time: 0.0, 0.0..=25.0, "%", "Of the time of the steps.";
+        step_width: 0.0, 0.0..=10.0, "cm", "Of where the feet land, side to side.";
+        wander: 0.0, 0.0..=25.0, "cm", "Of a slow weave off the straight path.";
+        trunk: 0.0, 0.0..=10.0, "degrees", "Of a slow lean and sway of the trunk.";
+        head: 0.0, 0.0..=15.0, "degrees", "Of slow turns and nods of the head.";
+        arms: 0.0, 0.0..=20.0, "degrees", "Of slow moves of the arms.";
+        period: 1.6, 0.6..=6.0, "seconds", "How slow the slow ones are.";
+    }
+    /// `[joints.NAME]`: any joint by its name.
+    JointEdit "joints.NAME" {
+        pitch: 0.0, -90.0..=90.0, "degrees", "Turns the joint about the left-right axis of its parent; a trunk leans forward, a hanging arm goes back.";
+        yaw: 0.0, -90.0..=90.0, "degrees", "Turns the joint about the up axis of its parent, to the left.";
+        roll: 0.0, -90.0..=90.0, "degrees", "Turns the joint about the forward axis of its parent; a trunk leans right, a left arm rises.";
+        amplitude: 100.0, 0.0..=300.0, "%", "How much the joint moves about its mean.";
+    }
+}
+
+/// Axis of a `[[curve]]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// About the left-right axis of the parent.
+    Pitch,
+    /// About the up axis of the parent.
+    Yaw,
+    /// About the forward axis of the parent.
+    Roll,
+}
+
+/// `[[curve]]`: an offset and an amplitude of one joint that repeat with the gait cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhaseCurve {
+    /// The joint.
+    pub joint: Joint,
+    /// Which turn.
+    pub axis: Axis,
+    /// Degrees over the cycle, which starts when the joint's own foot lands (the left one for the trunk).
+    pub offset: PeriodicCurve,
+    /// Percent of the joint's movement about its mean, over the cycle.
+    pub amplitude: PeriodicCurve,
+}
+
+/// A whole sheet.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[expect(missing_docs, reason = "the tables are documented on their types")]
+pub struct StyleSheet {
+    /// Name of the style.
+    pub name: String,
+    /// One sentence on it.
+    pub summary: String,
+    pub walk: Walk,
+    pub feet: Feet,
+    pub pelvis: Pelvis,
+    pub trunk: Trunk,
+    pub head: Head,
+    pub shoulders: Shoulders,
+    pub arms: Arms,
+    /// Left, then right.
+    pub sides: [OneSide; 2],
+    pub irregular: Irregular,
+    /// Edits of single joints.
+    pub joints: Vec<(Joint, JointEdit)>,
+    /// Edits that follow the gait cycle.
+    pub curves: Vec<PhaseCurve>,
+}
+
+impl StyleSheet {
+    /// Whether the sheet asks for no change at all.
+    pub fn is_neutral(&self) -> bool {
+        let named = Self {
+            name: self.name.clone(),
+            summary: self.summary.clone(),
+            ..Self::default()
+        };
+        *self == named
+    }
+
+    /// Every key that a sheet may have, in reading order.
+    pub fn keys() -> Vec<KeySpec> {
+        [
+            Walk::keys("walk"),
+            Feet::keys("feet"),
+            Pelvis::keys("pelvis"),
+            Trunk::keys("trunk"),
+            Head::keys("head"),
+            Shoulders::keys("shoulders"),
+            Arms::keys("arms"),
+            OneSide::keys("left"),
+            OneSide::keys("right"),
+            Irregular::keys("irregular"),
+            JointEdit::keys("joints.NAME"),
+        ]
+        .concat()
+    }
+}
+
+/// Why a sheet cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {what}")]
+pub struct SheetError {
+    /// Line of the sheet, from 1.
+    pub line: usize,
+    /// What is wrong, and what to write instead.
+    pub what: String,
+}
