@@ -1,5 +1,6 @@
 //! The commands, one module each, and what they share.
 
+mod adapt;
 mod bench;
 mod contacts;
 mod inspect;
@@ -33,6 +34,7 @@ enum Command {
     Retarget(retarget::RetargetArgs),
     Contacts(contacts::ContactsArgs),
     Train(train::TrainArgs),
+    Adapt(adapt::AdaptArgs),
     Synth(synth::SynthArgs),
     Sheet(sheet::SheetArgs),
     Bench(bench::BenchArgs),
@@ -46,6 +48,7 @@ impl Cli {
             Command::Retarget(args) => retarget::run(args),
             Command::Contacts(args) => contacts::run(args),
             Command::Train(args) => train::run(args),
+            Command::Adapt(args) => adapt::run(args),
             Command::Synth(args) => synth::run(args),
             Command::Sheet(args) => sheet::run(args),
             Command::Bench(args) => bench::run(args),

@@ -3,17 +3,19 @@
 //! Probability is in f64 and poses are in f32; the two meet in [`layout`]. The crate works on bytes: it reads and
 //! writes no file.
 //!
-//! Modules in suggested reading order: [`layout`], [`gait_model`], [`provenance`], [`file`].
+//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`provenance`], [`file`].
 
 pub mod file;
 pub mod gait_model;
 pub mod layout;
 pub mod provenance;
+pub mod style;
 
 pub use file::{FORMAT_VERSION, ModelFileError};
 pub use gait_model::{
-    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse,
-    StateModel, StepModel, StepOffset, Variation,
+    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,
+    StepModel, StepOffset, Variation,
 };
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;
+pub use style::{GaitStyle, StyleError};

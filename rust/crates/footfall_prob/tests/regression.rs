@@ -1,5 +1,7 @@
 //! Linear-regression transforms against slow references.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
+
 use footfall_prob::ProbError;
 use footfall_prob::gaussian::{DiagonalGaussian, GaussianStats};
 use footfall_prob::regression::{

@@ -114,25 +114,23 @@ fn smooth_headings(clip: &Clip) -> Vec<f64> {
         return raw;
     };
     let width = HEADING_WINDOW_SECS * clip.frame_rate_hz;
-    let reach = (3.0 * width).ceil() as isize;
+    let reach = (3.0 * width).ceil() as usize;
     // Point reflection at the ends keeps the trend of a turn.
-    let at = |index: isize| {
-        let last = last as isize;
-        if index < 0 {
-            2.0 * raw[0] - raw[(-index).min(last) as usize]
-        } else if index > last {
-            2.0 * raw[last as usize] - raw[(2 * last - index).max(0) as usize]
-        } else {
-            raw[index as usize]
-        }
+    let before = |offset: usize, frame: usize| match frame.checked_sub(offset) {
+        Some(index) => raw[index],
+        None => 2.0 * raw[0] - raw[(offset - frame).min(last)],
     };
-    (0..=last as isize)
+    let after = |offset: usize, frame: usize| match (frame + offset).checked_sub(last + 1) {
+        None => raw[frame + offset],
+        Some(beyond) => 2.0 * raw[last] - raw[last.saturating_sub(beyond + 1)],
+    };
+    (0..=last)
         .map(|frame| {
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for offset in -reach..=reach {
+            let (mut sum, mut weights) = (raw[frame], 1.0);
+            for offset in 1..=reach {
                 let weight = (-0.5 * (offset as f64 / width).powi(2)).exp();
-                sum += weight * at(frame + offset);
-                weights += weight;
+                sum += weight * (before(offset, frame) + after(offset, frame));
+                weights += 2.0 * weight;
             }
             sum / weights
         })
