@@ -3,7 +3,7 @@
 //! Probability is in f64 and poses are in f32; the two meet in [`layout`]. The crate works on bytes: it reads and
 //! writes no file.
 //!
-//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`provenance`], [`file`].
+//! Modules in suggested reading order: [`layout`], [`gait_model`], [`provenance`], [`mod@file`].
 
 pub mod file;
 pub mod gait_model;
