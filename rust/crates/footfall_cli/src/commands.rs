@@ -1,5 +1,6 @@
 //! The commands, one module each, and what they share.
 
+mod adapt;
 mod bench;
 mod contacts;
 mod design;
@@ -34,6 +35,7 @@ enum Command {
     Retarget(retarget::RetargetArgs),
     Contacts(contacts::ContactsArgs),
     Train(train::TrainArgs),
+    Adapt(adapt::AdaptArgs),
     Synth(synth::SynthArgs),
     Design(Box<design::DesignArgs>),
     Sheet(sheet::SheetArgs),
@@ -48,6 +50,7 @@ impl Cli {
             Command::Retarget(args) => retarget::run(args),
             Command::Contacts(args) => contacts::run(args),
             Command::Train(args) => train::run(args),
+            Command::Adapt(args) => adapt::run(args),
             Command::Synth(args) => synth::run(args),
             Command::Design(args) => design::run(args),
             Command::Sheet(args) => sheet::run(args),

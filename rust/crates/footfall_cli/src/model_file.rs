@@ -1,7 +1,7 @@
-//! Gait models on disk.
+//! Gait models and styles on disk.
 
 use anyhow::{Context as _, Result};
-use footfall_model::GaitModel;
+use footfall_model::{GaitModel, GaitStyle};
 use std::fs;
 use std::path::Path;
 
@@ -10,4 +10,11 @@ pub(crate) fn read_model(path: &Path) -> Result<GaitModel> {
     let bytes =
         fs::read(path).with_context(|| format!("{}: cannot read the model", path.display()))?;
     GaitModel::from_bytes(&bytes).with_context(|| path.display().to_string())
+}
+
+/// Reads a `.footstyle` file; errors name it.
+pub(crate) fn read_style(path: &Path) -> Result<GaitStyle> {
+    let bytes =
+        fs::read(path).with_context(|| format!("{}: cannot read the style", path.display()))?;
+    GaitStyle::from_bytes(&bytes).with_context(|| path.display().to_string())
 }

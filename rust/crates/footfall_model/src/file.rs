@@ -1,4 +1,4 @@
-//! The container that every model file shares, and the `.footfall` file.
+//! The container that every model file shares, and the `.footfall` and `.footstyle` files.
 //!
 //! | bytes | content |
 //! | --- | --- |
@@ -10,10 +10,12 @@
 //! | … | payload: postcard encoding of the version's own types (`v1`) |
 //! | 4 | CRC-32 of all that precedes |
 
+mod style_v1;
 mod v1;
 
 use crate::gait_model::{GaitModel, ModelError};
 use crate::provenance::Provenance;
+use crate::style::GaitStyle;
 use serde::{Deserialize, Serialize};
 
 /// The version that this build writes. It reads all versions up to this one.
@@ -21,11 +23,12 @@ pub const FORMAT_VERSION: u32 = 1;
 
 const MAGIC: &[u8; 8] = b"FOOTFALL";
 const GAIT_KIND: &str = "gait";
+const STYLE_KIND: &str = "style";
 
 /// The part of a file that every version can read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
-    /// What the payload is: `gait`.
+    /// What the payload is: `gait` or `style`.
     pub kind: String,
     /// The version of Footfall that wrote the file.
     pub written_by: String,
@@ -96,16 +99,57 @@ impl GaitModel {
     /// [`ModelFileError`] says what is wrong with the bytes; no input panics.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
         let (header, payload) = read_container(bytes)?;
-        if header.kind != GAIT_KIND {
-            return Err(ModelFileError::WrongKind {
-                expected: GAIT_KIND,
-                found: header.kind,
-            });
-        }
+        check_kind(&header, GAIT_KIND)?;
         let model = v1::decode(payload, header.provenance)?;
         model.check()?;
         Ok(model)
     }
+
+    /// A number that tells this model from others: the CRC-32 of its payload in format version 1. It says nothing of the
+    /// provenance, and is the same before writing and after reading.
+    ///
+    /// # Errors
+    /// [`ModelError::Value`] when the model cannot be encoded.
+    pub fn fingerprint(&self) -> Result<u32, ModelError> {
+        let payload = v1::encode(self).map_err(|error| ModelError::Value {
+            part: error.to_string(),
+        })?;
+        Ok(crc32fast::hash(&payload))
+    }
+}
+
+impl GaitStyle {
+    /// The bytes of a `.footstyle` file. Numbers are stored as f32.
+    ///
+    /// # Errors
+    /// [`ModelFileError::Content`] when the style would not load again.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
+        self.check()?;
+        let payload = style_v1::encode(self)?;
+        write_container(STYLE_KIND, &self.provenance, &payload)
+    }
+
+    /// The style in the bytes of a `.footstyle` file.
+    ///
+    /// # Errors
+    /// [`ModelFileError`] says what is wrong with the bytes; no input panics.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
+        let (header, payload) = read_container(bytes)?;
+        check_kind(&header, STYLE_KIND)?;
+        let style = style_v1::decode(payload, header.provenance)?;
+        style.check()?;
+        Ok(style)
+    }
+}
+
+fn check_kind(header: &Header, expected: &'static str) -> Result<(), ModelFileError> {
+    if header.kind == expected {
+        return Ok(());
+    }
+    Err(ModelFileError::WrongKind {
+        expected,
+        found: header.kind.clone(),
+    })
 }
 
 /// The header of any model file, also of one that a later version wrote.
@@ -202,4 +246,4 @@ fn undecodable(part: &'static str, error: &dyn core::fmt::Display) -> ModelFileE
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -205,20 +205,9 @@ impl GaitModel {
             });
         }
         for side in Side::BOTH {
-            self.check_step(side)?;
+            self.step(side).check(side.name())?;
         }
-        check_len(
-            "global variance mean",
-            &self.global_variance.mean,
-            FEATURE_COUNT,
-        )?;
-        check_len(
-            "global variance variance",
-            &self.global_variance.variance,
-            FEATURE_COUNT,
-        )?;
-        check_positive("global variance mean", &self.global_variance.mean)?;
-        check_positive("global variance variance", &self.global_variance.variance)?;
+        self.global_variance.check()?;
         check_positive(
             "speeds",
             &[
@@ -245,22 +234,28 @@ impl GaitModel {
         }
         Ok(())
     }
+}
 
-    fn check_step(&self, side: Side) -> Result<(), ModelError> {
-        let step = self.step(side);
-        let name = side.name();
-        if step.states.len() != STATES_PER_STEP {
+impl StepModel {
+    /// Mean duration in frames.
+    pub fn mean_frames(&self) -> f64 {
+        self.states.iter().map(|state| state.duration_mean).sum()
+    }
+
+    /// Checks every shape and value; `name` says which step it is.
+    pub(crate) fn check(&self, name: &str) -> Result<(), ModelError> {
+        if self.states.len() != STATES_PER_STEP {
             return Err(ModelError::Shape {
                 part: format!("states of the {name} step"),
                 expected: STATES_PER_STEP,
-                found: step.states.len(),
+                found: self.states.len(),
             });
         }
         check_finite(
             &format!("terminal contact of the {name} step"),
-            &[step.other_terminal],
+            &[self.other_terminal],
         )?;
-        for (index, state) in step.states.iter().enumerate() {
+        for (index, state) in self.states.iter().enumerate() {
             let part = format!("state {index} of the {name} step");
             check_len(&part, &state.mean, OBSERVATION_COUNT)?;
             check_len(&part, &state.variance, OBSERVATION_COUNT)?;
@@ -269,6 +264,16 @@ impl GaitModel {
             check_positive(&part, &[state.duration_mean, state.duration_variance])?;
         }
         Ok(())
+    }
+}
+
+impl GlobalVarianceModel {
+    /// Checks every shape and value.
+    pub(crate) fn check(&self) -> Result<(), ModelError> {
+        check_len("global variance mean", &self.mean, FEATURE_COUNT)?;
+        check_len("global variance variance", &self.variance, FEATURE_COUNT)?;
+        check_positive("global variance mean", &self.mean)?;
+        check_positive("global variance variance", &self.variance)
     }
 }
 

@@ -9,6 +9,7 @@ pub mod file;
 pub mod gait_model;
 pub mod layout;
 pub mod provenance;
+pub mod style;
 
 pub use file::{FORMAT_VERSION, ModelFileError};
 pub use gait_model::{
@@ -17,3 +18,4 @@ pub use gait_model::{
 };
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;
+pub use style::{GaitStyle, StyleError};

@@ -98,6 +98,12 @@ pub enum ProbError {
         /// Feature dimension.
         dim: usize,
     },
+    /// A linear transform is not determined by its data.
+    #[error("the {what} is singular: give more or more varied frames, or a prior")]
+    Degenerate {
+        /// What is singular.
+        what: &'static str,
+    },
 }
 
 /// Checks a slice length.

@@ -5,7 +5,7 @@
 //!
 //! In suggested reading order: [`gaussian`] and [`duration`] (what a state is), [`hsmm`] (which
 //! frames belong to which state); then from states back to motion, [`windows`], [`mlpg`] and
-//! [`global_variance`].
+//! [`global_variance`]. [`regression`] moves a model with few frames.
 
 pub mod duration;
 pub mod error;
@@ -13,6 +13,7 @@ pub mod gaussian;
 pub mod global_variance;
 pub mod hsmm;
 pub mod mlpg;
+pub mod regression;
 pub mod windows;
 #[doc(hidden)]
 pub mod workload;

@@ -14,7 +14,7 @@ use footfall_prob::hsmm::{Boundary, ChainState, HsmmStats, hsmm_forward_backward
 use rayon::prelude::*;
 
 /// States of both steps together.
-const STATES: usize = 2 * STATES_PER_STEP;
+pub(crate) const STATES: usize = 2 * STATES_PER_STEP;
 
 /// Least variance of a feature in a state, as a fraction of its variance over the whole corpus.
 const VARIANCE_FLOOR: f64 = 1e-3;
@@ -23,7 +23,7 @@ const VARIANCE_FLOOR: f64 = 1e-3;
 const ABSOLUTE_VARIANCE_FLOOR: f64 = 1e-8;
 
 /// Least variance of a state's duration, frames².
-const DURATION_VARIANCE_FLOOR: f64 = 0.25;
+pub(crate) const DURATION_VARIANCE_FLOOR: f64 = 0.25;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,7 +188,7 @@ fn state_index(side: Side, state: usize) -> usize {
 }
 
 /// The states of a walk in a row.
-fn chain(steps: &[LabelledStep]) -> Vec<ChainState> {
+pub(crate) fn chain(steps: &[LabelledStep]) -> Vec<ChainState> {
     steps
         .iter()
         .flat_map(|step| (0..STATES_PER_STEP).map(|state| state_index(step.side, state)))

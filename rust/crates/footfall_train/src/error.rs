@@ -1,6 +1,7 @@
 //! Why training cannot go on.
 
 use footfall_core::Side;
+use footfall_model::ModelError;
 use footfall_prob::ProbError;
 
 /// Why training cannot go on.
@@ -9,6 +10,17 @@ pub enum TrainError {
     /// No clip has a usable step.
     #[error("no clip holds two steps in a row; choose walks with `--where category=…`")]
     NoSteps,
+    /// Fewer steps in a row than show both feet.
+    #[error(
+        "{found} steps are too few for a style, which needs two in a row and is better with six to twelve; choose longer walks"
+    )]
+    TooFewSteps {
+        /// How many there are.
+        found: usize,
+    },
+    /// The base model, or what came of it, makes no sense.
+    #[error("the model cannot be used: {0}")]
+    Model(#[from] ModelError),
     /// Only one foot was seen stepping.
     #[error("the corpus has no step that begins with the {} foot; add walks of several steps", side.name())]
     MissingSide {

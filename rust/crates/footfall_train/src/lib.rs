@@ -1,8 +1,10 @@
 //! Offline: a corpus of walks becomes a model.
 //!
 //! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
-//! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps).
+//! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps); [`adapt`]
+//! (a style from a dozen steps).
 
+pub mod adapt;
 pub mod average;
 pub mod dataset;
 pub mod differences;
@@ -12,6 +14,7 @@ pub mod progress;
 pub mod sequence;
 pub mod train;
 
+pub use adapt::{AdaptConfig, AdaptMethod, Adapted, adapt_style};
 pub use average::EmConfig;
 pub use error::TrainError;
 pub use progress::Progress;

@@ -102,13 +102,13 @@ pub fn train_average(
     })
 }
 
-struct Counts {
-    clips: usize,
-    subjects: usize,
-    steps: usize,
+pub(crate) struct Counts {
+    pub(crate) clips: usize,
+    pub(crate) subjects: usize,
+    pub(crate) steps: usize,
 }
 
-fn encode(
+pub(crate) fn encode(
     clips: &[TrainingClip],
     config: &TrainConfig,
 ) -> Result<(Vec<Sequence>, Counts), TrainError> {
@@ -147,7 +147,7 @@ fn encode(
 }
 
 /// A walk without the steps in which it starts and stops.
-fn steady_part(walk: &Walk) -> Walk {
+pub(crate) fn steady_part(walk: &Walk) -> Walk {
     let is_edge = |position| matches!(position, StepPosition::First | StepPosition::Last);
     Walk {
         steps: walk
@@ -159,7 +159,7 @@ fn steady_part(walk: &Walk) -> Walk {
     }
 }
 
-fn mean_terminal(corpus: &[Sequence], side: Side) -> f64 {
+pub(crate) fn mean_terminal(corpus: &[Sequence], side: Side) -> f64 {
     let fractions: Vec<f64> = corpus
         .iter()
         .flat_map(|sequence| &sequence.steps)

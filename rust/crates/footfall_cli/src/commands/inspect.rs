@@ -3,6 +3,7 @@
 mod corpus_index;
 mod model;
 mod motion;
+mod style;
 
 use crate::motion_input::MapArgs;
 use crate::output;
@@ -16,14 +17,14 @@ use std::path::{Path, PathBuf};
 /// Tell what is in a file
 ///
 /// A recording (.bvh): skeleton, frames, rate, speed, contacts and steps. A model (.footfall): where it comes from, states,
-/// durations, speeds. An index (.csv): clips by category, style and subject.
+/// durations, speeds. A style (.footstyle): which base it fits, where it comes from. An index (.csv): clips by category, style and subject.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall inspect walk.bvh\n  \
     footfall inspect walk.footfall --json\n  \
     footfall inspect index.csv")]
 pub(crate) struct InspectArgs {
-    /// A .bvh, a .footfall or an index.csv
+    /// A .bvh, a .footfall, a .footstyle or an index.csv
     #[arg(value_name = "FILE")]
     input: PathBuf,
     #[command(flatten)]
@@ -39,12 +40,14 @@ pub(crate) struct InspectArgs {
 enum Finding {
     Motion(motion::MotionFacts),
     GaitModel(Box<model::ModelFacts>),
+    GaitStyle(style::StyleFacts),
     CorpusIndex(corpus_index::IndexFacts),
 }
 
 pub(crate) fn run(args: &InspectArgs) -> Result<()> {
     let finding = match kind_of(&args.input)? {
         Kind::Model => Finding::GaitModel(Box::new(model::inspect(&args.input)?)),
+        Kind::Style => Finding::GaitStyle(style::inspect(&args.input)?),
         Kind::Index => Finding::CorpusIndex(corpus_index::inspect(&args.input)?),
         Kind::Motion => Finding::Motion(motion::inspect(&args.input, args.map.read()?)?),
     };
@@ -54,6 +57,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
     let lines = match &finding {
         Finding::Motion(facts) => facts.lines(),
         Finding::GaitModel(facts) => facts.lines(),
+        Finding::GaitStyle(facts) => facts.lines(),
         Finding::CorpusIndex(facts) => facts.lines(),
     };
     output::print_text(&lines.join("\n"))
@@ -62,6 +66,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
 enum Kind {
     Motion,
     Model,
+    Style,
     Index,
 }
 
@@ -77,7 +82,9 @@ fn kind_of(path: &Path) -> Result<Kind> {
             .as_deref()
             .is_some_and(|extension| extension == name)
     };
-    Ok(if start[..read] == *b"FOOTFALL" || has("footfall") {
+    Ok(if has("footstyle") {
+        Kind::Style
+    } else if start[..read] == *b"FOOTFALL" || has("footfall") {
         Kind::Model
     } else if has("csv") {
         Kind::Index

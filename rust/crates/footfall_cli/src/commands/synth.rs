@@ -1,14 +1,16 @@
 //! `footfall synth`: a model walks.
 
 use crate::contact_report::{ContactReport, StepEntry};
-use crate::model_file::read_model;
+use crate::model_file::{read_model, read_style};
 use crate::output;
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Context as _, Result, bail, ensure};
 use footfall_core::{FrameSpan, Side};
+use footfall_model::{GaitModel, GaitStyle};
 use footfall_motion::bvh::{self, clip_to_bvh};
 use footfall_synth::{SynthesizedWalk, WalkConfig, synthesize};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::sync::Arc;
 
 /// Make a walk from a model
@@ -17,11 +19,15 @@ use std::sync::Arc;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall synth --model walk.footfall --steps 20 --seed 1 -o out.bvh\n  \
+    footfall synth --model walk.footfall --style sad.footstyle:0.7 --style old.footstyle:0.3 -o out.bvh\n  \
     footfall synth --model walk.footfall --steps 40 --speed 1.5 --turn 10 -o out.bvh --contacts out.json")]
 pub(crate) struct SynthArgs {
     /// The model
     #[arg(long, value_name = "WALK.footfall")]
     model: PathBuf,
+    /// A style to walk in and its weight, 1 when absent; may repeat. Beyond 1 exaggerates, below 0 is the opposite
+    #[arg(long = "style", value_name = "STYLE.footstyle[:WEIGHT]")]
+    styles: Vec<StyleArg>,
     /// How many steps to take
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     steps: u32,
@@ -56,6 +62,43 @@ pub(crate) struct SynthArgs {
     json: bool,
 }
 
+/// A `.footstyle` file and how much of it.
+#[derive(Clone, Debug, PartialEq)]
+struct StyleArg {
+    path: PathBuf,
+    weight: f64,
+}
+
+impl FromStr for StyleArg {
+    type Err = String;
+
+    /// The weight stands behind the last colon, if a number does.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (path, weight) = match text.rsplit_once(':') {
+            Some((path, weight)) if !weight.contains(['/', '\\']) => {
+                let number: f64 = weight.parse().map_err(|error| {
+                    format!("'{weight}' is no weight ({error}); write FILE.footstyle:0.7")
+                })?;
+                (path, number)
+            }
+            _ => (text, 1.0),
+        };
+        if path.is_empty() {
+            return Err("no file; write FILE.footstyle:0.7".to_owned());
+        }
+        Ok(Self {
+            path: path.into(),
+            weight,
+        })
+    }
+}
+
+#[derive(Serialize)]
+struct StyleReport {
+    name: String,
+    weight: f64,
+}
+
 #[derive(Serialize)]
 struct Report<'a> {
     output: &'a Path,
@@ -65,6 +108,7 @@ struct Report<'a> {
     seconds: f64,
     steps: u32,
     seed: u64,
+    styles: Vec<StyleReport>,
     speed_mps: f32,
     cadence_per_minute: f64,
     warnings: Vec<String>,
@@ -75,7 +119,9 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
         .into_iter()
         .flatten()
     {
-        output::refuse_overwrite(&[&args.model], output)?;
+        let styles = args.styles.iter().map(|style| style.path.as_path());
+        let inputs: Vec<&Path> = styles.chain([args.model.as_path()]).collect();
+        output::refuse_overwrite(&inputs, output)?;
     }
     ensure!(
         args.contacts.as_ref() != Some(&args.output),
@@ -93,7 +139,8 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
         "a walk at {} m/s goes nowhere; give --speed a number above zero",
         args.speed.unwrap_or_default()
     );
-    let model = Arc::new(read_model(&args.model)?);
+    let (model, styles) = dressed(args)?;
+    let model = Arc::new(model);
     let mut warnings = Vec::new();
     let [slowest, fastest] = model.speed_range();
     if let Some(speed) = args.speed
@@ -121,7 +168,34 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
         let text = serde_json::to_string(&contact_report(&walk)).context("the contacts")?;
         output::write_atomic(path, format!("{text}\n").as_bytes())?;
     }
-    report(args, &walk, warnings)
+    report(args, &walk, styles, warnings)
+}
+
+/// The model in the given styles.
+fn dressed(args: &SynthArgs) -> Result<(GaitModel, Vec<StyleReport>)> {
+    let model = read_model(&args.model)?;
+    if args.styles.is_empty() {
+        return Ok((model, Vec::new()));
+    }
+    let mut styles: Vec<(GaitStyle, f64)> = Vec::new();
+    for StyleArg { path, weight } in &args.styles {
+        if !weight.is_finite() {
+            bail!(
+                "{}: a weight of {weight} says nothing; give a number",
+                path.display()
+            );
+        }
+        styles.push((read_style(path)?, *weight));
+    }
+    let weighted: Vec<(&GaitStyle, f64)> = styles.iter().map(|(s, weight)| (s, *weight)).collect();
+    let dressed = model
+        .styled(&weighted)
+        .with_context(|| args.model.display().to_string())?;
+    let reports = styles.into_iter().map(|(style, weight)| StyleReport {
+        name: style.name,
+        weight,
+    });
+    Ok((dressed, reports.collect()))
 }
 
 /// Contacts and steps of a generated walk. It begins and ends in full stride, so every step is inside.
@@ -161,7 +235,12 @@ fn landings(stances: &[FrameSpan], side: Side) -> Vec<(usize, Side)> {
         .collect()
 }
 
-fn report(args: &SynthArgs, walk: &SynthesizedWalk, warnings: Vec<String>) -> Result<()> {
+fn report(
+    args: &SynthArgs,
+    walk: &SynthesizedWalk,
+    styles: Vec<StyleReport>,
+    warnings: Vec<String>,
+) -> Result<()> {
     let clip = &walk.clip;
     let seconds = clip.duration_secs();
     let way = match (clip.poses.first(), clip.poses.last()) {
@@ -178,6 +257,7 @@ fn report(args: &SynthArgs, walk: &SynthesizedWalk, warnings: Vec<String>) -> Re
         seconds,
         steps: args.steps,
         seed: args.seed,
+        styles,
         speed_mps: way / seconds as f32,
         cadence_per_minute: 60.0 * f64::from(args.steps) / seconds,
         warnings,

@@ -1,6 +1,6 @@
 //! `footfall train`: a corpus becomes a model.
 
-mod provenance;
+pub(super) mod provenance;
 
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
@@ -73,10 +73,11 @@ struct Report<'a> {
     seconds: f64,
 }
 
+/// A recording that could not be used, and why.
 #[derive(Serialize)]
-struct Skipped {
+pub(super) struct Skipped {
     file: PathBuf,
-    reason: String,
+    pub(super) reason: String,
 }
 
 #[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
@@ -123,13 +124,25 @@ fn config(args: &TrainArgs) -> TrainConfig {
     }
 }
 
-fn training_clip(clip: &CorpusClip) -> TrainingClip {
+/// A recording as the trainer takes it.
+pub(super) fn training_clip(clip: &CorpusClip) -> TrainingClip {
     TrainingClip {
         subject: clip.row.subject().to_owned(),
         clip: clip.retargeted.clip.clone(),
         skip_frames: clip.retargeted.first_frame,
         walks: clip.walks.clone(),
     }
+}
+
+/// What a corpus left out.
+pub(super) fn skipped(corpus: &Corpus) -> Vec<Skipped> {
+    let skipped = corpus.report.skipped.iter();
+    skipped
+        .map(|skipped| Skipped {
+            file: skipped.path.clone(),
+            reason: skipped.reason.clone(),
+        })
+        .collect()
 }
 
 fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) -> Result<()> {
@@ -150,15 +163,7 @@ fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) ->
         log_likelihoods: &trained.log_likelihoods,
         speed_range_mps: trained.model.speed_range(),
         cadence_range_per_minute: trained.model.speed.cadence_range_hz.map(|hz| 60.0 * hz),
-        skipped: corpus
-            .report
-            .skipped
-            .iter()
-            .map(|skipped| Skipped {
-                file: skipped.path.clone(),
-                reason: skipped.reason.clone(),
-            })
-            .collect(),
+        skipped: skipped(corpus),
         warnings,
         seconds,
     };
@@ -185,7 +190,7 @@ fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) ->
 }
 
 /// Shows what the trainer tells.
-struct TrainingProgress(output::Progress);
+pub(super) struct TrainingProgress(pub(super) output::Progress);
 
 impl footfall_train::Progress for TrainingProgress {
     fn advance(&mut self, task: &str, done: usize, total: usize) {

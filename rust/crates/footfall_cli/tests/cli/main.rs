@@ -5,3 +5,4 @@ mod common;
 mod designs;
 mod pipeline;
 mod recordings;
+mod style;

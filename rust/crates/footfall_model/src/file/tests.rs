@@ -9,7 +9,7 @@ use footfall_prob::windows::Windows;
 use proptest::prelude::*;
 
 /// A model whose numbers are all different and exact in f32.
-fn sample() -> GaitModel {
+pub(crate) fn sample() -> GaitModel {
     let row = |scale: f64, len: usize| (0..len).map(|i| scale * (i + 1) as f64).collect::<Vec<_>>();
     let offset = |scale: f64| StepOffset::from_row(&row(scale, StepOffset::LEN)).unwrap();
     let step = |scale: f64| StepModel {

@@ -34,7 +34,7 @@ struct SkeletonV1 {
 }
 
 #[derive(Serialize, Deserialize)]
-struct StepV1 {
+pub(super) struct StepV1 {
     states: Vec<StateV1>,
     other_terminal: f32,
 }
@@ -151,7 +151,7 @@ fn decode_skeleton(dto: &SkeletonV1) -> Result<Skeleton, ModelFileError> {
     })
 }
 
-fn encode_step(step: &StepModel) -> StepV1 {
+pub(super) fn encode_step(step: &StepModel) -> StepV1 {
     StepV1 {
         states: step
             .states
@@ -166,7 +166,7 @@ fn encode_step(step: &StepModel) -> StepV1 {
     }
 }
 
-fn decode_step(dto: &StepV1) -> StepModel {
+pub(super) fn decode_step(dto: &StepV1) -> StepModel {
     StepModel {
         states: dto
             .states
@@ -198,10 +198,10 @@ fn decode_pair(rows: &[Vec<f32>; 2]) -> Result<[StepOffset; 2], ModelFileError> 
     Ok([decode(&rows[0])?, decode(&rows[1])?])
 }
 
-fn narrow(values: &[f64]) -> Vec<f32> {
+pub(super) fn narrow(values: &[f64]) -> Vec<f32> {
     values.iter().map(|value| *value as f32).collect()
 }
 
-fn widen(values: &[f32]) -> Vec<f64> {
+pub(super) fn widen(values: &[f32]) -> Vec<f64> {
     values.iter().copied().map(f64::from).collect()
 }

@@ -2,20 +2,39 @@
 
 use super::{TrainArgs, WindowsArg};
 use footfall_model::Provenance;
-use footfall_motion::corpus::Corpus;
+use footfall_motion::corpus::{Corpus, Where};
 use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The column of an index that states the terms of each recording.
 const LICENSE_COLUMN: &str = "license";
 
-/// Corpus, terms and command; the trainer fills in the counts. Names of files without their folders, so that a model tells
-/// nothing about the machine that made it.
+/// Corpus, terms and command; the trainer fills in the counts.
 pub(super) fn of(corpus: &Corpus, args: &TrainArgs) -> Provenance {
     let conditions: Vec<String> = args.conditions.iter().map(ToString::to_string).collect();
-    let index = name_of(&args.corpus);
-    let described = match (&args.describe, conditions.is_empty()) {
-        (Some(text), _) => text.clone(),
+    let command = command(args, &name_of(&args.corpus), &conditions);
+    describe(
+        corpus,
+        &args.corpus,
+        &args.conditions,
+        args.describe.as_deref(),
+        command,
+    )
+}
+
+/// What is chosen from an index, in the user's words if there are some, and on which terms. Names of files without their
+/// folders, so that a model tells nothing about the machine that made it.
+pub(in crate::commands) fn describe(
+    corpus: &Corpus,
+    index: &Path,
+    conditions: &[Where],
+    words: Option<&str>,
+    command: String,
+) -> Provenance {
+    let conditions: Vec<String> = conditions.iter().map(ToString::to_string).collect();
+    let index = name_of(index);
+    let described = match (words, conditions.is_empty()) {
+        (Some(words), _) => words.to_owned(),
         (None, true) => format!("all of {index}"),
         (None, false) => format!("{index} where {}", conditions.join(" and ")),
     };
@@ -32,7 +51,7 @@ pub(super) fn of(corpus: &Corpus, args: &TrainArgs) -> Provenance {
         } else {
             terms.into_iter().collect::<Vec<_>>().join("; ")
         },
-        command: command(args, &index, &conditions),
+        command,
         commit: std::env::var("FOOTFALL_COMMIT").unwrap_or_default(),
         ..Provenance::default()
     }
@@ -56,7 +75,8 @@ fn command(args: &TrainArgs, index: &str, conditions: &[String]) -> String {
     words.join(" ")
 }
 
-fn name_of(path: &Path) -> String {
+/// A file's name without its folder.
+pub(in crate::commands) fn name_of(path: &Path) -> String {
     path.file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }

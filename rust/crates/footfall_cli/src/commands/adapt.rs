@@ -1,0 +1,213 @@
+//! `footfall adapt`: a dozen recorded steps become a style.
+
+use super::train::{self, provenance};
+use crate::model_file::read_model;
+use crate::output::{self, write_atomic};
+use anyhow::{Context as _, Result, ensure};
+use clap::ValueEnum;
+use footfall_model::Provenance;
+use footfall_motion::corpus::{Corpus, Where};
+use footfall_train::{AdaptConfig, AdaptMethod, Adapted, TrainingClip, adapt_style};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Make a style from a dozen steps
+///
+/// Moves a base model to the walks that an index lists. Any frame rate, any body, any walker: 6 to 12 steps straight ahead are
+/// enough. The style fits the base model that it was made for, and no other.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall adapt --base walk.footfall --corpus index.csv --where style=sad --name sad -o sad.footstyle\n  \
+    footfall adapt --base walk.footfall --corpus index.csv --where 'path=me_*' --name me --steps 12 -o me.footstyle\n  \
+    footfall synth --model walk.footfall --style sad.footstyle:0.7 -o out.bvh")]
+pub(crate) struct AdaptArgs {
+    /// The model to start from
+    #[arg(long, value_name = "WALK.footfall")]
+    base: PathBuf,
+    /// Table of the recordings
+    #[arg(long, value_name = "INDEX.csv")]
+    corpus: PathBuf,
+    /// Condition on a column, for example `style=sad`; may repeat
+    #[arg(long = "where", value_name = "COLUMN=VALUE")]
+    conditions: Vec<Where>,
+    /// What the style is called
+    #[arg(long)]
+    name: String,
+    /// Use the first so many steps; all when absent
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..))]
+    steps: Option<u32>,
+    /// How the base is moved
+    #[arg(long, value_enum, default_value_t = MethodArg::Csmaplr)]
+    method: MethodArg,
+    /// What the style is made from, in your words, for its provenance; the conditions when absent
+    #[arg(long, value_name = "TEXT")]
+    describe: Option<String>,
+    /// Where to write the style
+    #[arg(short, long, value_name = "STYLE.footstyle")]
+    output: PathBuf,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MethodArg {
+    /// One transform for all states, joint by joint, without a prior to speak of
+    Cmllr,
+    /// Transforms over a tree of states, each held near its parent's
+    Csmaplr,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    output: &'a Path,
+    name: &'a str,
+    clips: usize,
+    subjects: usize,
+    steps: usize,
+    frames: usize,
+    /// Log-likelihood less the prior's charge at every alignment; never falls.
+    objectives: &'a [f64],
+    /// Log-likelihood of the steps under the base model, under the transforms, and under the style.
+    log_likelihoods: [f64; 3],
+    /// Groups of states with transforms of their own.
+    classes: usize,
+    speed_mps: f64,
+    cadence_per_minute: f64,
+    bytes: usize,
+    skipped: Vec<train::Skipped>,
+    warnings: Vec<String>,
+    /// Of the adaptation alone, without reading the recordings.
+    adaptation_seconds: f64,
+    seconds: f64,
+}
+
+/// Fewer steps than this make a style that hangs on chance.
+const FEW_STEPS: usize = 6;
+
+#[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
+pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
+    let begun = Instant::now();
+    output::refuse_overwrite(&[&args.base, &args.corpus], &args.output)?;
+    ensure!(
+        !args.name.trim().is_empty(),
+        "a style without a name cannot be told from others; give --name a word"
+    );
+    let base = read_model(&args.base)?;
+    let mut progress = train::TrainingProgress(output::Progress::new());
+    progress.0.stage("reading the corpus", 0);
+    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
+    for clip in &corpus.clips {
+        output::refuse_overwrite(&[&clip.row.path], &args.output)?;
+    }
+    let clips: Vec<TrainingClip> = corpus.clips.iter().map(train::training_clip).collect();
+    let config = AdaptConfig {
+        method: match args.method {
+            MethodArg::Cmllr => AdaptMethod::Cmllr,
+            MethodArg::Csmaplr => AdaptMethod::Csmaplr,
+        },
+        steps: args.steps.map(|steps| steps as usize),
+    };
+    let read = begun.elapsed().as_secs_f64();
+    let adapted = adapt_style(
+        &base,
+        &clips,
+        args.name.trim(),
+        &config,
+        made_from(&corpus, args),
+        &mut progress,
+    )
+    .with_context(|| args.corpus.display().to_string())?;
+    let seconds = [
+        begun.elapsed().as_secs_f64() - read,
+        begun.elapsed().as_secs_f64(),
+    ];
+    let bytes = adapted.style.to_bytes().context("the style")?;
+    write_atomic(&args.output, &bytes)?;
+    progress.0.finish();
+    report(args, &corpus, &adapted, bytes.len(), seconds)
+}
+
+fn made_from(corpus: &Corpus, args: &AdaptArgs) -> Provenance {
+    let mut words = vec![
+        "footfall adapt --base".to_owned(),
+        provenance::name_of(&args.base),
+        "--corpus".to_owned(),
+        provenance::name_of(&args.corpus),
+    ];
+    words.extend(
+        args.conditions
+            .iter()
+            .map(|condition| format!("--where '{condition}'")),
+    );
+    words.push(format!("--name '{}'", args.name.trim()));
+    words.extend(args.steps.map(|steps| format!("--steps {steps}")));
+    words.push(match args.method {
+        MethodArg::Cmllr => "--method cmllr".to_owned(),
+        MethodArg::Csmaplr => "--method csmaplr".to_owned(),
+    });
+    words.push(format!("-o {}", provenance::name_of(&args.output)));
+    provenance::describe(
+        corpus,
+        &args.corpus,
+        &args.conditions,
+        args.describe.as_deref(),
+        words.join(" "),
+    )
+}
+
+fn report(
+    args: &AdaptArgs,
+    corpus: &Corpus,
+    adapted: &Adapted,
+    bytes: usize,
+    [adaptation_seconds, seconds]: [f64; 2],
+) -> Result<()> {
+    let style = &adapted.style;
+    let made_from = &style.provenance;
+    let mut warnings = Vec::new();
+    if made_from.steps < FEW_STEPS {
+        warnings.push(format!(
+            "only {} steps: what is chance in them is in the style; give six to twelve",
+            made_from.steps
+        ));
+    }
+    let report = Report {
+        output: &args.output,
+        name: &style.name,
+        clips: made_from.clips,
+        subjects: made_from.subjects,
+        steps: made_from.steps,
+        frames: adapted.frames,
+        objectives: &adapted.objectives,
+        log_likelihoods: adapted.log_likelihoods,
+        classes: adapted.classes,
+        speed_mps: style.speed_mps,
+        cadence_per_minute: 60.0 * style.cadence_hz,
+        bytes,
+        skipped: train::skipped(corpus),
+        warnings,
+        adaptation_seconds,
+        seconds,
+    };
+    for skipped in &report.skipped {
+        output::note(&format!("warning: left out {}", skipped.reason));
+    }
+    for warning in &report.warnings {
+        output::note(&format!("warning: {warning}"));
+    }
+    if args.json {
+        return output::print_json(&report);
+    }
+    output::note(&format!(
+        "{}: '{}' from {} steps in {} clips, {:.2} m/s, {:.0} steps a minute, {bytes} bytes, {adaptation_seconds:.1} s",
+        args.output.display(),
+        style.name,
+        report.steps,
+        report.clips,
+        report.speed_mps,
+        report.cadence_per_minute,
+    ));
+    Ok(())
+}

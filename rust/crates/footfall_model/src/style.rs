@@ -1,0 +1,283 @@
+//! A style: how someone walks differently, and walks between and beyond styles.
+
+use crate::gait_model::{
+    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, StateModel, StepModel,
+};
+use crate::layout::{FEATURE_COUNT, feature_offset};
+use crate::provenance::Provenance;
+use footfall_core::Joint;
+
+/// A style adapted from a base model.
+///
+/// It holds what a walk in the style needs in place of the base's own; the rest (the body, the response to speed, how walkers
+/// and steps differ) stays the base's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaitStyle {
+    /// What the style is called.
+    pub name: String,
+    /// [`GaitModel::fingerprint`] of the model that it was adapted from, and the only one that it fits.
+    pub base_fingerprint: u32,
+    /// The adapted steps: means, variances, durations and terminal contacts; the left foot's first.
+    pub steps: [StepModel; 2],
+    /// How much the features of a walk in the style vary in total.
+    pub global_variance: GlobalVarianceModel,
+    /// Mean speed of the recorded steps on the canonical body, m/s.
+    pub speed_mps: f64,
+    /// Mean cadence of the recorded steps, steps per second.
+    pub cadence_hz: f64,
+    /// Where the style comes from.
+    pub provenance: Provenance,
+}
+
+/// Why styles cannot be worn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StyleError {
+    /// The style was adapted from another model.
+    #[error(
+        "style '{style}' was made for another base model; adapt it again with `footfall adapt --base` and this model"
+    )]
+    OtherBase {
+        /// Which style.
+        style: String,
+    },
+    /// A weight is NaN or infinite.
+    #[error(
+        "the weight of style '{style}' is {weight}; give a finite number, 1 for the style as recorded"
+    )]
+    Weight {
+        /// Which style.
+        style: String,
+        /// The weight.
+        weight: f64,
+    },
+    /// A style or the base has content that makes no sense.
+    #[error("style '{style}' cannot be used: {source}")]
+    Content {
+        /// Which style.
+        style: String,
+        /// What is wrong.
+        source: ModelError,
+    },
+    /// The base model cannot be used.
+    #[error("the base model cannot be used: {0}")]
+    Base(ModelError),
+}
+
+/// Weights beyond this say nothing more: poses are at their limits long before.
+const MAX_WEIGHT: f64 = 10.0;
+
+/// Farther than this beyond the base and the styles in use no logarithm of a variance, duration or speed goes.
+const LOG_MARGIN: f64 = 0.5;
+
+impl GaitStyle {
+    /// Checks every shape and value.
+    ///
+    /// # Errors
+    /// [`ModelError`] names the first part at fault.
+    pub fn check(&self) -> Result<(), ModelError> {
+        for (step, side) in self.steps.iter().zip(footfall_core::Side::BOTH) {
+            step.check(side.name())?;
+        }
+        self.global_variance.check()?;
+        if [self.speed_mps, self.cadence_hz]
+            .iter()
+            .all(|value| value.is_finite() && *value > 0.0)
+        {
+            return Ok(());
+        }
+        Err(ModelError::Value {
+            part: "speed of the style".to_owned(),
+        })
+    }
+}
+
+impl GaitModel {
+    /// This walk in a mixture of styles.
+    ///
+    /// Means and terminal contacts go from the base's towards each style's by its weight, and so do the logarithms of variances,
+    /// durations and speed: no styles, or weights of 0, give the base; one style with weight 1 gives that style; weights may add
+    /// up to anything, exceed 1 (exaggeration) or be negative (the opposite).
+    ///
+    /// Poses stay human: the joint rotations of all states stay within what joints can do, or what the base and the given
+    /// styles do themselves. Where the weights ask for more, the walk goes as far in their direction as the first joint
+    /// allows. Durations, variances and speed stay near those of the base and the styles.
+    ///
+    /// # Errors
+    /// [`StyleError`] when a style was made for another model, a weight is not finite, or content makes no sense.
+    pub fn styled(&self, styles: &[(&GaitStyle, f64)]) -> Result<Self, StyleError> {
+        self.check().map_err(StyleError::Base)?;
+        let fingerprint = self.fingerprint().map_err(StyleError::Base)?;
+        for (style, weight) in styles {
+            let name = || style.name.clone();
+            if style.base_fingerprint != fingerprint {
+                return Err(StyleError::OtherBase { style: name() });
+            }
+            if !weight.is_finite() {
+                return Err(StyleError::Weight {
+                    style: name(),
+                    weight: *weight,
+                });
+            }
+            style.check().map_err(|source| StyleError::Content {
+                style: name(),
+                source,
+            })?;
+        }
+        let mut parts: Vec<(&GaitStyle, f64)> = styles
+            .iter()
+            .map(|(style, weight)| (*style, weight.clamp(-MAX_WEIGHT, MAX_WEIGHT)))
+            .filter(|(_, weight)| weight.abs() > 0.0)
+            .collect();
+        // A sum of many numbers depends on their order; a mixture must not.
+        parts.sort_by(|(a, wa), (b, wb)| {
+            let key = |style: &GaitStyle| (style.name.clone(), style.speed_mps.to_bits());
+            key(a).cmp(&key(b)).then(wa.total_cmp(wb))
+        });
+        if parts.is_empty() {
+            return Ok(self.clone());
+        }
+        let share = self.human_share(&parts);
+        for (_, weight) in &mut parts {
+            *weight *= share;
+        }
+        Ok(self.mixed(&Mixture { parts: &parts }))
+    }
+
+    fn mixed(&self, mixture: &Mixture<'_>) -> Self {
+        let mut mixed = self.clone();
+        for (side, step) in mixed.steps.iter_mut().enumerate() {
+            for (index, state) in step.states.iter_mut().enumerate() {
+                let of = |style: &GaitStyle, read: &dyn Fn(&StateModel) -> f64| {
+                    read(&style.steps[side].states[index])
+                };
+                for dim in 0..state.mean.len() {
+                    state.mean[dim] =
+                        mixture.linear(state.mean[dim], |style| of(style, &|s| s.mean[dim]));
+                    state.variance[dim] = mixture
+                        .logarithmic(state.variance[dim], |style| of(style, &|s| s.variance[dim]));
+                }
+                state.duration_mean = mixture
+                    .logarithmic(state.duration_mean, |style| of(style, &|s| s.duration_mean));
+                state.duration_variance = mixture.logarithmic(state.duration_variance, |style| {
+                    of(style, &|s| s.duration_variance)
+                });
+            }
+            step.other_terminal = mixture
+                .linear(step.other_terminal, |style| {
+                    style.steps[side].other_terminal
+                })
+                .clamp(0.0, 1.0);
+        }
+        for dim in 0..FEATURE_COUNT {
+            let target = &mut mixed.global_variance;
+            target.mean[dim] =
+                mixture.logarithmic(target.mean[dim], |style| style.global_variance.mean[dim]);
+            target.variance[dim] = mixture.logarithmic(target.variance[dim], |style| {
+                style.global_variance.variance[dim]
+            });
+        }
+        // The range of speeds goes with the mean speed: a shuffle can be hurried, but not to a runner's pace.
+        let speed = mixture.logarithmic(self.speed.reference_mps, |style| style.speed_mps);
+        let ratio = speed / self.speed.reference_mps;
+        mixed.speed.reference_mps = speed;
+        mixed.speed.min_mps *= ratio;
+        mixed.speed.max_mps *= ratio;
+        let cadence = mixed.cadence_hz() / self.cadence_hz();
+        mixed.speed.cadence_range_hz = mixed.speed.cadence_range_hz.map(|hz| hz * cadence);
+        mixed
+    }
+
+    /// Steps per second of the mean steps.
+    pub fn cadence_hz(&self) -> f64 {
+        let frames: f64 = self.steps.iter().map(StepModel::mean_frames).sum();
+        2.0 * self.frame_rate_hz / frames
+    }
+
+    /// How much of a mixture's way its poses can go: 1 when all of it.
+    fn human_share(&self, parts: &[(&GaitStyle, f64)]) -> f64 {
+        let mut share: f64 = 1.0;
+        for side in 0..2 {
+            for state in 0..STATES_PER_STEP {
+                let base = &self.steps[side].states[state].mean;
+                for joint in Joint::ALL {
+                    let limits = rotation_limits(joint);
+                    for (axis, [least, most]) in limits.into_iter().enumerate() {
+                        let dim = feature_offset(joint) + axis;
+                        let from = base[dim];
+                        let (mut low, mut high) = (from.min(least), from.max(most));
+                        let mut way = 0.0;
+                        for (style, weight) in parts {
+                            let styled = style.steps[side].states[state].mean[dim];
+                            low = low.min(styled);
+                            high = high.max(styled);
+                            way += weight * (styled - from);
+                        }
+                        let room = if way > 0.0 { high - from } else { low - from };
+                        // A way within the room may still divide to a little under 1.
+                        if way.abs() > room.abs() * (1.0 + 1e-9) {
+                            share = share.min(room / way);
+                        }
+                    }
+                }
+            }
+        }
+        share
+    }
+}
+
+/// Styles and their weights, none of them zero.
+struct Mixture<'a> {
+    parts: &'a [(&'a GaitStyle, f64)],
+}
+
+impl Mixture<'_> {
+    fn linear(&self, base: f64, of: impl Fn(&GaitStyle) -> f64) -> f64 {
+        if let [(style, weight)] = self.parts
+            && (weight - 1.0).abs() < f64::EPSILON
+        {
+            // Exactly the style, not up to rounding.
+            return of(style);
+        }
+        let ways = self.parts.iter();
+        base + ways
+            .map(|(style, weight)| weight * (of(style) - base))
+            .sum::<f64>()
+    }
+
+    /// Mixes logarithms, and keeps to the neighbourhood of what is mixed.
+    fn logarithmic(&self, base: f64, of: impl Fn(&GaitStyle) -> f64) -> f64 {
+        let values = || self.parts.iter().map(|(style, _)| of(style)).chain([base]);
+        let low = values().fold(f64::INFINITY, f64::min);
+        let high = values().fold(0.0, f64::max);
+        if let [(style, weight)] = self.parts
+            && (weight - 1.0).abs() < f64::EPSILON
+        {
+            return of(style);
+        }
+        let mixed = self.linear(base.ln(), |style| of(style).ln()).exp();
+        mixed.clamp(low * (-LOG_MARGIN).exp(), high * LOG_MARGIN.exp())
+    }
+}
+
+/// Least and greatest rotation vector of a joint, per axis in radians from the T-pose: about what people can do while they
+/// walk. x bends forwards, y turns left, z leans to the right.
+fn rotation_limits(joint: Joint) -> [[f64; 2]; 3] {
+    let even = |x: f64, y: f64, z: f64| [[-x, x], [-y, y], [-z, z]];
+    match joint {
+        Joint::Hips => even(0.6, 0.6, 0.4),
+        Joint::Spine | Joint::Chest | Joint::UpperChest => even(0.5, 0.45, 0.35),
+        Joint::Neck | Joint::Head => even(0.6, 0.7, 0.4),
+        Joint::LeftShoulder | Joint::RightShoulder => even(0.4, 0.5, 0.5),
+        Joint::LeftUpperArm | Joint::RightUpperArm => even(1.6, 1.6, 1.6),
+        Joint::LeftLowerArm | Joint::RightLowerArm => even(1.6, 2.3, 1.2),
+        Joint::LeftHand | Joint::RightHand => even(0.9, 0.9, 0.9),
+        Joint::LeftUpperLeg | Joint::RightUpperLeg => even(1.3, 0.6, 0.5),
+        // A knee bends one way only.
+        Joint::LeftLowerLeg | Joint::RightLowerLeg => [[-0.02, 2.1], [-0.3, 0.3], [-0.3, 0.3]],
+        Joint::LeftFoot | Joint::RightFoot => even(0.8, 0.4, 0.4),
+        Joint::LeftToes | Joint::RightToes => even(0.9, 0.3, 0.3),
+    }
+}
+
+#[cfg(test)]
+mod tests;

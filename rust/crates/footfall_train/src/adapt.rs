@@ -1,0 +1,336 @@
+//! A style from a dozen steps (Tilmanne et al. 2012, section 5.1.3).
+//!
+//! The average walk's means and variances are moved by linear transforms that many states share, so that a few steps
+//! determine them: first one transform for all states, then one for each half of a tree of states, held near its parent's
+//! ([`footfall_prob::regression`]). Each state's own frames then refine it (maximum a posteriori). Between re-estimations the
+//! style's walks are aligned anew with explicit durations: as whole chains while transforms are estimated, then step by step.
+
+mod transforms;
+
+use crate::EmConfig;
+use crate::average::{DURATION_VARIANCE_FLOOR, STATES, chain};
+use crate::error::TrainError;
+use crate::progress::Progress;
+use crate::sequence::Sequence;
+use crate::train::{TrainConfig, TrainingClip, encode, mean_terminal, steady_part};
+use footfall_core::Side;
+use footfall_model::{
+    FEATURE_COUNT, GaitModel, GaitStyle, GlobalVarianceModel, OBSERVATION_COUNT, Provenance,
+    STATES_PER_STEP, StateModel, StepModel,
+};
+use footfall_motion::steps::Walk;
+use footfall_prob::duration::GaussianDuration;
+use footfall_prob::gaussian::{DiagonalGaussian, GaussianStats, log_densities};
+use footfall_prob::hsmm::{Boundary, HsmmStats, hsmm_forward_backward};
+use footfall_prob::regression::map_estimate;
+use transforms::Adapting;
+
+/// Frames that a state's transformed mean and variance count for, against the style's own frames in that state.
+const MAP_FRAMES: f64 = 6.0;
+
+/// Segments that a state's transformed duration counts for.
+const MAP_SEGMENTS: f64 = 1.5;
+
+/// Rounds of alignment and maximum a posteriori re-estimation.
+const MAP_ITERATIONS: usize = 2;
+
+/// Least variance of a feature in a state, as a fraction of the base model's.
+const VARIANCE_FLOOR: f64 = 0.02;
+
+/// Fewest steps that show both feet.
+const LEAST_STEPS: usize = 2;
+
+/// How the transforms are estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AdaptMethod {
+    /// Constrained maximum-likelihood linear regression: one transform for all states, each joint's features mixed only among
+    /// themselves, because nothing but the data holds it.
+    Cmllr,
+    /// Constrained structural maximum a posteriori linear regression: all features mixed, over a tree of states.
+    Csmaplr,
+}
+
+/// How to adapt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AdaptConfig {
+    /// How the transforms are estimated.
+    pub method: AdaptMethod,
+    /// Use the first so many steps of the clips; all when absent.
+    pub steps: Option<usize>,
+}
+
+/// A style and how the adaptation went.
+#[derive(Clone, Debug)]
+pub struct Adapted {
+    /// The style.
+    pub style: GaitStyle,
+    /// Log-likelihood of the style's frames, less what the prior charges, at every alignment while transforms are estimated;
+    /// never falls.
+    pub objectives: Vec<f64>,
+    /// Log-likelihood of the same frames under the base model, under the transforms, and after the states' own re-estimation.
+    pub log_likelihoods: [f64; 3],
+    /// How many classes of states have transforms of their own.
+    pub classes: usize,
+    /// Frames that were adapted to, at the model's rate.
+    pub frames: usize,
+}
+
+/// Adapts `base` to the walks of `clips` and calls the result `name`. Clips are read as training reads them: any frame rate,
+/// canonical body. `provenance` gets the counts of clips, subjects and steps filled in.
+///
+/// # Errors
+/// [`TrainError`] when the clips hold fewer than two steps in a row, or the base cannot explain them.
+pub fn adapt_style(
+    base: &GaitModel,
+    clips: &[TrainingClip],
+    name: &str,
+    config: &AdaptConfig,
+    provenance: Provenance,
+    progress: &mut dyn Progress,
+) -> Result<Adapted, TrainError> {
+    base.check()?;
+    let chosen = first_steps(clips, config.steps.unwrap_or(usize::MAX))?;
+    let encoding = TrainConfig {
+        frame_rate_hz: base.frame_rate_hz,
+        windows: base.windows,
+        mirror: false,
+        em: EmConfig {
+            max_iterations: 0,
+            min_gain_per_frame: 0.0,
+        },
+    };
+    let (corpus, counts) = encode(&chosen, &encoding)?;
+    let mut adapting = Adapting::new(base, &corpus, config.method)?;
+    let (transforms_fit, objectives) = adapting.run(&corpus, progress)?;
+    let start = States::of(base);
+    let prior = States {
+        gaussians: adapting.adapted_gaussians()?,
+        durations: adapting.adapted_durations()?,
+        max_duration: adapting.max_duration(),
+    };
+    let mut states = prior.clone();
+    for _ in 0..MAP_ITERATIONS {
+        let stats = states.expect(&corpus)?;
+        states = prior.refined(&stats, &start)?;
+    }
+    let log_likelihoods = [
+        States {
+            max_duration: prior.max_duration,
+            ..start
+        }
+        .expect(&corpus)?
+        .log_likelihood,
+        transforms_fit,
+        states.expect(&corpus)?.log_likelihood,
+    ];
+    let frames: usize = corpus.iter().map(Sequence::frames).sum();
+    let style = GaitStyle {
+        name: name.to_owned(),
+        base_fingerprint: base.fingerprint()?,
+        steps: [
+            states.step(Side::Left, mean_terminal(&corpus, Side::Left))?,
+            states.step(Side::Right, mean_terminal(&corpus, Side::Right))?,
+        ],
+        global_variance: global_variance(base, &corpus),
+        speed_mps: mean_speed(&corpus),
+        cadence_hz: counts.steps as f64 * base.frame_rate_hz / frames as f64,
+        provenance: Provenance {
+            clips: counts.clips,
+            subjects: counts.subjects,
+            steps: counts.steps,
+            ..provenance
+        },
+    };
+    style.check()?;
+    Ok(Adapted {
+        style,
+        objectives,
+        log_likelihoods,
+        classes: adapting.classes(),
+        frames,
+    })
+}
+
+/// The clips with only their first `limit` steps in full stride.
+fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>, TrainError> {
+    if limit < LEAST_STEPS {
+        return Err(TrainError::TooFewSteps { found: limit });
+    }
+    let mut left = limit;
+    let mut found = 0;
+    let mut chosen = Vec::new();
+    for clip in clips {
+        let mut walks = Vec::new();
+        for mut walk in clip.walks.iter().map(steady_part) {
+            found += walk.steps.len();
+            walk.steps.truncate(left);
+            if walk.steps.len() >= LEAST_STEPS {
+                left -= walk.steps.len();
+                walks.push(walk);
+            }
+        }
+        if !walks.is_empty() {
+            chosen.push(TrainingClip {
+                walks: walks.into_iter().collect::<Vec<Walk>>(),
+                ..clip.clone()
+            });
+        }
+    }
+    if chosen.is_empty() {
+        return Err(match found {
+            0 => TrainError::NoSteps,
+            found => TrainError::TooFewSteps { found },
+        });
+    }
+    Ok(chosen)
+}
+
+/// Both steps' states with Gaussians of their own.
+#[derive(Clone, Debug)]
+struct States {
+    gaussians: Vec<DiagonalGaussian>,
+    durations: Vec<GaussianDuration>,
+    max_duration: usize,
+}
+
+impl States {
+    fn of(base: &GaitModel) -> Self {
+        let states = || base.steps.iter().flat_map(|step| &step.states);
+        Self {
+            gaussians: states()
+                .filter_map(|s| DiagonalGaussian::new(s.mean.clone(), s.variance.clone()).ok())
+                .collect(),
+            durations: states()
+                .map(|s| GaussianDuration {
+                    mean: s.duration_mean,
+                    variance: s.duration_variance,
+                })
+                .collect(),
+            max_duration: 0,
+        }
+    }
+
+    /// Aligns step by step, not whole walks: free boundaries settle a few frames off the initial contacts in slow styles, and
+    /// the generator puts a foot down where its step begins.
+    fn expect(&self, corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
+        let durations: Vec<_> = self
+            .durations
+            .iter()
+            .map(|duration| duration.discretise(self.max_duration))
+            .collect::<Result<_, _>>()?;
+        let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
+        let mut log_emissions = Vec::new();
+        for sequence in corpus {
+            for step in &sequence.steps {
+                let frames = step.first * OBSERVATION_COUNT..step.end * OBSERVATION_COUNT;
+                let observations = &sequence.observations[frames];
+                log_densities(&self.gaussians, observations, &mut log_emissions)?;
+                let chain = chain(core::slice::from_ref(step));
+                let posterior = hsmm_forward_backward(
+                    &log_emissions,
+                    STATES,
+                    &chain,
+                    &durations,
+                    Boundary::default(),
+                )?;
+                stats.add(&chain, &posterior, observations)?;
+            }
+        }
+        Ok(stats)
+    }
+
+    /// These states, each moved towards what it saw.
+    fn refined(&self, stats: &HsmmStats, base: &Self) -> Result<Self, TrainError> {
+        let gaussians = self
+            .gaussians
+            .iter()
+            .zip(&stats.emissions)
+            .zip(&base.gaussians)
+            .map(|((prior, seen), base)| {
+                let found = map_estimate(prior, seen, MAP_FRAMES)?;
+                let floored = found.variance().iter().zip(base.variance());
+                let variance = floored.map(|(v, b)| v.max(VARIANCE_FLOOR * b)).collect();
+                Ok(DiagonalGaussian::new(found.mean().to_vec(), variance)?)
+            })
+            .collect::<Result<_, TrainError>>()?;
+        let durations = self
+            .durations
+            .iter()
+            .zip(&stats.durations)
+            .map(|(prior, seen)| {
+                if seen.weight() <= 0.0 {
+                    return Ok(*prior);
+                }
+                let own = seen.estimate(self.max_duration, DURATION_VARIANCE_FLOOR)?;
+                let mut moments = GaussianStats::new(1);
+                let spread = own.variance.sqrt();
+                for side in [-1.0, 1.0] {
+                    moments.add(&[own.mean + side * spread], 0.5 * seen.weight());
+                }
+                let prior = DiagonalGaussian::new(vec![prior.mean], vec![prior.variance])?;
+                let found = map_estimate(&prior, &moments, MAP_SEGMENTS)?;
+                Ok(GaussianDuration {
+                    mean: found.mean()[0],
+                    variance: found.variance()[0].max(DURATION_VARIANCE_FLOOR),
+                })
+            })
+            .collect::<Result<_, TrainError>>()?;
+        Ok(Self {
+            gaussians,
+            durations,
+            max_duration: self.max_duration,
+        })
+    }
+
+    fn step(&self, side: Side, other_terminal: f64) -> Result<StepModel, TrainError> {
+        let first = side.index() * STATES_PER_STEP;
+        let states = (first..first + STATES_PER_STEP)
+            .map(|index| {
+                let duration = self.durations[index].discretise(self.max_duration)?;
+                Ok(StateModel {
+                    mean: self.gaussians[index].mean().to_vec(),
+                    variance: self.gaussians[index].variance().to_vec(),
+                    duration_mean: duration.mean(),
+                    duration_variance: duration.variance().max(DURATION_VARIANCE_FLOOR),
+                })
+            })
+            .collect::<Result<_, TrainError>>()?;
+        Ok(StepModel {
+            states,
+            other_terminal,
+        })
+    }
+}
+
+/// The mean of the style's walks, with the base's relative spread.
+fn global_variance(base: &GaitModel, corpus: &[Sequence]) -> GlobalVarianceModel {
+    let frames: f64 = corpus.iter().map(|sequence| sequence.frames() as f64).sum();
+    let mut mean = vec![0.0; FEATURE_COUNT];
+    for sequence in corpus {
+        let share = sequence.frames() as f64 / frames;
+        for (mean, variance) in mean.iter_mut().zip(sequence.variance()) {
+            *mean += share * variance;
+        }
+    }
+    let known = &base.global_variance;
+    for (mean, base) in mean.iter_mut().zip(&known.mean) {
+        // A joint that the recording holds still may move a little all the same.
+        *mean = mean.max(1e-3 * base);
+    }
+    let variance = (0..FEATURE_COUNT)
+        .map(|dim| known.variance[dim] * (mean[dim] / known.mean[dim]).powi(2))
+        .collect();
+    GlobalVarianceModel { mean, variance }
+}
+
+fn mean_speed(corpus: &[Sequence]) -> f64 {
+    let frames: f64 = corpus.iter().map(|sequence| sequence.frames() as f64).sum();
+    let way: f64 = corpus
+        .iter()
+        .map(|sequence| sequence.speed_mps() * sequence.frames() as f64)
+        .sum();
+    way / frames
+}
+
+#[cfg(test)]
+mod tests;
