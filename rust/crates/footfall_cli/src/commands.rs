@@ -2,9 +2,11 @@
 
 mod bench;
 mod contacts;
+mod evaluate;
 mod inspect;
 mod retarget;
 mod sheet;
+mod study;
 mod synth;
 mod train;
 
@@ -35,6 +37,8 @@ enum Command {
     Train(train::TrainArgs),
     Synth(synth::SynthArgs),
     Sheet(sheet::SheetArgs),
+    Evaluate(evaluate::EvaluateArgs),
+    Study(study::StudyArgs),
     Bench(bench::BenchArgs),
 }
 
@@ -48,6 +52,8 @@ impl Cli {
             Command::Train(args) => train::run(args),
             Command::Synth(args) => synth::run(args),
             Command::Sheet(args) => sheet::run(args),
+            Command::Evaluate(args) => evaluate::run(args),
+            Command::Study(args) => study::run(args),
             Command::Bench(args) => bench::run(args),
         }
     }

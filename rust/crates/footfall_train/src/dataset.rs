@@ -103,7 +103,7 @@ fn observe(clip: &Clip, windows: Windows) -> Result<Vec<f64>, TrainError> {
 }
 
 /// The heading of the hips, smoothed over time. Beyond the ends it is taken to go on as it began and ended.
-fn smooth_headings(clip: &Clip) -> Vec<f64> {
+pub(crate) fn smooth_headings(clip: &Clip) -> Vec<f64> {
     let mut raw: Vec<f64> = Vec::with_capacity(clip.poses.len());
     for pose in &clip.poses {
         let now = f64::from(heading(pose.rotation(Joint::Hips)));

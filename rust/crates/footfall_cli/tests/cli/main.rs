@@ -2,5 +2,7 @@
 
 mod bad_input;
 mod common;
+mod evaluate;
 mod pipeline;
 mod recordings;
+mod study;
