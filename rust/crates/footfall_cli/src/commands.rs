@@ -4,9 +4,11 @@ mod adapt;
 mod bench;
 mod contacts;
 mod design;
+mod evaluate;
 mod inspect;
 mod retarget;
 mod sheet;
+mod study;
 mod synth;
 mod train;
 
@@ -39,6 +41,8 @@ enum Command {
     Synth(synth::SynthArgs),
     Design(Box<design::DesignArgs>),
     Sheet(sheet::SheetArgs),
+    Evaluate(evaluate::EvaluateArgs),
+    Study(study::StudyArgs),
     Bench(bench::BenchArgs),
 }
 
@@ -54,6 +58,8 @@ impl Cli {
             Command::Synth(args) => synth::run(args),
             Command::Design(args) => design::run(args),
             Command::Sheet(args) => sheet::run(args),
+            Command::Evaluate(args) => evaluate::run(args),
+            Command::Study(args) => study::run(args),
             Command::Bench(args) => bench::run(args),
         }
     }

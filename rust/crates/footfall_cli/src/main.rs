@@ -2,10 +2,12 @@
 
 mod commands;
 mod contact_report;
+mod corpus_pair;
 mod model_file;
 mod motion_input;
 mod output;
 mod sheet;
+mod study;
 
 use clap::Parser as _;
 use commands::Cli;

@@ -146,7 +146,7 @@ fn resample(statics: &[f64], scale: f64) -> Vec<f64> {
 }
 
 /// The heading of the hips, smoothed over time. Beyond the ends it is taken to go on as it began and ended.
-fn smooth_headings(clip: &Clip) -> Vec<f64> {
+pub(crate) fn smooth_headings(clip: &Clip) -> Vec<f64> {
     let mut raw: Vec<f64> = Vec::with_capacity(clip.poses.len());
     for pose in &clip.poses {
         let now = f64::from(heading(pose.rotation(Joint::Hips)));

@@ -1,14 +1,15 @@
 //! Offline: a corpus of walks becomes a model.
 //!
 //! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
-//! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps); [`adapt`]
-//! (a style from a dozen steps).
+//! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps);
+//! [`adapt`] (a style from a dozen steps); and [`evaluate`], which judges what comes out.
 
 pub mod adapt;
 pub mod average;
 pub mod dataset;
 pub mod differences;
 pub mod error;
+pub mod evaluate;
 pub mod normalise;
 pub mod progress;
 pub mod sequence;

@@ -3,6 +3,8 @@
 mod bad_input;
 mod common;
 mod designs;
+mod evaluate;
 mod pipeline;
 mod recordings;
+mod study;
 mod style;

@@ -1,0 +1,25 @@
+//! `footfall evaluate`: the papers' tables on the user's own data.
+
+mod style;
+mod style_report;
+
+use anyhow::Result;
+use clap::Subcommand;
+
+/// Judge walks by measures: the papers' tables on your own data
+#[derive(Debug, clap::Args)]
+pub(crate) struct EvaluateArgs {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    Style(style::StyleArgs),
+}
+
+pub(crate) fn run(args: &EvaluateArgs) -> Result<()> {
+    match &args.what {
+        What::Style(args) => style::run(args),
+    }
+}

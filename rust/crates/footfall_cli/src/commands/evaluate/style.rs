@@ -1,0 +1,60 @@
+//! `footfall evaluate style`: are styles told apart, do they resemble their model, do they move like people?
+
+use super::style_report::{Report, tables};
+use crate::corpus_pair::{CorpusPair, styled_clips};
+use crate::output;
+use anyhow::{Context as _, Result};
+use clap::ValueEnum;
+use footfall_train::evaluate::{Split, evaluate_styles};
+
+/// Recognition, resemblance and naturalness of styles
+///
+/// A classifier learns the styles of real strides (two steps each; mean, deviation and range of every joint's swing, speed,
+/// cadence, widths; linear discriminant with shrunk covariance). It names the style of real strides that it has not seen and of
+/// the synthesised ones. Without --synthesised, real recordings are judged against each other: what nature itself scores.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall evaluate style --real index.csv --where category=styled_walk\n  \
+    footfall evaluate style --real index.csv --where category=styled_walk --synthesised made.csv --split half --json")]
+pub(crate) struct StyleArgs {
+    #[command(flatten)]
+    corpora: CorpusPair,
+    /// How real strides are kept unseen: each take in turn, or each half of every recording; takes when every style has two
+    #[arg(long, value_enum)]
+    split: Option<SplitArg>,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum SplitArg {
+    /// Each take in turn is unseen; harder, for people vary from take to take
+    Take,
+    /// Each half of every recording in turn is unseen
+    Half,
+}
+
+pub(crate) fn run(args: &StyleArgs) -> Result<()> {
+    let progress = output::Progress::new();
+    progress.stage("reading the recordings", 0);
+    let corpora = args.corpora.read()?;
+    let real = styled_clips(&corpora.real);
+    let synthesised = corpora.synthesised.as_ref().map(styled_clips);
+    progress.stage("judging", 0);
+    let split = args.split.map(|split| match split {
+        SplitArg::Take => Split::Take,
+        SplitArg::Half => Split::Half,
+    });
+    let evaluation = evaluate_styles(&real, synthesised.as_deref(), split)
+        .with_context(|| args.corpora.real.index.display().to_string())?;
+    progress.finish();
+    let skipped = corpora.skipped();
+    for reason in &skipped {
+        output::note(&format!("warning: left out {reason}"));
+    }
+    if args.json {
+        return output::print_json(&Report::new(&evaluation, skipped));
+    }
+    output::print_text(&tables(&evaluation))
+}

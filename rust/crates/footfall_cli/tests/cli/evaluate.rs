@@ -1,0 +1,163 @@
+//! `footfall evaluate` and `footfall study` from the outside, on walks that the project made.
+
+use crate::common::{Run, footfall};
+use footfall_tests::data::{own_file, recordings};
+use std::fs;
+use std::path::Path;
+
+/// Writes an index of our own walks; the two walkers take the parts of the captured and of the synthesised.
+pub(crate) fn write_index(folder: &Path, name: &str, walks: &[(&str, &str)]) {
+    let mut text = "path,category,style,subject\n".to_owned();
+    for (file, style) in walks {
+        let path = own_file(file);
+        let row = [
+            path.to_str().expect("a path in UTF-8"),
+            "walk",
+            style,
+            "someone",
+        ];
+        text.push_str(&row.join(","));
+        text.push('\n');
+    }
+    fs::write(folder.join(name), text).expect("the folder can be written");
+}
+
+pub(crate) fn write_pair(folder: &Path) {
+    write_index(
+        folder,
+        "real.csv",
+        &[("walker_1_slow.bvh", "slow"), ("walker_1_fast.bvh", "fast")],
+    );
+    write_index(
+        folder,
+        "made.csv",
+        &[("walker_2_slow.bvh", "slow"), ("walker_2_fast.bvh", "fast")],
+    );
+}
+
+fn evaluate(folder: &Path, more: &[&str]) -> Run {
+    let mut arguments = vec!["evaluate", "style", "--real", "real.csv"];
+    arguments.extend(more);
+    footfall(folder, &arguments)
+}
+
+#[test]
+fn slow_and_fast_are_told_apart_and_swapped_names_are_found_out() {
+    let folder = tempfile::tempdir().unwrap();
+    write_pair(folder.path());
+    let report = evaluate(folder.path(), &["--synthesised", "made.csv", "--json"]).json();
+    assert_eq!(report["split"], "half", "one take each");
+    assert_eq!(report["styles"].as_array().unwrap().len(), 2);
+    assert_eq!(report["real"]["rate"], 1.0, "{report}");
+    assert_eq!(report["real"]["efficiency"], 2.0, "{report}");
+    assert_eq!(report["synthesised"]["rate"], 1.0, "{report}");
+    assert_eq!(report["ratio"], 1.0, "{report}");
+    let measures = &report["measures"]["slow"];
+    for kind in ["real", "synthesised"] {
+        let slip = measures[kind]["slip_mps"].as_f64().unwrap();
+        assert!(slip < 0.006, "planted feet slip at {slip} m/s");
+        assert!(measures[kind]["jerk_mps3"].as_f64().unwrap() > 1.0);
+        assert!(measures[kind]["skating_ratio"].as_f64().unwrap() < 0.3);
+    }
+    assert!(
+        measures["synthesised_against_real"]["variance_ratio"]["median"]
+            .as_f64()
+            .unwrap()
+            > 0.5
+    );
+
+    write_index(
+        folder.path(),
+        "made.csv",
+        &[("walker_2_slow.bvh", "fast"), ("walker_2_fast.bvh", "slow")],
+    );
+    let report = evaluate(folder.path(), &["--synthesised", "made.csv", "--json"]).json();
+    assert_eq!(report["real"]["rate"], 1.0, "{report}");
+    assert_eq!(report["synthesised"]["rate"], 0.0, "{report}");
+}
+
+#[test]
+fn tables_name_every_style_and_say_how_good_guessing_is() {
+    let folder = tempfile::tempdir().unwrap();
+    write_pair(folder.path());
+    let alone = evaluate(folder.path(), &[]);
+    assert_eq!(alone.code, 0, "{}", alone.stderr);
+    assert!(!alone.stdout.contains("ynthesised"), "{}", alone.stdout);
+    let both = evaluate(
+        folder.path(),
+        &["--synthesised", "made.csv", "--where", "style=slow"],
+    );
+    for part in [
+        "slow",
+        "fast",
+        "100.0 %",
+        "2.00 times chance",
+        "Synthesised over real: 1.00",
+    ] {
+        assert!(
+            both.stdout.contains(part),
+            "{part} is not in {}",
+            both.stdout
+        );
+    }
+}
+
+#[test]
+fn what_cannot_be_judged_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    write_pair(folder.path());
+    evaluate(folder.path(), &["--split", "take"]).fails_with(&["real.csv", "fast", "--split half"]);
+    evaluate(folder.path(), &["--where", "style=slow"]).fails_with(&["needs two"]);
+    evaluate(folder.path(), &["--synthesised", "none.csv"]).fails_with(&["none.csv"]);
+    write_index(folder.path(), "made.csv", &[("walker_2_slow.bvh", "proud")]);
+    evaluate(folder.path(), &["--synthesised", "made.csv"]).fails_with(&["proud", "fast, slow"]);
+    let study = |arguments: &[&str]| {
+        let mut all = vec!["study", "--real", "real.csv", "-o", "study.html"];
+        all.extend(arguments);
+        footfall(folder.path(), &all)
+    };
+    study(&[]).fails_with(&["--synthesised"]);
+    study(&["--synthesised", "made.csv"]).fails_with(&["no style has both"]);
+    study(&["--synthesised", "made.csv", "--seconds", "nan"]).fails_with(&["--seconds"]);
+    assert!(!folder.path().join("study.html").exists());
+}
+
+/// What the calibration says of captured people: six styles of set 2 all told apart across takes, fourteen of set 1 within a
+/// take, and fewer across takes.
+#[test]
+fn captured_styles_are_recognised_as_the_calibration_says() {
+    let Some(data) = recordings("style calibration") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let index = data.join("index.csv");
+    let judge = |conditions: &[&str]| {
+        let mut arguments = vec![
+            "evaluate",
+            "style",
+            "--real",
+            index.to_str().unwrap(),
+            "--json",
+        ];
+        arguments.extend(conditions);
+        footfall(folder.path(), &arguments).json()
+    };
+    let acted = ["--where", "category=styled_walk", "--where"];
+    let second = judge(&[&acted[..], &["clip_id=bn2*", "--split", "take"]].concat());
+    let within = judge(&[&acted[..], &["clip_id=bn1*", "--split", "half"]].concat());
+    let across = judge(&["--where", "category=strafe", "--split", "take"]);
+    let rate = |report: &serde_json::Value| report["real"]["rate"].as_f64().unwrap();
+    eprintln!(
+        "set 2 {}, set 1 within {}, across {}",
+        rate(&second),
+        rate(&within),
+        rate(&across)
+    );
+    assert_eq!(second["styles"].as_array().unwrap().len(), 6);
+    assert_eq!(within["styles"].as_array().unwrap().len(), 14);
+    assert!(rate(&second) >= 0.99, "{}", second["real"]);
+    assert!(rate(&within) >= 0.97, "{}", within["real"]);
+    assert!((0.4..0.9).contains(&rate(&across)), "{}", across["real"]);
+    let variability = second["step_variability_ratio"].as_f64().unwrap();
+    assert!((0.8..1.25).contains(&variability), "{variability}");
+}

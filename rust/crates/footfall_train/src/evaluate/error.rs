@@ -1,0 +1,67 @@
+//! Why walks cannot be judged.
+
+/// Why walks cannot be judged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EvaluateError {
+    /// A class without a sample.
+    #[error("class {class} has no sample to learn from")]
+    EmptyClass {
+        /// The class, from 0.
+        class: usize,
+    },
+    /// Fewer samples than a spread can be estimated from.
+    #[error(
+        "{samples} samples of {classes} classes are too few to estimate a spread; add recordings"
+    )]
+    TooFewSamples {
+        /// How many there are.
+        samples: usize,
+        /// Of how many classes.
+        classes: usize,
+    },
+    /// Features that cannot be used.
+    #[error(
+        "features are not finite, or samples differ in how many they have; check the recordings for broken frames"
+    )]
+    Features,
+    /// A pose that is no pose.
+    #[error("style {style}: frame {frame} of a recording is not finite; capture or write it anew")]
+    NotFinite {
+        /// The style.
+        style: String,
+        /// Frame of the clip.
+        frame: usize,
+    },
+    /// The covariance has no inverse.
+    #[error("the features depend on each other, so their covariance has no inverse; shrink it")]
+    Singular,
+    /// Nothing to tell apart.
+    #[error(
+        "the real recordings show {found} style with strides, and recognition needs two; widen --where"
+    )]
+    OneStyle {
+        /// How many styles there are: none or one.
+        found: usize,
+    },
+    /// A style that cannot be split.
+    #[error("style {style}: {reason}")]
+    Split {
+        /// The style.
+        style: String,
+        /// What is missing, and what to do.
+        reason: String,
+    },
+    /// A synthesised style that no real recording shows.
+    #[error("style {style} of the synthesised recordings is in no real one; the real styles are {}", known.join(", "))]
+    UnknownStyle {
+        /// The style.
+        style: String,
+        /// Those that the real recordings show.
+        known: Vec<String>,
+    },
+    /// Synthesised recordings without a stride.
+    #[error(
+        "the synthesised recordings hold no two steps in a row; synthesise walks of at least four steps"
+    )]
+    NoSynthesisedStride,
+}
