@@ -109,10 +109,7 @@ fn state_means_come_to_those_of_the_recording() {
             .fold(0.0, f64::max)
     };
     let (before, after) = (distance(&base.steps), distance(&adapted.style.steps));
-    assert!(
-        after < 0.03 && after < 0.5 * before,
-        "from {before} to {after}"
-    );
+    assert!(after < 0.2 * before, "from {before} to {after}");
 }
 
 #[test]
