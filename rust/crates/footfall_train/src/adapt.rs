@@ -20,7 +20,7 @@ use footfall_model::{
 };
 use footfall_motion::steps::Walk;
 use footfall_prob::duration::GaussianDuration;
-use footfall_prob::gaussian::{DiagonalGaussian, GaussianStats, log_densities};
+use footfall_prob::gaussian::{DiagonalGaussian, log_densities};
 use footfall_prob::hsmm::{Boundary, HsmmStats, hsmm_forward_backward};
 use footfall_prob::regression::map_estimate;
 use transforms::Adapting;
@@ -103,9 +103,11 @@ pub fn adapt_style(
     let mut adapting = Adapting::new(base, &corpus, config.method)?;
     let (transforms_fit, objectives) = adapting.run(&corpus, progress)?;
     let start = States::of(base);
+    let durations = adapting.adapted_durations()?;
     let prior = States {
         gaussians: adapting.adapted_gaussians()?,
-        durations: adapting.adapted_durations()?,
+        lengths: lengths(&durations, adapting.max_duration())?,
+        durations,
         max_duration: adapting.max_duration(),
     };
     let mut states = prior.clone();
@@ -189,7 +191,10 @@ fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>
 #[derive(Clone, Debug)]
 struct States {
     gaussians: Vec<DiagonalGaussian>,
+    /// What explains the durations: Gaussians cut off at one frame, whose centres are not their means.
     durations: Vec<GaussianDuration>,
+    /// Mean and variance of the durations themselves, which is what the generator plays.
+    lengths: Vec<[f64; 2]>,
     max_duration: usize,
 }
 
@@ -205,6 +210,9 @@ impl States {
                     mean: s.duration_mean,
                     variance: s.duration_variance,
                 })
+                .collect(),
+            lengths: states()
+                .map(|s| [s.duration_mean, s.duration_variance])
                 .collect(),
             max_duration: 0,
         }
@@ -253,31 +261,27 @@ impl States {
                 Ok(DiagonalGaussian::new(found.mean().to_vec(), variance)?)
             })
             .collect::<Result<_, TrainError>>()?;
-        let durations = self
-            .durations
-            .iter()
-            .zip(&stats.durations)
-            .map(|(prior, seen)| {
-                if seen.weight() <= 0.0 {
-                    return Ok(*prior);
-                }
-                let own = seen.estimate(self.max_duration, DURATION_VARIANCE_FLOOR)?;
-                let mut moments = GaussianStats::new(1);
-                let spread = own.variance.sqrt();
-                for side in [-1.0, 1.0] {
-                    moments.add(&[own.mean + side * spread], 0.5 * seen.weight());
-                }
-                let prior = DiagonalGaussian::new(vec![prior.mean], vec![prior.variance])?;
-                let found = map_estimate(&prior, &moments, MAP_SEGMENTS)?;
-                Ok(GaussianDuration {
-                    mean: found.mean()[0],
-                    variance: found.variance()[0].max(DURATION_VARIANCE_FLOOR),
-                })
-            })
-            .collect::<Result<_, TrainError>>()?;
+        let mut durations = self.durations.clone();
+        let mut lengths = self.lengths.clone();
+        for ((duration, length), seen) in
+            durations.iter_mut().zip(&mut lengths).zip(&stats.durations)
+        {
+            if seen.weight() > 0.0 {
+                *duration = seen.estimate(self.max_duration, DURATION_VARIANCE_FLOOR)?;
+                let own = duration.discretise(self.max_duration)?;
+                let share = seen.weight() / (MAP_SEGMENTS + seen.weight());
+                let [prior, prior_variance] = *length;
+                let mean = prior + share * (own.mean() - prior);
+                let spread = |variance: f64, of: f64| variance + (of - mean).powi(2);
+                let variance = (1.0 - share) * spread(prior_variance, prior)
+                    + share * spread(own.variance(), own.mean());
+                *length = [mean, variance];
+            }
+        }
         Ok(Self {
             gaussians,
             durations,
+            lengths,
             max_duration: self.max_duration,
         })
     }
@@ -286,12 +290,12 @@ impl States {
         let first = side.index() * STATES_PER_STEP;
         let states = (first..first + STATES_PER_STEP)
             .map(|index| {
-                let duration = self.durations[index].discretise(self.max_duration)?;
+                let [duration_mean, duration_variance] = self.lengths[index];
                 Ok(StateModel {
                     mean: self.gaussians[index].mean().to_vec(),
                     variance: self.gaussians[index].variance().to_vec(),
-                    duration_mean: duration.mean(),
-                    duration_variance: duration.variance().max(DURATION_VARIANCE_FLOOR),
+                    duration_mean,
+                    duration_variance: duration_variance.max(DURATION_VARIANCE_FLOOR),
                 })
             })
             .collect::<Result<_, TrainError>>()?;
@@ -300,6 +304,17 @@ impl States {
             other_terminal,
         })
     }
+}
+
+/// Mean and variance of durations as far as they can be.
+fn lengths(durations: &[GaussianDuration], longest: usize) -> Result<Vec<[f64; 2]>, TrainError> {
+    durations
+        .iter()
+        .map(|duration| {
+            let possible = duration.discretise(longest)?;
+            Ok([possible.mean(), possible.variance()])
+        })
+        .collect()
 }
 
 /// The mean of the style's walks, with the base's relative spread.

@@ -1,6 +1,7 @@
 use super::*;
 use crate::train_average;
 use footfall_motion::corpus::{Corpus, Where};
+use footfall_prob::gaussian::GaussianStats;
 use footfall_prob::windows::Windows;
 use std::path::Path;
 
@@ -69,7 +70,7 @@ fn a_walker_becomes_a_style() {
             let styled = base.styled(&[(&adapted.style, 1.0)]).unwrap();
             let cadence = styled.cadence_hz();
             assert!(
-                (cadence / adapted.style.cadence_hz - 1.0).abs() < 0.08,
+                (cadence / adapted.style.cadence_hz - 1.0).abs() < 0.03,
                 "{cadence} for {}",
                 adapted.style.cadence_hz
             );
