@@ -3,13 +3,14 @@
 use crate::chance::{drift, normal};
 use crate::course::Course;
 use crate::curve::{hermite, smooth_step, smoothed, stance_wave};
-use crate::foot::{Foot, Plant, pitch_and_heading, settled};
 use crate::sheet::StyleSheet;
 use crate::timeline::Timeline;
 use core::f32::consts::PI;
 use footfall_core::rotation::{exp_map, from_heading, log_map, wrap_angle};
 use footfall_core::{Clip, FrameSpan, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
-use footfall_ik::{FootTarget, reach_height, solve_leg};
+use footfall_ik::{
+    FootTarget, Plant, RockerFoot, pitch_and_heading, reach_height, settled_pitch, solve_leg,
+};
 use glam::Vec3;
 
 /// A standing leg is stretched to this share of its length at most.
@@ -91,7 +92,7 @@ impl Ground<'_> {
 
     /// Where one foot is in every frame.
     fn foot_targets(&self, side: Side, models: &[ModelPose]) -> Vec<FootTarget> {
-        let foot = Foot::new(&self.captured.skeleton, side);
+        let foot = RockerFoot::new(&self.captured.skeleton, side);
         let stances = &self.timeline.stances[side.index()];
         let frames = models.len();
         // The free foot, as the course carries it, for the whole clip; stances replace it.
@@ -102,7 +103,7 @@ impl Ground<'_> {
         for (index, span) in stances.iter().enumerate() {
             let plant = self.plant(side, &foot, *span, index, models);
             for frame in span.first..=span.last {
-                let pitch = settled(pitch_and_heading(models[frame].rotation(side.foot())).0);
+                let pitch = settled_pitch(pitch_and_heading(models[frame].rotation(side.foot())).0);
                 let pitch = self.styled_pitch(pitch, progress(stances, frame));
                 targets[frame] = foot.stand(&plant, pitch);
             }
@@ -157,7 +158,7 @@ impl Ground<'_> {
     fn plant(
         &self,
         side: Side,
-        foot: &Foot,
+        foot: &RockerFoot,
         span: FrameSpan,
         index: usize,
         models: &[ModelPose],
@@ -177,7 +178,7 @@ impl Ground<'_> {
             let (pitch, heading) = pitch_and_heading(models[frame].rotation(side.foot()));
             let position = models[frame].position(side.foot());
             ankle += foot
-                .plant_under(position, heading, settled(pitch))
+                .plant_under(position, heading, settled_pitch(pitch))
                 .flat_ankle
                 / count;
             turn += wrap_angle(heading - reference) / count;
@@ -210,7 +211,7 @@ impl Ground<'_> {
     fn swing(
         &self,
         side: Side,
-        foot: &Foot,
+        foot: &RockerFoot,
         ends: (Option<FrameSpan>, Option<FrameSpan>),
         free: &[FootTarget],
         targets: &mut [FootTarget],
@@ -277,7 +278,7 @@ impl Ground<'_> {
                 foot: rotation,
                 toes: rotation * exp_map(toes),
             };
-            let short = CLEARANCE_M * hump - foot.lowest(&target);
+            let short = CLEARANCE_M * hump - foot.lowest_point(&target);
             target.ankle.y += soft_positive(short, 0.004 * (PI * s).sin() + 1e-5);
             targets[frame] = target;
         }

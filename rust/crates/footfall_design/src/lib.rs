@@ -9,7 +9,6 @@ mod body;
 mod chance;
 mod course;
 mod curve;
-mod foot;
 mod ground;
 pub mod sheet;
 pub mod shipped;

@@ -10,7 +10,6 @@ mod pace;
 mod plan;
 mod planting;
 mod raw;
-mod rocker;
 mod standing;
 mod trajectory;
 mod variance;

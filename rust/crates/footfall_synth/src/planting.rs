@@ -1,7 +1,7 @@
 //! Puts generated rotations on the ground, one step at a time: root travel, planted feet, legs that reach them.
 //!
 //! The model generates rotations only; the travel of the body follows from the foot that stands (Tilmanne et al. 2012,
-//! section 5.2.3). Here the standing foot rolls on its plant without sliding ([`crate::rocker`]), the hips follow from
+//! section 5.2.3). Here the standing foot rolls on its plant without sliding ([`footfall_ik::rocker`]), the hips follow from
 //! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
 //! generated rotations and planted feet disagree about is spread over the swing.
 
@@ -9,10 +9,9 @@ mod support;
 mod swing;
 
 use crate::raw::RawFrame;
-use crate::rocker::{Plant, RockerFoot};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
-use footfall_ik::{FootTarget, solve_leg};
+use footfall_ik::{FootTarget, Plant, RockerFoot, solve_leg};
 use glam::{Quat, Vec3};
 use swing::Swing;
 
@@ -313,7 +312,7 @@ fn within_reach(ankle_from_hip: Vec3, reach: f32) -> Vec3 {
 }
 
 /// From 0 at 0 to 1 at 1, level at both ends and beyond.
-fn smooth_step(s: f32) -> f32 {
+pub(crate) fn smooth_step(s: f32) -> f32 {
     let s = s.clamp(0.0, 1.0);
     s * s * (3.0 - 2.0 * s)
 }

@@ -1,7 +1,7 @@
 //! What a frame of generated features says about the body before it is put on the ground.
 
-use crate::rocker::{pitch_and_heading, settled_pitch};
 use footfall_core::{JOINT_COUNT, Joint, Pose, Side, Skeleton};
+use footfall_ik::{pitch_and_heading, settled_pitch};
 use footfall_model::layout;
 use glam::{Quat, Vec3};
 

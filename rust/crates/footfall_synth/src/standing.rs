@@ -3,6 +3,7 @@
 //! The model knows walking only. Standing is its mean posture over a straight pair of legs, and a step that starts or
 //! ends a walk grows out of it or shrinks into it: features between the two, with the same planted feet.
 
+use crate::planting::smooth_step;
 use footfall_core::rotation::log_map;
 use footfall_core::{Joint, Side};
 use footfall_model::layout::{feature_offset, mirror};
@@ -39,9 +40,7 @@ impl Amplitude {
         } else {
             (s - GROWTH[0]) / (GROWTH[1] - GROWTH[0])
         };
-        let progress = progress.clamp(0.0, 1.0);
-        let eased = progress * progress * (3.0 - 2.0 * progress);
-        self.from + eased * (self.to - self.from)
+        self.from + smooth_step(progress) * (self.to - self.from)
     }
 }
 

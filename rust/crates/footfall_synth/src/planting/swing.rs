@@ -1,10 +1,9 @@
 //! The swinging foot: from where it stood to where it lands, along the generated path.
 
 use super::{StepTiming, smooth_step};
-use crate::rocker::RockerFoot;
 use core::f32::consts::PI;
 use footfall_core::rotation::{exp_map, log_map};
-use footfall_ik::FootTarget;
+use footfall_ik::{FootTarget, RockerFoot};
 use glam::Vec3;
 
 /// Least clearance of the sole in the middle of the swing, metres.

@@ -5,10 +5,10 @@
 //! toes' range it turns about their tip. Every pivot is a point of the ground, so a foot driven by pitch alone cannot
 //! slide or sink.
 
+use crate::leg::FootTarget;
 use core::f32::consts::FRAC_PI_3;
 use footfall_core::rotation::from_heading;
 use footfall_core::{FootShape, Side, Skeleton};
-use footfall_ik::FootTarget;
 use glam::{Quat, Vec3};
 
 /// How far the toes bend up before the foot rises on their tips, radians.
@@ -19,16 +19,16 @@ const FLAT_PITCH: f32 = 0.09;
 
 /// Where a foot was put.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Plant {
+pub struct Plant {
     /// Position of the ankle when the sole is flat on the ground, metres.
-    pub(crate) flat_ankle: Vec3,
+    pub flat_ankle: Vec3,
     /// Heading of the foot, radians.
-    pub(crate) heading: f32,
+    pub heading: f32,
 }
 
 /// The parts of a foot that the rocker needs, in the axes of the foot.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RockerFoot {
+pub struct RockerFoot {
     heel: Vec3,
     toe_joint: Vec3,
     ball: Vec3,
@@ -36,7 +36,8 @@ pub(crate) struct RockerFoot {
 }
 
 impl RockerFoot {
-    pub(crate) fn new(skeleton: &Skeleton, side: Side) -> Self {
+    /// One foot of a body.
+    pub fn new(skeleton: &Skeleton, side: Side) -> Self {
         let FootShape {
             heel,
             ball,
@@ -51,12 +52,12 @@ impl RockerFoot {
     }
 
     /// Height of the ankle above the ground when the sole is flat.
-    pub(crate) fn ankle_height(&self) -> f32 {
+    pub fn ankle_height(&self) -> f32 {
         -self.heel.y
     }
 
     /// The plant that has the ankle above this point of the ground at this pitch.
-    pub(crate) fn plant_under(&self, ankle: Vec3, heading: f32, pitch: f32) -> Plant {
+    pub fn plant_under(&self, ankle: Vec3, heading: f32, pitch: f32) -> Plant {
         let origin = Plant {
             flat_ankle: Vec3::new(0.0, self.ankle_height(), 0.0),
             heading,
@@ -69,7 +70,7 @@ impl RockerFoot {
     }
 
     /// Where the foot is when it stands on its plant at this pitch (positive: heel up).
-    pub(crate) fn stand(&self, plant: &Plant, pitch: f32) -> FootTarget {
+    pub fn stand(&self, plant: &Plant, pitch: f32) -> FootTarget {
         let level = from_heading(plant.heading);
         let foot = level * Quat::from_rotation_x(pitch);
         if pitch <= 0.0 {
@@ -93,7 +94,7 @@ impl RockerFoot {
     }
 
     /// Height of the sole's lowest point, metres.
-    pub(crate) fn lowest_point(&self, target: &FootTarget) -> f32 {
+    pub fn lowest_point(&self, target: &FootTarget) -> f32 {
         let toe_joint = target.ankle + target.foot * self.toe_joint;
         let heel = target.ankle + target.foot * self.heel;
         let ball = toe_joint + target.toes * self.ball;
@@ -102,19 +103,19 @@ impl RockerFoot {
     }
 
     /// The ground under the ankle of a flat foot: where a footprint is drawn.
-    pub(crate) fn footprint(plant: &Plant) -> Vec3 {
+    pub fn footprint(plant: &Plant) -> Vec3 {
         Vec3::new(plant.flat_ankle.x, 0.0, plant.flat_ankle.z)
     }
 }
 
-/// A generated foot pitch with small angles pulled to zero, so that a foot that means to be flat is flat.
-pub(crate) fn settled_pitch(pitch: f32) -> f32 {
+/// A captured or generated foot pitch with small angles pulled to zero, so that a foot that means to be flat is flat.
+pub fn settled_pitch(pitch: f32) -> f32 {
     let squared = pitch * pitch;
     pitch * squared / (squared + FLAT_PITCH * FLAT_PITCH)
 }
 
 /// Pitch (positive: heel up) and heading of a foot from its rotation.
-pub(crate) fn pitch_and_heading(rotation: Quat) -> (f32, f32) {
+pub fn pitch_and_heading(rotation: Quat) -> (f32, f32) {
     let forward = rotation * Vec3::Z;
     let pitch = (-forward.y).clamp(-1.0, 1.0).asin();
     (pitch, forward.x.atan2(forward.z))
@@ -123,8 +124,8 @@ pub(crate) fn pitch_and_heading(rotation: Quat) -> (f32, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::leg::solve_leg;
     use footfall_core::{Joint, Pose, forward_kinematics};
-    use footfall_ik::solve_leg;
 
     fn plant() -> Plant {
         Plant {
