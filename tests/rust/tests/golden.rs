@@ -5,7 +5,9 @@ use footfall_model::GaitModel;
 use footfall_motion::bvh;
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
 use footfall_motion::retarget::{RetargetOptions, retarget};
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, WalkConfig, synthesize};
+use footfall_synth::{
+    Controls, GaitGenerator, GeneratorConfig, StyleSpace, WalkConfig, synthesize,
+};
 use footfall_tests::data::{own_file, own_recordings, repository};
 use footfall_tests::golden::assert_golden;
 use std::sync::Arc;
@@ -72,7 +74,8 @@ fn a_generated_walk() {
         phase: 0.0,
         variation: 1.0,
     };
-    let mut generator = GaitGenerator::new(&model, &model.skeleton, &config).unwrap();
+    let space = Arc::new(StyleSpace::new(&model, &[]).unwrap());
+    let mut generator = GaitGenerator::new(&space, &model.skeleton, &config).unwrap();
     let controls = Controls {
         speed_mps: 1.3,
         turn_rate_radps: 0.2,

@@ -3,7 +3,7 @@
 
 use footfall_core::Pose;
 use footfall_model::GaitModel;
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig};
+use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
 use footfall_tests::data::repository;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -52,13 +52,14 @@ fn a_step_of_the_generator_allocates_nothing() {
     let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall")).unwrap();
     let model = Arc::new(GaitModel::from_bytes(&bytes).unwrap());
     let skeleton = model.skeleton.clone();
+    let space = Arc::new(StyleSpace::new(&model, &[]).unwrap());
     for seed in 0..24 {
         let config = GeneratorConfig {
             seed,
             phase: 0.3,
             variation: 1.0,
         };
-        let mut generator = GaitGenerator::new(&model, &skeleton, &config).unwrap();
+        let mut generator = GaitGenerator::new(&space, &skeleton, &config).unwrap();
         let mut pose = Pose::default();
         for frame in 0..3000_u16 {
             // Faster and slower, left and right, small and large steps in time, and nonsense.

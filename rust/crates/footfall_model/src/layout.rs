@@ -45,9 +45,10 @@ pub fn encode(pose: &Pose, heading: f32, previous: Option<&[f64]>, out: &mut [f6
 ///
 /// # Panics
 /// When `features` is shorter than [`FEATURE_COUNT`].
-pub fn decode(features: &[f64], rotations: &mut [Quat; JOINT_COUNT]) {
-    for joint in Joint::ALL {
-        rotations[joint.index()] = exp_map(read_vector(features, feature_offset(joint)));
+pub fn decode(features: &[f32], rotations: &mut [Quat; JOINT_COUNT]) {
+    let vectors = features[..FEATURE_COUNT].chunks_exact(3);
+    for (rotation, vector) in rotations.iter_mut().zip(vectors) {
+        *rotation = exp_map(Vec3::from_slice(vector));
     }
 }
 
@@ -109,7 +110,7 @@ mod tests {
             let mut features = [0.0; FEATURE_COUNT];
             encode(&pose, heading, None, &mut features);
             let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
-            decode(&features, &mut rotations);
+            decode(&features.map(|value| value as f32), &mut rotations);
             rotations[0] = from_heading(heading) * rotations[0];
             for (decoded, original) in rotations.iter().zip(&pose.rotations) {
                 prop_assert!(decoded.angle_between(*original) < 2e-3);
@@ -123,7 +124,7 @@ mod tests {
             encode(&pose, 0.0, None, &mut features);
             mirror(&mut features);
             let mut mirrored = Pose::default();
-            decode(&features, &mut mirrored.rotations);
+            decode(&features.map(|value| value as f32), &mut mirrored.rotations);
             let (mut model, mut mirrored_model) = (ModelPose::default(), ModelPose::default());
             forward_kinematics(&skeleton, &pose, &mut model);
             forward_kinematics(&skeleton, &mirrored, &mut mirrored_model);

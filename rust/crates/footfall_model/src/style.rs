@@ -105,26 +105,47 @@ impl GaitModel {
     /// # Errors
     /// [`StyleError`] when a style was made for another model, a weight is not finite, or content makes no sense.
     pub fn styled(&self, styles: &[(&GaitStyle, f64)]) -> Result<Self, StyleError> {
-        self.check().map_err(StyleError::Base)?;
-        let fingerprint = self.fingerprint().map_err(StyleError::Base)?;
+        let all: Vec<&GaitStyle> = styles.iter().map(|(style, _)| *style).collect();
+        self.check_styles(&all)?;
         for (style, weight) in styles {
-            let name = || style.name.clone();
-            if style.base_fingerprint != fingerprint {
-                return Err(StyleError::OtherBase { style: name() });
-            }
             if !weight.is_finite() {
                 return Err(StyleError::Weight {
-                    style: name(),
+                    style: style.name.clone(),
                     weight: *weight,
                 });
             }
+        }
+        Ok(self.mixture(styles))
+    }
+
+    /// Checks that this model can wear these styles.
+    ///
+    /// # Errors
+    /// [`StyleError`] when a style was made for another model, or content makes no sense.
+    pub fn check_styles(&self, styles: &[&GaitStyle]) -> Result<(), StyleError> {
+        self.check().map_err(StyleError::Base)?;
+        let fingerprint = self.fingerprint().map_err(StyleError::Base)?;
+        for style in styles {
+            if style.base_fingerprint != fingerprint {
+                return Err(StyleError::OtherBase {
+                    style: style.name.clone(),
+                });
+            }
             style.check().map_err(|source| StyleError::Content {
-                style: name(),
+                style: style.name.clone(),
                 source,
             })?;
         }
+        Ok(())
+    }
+
+    /// [`styled`](Self::styled) for styles that [`check_styles`](Self::check_styles) has passed: for weights that change while
+    /// a walker walks. A weight that is not finite counts as 0.
+    #[must_use]
+    pub fn mixture(&self, styles: &[(&GaitStyle, f64)]) -> Self {
         let mut parts: Vec<(&GaitStyle, f64)> = styles
             .iter()
+            .filter(|(_, weight)| weight.is_finite())
             .map(|(style, weight)| (*style, weight.clamp(-MAX_WEIGHT, MAX_WEIGHT)))
             .filter(|(_, weight)| weight.abs() > 0.0)
             .collect();
@@ -134,13 +155,13 @@ impl GaitModel {
             key(a).cmp(&key(b)).then(wa.total_cmp(wb))
         });
         if parts.is_empty() {
-            return Ok(self.clone());
+            return self.clone();
         }
         let share = self.human_share(&parts);
         for (_, weight) in &mut parts {
             *weight *= share;
         }
-        Ok(self.mixed(&Mixture { parts: &parts }))
+        self.mixed(&Mixture { parts: &parts })
     }
 
     fn mixed(&self, mixture: &Mixture<'_>) -> Self {

@@ -1,7 +1,7 @@
 //! Why a walk cannot be generated.
 
 use footfall_core::SkeletonError;
-use footfall_model::ModelError;
+use footfall_model::{ModelError, StyleError};
 use footfall_prob::ProbError;
 
 /// Why a walk cannot be generated.
@@ -10,6 +10,9 @@ pub enum SynthError {
     /// The model's content makes no sense.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// A style cannot be worn by the model.
+    #[error(transparent)]
+    Style(#[from] StyleError),
     /// The body cannot walk.
     #[error(transparent)]
     Skeleton(#[from] SkeletonError),

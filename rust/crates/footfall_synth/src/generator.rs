@@ -4,13 +4,12 @@ use crate::error::SynthError;
 use crate::pace::PaceTable;
 use crate::plan::Planner;
 use crate::planting::PlantedFrame;
+use crate::space::{Blend, StyleSpace};
 use crate::standing::Amplitude;
-use crate::variance;
-use crate::walker::Walker;
+use crate::walker::{Request, Walker};
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::RockerFoot;
-use footfall_model::GaitModel;
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -91,18 +90,31 @@ pub struct Footstep {
 /// and sequence of calls give the same poses, bit for bit on one machine.
 #[derive(Debug)]
 pub struct GaitGenerator {
-    planner: Planner,
-    walker: Walker,
-    paces: PaceTable,
+    pub(crate) space: Arc<StyleSpace>,
+    pub(crate) skeleton: Skeleton,
+    pub(crate) config: GeneratorConfig,
+    pub(crate) planner: Planner,
+    pub(crate) walker: Walker,
+    /// What the next step wears.
+    pub(crate) worn: Worn,
+    /// A mixture that the next step lets go of, kept so that it is not freed there.
+    retired: Option<Arc<Blend>>,
     frame_rate_hz: f32,
     /// Speed of the current step.
-    speed_mps: f32,
+    pub(crate) speed_mps: f32,
     /// Frames since the current step began.
-    position: f32,
-    plan_from_start: GroundTransform,
+    pub(crate) position: f32,
+    pub(crate) plan_from_start: GroundTransform,
     footsteps: Vec<Footstep>,
     start_from_character: GroundTransform,
     contact: [bool; 2],
+}
+
+/// A mixture of styles and how fast it walks on this body.
+#[derive(Debug)]
+pub(crate) struct Worn {
+    pub(crate) blend: Arc<Blend>,
+    pub(crate) paces: PaceTable,
 }
 
 #[expect(
@@ -110,36 +122,45 @@ pub struct GaitGenerator {
     reason = "controls will hold more than speed and turning"
 )]
 impl GaitGenerator {
-    /// A walker of `model` with the proportions of `skeleton`, standing at the origin and facing +Z.
+    /// A walker with the proportions of `skeleton`, at the origin and facing +Z, without any style.
     ///
     /// # Errors
     /// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
     pub fn new(
-        model: &Arc<GaitModel>,
+        space: &Arc<StyleSpace>,
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<Self, SynthError> {
-        model.check()?;
         skeleton.check()?;
         for (setting, value) in [("phase", config.phase), ("variation", config.variation)] {
             if !value.is_finite() {
                 return Err(SynthError::Setting { setting, value });
             }
         }
-        let variation = f64::from(config.variation.clamp(0.0, 2.0));
-        let mut planner = Planner::new(model, config.seed, variation);
-        let solver = variance::streaming_solver(model)?;
-        let mut walker = Walker::new(model, skeleton, solver);
-        let paces = PaceTable::measure(model, &mut planner, &mut walker)?;
+        let model = space.model();
+        let mut planner = walker_of(space, config);
+        let blend = space.blend(&[]);
+        let paces = PaceTable::measure(&planner, skeleton, &blend)?;
+        let mut walker = Walker::new(skeleton, &blend);
         let phase = config.phase.rem_euclid(1.0);
         let first = if phase < 0.5 { Side::Left } else { Side::Right };
-        let pace = paces.pace(model.speed.reference_mps);
-        walker.start(&mut planner, pace, first, Amplitude::WALK, Planner::draw)?;
+        let request = Request {
+            pace: paces.pace(model.speed.reference_mps),
+            amplitude: Amplitude::WALK,
+            turn_rate: 0.0,
+            facing: paces.facing,
+        };
+        let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
+        walker.start(&mut planner, &blend, draws, request)?;
         let position = (2.0 * phase).fract() * walker.step().timing.frames as f32;
         let mut generator = Self {
+            space: Arc::clone(space),
+            skeleton: skeleton.clone(),
+            config: *config,
             planner,
             walker,
-            paces,
+            worn: Worn { blend, paces },
+            retired: None,
             frame_rate_hz: model.frame_rate_hz as f32,
             speed_mps: model.speed.reference_mps as f32,
             position,
@@ -154,21 +175,47 @@ impl GaitGenerator {
 
     /// Starts over at the origin, standing still.
     pub fn stand(&mut self) {
-        let pace = self.paces.pace(f64::from(STANDING_SPEED_MPS));
-        let side = self.walker.step().timing.leading;
-        let started = self.walker.start(
-            &mut self.planner,
-            pace,
-            side,
-            Amplitude::STAND,
-            Planner::draw,
-        );
+        let first = self.walker.step().timing.leading;
+        let request = Request {
+            pace: self.worn.paces.pace(f64::from(STANDING_SPEED_MPS)),
+            amplitude: Amplitude::STAND,
+            turn_rate: 0.0,
+            facing: self.worn.paces.facing,
+        };
+        let draws = [first.other(), first, first.other()].map(|side| self.planner.draw(side));
+        self.planner.wear(&self.worn.blend.model);
+        let started = self
+            .walker
+            .start(&mut self.planner, &self.worn.blend, draws, request);
         // The model gave a trajectory when the generator was made, so it gives one now.
         if started.is_ok() {
             self.speed_mps = 0.0;
             self.position = self.walker.step().timing.frames as f32;
             self.plan_from_start = self.plan_from_character();
         }
+    }
+
+    /// Wears a mixture of the space's styles, one weight each, from the next step on: weights as of
+    /// [`GaitModel::styled`](footfall_model::GaitModel::styled). Missing weights and those that are not finite count as 0.
+    ///
+    /// Takes about a millisecond when weights change, and nothing when they do not. Someone who stands takes the new
+    /// posture with the first step.
+    pub fn set_style_weights(&mut self, weights: &[f32]) {
+        let worn = self.worn.blend.weights.iter().copied();
+        if self.space.weights(weights).eq(worn) {
+            return;
+        }
+        let blend = self.space.blend(weights);
+        // The planner of a checked model gives a trajectory; were it not to, the walker keeps its style.
+        if let Ok(paces) = PaceTable::measure(&self.planner, &self.skeleton, &blend) {
+            self.retired = Some(Arc::clone(self.walker.blends()[0]));
+            self.worn = Worn { blend, paces };
+        }
+    }
+
+    /// The weights of the styles that are worn from the next step on.
+    pub fn style_weights(&self) -> &[f32] {
+        &self.worn.blend.weights
     }
 
     /// Advances by `dt_secs` and writes the pose, in the character's own space: above the ground point that
@@ -206,6 +253,12 @@ impl GaitGenerator {
         self.start_from_character = self.to_start(&plan_from_character);
     }
 
+    /// Tells where the character is now, as after a step of no time.
+    pub(crate) fn tell_place(&mut self) {
+        self.footsteps.clear();
+        self.start_from_character = self.to_start(&self.plan_from_character());
+    }
+
     /// Where the character is and where it faces, from where it began.
     pub fn start_from_character(&self) -> GroundTransform {
         self.start_from_character
@@ -227,13 +280,20 @@ impl GaitGenerator {
             .clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS);
         self.speed_mps +=
             (speed - self.speed_mps).clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
-        let pace = self.paces.pace(f64::from(self.speed_mps));
         let amplitude = Amplitude {
             from: self.walker.step().amplitude.to,
             to: if controls.is_standing() { 0.0 } else { 1.0 },
         };
+        let request = Request {
+            pace: self.worn.paces.pace(f64::from(self.speed_mps)),
+            amplitude,
+            turn_rate,
+            facing: self.worn.paces.facing,
+        };
+        let draw = self.planner.draw(self.walker.step().timing.leading);
+        self.planner.wear(&self.worn.blend.model);
         self.walker
-            .advance(&mut self.planner, pace, turn_rate, amplitude, Planner::draw);
+            .advance(&mut self.planner, &self.worn.blend, draw, request);
         let side = self.walker.step().timing.leading;
         if let Some(planter) = self.walker.planter()
             && self.footsteps.len() < MAX_FOOTSTEPS
@@ -259,11 +319,13 @@ impl GaitGenerator {
         (&frames[first], &frames[first + 1], weight)
     }
 
-    fn plan_from_character(&self) -> GroundTransform {
+    pub(crate) fn plan_from_character(&self) -> GroundTransform {
         let (frame, next, weight) = self.frames();
+        let share = self.position / self.walker.step().timing.frames as f32;
+        let facing = self.walker.facing(share);
         GroundTransform {
             position: frame.ground_position.lerp(next.ground_position, weight),
-            heading: frame.heading + weight * (next.heading - frame.heading) - self.walker.facing,
+            heading: frame.heading + weight * (next.heading - frame.heading) - facing,
         }
     }
 
@@ -274,6 +336,12 @@ impl GaitGenerator {
             heading: wrap_angle(plan.heading - self.plan_from_start.heading),
         }
     }
+}
+
+/// The walker that a seed draws.
+pub(crate) fn walker_of(space: &StyleSpace, config: &GeneratorConfig) -> Planner {
+    let variation = f64::from(config.variation.clamp(0.0, 2.0));
+    Planner::new(space.model(), config.seed, variation)
 }
 
 fn finite_or(value: f32, otherwise: f32) -> f32 {

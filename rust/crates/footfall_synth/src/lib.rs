@@ -10,7 +10,9 @@ mod pace;
 mod plan;
 mod planting;
 mod raw;
+mod space;
 mod standing;
+mod state;
 mod trajectory;
 mod variance;
 mod walk;
@@ -18,4 +20,6 @@ mod walker;
 
 pub use error::SynthError;
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};
+pub use space::StyleSpace;
+pub use state::StateError;
 pub use walk::{SynthesizedWalk, WalkConfig, synthesize};

@@ -2,11 +2,12 @@
 
 use crate::error::SynthError;
 use crate::plan::{Pace, Planner};
+use crate::space::Blend;
 use crate::standing::Amplitude;
-use crate::walker::Walker;
-use footfall_core::Side;
-use footfall_model::GaitModel;
+use crate::walker::{Request, Walker};
+use footfall_core::{Side, Skeleton};
 use glam::Vec3;
+use std::sync::Arc;
 
 /// How many paces are measured.
 const SAMPLES: usize = 7;
@@ -25,24 +26,34 @@ const MIN_TEMPO: f64 = 0.8;
 pub(crate) struct PaceTable {
     /// Covariate and realised speed, both rising, m/s.
     samples: [[f64; 2]; SAMPLES],
+    /// Heading under which the walk goes along +Z, radians.
+    pub(crate) facing: f32,
 }
 
 impl PaceTable {
-    /// Measures a walker over the model's range of speeds, and makes it walk along +Z.
+    /// Measures a walker in a mixture of styles over the model's range of speeds.
     pub(crate) fn measure(
-        model: &GaitModel,
-        planner: &mut Planner,
-        walker: &mut Walker,
+        planner: &Planner,
+        skeleton: &Skeleton,
+        blend: &Arc<Blend>,
     ) -> Result<Self, SynthError> {
-        let (way, _) = travel(planner, walker, model.speed.reference_mps)?;
-        walker.facing = -way.x.atan2(way.z);
+        let model = &blend.model;
+        let mut planner = planner.clone();
+        planner.wear(model);
+        let mut trial = Trial {
+            walker: Walker::new(skeleton, blend),
+            planner,
+            blend,
+        };
+        let (way, _) = trial.travel(model.speed.reference_mps, 0.0)?;
+        let facing = -way.x.atan2(way.z);
         let [slowest, fastest] = model.speed_range();
         let margin = EXTRAPOLATION * (fastest - slowest);
         let (low, high) = ((slowest - margin).max(0.3 * slowest), fastest + margin);
         let mut samples = [[0.0; 2]; SAMPLES];
         for (index, sample) in samples.iter_mut().enumerate() {
             let covariate = low + (high - low) * index as f64 / (SAMPLES - 1) as f64;
-            let (travel, frames) = travel(planner, walker, covariate)?;
+            let (travel, frames) = trial.travel(covariate, facing)?;
             let secs = frames as f64 / model.frame_rate_hz;
             *sample = [covariate, f64::from(travel.length()) / secs];
         }
@@ -50,7 +61,7 @@ impl PaceTable {
             // A corpus of one speed has a flat response: the order must still be strict.
             samples[index][1] = samples[index][1].max(samples[index - 1][1] + 1e-4);
         }
-        Ok(Self { samples })
+        Ok(Self { samples, facing })
     }
 
     /// The pace that gives a speed. Beyond the measured range tempo and stride share what is missing.
@@ -75,31 +86,41 @@ impl PaceTable {
     }
 }
 
-/// Travel over the ground and frames of the second stride of a walk without chance.
-fn travel(
-    planner: &mut Planner,
-    walker: &mut Walker,
-    covariate_mps: f64,
-) -> Result<(Vec3, usize), SynthError> {
-    let pace = Pace {
-        covariate_mps,
-        tempo: 1.0,
-        stride: 1.0,
-    };
-    let draw = |_: &mut Planner, side: Side| Planner::mean_draw(side);
-    walker.start(planner, pace, Side::Left, Amplitude::WALK, draw)?;
-    let mut travel = Vec3::ZERO;
-    let mut frames = 0;
-    for step in 0..4 {
-        if step >= 2 {
-            let from = walker.frames[0].pose.root_position;
-            let to = walker.frames[walker.step().timing.frames]
-                .pose
-                .root_position;
-            travel += to - from;
-            frames += walker.step().timing.frames;
+/// A walker that walks without chance, to be measured.
+struct Trial<'a> {
+    planner: Planner,
+    walker: Walker,
+    blend: &'a Arc<Blend>,
+}
+
+impl Trial<'_> {
+    /// Travel over the ground and frames of the second stride.
+    fn travel(&mut self, covariate_mps: f64, facing: f32) -> Result<(Vec3, usize), SynthError> {
+        let request = Request {
+            pace: Pace {
+                covariate_mps,
+                tempo: 1.0,
+                stride: 1.0,
+            },
+            amplitude: Amplitude::WALK,
+            turn_rate: 0.0,
+            facing,
+        };
+        let draws = [Side::Right, Side::Left, Side::Right].map(Planner::mean_draw);
+        let (planner, walker) = (&mut self.planner, &mut self.walker);
+        walker.start(planner, self.blend, draws, request)?;
+        let mut travel = Vec3::ZERO;
+        let mut frames = 0;
+        for step in 0..4 {
+            let timing = walker.step().timing;
+            if step >= 2 {
+                let from = walker.frames[0].pose.root_position;
+                travel += walker.frames[timing.frames].pose.root_position - from;
+                frames += timing.frames;
+            }
+            let ahead = Planner::mean_draw(timing.leading);
+            walker.advance(planner, self.blend, ahead, request);
         }
-        walker.advance(planner, pace, 0.0, Amplitude::WALK, draw);
+        Ok((travel * Vec3::new(1.0, 0.0, 1.0), frames))
     }
-    Ok((travel * Vec3::new(1.0, 0.0, 1.0), frames))
 }

@@ -10,7 +10,7 @@ use rand_distr::{Distribution as _, StandardNormal};
 use std::sync::Arc;
 
 /// Components of the variation that a step can hold; a model has no more.
-const MAX_COMPONENTS: usize = 16;
+pub(crate) const MAX_COMPONENTS: usize = 16;
 
 /// Weights of components stay within this many standard deviations, so that every walker is a plausible one.
 const MAX_WEIGHT: f64 = 2.0;
@@ -33,7 +33,7 @@ pub(crate) struct Pace {
 #[derive(Clone, Debug)]
 pub(crate) struct StepDraw {
     pub(crate) side: Side,
-    weights: [f64; MAX_COMPONENTS],
+    pub(crate) weights: [f64; MAX_COMPONENTS],
 }
 
 /// A step ready to be generated.
@@ -113,6 +113,25 @@ impl Planner {
             }
         }
         planner
+    }
+
+    /// Wears another mixture of styles from the next step that is worked out.
+    pub(crate) fn wear(&mut self, model: &Arc<GaitModel>) {
+        self.model = Arc::clone(model);
+    }
+
+    /// How far chance has come.
+    pub(crate) fn chance_position(&self) -> u64 {
+        // No walk draws 2^64 numbers.
+        self.rng.get_word_pos() as u64
+    }
+
+    /// Takes chance up where [`chance_position`](Self::chance_position) was, after these steps.
+    pub(crate) fn resume(&mut self, chance_position: u64, last: &[StepDraw]) {
+        self.rng.set_word_pos(u128::from(chance_position));
+        for draw in last {
+            self.weights[draw.side.index()] = draw.weights;
+        }
     }
 
     /// Draws the next step that begins with this foot's initial contact.

@@ -59,14 +59,29 @@ pub(crate) struct Planter {
     skeleton: Skeleton,
     feet: [RockerFoot; 2],
     frame_secs: f32,
-    plants: [Plant; 2],
-    hips: Vec3,
+    state: PlanterState,
+}
+
+/// What goes from step to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PlanterState {
+    pub(crate) plants: [Plant; 2],
+    pub(crate) hips: Vec3,
     /// Travel of the hips in the last frame; none before the first step.
-    hips_velocity: Option<Vec3>,
-    heading: f32,
-    turn_rate: f32,
-    ground_position: Vec3,
-    ground_velocity: Option<Vec3>,
+    pub(crate) hips_velocity: Option<Vec3>,
+    pub(crate) heading: f32,
+    pub(crate) turn_rate: f32,
+    pub(crate) ground_position: Vec3,
+    pub(crate) ground_velocity: Option<Vec3>,
+}
+
+/// Where a step goes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Course {
+    /// Turning at its end, rad/s.
+    pub(crate) turn_rate: f32,
+    /// By how much its features turn under the walker, radians.
+    pub(crate) shift: f32,
 }
 
 impl Planter {
@@ -85,10 +100,7 @@ impl Planter {
             let foot = &feet[side.index()];
             foot.plant_under(level * leg.ankle, heading + leg.heading, leg.pitch)
         });
-        let mut planter = Self {
-            skeleton: skeleton.clone(),
-            feet,
-            frame_secs,
+        let state = PlanterState {
             plants,
             hips: Vec3::ZERO,
             hips_velocity: None,
@@ -97,15 +109,31 @@ impl Planter {
             ground_position: Vec3::ZERO,
             ground_velocity: None,
         };
+        let mut planter = Self::resume(skeleton, frame_secs, state);
         let standing = leading.other();
         let hips = planter.hips_above(first, standing, level);
-        planter.hips = Vec3::new(0.0, hips.y, 0.0);
+        planter.state.hips = Vec3::new(0.0, hips.y, 0.0);
         planter
+    }
+
+    /// Goes on from a [`state`](Self::state).
+    pub(crate) fn resume(skeleton: &Skeleton, frame_secs: f32, state: PlanterState) -> Self {
+        Self {
+            skeleton: skeleton.clone(),
+            feet: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
+            frame_secs,
+            state,
+        }
+    }
+
+    /// What the next step begins with.
+    pub(crate) fn state(&self) -> PlanterState {
+        self.state
     }
 
     /// Where this foot was put last.
     pub(crate) fn plant(&self, side: Side) -> &Plant {
-        &self.plants[side.index()]
+        &self.state.plants[side.index()]
     }
 
     /// Puts a step on the ground. `raw` has one frame more than the step: the next initial contact.
@@ -117,11 +145,11 @@ impl Planter {
         &mut self,
         raw: &[RawFrame],
         timing: &StepTiming,
-        turn_rate: f32,
+        course: Course,
         out: &mut Vec<PlantedFrame>,
     ) -> usize {
         out.clear();
-        self.travel(raw, timing, turn_rate, out);
+        self.travel(raw, timing, course, out);
         let timing = &StepTiming {
             terminal: self.release(raw, timing, out),
             ..*timing
@@ -133,10 +161,10 @@ impl Planter {
         };
         let last = &out[timing.frames];
         let (hips, heading) = (last.pose.root_position, last.heading);
-        self.hips = hips;
-        self.hips_velocity = Some(hips - out[timing.frames - 1].pose.root_position);
+        self.state.hips = hips;
+        self.state.hips_velocity = Some(hips - out[timing.frames - 1].pose.root_position);
         let trailing = timing.leading.other();
-        let next_plant = self.next_plant(raw, timing, hips, heading, turn_rate);
+        let next_plant = self.next_plant(raw, timing, hips, heading, course.turn_rate);
         let swing = Swing::new(&self.swing_ends(raw, timing, out, &next_plant), timing);
         for (index, (frame, raw)) in out.iter_mut().zip(raw).enumerate() {
             let level = from_heading(frame.heading);
@@ -157,7 +185,7 @@ impl Planter {
                 solve_leg(&self.skeleton, side, &target, &mut frame.pose, &mut model);
             }
         }
-        self.plants[trailing.index()] = next_plant;
+        self.state.plants[trailing.index()] = next_plant;
         timing.terminal
     }
 
@@ -166,23 +194,24 @@ impl Planter {
         &mut self,
         raw: &[RawFrame],
         timing: &StepTiming,
-        turn_rate: f32,
+        course: Course,
         out: &mut Vec<PlantedFrame>,
     ) {
-        let start = self.hips_above(&raw[0], timing.leading, from_heading(self.heading));
-        let next_level = from_heading(self.heading + self.turn_rate * self.frame_secs);
+        let start = self.hips_above(&raw[0], timing.leading, from_heading(self.state.heading));
+        let next_level = from_heading(self.state.heading + self.state.turn_rate * self.frame_secs);
         let follow = self.hips_above(&raw[1], timing.leading, next_level);
-        let offset = self.hips - start;
+        let offset = self.state.hips - start;
         let velocity = self
+            .state
             .hips_velocity
             .map_or(Vec3::ZERO, |velocity| velocity - (follow - start));
         let decay = self.frame_secs / SETTLE_SECS;
         let meeting = MEETING_SHARE * self.landing_height_gap(raw, timing);
-        let mut settled = self.hips;
-        let from_rate = self.turn_rate;
+        let mut settled = self.state.hips;
+        let from_rate = self.state.turn_rate;
         for (index, raw) in raw.iter().enumerate().take(timing.frames + 1) {
             let time = index as f32;
-            let heading = self.heading;
+            let heading = self.state.heading;
             let level = from_heading(heading);
             // A critically damped return from where the hips were to where the landed foot has them.
             let remains = (offset + (velocity + offset * decay) * time) * (-decay * time).exp();
@@ -194,8 +223,10 @@ impl Planter {
             settled = hips;
             if index < timing.frames {
                 let onset = smooth_step(time / (TURN_ONSET * timing.frames as f32));
-                self.turn_rate = from_rate + onset * (turn_rate - from_rate);
-                self.heading += self.turn_rate * self.frame_secs;
+                self.state.turn_rate = from_rate + onset * (course.turn_rate - from_rate);
+                let share = |index: f32| smooth_step(index / timing.frames as f32);
+                self.state.heading += self.state.turn_rate * self.frame_secs
+                    + course.shift * (share(time + 1.0) - share(time));
             }
             let mut frame = PlantedFrame {
                 heading,
@@ -220,18 +251,19 @@ impl Planter {
 
     /// The walker's place on the ground: a cubic path through the hips' places at initial contacts.
     fn glide(&mut self, timing: &StepTiming, hips: Vec3, out: &mut [PlantedFrame]) {
-        let from = self.ground_position;
+        let from = self.state.ground_position;
         let to = Vec3::new(hips.x, 0.0, hips.z);
         let arrival = to - from;
         let departure = self
+            .state
             .ground_velocity
             .map_or(arrival, |velocity| velocity * timing.frames as f32);
         for (index, frame) in out.iter_mut().enumerate() {
             let s = index as f32 / timing.frames as f32;
             frame.ground_position = hermite(from, departure, to, arrival, s);
         }
-        self.ground_position = to;
-        self.ground_velocity = Some(arrival / timing.frames as f32);
+        self.state.ground_position = to;
+        self.state.ground_velocity = Some(arrival / timing.frames as f32);
     }
 
     /// Where the hips are when this foot stands on its plant and the leg is as generated.

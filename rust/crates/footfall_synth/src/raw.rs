@@ -47,7 +47,7 @@ impl Default for RawFrame {
 
 impl RawFrame {
     /// Fills the frame from static features. `stride_scale` stretches the legs' reach forwards and backwards.
-    pub(crate) fn decode(&mut self, features: &[f64], skeleton: &Skeleton, stride_scale: f32) {
+    pub(crate) fn decode(&mut self, features: &[f32], skeleton: &Skeleton, stride_scale: f32) {
         layout::decode(features, &mut self.rotations);
         let hips = self.rotations[Joint::Hips.index()];
         for side in Side::BOTH {

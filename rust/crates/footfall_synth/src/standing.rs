@@ -45,7 +45,7 @@ impl Amplitude {
 }
 
 /// Features of the standing walker: the mean of the walk, the same left and right, on straight legs.
-pub(crate) fn standing_features(model: &GaitModel) -> [f64; FEATURE_COUNT] {
+pub(crate) fn standing_features(model: &GaitModel) -> [f32; FEATURE_COUNT] {
     let mut mean = [0.0; FEATURE_COUNT];
     let states = model.steps.iter().flat_map(|step| &step.states);
     let total: f64 = states.clone().map(|state| state.duration_mean).sum();
@@ -72,7 +72,7 @@ pub(crate) fn standing_features(model: &GaitModel) -> [f64; FEATURE_COUNT] {
         set(side.foot(), thigh);
         set(side.toes(), Quat::IDENTITY);
     }
-    mean
+    mean.map(|value| value as f32)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 
 use crate::error::SynthError;
 use crate::plan::{Pace, Planner, StepPlan};
-use crate::trajectory::TrajectorySolver;
+use crate::trajectory::{Statistics, TrajectorySolver};
 use footfall_core::Side;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use footfall_prob::global_variance::{
@@ -21,20 +21,19 @@ const SAMPLE_STEPS: usize = 12;
 /// How much farther or less a walk may swing than the corpus, as a ratio of variances: styles and speeds differ.
 const VARIANCE_RATIO: [f64; 2] = [0.25, 4.0];
 
-/// A solver for windows of a walk, with the pull that keeps the corpus' variance.
-pub(crate) fn streaming_solver(model: &Arc<GaitModel>) -> Result<TrajectorySolver, SynthError> {
-    let mut solver = TrajectorySolver::new(model, SAMPLE_STEPS, 4 * Planner::longest_step(model));
-    let plans = sample_walk(model);
-    let frames = solver.load(&plans, 0);
+/// The pull per feature under which a walk of the model keeps the corpus' variance.
+pub(crate) fn pull(model: &Arc<GaitModel>) -> Result<Vec<f64>, SynthError> {
+    let statistics = Statistics::new(model);
+    let mut solver = TrajectorySolver::new(SAMPLE_STEPS, 0);
+    let frames = solver.load(&statistics, &sample_walk(model), 0);
     let mut trajectory = vec![0.0; frames * FEATURE_COUNT];
     let target = GlobalVarianceTarget {
         mean: &model.global_variance.mean,
         variance: &model.global_variance.variance,
         trajectory_weight: hts_weight(frames),
     };
-    let fit = global_variance(&solver.problem(0), &target, &mut trajectory)?;
-    solver.set_pull(&fit.strength);
-    Ok(solver)
+    let problem = solver.problem(&statistics, 0);
+    Ok(global_variance(&problem, &target, &mut trajectory)?.strength)
 }
 
 /// The trajectory of a whole walk, T × [`FEATURE_COUNT`].
@@ -45,35 +44,37 @@ pub(crate) fn solve_walk(
     model: &Arc<GaitModel>,
     plans: &[StepPlan],
 ) -> Result<Vec<f64>, SynthError> {
-    let mut solver = TrajectorySolver::new(model, plans.len(), 0);
+    let statistics = Statistics::new(model);
+    let mut solver = TrajectorySolver::new(plans.len(), 0);
     let sample = sample_walk(model);
-    let sample_variance = plain_variance(&mut solver, &sample)?;
-    let variance = plain_variance(&mut solver, plans)?;
+    let sample_variance = plain_variance(&statistics, &mut solver, &sample)?;
+    let variance = plain_variance(&statistics, &mut solver, plans)?;
     let mean: Vec<f64> = (0..FEATURE_COUNT)
         .map(|dim| {
             let ratio = variance[dim] / sample_variance[dim].max(f64::MIN_POSITIVE);
             model.global_variance.mean[dim] * ratio.clamp(VARIANCE_RATIO[0], VARIANCE_RATIO[1])
         })
         .collect();
-    let frames = solver.load(plans, 0);
+    let frames = solver.load(&statistics, plans, 0);
     let mut trajectory = vec![0.0; frames * FEATURE_COUNT];
     let target = GlobalVarianceTarget {
         mean: &mean,
         variance: &model.global_variance.variance,
         trajectory_weight: hts_weight(frames),
     };
-    global_variance(&solver.problem(0), &target, &mut trajectory)?;
+    global_variance(&solver.problem(&statistics, 0), &target, &mut trajectory)?;
     Ok(trajectory)
 }
 
 /// Variance over time of every feature without any correction.
 fn plain_variance(
-    solver: &mut TrajectorySolver,
+    statistics: &Statistics<f64>,
+    solver: &mut TrajectorySolver<f64>,
     plans: &[StepPlan],
 ) -> Result<Vec<f64>, SynthError> {
-    let frames = solver.load(plans, 0);
+    let frames = solver.load(statistics, plans, 0);
     let mut trajectory = vec![0.0; frames * FEATURE_COUNT];
-    solver.solve(&mut trajectory, 0)?;
+    solver.solve(statistics, &mut trajectory, 0)?;
     Ok(temporal_moments(&trajectory, FEATURE_COUNT).1)
 }
 

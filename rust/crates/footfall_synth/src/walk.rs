@@ -3,10 +3,10 @@
 use crate::error::SynthError;
 use crate::pace::PaceTable;
 use crate::plan::{Planner, StepDraw, StepPlan};
-use crate::planting::Planter;
+use crate::planting::{Course, Planter};
 use crate::raw::RawFrame;
+use crate::space::StyleSpace;
 use crate::variance;
-use crate::walker::Walker;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton};
 use footfall_model::{FEATURE_COUNT, GaitModel};
@@ -93,8 +93,9 @@ pub fn synthesize(
     let speed = config
         .speed_mps
         .map_or(model.speed.reference_mps, f64::from);
-    let mut walker = Walker::new(model, skeleton, variance::streaming_solver(model)?);
-    let pace = PaceTable::measure(model, &mut planner, &mut walker)?.pace(speed.max(MIN_SPEED_MPS));
+    let space = StyleSpace::new(model, &[])?;
+    let paces = PaceTable::measure(&planner, skeleton, &space.blend(&[]))?;
+    let pace = paces.pace(speed.max(MIN_SPEED_MPS));
 
     let mut side = if LEAD_STEPS.is_multiple_of(2) {
         Side::Left
@@ -117,7 +118,7 @@ pub fn synthesize(
         config,
         &plans,
         &trajectory,
-        walker.facing,
+        paces.facing,
     ))
 }
 
@@ -131,6 +132,10 @@ fn put_on_ground(
 ) -> SynthesizedWalk {
     let frame_secs = 1.0 / model.frame_rate_hz;
     let mut planter: Option<Planter> = None;
+    let course = Course {
+        turn_rate: config.turn_rate_radps,
+        shift: 0.0,
+    };
     let mut poses: Vec<Pose> = Vec::new();
     let mut frames = Vec::new();
     let mut stances: [Vec<[f64; 2]>; 2] = [vec![], vec![]];
@@ -143,14 +148,18 @@ fn put_on_ground(
         let mut raw = vec![RawFrame::default(); timing.frames + 1];
         let rows = trajectory[begin * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         for (raw, features) in raw.iter_mut().zip(rows) {
-            raw.decode(features, skeleton, plan.stride as f32);
+            let mut narrow = [0.0; FEATURE_COUNT];
+            for (narrow, feature) in narrow.iter_mut().zip(features) {
+                *narrow = *feature as f32;
+            }
+            raw.decode(&narrow, skeleton, plan.stride as f32);
         }
         begin += timing.frames;
         let terminal = planter
             .get_or_insert_with(|| {
                 Planter::new(skeleton, frame_secs as f32, &raw[0], timing.leading, facing)
             })
-            .plant_step(&raw, timing, config.turn_rate_radps, &mut frames);
+            .plant_step(&raw, timing, course, &mut frames);
         if index < shown.start {
             continue;
         }

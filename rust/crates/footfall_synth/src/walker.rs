@@ -2,133 +2,225 @@
 
 use crate::error::SynthError;
 use crate::plan::{Pace, Planner, StepDraw, StepPlan};
-use crate::planting::{PlantedFrame, Planter};
+use crate::planting::{Course, PlantedFrame, Planter, PlanterState, smooth_step};
 use crate::raw::RawFrame;
-use crate::standing::{Amplitude, standing_features};
+use crate::space::Blend;
+use crate::standing::Amplitude;
 use crate::trajectory::TrajectorySolver;
 use footfall_core::{Side, Skeleton};
-use footfall_model::{FEATURE_COUNT, GaitModel};
+use footfall_model::FEATURE_COUNT;
+use std::sync::Arc;
 
 /// Steps in a window: the one before, the one to be put on the ground, and one ahead, which shapes its end. What lies
 /// beyond does not show: a frame's influence has died away after half a step.
-const WINDOW: usize = 3;
+pub(crate) const WINDOW: usize = 3;
 
 /// Frames that tie a window to the one before: the longest dynamic window couples no more.
 const TIE: usize = 4;
+
+/// Numbers that tie a window to the one before.
+pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;
+
+/// What a step is asked to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Request {
+    pub(crate) pace: Pace,
+    pub(crate) amplitude: Amplitude,
+    /// Turning at its end, rad/s.
+    pub(crate) turn_rate: f32,
+    /// Heading under which the walk goes along +Z, radians: people hold their hips a little askew.
+    pub(crate) facing: f32,
+}
+
+/// Where the current step came from: with the planner's and the styles' state all that it takes to make it again.
+#[derive(Clone, Debug)]
+pub(crate) struct Origin {
+    pub(crate) request: Request,
+    /// The pace and the facing of the step before.
+    pub(crate) pace_before: Pace,
+    pub(crate) facing_before: f32,
+    /// The feet before the step; `None` for the first.
+    pub(crate) planter: Option<PlanterState>,
+    pub(crate) tie: [f32; TIE_LEN],
+}
 
 /// The stage between the planner's draws and frames on the ground; allocates nothing after it was made.
 #[derive(Debug)]
 pub(crate) struct Walker {
     skeleton: Skeleton,
-    solver: TrajectorySolver,
+    solver: TrajectorySolver<f32>,
+    blend: Arc<Blend>,
+    /// The mixture of the step before.
+    blend_before: Arc<Blend>,
     draws: [StepDraw; WINDOW],
     plans: [StepPlan; WINDOW],
-    /// The pace of the steps ahead.
-    pace: Option<Pace>,
+    /// Whether the steps ahead are not those of the last request.
+    stale: bool,
     /// Features of the window, and where the current step begins in it.
-    trajectory: Vec<f64>,
+    trajectory: Vec<f32>,
     current: usize,
-    tie: [f64; TIE * FEATURE_COUNT],
-    standing: [f64; FEATURE_COUNT],
+    origin: Origin,
     raw: Vec<RawFrame>,
     planter: Option<Planter>,
     frame_secs: f32,
-    /// Heading under which the walk goes along +Z, radians: people hold their hips a little askew.
-    pub(crate) facing: f32,
     /// The current step on the ground, one frame longer than the step.
     pub(crate) frames: Vec<PlantedFrame>,
 }
 
 impl Walker {
-    pub(crate) fn new(model: &GaitModel, skeleton: &Skeleton, solver: TrajectorySolver) -> Self {
-        let longest = Planner::longest_step(model);
+    pub(crate) fn new(skeleton: &Skeleton, blend: &Arc<Blend>) -> Self {
+        let longest = Planner::longest_step(&blend.model);
+        let room = WINDOW * longest + TIE;
+        let nothing = Request {
+            pace: Pace {
+                covariate_mps: 0.0,
+                tempo: 1.0,
+                stride: 1.0,
+            },
+            amplitude: Amplitude::STAND,
+            turn_rate: 0.0,
+            facing: 0.0,
+        };
         Self {
             skeleton: skeleton.clone(),
-            solver,
+            solver: TrajectorySolver::new(WINDOW, room),
+            blend: Arc::clone(blend),
+            blend_before: Arc::clone(blend),
             draws: [(); WINDOW].map(|()| Planner::mean_draw(Side::Left)),
             plans: [(); WINDOW].map(|()| StepPlan::empty()),
-            pace: None,
-            trajectory: Vec::with_capacity((WINDOW * longest + TIE) * FEATURE_COUNT),
+            stale: true,
+            trajectory: Vec::with_capacity(room * FEATURE_COUNT),
             current: 0,
-            tie: [0.0; TIE * FEATURE_COUNT],
-            standing: standing_features(model),
+            origin: Origin {
+                request: nothing,
+                pace_before: nothing.pace,
+                facing_before: 0.0,
+                planter: None,
+                tie: [0.0; TIE_LEN],
+            },
             raw: vec![RawFrame::default(); longest + 1],
             planter: None,
-            frame_secs: (1.0 / model.frame_rate_hz) as f32,
-            facing: 0.0,
+            frame_secs: (1.0 / blend.model.frame_rate_hz) as f32,
             frames: Vec::with_capacity(longest + 1),
         }
     }
 
-    /// Starts over with the step that begins with this foot's initial contact. `draw` makes the steps.
+    /// Starts over with these steps: the second is the first that shows, and the one before brings it into its stride.
     ///
     /// # Errors
     /// [`SynthError::Inference`] when the model gives no trajectory.
     pub(crate) fn start(
         &mut self,
         planner: &mut Planner,
-        pace: Pace,
-        first: Side,
-        amplitude: Amplitude,
-        draw: fn(&mut Planner, Side) -> StepDraw,
+        blend: &Arc<Blend>,
+        draws: [StepDraw; WINDOW],
+        request: Request,
     ) -> Result<(), SynthError> {
-        self.pace = (amplitude == Amplitude::WALK).then_some(pace);
-        // A step before the first, never shown, brings the first into its stride.
-        let mut side = first.other();
-        for (slot, plan) in self.draws.iter_mut().zip(&mut self.plans) {
-            *slot = draw(planner, side);
-            planner.realise(slot, pace, plan);
-            plan.set_amplitude(amplitude);
-            side = side.other();
+        self.blend = Arc::clone(blend);
+        self.blend_before = Arc::clone(blend);
+        self.draws = draws;
+        self.stale = request.amplitude != Amplitude::WALK;
+        self.origin.request = request;
+        self.origin.pace_before = request.pace;
+        self.origin.facing_before = request.facing;
+        self.origin.planter = None;
+        for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
+            planner.realise(draw, request.pace, plan);
+            plan.set_amplitude(request.amplitude);
         }
-        let frames = self.solver.load(&self.plans, 0);
+        let frames = self.solver.load(&blend.statistics, &self.plans, 0);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
-        self.solver.solve(&mut self.trajectory, 0)?;
+        self.solver
+            .solve(&blend.statistics, &mut self.trajectory, 0)?;
         self.planter = None;
         self.current = 0;
-        self.put_on_ground(0, 0.0);
+        self.put_on_ground(0);
         self.current = self.plans[0].timing.frames;
-        self.put_on_ground(1, 0.0);
+        self.put_on_ground(1);
         Ok(())
     }
 
-    /// Goes on to the next step.
+    /// Goes on to the next step; `draw` is one that lies ahead of it.
     pub(crate) fn advance(
         &mut self,
         planner: &mut Planner,
-        pace: Pace,
-        turn_rate: f32,
-        amplitude: Amplitude,
-        draw: fn(&mut Planner, Side) -> StepDraw,
+        blend: &Arc<Blend>,
+        draw: StepDraw,
+        request: Request,
     ) {
         let frames = self.plans[1].timing.frames;
         let tie_at = (self.current + frames + 1 - TIE) * FEATURE_COUNT;
-        self.tie
-            .copy_from_slice(&self.trajectory[tie_at..tie_at + TIE * FEATURE_COUNT]);
+        self.origin
+            .tie
+            .copy_from_slice(&self.trajectory[tie_at..][..TIE_LEN]);
+        self.origin.pace_before = self.origin.request.pace;
+        self.origin.facing_before = self.origin.request.facing;
         self.draws.rotate_left(1);
         self.plans.rotate_left(1);
-        self.draws[WINDOW - 1] = draw(planner, self.draws[WINDOW - 2].side.other());
-        // A new pace is taken up by every step ahead: what the controls say now takes effect at once.
-        let known = if self.pace == Some(pace) {
-            WINDOW - 1
-        } else {
-            1
+        self.draws[WINDOW - 1] = draw;
+        // A new pace or style is taken up by every step ahead: what is asked now takes effect at once.
+        let same = !self.stale
+            && self.origin.request.pace == request.pace
+            && Arc::ptr_eq(&self.blend, blend);
+        self.blend_before = core::mem::replace(&mut self.blend, Arc::clone(blend));
+        self.origin.request = request;
+        self.origin.planter = self.planter.as_ref().map(Planter::state);
+        self.stale = false;
+        self.realise(planner, if same { WINDOW - 1 } else { 1 });
+        self.solve_tied();
+    }
+
+    /// Makes a step again from where it came from.
+    ///
+    /// # Errors
+    /// [`SynthError::Inference`] when the model gives no trajectory.
+    pub(crate) fn restore(
+        &mut self,
+        planner: &mut Planner,
+        [blend_before, blend]: [&Arc<Blend>; 2],
+        draws: [StepDraw; WINDOW],
+        origin: Origin,
+    ) -> Result<(), SynthError> {
+        let Some(state) = origin.planter else {
+            planner.wear(&blend.model);
+            return self.start(planner, blend, draws, origin.request);
         };
-        self.pace = Some(pace);
-        for (slot, plan) in self.draws.iter().zip(&mut self.plans).skip(known) {
-            planner.realise(slot, pace, plan);
+        self.draws = draws;
+        planner.wear(&blend_before.model);
+        planner.realise(&self.draws[0], origin.pace_before, &mut self.plans[0]);
+        planner.wear(&blend.model);
+        self.blend_before = Arc::clone(blend_before);
+        self.blend = Arc::clone(blend);
+        self.planter = Some(Planter::resume(&self.skeleton, self.frame_secs, state));
+        self.origin = origin;
+        self.stale = false;
+        self.realise(planner, 1);
+        self.solve_tied();
+        Ok(())
+    }
+
+    fn realise(&mut self, planner: &mut Planner, first: usize) {
+        let request = self.origin.request;
+        for (draw, plan) in self.draws.iter().zip(&mut self.plans).skip(first) {
+            planner.realise(draw, request.pace, plan);
         }
-        self.plans[1].set_amplitude(amplitude);
-        let skip = self.plans[0].timing.frames + 1 - TIE;
-        let frames = self.solver.load(&self.plans, skip);
+        self.plans[1].set_amplitude(request.amplitude);
+    }
+
+    /// Solves the current step and the one ahead, tied to the step before, and puts the current one on the ground.
+    fn solve_tied(&mut self) {
+        let skip = (self.plans[0].timing.frames + 1).saturating_sub(TIE);
+        let statistics = &self.blend.statistics;
+        let frames = self.solver.load(statistics, &self.plans, skip);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
-        self.trajectory[..TIE * FEATURE_COUNT].copy_from_slice(&self.tie);
-        if self.solver.solve(&mut self.trajectory, TIE).is_err() {
+        self.trajectory[..TIE_LEN].copy_from_slice(&self.origin.tie);
+        let solved = self.solver.solve(statistics, &mut self.trajectory, TIE);
+        if solved.is_err() {
             // A checked model does not get here; were it to, a rough pose beats none.
             self.solver.fill_with_means(&mut self.trajectory, TIE);
         }
         self.current = TIE - 1;
-        self.put_on_ground(1, turn_rate);
+        self.put_on_ground(1);
     }
 
     /// The step that is on the ground now.
@@ -136,13 +228,34 @@ impl Walker {
         &self.plans[1]
     }
 
-    /// Where this foot was put last; `None` before [`start`](Self::start).
+    /// Where the feet were put last; `None` before [`start`](Self::start).
     pub(crate) fn planter(&self) -> Option<&Planter> {
         self.planter.as_ref()
     }
 
+    /// Where the current step came from.
+    pub(crate) fn origin(&self) -> &Origin {
+        &self.origin
+    }
+
+    /// What chance decided about the steps of the window.
+    pub(crate) fn draws(&self) -> &[StepDraw; WINDOW] {
+        &self.draws
+    }
+
+    /// The mixtures of the step before and of the current one.
+    pub(crate) fn blends(&self) -> [&Arc<Blend>; 2] {
+        [&self.blend_before, &self.blend]
+    }
+
+    /// Heading under which the walk goes along +Z, at part `s` of the current step.
+    pub(crate) fn facing(&self, s: f32) -> f32 {
+        let [before, now] = [self.origin.facing_before, self.origin.request.facing];
+        before + smooth_step(s) * (now - before)
+    }
+
     /// Puts a step of the window, which begins at `current`, on the ground.
-    fn put_on_ground(&mut self, step: usize, turn_rate: f32) {
+    fn put_on_ground(&mut self, step: usize) {
         let plan = &self.plans[step];
         let rows = self.trajectory[self.current * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let raw = &mut self.raw[..=plan.timing.frames];
@@ -151,22 +264,32 @@ impl Walker {
                 raw.decode(features, &self.skeleton, plan.stride as f32);
                 continue;
             }
-            let amplitude = plan.amplitude.at(index as f32 / plan.timing.frames as f32);
-            let mut blended = self.standing;
-            for (standing, walking) in blended.iter_mut().zip(features) {
-                *standing += f64::from(amplitude) * (walking - *standing);
+            let s = index as f32 / plan.timing.frames as f32;
+            let amplitude = plan.amplitude.at(s);
+            let change = smooth_step(s);
+            let mut blended = [0.0; FEATURE_COUNT];
+            let postures = self.blend_before.standing.iter().zip(&self.blend.standing);
+            let pairs = postures.zip(features);
+            for (value, ((before, standing), walking)) in blended.iter_mut().zip(pairs) {
+                let standing = before + change * (standing - before);
+                *value = standing + amplitude * (walking - standing);
             }
             raw.decode(&blended, &self.skeleton, plan.stride as f32);
         }
+        let request = &self.origin.request;
         let planter = self.planter.get_or_insert_with(|| {
             Planter::new(
                 &self.skeleton,
                 self.frame_secs,
                 &raw[0],
                 plan.timing.leading,
-                self.facing,
+                request.facing,
             )
         });
-        planter.plant_step(raw, &plan.timing, turn_rate, &mut self.frames);
+        let course = Course {
+            turn_rate: request.turn_rate,
+            shift: request.facing - self.origin.facing_before,
+        };
+        planter.plant_step(raw, &plan.timing, course, &mut self.frames);
     }
 }

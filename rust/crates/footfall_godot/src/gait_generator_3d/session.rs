@@ -4,7 +4,7 @@ use crate::convert;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::{Pose, Side, rotation};
 use footfall_model::GaitModel as TrainedModel;
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, GroundTransform};
+use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, GroundTransform, StyleSpace};
 use glam::{Affine3A, Quat};
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
@@ -42,7 +42,8 @@ impl Session {
         config: &GeneratorConfig,
         controls: Controls,
     ) -> Result<Self, String> {
-        let mut generator = GaitGenerator::new(trained, &binding.body, config)
+        let mut generator = StyleSpace::new(trained, &[])
+            .and_then(|space| GaitGenerator::new(&Arc::new(space), &binding.body, config))
             .map_err(|error| format!("The walk cannot start: {error}"))?;
         if controls.is_standing() {
             generator.stand();

@@ -4,7 +4,7 @@ use super::{microseconds, now};
 use anyhow::{Context as _, Result};
 use footfall_core::{ModelPose, Pose, Skeleton, forward_kinematics};
 use footfall_model::GaitModel;
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig};
+use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
 use std::hint::black_box;
 use std::sync::Arc;
 
@@ -40,7 +40,8 @@ impl WalkerBench {
             phase: 0.0,
             variation: 1.0,
         };
-        let generator = GaitGenerator::new(&Arc::new(model), &skeleton, &config)
+        let space = StyleSpace::new(&Arc::new(model), &[]).context("the model does not walk")?;
+        let generator = GaitGenerator::new(&Arc::new(space), &skeleton, &config)
             .context("the model does not walk")?;
         Ok(Self {
             generator,

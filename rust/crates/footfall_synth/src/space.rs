@@ -1,0 +1,111 @@
+//! A model and the styles that its walkers can wear: what costs time is prepared once, mixtures are quick.
+
+use crate::error::SynthError;
+use crate::standing::standing_features;
+use crate::trajectory::Statistics;
+use crate::variance;
+use footfall_model::{FEATURE_COUNT, GaitModel, GaitStyle};
+use std::sync::Arc;
+
+/// A model and its styles, shared by any number of walkers.
+#[derive(Debug)]
+pub struct StyleSpace {
+    model: Arc<GaitModel>,
+    fingerprint: u32,
+    styles: Vec<Arc<GaitStyle>>,
+    /// Per feature, the pull that keeps the variance of the base walk and of each style.
+    base_pull: Vec<f64>,
+    style_pulls: Vec<Vec<f64>>,
+}
+
+/// One mixture of styles, ready to be walked.
+#[derive(Debug)]
+pub(crate) struct Blend {
+    /// One weight a style.
+    pub(crate) weights: Vec<f32>,
+    pub(crate) model: Arc<GaitModel>,
+    pub(crate) statistics: Statistics<f32>,
+    pub(crate) standing: [f32; FEATURE_COUNT],
+}
+
+impl StyleSpace {
+    /// Prepares a model and its styles, some 10 ms each.
+    ///
+    /// # Errors
+    /// [`SynthError`] when the model cannot be used, or a style cannot be worn by it.
+    pub fn new(model: &Arc<GaitModel>, styles: &[Arc<GaitStyle>]) -> Result<Self, SynthError> {
+        model.check()?;
+        let all: Vec<&GaitStyle> = styles.iter().map(AsRef::as_ref).collect();
+        model.check_styles(&all)?;
+        let style_pulls = all
+            .iter()
+            .map(|style| variance::pull(&Arc::new(model.mixture(&[(style, 1.0)]))))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            fingerprint: model.fingerprint()?,
+            base_pull: variance::pull(model)?,
+            style_pulls,
+            model: Arc::clone(model),
+            styles: styles.to_vec(),
+        })
+    }
+
+    /// The base model.
+    pub fn model(&self) -> &Arc<GaitModel> {
+        &self.model
+    }
+
+    /// [`GaitModel::fingerprint`] of the base model.
+    pub(crate) fn fingerprint(&self) -> u32 {
+        self.fingerprint
+    }
+
+    /// The styles, in the order of their weights.
+    pub fn styles(&self) -> &[Arc<GaitStyle>] {
+        &self.styles
+    }
+
+    /// The weights as they are used: one a style, 0 for what is missing or not finite.
+    pub(crate) fn weights(&self, weights: &[f32]) -> impl Iterator<Item = f32> {
+        (0..self.styles.len()).map(|style| match weights.get(style) {
+            Some(weight) if weight.is_finite() => *weight,
+            _ => 0.0,
+        })
+    }
+
+    /// The mixture by these weights.
+    pub(crate) fn blend(&self, weights: &[f32]) -> Arc<Blend> {
+        let weights: Vec<f32> = self.weights(weights).collect();
+        let parts: Vec<(&GaitStyle, f64)> = self
+            .styles
+            .iter()
+            .zip(&weights)
+            .map(|(style, weight)| (style.as_ref(), f64::from(*weight)))
+            .collect();
+        let model = Arc::new(self.model.mixture(&parts));
+        let mut statistics = Statistics::new(&model);
+        statistics.set_pull(&self.pull(&weights));
+        Arc::new(Blend {
+            standing: standing_features(&model),
+            model,
+            statistics,
+            weights,
+        })
+    }
+
+    /// The pull of a mixture: between those of the base and of the styles in it.
+    fn pull(&self, weights: &[f32]) -> Vec<f64> {
+        let worn = || {
+            let pairs = self.style_pulls.iter().zip(weights);
+            pairs.filter(|(_, weight)| weight.abs() > 0.0)
+        };
+        let mix = |(dim, base): (usize, &f64)| {
+            let ways = worn().map(|(pull, weight)| f64::from(*weight) * (pull[dim] - base));
+            let corners = || worn().map(|(pull, _)| pull[dim]).chain([*base]);
+            let low = corners().fold(f64::INFINITY, f64::min);
+            let high = corners().fold(f64::NEG_INFINITY, f64::max);
+            (base + ways.sum::<f64>()).clamp(low, high)
+        };
+        self.base_pull.iter().enumerate().map(mix).collect()
+    }
+}
