@@ -53,7 +53,14 @@ impl Pose {
         out.root_position = self.root_position.lerp(other.root_position, weight);
         let pairs = self.rotations.iter().zip(&other.rotations);
         for (blend, (rotation, target)) in out.rotations.iter_mut().zip(pairs) {
-            *blend = rotation.lerp(*target, weight);
+            let sign = if rotation.dot(*target) < 0.0 {
+                -1.0
+            } else {
+                1.0
+            };
+            let sum = *rotation * (1.0 - weight) + *target * (sign * weight);
+            // One step of Newton's method towards unit length, which a blend of neighbours nearly has.
+            *blend = sum * (1.5 - 0.5 * sum.length_squared());
         }
     }
 }

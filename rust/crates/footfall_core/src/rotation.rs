@@ -5,16 +5,82 @@
 
 use core::f32::consts::{PI, TAU};
 use glam::{Quat, Vec3};
+use multiversion::multiversion;
+
+/// Largest square of half an angle for which the polynomials below are exact to the last digit of f32: a little more than
+/// half a turn.
+const MAX_SQUARED_HALF_ANGLE: f32 = 2.6;
 
 /// The rotation about `axis_angle`'s direction by its length in radians.
 pub fn exp_map(axis_angle: Vec3) -> Quat {
-    // Up to half a turn and a little more, cosine and sine over the angle are short polynomials of its square, exact to
-    // the last digit of f32; the generator does this for every joint of every frame.
-    let x = 0.25 * axis_angle.length_squared();
-    if x > 2.6 {
+    let squared = 0.25 * axis_angle.length_squared();
+    if squared > MAX_SQUARED_HALF_ANGLE {
         return Quat::from_scaled_axis(axis_angle);
     }
-    let horner = |coefficients: [f32; 7]| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c);
+    let (half_sine_over_angle, cosine) = half_angle(squared);
+    Quat::from_vec4((axis_angle * half_sine_over_angle).extend(cosine))
+}
+
+/// [`exp_map`] of many vectors, three numbers each: what the generator does for every joint of every frame.
+///
+/// Writes as many rotations as both slices have room for.
+pub fn exp_maps(axis_angles: &[f32], out: &mut [Quat]) {
+    let blocks = axis_angles.chunks(3 * LANES).zip(out.chunks_mut(LANES));
+    for (vectors, rotations) in blocks {
+        let mut padded = [0.0; 3 * LANES];
+        padded[..vectors.len()].copy_from_slice(vectors);
+        for (rotation, exact) in rotations.iter_mut().zip(exp_block(&padded)) {
+            *rotation = exact;
+        }
+        for (rotation, vector) in rotations.iter_mut().zip(padded.chunks_exact(3)) {
+            let vector = Vec3::from_slice(vector);
+            if 0.25 * vector.length_squared() > MAX_SQUARED_HALF_ANGLE {
+                *rotation = exp_map(vector);
+            }
+        }
+    }
+}
+
+/// Vectors that are turned into rotations side by side.
+const LANES: usize = 8;
+
+/// The polynomials for a block of vectors, in a form that compilers turn into vector instructions.
+#[multiversion(targets("x86_64+avx2+fma", "aarch64+neon"))]
+fn exp_block(vectors: &[f32; 3 * LANES]) -> [Quat; LANES] {
+    let mut half_sines = [0.0; LANES];
+    let mut cosines = [0.0; LANES];
+    let [mut x, mut y, mut z] = [[0.0; LANES]; 3];
+    for lane in 0..LANES {
+        x[lane] = vectors[3 * lane];
+        y[lane] = vectors[3 * lane + 1];
+        z[lane] = vectors[3 * lane + 2];
+    }
+    for lane in 0..LANES {
+        let squared = 0.25 * (x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane]);
+        (half_sines[lane], cosines[lane]) = half_angle(squared);
+    }
+    core::array::from_fn(|lane| {
+        let scale = half_sines[lane];
+        Quat::from_xyzw(
+            x[lane] * scale,
+            y[lane] * scale,
+            z[lane] * scale,
+            cosines[lane],
+        )
+    })
+}
+
+/// Half of sine over angle, and cosine, of half an angle whose square is given: short polynomials in that square.
+#[inline(always)]
+#[expect(
+    clippy::inline_always,
+    reason = "only what is inlined into the dispatched function is compiled for its instruction set"
+)]
+fn half_angle(squared: f32) -> (f32, f32) {
+    let horner = |coefficients: [f32; 7]| {
+        let terms = coefficients.iter().rev();
+        terms.fold(0.0, |sum, coefficient| sum * squared + coefficient)
+    };
     let cosine = horner([
         1.0,
         -1.0 / 2.0,
@@ -33,7 +99,7 @@ pub fn exp_map(axis_angle: Vec3) -> Quat {
         -1.0 / 39_916_800.0,
         1.605_904_4e-10, // 1 / 13!
     ]);
-    Quat::from_vec4((axis_angle * (0.5 * sine_over_angle)).extend(cosine))
+    (0.5 * sine_over_angle, cosine)
 }
 
 /// Axis times angle of a rotation, with the angle in [0, π].
@@ -88,16 +154,17 @@ pub fn wrap_angle(angle: f32) -> f32 {
 
 /// The shortest rotation that turns the direction `from` into the direction `to`; neither need be a unit vector.
 pub fn shortest_arc(from: Vec3, to: Vec3) -> Quat {
-    let (Some(from), Some(to)) = (from.try_normalize(), to.try_normalize()) else {
+    // Everything is multiplied by the product of both lengths. glam's own takes angles below 0.7 mrad for none, which at
+    // the end of a leg is half a millimetre.
+    let lengths = (from.length_squared() * to.length_squared()).sqrt();
+    if lengths < f32::MIN_POSITIVE || !lengths.is_finite() {
         return Quat::IDENTITY;
-    };
-    // glam's own takes angles below 0.7 mrad for none, which at the end of a leg is half a millimetre.
-    let w = 1.0 + from.dot(to);
-    if w < 1e-6 {
-        return Quat::from_axis_angle(from.any_orthonormal_vector(), PI);
     }
-    let axis = from.cross(to);
-    Quat::from_xyzw(axis.x, axis.y, axis.z, w).normalize()
+    let w = lengths + from.dot(to);
+    if w < 1e-6 * lengths {
+        return Quat::from_axis_angle(from.normalize().any_orthonormal_vector(), PI);
+    }
+    Quat::from_vec4(from.cross(to).extend(w)).normalize()
 }
 
 #[cfg(test)]
@@ -133,6 +200,21 @@ mod tests {
             let (fast, exact) = (exp_map(vector), Quat::from_scaled_axis(vector));
             let apart = (fast - exact).length().min((fast + exact).length());
             assert!(apart < 5e-7, "{vector}: {fast} is not {exact}");
+        }
+    }
+
+    #[test]
+    fn many_exponential_maps_are_those_of_each() {
+        for count in [0, 1, 8, 22] {
+            let vectors: Vec<f32> = (0..3 * count)
+                .map(|i| (i as f32 * 1.7).sin() * 2.5)
+                .collect();
+            let mut rotations = vec![Quat::IDENTITY; count];
+            exp_maps(&vectors, &mut rotations);
+            for (rotation, vector) in rotations.iter().zip(vectors.chunks_exact(3)) {
+                let apart = (*rotation - exp_map(Vec3::from_slice(vector))).length();
+                assert!(apart < 1e-6, "{vector:?}");
+            }
         }
     }
 

@@ -9,7 +9,7 @@ use core::f32::consts::PI;
 use footfall_core::rotation::{exp_map, from_heading, log_map, wrap_angle};
 use footfall_core::{Clip, FrameSpan, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_ik::{
-    FootTarget, Plant, RockerFoot, pitch_and_heading, reach_height, settled_pitch, solve_leg,
+    FootTarget, Plant, RockerFoot, foot_heading, foot_pitch, reach_height, settled_pitch, solve_leg,
 };
 use glam::Vec3;
 
@@ -103,7 +103,7 @@ impl Ground<'_> {
         for (index, span) in stances.iter().enumerate() {
             let plant = self.plant(side, &foot, *span, index, models);
             for frame in span.first..=span.last {
-                let pitch = settled_pitch(pitch_and_heading(models[frame].rotation(side.foot())).0);
+                let pitch = settled_pitch(foot_pitch(models[frame].rotation(side.foot())));
                 let pitch = self.styled_pitch(pitch, progress(stances, frame));
                 targets[frame] = foot.stand(&plant, pitch);
             }
@@ -125,7 +125,7 @@ impl Ground<'_> {
         place.z *= self.new.stretch[frame];
         place.x += 0.005 * walk.width * side.sign();
         let captured = model.rotation(side.foot());
-        let pitch = pitch_and_heading(captured).0;
+        let pitch = foot_pitch(captured);
         let turn = exp_map(Vec3::X * (self.styled_pitch(pitch, at) - pitch));
         let out = from_heading(walk.toe_out.to_radians() * side.sign());
         let rotation = (out * captured * turn).normalize();
@@ -172,10 +172,11 @@ impl Ground<'_> {
         };
         let mut ankle = Vec3::ZERO;
         let mut turn = 0.0;
-        let reference = pitch_and_heading(models[span.first + from].rotation(side.foot())).1;
+        let reference = foot_heading(models[span.first + from].rotation(side.foot()));
         let count = (to - from) as f32;
         for frame in span.first + from..span.first + to {
-            let (pitch, heading) = pitch_and_heading(models[frame].rotation(side.foot()));
+            let rotation = models[frame].rotation(side.foot());
+            let (pitch, heading) = (foot_pitch(rotation), foot_heading(rotation));
             let position = models[frame].position(side.foot());
             ankle += foot
                 .plant_under(position, heading, settled_pitch(pitch))

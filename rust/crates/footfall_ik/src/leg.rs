@@ -1,9 +1,8 @@
 //! Two-bone leg: hip joint, knee, ankle.
 
-use core::f32::consts::PI;
 use footfall_core::rotation::shortest_arc;
-use footfall_core::{ModelPose, Pose, Side, Skeleton};
-use glam::{Quat, Vec3};
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
+use glam::{Quat, Vec2, Vec3, Vec3A};
 
 /// Where a foot has to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,11 +18,100 @@ pub struct FootTarget {
 /// Share of the straight leg that the solver uses at most: a leg that is quite straight makes the knee snap.
 const MAX_EXTENSION: f32 = 0.9995;
 
-/// Turns thigh, shank, foot and toes so that the foot meets its target, and updates `model` for these joints.
-///
-/// The knee stays in the plane in which the pose already bends it. Out of reach, the leg is stretched towards the
-/// target and the ankle falls short; returns the distance by which it does, metres. `model` must hold the pose's forward
-/// kinematics at least for the hips.
+/// One leg of a body, with what its solution needs of the skeleton.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg {
+    side: Side,
+    hip_from_hips: Vec3A,
+    thigh_axis: Vec3A,
+    shank_axis: Vec3A,
+    thigh: f32,
+    shank: f32,
+}
+
+/// What a leg does to meet its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LegSolution {
+    /// Position of the hip joint in model space, metres.
+    pub hip: Vec3,
+    /// `model_from_thigh` rotation.
+    pub thigh: Quat,
+    /// `model_from_shank` rotation.
+    pub shank: Quat,
+    /// Where the ankle is in the end, metres.
+    pub ankle: Vec3,
+}
+
+impl Leg {
+    /// One leg of a body.
+    pub fn new(skeleton: &Skeleton, side: Side) -> Self {
+        let thigh_axis = skeleton.offset(side.lower_leg());
+        let shank_axis = skeleton.offset(side.foot());
+        Self {
+            side,
+            hip_from_hips: skeleton.offset(side.upper_leg()).into(),
+            thigh_axis: thigh_axis.into(),
+            shank_axis: shank_axis.into(),
+            thigh: thigh_axis.length(),
+            shank: shank_axis.length(),
+        }
+    }
+
+    /// Turns thigh, shank, foot and toes of a pose so that the foot meets its target. `hips_rotation` is the hips' in
+    /// model space.
+    ///
+    /// The knee stays in the plane in which the pose already bends it. Out of reach, the leg is stretched towards the
+    /// target and the ankle falls short.
+    pub fn solve(
+        &self,
+        hips: Vec3,
+        hips_rotation: Quat,
+        target: &FootTarget,
+        pose: &mut Pose,
+    ) -> LegSolution {
+        let side = self.side;
+        let (hip_joint, knee_joint) = (side.upper_leg().index(), side.lower_leg().index());
+        let hip = Vec3A::from(hips) + hips_rotation * self.hip_from_hips;
+        let to_ankle = Vec3A::from(target.ankle) - hip;
+        let reach = to_ankle.length().clamp(
+            (self.thigh - self.shank).abs() + 1e-4,
+            MAX_EXTENSION * (self.thigh + self.shank),
+        );
+
+        // Bend the knee to the right length about the axis that it bends about in the pose.
+        let thigh = hips_rotation * pose.rotations[hip_joint];
+        let shank = thigh * pose.rotations[knee_joint];
+        let bent_thigh = thigh * self.thigh_axis;
+        let bent_shank = shank * self.shank_axis;
+        let lengths = self.thigh * self.shank;
+        let across = bent_thigh.cross(bent_shank);
+        let hinge = knee_hinge(bent_thigh / self.thigh, across / lengths, thigh);
+        let current = Vec2::new(bent_thigh.dot(bent_shank), across.dot(hinge));
+        let bend = bend_between(self.thigh, self.shank, reach);
+        let change = bend.rotate(Vec2::new(current.x, -current.y).normalize_or(Vec2::X));
+        let shank = turn(hinge, change) * shank;
+
+        // Then aim hip-to-ankle at the target.
+        let reached = bent_thigh + shank * self.shank_axis;
+        let aim = shortest_arc(reached.into(), to_ankle.into());
+        let (thigh, shank) = (aim * thigh, aim * shank);
+
+        // Products of unit quaternions are unit quaternions, to within what a pose is rounded to anyway.
+        pose.rotations[hip_joint] = hips_rotation.conjugate() * thigh;
+        pose.rotations[knee_joint] = thigh.conjugate() * shank;
+        pose.rotations[side.foot().index()] = shank.conjugate() * target.foot;
+        pose.rotations[side.toes().index()] = target.foot.conjugate() * target.toes;
+        LegSolution {
+            hip: hip.into(),
+            thigh,
+            shank,
+            ankle: (hip + thigh * self.thigh_axis + shank * self.shank_axis).into(),
+        }
+    }
+}
+
+/// [`Leg::solve`] that also updates `model` for the leg's joints. `model` must hold the pose's forward kinematics at least
+/// for the hips. Returns the distance by which the ankle falls short, metres.
 pub fn solve_leg(
     skeleton: &Skeleton,
     side: Side,
@@ -31,51 +119,22 @@ pub fn solve_leg(
     pose: &mut Pose,
     model: &mut ModelPose,
 ) -> f32 {
-    let (hip, knee, ankle, toes) = (side.upper_leg(), side.lower_leg(), side.foot(), side.toes());
-    let hips_rotation = model.rotation(footfall_core::Joint::Hips);
-    let hip_position = model.point(footfall_core::Joint::Hips, skeleton.offset(hip));
-    let thigh_axis = skeleton.offset(knee);
-    let shank_axis = skeleton.offset(ankle);
-    let (thigh, shank) = (thigh_axis.length(), shank_axis.length());
-
-    let to_ankle = target.ankle - hip_position;
-    let distance = to_ankle.length();
-    let reach = distance.clamp(
-        (thigh - shank).abs() + 1e-4,
-        MAX_EXTENSION * (thigh + shank),
-    );
-
-    // Bend the knee to the right length about the axis that it bends about in the pose.
-    let thigh_rotation = hips_rotation * pose.rotation(hip);
-    let shank_rotation = thigh_rotation * pose.rotation(knee);
-    let bent_thigh = thigh_rotation * thigh_axis;
-    let bent_shank = shank_rotation * shank_axis;
-    let hinge = knee_hinge(bent_thigh, bent_shank, thigh_rotation);
-    let inner = interior_angle(thigh, shank, reach);
-    let bend = PI - inner;
-    let current_bend = signed_angle(bent_thigh, bent_shank, hinge);
-    let shank_rotation = Quat::from_axis_angle(hinge, bend - current_bend) * shank_rotation;
-
-    // Then aim hip-to-ankle at the target.
-    let reached = bent_thigh + shank_rotation * shank_axis;
-    let aim = shortest_arc(reached, to_ankle);
-    let thigh_rotation = (aim * thigh_rotation).normalize();
-    let shank_rotation = (aim * shank_rotation).normalize();
-
-    model.positions[hip.index()] = hip_position;
-    model.rotations[hip.index()] = thigh_rotation;
-    model.positions[knee.index()] = hip_position + thigh_rotation * thigh_axis;
-    model.rotations[knee.index()] = shank_rotation;
-    model.positions[ankle.index()] = model.position(knee) + shank_rotation * shank_axis;
-    model.rotations[ankle.index()] = target.foot;
-    model.positions[toes.index()] = model.point(ankle, skeleton.offset(toes));
-    model.rotations[toes.index()] = target.toes;
-
-    pose.rotations[hip.index()] = (hips_rotation.inverse() * thigh_rotation).normalize();
-    pose.rotations[knee.index()] = (thigh_rotation.inverse() * shank_rotation).normalize();
-    pose.rotations[ankle.index()] = (shank_rotation.inverse() * target.foot).normalize();
-    pose.rotations[toes.index()] = (target.foot.inverse() * target.toes).normalize();
-    (model.position(ankle) - target.ankle).length()
+    let leg = Leg::new(skeleton, side);
+    let (hips, hips_rotation) = (model.position(Joint::Hips), model.rotation(Joint::Hips));
+    let solution = leg.solve(hips, hips_rotation, target, pose);
+    let knee = solution.hip + solution.thigh * skeleton.offset(side.lower_leg());
+    let toes = solution.ankle + target.foot * skeleton.offset(side.toes());
+    let joints = [
+        (side.upper_leg(), solution.hip, solution.thigh),
+        (side.lower_leg(), knee, solution.shank),
+        (side.foot(), solution.ankle, target.foot),
+        (side.toes(), toes, target.toes),
+    ];
+    for (joint, position, rotation) in joints {
+        model.positions[joint.index()] = position;
+        model.rotations[joint.index()] = rotation;
+    }
+    solution.ankle.distance(target.ankle)
 }
 
 /// The greatest height of the hips joint at which an ankle is within reach of a leg that is stretched to the fraction
@@ -98,15 +157,10 @@ pub fn reach_height(
 
 /// The axis about which the shank turns backwards from the thigh, a unit vector.
 ///
-/// A nearly straight leg has no plane of its own; the thigh's own x axis (the left of a leg in the T-pose) takes over
-/// smoothly.
-fn knee_hinge(thigh: Vec3, shank: Vec3, thigh_rotation: Quat) -> Vec3 {
-    let anatomical = thigh_rotation * Vec3::X;
-    let (thigh, shank) = (
-        thigh.normalize_or(Vec3::NEG_Y),
-        shank.normalize_or(Vec3::NEG_Y),
-    );
-    let bent = thigh.cross(shank);
+/// `thigh` is the thigh's direction and `bent` its cross product with the shank's. A nearly straight leg has no plane of
+/// its own; the thigh's own x axis (the left of a leg in the T-pose) takes over smoothly.
+fn knee_hinge(thigh: Vec3A, bent: Vec3A, thigh_rotation: Quat) -> Vec3A {
+    let anatomical = thigh_rotation * Vec3A::X;
     // A hyperextended knee must not be taken for one that bends forwards.
     let bent = bent - anatomical * bent.dot(anatomical).min(0.0);
     // Below about 6 degrees of bend the plane is mostly noise.
@@ -115,22 +169,30 @@ fn knee_hinge(thigh: Vec3, shank: Vec3, thigh_rotation: Quat) -> Vec3 {
     across.try_normalize().unwrap_or(anatomical)
 }
 
-/// The knee's inner angle in a triangle with these two sides and the opposite third.
-fn interior_angle(thigh: f32, shank: f32, opposite: f32) -> f32 {
-    let cosine = (thigh * thigh + shank * shank - opposite * opposite) / (2.0 * thigh * shank);
-    cosine.clamp(-1.0, 1.0).acos()
+/// Cosine and sine of the knee's bend (0 when straight) in a triangle with these two sides and the opposite third.
+fn bend_between(thigh: f32, shank: f32, opposite: f32) -> Vec2 {
+    let cosine = (opposite * opposite - thigh * thigh - shank * shank) / (2.0 * thigh * shank);
+    let cosine = cosine.clamp(-1.0, 1.0);
+    Vec2::new(cosine, (1.0 - cosine * cosine).sqrt())
 }
 
-/// Angle from one direction to another, positive about `axis`.
-fn signed_angle(from: Vec3, to: Vec3, axis: Vec3) -> f32 {
-    from.cross(to).dot(axis).atan2(from.dot(to))
+/// The rotation about a unit axis by an angle of which cosine and sine are given.
+fn turn(axis: Vec3A, angle: Vec2) -> Quat {
+    let cosine = (0.5 + 0.5 * angle.x).max(0.0).sqrt();
+    // The sine of half an angle from its own side of the formula that keeps its digits.
+    let sine = if cosine > 0.5 {
+        0.5 * angle.y / cosine
+    } else {
+        (0.5 - 0.5 * angle.x).max(0.0).sqrt().copysign(angle.y)
+    };
+    Quat::from_vec4(Vec3::from(axis * sine).extend(cosine))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use footfall_core::forward_kinematics;
     use footfall_core::rotation::exp_map;
-    use footfall_core::{Joint, forward_kinematics};
     use proptest::prelude::*;
 
     fn crouched(flexion: f32, lean: f32) -> Pose {

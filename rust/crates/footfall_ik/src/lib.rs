@@ -6,5 +6,5 @@
 pub mod leg;
 pub mod rocker;
 
-pub use leg::{FootTarget, reach_height, solve_leg};
-pub use rocker::{Plant, RockerFoot, pitch_and_heading, settled_pitch};
+pub use leg::{FootTarget, Leg, LegSolution, reach_height, solve_leg};
+pub use rocker::{Plant, RockerFoot, foot_heading, foot_pitch, settled_pitch};

@@ -71,7 +71,11 @@ impl RockerFoot {
 
     /// Where the foot is when it stands on its plant at this pitch (positive: heel up).
     pub fn stand(&self, plant: &Plant, pitch: f32) -> FootTarget {
-        let level = from_heading(plant.heading);
+        self.stand_level(plant, from_heading(plant.heading), pitch)
+    }
+
+    /// As [`stand`](Self::stand), with the rotation of the plant's heading at hand.
+    pub fn stand_level(&self, plant: &Plant, level: Quat, pitch: f32) -> FootTarget {
         let foot = level * Quat::from_rotation_x(pitch);
         if pitch <= 0.0 {
             let heel = plant.flat_ankle + level * self.heel;
@@ -114,11 +118,16 @@ pub fn settled_pitch(pitch: f32) -> f32 {
     pitch * squared / (squared + FLAT_PITCH * FLAT_PITCH)
 }
 
-/// Pitch (positive: heel up) and heading of a foot from its rotation.
-pub fn pitch_and_heading(rotation: Quat) -> (f32, f32) {
+/// Pitch (positive: heel up) of a foot from its rotation.
+pub fn foot_pitch(rotation: Quat) -> f32 {
     let forward = rotation * Vec3::Z;
-    let pitch = (-forward.y).clamp(-1.0, 1.0).asin();
-    (pitch, forward.x.atan2(forward.z))
+    (-forward.y).clamp(-1.0, 1.0).asin()
+}
+
+/// Heading of a foot from its rotation.
+pub fn foot_heading(rotation: Quat) -> f32 {
+    let forward = rotation * Vec3::Z;
+    forward.x.atan2(forward.z)
 }
 
 #[cfg(test)]
@@ -199,7 +208,7 @@ mod tests {
     fn small_pitches_settle_and_large_ones_stay() {
         assert!(settled_pitch(0.03).abs() < 0.004);
         assert!((settled_pitch(-0.5) + 0.5).abs() < 0.02);
-        let (pitch, heading) = pitch_and_heading(from_heading(0.4) * Quat::from_rotation_x(0.2));
-        assert!((pitch - 0.2).abs() < 1e-5 && (heading - 0.4).abs() < 1e-5);
+        let foot = from_heading(0.4) * Quat::from_rotation_x(0.2);
+        assert!((foot_pitch(foot) - 0.2).abs() < 1e-5 && (foot_heading(foot) - 0.4).abs() < 1e-5);
     }
 }

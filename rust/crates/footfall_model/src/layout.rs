@@ -4,7 +4,7 @@
 //! joint in the order of [`Joint::ALL`]; the hips' with the walker's heading removed (Tilmanne et al. 2012, section 4).
 //! An observation appends the first and second time differences (equations 2 and 3): statics, Δ, Δ².
 
-use footfall_core::rotation::{exp_map, from_heading, log_map, log_map_near};
+use footfall_core::rotation::{exp_maps, from_heading, log_map, log_map_near};
 use footfall_core::{JOINT_COUNT, Joint, Pose};
 use glam::{Quat, Vec3};
 
@@ -46,10 +46,7 @@ pub fn encode(pose: &Pose, heading: f32, previous: Option<&[f64]>, out: &mut [f6
 /// # Panics
 /// When `features` is shorter than [`FEATURE_COUNT`].
 pub fn decode(features: &[f32], rotations: &mut [Quat; JOINT_COUNT]) {
-    let vectors = features[..FEATURE_COUNT].chunks_exact(3);
-    for (rotation, vector) in rotations.iter_mut().zip(vectors) {
-        *rotation = exp_map(Vec3::from_slice(vector));
-    }
+    exp_maps(&features[..FEATURE_COUNT], rotations);
 }
 
 /// Mirrors static or dynamic features of one frame left to right, in place.
@@ -91,6 +88,7 @@ fn read_vector(features: &[f64], offset: usize) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use footfall_core::rotation::exp_map;
     use footfall_core::{ModelPose, Skeleton, forward_kinematics};
     use proptest::prelude::*;
 

@@ -314,7 +314,8 @@ impl GaitGenerator {
     /// The frames on both sides of now, and the weight of the later one.
     fn frames(&self) -> (&PlantedFrame, &PlantedFrame, f32) {
         let frames = &self.walker.frames;
-        let first = (self.position.floor() as usize).min(frames.len() - 2);
+        let last = self.walker.step().timing.frames - 1;
+        let first = (self.position.floor() as usize).min(last);
         let weight = self.position - first as f32;
         (&frames[first], &frames[first + 1], weight)
     }

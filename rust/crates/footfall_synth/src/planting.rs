@@ -10,8 +10,8 @@ mod swing;
 
 use crate::raw::RawFrame;
 use footfall_core::rotation::from_heading;
-use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
-use footfall_ik::{FootTarget, Plant, RockerFoot, solve_leg};
+use footfall_core::{Joint, Pose, Side, Skeleton};
+use footfall_ik::{FootTarget, Leg, Plant, RockerFoot};
 use glam::{Quat, Vec3};
 use swing::Swing;
 
@@ -36,8 +36,9 @@ pub(crate) struct PlantedFrame {
     pub(crate) pose: Pose,
     /// Place of the walker on the ground: its travel without sway.
     pub(crate) ground_position: Vec3,
-    /// Heading under which the generated features are put, radians.
+    /// Heading under which the generated features are put, radians, and the rotation by it.
     pub(crate) heading: f32,
+    pub(crate) level: Quat,
     /// Whether the left and the right foot bear on the ground.
     pub(crate) contact: [bool; 2],
 }
@@ -56,8 +57,9 @@ pub(crate) struct StepTiming {
 /// Carries plants, hips and heading from step to step.
 #[derive(Clone, Debug)]
 pub(crate) struct Planter {
-    skeleton: Skeleton,
     feet: [RockerFoot; 2],
+    legs: [Leg; 2],
+    leg_lengths: [f32; 2],
     frame_secs: f32,
     state: PlanterState,
 }
@@ -98,7 +100,7 @@ impl Planter {
         let plants = Side::BOTH.map(|side| {
             let leg = &first.legs[side.index()];
             let foot = &feet[side.index()];
-            foot.plant_under(level * leg.ankle, heading + leg.heading, leg.pitch)
+            foot.plant_under(level * leg.ankle, heading + leg.heading(), leg.pitch)
         });
         let state = PlanterState {
             plants,
@@ -111,7 +113,9 @@ impl Planter {
         };
         let mut planter = Self::resume(skeleton, frame_secs, state);
         let standing = leading.other();
-        let hips = planter.hips_above(first, standing, level);
+        let foot = planter.feet[standing.index()]
+            .stand(planter.plant(standing), first.legs[standing.index()].pitch);
+        let hips = foot.ankle - level * first.legs[standing.index()].ankle;
         planter.state.hips = Vec3::new(0.0, hips.y, 0.0);
         planter
     }
@@ -119,8 +123,9 @@ impl Planter {
     /// Goes on from a [`state`](Self::state).
     pub(crate) fn resume(skeleton: &Skeleton, frame_secs: f32, state: PlanterState) -> Self {
         Self {
-            skeleton: skeleton.clone(),
             feet: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
+            legs: Side::BOTH.map(|side| Leg::new(skeleton, side)),
+            leg_lengths: Side::BOTH.map(|side| skeleton.leg_length(side)),
             frame_secs,
             state,
         }
@@ -136,19 +141,20 @@ impl Planter {
         &self.state.plants[side.index()]
     }
 
-    /// Puts a step on the ground. `raw` has one frame more than the step: the next initial contact.
+    /// Puts a step on the ground. `raw` and `out` have one frame more than the step: the next initial contact, which is the
+    /// first frame of the next step. The poses in `out` hold the generated local rotations.
     ///
-    /// Writes `timing.frames + 1` frames to `out`, the last of which is the first of the next step. The trailing foot
-    /// leaves the ground at `timing.terminal`, or earlier when the generated
-    /// leg takes it away; returns when it does.
+    /// The trailing foot leaves the ground at `timing.terminal`, or earlier when the generated leg takes it away; returns
+    /// when it does.
     pub(crate) fn plant_step(
         &mut self,
-        raw: &[RawFrame],
+        raw: &mut [RawFrame],
         timing: &StepTiming,
         course: Course,
-        out: &mut Vec<PlantedFrame>,
+        out: &mut [PlantedFrame],
     ) -> usize {
-        out.clear();
+        self.fill_stances(raw, timing);
+        let raw = &*raw;
         self.travel(raw, timing, course, out);
         let timing = &StepTiming {
             terminal: self.release(raw, timing, out),
@@ -167,22 +173,22 @@ impl Planter {
         let next_plant = self.next_plant(raw, timing, hips, heading, course.turn_rate);
         let swing = Swing::new(&self.swing_ends(raw, timing, out, &next_plant), timing);
         for (index, (frame, raw)) in out.iter_mut().zip(raw).enumerate() {
-            let level = from_heading(frame.heading);
-            let mut model = ModelPose::default();
-            model.positions[0] = frame.pose.root_position;
-            model.rotations[0] = frame.pose.rotations[Joint::Hips.index()];
+            let level = frame.level;
+            let hips = frame.pose.root_position;
+            let hips_rotation = frame.pose.rotations[Joint::Hips.index()];
             for side in Side::BOTH {
                 let foot = &self.feet[side.index()];
                 let leg = &raw.legs[side.index()];
                 let target = if side == timing.leading || index <= timing.terminal {
-                    foot.stand(self.plant(side), leg.pitch)
+                    leg.stance
                 } else if index == timing.frames {
                     foot.stand(&next_plant, leg.pitch)
                 } else {
-                    let free = free_foot(raw, side, frame.pose.root_position, level);
+                    let free = free_foot(raw, side, hips, level);
                     swing.guide(index, &free, foot)
                 };
-                solve_leg(&self.skeleton, side, &target, &mut frame.pose, &mut model);
+                let leg = &self.legs[side.index()];
+                leg.solve(hips, hips_rotation, &target, &mut frame.pose);
             }
         }
         self.state.plants[trailing.index()] = next_plant;
@@ -195,11 +201,11 @@ impl Planter {
         raw: &[RawFrame],
         timing: &StepTiming,
         course: Course,
-        out: &mut Vec<PlantedFrame>,
+        out: &mut [PlantedFrame],
     ) {
-        let start = self.hips_above(&raw[0], timing.leading, from_heading(self.state.heading));
+        let start = hips_above(&raw[0], timing.leading, from_heading(self.state.heading));
         let next_level = from_heading(self.state.heading + self.state.turn_rate * self.frame_secs);
-        let follow = self.hips_above(&raw[1], timing.leading, next_level);
+        let follow = hips_above(&raw[1], timing.leading, next_level);
         let offset = self.state.hips - start;
         let velocity = self
             .state
@@ -209,7 +215,7 @@ impl Planter {
         let meeting = MEETING_SHARE * self.landing_height_gap(raw, timing);
         let mut settled = self.state.hips;
         let from_rate = self.state.turn_rate;
-        for (index, raw) in raw.iter().enumerate().take(timing.frames + 1) {
+        for (index, (raw, frame)) in raw.iter().zip(&mut *out).enumerate() {
             let time = index as f32;
             let heading = self.state.heading;
             let level = from_heading(heading);
@@ -217,9 +223,8 @@ impl Planter {
             let remains = (offset + (velocity + offset * decay) * time) * (-decay * time).exp();
             let approach =
                 smooth_step((time / timing.frames as f32 - MEETING_FROM) / (1.0 - MEETING_FROM));
-            let hips = self.hips_above(raw, timing.leading, level)
-                + remains
-                + Vec3::Y * (meeting * approach);
+            let hips =
+                hips_above(raw, timing.leading, level) + remains + Vec3::Y * (meeting * approach);
             settled = hips;
             if index < timing.frames {
                 let onset = smooth_step(time / (TURN_ONSET * timing.frames as f32));
@@ -228,12 +233,10 @@ impl Planter {
                 self.state.heading += self.state.turn_rate * self.frame_secs
                     + course.shift * (share(time + 1.0) - share(time));
             }
-            let mut frame = PlantedFrame {
-                heading,
-                ..PlantedFrame::default()
-            };
-            raw.pose(hips, level, &mut frame.pose);
-            out.push(frame);
+            frame.heading = heading;
+            frame.level = level;
+            frame.pose.root_position = hips;
+            frame.pose.rotations[Joint::Hips.index()] = (level * raw.hips).normalize();
         }
         self.glide(timing, settled, out);
     }
@@ -246,7 +249,7 @@ impl Planter {
         let foot = &self.feet[landing.index()];
         let plant = foot.plant_under(Vec3::ZERO, 0.0, leg.pitch);
         let above_landing = foot.stand(&plant, leg.pitch).ankle.y - leg.ankle.y;
-        above_landing - self.hips_above(last, timing.leading, Quat::IDENTITY).y
+        above_landing - hips_above(last, timing.leading, Quat::IDENTITY).y
     }
 
     /// The walker's place on the ground: a cubic path through the hips' places at initial contacts.
@@ -266,15 +269,21 @@ impl Planter {
         self.state.ground_velocity = Some(arrival / timing.frames as f32);
     }
 
-    /// Where the hips are when this foot stands on its plant and the leg is as generated.
-    fn hips_above(&self, raw: &RawFrame, side: Side, level: Quat) -> Vec3 {
-        self.standing(side, raw).ankle - level * raw.legs[side.index()].ankle
+    /// Where this foot stands on its plant, under the plant's heading, at the generated pitch.
+    fn stand(&self, side: Side, level: Quat, raw: &RawFrame) -> FootTarget {
+        let pitch = raw.legs[side.index()].pitch;
+        self.feet[side.index()].stand_level(self.plant(side), level, pitch)
     }
 
-    /// Where this foot stands on its plant at the generated pitch.
-    fn standing(&self, side: Side, raw: &RawFrame) -> FootTarget {
-        let pitch = raw.legs[side.index()].pitch;
-        self.feet[side.index()].stand(self.plant(side), pitch)
+    /// Fills where each foot stands while it may.
+    fn fill_stances(&self, raw: &mut [RawFrame], timing: &StepTiming) {
+        let trailing = timing.leading.other();
+        for (side, last) in [(timing.leading, timing.frames), (trailing, timing.terminal)] {
+            let level = from_heading(self.plant(side).heading);
+            for raw in &mut raw[..=last] {
+                raw.legs[side.index()].stance = self.stand(side, level, raw);
+            }
+        }
     }
 
     /// Where the trailing foot lands at the end of the step.
@@ -292,9 +301,9 @@ impl Planter {
         // The foot points to where the body will have turned by the middle of its stance.
         let lead = 0.5 * turn_rate * self.frame_secs * timing.frames as f32;
         let foot = &self.feet[side.index()];
-        let mut plant = foot.plant_under(ankle, heading + lead + leg.heading, leg.pitch);
+        let mut plant = foot.plant_under(ankle, heading + lead + leg.heading(), leg.pitch);
         let hip = hips + from_heading(heading) * leg.hip;
-        let reach = MAX_LANDING_EXTENSION * self.skeleton.leg_length(side);
+        let reach = MAX_LANDING_EXTENSION * self.leg_lengths[side.index()];
         plant.flat_ankle += within_reach(foot.stand(&plant, leg.pitch).ankle - hip, reach);
         plant
     }
@@ -317,12 +326,17 @@ impl Planter {
             } else {
                 self.plant(side)
             };
-            let level = from_heading(frame.heading);
-            let free = free_foot(&raw[index], side, frame.pose.root_position, level);
+            let free = free_foot(&raw[index], side, frame.pose.root_position, frame.level);
             let pitch = raw[index].legs[side.index()].pitch;
             (foot.stand(plant, pitch), free)
         })
     }
+}
+
+/// Where the hips are when this foot stands on its plant and the leg is as generated.
+fn hips_above(raw: &RawFrame, side: Side, level: Quat) -> Vec3 {
+    let leg = &raw.legs[side.index()];
+    leg.stance.ankle - level * leg.ankle
 }
 
 /// Where a foot is when the leg is as generated.

@@ -3,7 +3,7 @@
 use crate::error::SynthError;
 use crate::pace::PaceTable;
 use crate::plan::{Planner, StepDraw, StepPlan};
-use crate::planting::{Course, Planter};
+use crate::planting::{Course, PlantedFrame, Planter};
 use crate::raw::RawFrame;
 use crate::space::StyleSpace;
 use crate::variance;
@@ -137,7 +137,6 @@ fn put_on_ground(
         shift: 0.0,
     };
     let mut poses: Vec<Pose> = Vec::new();
-    let mut frames = Vec::new();
     let mut stances: [Vec<[f64; 2]>; 2] = [vec![], vec![]];
     let shown = LEAD_STEPS..plans.len() - LEAD_STEPS;
     let mut begin = 0;
@@ -147,19 +146,21 @@ fn put_on_ground(
         let timing = &plan.timing;
         let mut raw = vec![RawFrame::default(); timing.frames + 1];
         let rows = trajectory[begin * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
-        for (raw, features) in raw.iter_mut().zip(rows) {
+        let mut frames = vec![PlantedFrame::default(); timing.frames + 1];
+        for ((raw, frame), features) in raw.iter_mut().zip(&mut frames).zip(rows) {
             let mut narrow = [0.0; FEATURE_COUNT];
             for (narrow, feature) in narrow.iter_mut().zip(features) {
                 *narrow = *feature as f32;
             }
-            raw.decode(&narrow, skeleton, plan.stride as f32);
+            let rotations = &mut frame.pose.rotations;
+            raw.decode(&narrow, skeleton, plan.stride as f32, rotations);
         }
         begin += timing.frames;
         let terminal = planter
             .get_or_insert_with(|| {
                 Planter::new(skeleton, frame_secs as f32, &raw[0], timing.leading, facing)
             })
-            .plant_step(&raw, timing, course, &mut frames);
+            .plant_step(&mut raw, timing, course, &mut frames);
         if index < shown.start {
             continue;
         }

@@ -63,7 +63,7 @@ pub(crate) struct Walker {
     raw: Vec<RawFrame>,
     planter: Option<Planter>,
     frame_secs: f32,
-    /// The current step on the ground, one frame longer than the step.
+    /// The current step on the ground, one frame longer than the step; what lies beyond is left from others.
     pub(crate) frames: Vec<PlantedFrame>,
 }
 
@@ -101,7 +101,7 @@ impl Walker {
             raw: vec![RawFrame::default(); longest + 1],
             planter: None,
             frame_secs: (1.0 / blend.model.frame_rate_hz) as f32,
-            frames: Vec::with_capacity(longest + 1),
+            frames: vec![PlantedFrame::default(); longest + 1],
         }
     }
 
@@ -259,9 +259,14 @@ impl Walker {
         let plan = &self.plans[step];
         let rows = self.trajectory[self.current * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let raw = &mut self.raw[..=plan.timing.frames];
-        for (index, (raw, features)) in raw.iter_mut().zip(rows).enumerate() {
+        let frames = &mut self.frames[..=plan.timing.frames];
+        let stride = plan.stride as f32;
+        for (index, ((raw, frame), features)) in
+            raw.iter_mut().zip(&mut *frames).zip(rows).enumerate()
+        {
+            let rotations = &mut frame.pose.rotations;
             if plan.amplitude == Amplitude::WALK {
-                raw.decode(features, &self.skeleton, plan.stride as f32);
+                raw.decode(features, &self.skeleton, stride, rotations);
                 continue;
             }
             let s = index as f32 / plan.timing.frames as f32;
@@ -274,7 +279,7 @@ impl Walker {
                 let standing = before + change * (standing - before);
                 *value = standing + amplitude * (walking - standing);
             }
-            raw.decode(&blended, &self.skeleton, plan.stride as f32);
+            raw.decode(&blended, &self.skeleton, stride, rotations);
         }
         let request = &self.origin.request;
         let planter = self.planter.get_or_insert_with(|| {
@@ -290,6 +295,6 @@ impl Walker {
             turn_rate: request.turn_rate,
             shift: request.facing - self.origin.facing_before,
         };
-        planter.plant_step(raw, &plan.timing, course, &mut self.frames);
+        planter.plant_step(raw, &plan.timing, course, frames);
     }
 }

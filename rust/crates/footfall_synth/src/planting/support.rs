@@ -3,7 +3,6 @@
 use super::{PlantedFrame, Planter, StepTiming, free_foot};
 use crate::raw::RawFrame;
 use footfall_core::Side;
-use footfall_core::rotation::from_heading;
 use footfall_ik::reach_height;
 
 /// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
@@ -31,13 +30,17 @@ impl Planter {
         frames: &[PlantedFrame],
     ) -> usize {
         let trailing = timing.leading.other();
-        let allowance = RELEASE_SHARE * self.skeleton.leg_length(trailing);
+        let allowance = RELEASE_SHARE * self.leg_lengths[trailing.index()];
         (2..=timing.terminal)
             .find(|index| {
                 let frame = &frames[*index];
-                let level = from_heading(frame.heading);
-                let free = free_foot(&raw[*index], trailing, frame.pose.root_position, level);
-                let ankle = self.standing(trailing, &raw[*index]).ankle;
+                let free = free_foot(
+                    &raw[*index],
+                    trailing,
+                    frame.pose.root_position,
+                    frame.level,
+                );
+                let ankle = raw[*index].legs[trailing.index()].stance.ankle;
                 free.ankle.distance(ankle) > allowance
             })
             .map_or(timing.terminal, |beyond| beyond - 1)
@@ -47,7 +50,6 @@ impl Planter {
     pub(super) fn bear(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) {
         let fade_frames = REACH_FADE_SECS / self.frame_secs;
         for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
-            let level = from_heading(frame.heading);
             let hips = frame.pose.root_position;
             for side in Side::BOTH {
                 let is_leading = side == timing.leading;
@@ -63,9 +65,10 @@ impl Planter {
                     let remaining = (timing.terminal - index) as f32;
                     onset * (1.0 - remaining / fade_frames).max(0.0)
                 };
-                let length = self.skeleton.leg_length(side);
-                let hip = level * raw.legs[side.index()].hip;
-                let ankle = self.standing(side, raw).ankle;
+                let length = self.leg_lengths[side.index()];
+                let leg = &raw.legs[side.index()];
+                let hip = frame.level * leg.hip;
+                let ankle = leg.stance.ankle;
                 let limit = reach_height(hips, hip, ankle, length, MAX_STANCE_EXTENSION);
                 // Out of reach sideways at any height: the solver stretches the leg, and the pelvis stays human.
                 if let Some(limit) = limit {
@@ -84,11 +87,12 @@ impl Planter {
         frames: &mut [PlantedFrame],
     ) -> usize {
         let trailing = timing.leading.other();
-        let reach = LET_GO_EXTENSION * self.skeleton.leg_length(trailing);
+        let reach = LET_GO_EXTENSION * self.leg_lengths[trailing.index()];
         let beyond = (1..=timing.terminal).find(|index| {
             let frame = &frames[*index];
-            let hip = from_heading(frame.heading) * raw[*index].legs[trailing.index()].hip;
-            let ankle = self.standing(trailing, &raw[*index]).ankle;
+            let leg = &raw[*index].legs[trailing.index()];
+            let hip = frame.level * leg.hip;
+            let ankle = leg.stance.ankle;
             (frame.pose.root_position + hip).distance(ankle) > reach
         });
         let Some(beyond) = beyond else {
@@ -106,6 +110,9 @@ fn soft_min(value: f32, limit: f32) -> f32 {
     let excess = (value - limit) / REACH_SOFTNESS_M;
     if excess > 20.0 {
         return limit;
+    }
+    if excess < -20.0 {
+        return value;
     }
     value - REACH_SOFTNESS_M * excess.exp().ln_1p()
 }
