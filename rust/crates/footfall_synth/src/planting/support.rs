@@ -108,10 +108,10 @@ impl Planter {
 /// The smaller of two numbers, rounded off where they meet.
 fn soft_min(value: f32, limit: f32) -> f32 {
     let excess = (value - limit) / REACH_SOFTNESS_M;
-    if excess > 20.0 {
+    if excess > 10.0 {
         return limit;
     }
-    if excess < -20.0 {
+    if excess < -10.0 {
         return value;
     }
     value - REACH_SOFTNESS_M * excess.exp().ln_1p()

@@ -82,11 +82,12 @@ impl Swing {
         let clearance = CLEARANCE_M * (PI * s).sin().powi(2);
         let softness = CLEARANCE_SOFTNESS_M * (PI * s).sin() + 1e-6;
         let short = (clearance - foot.lowest_point(&target)) / softness;
+        // Beyond these the soft maximum is the hard one to the last digit that shows.
         target.ankle.y += softness
-            * if short > 20.0 {
-                short
-            } else {
-                short.exp().ln_1p()
+            * match short {
+                short if short > 10.0 => short,
+                short if short < -10.0 => 0.0,
+                short => short.exp().ln_1p(),
             };
         target
     }
