@@ -1,4 +1,6 @@
-//! `cargo xtask models`: makes the models that the add-on ships from the motion data.
+//! `cargo xtask models`: makes the models and styles that the project ships from the motion data.
+
+mod styles;
 
 use crate::{paths, process};
 use anyhow::{Context as _, Result, bail};
@@ -11,45 +13,68 @@ use std::process::Command;
 const DATA: &str = "../shared/data";
 const WALK: &str = "addons/footfall/models/walk.footfall";
 
-/// Trains every shipped model anew.
+/// The recordings that are free for commercial use.
+const NEUTRAL_WALKS: [&str; 4] = [
+    "--where",
+    "category=neutral_walk",
+    "--where",
+    "path=cmu/*",
+];
+
+/// Trains every shipped model and style anew.
 ///
 /// # Errors
 /// When the data are not there or training fails.
 pub(crate) fn command() -> Result<()> {
     let root = paths::repository_root();
-    let index = data_folder(&root)?.join("index.csv");
-    fs::create_dir_all(root.join("addons/footfall/models"))
+    let data = Data {
+        index: data_folder(&root)?.join("index.csv"),
+        commit: current_commit(&root),
+        root,
+    };
+    fs::create_dir_all(data.root.join("addons/footfall/models"))
         .context("cannot create the folder for models")?;
-    let mut cargo = process::cargo();
-    // From the root with relative paths: the model records the command, which should read the same everywhere.
-    cargo
-        .current_dir(&root)
+    let mut train = data.footfall("train");
+    train
+        .arg("--corpus")
+        .arg(&data.index)
+        .args(NEUTRAL_WALKS)
         .args([
-            "run",
-            "--quiet",
-            "--locked",
-            "--release",
-            "--manifest-path",
-            "rust/Cargo.toml",
-        ])
-        .args(["--package", "footfall_cli", "--", "train", "--corpus"])
-        .arg(&index)
-        .args([
-            "--where",
-            "category=neutral_walk",
-            "--where",
-            "path=cmu/*",
             "--describe",
             "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), neutral walks",
             "-o",
             WALK,
         ]);
-    if let Some(commit) = current_commit(&root) {
-        cargo.env("FOOTFALL_COMMIT", commit);
-    }
-    process::run(&mut cargo)?;
-    eprintln!("{WALK} is made from the data: the tests check it, then commit it");
+    process::run(&mut train)?;
+    let made = styles::make(&data)?;
+    eprintln!(
+        "{WALK} and {made} styles are made from the data: the tests check them, then commit them"
+    );
     Ok(())
+}
+
+/// The motion data and how models are made from them.
+struct Data {
+    root: PathBuf,
+    index: PathBuf,
+    commit: Option<String>,
+}
+
+impl Data {
+    /// A command of `footfall`, run from the root with relative paths: models record the command, which should read the same
+    /// everywhere.
+    fn footfall(&self, subcommand: &str) -> Command {
+        let mut cargo = process::cargo();
+        cargo
+            .current_dir(&self.root)
+            .args(["run", "--quiet", "--locked", "--release"])
+            .args(["--manifest-path", "rust/Cargo.toml"])
+            .args(["--package", "footfall_cli", "--", subcommand]);
+        if let Some(commit) = &self.commit {
+            cargo.env("FOOTFALL_COMMIT", commit);
+        }
+        cargo
+    }
 }
 
 /// The commit that the models are made with, as their provenance records it; `None` outside a checkout.

@@ -75,7 +75,7 @@ fn a_generated_walk() {
         variation: 1.0,
     };
     let space = Arc::new(StyleSpace::new(&model, &[]).unwrap());
-    let mut generator = GaitGenerator::new(&space, &model.skeleton, &config).unwrap();
+    let mut generator = GaitGenerator::new(&space, &[], &model.skeleton, &config).unwrap();
     let controls = Controls {
         speed_mps: 1.3,
         turn_rate_radps: 0.2,

@@ -59,7 +59,7 @@ fn a_step_of_the_generator_allocates_nothing() {
             phase: 0.3,
             variation: 1.0,
         };
-        let mut generator = GaitGenerator::new(&space, &skeleton, &config).unwrap();
+        let mut generator = GaitGenerator::new(&space, &[], &skeleton, &config).unwrap();
         let mut pose = Pose::default();
         for frame in 0..3000_u16 {
             // Faster and slower, left and right, small and large steps in time, and nonsense.

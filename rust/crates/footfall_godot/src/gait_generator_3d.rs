@@ -4,12 +4,14 @@ mod session;
 
 use crate::character;
 use crate::gait_model::GaitModel;
+use crate::gait_style::GaitStyle;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::Side;
-use footfall_synth::{Controls, GeneratorConfig};
+use footfall_synth::{Controls, GeneratorConfig, StyleSpace};
 use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
 use session::Session;
+use std::sync::Arc;
 
 /// Walks a character: every frame it poses the parent `Skeleton3D` with steps generated from a trained model.
 ///
@@ -28,6 +30,21 @@ pub(crate) struct GaitGenerator3D {
     #[export]
     #[var(set = set_model)]
     model: Option<Gd<GaitModel>>,
+
+    /// Styles to walk in, imported `.footstyle` files that were made for this model. `style_weights` says how much of each.
+    ///
+    /// Changing the list starts the walk anew; change weights to change the style while it walks.
+    #[export]
+    #[var(set = set_styles)]
+    styles: Array<Option<Gd<GaitStyle>>>,
+
+    /// How much of each style there is in the walk, in the order of `styles`: 0 is none, 1 the style as it was recorded.
+    ///
+    /// Any mixture goes: more than 1 exaggerates, less than 0 is the opposite, and the sum need not be 1. What is too much for a
+    /// body is held back. May change at any time; the walk takes it up with the next step. A missing weight counts as 0.
+    #[export]
+    #[var(set = set_style_weights)]
+    style_weights: PackedFloat32Array,
 
     /// How fast the character walks, in metres per second. Cadence and step length follow as they do in people.
     ///
@@ -91,6 +108,10 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
 
+    /// The model and its styles; `None` until they are needed.
+    space: Option<Arc<StyleSpace>>,
+    /// A state that the next walk goes on from.
+    pending_state: Option<PackedByteArray>,
     /// The walk under way; `None` until the next frame that can start it.
     session: Option<Session>,
     /// What was last reported, so that it is reported once.
@@ -129,7 +150,7 @@ impl ISkeletonModifier3D for GaitGenerator3D {
     }
 
     fn get_configuration_warnings(&self) -> PackedStringArray {
-        self.get_problems()
+        self.problems()
     }
 }
 
@@ -178,26 +199,52 @@ impl GaitGenerator3D {
     /// The editor shows the same as configuration warnings.
     #[func]
     fn get_problems(&self) -> PackedStringArray {
-        let mut problems = PackedStringArray::new();
-        if let Err(problem) = self.trained() {
-            problems.push(&GString::from(&problem));
+        self.problems()
+    }
+
+    /// The walk as it is now, to be saved or sent: `set_state()` of a node with the same model, styles and body goes on from it
+    /// with the same poses. About 1.5 kB; empty while the character does not walk.
+    ///
+    /// It holds the walk and not the place of the character: save that beside it.
+    #[func]
+    fn get_state(&self) -> PackedByteArray {
+        match (&self.session, &self.pending_state) {
+            (Some(session), None) => PackedByteArray::from(session.generator.state()),
+            (_, Some(pending)) => pending.clone(),
+            (None, None) => PackedByteArray::new(),
         }
-        let Some(skeleton) = self.base().get_skeleton() else {
-            problems.push("Put this node under a Skeleton3D.");
-            return problems;
-        };
-        if skeleton.is_inside_tree()
-            && let Err(problem) = self.bind(&skeleton)
-        {
-            problems.push(&GString::from(&problem));
-        }
-        problems
+    }
+
+    /// Goes on from a state that `get_state()` told, at the next frame. A state of another model, other styles or from a damaged
+    /// file is refused: the log says why, and the walk goes on as it was.
+    ///
+    /// `seed`, `phase` and `variation` keep their values, for the next walk that starts anew.
+    #[func]
+    fn set_state(&mut self, state: PackedByteArray) {
+        self.pending_state = Some(state);
     }
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
         self.model = model;
+        self.space = None;
         self.restart();
+    }
+
+    #[func]
+    fn set_styles(&mut self, styles: Array<Option<Gd<GaitStyle>>>) {
+        self.styles = styles;
+        self.space = None;
+        self.restart();
+    }
+
+    #[func]
+    fn set_style_weights(&mut self, style_weights: PackedFloat32Array) {
+        let sizes_differ = style_weights.len() != self.style_weights.len();
+        self.style_weights = style_weights;
+        if sizes_differ {
+            self.base_mut().update_configuration_warnings();
+        }
     }
 
     #[func]
@@ -250,11 +297,35 @@ impl GaitGenerator3D {
 }
 
 impl GaitGenerator3D {
+    fn problems(&self) -> PackedStringArray {
+        let mut problems = PackedStringArray::new();
+        if let Err(problem) = self.find_space() {
+            problems.push(&GString::from(&problem));
+        }
+        let (styles, weights) = (self.styles.len(), self.style_weights.len());
+        if styles != weights {
+            let problem = format!(
+                "There are {styles} styles and {weights} style weights. Give Style Weights one number for every style."
+            );
+            problems.push(&GString::from(&problem));
+        }
+        let Some(skeleton) = self.base().get_skeleton() else {
+            problems.push("Put this node under a Skeleton3D.");
+            return problems;
+        };
+        if skeleton.is_inside_tree()
+            && let Err(problem) = self.bind(&skeleton)
+        {
+            problems.push(&GString::from(&problem));
+        }
+        problems
+    }
+
     /// The walk under way, or a new one where there is none, the model was replaced or the body changed.
     fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
-        let trained = self.trained()?;
+        let space = self.take_space()?;
         if let Some(session) = self.session.take()
-            && session.is_for(&trained, skeleton)
+            && session.is_for(&space, skeleton)
         {
             return Ok(session);
         }
@@ -264,7 +335,15 @@ impl GaitGenerator3D {
             phase: self.phase.rem_euclid(1.0) as f32,
             variation: self.variation as f32,
         };
-        Session::new(&trained, character, binding, &config, self.controls())
+        let weights = self.style_weights.as_slice();
+        Session::new(
+            &space,
+            weights,
+            character,
+            binding,
+            &config,
+            self.controls(),
+        )
     }
 
     fn controls(&self) -> Controls {
@@ -274,7 +353,7 @@ impl GaitGenerator3D {
         }
     }
 
-    fn trained(&self) -> Result<std::sync::Arc<footfall_model::GaitModel>, String> {
+    fn trained(&self) -> Result<Arc<footfall_model::GaitModel>, String> {
         let Some(model) = &self.model else {
             return Err(
                 "No gait model. Load a .footfall file into Model, for example addons/footfall/models/walk.footfall."
@@ -286,6 +365,55 @@ impl GaitGenerator3D {
             let name = if path.is_empty() { "it".into() } else { path };
             format!("The gait model cannot be used ({name}): {error}")
         })
+    }
+
+    /// The model with its styles, prepared if it is not yet or if a resource has changed.
+    fn take_space(&mut self) -> Result<Arc<StyleSpace>, String> {
+        if let Some(space) = &self.space
+            && self.is_current(space)
+        {
+            return Ok(Arc::clone(space));
+        }
+        let space = self.find_space()?;
+        self.space = Some(Arc::clone(&space));
+        Ok(space)
+    }
+
+    /// Whether a space is that of the resources as they are now.
+    fn is_current(&self, space: &StyleSpace) -> bool {
+        let model = self.model.as_ref().map(|model| model.bind().trained());
+        let known = space.styles();
+        matches!(model, Some(Ok(model)) if Arc::ptr_eq(&model, space.model()))
+            && known.len() == self.styles.len()
+            && self.styles.iter_shared().zip(known).all(|(style, known)| {
+                let style = style.map(|style| style.bind().trained());
+                matches!(style, Some(Ok(style)) if Arc::ptr_eq(&style, known))
+            })
+    }
+
+    fn find_space(&self) -> Result<Arc<StyleSpace>, String> {
+        self.trained()?;
+        let mut styles = Vec::with_capacity(self.styles.len());
+        for (index, style) in self.styles.iter_shared().enumerate() {
+            let Some(style) = style else {
+                return Err(format!(
+                    "Style {index} is empty. Load a .footstyle file into it, or remove it from Styles."
+                ));
+            };
+            let trained = style.bind().trained().map_err(|error| {
+                format!(
+                    "Style {index} cannot be used ({}): {error}",
+                    style.get_path()
+                )
+            })?;
+            styles.push(trained);
+        }
+        let Some(model) = &self.model else {
+            return Err("No gait model.".to_owned());
+        };
+        let mut model = model.clone();
+        let space = model.bind_mut().space(&styles);
+        space.map_err(|error| format!("The styles cannot be worn: {error}"))
     }
 
     fn bind(&self, skeleton: &Gd<Skeleton3D>) -> Result<(Gd<Node3D>, SkeletonBinding), String> {
@@ -306,6 +434,15 @@ impl GaitGenerator3D {
             0.0
         };
         let travels = self.root_motion && !in_editor;
+        session
+            .generator
+            .set_style_weights(self.style_weights.as_slice());
+        if let Some(state) = self.pending_state.take()
+            && let Err(problem) = session.restore(state.as_slice())
+        {
+            let node = self.base().get_path();
+            godot_warn!("{node}: the state is refused: {problem}");
+        }
         let travel = session.advance(dt_secs, self.controls());
         self.root_motion_delta = session.local_delta(&travel);
         {

@@ -1,9 +1,11 @@
 //! `GaitModel`: a trained walk as a Godot resource.
 
-use footfall_model::GaitModel as TrainedModel;
+use crate::loaded::Loaded;
+use footfall_model::{GaitModel as TrainedModel, GaitStyle as TrainedStyle};
+use footfall_synth::StyleSpace;
 use godot::classes::{IResource, Resource};
 use godot::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 /// A trained way of walking, made by `footfall train` and stored in a `.footfall` file.
 ///
@@ -23,7 +25,9 @@ pub(crate) struct GaitModel {
     description: PhantomVar<GString>,
 
     /// The model in `data`, or why there is none.
-    trained: Option<Result<Arc<TrainedModel>, String>>,
+    loaded: Loaded<TrainedModel>,
+    /// What characters in the same styles share.
+    spaces: Vec<Weak<StyleSpace>>,
     base: Base<Resource>,
 }
 
@@ -45,11 +49,8 @@ impl GaitModel {
     /// Replaces the model by the one in these bytes of a `.footfall` file.
     #[func]
     pub(crate) fn set_data(&mut self, data: PackedByteArray) {
-        self.trained = (!data.is_empty()).then(|| {
-            TrainedModel::from_bytes(data.as_slice())
-                .map(Arc::new)
-                .map_err(|error| error.to_string())
-        });
+        self.loaded = Loaded::read(&data, TrainedModel::from_bytes);
+        self.spaces.clear();
         self.data = data;
         self.base_mut().emit_changed();
     }
@@ -57,11 +58,7 @@ impl GaitModel {
     /// What the model is and what it was trained on, or what is wrong with its file.
     #[func]
     fn get_description(&self) -> GString {
-        match &self.trained {
-            Some(Ok(model)) => GString::from(&describe(model)),
-            Some(Err(error)) => GString::from(error),
-            None => GString::new(),
-        }
+        self.loaded.describe(describe)
     }
 
     /// What is wrong with the model's file, with the next thing to do; empty when nothing is.
@@ -89,11 +86,33 @@ impl GaitModel {
     /// # Errors
     /// What is wrong with the file, for the user.
     pub(crate) fn trained(&self) -> Result<Arc<TrainedModel>, String> {
-        match &self.trained {
-            Some(Ok(model)) => Ok(Arc::clone(model)),
-            Some(Err(error)) => Err(error.clone()),
-            None => Err("the gait model is empty: load a .footfall file into it".to_owned()),
+        self.loaded
+            .content("the gait model is empty: load a .footfall file into it")
+    }
+
+    /// The model with these styles, prepared once for all characters that wear the same.
+    ///
+    /// # Errors
+    /// What is wrong with the model or why it cannot wear the styles, for the user.
+    pub(crate) fn space(
+        &mut self,
+        styles: &[Arc<TrainedStyle>],
+    ) -> Result<Arc<StyleSpace>, String> {
+        let trained = self.trained()?;
+        self.spaces.retain(|space| space.strong_count() > 0);
+        let holds_these = |space: &Arc<StyleSpace>| {
+            let pairs = space.styles().iter().zip(styles);
+            space.styles().len() == styles.len()
+                && pairs.into_iter().all(|(a, b)| Arc::ptr_eq(a, b))
+        };
+        let known = self.spaces.iter().filter_map(Weak::upgrade);
+        if let Some(space) = known.into_iter().find(holds_these) {
+            return Ok(space);
         }
+        let space = StyleSpace::new(&trained, styles).map_err(|error| error.to_string())?;
+        let space = Arc::new(space);
+        self.spaces.push(Arc::downgrade(&space));
+        Ok(space)
     }
 }
 

@@ -1,29 +1,55 @@
-//! Imports `.footfall` files as [`GaitModel`] resources.
+//! Imports `.footfall` files as [`GaitModel`] resources and `.footstyle` files as [`GaitStyle`] resources.
 
 use crate::gait_model::GaitModel;
-use footfall_model::GaitModel as TrainedModel;
+use crate::gait_style::GaitStyle;
+use footfall_model::{GaitModel as TrainedModel, GaitStyle as TrainedStyle};
 use godot::classes::{
-    EditorImportPlugin, FileAccess, IEditorImportPlugin, ResourceSaver, resource_saver::SaverFlags,
+    EditorImportPlugin, FileAccess, IEditorImportPlugin, Resource, ResourceSaver,
+    resource_saver::SaverFlags,
 };
 use godot::global::Error;
 use godot::prelude::*;
 
-/// Imports `.footfall` files as `GaitModel`.
+/// What a file holds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) enum Kind {
+    #[default]
+    Model,
+    Style,
+}
+
+/// Imports `.footfall` files as `GaitModel`, or `.footstyle` files as `GaitStyle`.
 #[derive(GodotClass)]
 #[class(tool, init, internal, base = EditorImportPlugin)]
 pub(crate) struct FootfallImportPlugin {
+    kind: Kind,
     base: Base<EditorImportPlugin>,
+}
+
+impl FootfallImportPlugin {
+    /// The importer of one kind of files.
+    pub(crate) fn of(kind: Kind) -> Gd<Self> {
+        Gd::from_init_fn(|base| Self { kind, base })
+    }
+
+    fn by_kind<T>(&self, model: T, style: T) -> T {
+        match self.kind {
+            Kind::Model => model,
+            Kind::Style => style,
+        }
+    }
 }
 
 /// The engine asks for all twelve of these, whatever the API calls required.
 #[godot_api]
 impl IEditorImportPlugin for FootfallImportPlugin {
     fn get_importer_name(&self) -> GString {
-        "footfall.gait_model".into()
+        self.by_kind("footfall.gait_model", "footfall.gait_style")
+            .into()
     }
 
     fn get_visible_name(&self) -> GString {
-        "Gait Model".into()
+        self.by_kind("Gait Model", "Gait Style").into()
     }
 
     fn get_preset_count(&self) -> i32 {
@@ -35,7 +61,7 @@ impl IEditorImportPlugin for FootfallImportPlugin {
     }
 
     fn get_recognized_extensions(&self) -> PackedStringArray {
-        PackedStringArray::from(&["footfall".into()])
+        PackedStringArray::from(&[self.by_kind("footfall", "footstyle").into()])
     }
 
     fn get_import_options(&self, _path: GString, _preset_index: i32) -> Array<AnyDictionary> {
@@ -56,7 +82,7 @@ impl IEditorImportPlugin for FootfallImportPlugin {
     }
 
     fn get_resource_type(&self) -> GString {
-        "GaitModel".into()
+        self.by_kind("GaitModel", "GaitStyle").into()
     }
 
     fn get_priority(&self) -> f32 {
@@ -84,7 +110,7 @@ impl IEditorImportPlugin for FootfallImportPlugin {
         _platform_variants: Array<GString>,
         _gen_files: Array<GString>,
     ) -> Error {
-        match import(&source_file, &save_path) {
+        match import(self.kind, &source_file, &save_path) {
             Ok(()) => Error::OK,
             Err((code, reason)) => {
                 godot_error!("{source_file}: {reason}");
@@ -94,20 +120,32 @@ impl IEditorImportPlugin for FootfallImportPlugin {
     }
 }
 
-fn import(source_file: &GString, save_path: &GString) -> Result<(), (Error, String)> {
+fn import(kind: Kind, source_file: &GString, save_path: &GString) -> Result<(), (Error, String)> {
     let bytes = FileAccess::get_file_as_bytes(source_file);
     let opened = FileAccess::get_open_error();
     if opened != Error::OK {
         return Err((opened, "cannot be read".to_owned()));
     }
     // Checked here, so that a damaged file stops at the import and not in the game.
-    TrainedModel::from_bytes(bytes.as_slice())
-        .map_err(|error| (Error::ERR_FILE_CORRUPT, error.to_string()))?;
-    let mut model = GaitModel::new_gd();
-    model.bind_mut().set_data(bytes);
+    let damaged =
+        |error: footfall_model::ModelFileError| (Error::ERR_FILE_CORRUPT, error.to_string());
+    let resource: Gd<Resource> = match kind {
+        Kind::Model => {
+            TrainedModel::from_bytes(bytes.as_slice()).map_err(damaged)?;
+            let mut model = GaitModel::new_gd();
+            model.bind_mut().set_data(bytes);
+            model.upcast()
+        }
+        Kind::Style => {
+            TrainedStyle::from_bytes(bytes.as_slice()).map_err(damaged)?;
+            let mut style = GaitStyle::new_gd();
+            style.bind_mut().set_data(bytes);
+            style.upcast()
+        }
+    };
     let path = format!("{save_path}.res");
     match ResourceSaver::singleton()
-        .save_ex(&model)
+        .save_ex(&resource)
         .path(&path)
         .flags(SaverFlags::COMPRESS)
         .done()

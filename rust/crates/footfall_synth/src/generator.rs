@@ -122,12 +122,14 @@ pub(crate) struct Worn {
     reason = "controls will hold more than speed and turning"
 )]
 impl GaitGenerator {
-    /// A walker with the proportions of `skeleton`, at the origin and facing +Z, without any style.
+    /// A walker with the proportions of `skeleton`, at the origin and facing +Z, in a mixture of the space's styles:
+    /// weights as of [`set_style_weights`](Self::set_style_weights), none for the plain walk.
     ///
     /// # Errors
     /// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
     pub fn new(
         space: &Arc<StyleSpace>,
+        style_weights: &[f32],
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<Self, SynthError> {
@@ -137,15 +139,16 @@ impl GaitGenerator {
                 return Err(SynthError::Setting { setting, value });
             }
         }
-        let model = space.model();
         let mut planner = walker_of(space, config);
-        let blend = space.blend(&[]);
+        let blend = space.blend(style_weights);
+        planner.wear(&blend.model);
         let paces = PaceTable::measure(&planner, skeleton, &blend)?;
         let mut walker = Walker::new(skeleton, &blend);
+        let speed = blend.model.speed.reference_mps;
         let phase = config.phase.rem_euclid(1.0);
         let first = if phase < 0.5 { Side::Left } else { Side::Right };
         let request = Request {
-            pace: paces.pace(model.speed.reference_mps),
+            pace: paces.pace(speed),
             amplitude: Amplitude::WALK,
             turn_rate: 0.0,
             facing: paces.facing,
@@ -161,8 +164,8 @@ impl GaitGenerator {
             walker,
             worn: Worn { blend, paces },
             retired: None,
-            frame_rate_hz: model.frame_rate_hz as f32,
-            speed_mps: model.speed.reference_mps as f32,
+            frame_rate_hz: space.model().frame_rate_hz as f32,
+            speed_mps: speed as f32,
             position,
             plan_from_start: GroundTransform::default(),
             footsteps: Vec::with_capacity(MAX_FOOTSTEPS),

@@ -69,7 +69,7 @@ fn generator(seed: u64) -> GaitGenerator {
         phase: 0.2,
         variation: 1.0,
     };
-    GaitGenerator::new(&space(), &Skeleton::standard(), &config).unwrap()
+    GaitGenerator::new(&space(), &[], &Skeleton::standard(), &config).unwrap()
 }
 
 fn walking(speed_mps: f32) -> Controls {
@@ -262,7 +262,7 @@ fn a_state_of_another_model_or_other_styles_is_refused() {
         phase: 0.0,
         variation: 1.0,
     };
-    let mut other = GaitGenerator::new(&plain, &Skeleton::standard(), &config).unwrap();
+    let mut other = GaitGenerator::new(&plain, &[], &Skeleton::standard(), &config).unwrap();
     let refused = other.restore(&walker.state());
     assert!(matches!(
         refused,

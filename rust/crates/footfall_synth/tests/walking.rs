@@ -44,7 +44,7 @@ fn config(seed: u64) -> GeneratorConfig {
 }
 
 fn generator(seed: u64) -> GaitGenerator {
-    GaitGenerator::new(&space(), &Skeleton::standard(), &config(seed)).unwrap()
+    GaitGenerator::new(&space(), &[], &Skeleton::standard(), &config(seed)).unwrap()
 }
 
 fn walking(speed_mps: f32) -> Controls {
@@ -156,7 +156,7 @@ fn other_bodies_stand_as_well() {
         long_shanks.offsets[side.foot().index()] *= 1.1;
     }
     for skeleton in [Skeleton::standard().scaled(0.5), long_shanks] {
-        let mut generator = GaitGenerator::new(&space(), &skeleton, &config(5)).unwrap();
+        let mut generator = GaitGenerator::new(&space(), &[], &skeleton, &config(5)).unwrap();
         let (frames, _) = run(&mut generator, &skeleton, &walking(1.0), 600);
         assert_planted(&skeleton, &frames);
     }
@@ -381,7 +381,7 @@ fn the_phase_is_where_the_stride_begins() {
     for (phase, leading) in [(0.0, Side::Left), (0.5, Side::Right)] {
         let settings = GeneratorConfig { phase, ..config(1) };
         let skeleton = Skeleton::standard();
-        let mut generator = GaitGenerator::new(&space(), &skeleton, &settings).unwrap();
+        let mut generator = GaitGenerator::new(&space(), &[], &skeleton, &settings).unwrap();
         let (frames, footsteps) = run(&mut generator, &skeleton, &walking(1.2), 60);
         let ahead = frames[0].model.position(leading.foot()).z;
         assert!(ahead > frames[0].model.position(leading.other().foot()).z + 0.3);
@@ -396,7 +396,7 @@ fn bad_settings_are_refused() {
         phase: f32::NAN,
         ..config(1)
     };
-    let error = GaitGenerator::new(&space(), &skeleton, &settings).unwrap_err();
+    let error = GaitGenerator::new(&space(), &[], &skeleton, &settings).unwrap_err();
     assert!(matches!(
         error,
         SynthError::Setting {
@@ -406,7 +406,7 @@ fn bad_settings_are_refused() {
     ));
     let mut legless = Skeleton::standard();
     legless.offsets[Joint::LeftFoot.index()] = Vec3::ZERO;
-    let error = GaitGenerator::new(&space(), &legless, &config(1)).unwrap_err();
+    let error = GaitGenerator::new(&space(), &[], &legless, &config(1)).unwrap_err();
     assert!(error.to_string().contains("LeftFoot"), "{error}");
 }
 

@@ -3,7 +3,6 @@
 use crate::convert;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::{Pose, Side, rotation};
-use footfall_model::GaitModel as TrainedModel;
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, GroundTransform, StyleSpace};
 use glam::{Affine3A, Quat};
 use godot::classes::Skeleton3D;
@@ -13,7 +12,7 @@ use std::sync::Arc;
 /// A generator, the skeleton that it poses and the node that travels.
 pub(super) struct Session {
     pub(super) generator: GaitGenerator,
-    trained: Arc<TrainedModel>,
+    space: Arc<StyleSpace>,
     character: Gd<Node3D>,
     binding: SkeletonBinding,
     pose: Pose,
@@ -36,14 +35,14 @@ impl Session {
     /// # Errors
     /// Why the generator refuses, for the user.
     pub(super) fn new(
-        trained: &Arc<TrainedModel>,
+        space: &Arc<StyleSpace>,
+        style_weights: &[f32],
         character: Gd<Node3D>,
         binding: SkeletonBinding,
         config: &GeneratorConfig,
         controls: Controls,
     ) -> Result<Self, String> {
-        let mut generator = StyleSpace::new(trained, &[])
-            .and_then(|space| GaitGenerator::new(&Arc::new(space), &binding.body, config))
+        let mut generator = GaitGenerator::new(space, style_weights, &binding.body, config)
             .map_err(|error| format!("The walk cannot start: {error}"))?;
         if controls.is_standing() {
             generator.stand();
@@ -52,19 +51,31 @@ impl Session {
         Ok(Self {
             pose: Pose::rest(&binding.body),
             generator,
-            trained: Arc::clone(trained),
+            space: Arc::clone(space),
             character,
             binding,
             start_from_ground,
         })
     }
 
-    /// Whether this walk still is one of the model, the skeleton and the character.
-    pub(super) fn is_for(&self, trained: &Arc<TrainedModel>, skeleton: &Gd<Skeleton3D>) -> bool {
-        Arc::ptr_eq(&self.trained, trained)
+    /// Whether this walk still is one of the model, its styles, the skeleton and the character.
+    pub(super) fn is_for(&self, space: &Arc<StyleSpace>, skeleton: &Gd<Skeleton3D>) -> bool {
+        Arc::ptr_eq(&self.space, space)
             && self.character.is_instance_valid()
             && self.character.is_inside_tree()
             && self.binding.fits(skeleton, &self.character)
+    }
+
+    /// Goes on from a saved state; the character stays where it is.
+    ///
+    /// # Errors
+    /// Why the state cannot be taken up, for the user.
+    pub(super) fn restore(&mut self, state: &[u8]) -> Result<(), String> {
+        self.generator
+            .restore(state)
+            .map_err(|error| error.to_string())?;
+        self.start_from_ground = self.generator.start_from_character();
+        Ok(())
     }
 
     /// Lets time pass. With `dt_secs` 0 the pose stays and nothing travels.

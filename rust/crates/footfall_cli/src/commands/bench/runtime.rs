@@ -41,7 +41,7 @@ impl WalkerBench {
             variation: 1.0,
         };
         let space = StyleSpace::new(&Arc::new(model), &[]).context("the model does not walk")?;
-        let generator = GaitGenerator::new(&Arc::new(space), &skeleton, &config)
+        let generator = GaitGenerator::new(&Arc::new(space), &[], &skeleton, &config)
             .context("the model does not walk")?;
         Ok(Self {
             generator,

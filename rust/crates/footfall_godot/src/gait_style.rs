@@ -1,0 +1,107 @@
+//! `GaitStyle`: a way of walking as a Godot resource.
+
+use crate::loaded::Loaded;
+use footfall_model::GaitStyle as TrainedStyle;
+use godot::classes::{IResource, Resource};
+use godot::prelude::*;
+use std::sync::Arc;
+
+/// A style of walking, made by `footfall adapt` from about a dozen steps and stored in a `.footstyle` file.
+///
+/// Put a `.footstyle` file into the project and it is imported as this resource. Add it to a `GaitGenerator3D`'s `styles` and
+/// give it a weight in `style_weights`. A style belongs to the `GaitModel` that it was adapted from.
+#[derive(GodotClass)]
+#[class(tool, init, base = Resource)]
+pub(crate) struct GaitStyle {
+    /// The bytes of the `.footstyle` file.
+    ///
+    /// Plain bytes, so that loading the imported resource needs nothing but built-in storage.
+    #[var(set = set_data, usage_flags = [STORAGE])]
+    data: PackedByteArray,
+
+    /// What the style is and what it was made from, or what is wrong with its file.
+    #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
+    description: PhantomVar<GString>,
+
+    /// The style in `data`, or why there is none.
+    loaded: Loaded<TrainedStyle>,
+    base: Base<Resource>,
+}
+
+#[godot_api]
+impl IResource for GaitStyle {}
+
+#[godot_api]
+impl GaitStyle {
+    /// Makes a style from the bytes of a `.footstyle` file, for example one that the game downloaded.
+    ///
+    /// Ask `get_error()` whether the bytes were a style.
+    #[func]
+    fn from_bytes(bytes: PackedByteArray) -> Gd<Self> {
+        let mut style = Self::new_gd();
+        style.bind_mut().set_data(bytes);
+        style
+    }
+
+    /// Replaces the style by the one in these bytes of a `.footstyle` file.
+    #[func]
+    pub(crate) fn set_data(&mut self, data: PackedByteArray) {
+        self.loaded = Loaded::read(&data, TrainedStyle::from_bytes);
+        self.data = data;
+        self.base_mut().emit_changed();
+    }
+
+    /// What the style is and what it was made from, or what is wrong with its file.
+    #[func]
+    fn get_description(&self) -> GString {
+        self.loaded.describe(describe)
+    }
+
+    /// What is wrong with the style's file, with the next thing to do; empty when nothing is.
+    #[func]
+    fn get_error(&self) -> GString {
+        self.trained()
+            .map_or_else(|error| GString::from(&error), |_| GString::new())
+    }
+
+    /// What the style is called, such as `proud`. Empty for a broken style.
+    #[func]
+    fn get_style_name(&self) -> GString {
+        self.trained()
+            .map_or_else(|_| GString::new(), |style| GString::from(&style.name))
+    }
+
+    /// How fast people walked in this style, in metres per second. Zero for a broken style.
+    ///
+    /// A character walks at its node's `speed` whatever its style; this is the speed that suits the style best.
+    #[func]
+    fn get_usual_speed(&self) -> f64 {
+        self.trained().map_or(0.0, |style| style.speed_mps)
+    }
+}
+
+impl GaitStyle {
+    /// The style, shared with every character that wears it.
+    ///
+    /// # Errors
+    /// What is wrong with the file, for the user.
+    pub(crate) fn trained(&self) -> Result<Arc<TrainedStyle>, String> {
+        self.loaded
+            .content("the gait style is empty: load a .footstyle file into it")
+    }
+}
+
+/// The style in words, for the inspector.
+fn describe(style: &TrainedStyle) -> String {
+    let from = &style.provenance;
+    format!(
+        "{}: {} steps, at {:.2} m/s and {:.0} steps a minute.\nCorpus: {}\nTerms: {}\nMade by: {}",
+        style.name,
+        from.steps,
+        style.speed_mps,
+        60.0 * style.cadence_hz,
+        from.corpus,
+        from.terms,
+        from.command
+    )
+}

@@ -1,0 +1,47 @@
+//! What a resource made of a file's bytes.
+
+use godot::prelude::*;
+use std::fmt::Display;
+use std::sync::Arc;
+
+/// The content of a file, why there is none, or nothing yet.
+#[derive(Debug)]
+pub(crate) struct Loaded<T>(Option<Result<Arc<T>, String>>);
+
+impl<T> Default for Loaded<T> {
+    fn default() -> Self {
+        Self(None)
+    }
+}
+
+impl<T> Loaded<T> {
+    /// Reads the bytes of a file; no bytes are no file.
+    pub(crate) fn read<E: Display>(
+        data: &PackedByteArray,
+        read: impl Fn(&[u8]) -> Result<T, E>,
+    ) -> Self {
+        let read = || {
+            read(data.as_slice())
+                .map(Arc::new)
+                .map_err(|error| error.to_string())
+        };
+        Self((!data.is_empty()).then(read))
+    }
+
+    /// The content, or what is wrong with it; `empty` when there was no file.
+    ///
+    /// # Errors
+    /// What is wrong, for the user.
+    pub(crate) fn content(&self, empty: &str) -> Result<Arc<T>, String> {
+        self.0.clone().unwrap_or_else(|| Err(empty.to_owned()))
+    }
+
+    /// The content in words, or what is wrong with it.
+    pub(crate) fn describe(&self, describe: impl Fn(&T) -> String) -> GString {
+        match &self.0 {
+            Some(Ok(content)) => GString::from(&describe(content)),
+            Some(Err(error)) => GString::from(error),
+            None => GString::new(),
+        }
+    }
+}
