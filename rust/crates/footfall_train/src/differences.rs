@@ -188,7 +188,12 @@ fn step_components(differences: &[Difference]) -> (Vec<[StepOffset; 2]>, f64) {
             .filter(|d| d.side == side)
             .map(|d| d.row.clone())
             .collect();
-        principal_components(&rows, STEP_COMPONENTS)
+        let mut components = principal_components(&rows, STEP_COMPONENTS);
+        let scale = lost_spread(&rows, &components);
+        for value in components.iter_mut().flatten() {
+            *value *= scale;
+        }
+        components
     };
     let [left, right] = Side::BOTH.map(of_side);
     let correlation = consecutive_correlation(differences, [&left, &right]);
@@ -198,6 +203,14 @@ fn step_components(differences: &[Difference]) -> (Vec<[StepOffset; 2]>, f64) {
         .map(|(left, right)| [offset_from(&left), offset_from(&right)])
         .collect();
     (components, correlation)
+}
+
+/// The factor on components that gives them the spread of all that the rows vary by: the few that are kept stand for the many
+/// that are not, or generated steps would be more alike than people's.
+fn lost_spread(rows: &[Vec<f64>], components: &[Vec<f64>]) -> f64 {
+    let total: f64 = rows.iter().map(|row| dot(row, row)).sum::<f64>() / rows.len().max(1) as f64;
+    let kept: f64 = components.iter().map(|row| dot(row, row)).sum();
+    if kept > 0.0 { (total / kept).sqrt() } else { 1.0 }
 }
 
 /// Correlation of a foot's consecutive steps along the components, in [0, 0.95].
@@ -279,5 +292,8 @@ mod tests {
         assert_eq!(components.len(), 2);
         assert!((components[0][0].abs() - 3.0).abs() < 1e-9);
         assert!((components[1][2].abs() - 0.1).abs() < 1e-9);
+        assert!((lost_spread(&rows, &components) - 1.0).abs() < 1e-9);
+        let alone = lost_spread(&rows, &components[..1]);
+        assert!((alone - (9.01_f64 / 9.0).sqrt()).abs() < 1e-9);
     }
 }
