@@ -1,7 +1,7 @@
 extends Node3D
 ## Several characters walk side by side, each from its own seed and phase.
 
-const WALKER: PackedScene = preload("res://scenes/walk/walker.tscn")
+const WALKER: PackedScene = preload("res://scenes/shared/walker.tscn")
 ## Where the walkers begin, metres: far enough from each other for their ways never to cross.
 const PLACES: Array[Vector2] = [
 	Vector2(0.0, 0.6), Vector2(-1.5, -0.5), Vector2(1.5, -0.2), Vector2(-3.0, 0.9), Vector2(3.0, 0.7),
@@ -16,6 +16,10 @@ var footsteps := 0
 var walkers: Array[Node3D] = []
 
 
+@onready var _camera: Camera3D = $Stage/Camera
+@onready var _footprints: MultiMeshInstance3D = $Stage/Footprints
+
+
 func _ready() -> void:
 	for index: int in PLACES.size():
 		_add_walker(index)
@@ -24,11 +28,12 @@ func _ready() -> void:
 	%Panel.seed_changed.connect(func(first: int) -> void:
 		for index: int in walkers.size():
 			gait_of(walkers[index]).seed = first + index)
+	%Other.pressed.connect(func() -> void: get_tree().change_scene_to_file("res://scenes/styles/styles.tscn"))
 	_set_all(&"speed", %Panel.SPEED)
 
 
 func _process(_delta: float) -> void:
-	%Camera.target_position = middle() + Vector3.UP * 0.85
+	_camera.target_position = middle() + Vector3.UP * 0.85
 
 
 ## The middle of all walkers, on the ground.
@@ -47,7 +52,7 @@ func _add_walker(index: int) -> void:
 	var walker: Node3D = WALKER.instantiate()
 	walker.name = "Walker%d" % (index + 1)
 	walker.position = Vector3(PLACES[index].x, 0.0, PLACES[index].y)
-	_paint(walker, COLOURS[index])
+	Paint.apply(walker, COLOURS[index])
 	add_child(walker)
 	walkers.append(walker)
 	var gait := gait_of(walker)
@@ -56,19 +61,7 @@ func _add_walker(index: int) -> void:
 	gait.phase = fposmod(index * 0.618034, 1.0)
 	gait.footstep.connect(func(foot: StringName, place: Vector3) -> void:
 		footsteps += 1
-		%Footprints.mark(foot, place, walker))
-
-
-func _paint(walker: Node3D, colour: Color) -> void:
-	var paint: StandardMaterial3D
-	for mesh: MeshInstance3D in walker.find_children("*", "MeshInstance3D"):
-		if paint == null:
-			paint = mesh.mesh.surface_get_material(0).duplicate()
-			paint.albedo_color = colour
-			paint.roughness = 0.62
-			paint.rim_enabled = true
-			paint.rim = 0.2
-		mesh.set_surface_override_material(0, paint)
+		_footprints.mark(foot, place, walker))
 
 
 func _set_all(property: StringName, value: Variant) -> void:

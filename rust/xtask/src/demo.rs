@@ -4,6 +4,12 @@ use crate::{contact_sheet, display, engine_run, godot, library, link, open, path
 use anyhow::{Context as _, Result, bail};
 use std::fs;
 
+/// The demo's scenes by topic, the first the one that it begins with.
+pub(crate) const SCENES: [(&str, &str); 2] = [
+    ("walk", "res://scenes/walk/walk.tscn"),
+    ("styles", "res://scenes/styles/styles.tscn"),
+];
+
 /// Builds all that the demo needs and shows it.
 ///
 /// # Errors
@@ -25,26 +31,30 @@ pub(crate) fn command() -> Result<()> {
         fs::remove_dir_all(&folder)
             .with_context(|| format!("cannot clear {}", folder.display()))?;
     }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
     eprintln!("no display: rendering pictures in software …");
-    let mut command = open::on(&engine, &display, &project);
-    // Time in the scene runs by frames, however long one takes to draw.
-    command
-        .args(["--fixed-fps", "60", "--", "--pictures"])
-        .arg(&folder);
-    let log = folder.join("godot.log");
-    engine_run::judged(&mut command, &log)?;
-    let pictures = contact_sheet::pictures(&folder)?;
-    if pictures.is_empty() {
-        bail!(
-            "the demo left no pictures; what Godot said is in {}",
-            log.display()
-        );
+    for (topic, scene) in SCENES {
+        let folder = folder.join(topic);
+        fs::create_dir_all(&folder)
+            .with_context(|| format!("cannot create {}", folder.display()))?;
+        let mut command = open::on(&engine, &display, &project);
+        // Time in the scene runs by frames, however long one takes to draw.
+        command
+            .args([scene, "--fixed-fps", "60", "--", "--pictures"])
+            .arg(&folder);
+        let log = folder.join("godot.log");
+        engine_run::judged(&mut command, &log)?;
+        let pictures = contact_sheet::pictures(&folder)?;
+        if pictures.is_empty() {
+            bail!(
+                "the scene left no pictures; what Godot said is in {}",
+                log.display()
+            );
+        }
+        let sheet = folder.join("contact_sheet.png");
+        contact_sheet::write(&pictures, &sheet)?;
+        eprintln!("{} pictures in {}", pictures.len(), folder.display());
+        println!("{}", sheet.display());
     }
-    let sheet = folder.join("contact_sheet.png");
-    contact_sheet::write(&pictures, &sheet)?;
-    eprintln!("{} pictures in {}", pictures.len(), folder.display());
-    println!("{}", sheet.display());
     Ok(())
 }
 

@@ -14,12 +14,7 @@ const DATA: &str = "../shared/data";
 const WALK: &str = "addons/footfall/models/walk.footfall";
 
 /// The recordings that are free for commercial use.
-const NEUTRAL_WALKS: [&str; 4] = [
-    "--where",
-    "category=neutral_walk",
-    "--where",
-    "path=cmu/*",
-];
+const NEUTRAL_WALKS: [&str; 4] = ["--where", "category=neutral_walk", "--where", "path=cmu/*"];
 
 /// Trains every shipped model and style anew.
 ///

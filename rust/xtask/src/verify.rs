@@ -165,15 +165,17 @@ fn tests_in_godot() -> Result<()> {
 }
 
 fn demo_in_godot() -> Result<()> {
-    in_godot(
-        "demo_project",
-        "demo",
-        &["--fixed-fps", "60", "--", "--frames", DEMO_FRAMES],
-    )
-    .map(drop)
+    for (topic, scene) in demo::SCENES {
+        in_godot(
+            "demo_project",
+            &format!("demo_{topic}"),
+            &[scene, "--fixed-fps", "60", "--", "--frames", DEMO_FRAMES],
+        )?;
+    }
+    Ok(())
 }
 
-/// Imports a project and runs its main scene without a window.
+/// Imports a project and runs a scene of it, the main one if none is named, without a window.
 fn in_godot(project: &str, name: &str, arguments: &[&str]) -> Result<String> {
     let engine = godot::provision()?;
     let folder = paths::repository_root().join(project);

@@ -210,7 +210,11 @@ fn step_components(differences: &[Difference]) -> (Vec<[StepOffset; 2]>, f64) {
 fn lost_spread(rows: &[Vec<f64>], components: &[Vec<f64>]) -> f64 {
     let total: f64 = rows.iter().map(|row| dot(row, row)).sum::<f64>() / rows.len().max(1) as f64;
     let kept: f64 = components.iter().map(|row| dot(row, row)).sum();
-    if kept > 0.0 { (total / kept).sqrt() } else { 1.0 }
+    if kept > 0.0 {
+        (total / kept).sqrt()
+    } else {
+        1.0
+    }
 }
 
 /// Correlation of a foot's consecutive steps along the components, in [0, 0.95].

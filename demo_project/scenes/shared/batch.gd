@@ -35,9 +35,9 @@ func _take_pictures(folder: String) -> void:
 	for picture: int in PICTURES:
 		await _save(folder.path_join("frame_%04d.png" % picture))
 		await _frames(FRAMES_BETWEEN)
-	var camera: Camera3D = %Camera
+	var camera: Camera3D = _scene.get_node(^"Stage/Camera")
 	camera.set_process(false)
-	%Interface.hide()
+	_scene.get_node(^"Interface").hide()
 	for view: String in CLOSE_UPS:
 		var close_up: Array = CLOSE_UPS[view]
 		camera.heading = deg_to_rad(close_up[1])

@@ -1,0 +1,86 @@
+extends Node3D
+## Eleven styles side by side, and in front of them a walker in the mixture that the sliders say.
+
+const WALKER: PackedScene = preload("res://scenes/shared/walker.tscn")
+const STYLES: Array[GaitStyle] = [
+	preload("res://addons/footfall/models/proud.footstyle"),
+	preload("res://addons/footfall/models/decided.footstyle"),
+	preload("res://addons/footfall/models/sad.footstyle"),
+	preload("res://addons/footfall/models/topmodel.footstyle"),
+	preload("res://addons/footfall/models/drunk.footstyle"),
+	preload("res://addons/footfall/models/cool.footstyle"),
+	preload("res://addons/footfall/models/afraid.footstyle"),
+	preload("res://addons/footfall/models/tiptoeing.footstyle"),
+	preload("res://addons/footfall/models/heavy.footstyle"),
+	preload("res://addons/footfall/models/in_a_hurry.footstyle"),
+	preload("res://addons/footfall/models/manly.footstyle"),
+]
+const MIXER_COLOUR := Color("e0a13a")
+const SPACING_M := 1.15
+## The mixer walks this far ahead of the row, metres.
+const AHEAD_M := 2.2
+## All walk at one speed, or the row would fall apart.
+const SPEED := 1.0
+
+## How many footsteps were signalled.
+var footsteps := 0
+## The walker in the mixture first.
+var walkers: Array[Node3D] = []
+
+@onready var _camera: Camera3D = $Stage/Camera
+@onready var _footprints: MultiMeshInstance3D = $Stage/Footprints
+
+
+func _ready() -> void:
+	_camera.distance_m = 13.0
+	_camera.heading = deg_to_rad(8.0)
+	_camera.height = deg_to_rad(17.0)
+	var mixer := _add_walker("Mixer", Vector3(0.0, 0.0, AHEAD_M), MIXER_COLOUR)
+	mixer.styles = STYLES
+	mixer.style_weights = PackedFloat32Array([0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0])
+	for index: int in STYLES.size():
+		var style := STYLES[index]
+		var x := (index - 0.5 * (STYLES.size() - 1)) * SPACING_M
+		var colour := Color.from_hsv(float(index) / STYLES.size(), 0.3, 0.85)
+		var gait := _add_walker(style.get_style_name(), Vector3(x, 0.0, 0.0), colour)
+		gait.styles = [style]
+		gait.style_weights = PackedFloat32Array([1.0])
+	%Panel.build(STYLES)
+	%Panel.weights_changed.connect(func(weights: PackedFloat32Array) -> void: mixer.style_weights = weights)
+	%Panel.speed_changed.connect(func(speed: float) -> void:
+		for walker: Node3D in walkers:
+			gait_of(walker).speed = speed)
+	%Panel.reset()
+
+
+func _process(_delta: float) -> void:
+	_camera.target_position = walkers[0].global_position + Vector3(-1.7, 0.85, -0.5 * AHEAD_M)
+
+
+func gait_of(walker: Node3D) -> GaitGenerator3D:
+	return walker.get_node(^"%GaitGenerator3D")
+
+
+func _add_walker(title: String, place: Vector3, colour: Color) -> GaitGenerator3D:
+	var walker: Node3D = WALKER.instantiate()
+	walker.name = title
+	walker.position = place
+	Paint.apply(walker, colour)
+	add_child(walker)
+	var label := Label3D.new()
+	label.text = title.replace("_", " ")
+	label.position.y = 1.95
+	label.billboard = BaseMaterial3D.BILLBOARD_ENABLED
+	label.font_size = 64
+	label.pixel_size = 0.0035
+	label.outline_size = 20
+	walker.add_child(label)
+	var gait := gait_of(walker)
+	gait.seed = 1 + walkers.size()
+	gait.phase = fposmod(walkers.size() * 0.618034, 1.0)
+	gait.speed = SPEED
+	gait.footstep.connect(func(foot: StringName, at: Vector3) -> void:
+		footsteps += 1
+		_footprints.mark(foot, at, walker))
+	walkers.append(walker)
+	return gait
