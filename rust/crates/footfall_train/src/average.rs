@@ -61,10 +61,29 @@ impl AverageWalk {
             .map(|step| step.end - step.first)
             .max()
             .ok_or(TrainError::NoSteps)?;
-        let mut walk = Self::maximise(&even_split(corpus)?, longest, &floor)?;
+        let walk = Self::maximise(&even_split(corpus)?, longest, &floor)?;
+        walk.refine(corpus, config, progress)
+    }
+
+    /// Trains on, from here; the log-likelihoods begin anew.
+    ///
+    /// # Errors
+    /// As [`train`](Self::train).
+    pub fn refine(
+        self,
+        corpus: &[Sequence],
+        config: &EmConfig,
+        progress: &mut dyn Progress,
+    ) -> Result<Self, TrainError> {
+        let floor = variance_floor(corpus);
+        let longest = self.max_duration;
+        let mut walk = Self {
+            log_likelihoods: Vec::new(),
+            ..self
+        };
         for iteration in 0..config.max_iterations {
             progress.advance("training", iteration, config.max_iterations);
-            let stats = walk.expect(corpus)?;
+            let stats = walk.expect(corpus, corpus)?;
             let gain = walk
                 .log_likelihoods
                 .last()
@@ -122,11 +141,22 @@ impl AverageWalk {
         Ok(path.boundaries)
     }
 
-    fn expect(&self, corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
+    /// The Gaussian of every state, the left step's first.
+    pub(crate) fn gaussians(&self) -> &[DiagonalGaussian] {
+        &self.gaussians
+    }
+
+    /// Where `aligned` sequences say that the states are, and what `seen` sequences, frame by frame the same walks, show there.
+    pub(crate) fn expect(
+        &self,
+        aligned: &[Sequence],
+        seen: &[Sequence],
+    ) -> Result<HsmmStats, TrainError> {
         let durations = self.discretised()?;
-        let parts: Vec<HsmmStats> = corpus
+        let parts: Vec<HsmmStats> = aligned
             .par_iter()
-            .map(|sequence| self.expect_one(sequence, &durations))
+            .zip(seen)
+            .map(|(aligned, seen)| self.expect_one(aligned, seen, &durations))
             .collect::<Result<_, _>>()?;
         let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
         for part in &parts {
@@ -138,6 +168,7 @@ impl AverageWalk {
     fn expect_one(
         &self,
         sequence: &Sequence,
+        seen: &Sequence,
         durations: &[DurationDist],
     ) -> Result<HsmmStats, TrainError> {
         let mut log_emissions = Vec::new();
@@ -151,7 +182,7 @@ impl AverageWalk {
             Boundary::default(),
         )?;
         let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
-        stats.add(&chain, &posterior, &sequence.observations)?;
+        stats.add(&chain, &posterior, &seen.observations)?;
         Ok(stats)
     }
 

@@ -14,9 +14,12 @@ pub mod normalise;
 pub mod progress;
 pub mod sequence;
 pub mod train;
+pub mod training_comparison;
+pub mod walker_adaptive;
 
 pub use adapt::{AdaptConfig, AdaptMethod, Adapted, adapt_style};
 pub use average::EmConfig;
 pub use error::TrainError;
 pub use progress::Progress;
 pub use train::{TrainConfig, Trained, TrainingClip, train_average};
+pub use training_comparison::{HeldOutWalker, TrainingComparison, compare_training};

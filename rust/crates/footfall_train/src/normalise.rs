@@ -1,9 +1,8 @@
 //! Takes out how each walker stands and how far it swings, so that states find the phases of the step.
 //!
 //! Walkers differ more in posture and amplitude than a step changes either; trained on raw features, states come to
-//! stand for groups of walkers. Each walker's features get the mean and spread of all: a diagonal linear transform, the
-//! simplest form of walker-adaptive training (Tilmanne et al. 2012, section 5.1.2). What is taken out comes back as
-//! variation between walkers ([`crate::differences`]).
+//! stand for groups of walkers. Each walker's features get the mean and spread of all: where walker-adaptive training begins
+//! ([`crate::walker_adaptive`]).
 
 use crate::sequence::Sequence;
 use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT};
@@ -52,7 +51,7 @@ pub fn without_walker(corpus: &[Sequence]) -> Vec<Sequence> {
     moved
 }
 
-fn spread(moments: &GaussianStats) -> Vec<f64> {
+pub(crate) fn spread(moments: &GaussianStats) -> Vec<f64> {
     let floor = |variance: &f64| variance.sqrt().hypot(LEAST_SPREAD);
     moments.variance().iter().map(floor).collect()
 }

@@ -1,12 +1,12 @@
 //! The average walk from labelled clips, as one function.
 
-use crate::average::{AverageWalk, EmConfig};
+use crate::average::EmConfig;
 use crate::dataset::{EncodeConfig, encode_clip};
 use crate::differences;
 use crate::error::TrainError;
-use crate::normalise::without_walker;
 use crate::progress::Progress;
 use crate::sequence::Sequence;
+use crate::walker_adaptive::{self, WalkerAdaptive};
 use footfall_core::{Clip, Side, Skeleton};
 use footfall_model::{FEATURE_COUNT, GaitModel, GlobalVarianceModel, Provenance, StepModel};
 use footfall_motion::steps::{StepPosition, Walk};
@@ -51,6 +51,8 @@ pub struct Trained {
     pub model: GaitModel,
     /// Total log-likelihood of the corpus at every iteration; never falls.
     pub log_likelihoods: Vec<f64>,
+    /// Log-likelihood of the corpus as recorded, the walkers' transforms counted, after every round in which they were estimated anew.
+    pub adaptive_log_likelihoods: Vec<f64>,
     /// Frames that were trained on, mirrored ones included.
     pub frames: usize,
 }
@@ -69,8 +71,11 @@ pub fn train_average(
     if corpus.is_empty() {
         return Err(TrainError::NoSteps);
     }
-    let aligned = without_walker(&corpus);
-    let walk = AverageWalk::train(&aligned, &config.em, progress)?;
+    let WalkerAdaptive {
+        walk,
+        aligned,
+        log_likelihoods: adaptive_log_likelihoods,
+    } = walker_adaptive::train(&corpus, &config.em, progress)?;
     let step = |side| -> Result<StepModel, TrainError> {
         Ok(StepModel {
             states: walk.states(side)?,
@@ -98,6 +103,7 @@ pub fn train_average(
     Ok(Trained {
         model,
         log_likelihoods: walk.log_likelihoods.clone(),
+        adaptive_log_likelihoods,
         frames: corpus.iter().map(Sequence::frames).sum(),
     })
 }

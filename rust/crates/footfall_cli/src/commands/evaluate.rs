@@ -2,6 +2,7 @@
 
 mod style;
 mod style_report;
+mod training;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -16,10 +17,12 @@ pub(crate) struct EvaluateArgs {
 #[derive(Debug, Subcommand)]
 enum What {
     Style(style::StyleArgs),
+    Training(training::TrainingArgs),
 }
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<()> {
     match &args.what {
         What::Style(args) => style::run(args),
+        What::Training(args) => training::run(args),
     }
 }

@@ -65,6 +65,8 @@ struct Report<'a> {
     frames: usize,
     /// Total log-likelihood at every iteration.
     log_likelihoods: &'a [f64],
+    /// The same as recorded, after every round of the walkers' transforms.
+    adaptive_log_likelihoods: &'a [f64],
     speed_range_mps: [f64; 2],
     cadence_range_per_minute: [f64; 2],
     /// Recordings that could not be used, and why.
@@ -161,6 +163,7 @@ fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) ->
         steps: made_from.steps,
         frames: trained.frames,
         log_likelihoods: &trained.log_likelihoods,
+        adaptive_log_likelihoods: &trained.adaptive_log_likelihoods,
         speed_range_mps: trained.model.speed_range(),
         cadence_range_per_minute: trained.model.speed.cadence_range_hz.map(|hz| 60.0 * hz),
         skipped: skipped(corpus),
