@@ -96,6 +96,9 @@ func test_optional_bones_are_folded_in() -> void:
 	var walker := _walker(func(made: Walker) -> void: made.missing = OPTIONAL)
 	check_equal(walker.gait.get_problems(), PackedStringArray(), "no problem")
 	var reference := _walker()
+	# Feet without toes make other steps: what chance adds to them would add to the difference.
+	walker.gait.variation = 0.0
+	reference.gait.variation = 0.0
 	var trunk_bends := 0.0
 	for frame: int in 240:
 		walker.step(1.0 / 60.0)

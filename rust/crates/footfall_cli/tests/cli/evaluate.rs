@@ -161,3 +161,45 @@ fn captured_styles_are_recognised_as_the_calibration_says() {
     let variability = second["step_variability_ratio"].as_f64().unwrap();
     assert!((0.8..1.25).contains(&variability), "{variability}");
 }
+
+fn compare_training(index: &Path, conditions: &[&str]) -> serde_json::Value {
+    let folder = tempfile::tempdir().unwrap();
+    let mut arguments = vec!["evaluate", "training", "--json", "--corpus"];
+    arguments.push(index.to_str().expect("a path in UTF-8"));
+    for condition in conditions {
+        arguments.extend(["--where", condition]);
+    }
+    footfall(folder.path(), &arguments).json()
+}
+
+fn assert_adaptive_is_better(report: &serde_json::Value) {
+    let number = |key: &str| report[key].as_f64().unwrap();
+    assert!(
+        number("adaptive_log_variance") < number("plain_log_variance"),
+        "{report}"
+    );
+    assert!(number("adaptive") > number("plain"), "{report}");
+}
+
+#[test]
+fn walkers_that_are_taken_out_leave_sharper_states() {
+    let report = compare_training(&own_file("index.csv"), &[]);
+    assert_adaptive_is_better(&report);
+}
+
+#[test]
+fn unseen_cmu_walkers_are_explained_better_by_walker_adaptive_training() {
+    let Some(data) = recordings("walker-adaptive training") else {
+        return;
+    };
+    let conditions = ["category=neutral_walk", "path=cmu/*"];
+    let report = compare_training(&data.join("index.csv"), &conditions);
+    assert_adaptive_is_better(&report);
+    // Also when the plainly trained walk gets the unseen walker's transform.
+    let number = |key: &str| report[key].as_f64().unwrap();
+    assert!(
+        number("adaptive") > number("plain_adapted") + 5.0,
+        "{report}"
+    );
+    assert!(report["walkers"].as_array().unwrap().len() >= 4, "{report}");
+}
