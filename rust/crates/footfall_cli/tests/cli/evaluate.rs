@@ -163,7 +163,7 @@ fn captured_styles_are_recognised_as_the_calibration_says() {
 }
 
 fn compare_training(index: &Path, conditions: &[&str]) -> serde_json::Value {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a folder");
     let mut arguments = vec!["evaluate", "training", "--json", "--corpus"];
     arguments.push(index.to_str().expect("a path in UTF-8"));
     for condition in conditions {
@@ -172,8 +172,12 @@ fn compare_training(index: &Path, conditions: &[&str]) -> serde_json::Value {
     footfall(folder.path(), &arguments).json()
 }
 
+fn number(report: &serde_json::Value, key: &str) -> f64 {
+    report[key].as_f64().expect("a number")
+}
+
 fn assert_adaptive_is_better(report: &serde_json::Value) {
-    let number = |key: &str| report[key].as_f64().unwrap();
+    let number = |key| number(report, key);
     assert!(
         number("adaptive_log_variance") < number("plain_log_variance"),
         "{report}"
@@ -196,7 +200,7 @@ fn unseen_cmu_walkers_are_explained_better_by_walker_adaptive_training() {
     let report = compare_training(&data.join("index.csv"), &conditions);
     assert_adaptive_is_better(&report);
     // Also when the plainly trained walk gets the unseen walker's transform.
-    let number = |key: &str| report[key].as_f64().unwrap();
+    let number = |key| number(&report, key);
     assert!(
         number("adaptive") > number("plain_adapted") + 5.0,
         "{report}"
