@@ -13,8 +13,11 @@ use std::process::Command;
 const DATA: &str = "../shared/data";
 const WALK: &str = "addons/footfall/models/walk.footfall";
 
-/// The recordings that are free for commercial use.
+/// The recordings that are free for commercial use: neutral walks.
 const NEUTRAL_WALKS: [&str; 4] = ["--where", "category=neutral_walk", "--where", "path=cmu/*"];
+
+/// These, and how walks begin and end.
+const WALKS_WITH_ENDS: [&str; 4] = ["--where", "category=*walk*", "--where", "path=cmu/*"];
 
 /// Trains every shipped model and style anew.
 ///
@@ -33,10 +36,10 @@ pub(crate) fn command() -> Result<()> {
     train
         .arg("--corpus")
         .arg(&data.index)
-        .args(NEUTRAL_WALKS)
+        .args(WALKS_WITH_ENDS)
         .args([
             "--describe",
-            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), neutral walks",
+            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), walks and how they begin and end",
             "-o",
             WALK,
         ]);

@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result, ensure};
 use footfall_core::{Clip, FrameSpan, GaitEvent, Side};
 use footfall_motion::contacts::Contacts;
-use footfall_motion::steps::{StepPosition, Walk};
+use footfall_motion::steps::Walk;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
@@ -65,7 +65,7 @@ impl ContactReport {
                 foot: step.side.name().to_owned(),
                 first: step.first,
                 last: step.end - 1,
-                position: position_name(step.position).to_owned(),
+                position: step.position.name().to_owned(),
                 walk: index,
             }));
         }
@@ -135,16 +135,5 @@ impl ContactReport {
                 .map(|&[first, last]| FrameSpan { first, last })
                 .collect()
         })
-    }
-}
-
-/// The paper's five places of a step in its walk.
-fn position_name(position: StepPosition) -> &'static str {
-    match position {
-        StepPosition::First => "first",
-        StepPosition::Second => "second",
-        StepPosition::Inside => "inside",
-        StepPosition::LastButOne => "last_but_one",
-        StepPosition::Last => "last",
     }
 }

@@ -4,7 +4,8 @@
 //! Space and units: metres, seconds, radians; Y up, right-handed; a character faces +Z and its left is +X. Every
 //! transform is named `target_from_source`. Nothing here reads a file, a clock or a random number.
 //!
-//! Modules in suggested reading order: [`joint`], [`skeleton`], [`pose`], [`rotation`], [`clip`], [`contact`].
+//! Modules in suggested reading order: [`joint`], [`skeleton`], [`pose`], [`rotation`], [`clip`], [`contact`],
+//! [`step_position`].
 
 pub mod clip;
 pub mod contact;
@@ -12,9 +13,11 @@ pub mod joint;
 pub mod pose;
 pub mod rotation;
 pub mod skeleton;
+pub mod step_position;
 
 pub use clip::Clip;
 pub use contact::{EventKind, FrameSpan, GaitEvent};
 pub use joint::{JOINT_COUNT, Joint, Side};
 pub use pose::{ModelPose, Pose, forward_kinematics};
 pub use skeleton::{FootShape, Skeleton, SkeletonError};
+pub use step_position::StepPosition;

@@ -7,19 +7,24 @@
 //! | 4 | length of the header in bytes |
 //! | … | header: JSON with `kind`, `written_by` and `provenance`; readable in every version |
 //! | 8 | length of the payload in bytes |
-//! | … | payload: postcard encoding of the version's own types (`v1`) |
+//! | … | payload: postcard encoding of the version's own types (`v1`, `v2`) |
 //! | 4 | CRC-32 of all that precedes |
 
 mod style_v1;
 mod v1;
+mod v2;
 
 use crate::gait_model::{GaitModel, ModelError};
 use crate::provenance::Provenance;
 use crate::style::GaitStyle;
 use serde::{Deserialize, Serialize};
 
-/// The version that this build writes. It reads all versions up to this one.
-pub const FORMAT_VERSION: u32 = 1;
+/// The latest version that this build writes; it reads all versions up to this one. A file has the earliest version that
+/// can hold its content.
+pub const FORMAT_VERSION: u32 = 2;
+
+/// The version without [`GaitModel::contexts`].
+const FORMAT_1: u32 = 1;
 
 const MAGIC: &[u8; 8] = b"FOOTFALL";
 const GAIT_KIND: &str = "gait";
@@ -89,8 +94,12 @@ impl GaitModel {
     /// [`ModelFileError::Content`] when the model would not load again.
     pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
         self.check()?;
-        let payload = v1::encode(self)?;
-        write_container(GAIT_KIND, &self.provenance, &payload)
+        let (version, payload) = if self.contexts.is_empty() {
+            (FORMAT_1, v1::encode(self)?)
+        } else {
+            (FORMAT_VERSION, v2::encode(self)?)
+        };
+        write_container(version, GAIT_KIND, &self.provenance, &payload)
     }
 
     /// The model in the bytes of a `.footfall` file.
@@ -98,15 +107,19 @@ impl GaitModel {
     /// # Errors
     /// [`ModelFileError`] says what is wrong with the bytes; no input panics.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
-        let (header, payload) = read_container(bytes)?;
+        let (version, header, payload) = read_container(bytes)?;
         check_kind(&header, GAIT_KIND)?;
-        let model = v1::decode(payload, header.provenance)?;
+        let model = if version == FORMAT_1 {
+            v1::decode(payload, header.provenance)?
+        } else {
+            v2::decode(payload, header.provenance)?
+        };
         model.check()?;
         Ok(model)
     }
 
     /// A number that tells this model from others: the CRC-32 of its payload in format version 1. It says nothing of the
-    /// provenance, and is the same before writing and after reading.
+    /// provenance nor of the steps at the ends of a walk, and is the same before writing and after reading.
     ///
     /// # Errors
     /// [`ModelError::Value`] when the model cannot be encoded.
@@ -126,7 +139,7 @@ impl GaitStyle {
     pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
         self.check()?;
         let payload = style_v1::encode(self)?;
-        write_container(STYLE_KIND, &self.provenance, &payload)
+        write_container(FORMAT_1, STYLE_KIND, &self.provenance, &payload)
     }
 
     /// The style in the bytes of a `.footstyle` file.
@@ -134,7 +147,7 @@ impl GaitStyle {
     /// # Errors
     /// [`ModelFileError`] says what is wrong with the bytes; no input panics.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
-        let (header, payload) = read_container(bytes)?;
+        let (_, header, payload) = read_container(bytes)?;
         check_kind(&header, STYLE_KIND)?;
         let style = style_v1::decode(payload, header.provenance)?;
         style.check()?;
@@ -169,6 +182,7 @@ pub fn read_header(bytes: &[u8]) -> Result<(u32, Header), ModelFileError> {
 }
 
 fn write_container(
+    version: u32,
     kind: &str,
     provenance: &Provenance,
     payload: &[u8],
@@ -180,7 +194,7 @@ fn write_container(
     })
     .map_err(|error| undecodable("header", &error))?;
     let mut bytes = MAGIC.to_vec();
-    bytes.extend_from_slice(&FORMAT_VERSION.to_le_bytes());
+    bytes.extend_from_slice(&version.to_le_bytes());
     bytes.extend_from_slice(&(header.len() as u32).to_le_bytes());
     bytes.extend_from_slice(&header);
     bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
@@ -190,7 +204,7 @@ fn write_container(
     Ok(bytes)
 }
 
-fn read_container(bytes: &[u8]) -> Result<(Header, &[u8]), ModelFileError> {
+fn read_container(bytes: &[u8]) -> Result<(u32, Header, &[u8]), ModelFileError> {
     if !bytes.starts_with(MAGIC) {
         return Err(ModelFileError::NotAModel);
     }
@@ -235,7 +249,7 @@ fn read_container(bytes: &[u8]) -> Result<(Header, &[u8]), ModelFileError> {
         return Err(ModelFileError::Damaged);
     }
     let (_, header) = read_header(bytes)?;
-    Ok((header, payload))
+    Ok((version, header, payload))
 }
 
 fn undecodable(part: &'static str, error: &dyn core::fmt::Display) -> ModelFileError {

@@ -2,7 +2,7 @@
 
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 use crate::provenance::Provenance;
-use footfall_core::{Side, Skeleton};
+use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_prob::windows::Windows;
 
 /// States of a step's left-to-right hidden semi-Markov model (Tilmanne et al. 2012, section 5.1.1).
@@ -29,8 +29,24 @@ pub struct GaitModel {
     pub speed: SpeedResponse,
     /// How walkers, and the steps of one walker, differ.
     pub variation: Variation,
+    /// How steps at the ends of a walk differ from those inside it; none where they do not.
+    pub contexts: Vec<StepContext>,
     /// Where the model comes from.
     pub provenance: Provenance,
+}
+
+/// How the steps at one place of a walk differ from those inside it: the same foot's step plus an offset.
+///
+/// The means of the leaf of a decision tree over the ten contexts (five places, two feet; section 5.2.1), taken from those
+/// of the steps inside a walk of the same speed. Variances are those of the steps inside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepContext {
+    /// The place.
+    pub position: StepPosition,
+    /// The foot whose initial contact begins the step.
+    pub side: Side,
+    /// What to add.
+    pub offset: StepOffset,
 }
 
 /// One step.
@@ -180,6 +196,13 @@ impl GaitModel {
         &self.steps[side.index()]
     }
 
+    /// What to add to the step at a place of the walk; `None` where it is as inside.
+    pub fn context(&self, position: StepPosition, side: Side) -> Option<&StepOffset> {
+        let mut contexts = self.contexts.iter();
+        let found = contexts.find(|context| context.position == position && context.side == side);
+        found.map(|context| &context.offset)
+    }
+
     /// Slowest and fastest walk of the corpus, m/s on the model's body.
     pub fn speed_range(&self) -> [f64; 2] {
         [self.speed.min_mps, self.speed.max_mps]
@@ -219,7 +242,14 @@ impl GaitModel {
         check_positive("cadences", &self.speed.cadence_range_hz)?;
         check_finite("step correlation", &[self.variation.step_correlation])?;
         let components = self.variation.walker.iter().chain(&self.variation.step);
-        for offset in self.speed.slopes.iter().chain(components.flatten()) {
+        let contexts = self.contexts.iter().map(|context| &context.offset);
+        for offset in self
+            .speed
+            .slopes
+            .iter()
+            .chain(components.flatten())
+            .chain(contexts)
+        {
             check_len(
                 "step offset",
                 &offset.means,

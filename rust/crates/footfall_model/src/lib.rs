@@ -14,7 +14,7 @@ pub mod style;
 pub use file::{FORMAT_VERSION, ModelFileError};
 pub use gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,
-    StepModel, StepOffset, Variation,
+    StepContext, StepModel, StepOffset, Variation,
 };
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;

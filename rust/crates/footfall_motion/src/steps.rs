@@ -4,23 +4,8 @@
 //! alternate, and a step's place in the walk matters for the first two and the last two).
 
 use crate::contacts::Contacts;
-use footfall_core::{Clip, ModelPose, Side, forward_kinematics};
+use footfall_core::{Clip, ModelPose, Side, StepPosition, forward_kinematics};
 use glam::Vec3;
-
-/// Where in its walk a step is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum StepPosition {
-    /// The first after standing.
-    First,
-    /// The second after standing.
-    Second,
-    /// Any that is none of the others, and all of a walk whose start or end the clip does not show.
-    Inside,
-    /// The last but one before standing.
-    LastButOne,
-    /// The last before standing.
-    Last,
-}
 
 /// From a foot's initial contact to the other foot's next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,9 +3,9 @@
 mod common;
 
 use common::walker::{STANCE, STRIDE_SECS, first_landing, mirrored, walker};
-use footfall_core::{Clip, EventKind, Pose, Side};
+use footfall_core::{Clip, EventKind, Pose, Side, StepPosition};
 use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
-use footfall_motion::steps::{StepPosition, segment_walks};
+use footfall_motion::steps::segment_walks;
 
 fn detect(clip: &Clip) -> Contacts {
     detect_contacts(clip, &ContactConfig::from_frame(0))

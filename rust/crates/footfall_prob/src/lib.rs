@@ -5,8 +5,9 @@
 //!
 //! In suggested reading order: [`gaussian`] and [`duration`] (what a state is), [`hsmm`] (which
 //! frames belong to which state); then from states back to motion, [`windows`], [`mlpg`] and
-//! [`global_variance`]. [`regression`] moves a model with few frames.
+//! [`global_variance`]. [`regression`] moves a model with few frames; [`clustering`] tells which contexts share one.
 
+pub mod clustering;
 pub mod duration;
 pub mod error;
 pub mod gaussian;

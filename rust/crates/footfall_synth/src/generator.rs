@@ -8,7 +8,7 @@ use crate::space::{Blend, StyleSpace};
 use crate::standing::Amplitude;
 use crate::walker::{Request, Walker};
 use footfall_core::rotation::{from_heading, wrap_angle};
-use footfall_core::{Joint, Pose, Side, Skeleton};
+use footfall_core::{Joint, Pose, Side, Skeleton, StepPosition};
 use footfall_ik::RockerFoot;
 use glam::{Quat, Vec3};
 use std::sync::Arc;
@@ -150,6 +150,7 @@ impl GaitGenerator {
         let request = Request {
             pace: paces.pace(speed),
             amplitude: Amplitude::WALK,
+            position: StepPosition::Inside,
             turn_rate: 0.0,
             facing: paces.facing,
         };
@@ -182,6 +183,7 @@ impl GaitGenerator {
         let request = Request {
             pace: self.worn.paces.pace(f64::from(STANDING_SPEED_MPS)),
             amplitude: Amplitude::STAND,
+            position: StepPosition::Inside,
             turn_rate: 0.0,
             facing: self.worn.paces.facing,
         };
@@ -272,6 +274,12 @@ impl GaitGenerator {
         &self.footsteps
     }
 
+    /// Whether the walker has come to a stand and rests.
+    pub fn is_standing(&self) -> bool {
+        let step = self.walker.step();
+        step.amplitude.to < 1.0 && self.position >= step.timing.frames as f32
+    }
+
     /// Whether the left and the right foot bear on the ground.
     pub fn feet_in_contact(&self) -> [bool; 2] {
         self.contact
@@ -281,15 +289,27 @@ impl GaitGenerator {
         let speed = finite_or(controls.speed_mps, 0.0).clamp(0.0, MAX_SPEED_MPS);
         let turn_rate = finite_or(controls.turn_rate_radps, 0.0)
             .clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS);
-        self.speed_mps +=
-            (speed - self.speed_mps).clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
         let amplitude = Amplitude {
             from: self.walker.step().amplitude.to,
             to: if controls.is_standing() { 0.0 } else { 1.0 },
         };
+        let position = position_after(self.walker.origin().request.position, amplitude);
+        let side = self.walker.step().timing.leading.other();
+        if self.space.model().context(position, side).is_some() {
+            // The model knows how this step gets to the speed of the walk or away from it.
+            self.speed_mps = if controls.is_standing() {
+                self.speed_mps
+            } else {
+                speed
+            };
+        } else {
+            self.speed_mps +=
+                (speed - self.speed_mps).clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
+        }
         let request = Request {
             pace: self.worn.paces.pace(f64::from(self.speed_mps)),
             amplitude,
+            position,
             turn_rate,
             facing: self.worn.paces.facing,
         };
@@ -346,6 +366,16 @@ impl GaitGenerator {
 pub(crate) fn walker_of(space: &StyleSpace, config: &GeneratorConfig) -> Planner {
     let variation = f64::from(config.variation.clamp(0.0, 2.0));
     Planner::new(space.model(), config.seed, variation)
+}
+
+/// The place of a step in its walk. That a step is the last but one is known only when it is over.
+fn position_after(before: StepPosition, amplitude: Amplitude) -> StepPosition {
+    match (amplitude.from < 1.0, amplitude.to < 1.0) {
+        (true, false) => StepPosition::First,
+        (false, true) => StepPosition::Last,
+        (false, false) if before == StepPosition::First => StepPosition::Second,
+        _ => StepPosition::Inside,
+    }
 }
 
 fn finite_or(value: f32, otherwise: f32) -> f32 {

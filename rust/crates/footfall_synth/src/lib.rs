@@ -12,6 +12,7 @@ mod planting;
 mod raw;
 mod space;
 mod standing;
+mod standing_walk;
 mod state;
 mod trajectory;
 mod variance;

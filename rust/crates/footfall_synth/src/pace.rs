@@ -5,7 +5,7 @@ use crate::plan::{Pace, Planner};
 use crate::space::Blend;
 use crate::standing::Amplitude;
 use crate::walker::{Request, Walker};
-use footfall_core::{Side, Skeleton};
+use footfall_core::{Side, Skeleton, StepPosition};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -103,6 +103,7 @@ impl Trial<'_> {
                 stride: 1.0,
             },
             amplitude: Amplitude::WALK,
+            position: StepPosition::Inside,
             turn_rate: 0.0,
             facing,
         };

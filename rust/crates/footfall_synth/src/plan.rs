@@ -2,7 +2,7 @@
 
 use crate::planting::StepTiming;
 use crate::standing::{Amplitude, START_TERMINAL};
-use footfall_core::Side;
+use footfall_core::{Side, StepPosition};
 use footfall_model::{GaitModel, OBSERVATION_COUNT, STATES_PER_STEP, StepOffset};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -58,6 +58,7 @@ impl StepPlan {
                 leading: Side::Left,
                 frames: 0,
                 terminal: 0,
+                rests: false,
             },
             state_frames: [0; STATES_PER_STEP],
             means: vec![0.0; STATES_PER_STEP * OBSERVATION_COUNT],
@@ -69,6 +70,7 @@ impl StepPlan {
     /// Makes the step start or end a walk, or stand.
     pub(crate) fn set_amplitude(&mut self, amplitude: Amplitude) {
         self.amplitude = amplitude;
+        self.timing.rests = amplitude.to <= 0.0;
         if amplitude.from < amplitude.to {
             let least = (START_TERMINAL * self.timing.frames as f64).round() as usize;
             self.timing.terminal = self.timing.terminal.max(least);
@@ -162,8 +164,14 @@ impl Planner {
         }
     }
 
-    /// Works out a drawn step at a pace.
-    pub(crate) fn realise(&mut self, draw: &StepDraw, pace: Pace, plan: &mut StepPlan) {
+    /// Works out a drawn step at a pace and a place in the walk.
+    pub(crate) fn realise(
+        &mut self,
+        draw: &StepDraw,
+        pace: Pace,
+        position: StepPosition,
+        plan: &mut StepPlan,
+    ) {
         let side = draw.side.index();
         let model = &self.model;
         self.offset.means.copy_from_slice(&self.walker[side].means);
@@ -173,6 +181,10 @@ impl Planner {
         self.offset.other_terminal = self.walker[side].other_terminal;
         let deviation = pace.covariate_mps - model.speed.reference_mps;
         self.offset.add_scaled(&model.speed.slopes[side], deviation);
+        if let Some(context) = model.context(position, draw.side) {
+            // Who turns on the spot hardly sets out.
+            self.offset.add_scaled(context, pace.stride.min(1.0));
+        }
         for (component, weight) in model.variation.step.iter().zip(draw.weights) {
             self.offset
                 .add_scaled(&component[side], self.variation * weight);
@@ -202,6 +214,7 @@ impl Planner {
             leading: draw.side,
             frames: passed,
             terminal: ((terminal * passed as f64).round() as usize).clamp(1, passed - 2),
+            rests: false,
         };
         plan.stride = pace.stride;
         plan.amplitude = Amplitude::WALK;

@@ -52,6 +52,8 @@ pub(crate) struct StepTiming {
     pub(crate) frames: usize,
     /// The last frame in which the other foot is still on the ground from its step before.
     pub(crate) terminal: usize,
+    /// Whether both feet bear the body from its end on.
+    pub(crate) rests: bool,
 }
 
 /// Carries plants, hips and heading from step to step.
@@ -160,6 +162,10 @@ impl Planter {
             terminal: self.release(raw, timing, out),
             ..*timing
         };
+        // The next step takes the hips over as they were before the legs' reach lowered them: it lowers them again.
+        let [before, last] = [timing.frames - 1, timing.frames].map(|f| out[f].pose.root_position);
+        self.state.hips = last;
+        self.state.hips_velocity = Some(last - before);
         self.bear(raw, timing, out);
         let timing = &StepTiming {
             terminal: self.let_go(raw, timing, out),
@@ -167,8 +173,6 @@ impl Planter {
         };
         let last = &out[timing.frames];
         let (hips, heading) = (last.pose.root_position, last.heading);
-        self.state.hips = hips;
-        self.state.hips_velocity = Some(hips - out[timing.frames - 1].pose.root_position);
         let trailing = timing.leading.other();
         let next_plant = self.next_plant(raw, timing, hips, heading, course.turn_rate);
         let swing = Swing::new(&self.swing_ends(raw, timing, out, &next_plant), timing);

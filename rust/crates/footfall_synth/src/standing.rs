@@ -14,7 +14,7 @@ use glam::Quat;
 const KNEE_FLEXION: f32 = 0.1;
 
 /// Part of a starting step in which it grows: before, the weight shifts.
-const GROWTH: [f32; 2] = [0.4, 0.95];
+const GROWTH: [f32; 2] = [0.1, 0.7];
 
 /// Part of a stopping step by which it has shrunk.
 const SHRUNK_BY: f32 = 0.9;

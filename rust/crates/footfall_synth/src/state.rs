@@ -11,14 +11,14 @@ use crate::plan::{MAX_COMPONENTS, Pace, StepDraw};
 use crate::planting::PlanterState;
 use crate::standing::Amplitude;
 use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
-use footfall_core::Side;
+use footfall_core::{Side, StepPosition};
 use footfall_ik::Plant;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The version of the layout that this build writes and reads.
-const VERSION: u8 = 1;
+const VERSION: u8 = 2;
 
 /// Nothing that a state holds is larger than this: metres, radians, frames and factors are not.
 const MAX_VALUE: f64 = 1e7;
@@ -74,6 +74,8 @@ struct State {
     /// Covariate, tempo and stride of the step before and of this one.
     paces: [[f64; 3]; 2],
     amplitude: [f32; 2],
+    /// Places of the step before and of this one, as [`StepPosition::index`].
+    positions: [u8; 2],
     turn_rate: f32,
     facing: [f32; 2],
     feet: Option<Feet>,
@@ -126,6 +128,8 @@ impl GaitGenerator {
             paces: [origin.pace_before, origin.request.pace]
                 .map(|pace| [pace.covariate_mps, pace.tempo, pace.stride]),
             amplitude: [origin.request.amplitude.from, origin.request.amplitude.to],
+            positions: [origin.position_before, origin.request.position]
+                .map(|position| position.index() as u8),
             turn_rate: origin.request.turn_rate,
             facing: [origin.facing_before, origin.request.facing],
             feet: origin.planter.map(|planter| Feet::of(&planter, origin)),
@@ -212,6 +216,10 @@ impl State {
             tempo,
             stride,
         });
+        let [position_before, position] = self.positions.map(|index| {
+            let known = StepPosition::ALL.get(usize::from(index));
+            known.copied().unwrap_or_default()
+        });
         let mut tie = [0.0; TIE_LEN];
         if let Some(feet) = &self.feet {
             tie.copy_from_slice(&feet.tie);
@@ -223,10 +231,12 @@ impl State {
                     from: self.amplitude[0],
                     to: self.amplitude[1],
                 },
+                position,
                 turn_rate: self.turn_rate,
                 facing: self.facing[1],
             },
             pace_before,
+            position_before,
             facing_before: self.facing[0],
             planter: self.feet.as_ref().map(Feet::planter),
             tie,
@@ -260,8 +270,10 @@ impl State {
             .iter()
             .copied()
             .chain(self.paces.into_iter().flatten());
+        let places =
+            usize::from(self.positions[0].max(self.positions[1])) < StepPosition::ALL.len();
         let positive = self.paces.iter().all(|[_, tempo, _]| *tempo > 1e-3);
-        shapes && positive && narrow.chain(wide).all(|value| value.abs() < MAX_VALUE)
+        shapes && places && positive && narrow.chain(wide).all(|value| value.abs() < MAX_VALUE)
     }
 }
 

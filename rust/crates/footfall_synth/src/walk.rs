@@ -6,9 +6,12 @@ use crate::plan::{Planner, StepDraw, StepPlan};
 use crate::planting::{Course, PlantedFrame, Planter};
 use crate::raw::RawFrame;
 use crate::space::StyleSpace;
+use crate::standing_walk;
 use crate::variance;
 use footfall_core::rotation::from_heading;
-use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton};
+use footfall_core::{
+    Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton, StepPosition,
+};
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use glam::Vec3;
 use std::sync::Arc;
@@ -37,12 +40,14 @@ pub struct WalkConfig {
     pub turn_rate_radps: f32,
     /// Frames per second of the clip; the model's when absent.
     pub frame_rate_hz: Option<f64>,
+    /// Whether the walk begins and ends standing; otherwise it is cut out of a longer one.
+    pub from_standing: bool,
 }
 
 /// A generated walk.
 #[derive(Clone, Debug)]
 pub struct SynthesizedWalk {
-    /// The motion: first frame at the origin and facing +Z, an initial contact of the left foot.
+    /// The motion: first frame at the origin and facing +Z, an initial contact of the left foot or standing.
     pub clip: Clip,
     /// When the left and the right foot bear on the ground.
     pub contacts: [Vec<FrameSpan>; 2],
@@ -71,7 +76,8 @@ impl SynthesizedWalk {
     }
 }
 
-/// Generates a walk; the trajectory is solved over the whole sentence of steps (equations 9 to 15 of the paper).
+/// Generates a walk; the trajectory is solved over the whole sentence of steps (equations 9 to 15 of the paper), but for a
+/// walk [`from_standing`](WalkConfig::from_standing), which is streamed.
 ///
 /// # Errors
 /// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
@@ -85,6 +91,9 @@ pub fn synthesize(
     check_finite("speed", config.speed_mps.unwrap_or(0.0))?;
     check_finite("turn rate", config.turn_rate_radps)?;
     check_finite("variation", config.variation)?;
+    if config.from_standing {
+        return standing_walk::synthesize(model, skeleton, config);
+    }
     let mut planner = Planner::new(
         model,
         config.seed,
@@ -107,7 +116,7 @@ pub fn synthesize(
             let draw: StepDraw = planner.draw(side);
             side = side.other();
             let mut plan = StepPlan::empty();
-            planner.realise(&draw, pace, &mut plan);
+            planner.realise(&draw, pace, StepPosition::Inside, &mut plan);
             plan
         })
         .collect();

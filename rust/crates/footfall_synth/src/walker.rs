@@ -7,7 +7,7 @@ use crate::raw::RawFrame;
 use crate::space::Blend;
 use crate::standing::Amplitude;
 use crate::trajectory::TrajectorySolver;
-use footfall_core::{Side, Skeleton};
+use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::FEATURE_COUNT;
 use std::sync::Arc;
 
@@ -26,6 +26,8 @@ pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;
 pub(crate) struct Request {
     pub(crate) pace: Pace,
     pub(crate) amplitude: Amplitude,
+    /// Place in the walk.
+    pub(crate) position: StepPosition,
     /// Turning at its end, rad/s.
     pub(crate) turn_rate: f32,
     /// Heading under which the walk goes along +Z, radians: people hold their hips a little askew.
@@ -36,8 +38,9 @@ pub(crate) struct Request {
 #[derive(Clone, Debug)]
 pub(crate) struct Origin {
     pub(crate) request: Request,
-    /// The pace and the facing of the step before.
+    /// The pace, the place and the facing of the step before.
     pub(crate) pace_before: Pace,
+    pub(crate) position_before: StepPosition,
     pub(crate) facing_before: f32,
     /// The feet before the step; `None` for the first.
     pub(crate) planter: Option<PlanterState>,
@@ -78,6 +81,7 @@ impl Walker {
                 stride: 1.0,
             },
             amplitude: Amplitude::STAND,
+            position: StepPosition::Inside,
             turn_rate: 0.0,
             facing: 0.0,
         };
@@ -94,6 +98,7 @@ impl Walker {
             origin: Origin {
                 request: nothing,
                 pace_before: nothing.pace,
+                position_before: nothing.position,
                 facing_before: 0.0,
                 planter: None,
                 tie: [0.0; TIE_LEN],
@@ -122,10 +127,11 @@ impl Walker {
         self.stale = request.amplitude != Amplitude::WALK;
         self.origin.request = request;
         self.origin.pace_before = request.pace;
+        self.origin.position_before = request.position;
         self.origin.facing_before = request.facing;
         self.origin.planter = None;
         for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
-            planner.realise(draw, request.pace, plan);
+            planner.realise(draw, request.pace, request.position, plan);
             plan.set_amplitude(request.amplitude);
         }
         let frames = self.solver.load(&blend.statistics, &self.plans, 0);
@@ -154,6 +160,7 @@ impl Walker {
             .tie
             .copy_from_slice(&self.trajectory[tie_at..][..TIE_LEN]);
         self.origin.pace_before = self.origin.request.pace;
+        self.origin.position_before = self.origin.request.position;
         self.origin.facing_before = self.origin.request.facing;
         self.draws.rotate_left(1);
         self.plans.rotate_left(1);
@@ -161,6 +168,8 @@ impl Walker {
         // A new pace or style is taken up by every step ahead: what is asked now takes effect at once.
         let same = !self.stale
             && self.origin.request.pace == request.pace
+            && self.origin.request.position == request.position
+            && request.position == StepPosition::Inside
             && Arc::ptr_eq(&self.blend, blend);
         self.blend_before = core::mem::replace(&mut self.blend, Arc::clone(blend));
         self.origin.request = request;
@@ -187,7 +196,12 @@ impl Walker {
         };
         self.draws = draws;
         planner.wear(&blend_before.model);
-        planner.realise(&self.draws[0], origin.pace_before, &mut self.plans[0]);
+        planner.realise(
+            &self.draws[0],
+            origin.pace_before,
+            origin.position_before,
+            &mut self.plans[0],
+        );
         planner.wear(&blend.model);
         self.blend_before = Arc::clone(blend_before);
         self.blend = Arc::clone(blend);
@@ -201,8 +215,15 @@ impl Walker {
 
     fn realise(&mut self, planner: &mut Planner, first: usize) {
         let request = self.origin.request;
-        for (draw, plan) in self.draws.iter().zip(&mut self.plans).skip(first) {
-            planner.realise(draw, request.pace, plan);
+        // The step ahead is that of someone who walks on.
+        let ahead = match request.position {
+            StepPosition::First => StepPosition::Second,
+            _ => StepPosition::Inside,
+        };
+        let positions = [self.origin.position_before, request.position, ahead];
+        let steps = self.draws.iter().zip(&mut self.plans).zip(positions);
+        for ((draw, plan), position) in steps.skip(first) {
+            planner.realise(draw, request.pace, position, plan);
         }
         self.plans[1].set_amplitude(request.amplitude);
     }
@@ -279,6 +300,7 @@ impl Walker {
                 let standing = before + change * (standing - before);
                 *value = standing + amplitude * (walking - standing);
             }
+            let stride = 1.0 + amplitude * (stride - 1.0);
             raw.decode(&blended, &self.skeleton, stride, rotations);
         }
         let request = &self.origin.request;

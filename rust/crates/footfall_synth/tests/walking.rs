@@ -318,6 +318,11 @@ fn it_can_begin_standing() {
     assert!(frames[0].place.length() < 1e-6);
     frames.extend(run(&mut generator, &skeleton, &walking(1.0), 120).0);
     assert!(frames[149].place.z > 0.8);
+    let hips = |frame: usize| frames[frame].model.position(Joint::Hips).y;
+    assert!(
+        (hips(30) - hips(29)).abs() < 5e-4,
+        "setting out makes it sag"
+    );
     assert_planted(&skeleton, &frames);
     assert_continuous(&frames);
 }
@@ -420,6 +425,7 @@ fn a_whole_walk_has_its_steps_its_speed_and_its_contacts() {
             speed_mps,
             turn_rate_radps: 0.0,
             frame_rate_hz,
+            from_standing: false,
         };
         synthesize(&model(), &Skeleton::standard(), &settings).unwrap()
     };

@@ -141,6 +141,16 @@ impl AverageWalk {
         Ok(path.boundaries)
     }
 
+    /// The longest duration of a state, frames.
+    pub(crate) fn max_duration(&self) -> usize {
+        self.max_duration
+    }
+
+    /// The duration of every state, the left step's first.
+    pub(crate) fn durations(&self) -> &[GaussianDuration] {
+        &self.durations
+    }
+
     /// The Gaussian of every state, the left step's first.
     pub(crate) fn gaussians(&self) -> &[DiagonalGaussian] {
         &self.gaussians
@@ -214,7 +224,7 @@ impl AverageWalk {
 }
 
 /// Where a state's parameters are.
-fn state_index(side: Side, state: usize) -> usize {
+pub(crate) fn state_index(side: Side, state: usize) -> usize {
     side.index() * STATES_PER_STEP + state
 }
 
@@ -263,7 +273,7 @@ fn even_split(corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
     Ok(stats)
 }
 
-fn variance_floor(corpus: &[Sequence]) -> Vec<f64> {
+pub(crate) fn variance_floor(corpus: &[Sequence]) -> Vec<f64> {
     let mut moments = GaussianStats::new(OBSERVATION_COUNT);
     for sequence in corpus {
         for observation in sequence.observations.chunks_exact(OBSERVATION_COUNT) {

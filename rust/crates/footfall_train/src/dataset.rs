@@ -69,6 +69,7 @@ pub fn encode_clip(
                         other_terminal: step
                             .other_terminal
                             .map(|frame| (frame as f64 - step.first as f64) / length),
+                        position: step.position,
                         speed_mps: speed(clip, step.first, step.end),
                     }
                 })

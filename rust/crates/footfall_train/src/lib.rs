@@ -1,11 +1,12 @@
 //! Offline: a corpus of walks becomes a model.
 //!
 //! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
-//! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps);
+//! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps), [`contexts`] (the ends of a walk);
 //! [`adapt`] (a style from a dozen steps); and [`evaluate`], which judges what comes out.
 
 pub mod adapt;
 pub mod average;
+pub mod contexts;
 pub mod dataset;
 pub mod differences;
 pub mod error;
@@ -19,6 +20,7 @@ pub mod walker_adaptive;
 
 pub use adapt::{AdaptConfig, AdaptMethod, Adapted, adapt_style};
 pub use average::EmConfig;
+pub use contexts::ContextReport;
 pub use error::TrainError;
 pub use progress::Progress;
 pub use train::{TrainConfig, Trained, TrainingClip, train_average};

@@ -1,6 +1,6 @@
 //! Training data: feature sequences with their steps marked.
 
-use footfall_core::Side;
+use footfall_core::{Side, StepPosition};
 use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT, layout};
 
 /// A walk from its first initial contact to its last, as the trainer sees it.
@@ -25,6 +25,8 @@ pub struct LabelledStep {
     pub end: usize,
     /// When the other foot leaves the ground, as a fraction of the step.
     pub other_terminal: Option<f64>,
+    /// Place in the walk.
+    pub position: StepPosition,
     /// Speed of the walker over the step, m/s on the canonical body.
     pub speed_mps: f64,
 }

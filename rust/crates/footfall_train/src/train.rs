@@ -1,15 +1,16 @@
 //! The average walk from labelled clips, as one function.
 
-use crate::average::EmConfig;
+use crate::average::{AverageWalk, EmConfig};
+use crate::contexts::{self, ContextReport};
 use crate::dataset::{EncodeConfig, encode_clip};
 use crate::differences;
 use crate::error::TrainError;
 use crate::progress::Progress;
 use crate::sequence::Sequence;
-use crate::walker_adaptive::{self, WalkerAdaptive};
-use footfall_core::{Clip, Side, Skeleton};
+use crate::walker_adaptive::{self, WalkerAdaptive, WalkerTransform};
+use footfall_core::{Clip, Side, Skeleton, StepPosition};
 use footfall_model::{FEATURE_COUNT, GaitModel, GlobalVarianceModel, Provenance, StepModel};
-use footfall_motion::steps::{StepPosition, Walk};
+use footfall_motion::steps::Walk;
 use footfall_prob::windows::Windows;
 
 /// Least spread (relative to the mean, squared) of the global variance: a corpus of few walks knows it badly.
@@ -53,6 +54,8 @@ pub struct Trained {
     pub log_likelihoods: Vec<f64>,
     /// Log-likelihood of the corpus as recorded, the walkers' transforms counted, after every round in which they were estimated anew.
     pub adaptive_log_likelihoods: Vec<f64>,
+    /// Which of the ten contexts of a step share a model.
+    pub contexts: ContextReport,
     /// Frames that were trained on, mirrored ones included.
     pub frames: usize,
 }
@@ -67,13 +70,14 @@ pub fn train_average(
     provenance: Provenance,
     progress: &mut dyn Progress,
 ) -> Result<Trained, TrainError> {
-    let (corpus, counts) = encode(clips, config)?;
+    let (corpus, _) = encode(clips, config)?;
     if corpus.is_empty() {
         return Err(TrainError::NoSteps);
     }
     let WalkerAdaptive {
         walk,
         aligned,
+        transforms,
         log_likelihoods: adaptive_log_likelihoods,
     } = walker_adaptive::train(&corpus, &config.em, progress)?;
     let step = |side| -> Result<StepModel, TrainError> {
@@ -85,6 +89,10 @@ pub fn train_average(
     let steps = [step(Side::Left)?, step(Side::Right)?];
     let (speed, variation) =
         differences::estimate(&walk, &steps, &corpus, &aligned, config.frame_rate_hz)?;
+    let (whole, counts) = encode_all(clips, config, Clone::clone)?;
+    let (middles, _) = encode_all(clips, config, steady_part)?;
+    let whole = as_average_walkers(&walk, &transforms, &corpus, &middles, &whole)?;
+    let (contexts, context_report) = contexts::estimate(&walk, &steps, &speed, &whole)?;
     let model = GaitModel {
         frame_rate_hz: config.frame_rate_hz,
         skeleton: Skeleton::standard(),
@@ -93,6 +101,7 @@ pub fn train_average(
         global_variance: global_variance(&corpus),
         speed,
         variation,
+        contexts,
         provenance: Provenance {
             clips: counts.clips,
             subjects: counts.subjects,
@@ -104,6 +113,7 @@ pub fn train_average(
         model,
         log_likelihoods: walk.log_likelihoods.clone(),
         adaptive_log_likelihoods,
+        contexts: context_report,
         frames: corpus.iter().map(Sequence::frames).sum(),
     })
 }
@@ -114,9 +124,75 @@ pub(crate) struct Counts {
     pub(crate) steps: usize,
 }
 
+/// The steady walks of a corpus.
+///
+/// A clip that shows how a walk starts or ends is short of steady steps: it teaches the ends, and only where there is no
+/// other also the middle.
 pub(crate) fn encode(
     clips: &[TrainingClip],
     config: &TrainConfig,
+) -> Result<(Vec<Sequence>, Counts), TrainError> {
+    let (steady, edges) = split(clips);
+    let found = encode_walks(&steady, config, Clone::clone)?;
+    if found.0.is_empty() {
+        return encode_walks(&edges, config, steady_part);
+    }
+    Ok(found)
+}
+
+/// A part of all walks; walkers have the numbers that they have in [`encode`].
+fn encode_all(
+    clips: &[TrainingClip],
+    config: &TrainConfig,
+    part: fn(&Walk) -> Walk,
+) -> Result<(Vec<Sequence>, Counts), TrainError> {
+    let (steady, edges) = split(clips);
+    encode_walks(&[steady, edges].concat(), config, part)
+}
+
+/// The clips whose walks are steady throughout, and those that show an end.
+fn split(clips: &[TrainingClip]) -> (Vec<&TrainingClip>, Vec<&TrainingClip>) {
+    let is_steady = |walk: &Walk| steady_part(walk).steps.len() == walk.steps.len();
+    clips
+        .iter()
+        .partition(|clip| clip.walks.iter().all(is_steady))
+}
+
+/// Sequences as those of the average walker; the transform of a walker whom `trained` does not show is estimated from the
+/// middles of the walks.
+fn as_average_walkers(
+    walk: &AverageWalk,
+    transforms: &[WalkerTransform],
+    trained: &[Sequence],
+    middles: &[Sequence],
+    sequences: &[Sequence],
+) -> Result<Vec<Sequence>, TrainError> {
+    let walkers = sequences.iter().map(|s| s.walker + 1).max().unwrap_or(0);
+    let mut aligned = Vec::with_capacity(sequences.len());
+    for walker in 0..walkers {
+        let of_walker = |sequences: &[Sequence]| -> Vec<Sequence> {
+            let own = sequences.iter().filter(|s| s.walker == walker);
+            own.cloned().collect()
+        };
+        let is_known = trained.iter().any(|s| s.walker == walker);
+        let transform = match transforms.get(walker) {
+            Some(transform) if is_known => transform.clone(),
+            _ => WalkerTransform::of_newcomer(walk, &of_walker(middles))?,
+        };
+        aligned.extend(
+            of_walker(sequences)
+                .iter()
+                .map(|sequence| transform.apply(sequence)),
+        );
+    }
+    Ok(aligned)
+}
+
+/// The part of every walk that `part` cuts out, and its mirror image if the settings ask for it.
+fn encode_walks(
+    clips: &[&TrainingClip],
+    config: &TrainConfig,
+    part: fn(&Walk) -> Walk,
 ) -> Result<(Vec<Sequence>, Counts), TrainError> {
     let encoding = EncodeConfig {
         frame_rate_hz: config.frame_rate_hz,
@@ -133,7 +209,7 @@ pub(crate) fn encode(
                 subjects.push(&clip.subject);
                 subjects.len() - 1
             });
-        let walks: Vec<Walk> = clip.walks.iter().map(steady_part).collect();
+        let walks: Vec<Walk> = clip.walks.iter().map(part).collect();
         let sequences = encode_clip(&clip.clip, clip.skip_frames, &walks, 2 * walker, &encoding)?;
         used += usize::from(!sequences.is_empty());
         for sequence in sequences {

@@ -8,9 +8,6 @@ use crate::train::{TrainConfig, TrainingClip, encode};
 use crate::walker_adaptive::{self, WalkerTransform};
 use footfall_prob::gaussian::DiagonalGaussian;
 
-/// Alignments from which an unseen walker's transform is estimated.
-const ITERATIONS: usize = 3;
-
 /// Plain against walker-adaptive training of the same corpus.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrainingComparison {
@@ -104,12 +101,7 @@ fn adapted_score(walk: &AverageWalk, own: &[Sequence]) -> Result<f64, TrainError
             .filter(|(index, _)| *index != unseen)
             .map(|(_, other)| other.clone())
             .collect();
-        let mut transform = WalkerTransform::identity();
-        for _ in 0..ITERATIONS {
-            let aligned: Vec<Sequence> = others.iter().map(|s| transform.apply(s)).collect();
-            let seen = walk.expect(&aligned, &others)?;
-            transform = WalkerTransform::estimate(walk, &seen);
-        }
+        let transform = WalkerTransform::of_newcomer(walk, &others)?;
         let moved = [transform.apply(sequence)];
         score += walk.expect(&moved, &moved)?.log_likelihood
             + sequence.frames() as f64 * transform.log_determinant();

@@ -59,6 +59,22 @@ impl WalkerTransform {
         transform
     }
 
+    /// The transform of a walker who was not trained on.
+    ///
+    /// # Errors
+    /// [`TrainError::Inference`] when a sequence cannot be explained.
+    pub(crate) fn of_newcomer(
+        walk: &AverageWalk,
+        sequences: &[Sequence],
+    ) -> Result<Self, TrainError> {
+        let mut transform = Self::identity();
+        for _ in 0..ROUNDS {
+            let aligned: Vec<Sequence> = sequences.iter().map(|s| transform.apply(s)).collect();
+            transform = Self::estimate(walk, &walk.expect(&aligned, sequences)?);
+        }
+        Ok(transform)
+    }
+
     /// The sequence as the average walker's.
     #[must_use]
     pub fn apply(&self, sequence: &Sequence) -> Sequence {
@@ -149,6 +165,8 @@ pub(crate) struct WalkerAdaptive {
     pub(crate) walk: AverageWalk,
     /// The corpus with every walker's transform applied.
     pub(crate) aligned: Vec<Sequence>,
+    /// What was applied, walker by walker.
+    pub(crate) transforms: Vec<WalkerTransform>,
     /// Log-likelihood of the corpus as recorded (transforms counted) after every round.
     pub(crate) log_likelihoods: Vec<f64>,
 }
@@ -168,8 +186,9 @@ pub(crate) fn train(
     };
     let mut log_likelihoods = Vec::new();
     let mut first = walk.log_likelihoods.clone();
+    let mut transforms = Vec::with_capacity(walkers);
     for _ in 0..ROUNDS {
-        let mut transforms = Vec::with_capacity(walkers);
+        transforms.clear();
         for walker in 0..walkers {
             let of_walker = |sequences: &[Sequence]| -> Vec<Sequence> {
                 let own = sequences.iter().filter(|s| s.walker == walker);
@@ -196,6 +215,7 @@ pub(crate) fn train(
     Ok(WalkerAdaptive {
         walk,
         aligned,
+        transforms,
         log_likelihoods,
     })
 }
@@ -236,7 +256,7 @@ fn keep_average(corpus: &[Sequence], transforms: &mut [WalkerTransform]) {
 mod tests {
     use super::*;
     use crate::sequence::LabelledStep;
-    use footfall_core::Side;
+    use footfall_core::{Side, StepPosition};
 
     /// Four steps whose features swing as a wave of the step, by a scale and about an offset, with a little noise.
     fn walk(walker: usize, scale: f64, offset: f64) -> Sequence {
@@ -266,6 +286,7 @@ mod tests {
                 first: step * STEP,
                 end: (step + 1) * STEP,
                 other_terminal: Some(0.3),
+                position: StepPosition::Inside,
                 speed_mps: 1.2,
             })
             .collect();

@@ -48,6 +48,9 @@ pub(crate) struct SynthArgs {
         value_name = "DEG_PER_S"
     )]
     turn: f32,
+    /// Begin and end standing; otherwise the walk is cut out of a longer one
+    #[arg(long)]
+    standing: bool,
     /// How far the walker strays from the average: 0 not at all, 1 as in the recordings
     #[arg(long, default_value_t = 1.0)]
     variation: f32,
@@ -157,6 +160,7 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
         speed_mps: args.speed,
         turn_rate_radps: args.turn.to_radians(),
         frame_rate_hz: args.fps,
+        from_standing: args.standing,
     };
     let walk = synthesize(&model, &model.skeleton, &config)
         .with_context(|| args.model.display().to_string())?;

@@ -5,10 +5,12 @@ pub(super) mod provenance;
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
+use footfall_core::StepPosition;
 use footfall_motion::corpus::{Corpus, CorpusClip, Where};
 use footfall_prob::windows::Windows;
-use footfall_train::{EmConfig, TrainConfig, Trained, TrainingClip, train_average};
+use footfall_train::{ContextReport, EmConfig, TrainConfig, Trained, TrainingClip, train_average};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -67,12 +69,43 @@ struct Report<'a> {
     log_likelihoods: &'a [f64],
     /// The same as recorded, after every round of the walkers' transforms.
     adaptive_log_likelihoods: &'a [f64],
+    contexts: Contexts<'a>,
     speed_range_mps: [f64; 2],
     cadence_range_per_minute: [f64; 2],
     /// Recordings that could not be used, and why.
     skipped: Vec<Skipped>,
     warnings: Vec<String>,
     seconds: f64,
+}
+
+/// Which steps of a walk share a model.
+#[derive(Serialize)]
+struct Contexts<'a> {
+    /// Steps seen by place in the walk (left, right), mirrored ones included.
+    seen: BTreeMap<&'static str, [usize; 2]>,
+    /// Leaves of the tree of each state's output.
+    output_leaves: &'a [usize],
+    /// Leaves of the tree of durations.
+    duration_leaves: usize,
+    /// Different step models left of ten.
+    models: usize,
+    /// What the trees ask.
+    questions: &'a [String],
+}
+
+impl<'a> Contexts<'a> {
+    fn of(report: &'a ContextReport) -> Self {
+        let places = StepPosition::ALL.iter().zip(report.seen.chunks_exact(2));
+        Self {
+            seen: places
+                .map(|(place, seen)| (place.name(), [seen[0], seen[1]]))
+                .collect(),
+            output_leaves: &report.output_leaves,
+            duration_leaves: report.duration_leaves,
+            models: report.models,
+            questions: &report.questions,
+        }
+    }
 }
 
 /// A recording that could not be used, and why.
@@ -164,6 +197,7 @@ fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) ->
         frames: trained.frames,
         log_likelihoods: &trained.log_likelihoods,
         adaptive_log_likelihoods: &trained.adaptive_log_likelihoods,
+        contexts: Contexts::of(&trained.contexts),
         speed_range_mps: trained.model.speed_range(),
         cadence_range_per_minute: trained.model.speed.cadence_range_hz.map(|hz| 60.0 * hz),
         skipped: skipped(corpus),
@@ -188,6 +222,11 @@ fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) ->
         report.clips,
         report.log_likelihoods.len(),
         report.seconds
+    ));
+    let contexts = &report.contexts;
+    output::note(&format!(
+        "{} step models for ten contexts: leaves of the trees of outputs {:?}, of durations {}",
+        contexts.models, contexts.output_leaves, contexts.duration_leaves
     ));
     Ok(())
 }

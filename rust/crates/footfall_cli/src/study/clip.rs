@@ -127,8 +127,7 @@ fn points(clip: &Clip, model: &ModelPose) -> Vec<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use footfall_core::{Pose, Skeleton};
-    use footfall_motion::steps::StepPosition;
+    use footfall_core::{Pose, Skeleton, StepPosition};
 
     fn recording(steps: usize) -> StyledClip {
         let skeleton = Skeleton::standard();

@@ -1,10 +1,10 @@
 use super::*;
 use crate::gait_model::{
-    GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepModel, StepOffset,
-    Variation,
+    GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepContext, StepModel,
+    StepOffset, Variation,
 };
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
-use footfall_core::Skeleton;
+use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_prob::windows::Windows;
 use proptest::prelude::*;
 
@@ -44,6 +44,7 @@ pub(crate) fn sample() -> GaitModel {
             step: vec![[offset(2.0), offset(4.0)], [offset(0.125), offset(8.0)]],
             step_correlation: 0.5,
         },
+        contexts: Vec::new(),
         provenance: Provenance {
             corpus: "made by a test".to_owned(),
             clips: 3,
@@ -58,7 +59,32 @@ fn a_model_survives_the_round_trip() {
     let bytes = model.to_bytes().unwrap();
     assert_eq!(GaitModel::from_bytes(&bytes).unwrap(), model);
     let (version, header) = read_header(&bytes).unwrap();
-    assert_eq!((version, header.kind.as_str()), (FORMAT_VERSION, "gait"));
+    assert_eq!((version, header.kind.as_str()), (FORMAT_1, "gait"));
+}
+
+#[test]
+fn steps_at_the_ends_of_a_walk_survive_and_leave_the_fingerprint_alone() {
+    let plain = sample();
+    let mut model = plain.clone();
+    let offset = model.speed.slopes[0].clone();
+    model.contexts = vec![StepContext {
+        position: StepPosition::Last,
+        side: Side::Right,
+        offset: offset.clone(),
+    }];
+    let bytes = model.to_bytes().unwrap();
+    assert_eq!(read_header(&bytes).unwrap().0, FORMAT_VERSION);
+    let again = GaitModel::from_bytes(&bytes).unwrap();
+    assert_eq!(again, model);
+    assert_eq!(
+        again.context(StepPosition::Last, Side::Right),
+        Some(&offset)
+    );
+    assert_eq!(again.context(StepPosition::Last, Side::Left), None);
+    // A style belongs to the steps inside a walk.
+    assert_eq!(again.fingerprint().unwrap(), plain.fingerprint().unwrap());
+    model.contexts[0].offset.log_durations[2] = f64::NAN;
+    assert!(model.to_bytes().is_err());
 }
 
 #[test]

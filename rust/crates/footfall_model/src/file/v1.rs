@@ -119,6 +119,7 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitModel
             step: dto.step.iter().map(decode_pair).collect::<Result<_, _>>()?,
             step_correlation: f64::from(dto.step_correlation),
         },
+        contexts: Vec::new(),
         provenance,
     })
 }

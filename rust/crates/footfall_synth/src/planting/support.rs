@@ -4,6 +4,7 @@ use super::{PlantedFrame, Planter, StepTiming, free_foot};
 use crate::raw::RawFrame;
 use footfall_core::Side;
 use footfall_ik::reach_height;
+use glam::Vec3;
 
 /// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
 const MAX_STANCE_EXTENSION: f32 = 0.997;
@@ -49,6 +50,7 @@ impl Planter {
     /// Fills the contacts, and lowers the hips, softly, to where every standing leg reaches its ankle.
     pub(super) fn bear(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) {
         let fade_frames = REACH_FADE_SECS / self.frame_secs;
+        let landing = Landing::of(raw, timing, frames);
         for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
             let hips = frame.pose.root_position;
             for side in Side::BOTH {
@@ -56,6 +58,9 @@ impl Planter {
                 frame.contact[side.index()] =
                     is_leading || index <= timing.terminal || index == timing.frames;
                 if !is_leading && index > timing.terminal {
+                    if timing.rests {
+                        self.settle(landing, index, timing, frame);
+                    }
                     continue;
                 }
                 let fade = if is_leading || index == 0 {
@@ -77,6 +82,25 @@ impl Planter {
                 }
             }
         }
+    }
+
+    /// Lowers the hips to where the landing leg will have them once it bears with the other.
+    fn settle(
+        &self,
+        landing: Landing,
+        index: usize,
+        timing: &StepTiming,
+        frame: &mut PlantedFrame,
+    ) {
+        let length = self.leg_lengths[timing.leading.other().index()];
+        let Landing { hips, hip, ankle } = landing;
+        let Some(limit) = reach_height(hips, hip, ankle, length, MAX_STANCE_EXTENSION) else {
+            return;
+        };
+        let swing = (timing.frames - timing.terminal) as f32;
+        let remaining = (timing.frames - index) as f32 / swing;
+        let height = &mut frame.pose.root_position.y;
+        *height = soft_min(*height, limit + 0.1 * length * remaining * remaining);
     }
 
     /// Ends the trailing foot's contact where its leg, stretched, does not reach any more; returns its last frame.
@@ -102,6 +126,28 @@ impl Planter {
             frame.contact[trailing.index()] = false;
         }
         beyond - 1
+    }
+}
+
+/// How a leg lands at the end of a step.
+#[derive(Clone, Copy)]
+struct Landing {
+    hips: Vec3,
+    /// The hip joint, from the hips.
+    hip: Vec3,
+    ankle: Vec3,
+}
+
+impl Landing {
+    fn of(raw: &[RawFrame], timing: &StepTiming, frames: &[PlantedFrame]) -> Self {
+        let (raw, frame) = (&raw[timing.frames], &frames[timing.frames]);
+        let side = timing.leading.other();
+        let hips = frame.pose.root_position;
+        Self {
+            hips,
+            hip: frame.level * raw.legs[side.index()].hip,
+            ankle: free_foot(raw, side, hips, frame.level).ankle,
+        }
     }
 }
 

@@ -125,7 +125,7 @@ fn too_little_is_refused() {
     for clip in &mut one_step {
         clip.walks.truncate(1);
         clip.walks[0].steps.drain(1..);
-        clip.walks[0].steps[0].position = footfall_motion::steps::StepPosition::Inside;
+        clip.walks[0].steps[0].position = footfall_core::StepPosition::Inside;
     }
     one_step.truncate(1);
     let error = |clips: &[TrainingClip], steps| {

@@ -7,8 +7,8 @@
 
 use crate::dataset::smooth_headings;
 use footfall_core::rotation::{from_heading, log_map, log_map_near};
-use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
-use footfall_motion::steps::{Step, StepPosition, Walk};
+use footfall_core::{Clip, Joint, ModelPose, Side, StepPosition, forward_kinematics};
+use footfall_motion::steps::{Step, Walk};
 use glam::Vec3;
 
 /// Samples of a time-normalised step.

@@ -2,8 +2,8 @@
 
 use super::*;
 use footfall_core::rotation::exp_map;
-use footfall_core::{Joint, Side, Skeleton};
-use footfall_motion::steps::{Step, StepPosition};
+use footfall_core::{Joint, Side, Skeleton, StepPosition};
+use footfall_motion::steps::Step;
 use glam::Vec3;
 
 const STEP_FRAMES: usize = 24;

@@ -30,6 +30,8 @@ pub(super) struct ModelFacts {
     right_step: StepFacts,
     walker_components: usize,
     step_components: usize,
+    /// Places in a walk whose steps have models of their own.
+    ends: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -90,6 +92,11 @@ pub(super) fn inspect(path: &Path) -> Result<ModelFacts> {
         right_step: step(Side::Right),
         walker_components: variation.walker.len(),
         step_components: variation.step.len(),
+        ends: model
+            .contexts
+            .iter()
+            .map(|context| format!("{} {}", context.position.name(), context.side.name()))
+            .collect(),
         provenance: header.provenance,
     })
 }
@@ -172,6 +179,12 @@ impl ModelFacts {
                 self.walker_components, self.step_components
             ),
         ));
+        let ends = if self.ends.is_empty() {
+            "as inside".to_owned()
+        } else {
+            self.ends.join(", ")
+        };
+        lines.push(fact("ends of walks", ends));
         lines
     }
 }
