@@ -53,6 +53,7 @@ fn a_synthesised_walk() {
         speed_mps: Some(1.3),
         turn_rate_radps: 0.2,
         frame_rate_hz: None,
+        from_standing: false,
     };
     let walk = synthesize(&model, &model.skeleton, &config).unwrap();
     let rows: Vec<_> = walk

@@ -33,7 +33,7 @@ enum Node {
         /// What the split shortens the description by, nats; positive.
         gain: f64,
         /// For the answers no and yes.
-        children: Box<[Node; 2]>,
+        children: Box<[Self; 2]>,
     },
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn synthesize(
         turn_rate_radps: config.turn_rate_radps,
     };
     for _ in 0..=rest {
-        recording.step(&STAND);
+        recording.step(STAND);
     }
     // The last step is the one that stops: it is asked for while the one before is walked.
     let mut taken = 0;
@@ -55,16 +55,16 @@ pub(crate) fn synthesize(
         if taken + 1 == steps {
             break;
         }
-        taken += recording.step(&walking);
+        taken += recording.step(walking);
     }
     for _ in 0..2 * longest {
         if taken >= steps && recording.generator.is_standing() {
             break;
         }
-        taken += recording.step(&STAND);
+        taken += recording.step(STAND);
     }
     for _ in 0..rest {
-        recording.step(&STAND);
+        recording.step(STAND);
     }
     Ok(recording.into_walk(skeleton))
 }
@@ -78,7 +78,7 @@ struct Recording {
 
 impl Recording {
     /// Records a frame and tells how many steps began.
-    fn step(&mut self, controls: &Controls) -> usize {
+    fn step(&mut self, controls: Controls) -> usize {
         // The first frame is where the walker stands.
         let dt = if self.poses.is_empty() {
             0.0
@@ -86,7 +86,7 @@ impl Recording {
             (1.0 / self.frame_rate_hz) as f32
         };
         let mut pose = Pose::default();
-        self.generator.step(dt, controls, &mut pose);
+        self.generator.step(dt, &controls, &mut pose);
         let place = self.generator.start_from_character();
         let turn = from_heading(place.heading);
         pose.root_position = turn * pose.root_position + place.position;

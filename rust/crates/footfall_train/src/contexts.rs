@@ -96,6 +96,8 @@ fn context(position: StepPosition, side: Side) -> usize {
 
 /// What can be asked of a context. Nothing is asked that would tie beginnings to ends: one says nothing of the other.
 fn questions() -> Vec<Question> {
+    use StepPosition::{First, Last, LastButOne, Second};
+
     let ask = |name: &str, answer: &dyn Fn(StepPosition, Side) -> bool| Question {
         name: name.to_owned(),
         answers: StepPosition::ALL
@@ -103,7 +105,6 @@ fn questions() -> Vec<Question> {
             .flat_map(|position| Side::BOTH.map(|side| answer(*position, side)))
             .collect(),
     };
-    use StepPosition::{First, Last, LastButOne, Second};
     vec![
         ask("is it a left step?", &|_, side| side == Side::Left),
         ask("is it the first step?", &|p, _| p == First),
