@@ -1,8 +1,9 @@
 //! The streaming generator: one walker, for as long as you like.
 
+use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::pace::PaceTable;
-use crate::plan::Planner;
+use crate::plan::{Manner, Planner};
 use crate::planting::PlantedFrame;
 use crate::space::{Blend, StyleSpace};
 use crate::standing::Amplitude;
@@ -100,6 +101,8 @@ pub struct GaitGenerator {
     /// A mixture that the next step lets go of, kept so that it is not freed there.
     retired: Option<Arc<Blend>>,
     frame_rate_hz: f32,
+    /// Of the next step.
+    pub(crate) detail: Detail,
     /// Speed of the current step.
     pub(crate) speed_mps: f32,
     /// Frames since the current step began.
@@ -148,9 +151,8 @@ impl GaitGenerator {
         let phase = config.phase.rem_euclid(1.0);
         let first = if phase < 0.5 { Side::Left } else { Side::Right };
         let request = Request {
-            pace: paces.pace(speed),
+            manner: Manner::inside(paces.pace(speed)),
             amplitude: Amplitude::WALK,
-            position: StepPosition::Inside,
             turn_rate: 0.0,
             facing: paces.facing,
         };
@@ -166,6 +168,7 @@ impl GaitGenerator {
             worn: Worn { blend, paces },
             retired: None,
             frame_rate_hz: space.model().frame_rate_hz as f32,
+            detail: Detail::Full,
             speed_mps: speed as f32,
             position,
             plan_from_start: GroundTransform::default(),
@@ -181,9 +184,11 @@ impl GaitGenerator {
     pub fn stand(&mut self) {
         let first = self.walker.step().timing.leading;
         let request = Request {
-            pace: self.worn.paces.pace(f64::from(STANDING_SPEED_MPS)),
+            manner: Manner {
+                detail: self.detail,
+                ..Manner::inside(self.worn.paces.pace(f64::from(STANDING_SPEED_MPS)))
+            },
             amplitude: Amplitude::STAND,
-            position: StepPosition::Inside,
             turn_rate: 0.0,
             facing: self.worn.paces.facing,
         };
@@ -221,6 +226,11 @@ impl GaitGenerator {
     /// The weights of the styles that are worn from the next step on.
     pub fn style_weights(&self) -> &[f32] {
         &self.worn.blend.weights
+    }
+
+    /// How finely the walker is worked out, from the next step on.
+    pub fn set_detail(&mut self, detail: Detail) {
+        self.detail = detail;
     }
 
     /// Advances by `dt_secs` and writes the pose, in the character's own space: above the ground point that
@@ -293,7 +303,7 @@ impl GaitGenerator {
             from: self.walker.step().amplitude.to,
             to: if controls.is_standing() { 0.0 } else { 1.0 },
         };
-        let position = position_after(self.walker.origin().request.position, amplitude);
+        let position = position_after(self.walker.origin().request.manner.position, amplitude);
         let side = self.walker.step().timing.leading.other();
         if self.space.model().context(position, side).is_some() {
             // The model knows how this step gets to the speed of the walk or away from it.
@@ -307,9 +317,12 @@ impl GaitGenerator {
                 (speed - self.speed_mps).clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
         }
         let request = Request {
-            pace: self.worn.paces.pace(f64::from(self.speed_mps)),
+            manner: Manner {
+                pace: self.worn.paces.pace(f64::from(self.speed_mps)),
+                position,
+                detail: self.detail,
+            },
             amplitude,
-            position,
             turn_rate,
             facing: self.worn.paces.facing,
         };
@@ -337,9 +350,11 @@ impl GaitGenerator {
     /// The frames on both sides of now, and the weight of the later one.
     fn frames(&self) -> (&PlantedFrame, &PlantedFrame, f32) {
         let frames = &self.walker.frames;
-        let last = self.walker.step().timing.frames - 1;
-        let first = (self.position.floor() as usize).min(last);
-        let weight = self.position - first as f32;
+        let step = self.walker.step();
+        let last = step.ground_timing().frames - 1;
+        let position = self.position / step.detail.stride() as f32;
+        let first = (position.floor() as usize).min(last);
+        let weight = position - first as f32;
         (&frames[first], &frames[first + 1], weight)
     }
 

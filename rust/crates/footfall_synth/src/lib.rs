@@ -4,6 +4,7 @@
 //! rotations (`trajectory`), and put on the ground (`planting`, on `rocker` feet). [`GaitGenerator`] does so in
 //! real time; [`synthesize`] solves a whole walk at once.
 
+mod detail;
 mod error;
 mod generator;
 mod pace;
@@ -19,6 +20,7 @@ mod variance;
 mod walk;
 mod walker;
 
+pub use detail::Detail;
 pub use error::SynthError;
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};
 pub use space::StyleSpace;

@@ -1,11 +1,11 @@
 //! From a wanted speed to a pace of the model, by measuring what the model does.
 
 use crate::error::SynthError;
-use crate::plan::{Pace, Planner};
+use crate::plan::{Manner, Pace, Planner};
 use crate::space::Blend;
 use crate::standing::Amplitude;
 use crate::walker::{Request, Walker};
-use footfall_core::{Side, Skeleton, StepPosition};
+use footfall_core::{Side, Skeleton};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -97,13 +97,12 @@ impl Trial<'_> {
     /// Travel over the ground and frames of the second stride.
     fn travel(&mut self, covariate_mps: f64, facing: f32) -> Result<(Vec3, usize), SynthError> {
         let request = Request {
-            pace: Pace {
+            manner: Manner::inside(Pace {
                 covariate_mps,
                 tempo: 1.0,
                 stride: 1.0,
-            },
+            }),
             amplitude: Amplitude::WALK,
-            position: StepPosition::Inside,
             turn_rate: 0.0,
             facing,
         };

@@ -1,5 +1,6 @@
 //! What the coming steps are: how long their states last and what their means are.
 
+use crate::detail::Detail;
 use crate::planting::StepTiming;
 use crate::standing::{Amplitude, START_TERMINAL};
 use footfall_core::{Side, StepPosition};
@@ -15,6 +16,9 @@ pub(crate) const MAX_COMPONENTS: usize = 16;
 /// Weights of components stay within this many standard deviations, so that every walker is a plausible one.
 const MAX_WEIGHT: f64 = 2.0;
 
+/// Frames of a step that are put on the ground at least.
+const LEAST_GROUND_FRAMES: usize = 4;
+
 /// A step lasts at most this long, seconds.
 const MAX_STEP_SECS: f64 = 3.0;
 
@@ -27,6 +31,26 @@ pub(crate) struct Pace {
     pub(crate) tempo: f64,
     /// Factor on the legs' reach forwards and backwards.
     pub(crate) stride: f64,
+}
+
+/// How a step is to be walked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Manner {
+    pub(crate) pace: Pace,
+    /// Place in the walk.
+    pub(crate) position: StepPosition,
+    pub(crate) detail: Detail,
+}
+
+impl Manner {
+    /// Inside a walk, in full detail.
+    pub(crate) const fn inside(pace: Pace) -> Self {
+        Self {
+            pace,
+            position: StepPosition::Inside,
+            detail: Detail::Full,
+        }
+    }
 }
 
 /// What chance decided about a step; its pace may still change.
@@ -48,6 +72,7 @@ pub(crate) struct StepPlan {
     pub(crate) stride: f64,
     /// How much of the walk there is in the step.
     pub(crate) amplitude: Amplitude,
+    pub(crate) detail: Detail,
 }
 
 impl StepPlan {
@@ -64,6 +89,18 @@ impl StepPlan {
             means: vec![0.0; STATES_PER_STEP * OBSERVATION_COUNT],
             stride: 1.0,
             amplitude: Amplitude::WALK,
+            detail: Detail::Full,
+        }
+    }
+
+    /// The timing in frames that are put on the ground.
+    pub(crate) fn ground_timing(&self) -> StepTiming {
+        let stride = self.detail.stride();
+        let frames = self.timing.frames / stride;
+        StepTiming {
+            frames,
+            terminal: (self.timing.terminal / stride).clamp(1, frames - 2),
+            ..self.timing
         }
     }
 
@@ -153,7 +190,8 @@ impl Planner {
 
     /// Frames of the longest step that [`realise`](Self::realise) can make.
     pub(crate) fn longest_step(model: &GaitModel) -> usize {
-        (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize + STATES_PER_STEP
+        let slack = STATES_PER_STEP + LEAST_GROUND_FRAMES * Detail::Quarter.stride();
+        (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize + slack
     }
 
     /// The step of this walker without chance, for measuring.
@@ -164,14 +202,13 @@ impl Planner {
         }
     }
 
-    /// Works out a drawn step at a pace and a place in the walk.
-    pub(crate) fn realise(
-        &mut self,
-        draw: &StepDraw,
-        pace: Pace,
-        position: StepPosition,
-        plan: &mut StepPlan,
-    ) {
+    /// Works out a drawn step.
+    pub(crate) fn realise(&mut self, draw: &StepDraw, manner: Manner, plan: &mut StepPlan) {
+        let Manner {
+            pace,
+            position,
+            detail,
+        } = manner;
         let side = draw.side.index();
         let model = &self.model;
         self.offset.means.copy_from_slice(&self.walker[side].means);
@@ -209,6 +246,13 @@ impl Planner {
             plan.state_frames[state] = end - passed;
             passed = end;
         }
+        // A step ends with a frame that is put on the ground.
+        let stride = detail.stride();
+        let whole = passed
+            .next_multiple_of(stride)
+            .max(LEAST_GROUND_FRAMES * stride);
+        plan.state_frames[STATES_PER_STEP - 1] += whole - passed;
+        let passed = whole;
         let terminal = (step.other_terminal + self.offset.other_terminal).clamp(0.02, 0.6);
         plan.timing = StepTiming {
             leading: draw.side,
@@ -218,6 +262,7 @@ impl Planner {
         };
         plan.stride = pace.stride;
         plan.amplitude = Amplitude::WALK;
+        plan.detail = detail;
     }
 
     fn normal(&mut self) -> f64 {

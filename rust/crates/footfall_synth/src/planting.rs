@@ -71,7 +71,7 @@ pub(crate) struct Planter {
 pub(crate) struct PlanterState {
     pub(crate) plants: [Plant; 2],
     pub(crate) hips: Vec3,
-    /// Travel of the hips in the last frame; none before the first step.
+    /// Velocity of the hips in the last frame, m/s; none before the first step.
     pub(crate) hips_velocity: Option<Vec3>,
     pub(crate) heading: f32,
     pub(crate) turn_rate: f32,
@@ -133,6 +133,11 @@ impl Planter {
         }
     }
 
+    /// From here on frames are so far apart, seconds.
+    pub(crate) fn set_frame_secs(&mut self, frame_secs: f32) {
+        self.frame_secs = frame_secs;
+    }
+
     /// What the next step begins with.
     pub(crate) fn state(&self) -> PlanterState {
         self.state
@@ -165,7 +170,7 @@ impl Planter {
         // The next step takes the hips over as they were before the legs' reach lowered them: it lowers them again.
         let [before, last] = [timing.frames - 1, timing.frames].map(|f| out[f].pose.root_position);
         self.state.hips = last;
-        self.state.hips_velocity = Some(last - before);
+        self.state.hips_velocity = Some((last - before) / self.frame_secs);
         self.bear(raw, timing, out);
         let timing = &StepTiming {
             terminal: self.let_go(raw, timing, out),
@@ -211,10 +216,9 @@ impl Planter {
         let next_level = from_heading(self.state.heading + self.state.turn_rate * self.frame_secs);
         let follow = hips_above(&raw[1], timing.leading, next_level);
         let offset = self.state.hips - start;
-        let velocity = self
-            .state
-            .hips_velocity
-            .map_or(Vec3::ZERO, |velocity| velocity - (follow - start));
+        let velocity = self.state.hips_velocity.map_or(Vec3::ZERO, |velocity| {
+            velocity * self.frame_secs - (follow - start)
+        });
         let decay = self.frame_secs / SETTLE_SECS;
         let meeting = MEETING_SHARE * self.landing_height_gap(raw, timing);
         let mut settled = self.state.hips;
@@ -261,16 +265,17 @@ impl Planter {
         let from = self.state.ground_position;
         let to = Vec3::new(hips.x, 0.0, hips.z);
         let arrival = to - from;
+        let secs = timing.frames as f32 * self.frame_secs;
         let departure = self
             .state
             .ground_velocity
-            .map_or(arrival, |velocity| velocity * timing.frames as f32);
+            .map_or(arrival, |velocity| velocity * secs);
         for (index, frame) in out.iter_mut().enumerate() {
             let s = index as f32 / timing.frames as f32;
             frame.ground_position = hermite(from, departure, to, arrival, s);
         }
         self.state.ground_position = to;
-        self.state.ground_velocity = Some(arrival / timing.frames as f32);
+        self.state.ground_velocity = Some(arrival / secs);
     }
 
     /// Where this foot stands on its plant, under the plant's heading, at the generated pitch.

@@ -4,10 +4,11 @@
 //! and what it took over from the step before (where the feet stood and the last frames of the trajectory). The rest is
 //! made again from the model.
 
+use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform, Worn, walker_of};
 use crate::pace::PaceTable;
-use crate::plan::{MAX_COMPONENTS, Pace, StepDraw};
+use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
 use crate::planting::PlanterState;
 use crate::standing::Amplitude;
 use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
@@ -76,6 +77,8 @@ struct State {
     amplitude: [f32; 2],
     /// Places of the step before and of this one, as [`StepPosition::index`].
     positions: [u8; 2],
+    /// Details of the step before, of this one and of the next, finest first.
+    details: [u8; 3],
     turn_rate: f32,
     facing: [f32; 2],
     feet: Option<Feet>,
@@ -105,6 +108,7 @@ impl GaitGenerator {
             let used = draw.weights.len().min(components);
             draw.weights[..used].iter().copied()
         });
+        let manners = [origin.manner_before, origin.request.manner];
         let blends = self.walker.blends();
         let place = &self.plan_from_start;
         let state = State {
@@ -125,11 +129,12 @@ impl GaitGenerator {
             ],
             left_first: draws[0].side == Side::Left,
             draws: used.collect(),
-            paces: [origin.pace_before, origin.request.pace]
+            paces: manners
+                .map(|manner| manner.pace)
                 .map(|pace| [pace.covariate_mps, pace.tempo, pace.stride]),
             amplitude: [origin.request.amplitude.from, origin.request.amplitude.to],
-            positions: [origin.position_before, origin.request.position]
-                .map(|position| position.index() as u8),
+            positions: manners.map(|manner| manner.position.index() as u8),
+            details: [manners[0].detail, manners[1].detail, self.detail].map(|detail| detail as u8),
             turn_rate: origin.request.turn_rate,
             facing: [origin.facing_before, origin.request.facing],
             feet: origin.planter.map(|planter| Feet::of(&planter, origin)),
@@ -180,6 +185,7 @@ impl GaitGenerator {
         self.walker = walker;
         self.config = config;
         self.worn = Worn { blend: next, paces };
+        self.detail = state.detail(2);
         self.speed_mps = state.speed_mps;
         let [x, y, z, heading] = state.plan_from_start;
         self.plan_from_start = GroundTransform {
@@ -211,36 +217,43 @@ impl State {
     }
 
     fn origin(&self) -> Origin {
-        let [pace_before, pace] = self.paces.map(|[covariate_mps, tempo, stride]| Pace {
-            covariate_mps,
-            tempo,
-            stride,
-        });
-        let [position_before, position] = self.positions.map(|index| {
-            let known = StepPosition::ALL.get(usize::from(index));
-            known.copied().unwrap_or_default()
-        });
+        let manner = |step: usize| {
+            let [covariate_mps, tempo, stride] = self.paces[step];
+            let position = StepPosition::ALL.get(usize::from(self.positions[step]));
+            Manner {
+                pace: Pace {
+                    covariate_mps,
+                    tempo,
+                    stride,
+                },
+                position: position.copied().unwrap_or_default(),
+                detail: self.detail(step),
+            }
+        };
         let mut tie = [0.0; TIE_LEN];
         if let Some(feet) = &self.feet {
             tie.copy_from_slice(&feet.tie);
         }
         Origin {
             request: Request {
-                pace,
+                manner: manner(1),
                 amplitude: Amplitude {
                     from: self.amplitude[0],
                     to: self.amplitude[1],
                 },
-                position,
                 turn_rate: self.turn_rate,
                 facing: self.facing[1],
             },
-            pace_before,
-            position_before,
+            manner_before: manner(0),
             facing_before: self.facing[0],
             planter: self.feet.as_ref().map(Feet::planter),
             tie,
         }
+    }
+
+    fn detail(&self, step: usize) -> Detail {
+        let detail = Detail::ALL.get(usize::from(self.details[step]));
+        detail.copied().unwrap_or_default()
     }
 
     /// Whether shapes fit and no number is beyond reason.

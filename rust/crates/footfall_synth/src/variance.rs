@@ -6,9 +6,9 @@
 //! sample walk and then used on every window.
 
 use crate::error::SynthError;
-use crate::plan::{Pace, Planner, StepPlan};
+use crate::plan::{Manner, Pace, Planner, StepPlan};
 use crate::trajectory::{Statistics, TrajectorySolver};
-use footfall_core::{Side, StepPosition};
+use footfall_core::Side;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use footfall_prob::global_variance::{
     GlobalVarianceTarget, global_variance, hts_weight, temporal_moments,
@@ -90,12 +90,7 @@ fn sample_walk(model: &Arc<GaitModel>) -> Vec<StepPlan> {
     (0..SAMPLE_STEPS)
         .map(|_| {
             let mut plan = StepPlan::empty();
-            planner.realise(
-                &Planner::mean_draw(side),
-                pace,
-                StepPosition::Inside,
-                &mut plan,
-            );
+            planner.realise(&Planner::mean_draw(side), Manner::inside(pace), &mut plan);
             side = side.other();
             plan
         })

@@ -2,16 +2,14 @@
 
 use crate::error::SynthError;
 use crate::pace::PaceTable;
-use crate::plan::{Planner, StepDraw, StepPlan};
+use crate::plan::{Manner, Planner, StepDraw, StepPlan};
 use crate::planting::{Course, PlantedFrame, Planter};
 use crate::raw::RawFrame;
 use crate::space::StyleSpace;
 use crate::standing_walk;
 use crate::variance;
 use footfall_core::rotation::from_heading;
-use footfall_core::{
-    Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton, StepPosition,
-};
+use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton};
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use glam::Vec3;
 use std::sync::Arc;
@@ -116,7 +114,7 @@ pub fn synthesize(
             let draw: StepDraw = planner.draw(side);
             side = side.other();
             let mut plan = StepPlan::empty();
-            planner.realise(&draw, pace, StepPosition::Inside, &mut plan);
+            planner.realise(&draw, Manner::inside(pace), &mut plan);
             plan
         })
         .collect();

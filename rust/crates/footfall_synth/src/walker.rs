@@ -1,7 +1,7 @@
 //! One walker, step after step: planning, trajectory and planting in a row.
 
 use crate::error::SynthError;
-use crate::plan::{Pace, Planner, StepDraw, StepPlan};
+use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan};
 use crate::planting::{Course, PlantedFrame, Planter, PlanterState, smooth_step};
 use crate::raw::RawFrame;
 use crate::space::Blend;
@@ -24,10 +24,8 @@ pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;
 /// What a step is asked to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Request {
-    pub(crate) pace: Pace,
+    pub(crate) manner: Manner,
     pub(crate) amplitude: Amplitude,
-    /// Place in the walk.
-    pub(crate) position: StepPosition,
     /// Turning at its end, rad/s.
     pub(crate) turn_rate: f32,
     /// Heading under which the walk goes along +Z, radians: people hold their hips a little askew.
@@ -38,9 +36,8 @@ pub(crate) struct Request {
 #[derive(Clone, Debug)]
 pub(crate) struct Origin {
     pub(crate) request: Request,
-    /// The pace, the place and the facing of the step before.
-    pub(crate) pace_before: Pace,
-    pub(crate) position_before: StepPosition,
+    /// The manner and the facing of the step before.
+    pub(crate) manner_before: Manner,
     pub(crate) facing_before: f32,
     /// The feet before the step; `None` for the first.
     pub(crate) planter: Option<PlanterState>,
@@ -66,7 +63,8 @@ pub(crate) struct Walker {
     raw: Vec<RawFrame>,
     planter: Option<Planter>,
     frame_secs: f32,
-    /// The current step on the ground, one frame longer than the step; what lies beyond is left from others.
+    /// The current step on the ground, at its own detail, one frame longer than the step; what lies beyond is left from
+    /// others.
     pub(crate) frames: Vec<PlantedFrame>,
 }
 
@@ -75,13 +73,12 @@ impl Walker {
         let longest = Planner::longest_step(&blend.model);
         let room = WINDOW * longest + TIE;
         let nothing = Request {
-            pace: Pace {
+            manner: Manner::inside(Pace {
                 covariate_mps: 0.0,
                 tempo: 1.0,
                 stride: 1.0,
-            },
+            }),
             amplitude: Amplitude::STAND,
-            position: StepPosition::Inside,
             turn_rate: 0.0,
             facing: 0.0,
         };
@@ -97,8 +94,7 @@ impl Walker {
             current: 0,
             origin: Origin {
                 request: nothing,
-                pace_before: nothing.pace,
-                position_before: nothing.position,
+                manner_before: nothing.manner,
                 facing_before: 0.0,
                 planter: None,
                 tie: [0.0; TIE_LEN],
@@ -126,12 +122,11 @@ impl Walker {
         self.draws = draws;
         self.stale = request.amplitude != Amplitude::WALK;
         self.origin.request = request;
-        self.origin.pace_before = request.pace;
-        self.origin.position_before = request.position;
+        self.origin.manner_before = request.manner;
         self.origin.facing_before = request.facing;
         self.origin.planter = None;
         for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
-            planner.realise(draw, request.pace, request.position, plan);
+            planner.realise(draw, request.manner, plan);
             plan.set_amplitude(request.amplitude);
         }
         let frames = self.solver.load(&blend.statistics, &self.plans, 0);
@@ -159,17 +154,15 @@ impl Walker {
         self.origin
             .tie
             .copy_from_slice(&self.trajectory[tie_at..][..TIE_LEN]);
-        self.origin.pace_before = self.origin.request.pace;
-        self.origin.position_before = self.origin.request.position;
+        self.origin.manner_before = self.origin.request.manner;
         self.origin.facing_before = self.origin.request.facing;
         self.draws.rotate_left(1);
         self.plans.rotate_left(1);
         self.draws[WINDOW - 1] = draw;
         // A new pace or style is taken up by every step ahead: what is asked now takes effect at once.
         let same = !self.stale
-            && self.origin.request.pace == request.pace
-            && self.origin.request.position == request.position
-            && request.position == StepPosition::Inside
+            && self.origin.request.manner == request.manner
+            && request.manner.position == StepPosition::Inside
             && Arc::ptr_eq(&self.blend, blend);
         self.blend_before = core::mem::replace(&mut self.blend, Arc::clone(blend));
         self.origin.request = request;
@@ -196,16 +189,12 @@ impl Walker {
         };
         self.draws = draws;
         planner.wear(&blend_before.model);
-        planner.realise(
-            &self.draws[0],
-            origin.pace_before,
-            origin.position_before,
-            &mut self.plans[0],
-        );
+        planner.realise(&self.draws[0], origin.manner_before, &mut self.plans[0]);
         planner.wear(&blend.model);
         self.blend_before = Arc::clone(blend_before);
         self.blend = Arc::clone(blend);
-        self.planter = Some(Planter::resume(&self.skeleton, self.frame_secs, state));
+        let frame_secs = self.frame_secs * origin.request.manner.detail.stride() as f32;
+        self.planter = Some(Planter::resume(&self.skeleton, frame_secs, state));
         self.origin = origin;
         self.stale = false;
         self.realise(planner, 1);
@@ -216,14 +205,18 @@ impl Walker {
     fn realise(&mut self, planner: &mut Planner, first: usize) {
         let request = self.origin.request;
         // The step ahead is that of someone who walks on.
-        let ahead = match request.position {
+        let ahead = match request.manner.position {
             StepPosition::First => StepPosition::Second,
             _ => StepPosition::Inside,
         };
-        let positions = [self.origin.position_before, request.position, ahead];
+        let positions = [request.manner.position, request.manner.position, ahead];
         let steps = self.draws.iter().zip(&mut self.plans).zip(positions);
         for ((draw, plan), position) in steps.skip(first) {
-            planner.realise(draw, request.pace, position, plan);
+            let manner = Manner {
+                position,
+                ..request.manner
+            };
+            planner.realise(draw, manner, plan);
         }
         self.plans[1].set_amplitude(request.amplitude);
     }
@@ -278,9 +271,12 @@ impl Walker {
     /// Puts a step of the window, which begins at `current`, on the ground.
     fn put_on_ground(&mut self, step: usize) {
         let plan = &self.plans[step];
+        let timing = plan.ground_timing();
+        let detail = plan.detail.stride();
         let rows = self.trajectory[self.current * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
-        let raw = &mut self.raw[..=plan.timing.frames];
-        let frames = &mut self.frames[..=plan.timing.frames];
+        let rows = rows.step_by(detail);
+        let raw = &mut self.raw[..=timing.frames];
+        let frames = &mut self.frames[..=timing.frames];
         let stride = plan.stride as f32;
         for (index, ((raw, frame), features)) in
             raw.iter_mut().zip(&mut *frames).zip(rows).enumerate()
@@ -290,7 +286,7 @@ impl Walker {
                 raw.decode(features, &self.skeleton, stride, rotations);
                 continue;
             }
-            let s = index as f32 / plan.timing.frames as f32;
+            let s = index as f32 / timing.frames as f32;
             let amplitude = plan.amplitude.at(s);
             let change = smooth_step(s);
             let mut blended = [0.0; FEATURE_COUNT];
@@ -304,12 +300,13 @@ impl Walker {
             raw.decode(&blended, &self.skeleton, stride, rotations);
         }
         let request = &self.origin.request;
+        let frame_secs = self.frame_secs * detail as f32;
         let planter = self.planter.get_or_insert_with(|| {
             Planter::new(
                 &self.skeleton,
-                self.frame_secs,
+                frame_secs,
                 &raw[0],
-                plan.timing.leading,
+                timing.leading,
                 request.facing,
             )
         });
@@ -317,6 +314,7 @@ impl Walker {
             turn_rate: request.turn_rate,
             shift: request.facing - self.origin.facing_before,
         };
-        planter.plant_step(raw, &plan.timing, course, frames);
+        planter.set_frame_secs(frame_secs);
+        planter.plant_step(raw, &timing, course, frames);
     }
 }

@@ -6,7 +6,7 @@ use footfall_core::{Joint, ModelPose, Pose, Skeleton, forward_kinematics};
 use footfall_model::layout::feature_offset;
 use footfall_model::{GaitModel, GaitStyle, OBSERVATION_COUNT, StyleError};
 use footfall_synth::{
-    Controls, GaitGenerator, GeneratorConfig, StateError, StyleSpace, SynthError,
+    Controls, Detail, GaitGenerator, GeneratorConfig, StateError, StyleSpace, SynthError,
 };
 use glam::{Quat, Vec3};
 use proptest::prelude::*;
@@ -193,6 +193,9 @@ fn play(walker: &mut GaitGenerator, frame: u32) -> Pose {
         120 => walker.set_style_weights(&[0.5 * wave, 0.8]),
         121 => walker.set_style_weights(&[wave, 0.1]),
         250 => walker.set_style_weights(&[0.0, 0.0]),
+        60 => walker.set_detail(Detail::Half),
+        150 => walker.set_detail(Detail::Quarter),
+        290 => walker.set_detail(Detail::Full),
         _ => {}
     }
     let controls = if frame % 400 > 330 {

@@ -1,0 +1,26 @@
+//! How finely a walker is worked out: walkers far away need fewer poses.
+
+/// How finely a walker is worked out.
+///
+/// The trajectory is the same; with less detail fewer of its frames are put on the ground, and what lies between is
+/// interpolated. Feet then slip a little between frames, which shows only close by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Detail {
+    /// Every frame of the model.
+    #[default]
+    Full,
+    /// Every second.
+    Half,
+    /// Every fourth.
+    Quarter,
+}
+
+impl Detail {
+    /// All, finest first.
+    pub const ALL: [Self; 3] = [Self::Full, Self::Half, Self::Quarter];
+
+    /// Frames of the model from one that is put on the ground to the next.
+    pub(crate) const fn stride(self) -> usize {
+        1 << self as usize
+    }
+}
