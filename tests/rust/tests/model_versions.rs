@@ -1,7 +1,7 @@
 //! A model of every released format version still loads, and says where it comes from.
 
 use footfall_model::file::read_header;
-use footfall_model::{FORMAT_VERSION, GaitModel, ModelFileError};
+use footfall_model::{FORMAT_VERSION, GaitModel, GaitStyle, ModelFileError, StepSpread};
 use footfall_tests::data::repository;
 use std::fs;
 
@@ -26,6 +26,22 @@ fn every_version_loads() {
         // What was read is written again without loss.
         let again = GaitModel::from_bytes(&model.to_bytes().unwrap()).unwrap();
         assert_eq!(again, model);
+    }
+}
+
+#[test]
+fn every_version_of_a_style_loads() {
+    for version in 1..=FORMAT_VERSION {
+        let path = repository().join(format!("tests/model_versions/v{version}.footstyle"));
+        let bytes = fs::read(&path).unwrap();
+        assert_eq!(read_header(&bytes).unwrap().0, version);
+        let style = GaitStyle::from_bytes(&bytes).unwrap();
+        assert_eq!(style.name, "sad");
+        // What version 1 did not know is as the base has it.
+        let is_default = style.step_spread == StepSpread::default();
+        assert_eq!(is_default, version == 1);
+        let again = GaitStyle::from_bytes(&style.to_bytes().unwrap()).unwrap();
+        assert_eq!(again, style);
     }
 }
 

@@ -11,6 +11,7 @@
 //! | 4 | CRC-32 of all that precedes |
 
 mod style_v1;
+mod style_v2;
 mod v1;
 mod v2;
 
@@ -138,8 +139,8 @@ impl GaitStyle {
     /// [`ModelFileError::Content`] when the style would not load again.
     pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
         self.check()?;
-        let payload = style_v1::encode(self)?;
-        write_container(FORMAT_1, STYLE_KIND, &self.provenance, &payload)
+        let payload = style_v2::encode(self)?;
+        write_container(FORMAT_VERSION, STYLE_KIND, &self.provenance, &payload)
     }
 
     /// The style in the bytes of a `.footstyle` file.
@@ -147,9 +148,13 @@ impl GaitStyle {
     /// # Errors
     /// [`ModelFileError`] says what is wrong with the bytes; no input panics.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
-        let (_, header, payload) = read_container(bytes)?;
+        let (version, header, payload) = read_container(bytes)?;
         check_kind(&header, STYLE_KIND)?;
-        let style = style_v1::decode(payload, header.provenance)?;
+        let style = if version == FORMAT_1 {
+            style_v1::decode(payload, header.provenance)?
+        } else {
+            style_v2::decode(payload, header.provenance)?
+        };
         style.check()?;
         Ok(style)
     }

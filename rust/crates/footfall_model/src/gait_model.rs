@@ -307,7 +307,7 @@ impl GlobalVarianceModel {
     }
 }
 
-fn check_len(part: &str, values: &[f64], expected: usize) -> Result<(), ModelError> {
+pub(crate) fn check_len(part: &str, values: &[f64], expected: usize) -> Result<(), ModelError> {
     if values.len() == expected {
         return Ok(());
     }
@@ -322,7 +322,7 @@ fn check_finite(part: &str, values: &[f64]) -> Result<(), ModelError> {
     check_values(part, values, f64::is_finite)
 }
 
-fn check_positive(part: &str, values: &[f64]) -> Result<(), ModelError> {
+pub(crate) fn check_positive(part: &str, values: &[f64]) -> Result<(), ModelError> {
     check_values(part, values, |value| value.is_finite() && value > 0.0)
 }
 

@@ -18,4 +18,4 @@ pub use gait_model::{
 };
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;
-pub use style::{GaitStyle, StyleError};
+pub use style::{GaitStyle, StepSpread, StyleError};

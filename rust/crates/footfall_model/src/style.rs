@@ -1,9 +1,10 @@
 //! A style: how someone walks differently, and walks between and beyond styles.
 
 use crate::gait_model::{
-    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, StateModel, StepModel,
+    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, StateModel, StepModel, check_len,
+    check_positive,
 };
-use crate::layout::{FEATURE_COUNT, feature_offset};
+use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT, feature_offset};
 use crate::provenance::Provenance;
 use footfall_core::Joint;
 
@@ -21,12 +22,34 @@ pub struct GaitStyle {
     pub steps: [StepModel; 2],
     /// How much the features of a walk in the style vary in total.
     pub global_variance: GlobalVarianceModel,
+    /// How much its steps differ from each other.
+    pub step_spread: StepSpread,
     /// Mean speed of the recorded steps on the canonical body, m/s.
     pub speed_mps: f64,
     /// Mean cadence of the recorded steps, steps per second.
     pub cadence_hz: f64,
     /// Where the style comes from.
     pub provenance: Provenance,
+}
+
+/// How much the steps of a style differ from each other, as factors on the base's [`variation`](GaitModel::variation) of
+/// steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepSpread {
+    /// One factor a feature ([`FEATURE_COUNT`]), all positive.
+    pub features: Vec<f64>,
+    /// Factor on durations and terminal contacts.
+    pub timing: f64,
+}
+
+impl Default for StepSpread {
+    /// As the base's.
+    fn default() -> Self {
+        Self {
+            features: vec![1.0; FEATURE_COUNT],
+            timing: 1.0,
+        }
+    }
 }
 
 /// Why styles cannot be worn.
@@ -79,6 +102,10 @@ impl GaitStyle {
             step.check(side.name())?;
         }
         self.global_variance.check()?;
+        let spread = &self.step_spread;
+        check_len("spread of steps", &spread.features, FEATURE_COUNT)?;
+        check_positive("spread of steps", &spread.features)?;
+        check_positive("spread of durations", &[spread.timing])?;
         if [self.speed_mps, self.cadence_hz]
             .iter()
             .all(|value| value.is_finite() && *value > 0.0)
@@ -196,6 +223,19 @@ impl GaitModel {
             target.variance[dim] = mixture.logarithmic(target.variance[dim], |style| {
                 style.global_variance.variance[dim]
             });
+        }
+        let factors: Vec<f64> = (0..FEATURE_COUNT)
+            .map(|dim| mixture.logarithmic(1.0, |style| style.step_spread.features[dim]))
+            .collect();
+        let timing = mixture.logarithmic(1.0, |style| style.step_spread.timing);
+        for offset in mixed.variation.step.iter_mut().flatten() {
+            for (index, mean) in offset.means.iter_mut().enumerate() {
+                *mean *= factors[index % OBSERVATION_COUNT % FEATURE_COUNT];
+            }
+            for value in &mut offset.log_durations {
+                *value *= timing;
+            }
+            offset.other_terminal *= timing;
         }
         // The range of speeds goes with the mean speed: a shuffle can be hurried, but not to a runner's pace.
         let speed = mixture.logarithmic(self.speed.reference_mps, |style| style.speed_mps);

@@ -14,7 +14,10 @@ use std::sync::Arc;
 pub(crate) const MAX_COMPONENTS: usize = 16;
 
 /// Weights of components stay within this many standard deviations, so that every walker is a plausible one.
-const MAX_WEIGHT: f64 = 2.0;
+const MAX_WALKER_WEIGHT: f64 = 2.0;
+
+/// The same for steps, which are many: cut off closer, they would be too alike.
+const MAX_STEP_WEIGHT: f64 = 2.5;
 
 /// Frames of a step that are put on the ground at least.
 const LEAST_GROUND_FRAMES: usize = 4;
@@ -141,14 +144,14 @@ impl Planner {
             offset: StepOffset::zero(),
         };
         for component in &model.variation.walker {
-            let weight = variation * planner.normal();
+            let weight = variation * planner.normal(MAX_WALKER_WEIGHT);
             for (walker, offset) in planner.walker.iter_mut().zip(component) {
                 walker.add_scaled(offset, weight);
             }
         }
         for side in 0..2 {
             for component in 0..MAX_COMPONENTS {
-                planner.weights[side][component] = planner.normal();
+                planner.weights[side][component] = planner.normal(MAX_STEP_WEIGHT);
             }
         }
         planner
@@ -178,9 +181,9 @@ impl Planner {
         let memory = self.model.variation.step_correlation.clamp(0.0, 0.99);
         let news = (1.0 - memory * memory).sqrt();
         for component in 0..MAX_COMPONENTS {
-            let fresh = self.normal();
+            let fresh = self.normal(MAX_STEP_WEIGHT);
             let weight = &mut self.weights[side.index()][component];
-            *weight = (memory * *weight + news * fresh).clamp(-MAX_WEIGHT, MAX_WEIGHT);
+            *weight = (memory * *weight + news * fresh).clamp(-MAX_STEP_WEIGHT, MAX_STEP_WEIGHT);
         }
         StepDraw {
             side,
@@ -265,8 +268,8 @@ impl Planner {
         plan.detail = detail;
     }
 
-    fn normal(&mut self) -> f64 {
+    fn normal(&mut self, most: f64) -> f64 {
         let value: f64 = StandardNormal.sample(&mut self.rng);
-        value.clamp(-MAX_WEIGHT, MAX_WEIGHT)
+        value.clamp(-most, most)
     }
 }

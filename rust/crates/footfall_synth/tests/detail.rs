@@ -70,7 +70,10 @@ fn less_detail_is_the_same_walk() {
         speeds[index] = place.position.length() / (2.0 * (0.5 * angle).sin().abs()) * angle / 20.0;
     }
     for index in 1..3 {
-        assert!(footsteps[index].abs_diff(footsteps[0]) <= 2, "{footsteps:?}");
+        assert!(
+            footsteps[index].abs_diff(footsteps[0]) <= 2,
+            "{footsteps:?}"
+        );
         let ratio = speeds[index] / speeds[0];
         assert!((ratio - 1.0).abs() < 0.06, "{ratio} times as fast");
     }

@@ -4,7 +4,7 @@
 
 use footfall_core::{Joint, ModelPose, Pose, Skeleton, forward_kinematics};
 use footfall_model::layout::feature_offset;
-use footfall_model::{GaitModel, GaitStyle, OBSERVATION_COUNT, StyleError};
+use footfall_model::{GaitModel, GaitStyle, OBSERVATION_COUNT, StepSpread, StyleError};
 use footfall_synth::{
     Controls, Detail, GaitGenerator, GeneratorConfig, StateError, StyleSpace, SynthError,
 };
@@ -39,6 +39,7 @@ fn style(model: &GaitModel, name: &str, bends: &[(Joint, f64)], tempo: f64) -> A
         global_variance: model.global_variance.clone(),
         speed_mps: model.speed.reference_mps * tempo,
         cadence_hz: model.cadence_hz() * tempo,
+        step_spread: StepSpread::default(),
         provenance: model.provenance.clone(),
     })
 }

@@ -5,6 +5,7 @@
 //! ([`footfall_prob::regression`]). Each state's own frames then refine it (maximum a posteriori). Between re-estimations the
 //! style's walks are aligned anew with explicit durations: as whole chains while transforms are estimated, then step by step.
 
+mod spread;
 mod transforms;
 
 use crate::EmConfig;
@@ -19,7 +20,7 @@ use footfall_model::{
     STATES_PER_STEP, StateModel, StepModel,
 };
 use footfall_motion::steps::Walk;
-use footfall_prob::duration::GaussianDuration;
+use footfall_prob::duration::{DurationDist, GaussianDuration};
 use footfall_prob::gaussian::{DiagonalGaussian, log_densities};
 use footfall_prob::hsmm::{Boundary, HsmmStats, hsmm_forward_backward};
 use footfall_prob::regression::map_estimate;
@@ -134,6 +135,7 @@ pub fn adapt_style(
             states.step(Side::Right, mean_terminal(&corpus, Side::Right))?,
         ],
         global_variance: global_variance(base, &corpus),
+        step_spread: spread::step_spread(base, &corpus),
         speed_mps: mean_speed(&corpus),
         cadence_hz: counts.steps as f64 * base.frame_rate_hz / frames as f64,
         provenance: Provenance {
@@ -221,11 +223,7 @@ impl States {
     /// Aligns step by step, not whole walks: free boundaries settle a few frames off the initial contacts in slow styles, and
     /// the generator puts a foot down where its step begins.
     fn expect(&self, corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
-        let durations: Vec<_> = self
-            .durations
-            .iter()
-            .map(|duration| duration.discretise(self.max_duration))
-            .collect::<Result<_, _>>()?;
+        let durations = self.discretised()?;
         let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
         let mut log_emissions = Vec::new();
         for sequence in corpus {
@@ -245,6 +243,13 @@ impl States {
             }
         }
         Ok(stats)
+    }
+
+    fn discretised(&self) -> Result<Vec<DurationDist>, TrainError> {
+        let durations = self.durations.iter();
+        Ok(durations
+            .map(|duration| duration.discretise(self.max_duration))
+            .collect::<Result<_, _>>()?)
     }
 
     /// These states, each moved towards what it saw.

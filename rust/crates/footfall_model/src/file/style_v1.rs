@@ -4,7 +4,7 @@ use super::v1::{StepV1, decode_step, encode_step, narrow, widen};
 use super::{ModelFileError, undecodable};
 use crate::gait_model::GlobalVarianceModel;
 use crate::provenance::Provenance;
-use crate::style::GaitStyle;
+use crate::style::{GaitStyle, StepSpread};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
@@ -42,6 +42,7 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitStyle
             mean: widen(&dto.global_variance_mean),
             variance: widen(&dto.global_variance_variance),
         },
+        step_spread: StepSpread::default(),
         speed_mps: f64::from(dto.speed_mps),
         cadence_hz: f64::from(dto.cadence_hz),
         provenance,

@@ -43,6 +43,7 @@ fn style(base: &GaitModel, name: &str, scale: f64) -> GaitStyle {
         global_variance,
         speed_mps: base.speed.reference_mps * 0.75,
         cadence_hz: 1.75,
+        step_spread: StepSpread::default(),
         provenance: Provenance {
             corpus: "made by a test".to_owned(),
             ..Provenance::default()
@@ -192,4 +193,33 @@ proptest! {
         let secs = 1.0 / mixed.cadence_hz();
         prop_assert!((0.1..3.0).contains(&secs), "{secs}");
     }
+}
+
+#[test]
+fn the_spread_of_steps_is_worn_and_mixed() {
+    let model = base();
+    let mut lively = style(&model, "lively", 0.0);
+    lively.step_spread.features[3] = 4.0;
+    lively.step_spread.timing = 0.25;
+    let component = |model: &GaitModel| model.variation.step[0][0].clone();
+    let (plain, worn) = (
+        component(&model),
+        component(&model.mixture(&[(&lively, 1.0)])),
+    );
+    for (index, (worn, plain)) in worn.means.iter().zip(&plain.means).enumerate() {
+        let factor = if index % OBSERVATION_COUNT % FEATURE_COUNT == 3 {
+            4.0
+        } else {
+            1.0
+        };
+        assert!(
+            (worn - factor * plain).abs() < 1e-9 * plain.abs(),
+            "number {index}"
+        );
+    }
+    assert!((worn.log_durations[2] - 0.25 * plain.log_durations[2]).abs() < 1e-9);
+    let half = component(&model.mixture(&[(&lively, 0.5)]));
+    assert!((half.means[3] - 2.0 * plain.means[3]).abs() < 1e-9);
+    lively.step_spread.features.pop();
+    assert!(lively.check().is_err());
 }
