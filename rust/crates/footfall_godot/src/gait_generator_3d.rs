@@ -7,7 +7,7 @@ use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::Side;
-use footfall_synth::{Controls, GeneratorConfig, StyleSpace};
+use footfall_synth::{Controls, Detail, GeneratorConfig, StyleSpace};
 use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
 use session::Session;
@@ -82,6 +82,13 @@ pub(crate) struct GaitGenerator3D {
     #[init(val = 1.0)]
     variation: f64,
 
+    /// How finely the walk is worked out: every frame of the model, every second (half) or every fourth (quarter).
+    ///
+    /// Lower it for characters far from the camera. The walk is the same, but feet slip a little between frames. Taken up with
+    /// the next step.
+    #[export]
+    detail: GaitDetail,
+
     /// Whether the character walks. When off, it holds the pose that it is in.
     #[export]
     #[init(val = true)]
@@ -118,6 +125,26 @@ pub(crate) struct GaitGenerator3D {
     reported: Option<String>,
     root_motion_delta: Transform3D,
     base: Base<SkeletonModifier3D>,
+}
+
+/// How finely a walk is worked out.
+#[derive(GodotConvert, Var, Export, Default, Clone, Copy, Debug)]
+#[godot(via = i64)]
+pub(crate) enum GaitDetail {
+    #[default]
+    Full = 0,
+    Half = 1,
+    Quarter = 2,
+}
+
+impl From<GaitDetail> for Detail {
+    fn from(detail: GaitDetail) -> Self {
+        match detail {
+            GaitDetail::Full => Self::Full,
+            GaitDetail::Half => Self::Half,
+            GaitDetail::Quarter => Self::Quarter,
+        }
+    }
 }
 
 #[godot_api]
@@ -437,6 +464,7 @@ impl GaitGenerator3D {
         session
             .generator
             .set_style_weights(self.style_weights.as_slice());
+        session.generator.set_detail(self.detail.into());
         if let Some(state) = self.pending_state.take()
             && let Err(problem) = session.restore(state.as_slice())
         {

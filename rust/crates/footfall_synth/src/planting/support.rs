@@ -18,6 +18,9 @@ const REACH_SOFTNESS_M: f32 = 0.005;
 /// Over how long a leaving leg's reach ceases to bear on the pelvis, seconds.
 const REACH_FADE_SECS: f32 = 0.07;
 
+/// How fast the pelvis comes up again when such a leg lets go, seconds.
+const REACH_RELEASE_SECS: f32 = 0.05;
+
 /// How far the generated leg may carry the ankle away from where the foot stands before the foot leaves the ground, as a
 /// share of the leg's length.
 const RELEASE_SHARE: f32 = 0.03;
@@ -51,37 +54,52 @@ impl Planter {
     pub(super) fn bear(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) {
         let fade_frames = REACH_FADE_SECS / self.frame_secs;
         let landing = Landing::of(raw, timing, frames);
+        let trailing = timing.leading.other();
+        let release = (-self.frame_secs / REACH_RELEASE_SECS).exp();
+        let mut drop = 0.0_f32;
         for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
             let hips = frame.pose.root_position;
-            for side in Side::BOTH {
-                let is_leading = side == timing.leading;
-                frame.contact[side.index()] =
-                    is_leading || index <= timing.terminal || index == timing.frames;
-                if !is_leading && index > timing.terminal {
-                    if timing.rests {
-                        self.settle(landing, index, timing, frame);
-                    }
-                    continue;
-                }
-                let fade = if is_leading || index == 0 {
+            let bears = index <= timing.terminal;
+            frame.contact[timing.leading.index()] = true;
+            frame.contact[trailing.index()] = bears || index == timing.frames;
+            // A leg that lets go of the pelvis does so smoothly, also when its contact is all but over as the step begins.
+            drop *= release;
+            if bears && let Some(limit) = self.reach_limit(trailing, hips, raw, frame) {
+                let fade = if index == 0 {
                     0.0
                 } else {
                     let onset = index as f32 / timing.terminal as f32;
                     let remaining = (timing.terminal - index) as f32;
                     onset * (1.0 - remaining / fade_frames).max(0.0)
                 };
-                let length = self.leg_lengths[side.index()];
-                let leg = &raw.legs[side.index()];
-                let hip = frame.level * leg.hip;
-                let ankle = leg.stance.ankle;
-                let limit = reach_height(hips, hip, ankle, length, MAX_STANCE_EXTENSION);
-                // Out of reach sideways at any height: the solver stretches the leg, and the pelvis stays human.
-                if let Some(limit) = limit {
-                    let height = &mut frame.pose.root_position.y;
-                    *height = soft_min(*height, limit + 0.1 * length * fade * fade);
-                }
+                let length = self.leg_lengths[trailing.index()];
+                let yielding = soft_min(hips.y, limit + 0.1 * length * fade * fade);
+                drop = drop.max(hips.y - yielding);
+            }
+            frame.pose.root_position.y -= drop;
+            if let Some(limit) = self.reach_limit(timing.leading, hips, raw, frame) {
+                let height = &mut frame.pose.root_position.y;
+                *height = soft_min(*height, limit);
+            }
+            if !bears && timing.rests {
+                self.settle(landing, index, timing, frame);
             }
         }
+    }
+
+    /// How high the hips may be for this leg to reach where its foot stands; `None` when it is out of reach sideways at any
+    /// height: then the solver stretches the leg, and the pelvis stays human.
+    fn reach_limit(
+        &self,
+        side: Side,
+        hips: Vec3,
+        raw: &RawFrame,
+        frame: &PlantedFrame,
+    ) -> Option<f32> {
+        let leg = &raw.legs[side.index()];
+        let length = self.leg_lengths[side.index()];
+        let hip = frame.level * leg.hip;
+        reach_height(hips, hip, leg.stance.ankle, length, MAX_STANCE_EXTENSION)
     }
 
     /// Lowers the hips to where the landing leg will have them once it bears with the other.

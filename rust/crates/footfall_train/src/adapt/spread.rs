@@ -193,7 +193,13 @@ mod tests {
     #[test]
     fn the_spread_is_that_of_the_steps() {
         // Six steps a foot, three up and three down: a variance of 6/5 of the shift squared, divided by five less one.
-        let shift = |step: usize| if step / 2 % 2 == 0 { 0.2 } else { -0.2 };
+        let shift = |step: usize| {
+            if (step / 2).is_multiple_of(2) {
+                0.2
+            } else {
+                -0.2
+            }
+        };
         let spread = step_spread(&base(), &[walk(shift, |_| 10)]);
         let variance = 0.2_f64.powi(2) * 6.0 / 5.0;
         let expected = (variance / 0.1_f64.powi(2)).sqrt();
@@ -208,7 +214,7 @@ mod tests {
             "steps of one length: {}",
             spread.timing
         );
-        let long = |step: usize| if step / 2 % 2 == 0 { 22 } else { 18 };
+        let long = |step: usize| if (step / 2).is_multiple_of(2) { 22 } else { 18 };
         let spread = step_spread(&base(), &[walk(|_| 0.0, long)]);
         assert!(
             (spread.timing / 2.1 - 1.0).abs() < 0.15,
