@@ -5,7 +5,8 @@
 //!
 //! In suggested reading order: [`gaussian`] and [`duration`] (what a state is), [`hsmm`] (which
 //! frames belong to which state); then from states back to motion, [`windows`], [`mlpg`] and
-//! [`global_variance`]. [`regression`] moves a model with few frames; [`clustering`] tells which contexts share one.
+//! [`global_variance`]. [`regression`] moves a model with few frames; [`clustering`] tells which contexts share one. [`switching`] finds
+//! when a system changes.
 
 pub mod clustering;
 pub mod duration;
@@ -15,6 +16,7 @@ pub mod global_variance;
 pub mod hsmm;
 pub mod mlpg;
 pub mod regression;
+pub mod switching;
 pub mod windows;
 #[doc(hidden)]
 pub mod workload;
