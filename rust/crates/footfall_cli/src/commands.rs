@@ -4,6 +4,7 @@ mod adapt;
 mod bench;
 mod contacts;
 mod design;
+mod dynamics;
 mod evaluate;
 mod inspect;
 mod retarget;
@@ -40,6 +41,7 @@ enum Command {
     Adapt(adapt::AdaptArgs),
     Synth(synth::SynthArgs),
     Design(Box<design::DesignArgs>),
+    Dynamics(dynamics::DynamicsArgs),
     Sheet(sheet::SheetArgs),
     Evaluate(evaluate::EvaluateArgs),
     Study(study::StudyArgs),
@@ -57,6 +59,7 @@ impl Cli {
             Command::Adapt(args) => adapt::run(args),
             Command::Synth(args) => synth::run(args),
             Command::Design(args) => design::run(args),
+            Command::Dynamics(args) => dynamics::run(args),
             Command::Sheet(args) => sheet::run(args),
             Command::Evaluate(args) => evaluate::run(args),
             Command::Study(args) => study::run(args),

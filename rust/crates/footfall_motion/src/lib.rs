@@ -8,3 +8,4 @@ pub mod contacts;
 pub mod corpus;
 pub mod retarget;
 pub mod steps;
+pub mod switches;

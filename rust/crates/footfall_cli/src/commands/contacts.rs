@@ -3,7 +3,11 @@
 use crate::contact_report::ContactReport;
 use crate::motion_input::{MapArgs, MotionInput, Walking};
 use crate::output;
-use anyhow::Result;
+use anyhow::{Context as _, Result};
+use clap::ValueEnum;
+use footfall_core::{EventKind, GaitEvent};
+use footfall_motion::retarget::Retargeted;
+use footfall_motion::switches::{detect_switches, stances};
 use std::path::PathBuf;
 
 /// Find ground contacts, gait events and steps
@@ -21,15 +25,33 @@ pub(crate) struct ContactsArgs {
     input: PathBuf,
     #[command(flatten)]
     map: MapArgs,
+    /// How to find them
+    #[arg(long, value_enum, default_value_t = Method::Kinematic)]
+    method: Method,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Method {
+    /// Heights and speeds of heels and toes
+    Kinematic,
+    /// Switches of hip and knee angles: initial contacts only, stances until the other foot's, no steps
+    Switching,
+}
+
 pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
     let motion = MotionInput::read(&args.input, args.map.read()?, None)?.retargeted;
-    let walking = Walking::of(&motion);
-    let report = ContactReport::new(&walking.contacts, &walking.walks);
+    let report = match args.method {
+        Method::Kinematic => {
+            let walking = Walking::of(&motion);
+            ContactReport::new(&walking.contacts, &walking.walks)
+        }
+        Method::Switching => {
+            switching(&motion).with_context(|| args.input.display().to_string())?
+        }
+    };
     if args.json {
         return output::print_json(&report);
     }
@@ -57,4 +79,25 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
         )
     }));
     output::print_text(&lines.join("\n"))
+}
+
+fn switching(motion: &Retargeted) -> Result<ContactReport> {
+    let frames = motion.clip.poses.len();
+    let switches = detect_switches(&motion.clip, motion.first_frame)?;
+    let events: Vec<GaitEvent> = switches
+        .iter()
+        .map(|switch| GaitEvent {
+            frame: switch.frame,
+            side: switch.side,
+            kind: EventKind::InitialContact,
+        })
+        .collect();
+    let stances = stances(&switches, frames);
+    let [left, right] = stances.each_ref().map(Vec::as_slice);
+    Ok(ContactReport::from_spans(
+        motion.clip.frame_rate_hz,
+        frames,
+        [left, right],
+        &events,
+    ))
 }

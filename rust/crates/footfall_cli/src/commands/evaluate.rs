@@ -1,5 +1,6 @@
 //! `footfall evaluate`: the papers' tables on the user's own data.
 
+mod contacts;
 mod style;
 mod style_report;
 mod training;
@@ -16,12 +17,14 @@ pub(crate) struct EvaluateArgs {
 
 #[derive(Debug, Subcommand)]
 enum What {
+    Contacts(contacts::ContactsArgs),
     Style(style::StyleArgs),
     Training(training::TrainingArgs),
 }
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<()> {
     match &args.what {
+        What::Contacts(args) => contacts::run(args),
         What::Style(args) => style::run(args),
         What::Training(args) => training::run(args),
     }

@@ -1,0 +1,78 @@
+//! `footfall dynamics switches`: when the legs change roles, from joint angles alone.
+
+use crate::motion_input::{MapArgs, MotionInput};
+use crate::output;
+use anyhow::{Context as _, Result};
+use footfall_motion::switches::detect_switches;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Find when the legs change roles, from hip and knee angles alone
+///
+/// No height, speed or ground is looked at. Frames and times refer to the file as given, frame 0 included; `foot` is the one
+/// that lands. A recording in which nobody walks has no switches.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall dynamics switches walk.bvh\n  \
+    footfall dynamics switches walk.bvh --json > switches.json")]
+pub(crate) struct SwitchesArgs {
+    /// The recording
+    #[arg(value_name = "IN.bvh")]
+    input: PathBuf,
+    #[command(flatten)]
+    map: MapArgs,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    fps: f64,
+    frames: usize,
+    switches: Vec<Entry>,
+}
+
+#[derive(Serialize)]
+struct Entry {
+    frame: usize,
+    time_s: f64,
+    /// `left` or `right`: the foot that lands.
+    foot: &'static str,
+}
+
+pub(crate) fn run(args: &SwitchesArgs) -> Result<()> {
+    let motion = MotionInput::read(&args.input, args.map.read()?, None)?.retargeted;
+    let fps = motion.clip.frame_rate_hz;
+    let switches = detect_switches(&motion.clip, motion.first_frame)
+        .with_context(|| args.input.display().to_string())?;
+    let report = Report {
+        fps,
+        frames: motion.clip.poses.len(),
+        switches: switches
+            .iter()
+            .map(|switch| Entry {
+                frame: switch.frame,
+                time_s: switch.frame as f64 / fps,
+                foot: switch.side.name(),
+            })
+            .collect(),
+    };
+    if args.json {
+        return output::print_json(&report);
+    }
+    let mut lines = vec![format!(
+        "{}: {} frames at {} fps, {} switches",
+        args.input.display(),
+        report.frames,
+        report.fps,
+        report.switches.len()
+    )];
+    lines.extend(report.switches.iter().map(|switch| {
+        format!(
+            "{:8.3} s  frame {:5}  onto the {} foot",
+            switch.time_s, switch.frame, switch.foot
+        )
+    }));
+    output::print_text(&lines.join("\n"))
+}
