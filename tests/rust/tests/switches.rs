@@ -1,7 +1,5 @@
 //! Switches of joint angles against contacts that are known otherwise.
 
-#![expect(clippy::unwrap_used, reason = "tests may fail")]
-
 use footfall_core::{Clip, EventKind, Pose, Side, Skeleton};
 use footfall_model::GaitModel;
 use footfall_motion::corpus::{Corpus, Where};
@@ -121,7 +119,7 @@ fn switches_of_captured_walks_are_the_kinematic_contacts() {
     let conditions: Vec<Where> = ["category=neutral_walk", "path=cmu/*"]
         .map(|condition| condition.parse().unwrap())
         .into();
-    let corpus = Corpus::read(&data.join("index.csv"), &conditions).unwrap();
+    let corpus = Corpus::read(data.join("index.csv"), &conditions).unwrap();
     let mut counts = [0; 3];
     for clip in &corpus.clips {
         let motion = &clip.retargeted;

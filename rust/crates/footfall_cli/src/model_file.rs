@@ -1,7 +1,7 @@
-//! Gait models and styles on disk.
+//! Models and styles on disk.
 
 use anyhow::{Context as _, Result};
-use footfall_model::{GaitModel, GaitStyle};
+use footfall_model::{DynamicsModel, GaitModel, GaitStyle};
 use std::fs;
 use std::path::Path;
 
@@ -17,4 +17,11 @@ pub(crate) fn read_style(path: &Path) -> Result<GaitStyle> {
     let bytes =
         fs::read(path).with_context(|| format!("{}: cannot read the style", path.display()))?;
     GaitStyle::from_bytes(&bytes).with_context(|| path.display().to_string())
+}
+
+/// Reads a `.footdyn` file; errors name it.
+pub(crate) fn read_dynamics(path: &Path) -> Result<DynamicsModel> {
+    let bytes =
+        fs::read(path).with_context(|| format!("{}: cannot read the model", path.display()))?;
+    DynamicsModel::from_bytes(&bytes).with_context(|| path.display().to_string())
 }

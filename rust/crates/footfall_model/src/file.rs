@@ -1,4 +1,4 @@
-//! The container that every model file shares, and the `.footfall` and `.footstyle` files.
+//! The container that every model file shares, and the `.footfall`, `.footstyle` and `.footdyn` files.
 //!
 //! | bytes | content |
 //! | --- | --- |
@@ -10,11 +10,13 @@
 //! | … | payload: postcard encoding of the version's own types (`v1`, `v2`) |
 //! | 4 | CRC-32 of all that precedes |
 
+mod dynamics_v1;
 mod style_v1;
 mod style_v2;
 mod v1;
 mod v2;
 
+use crate::dynamics::DynamicsModel;
 use crate::gait_model::{GaitModel, ModelError};
 use crate::provenance::Provenance;
 use crate::style::GaitStyle;
@@ -30,11 +32,12 @@ const FORMAT_1: u32 = 1;
 const MAGIC: &[u8; 8] = b"FOOTFALL";
 const GAIT_KIND: &str = "gait";
 const STYLE_KIND: &str = "style";
+const DYNAMICS_KIND: &str = "dynamics";
 
 /// The part of a file that every version can read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
-    /// What the payload is: `gait` or `style`.
+    /// What the payload is: `gait`, `style` or `dynamics`.
     pub kind: String,
     /// The version of Footfall that wrote the file.
     pub written_by: String,
@@ -157,6 +160,30 @@ impl GaitStyle {
         };
         style.check()?;
         Ok(style)
+    }
+}
+
+impl DynamicsModel {
+    /// The bytes of a `.footdyn` file.
+    ///
+    /// # Errors
+    /// [`ModelFileError::Content`] when the model would not load again.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
+        self.check()?;
+        let payload = dynamics_v1::encode(self)?;
+        write_container(FORMAT_1, DYNAMICS_KIND, &self.provenance, &payload)
+    }
+
+    /// The model in the bytes of a `.footdyn` file.
+    ///
+    /// # Errors
+    /// [`ModelFileError`] says what is wrong with the bytes; no input panics.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
+        let (_, header, payload) = read_container(bytes)?;
+        check_kind(&header, DYNAMICS_KIND)?;
+        let model = dynamics_v1::decode(payload, header.provenance)?;
+        model.check()?;
+        Ok(model)
     }
 }
 

@@ -318,7 +318,7 @@ pub(crate) fn check_len(part: &str, values: &[f64], expected: usize) -> Result<(
     })
 }
 
-fn check_finite(part: &str, values: &[f64]) -> Result<(), ModelError> {
+pub(crate) fn check_finite(part: &str, values: &[f64]) -> Result<(), ModelError> {
     check_values(part, values, f64::is_finite)
 }
 

@@ -3,14 +3,16 @@
 //! Probability is in f64 and poses are in f32; the two meet in [`layout`]. The crate works on bytes: it reads and
 //! writes no file.
 //!
-//! Modules in suggested reading order: [`layout`], [`gait_model`], [`provenance`], [`mod@file`].
+//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`provenance`], [`mod@file`].
 
+pub mod dynamics;
 pub mod file;
 pub mod gait_model;
 pub mod layout;
 pub mod provenance;
 pub mod style;
 
+pub use dynamics::{DynamicsModel, Regime};
 pub use file::{FORMAT_VERSION, ModelFileError};
 pub use gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,

@@ -102,14 +102,14 @@ pub fn detect_switches(clip: &Clip, first_frame: usize) -> Result<Vec<Switch>, P
     angles.align(&mut steps);
     let shift = angles.landing(&steps, &residual);
     let scale = clip.frame_rate_hz / ANGLE_RATE_HZ;
-    let last = clip.poses.len() as isize - 1;
+    let last = clip.poses.len().cast_signed() - 1;
     let mut switches: Vec<Switch> = steps
         .iter()
         .map(|step| {
             let frames = ((step.frame + shift) as f64 * scale).round() as isize;
-            (first_frame as isize + frames, step.side)
+            (first_frame.cast_signed() + frames, step.side)
         })
-        .filter(|(frame, _)| (first_frame as isize..=last).contains(frame))
+        .filter(|(frame, _)| (first_frame.cast_signed()..=last).contains(frame))
         .map(|(frame, side)| Switch {
             frame: frame as usize,
             side,
@@ -208,7 +208,7 @@ impl LegAngles {
             .filter(seen)
             .filter(|peak| leads[*peak].abs() > least)
             .map(|peak| HalfCycle {
-                frame: peak as isize,
+                frame: peak.cast_signed(),
                 side: if leads[peak] > 0.0 {
                     Side::Left
                 } else {
@@ -220,7 +220,7 @@ impl LegAngles {
 
     /// The angles around a frame, the side's own leg first; `None` beyond the ends.
     fn around(&self, frame: isize, side: Side) -> Option<Vec<f64>> {
-        let first = usize::try_from(frame - HALF_TEMPLATE as isize).ok()?;
+        let first = usize::try_from(frame - HALF_TEMPLATE.cast_signed()).ok()?;
         let frames = self.frames.get(first..=first + 2 * HALF_TEMPLATE)?;
         let ordered = frames
             .iter()
@@ -281,7 +281,7 @@ impl LegAngles {
         let Some(template) = self.template(steps) else {
             return 0;
         };
-        let reach = HALF_TEMPLATE as isize;
+        let reach = HALF_TEMPLATE.cast_signed();
         let knee = |offset: isize| template[(offset + reach) as usize * CHANNELS + 2];
         let straightest = (-reach + 2..=reach - 2)
             .min_by(|a, b| knee(*a).total_cmp(&knee(*b)))
@@ -326,7 +326,7 @@ impl Residual {
             norms
         });
         Ok(Some(Self {
-            first: residual.first_frame() as isize,
+            first: residual.first_frame().cast_signed(),
             legs,
         }))
     }
@@ -352,7 +352,7 @@ impl Residual {
 /// Values under a Gaussian window, the ends repeated.
 fn smoothed(values: &[f64], deviation: f64) -> Vec<f64> {
     let reach = (3.0 * deviation).ceil() as isize;
-    let last = values.len() as isize - 1;
+    let last = values.len().cast_signed() - 1;
     let weight = |offset: isize| (-0.5 * (offset as f64 / deviation).powi(2)).exp();
     let total: f64 = (-reach..=reach).map(weight).sum();
     (0..=last)

@@ -6,7 +6,7 @@
 //! In suggested reading order: [`gaussian`] and [`duration`] (what a state is), [`hsmm`] (which
 //! frames belong to which state); then from states back to motion, [`windows`], [`mlpg`] and
 //! [`global_variance`]. [`regression`] moves a model with few frames; [`clustering`] tells which contexts share one. [`switching`] finds
-//! when a system changes.
+//! when a system changes, [`subspace`] which one it is.
 
 pub mod clustering;
 pub mod duration;
@@ -16,6 +16,7 @@ pub mod global_variance;
 pub mod hsmm;
 pub mod mlpg;
 pub mod regression;
+pub mod subspace;
 pub mod switching;
 pub mod windows;
 #[doc(hidden)]

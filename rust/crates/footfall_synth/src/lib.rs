@@ -5,6 +5,7 @@
 //! real time; [`synthesize`] solves a whole walk at once.
 
 mod detail;
+mod dynamics_walk;
 mod error;
 mod generator;
 mod pace;
@@ -21,6 +22,7 @@ mod walk;
 mod walker;
 
 pub use detail::Detail;
+pub use dynamics_walk::{DynamicsWalkConfig, synthesize_dynamics};
 pub use error::SynthError;
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};
 pub use space::StyleSpace;

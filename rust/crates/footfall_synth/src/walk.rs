@@ -52,6 +52,19 @@ pub struct SynthesizedWalk {
 }
 
 impl SynthesizedWalk {
+    /// Leaves out what comes later.
+    pub(crate) fn cut_to(&mut self, seconds: f64) {
+        let frames = (seconds * self.clip.frame_rate_hz).round() as usize + 1;
+        self.clip.poses.truncate(frames);
+        let last = self.clip.poses.len().saturating_sub(1);
+        for contacts in &mut self.contacts {
+            contacts.retain(|span| span.first <= last);
+            for span in contacts {
+                span.last = span.last.min(last);
+            }
+        }
+    }
+
     /// The ends of the contacts, but for those at the clip's own ends.
     pub fn events(&self) -> Vec<GaitEvent> {
         let last = self.clip.poses.len() - 1;
@@ -120,7 +133,7 @@ pub fn synthesize(
         .collect();
     let trajectory = variance::solve_walk(model, &plans)?;
     Ok(put_on_ground(
-        model,
+        model.frame_rate_hz,
         skeleton,
         config,
         &plans,
@@ -129,15 +142,16 @@ pub fn synthesize(
     ))
 }
 
-fn put_on_ground(
-    model: &GaitModel,
+/// Puts planned steps on the ground; the first and the last [`LEAD_STEPS`] are not shown.
+pub(crate) fn put_on_ground(
+    model_rate_hz: f64,
     skeleton: &Skeleton,
     config: &WalkConfig,
     plans: &[StepPlan],
     trajectory: &[f64],
     facing: f32,
 ) -> SynthesizedWalk {
-    let frame_secs = 1.0 / model.frame_rate_hz;
+    let frame_secs = 1.0 / model_rate_hz;
     let mut planter: Option<Planter> = None;
     let course = Course {
         turn_rate: config.turn_rate_radps,
@@ -192,11 +206,11 @@ fn put_on_ground(
     start_at_origin(&mut poses, start_heading);
     let clip = Clip {
         skeleton: skeleton.clone(),
-        frame_rate_hz: model.frame_rate_hz,
+        frame_rate_hz: model_rate_hz,
         poses,
     };
     let clip = match config.frame_rate_hz {
-        Some(rate) if (rate - model.frame_rate_hz).abs() > 1e-9 => clip.resampled(rate),
+        Some(rate) if (rate - model_rate_hz).abs() > 1e-9 => clip.resampled(rate),
         _ => clip,
     };
     let last = clip.poses.len() - 1;

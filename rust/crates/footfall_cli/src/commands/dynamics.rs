@@ -1,6 +1,10 @@
 //! `footfall dynamics`: gait as a switching system.
 
+mod fit;
 mod switches;
+mod synth;
+
+pub(super) use fit::SizeArgs;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -15,10 +19,14 @@ pub(crate) struct DynamicsArgs {
 #[derive(Debug, Subcommand)]
 enum What {
     Switches(switches::SwitchesArgs),
+    Fit(fit::FitArgs),
+    Synth(synth::DynamicsSynthArgs),
 }
 
 pub(crate) fn run(args: &DynamicsArgs) -> Result<()> {
     match &args.what {
         What::Switches(args) => switches::run(args),
+        What::Fit(args) => fit::run(args),
+        What::Synth(args) => synth::run(args),
     }
 }

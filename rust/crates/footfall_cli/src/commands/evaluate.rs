@@ -1,6 +1,7 @@
 //! `footfall evaluate`: the papers' tables on the user's own data.
 
 mod contacts;
+mod dynamics;
 mod style;
 mod style_report;
 mod training;
@@ -18,6 +19,7 @@ pub(crate) struct EvaluateArgs {
 #[derive(Debug, Subcommand)]
 enum What {
     Contacts(contacts::ContactsArgs),
+    Dynamics(dynamics::DynamicsArgs),
     Style(style::StyleArgs),
     Training(training::TrainingArgs),
 }
@@ -25,6 +27,7 @@ enum What {
 pub(crate) fn run(args: &EvaluateArgs) -> Result<()> {
     match &args.what {
         What::Contacts(args) => contacts::run(args),
+        What::Dynamics(args) => dynamics::run(args),
         What::Style(args) => style::run(args),
         What::Training(args) => training::run(args),
     }

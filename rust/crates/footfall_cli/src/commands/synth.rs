@@ -203,7 +203,7 @@ fn dressed(args: &SynthArgs) -> Result<(GaitModel, Vec<StyleReport>)> {
 }
 
 /// Contacts and steps of a generated walk. It begins and ends in full stride, so every step is inside.
-fn contact_report(walk: &SynthesizedWalk) -> ContactReport {
+pub(super) fn contact_report(walk: &SynthesizedWalk) -> ContactReport {
     let clip = &walk.clip;
     let stances = Side::BOTH.map(|side| walk.contacts[side.index()].as_slice());
     let mut report = ContactReport::from_spans(

@@ -26,7 +26,7 @@ struct ModelV1 {
 }
 
 #[derive(Serialize, Deserialize)]
-struct SkeletonV1 {
+pub(super) struct SkeletonV1 {
     offsets: Vec<[f32; 3]>,
     /// Heel, ball, toe tip; left, then right.
     feet: [[[f32; 3]; 3]; 2],
@@ -124,7 +124,7 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitModel
     })
 }
 
-fn encode_skeleton(skeleton: &Skeleton) -> SkeletonV1 {
+pub(super) fn encode_skeleton(skeleton: &Skeleton) -> SkeletonV1 {
     SkeletonV1 {
         offsets: skeleton.offsets.iter().map(Vec3::to_array).collect(),
         feet: skeleton
@@ -135,7 +135,7 @@ fn encode_skeleton(skeleton: &Skeleton) -> SkeletonV1 {
     }
 }
 
-fn decode_skeleton(dto: &SkeletonV1) -> Result<Skeleton, ModelFileError> {
+pub(super) fn decode_skeleton(dto: &SkeletonV1) -> Result<Skeleton, ModelFileError> {
     let Ok(offsets) = <[[f32; 3]; JOINT_COUNT]>::try_from(dto.offsets.as_slice()) else {
         let found = dto.offsets.len();
         let reason = format!("{found} joints where {JOINT_COUNT} belong");

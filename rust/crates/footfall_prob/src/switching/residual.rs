@@ -17,7 +17,7 @@ pub struct ProjectionResidual {
 }
 
 impl ProjectionResidual {
-    /// Ê = Y_f − Y_f W_p† W_p with W_p = [Y_p; 1], for `outputs` of T frames × `channels`, frame by frame, and windows of
+    /// `Ê = Y_f − Y_f W_p† W_p` with `W_p = [Y_p; 1]`, for `outputs` of T frames × `channels`, frame by frame, and windows of
     /// `window` frames of past and future.
     ///
     /// # Errors
@@ -92,7 +92,9 @@ impl ProjectionResidual {
                 }
             }
         }
-        norms.iter_mut().for_each(|norm| *norm = norm.sqrt());
+        for norm in &mut norms {
+            *norm = norm.sqrt();
+        }
         norms
     }
 }
@@ -114,7 +116,9 @@ impl Basis {
         let mut rest = self.residual(row);
         let norm = dot(&rest, &rest).sqrt();
         if norm > DEPENDENT * length {
-            rest.iter_mut().for_each(|value| *value /= norm);
+            for value in &mut rest {
+                *value /= norm;
+            }
             self.vectors.push(rest);
         }
     }

@@ -11,7 +11,7 @@ const PRIOR_VARIANCE: f64 = 1e3;
 /// Frames over which the residual's own level is taken.
 const LEVEL_FRAMES: usize = 180;
 
-/// Recursive least squares for M of equation 6, Y_f = M [Y_p; 1]: every frame tells the residual of what was `window` frames ago
+/// Recursive least squares for M of equation 6, `Y_f = M [Y_p; 1]`: every frame tells the residual of what was `window` frames ago
 /// against what the frames before foretold. Allocates nothing after it was made.
 #[derive(Clone, Debug)]
 pub struct StreamingResidual {

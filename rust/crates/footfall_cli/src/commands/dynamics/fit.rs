@@ -1,0 +1,149 @@
+//! `footfall dynamics fit`: a corpus becomes two systems that switch.
+
+use crate::commands::train::provenance::{describe, name_of};
+use crate::commands::train::{skipped, training_clip};
+use crate::output::{self, write_atomic};
+use anyhow::{Context as _, Result, ensure};
+use footfall_motion::corpus::{Corpus, Where};
+use footfall_train::TrainingClip;
+use footfall_train::dynamics::{DynamicsConfig, FittedDynamics, fit_dynamics};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Fit two systems that switch when a foot lands
+///
+/// A gait of a few hundred numbers: the pose's strongest components, put out by one linear system while the left foot
+/// carries the body and by another while the right does. Best fitted to the walks of one person.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  \
+    footfall dynamics fit --corpus index.csv --where subject=cmu_35 --where category=neutral_walk -o gait.footdyn")]
+pub(crate) struct FitArgs {
+    /// Table of the recordings
+    #[arg(long, value_name = "INDEX.csv")]
+    corpus: PathBuf,
+    /// Condition on a column, for example `category=neutral_walk`; may repeat
+    #[arg(long = "where", value_name = "COLUMN=VALUE")]
+    conditions: Vec<Where>,
+    /// Where to write the model
+    #[arg(short, long, value_name = "GAIT.footdyn")]
+    output: PathBuf,
+    #[command(flatten)]
+    size: SizeArgs,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// How large the systems are.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(in crate::commands) struct SizeArgs {
+    /// Frames per second of the systems
+    #[arg(long, default_value_t = 60.0)]
+    fps: f64,
+    /// Principal components of the pose
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u8).range(1..=40))]
+    components: u8,
+    /// Order of each system
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u8).range(1..=60))]
+    order: u8,
+}
+
+impl SizeArgs {
+    pub(in crate::commands) fn config(self) -> Result<DynamicsConfig> {
+        ensure!(
+            (20.0..=240.0).contains(&self.fps),
+            "systems at {} frames per second cannot be fitted; give --fps a number from 20 to 240",
+            self.fps
+        );
+        Ok(DynamicsConfig {
+            frame_rate_hz: self.fps,
+            components: usize::from(self.components),
+            order: usize::from(self.order),
+            ..DynamicsConfig::default()
+        })
+    }
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    output: &'a Path,
+    clips: usize,
+    subjects: usize,
+    /// Segments of the left and of the right foot.
+    segments: [usize; 2],
+    /// Share of the variance that the components hold.
+    explained: f64,
+    /// Root mean square one-step error over the spread of the component weights, left and right.
+    one_step_error: [f64; 2],
+    bytes: usize,
+    skipped: Vec<String>,
+    seconds: f64,
+}
+
+#[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
+pub(crate) fn run(args: &FitArgs) -> Result<()> {
+    let begun = Instant::now();
+    output::refuse_overwrite(&[&args.corpus], &args.output)?;
+    let config = args.size.config()?;
+    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
+    for clip in &corpus.clips {
+        output::refuse_overwrite(&[&clip.row.path], &args.output)?;
+    }
+    let clips: Vec<TrainingClip> = corpus.clips.iter().map(training_clip).collect();
+    let conditions: Vec<String> = args
+        .conditions
+        .iter()
+        .map(|condition| format!("--where '{condition}' "))
+        .collect();
+    let command = format!(
+        "footfall dynamics fit --corpus {} {}--fps {} --components {} --order {} -o {}",
+        name_of(&args.corpus),
+        conditions.concat(),
+        args.size.fps,
+        args.size.components,
+        args.size.order,
+        name_of(&args.output)
+    );
+    let provenance = describe(&corpus, &args.corpus, &args.conditions, None, command);
+    let FittedDynamics {
+        model,
+        segments,
+        explained,
+        one_step_error,
+    } = fit_dynamics(&clips, &config, provenance)
+        .with_context(|| args.corpus.display().to_string())?;
+    let bytes = model.to_bytes().context("the fitted model")?;
+    write_atomic(&args.output, &bytes)?;
+    let report = Report {
+        output: &args.output,
+        clips: model.provenance.clips,
+        subjects: model.provenance.subjects,
+        segments,
+        explained,
+        one_step_error,
+        bytes: bytes.len(),
+        skipped: skipped(&corpus).into_iter().map(|s| s.reason).collect(),
+        seconds: begun.elapsed().as_secs_f64(),
+    };
+    for reason in &report.skipped {
+        output::note(&format!("warning: left out {reason}"));
+    }
+    if args.json {
+        return output::print_json(&report);
+    }
+    output::note(&format!(
+        "{}: {} and {} segments of {} subjects in {} clips, {:.1} % of the variance, one-step error {:.3} and {:.3}, {} bytes, {:.1} s",
+        args.output.display(),
+        segments[0],
+        segments[1],
+        report.subjects,
+        report.clips,
+        100.0 * explained,
+        one_step_error[0],
+        one_step_error[1],
+        report.bytes,
+        report.seconds
+    ));
+    Ok(())
+}

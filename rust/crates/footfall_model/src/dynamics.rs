@@ -1,0 +1,107 @@
+//! Gait as a switching system: two linear systems that take turns when a foot lands.
+//!
+//! *Gait as a switching dynamical system*, sections 3.2 and 4: the pose is a mean plus a few principal components of the
+//! features of [`crate::layout`]; their weights are put out by the system of the foot that carries the body.
+
+use crate::gait_model::{ModelError, check_finite, check_len, check_positive};
+use crate::layout::FEATURE_COUNT;
+use crate::provenance::Provenance;
+use footfall_core::{Side, Skeleton};
+use footfall_prob::subspace::AffineSystem;
+
+/// A gait of a few hundred numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynamicsModel {
+    /// Frames per second of the systems.
+    pub frame_rate_hz: f64,
+    /// The body that it was fitted on.
+    pub skeleton: Skeleton,
+    /// Mean of the static features, [`FEATURE_COUNT`].
+    pub mean: Vec<f64>,
+    /// Principal components, each [`FEATURE_COUNT`] numbers of length 1.
+    pub components: Vec<Vec<f64>>,
+    /// The system while the left foot carries the body from its initial contact on, then the right.
+    pub regimes: [Regime; 2],
+    /// Where the model comes from.
+    pub provenance: Provenance,
+}
+
+/// One of the two systems, and what its segments were like.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Regime {
+    /// From state to weights of the components.
+    pub system: AffineSystem,
+    /// States in which segments began.
+    pub starts: Vec<Vec<f64>>,
+    /// Mean and variance of the segments' lengths in frames.
+    pub frames_mean: f64,
+    /// See [`frames_mean`](Self::frames_mean).
+    pub frames_variance: f64,
+    /// When the other foot leaves the ground, as a fraction of the segment.
+    pub other_terminal: f64,
+}
+
+impl DynamicsModel {
+    /// The system of a foot.
+    pub fn regime(&self, side: Side) -> &Regime {
+        &self.regimes[side.index()]
+    }
+
+    /// The static features of component weights.
+    pub fn features(&self, weights: &[f64]) -> Vec<f64> {
+        let mut features = self.mean.clone();
+        for (component, weight) in self.components.iter().zip(weights) {
+            for (feature, value) in features.iter_mut().zip(component) {
+                *feature += weight * value;
+            }
+        }
+        features
+    }
+
+    /// Checks every shape and value, so that whatever uses the model afterwards cannot fail on it.
+    ///
+    /// # Errors
+    /// [`ModelError`] names the first part at fault.
+    pub fn check(&self) -> Result<(), ModelError> {
+        check_positive("frame rate", &[self.frame_rate_hz])?;
+        if self.skeleton.check().is_err() {
+            return Err(ModelError::Value {
+                part: "skeleton".to_owned(),
+            });
+        }
+        check_len("mean pose", &self.mean, FEATURE_COUNT)?;
+        check_finite("mean pose", &self.mean)?;
+        for component in &self.components {
+            check_len("component", component, FEATURE_COUNT)?;
+            check_finite("component", component)?;
+        }
+        for (regime, side) in self.regimes.iter().zip(Side::BOTH) {
+            let part = format!("system of the {} foot", side.name());
+            let found = regime.system.channels();
+            if found != self.components.len() || found == 0 {
+                return Err(ModelError::Shape {
+                    part,
+                    expected: self.components.len().max(1),
+                    found,
+                });
+            }
+            for rows in regime.system.to_rows() {
+                check_finite(&part, &rows)?;
+            }
+            if regime.starts.is_empty() {
+                return Err(ModelError::Shape {
+                    part: format!("states in which the {} foot's segments begin", side.name()),
+                    expected: 1,
+                    found: 0,
+                });
+            }
+            for start in &regime.starts {
+                check_len(&part, start, regime.system.order())?;
+                check_finite(&part, start)?;
+            }
+            check_positive(&part, &[regime.frames_mean, regime.frames_variance])?;
+            check_finite(&part, &[regime.other_terminal])?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,373 @@
+//! Gait as a switching system from labelled clips (*Gait as a switching dynamical system*, sections 3 and 4).
+//!
+//! Hip and knee angles tell when the legs change roles; the poses between two switches are a segment; every other segment
+//! belongs to the same system. Poses are reduced to their principal components, and each system is identified in closed form over
+//! all of its segments, then refined.
+
+mod comparison;
+
+pub use comparison::{DynamicsComparison, ErrorCurve, compare_dynamics};
+
+use crate::dataset::{EncodeConfig, encode_clip};
+use crate::error::TrainError;
+use crate::sequence::Sequence;
+use crate::train::{TrainingClip, mean_terminal};
+use footfall_core::{Side, StepPosition};
+use footfall_model::{DynamicsModel, FEATURE_COUNT, OBSERVATION_COUNT, Provenance, Regime};
+use footfall_motion::steps::{Step, Walk};
+use footfall_motion::switches::detect_switches;
+use footfall_prob::subspace::{
+    AffineSystem, IdentifyConfig, Refinement, identify, initial_state, refine,
+};
+use footfall_prob::windows::Windows;
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// A segment lasts at least and at most so long, seconds.
+const SEGMENT_SECS: [f64; 2] = [0.15, 1.5];
+
+/// Kinematic and switching contacts this close are one, seconds.
+const SAME_CONTACT_SECS: f64 = 0.12;
+
+/// How to fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DynamicsConfig {
+    /// Frames per second of the systems.
+    pub frame_rate_hz: f64,
+    /// Principal components of the pose; the paper found 8 to be enough.
+    pub components: usize,
+    /// Order of each system; 12 in the paper.
+    pub order: usize,
+    /// Frames of past and future in identification.
+    pub window: usize,
+    /// Steps of refinement at most.
+    pub refine_steps: usize,
+}
+
+impl Default for DynamicsConfig {
+    /// As the paper has it.
+    fn default() -> Self {
+        Self {
+            frame_rate_hz: 60.0,
+            components: 8,
+            order: 12,
+            window: 5,
+            refine_steps: 20,
+        }
+    }
+}
+
+/// A fitted model and how well it explains its clips.
+#[derive(Clone, Debug)]
+pub struct FittedDynamics {
+    /// The model.
+    pub model: DynamicsModel,
+    /// Segments of the left and of the right foot.
+    pub segments: [usize; 2],
+    /// Share of the features' variance that the components hold.
+    pub explained: f64,
+    /// Root mean square one-step error of each system over the spread of the component weights.
+    pub one_step_error: [f64; 2],
+}
+
+/// Fits both systems. `provenance` gets the counts of clips, subjects and steps filled in.
+///
+/// # Errors
+/// [`TrainError`] when the clips show too few steps, or the systems cannot be told from them.
+pub fn fit_dynamics(
+    clips: &[TrainingClip],
+    config: &DynamicsConfig,
+    provenance: Provenance,
+) -> Result<FittedDynamics, TrainError> {
+    let recordings = Recordings::read(clips, config)?;
+    let pose = PoseSpace::of(&recordings.sequences, config.components)?;
+    let outputs = Outputs::of(&recordings.sequences, &pose);
+    let mut segments = [0; 2];
+    let mut one_step_error = [0.0; 2];
+    let mut regimes = Vec::with_capacity(2);
+    for side in Side::BOTH {
+        let own = outputs.segments(side);
+        if own.is_empty() {
+            return Err(TrainError::MissingSide { side });
+        }
+        let system = fit_system(&own, config)?;
+        segments[side.index()] = own.len();
+        one_step_error[side.index()] = system.error / outputs.spread;
+        regimes.push(regime(&system.system, &own, &recordings.sequences, side)?);
+    }
+    let Ok(regimes) = <[Regime; 2]>::try_from(regimes) else {
+        return Err(TrainError::NoSteps);
+    };
+    let skeleton = clips
+        .first()
+        .ok_or(TrainError::NoSteps)?
+        .clip
+        .skeleton
+        .clone();
+    let model = DynamicsModel {
+        frame_rate_hz: config.frame_rate_hz,
+        skeleton,
+        mean: pose.mean,
+        components: pose.components,
+        regimes,
+        provenance: Provenance {
+            clips: recordings.clips,
+            subjects: recordings.subjects,
+            steps: segments.iter().sum(),
+            ..provenance
+        },
+    };
+    model.check()?;
+    Ok(FittedDynamics {
+        model,
+        segments,
+        explained: pose.explained,
+        one_step_error,
+    })
+}
+
+/// What a system's segments were like.
+fn regime(
+    system: &AffineSystem,
+    segments: &[&[f64]],
+    sequences: &[Sequence],
+    side: Side,
+) -> Result<Regime, TrainError> {
+    let starts = segments
+        .iter()
+        .map(|segment| Ok(initial_state(system, segment)?.as_slice().to_vec()))
+        .collect::<Result<_, TrainError>>()?;
+    let lengths = || {
+        let channels = system.channels();
+        segments
+            .iter()
+            .map(move |segment| (segment.len() / channels) as f64)
+    };
+    let count = segments.len() as f64;
+    let frames_mean = lengths().sum::<f64>() / count;
+    let squares = lengths().map(|length| (length - frames_mean).powi(2));
+    Ok(Regime {
+        system: system.clone(),
+        starts,
+        frames_mean,
+        // Whole frames are known no better.
+        frames_variance: (squares.sum::<f64>() / count).max(0.25),
+        other_terminal: mean_terminal(sequences, side),
+    })
+}
+
+/// A system and its root mean square one-step error.
+struct FittedSystem {
+    system: AffineSystem,
+    error: f64,
+    /// Where prediction begins in each segment.
+    starts: Vec<nalgebra::DVector<f64>>,
+}
+
+fn fit_system(segments: &[&[f64]], config: &DynamicsConfig) -> Result<FittedSystem, TrainError> {
+    let identified = identify(
+        segments,
+        config.components,
+        &IdentifyConfig {
+            order: config.order,
+            window: config.window,
+        },
+    )?;
+    let alone = refine(
+        &identified,
+        segments,
+        Refinement::Simulation,
+        config.refine_steps,
+    )?;
+    let system = AffineSystem {
+        gain: identified.gain,
+        ..alone.system
+    };
+    let predicting = refine(&system, segments, Refinement::Gain, config.refine_steps)?;
+    let last = predicting.errors.last().copied().unwrap_or_default();
+    Ok(FittedSystem {
+        error: (2.0 * last).sqrt(),
+        system: predicting.system,
+        starts: predicting.starts,
+    })
+}
+
+struct Recordings {
+    sequences: Vec<Sequence>,
+    clips: usize,
+    subjects: usize,
+}
+
+impl Recordings {
+    fn read(clips: &[TrainingClip], config: &DynamicsConfig) -> Result<Self, TrainError> {
+        let encoding = EncodeConfig {
+            frame_rate_hz: config.frame_rate_hz,
+            windows: Windows::Compact,
+        };
+        let mut read = Self {
+            sequences: Vec::new(),
+            clips: 0,
+            subjects: 0,
+        };
+        let mut subjects: Vec<&str> = Vec::new();
+        for clip in clips {
+            let walks = switch_walks(clip)?;
+            let found = encode_clip(&clip.clip, clip.skip_frames, &walks, 0, &encoding)?;
+            if found.is_empty() {
+                continue;
+            }
+            read.clips += 1;
+            if !subjects.contains(&clip.subject.as_str()) {
+                subjects.push(&clip.subject);
+            }
+            read.sequences.extend(found);
+        }
+        read.subjects = subjects.len();
+        if read.sequences.is_empty() {
+            return Err(TrainError::NoSteps);
+        }
+        Ok(read)
+    }
+}
+
+/// The steps of a clip as its switches cut them.
+fn switch_walks(clip: &TrainingClip) -> Result<Vec<Walk>, TrainError> {
+    let rate = clip.clip.frame_rate_hz;
+    let switches = detect_switches(&clip.clip, clip.skip_frames)?;
+    let kinematic = || clip.walks.iter().flat_map(|walk| &walk.steps);
+    let mut walks: Vec<Walk> = Vec::new();
+    let mut last_end = None;
+    for pair in switches.windows(2) {
+        let (first, end) = (pair[0].frame, pair[1].frame);
+        let secs = (end - first) as f64 / rate;
+        if pair[0].side == pair[1].side || !(SEGMENT_SECS[0]..=SEGMENT_SECS[1]).contains(&secs) {
+            continue;
+        }
+        let same = kinematic().find(|step| {
+            step.side == pair[0].side
+                && step.first.abs_diff(first) as f64 <= SAME_CONTACT_SECS * rate
+        });
+        let step = Step {
+            side: pair[0].side,
+            first,
+            end,
+            position: StepPosition::Inside,
+            other_terminal: same
+                .and_then(|step| step.other_terminal)
+                .filter(|frame| (first..end).contains(frame)),
+            heel_rise: None,
+        };
+        match walks.last_mut() {
+            Some(walk) if last_end == Some(first) => walk.steps.push(step),
+            _ => walks.push(Walk { steps: vec![step] }),
+        }
+        last_end = Some(end);
+    }
+    Ok(walks)
+}
+
+/// Mean and principal components of the static features.
+struct PoseSpace {
+    mean: Vec<f64>,
+    components: Vec<Vec<f64>>,
+    explained: f64,
+}
+
+impl PoseSpace {
+    fn of(sequences: &[Sequence], most: usize) -> Result<Self, TrainError> {
+        let statics = || {
+            let rows = sequences
+                .iter()
+                .flat_map(|s| s.observations.chunks_exact(OBSERVATION_COUNT));
+            rows.map(|row| &row[..FEATURE_COUNT])
+        };
+        let count = statics().count();
+        if count == 0 {
+            return Err(TrainError::NoSteps);
+        }
+        let mut mean = vec![0.0; FEATURE_COUNT];
+        for row in statics() {
+            for (mean, value) in mean.iter_mut().zip(row) {
+                *mean += value / count as f64;
+            }
+        }
+        let mut scatter = DMatrix::<f64>::zeros(FEATURE_COUNT, FEATURE_COUNT);
+        for row in statics() {
+            let centred = nalgebra::DVector::from_iterator(
+                FEATURE_COUNT,
+                row.iter().zip(&mean).map(|(value, mean)| value - mean),
+            );
+            scatter.ger(1.0 / count as f64, &centred, &centred, 1.0);
+        }
+        let total = scatter.trace();
+        let eigen = SymmetricEigen::new(scatter);
+        let mut rank: Vec<usize> = (0..FEATURE_COUNT).collect();
+        rank.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+        rank.truncate(most);
+        let held: f64 = rank.iter().map(|index| eigen.eigenvalues[*index]).sum();
+        Ok(Self {
+            mean,
+            components: rank
+                .iter()
+                .map(|index| eigen.eigenvectors.column(*index).as_slice().to_vec())
+                .collect(),
+            explained: if total > 0.0 { held / total } else { 1.0 },
+        })
+    }
+
+    /// The weights of the components in a frame.
+    fn project(&self, features: &[f64], weights: &mut Vec<f64>) {
+        weights.extend(self.components.iter().map(|component| {
+            let centred = features
+                .iter()
+                .zip(&self.mean)
+                .map(|(value, mean)| value - mean);
+            centred.zip(component).map(|(a, b)| a * b).sum::<f64>()
+        }));
+    }
+}
+
+/// The component weights of all sequences, and where their segments are.
+struct Outputs {
+    channels: usize,
+    sequences: Vec<Vec<f64>>,
+    /// Sequence, side, first frame and end.
+    cuts: Vec<(usize, Side, usize, usize)>,
+    /// Root mean square of all weights.
+    spread: f64,
+}
+
+impl Outputs {
+    fn of(sequences: &[Sequence], pose: &PoseSpace) -> Self {
+        let mut outputs = Self {
+            channels: pose.components.len(),
+            sequences: Vec::with_capacity(sequences.len()),
+            cuts: Vec::new(),
+            spread: 0.0,
+        };
+        let (mut squares, mut count) = (0.0, 0.0);
+        for (index, sequence) in sequences.iter().enumerate() {
+            let mut weights = Vec::with_capacity(sequence.frames() * outputs.channels);
+            for row in sequence.observations.chunks_exact(OBSERVATION_COUNT) {
+                pose.project(&row[..FEATURE_COUNT], &mut weights);
+            }
+            squares += weights.iter().map(|weight| weight * weight).sum::<f64>();
+            count += weights.len() as f64;
+            outputs.sequences.push(weights);
+            for step in &sequence.steps {
+                outputs.cuts.push((index, step.side, step.first, step.end));
+            }
+        }
+        outputs.spread = (squares / f64::max(count, 1.0))
+            .sqrt()
+            .max(f64::MIN_POSITIVE);
+        outputs
+    }
+
+    fn segments(&self, side: Side) -> Vec<&[f64]> {
+        let own = self.cuts.iter().filter(|cut| cut.1 == side);
+        own.map(|(sequence, _, first, end)| {
+            &self.sequences[*sequence][first * self.channels..end * self.channels]
+        })
+        .collect()
+    }
+}
