@@ -13,6 +13,11 @@ use std::process::Command;
 const DATA: &str = "../shared/data";
 const WALK: &str = "addons/footfall/models/walk.footfall";
 
+const DYNAMICS: &str = "addons/footfall/models/walk.footdyn";
+
+/// Walks of one person, who has the most of them: two linear systems hold one way of walking.
+const WALKS_OF_ONE: [&str; 4] = ["--where", "category=neutral_walk", "--where", "subject=cmu35"];
+
 /// The recordings that are free for commercial use: neutral walks.
 const NEUTRAL_WALKS: [&str; 4] = ["--where", "category=neutral_walk", "--where", "path=cmu/*"];
 
@@ -44,9 +49,20 @@ pub(crate) fn command() -> Result<()> {
             WALK,
         ]);
     process::run(&mut train)?;
+    let mut fit = data.footfall("dynamics");
+    fit.args(["fit", "--corpus"])
+        .arg(&data.index)
+        .args(WALKS_OF_ONE)
+        .args([
+            "--describe",
+            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), neutral walks of subject 35",
+            "-o",
+            DYNAMICS,
+        ]);
+    process::run(&mut fit)?;
     let made = styles::make(&data)?;
     eprintln!(
-        "{WALK} and {made} styles are made from the data: the tests check them, then commit them"
+        "{WALK}, {DYNAMICS} and {made} styles are made from the data: the tests check them, then commit them"
     );
     Ok(())
 }

@@ -8,6 +8,17 @@ use crate::layout::FEATURE_COUNT;
 use crate::provenance::Provenance;
 use footfall_core::{Side, Skeleton};
 use footfall_prob::subspace::AffineSystem;
+use nalgebra::DVector;
+
+/// No segment is run for longer than this many times the mean and these frames more.
+pub const LONGEST_SEGMENT: f64 = 1.4;
+const SLACK_FRAMES: usize = 8;
+
+/// A segment of more frames is none.
+const MAX_FRAMES: f64 = 2000.0;
+
+/// Rotation vectors are not longer.
+const MAX_RADIANS: f64 = 4.0 * core::f64::consts::PI;
 
 /// A gait of a few hundred numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +29,7 @@ pub struct DynamicsModel {
     pub skeleton: Skeleton,
     /// Mean of the static features, [`FEATURE_COUNT`].
     pub mean: Vec<f64>,
-    /// Principal components, each [`FEATURE_COUNT`] numbers of length 1.
+    /// Principal components, each [`FEATURE_COUNT`] numbers: by how much a weight of 1 changes each feature.
     pub components: Vec<Vec<f64>>,
     /// The system while the left foot carries the body from its initial contact on, then the right.
     pub regimes: [Regime; 2],
@@ -101,6 +112,31 @@ impl DynamicsModel {
             }
             check_positive(&part, &[regime.frames_mean, regime.frames_variance])?;
             check_finite(&part, &[regime.other_terminal])?;
+            self.check_reach(regime, &part)?;
+        }
+        Ok(())
+    }
+
+    /// Nothing is assumed about stability, but within a segment nothing may run away.
+    fn check_reach(&self, regime: &Regime, part: &str) -> Result<(), ModelError> {
+        let frames = LONGEST_SEGMENT * regime.frames_mean;
+        if frames > MAX_FRAMES {
+            return Err(ModelError::Value {
+                part: format!("length of a segment of the {part}"),
+            });
+        }
+        for start in &regime.starts {
+            let start = DVector::from_column_slice(start);
+            let outputs = regime.system.simulate(&start, frames as usize + SLACK_FRAMES);
+            let mut poses = outputs.chunks_exact(self.components.len());
+            if !poses.all(|weights| {
+                let features = self.features(weights);
+                features.iter().all(|feature| feature.abs() < MAX_RADIANS)
+            }) {
+                return Err(ModelError::Value {
+                    part: format!("motion of the {part}"),
+                });
+            }
         }
         Ok(())
     }

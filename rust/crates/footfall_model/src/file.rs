@@ -128,10 +128,7 @@ impl GaitModel {
     /// # Errors
     /// [`ModelError::Value`] when the model cannot be encoded.
     pub fn fingerprint(&self) -> Result<u32, ModelError> {
-        let payload = v1::encode(self).map_err(|error| ModelError::Value {
-            part: error.to_string(),
-        })?;
-        Ok(crc32fast::hash(&payload))
+        fingerprint(v1::encode(self))
     }
 }
 
@@ -185,6 +182,21 @@ impl DynamicsModel {
         model.check()?;
         Ok(model)
     }
+
+    /// A number that tells this model from others: the CRC-32 of its payload in format version 1.
+    ///
+    /// # Errors
+    /// [`ModelError::Value`] when the model cannot be encoded.
+    pub fn fingerprint(&self) -> Result<u32, ModelError> {
+        fingerprint(dynamics_v1::encode(self))
+    }
+}
+
+fn fingerprint(payload: Result<Vec<u8>, ModelFileError>) -> Result<u32, ModelError> {
+    let payload = payload.map_err(|error| ModelError::Value {
+        part: error.to_string(),
+    })?;
+    Ok(crc32fast::hash(&payload))
 }
 
 fn check_kind(header: &Header, expected: &'static str) -> Result<(), ModelFileError> {

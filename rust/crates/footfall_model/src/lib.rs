@@ -12,7 +12,7 @@ pub mod layout;
 pub mod provenance;
 pub mod style;
 
-pub use dynamics::{DynamicsModel, Regime};
+pub use dynamics::{DynamicsModel, LONGEST_SEGMENT, Regime};
 pub use file::{FORMAT_VERSION, ModelFileError};
 pub use gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,

@@ -15,6 +15,9 @@ pub enum Detail {
     Quarter,
 }
 
+/// Frames of a step that are put on the ground at least.
+const LEAST_GROUND_FRAMES: usize = 4;
+
 impl Detail {
     /// All, finest first.
     pub const ALL: [Self; 3] = [Self::Full, Self::Half, Self::Quarter];
@@ -22,5 +25,13 @@ impl Detail {
     /// Frames of the model from one that is put on the ground to the next.
     pub(crate) const fn stride(self) -> usize {
         1 << self as usize
+    }
+
+    /// So many frames of the model or a few more: a step ends with a frame that is put on the ground.
+    pub(crate) fn whole_frames(self, frames: usize) -> usize {
+        let stride = self.stride();
+        frames
+            .next_multiple_of(stride)
+            .max(LEAST_GROUND_FRAMES * stride)
     }
 }

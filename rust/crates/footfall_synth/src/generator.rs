@@ -2,15 +2,17 @@
 
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::pace::PaceTable;
-use crate::plan::{Manner, Planner};
-use crate::planting::PlantedFrame;
-use crate::space::{Blend, StyleSpace};
+use crate::plan::StepShape;
+use crate::planting::{PlantedFrame, smooth_step};
+use crate::space::StyleSpace;
 use crate::standing::Amplitude;
-use crate::walker::{Request, Walker};
+use crate::steps::{Ask, Steps};
+use crate::styled::StyledSteps;
+use crate::switching::SwitchingSteps;
 use footfall_core::rotation::{from_heading, wrap_angle};
-use footfall_core::{Joint, Pose, Side, Skeleton, StepPosition};
+use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::RockerFoot;
+use footfall_model::DynamicsModel;
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -21,15 +23,12 @@ const MAX_FOOTSTEPS: usize = 64;
 const MAX_DT_SECS: f32 = 10.0;
 
 /// Slower and turning less than this is standing.
-const STANDING_SPEED_MPS: f32 = 0.1;
+pub(crate) const STANDING_SPEED_MPS: f32 = 0.1;
 const STANDING_TURN_RATE_RADPS: f32 = 0.05;
 
 /// Fastest speed and turning that are walked.
 const MAX_SPEED_MPS: f32 = 3.0;
 const MAX_TURN_RATE_RADPS: f32 = 2.0;
-
-/// A step's speed differs by at most this much from the speed of the step before, m/s: nobody brakes faster.
-const MAX_SPEED_CHANGE_MPS: f32 = 0.5;
 
 /// Closer than this share of a frame counts as on it: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;
@@ -85,39 +84,24 @@ pub struct Footstep {
     pub heading: f32,
 }
 
-/// Walks one body in real time.
+/// Walks one body in real time, in styles of a [`GaitModel`](footfall_model::GaitModel) or as a [`DynamicsModel`] does.
 ///
-/// All checks are in [`new`](Self::new); [`step`](Self::step) cannot fail and does not allocate. The same model, seed
-/// and sequence of calls give the same poses, bit for bit on one machine.
+/// All checks are in [`new`](Self::new) and [`switching`](Self::switching); [`step`](Self::step) cannot fail and does not
+/// allocate. The same model, seed and sequence of calls give the same poses, bit for bit on one machine.
 #[derive(Debug)]
 pub struct GaitGenerator {
-    pub(crate) space: Arc<StyleSpace>,
     pub(crate) skeleton: Skeleton,
     pub(crate) config: GeneratorConfig,
-    pub(crate) planner: Planner,
-    pub(crate) walker: Walker,
-    /// What the next step wears.
-    pub(crate) worn: Worn,
-    /// A mixture that the next step lets go of, kept so that it is not freed there.
-    retired: Option<Arc<Blend>>,
+    pub(crate) steps: Steps,
     frame_rate_hz: f32,
     /// Of the next step.
     pub(crate) detail: Detail,
-    /// Speed of the current step.
-    pub(crate) speed_mps: f32,
     /// Frames since the current step began.
     pub(crate) position: f32,
     pub(crate) plan_from_start: GroundTransform,
     footsteps: Vec<Footstep>,
     start_from_character: GroundTransform,
     contact: [bool; 2],
-}
-
-/// A mixture of styles and how fast it walks on this body.
-#[derive(Debug)]
-pub(crate) struct Worn {
-    pub(crate) blend: Arc<Blend>,
-    pub(crate) paces: PaceTable,
 }
 
 #[expect(
@@ -136,71 +120,65 @@ impl GaitGenerator {
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<Self, SynthError> {
-        skeleton.check()?;
-        for (setting, value) in [("phase", config.phase), ("variation", config.variation)] {
-            if !value.is_finite() {
-                return Err(SynthError::Setting { setting, value });
-            }
-        }
-        let mut planner = walker_of(space, config);
-        let blend = space.blend(style_weights);
-        planner.wear(&blend.model);
-        let paces = PaceTable::measure(&planner, skeleton, &blend)?;
-        let mut walker = Walker::new(skeleton, &blend);
-        let speed = blend.model.speed.reference_mps;
-        let phase = config.phase.rem_euclid(1.0);
-        let first = if phase < 0.5 { Side::Left } else { Side::Right };
-        let request = Request {
-            manner: Manner::inside(paces.pace(speed)),
-            amplitude: Amplitude::WALK,
-            turn_rate: 0.0,
-            facing: paces.facing,
-        };
-        let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
-        walker.start(&mut planner, &blend, draws, request)?;
-        let position = (2.0 * phase).fract() * walker.step().timing.frames as f32;
+        let first = check(skeleton, config)?;
+        let steps = StyledSteps::new(space, style_weights, skeleton, config, first)?;
+        let rate = space.model().frame_rate_hz;
+        Ok(Self::begin(
+            Steps::Styled(Box::new(steps)),
+            rate,
+            skeleton,
+            config,
+        ))
+    }
+
+    /// A walker with the proportions of `skeleton`, at the origin and facing +Z, whose steps two linear systems put out. It
+    /// knows one way of walking: other speeds than the recorded one stretch its steps and their time.
+    ///
+    /// # Errors
+    /// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
+    pub fn switching(
+        model: &Arc<DynamicsModel>,
+        skeleton: &Skeleton,
+        config: &GeneratorConfig,
+    ) -> Result<Self, SynthError> {
+        let first = check(skeleton, config)?;
+        let steps = SwitchingSteps::new(model, skeleton, config, first)?;
+        let rate = model.frame_rate_hz;
+        Ok(Self::begin(
+            Steps::Switching(Box::new(steps)),
+            rate,
+            skeleton,
+            config,
+        ))
+    }
+
+    fn begin(
+        steps: Steps,
+        frame_rate_hz: f64,
+        skeleton: &Skeleton,
+        config: &GeneratorConfig,
+    ) -> Self {
+        let frames = steps.source().shape().timing.frames as f32;
         let mut generator = Self {
-            space: Arc::clone(space),
             skeleton: skeleton.clone(),
             config: *config,
-            planner,
-            walker,
-            worn: Worn { blend, paces },
-            retired: None,
-            frame_rate_hz: space.model().frame_rate_hz as f32,
+            steps,
+            frame_rate_hz: frame_rate_hz as f32,
             detail: Detail::Full,
-            speed_mps: speed as f32,
-            position,
+            position: (2.0 * config.phase.rem_euclid(1.0)).fract() * frames,
             plan_from_start: GroundTransform::default(),
             footsteps: Vec::with_capacity(MAX_FOOTSTEPS),
             start_from_character: GroundTransform::default(),
             contact: [true; 2],
         };
         generator.plan_from_start = generator.plan_from_character();
-        Ok(generator)
+        generator
     }
 
     /// Starts over at the origin, standing still.
     pub fn stand(&mut self) {
-        let first = self.walker.step().timing.leading;
-        let request = Request {
-            manner: Manner {
-                detail: self.detail,
-                ..Manner::inside(self.worn.paces.pace(f64::from(STANDING_SPEED_MPS)))
-            },
-            amplitude: Amplitude::STAND,
-            turn_rate: 0.0,
-            facing: self.worn.paces.facing,
-        };
-        let draws = [first.other(), first, first.other()].map(|side| self.planner.draw(side));
-        self.planner.wear(&self.worn.blend.model);
-        let started = self
-            .walker
-            .start(&mut self.planner, &self.worn.blend, draws, request);
-        // The model gave a trajectory when the generator was made, so it gives one now.
-        if started.is_ok() {
-            self.speed_mps = 0.0;
-            self.position = self.walker.step().timing.frames as f32;
+        if self.steps.source_mut().stand(self.detail) {
+            self.position = self.steps.source().shape().timing.frames as f32;
             self.plan_from_start = self.plan_from_character();
         }
     }
@@ -209,23 +187,27 @@ impl GaitGenerator {
     /// [`GaitModel::styled`](footfall_model::GaitModel::styled). Missing weights and those that are not finite count as 0.
     ///
     /// Takes about a millisecond when weights change, and nothing when they do not. Someone who stands takes the new
-    /// posture with the first step.
+    /// posture with the first step. A walker of a [`DynamicsModel`] has no styles.
     pub fn set_style_weights(&mut self, weights: &[f32]) {
-        let worn = self.worn.blend.weights.iter().copied();
-        if self.space.weights(weights).eq(worn) {
-            return;
-        }
-        let blend = self.space.blend(weights);
-        // The planner of a checked model gives a trajectory; were it not to, the walker keeps its style.
-        if let Ok(paces) = PaceTable::measure(&self.planner, &self.skeleton, &blend) {
-            self.retired = Some(Arc::clone(self.walker.blends()[0]));
-            self.worn = Worn { blend, paces };
+        if let Steps::Styled(steps) = &mut self.steps {
+            steps.set_style_weights(&self.skeleton, weights);
         }
     }
 
     /// The weights of the styles that are worn from the next step on.
     pub fn style_weights(&self) -> &[f32] {
-        &self.worn.blend.weights
+        match &self.steps {
+            Steps::Styled(steps) => &steps.worn().weights,
+            Steps::Switching(_) => &[],
+        }
+    }
+
+    /// The speed that suits the model and this body best: that of its recordings, m/s.
+    pub fn usual_speed_mps(&self) -> f32 {
+        match &self.steps {
+            Steps::Styled(steps) => steps.worn().model.speed.reference_mps as f32,
+            Steps::Switching(steps) => steps.own_speed_mps as f32,
+        }
     }
 
     /// How finely the walker is worked out, from the next step on.
@@ -242,9 +224,9 @@ impl GaitGenerator {
         if dt_secs > 0.0 {
             self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
         }
-        while self.position >= self.walker.step().timing.frames as f32 {
-            let frames = self.walker.step().timing.frames as f32;
-            if self.walker.step().amplitude.to < 1.0 && controls.is_standing() {
+        while self.position >= self.shape().timing.frames as f32 {
+            let frames = self.shape().timing.frames as f32;
+            if self.shape().amplitude.to < 1.0 && controls.is_standing() {
                 self.position = frames;
                 break;
             }
@@ -286,7 +268,7 @@ impl GaitGenerator {
 
     /// Whether the walker has come to a stand and rests.
     pub fn is_standing(&self) -> bool {
-        let step = self.walker.step();
+        let step = self.shape();
         step.amplitude.to < 1.0 && self.position >= step.timing.frames as f32
     }
 
@@ -295,46 +277,26 @@ impl GaitGenerator {
         self.contact
     }
 
+    fn shape(&self) -> &StepShape {
+        self.steps.source().shape()
+    }
+
     fn next_step(&mut self, controls: &Controls) {
-        let speed = finite_or(controls.speed_mps, 0.0).clamp(0.0, MAX_SPEED_MPS);
-        let turn_rate = finite_or(controls.turn_rate_radps, 0.0)
-            .clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS);
-        let amplitude = Amplitude {
-            from: self.walker.step().amplitude.to,
-            to: if controls.is_standing() { 0.0 } else { 1.0 },
-        };
-        let position = position_after(self.walker.origin().request.manner.position, amplitude);
-        let side = self.walker.step().timing.leading.other();
-        if self.space.model().context(position, side).is_some() {
-            // The model knows how this step gets to the speed of the walk or away from it.
-            self.speed_mps = if controls.is_standing() {
-                self.speed_mps
-            } else {
-                speed
-            };
-        } else {
-            self.speed_mps +=
-                (speed - self.speed_mps).clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
-        }
-        let request = Request {
-            manner: Manner {
-                pace: self.worn.paces.pace(f64::from(self.speed_mps)),
-                position,
-                detail: self.detail,
+        let ask = Ask {
+            speed_mps: finite_or(controls.speed_mps, 0.0).clamp(0.0, MAX_SPEED_MPS),
+            turn_rate: finite_or(controls.turn_rate_radps, 0.0)
+                .clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS),
+            amplitude: Amplitude {
+                from: self.shape().amplitude.to,
+                to: if controls.is_standing() { 0.0 } else { 1.0 },
             },
-            amplitude,
-            turn_rate,
-            facing: self.worn.paces.facing,
+            detail: self.detail,
         };
-        let draw = self.planner.draw(self.walker.step().timing.leading);
-        self.planner.wear(&self.worn.blend.model);
-        self.walker
-            .advance(&mut self.planner, &self.worn.blend, draw, request);
-        let side = self.walker.step().timing.leading;
-        if let Some(planter) = self.walker.planter()
+        self.steps.source_mut().advance(&ask);
+        let side = self.shape().timing.leading;
+        if let Some(plant) = self.steps.source().stage().plant(side)
             && self.footsteps.len() < MAX_FOOTSTEPS
         {
-            let plant = planter.plant(side);
             let place = self.to_start(&GroundTransform {
                 position: RockerFoot::footprint(plant),
                 heading: plant.heading,
@@ -349,8 +311,8 @@ impl GaitGenerator {
 
     /// The frames on both sides of now, and the weight of the later one.
     fn frames(&self) -> (&PlantedFrame, &PlantedFrame, f32) {
-        let frames = &self.walker.frames;
-        let step = self.walker.step();
+        let frames = &self.steps.source().stage().frames;
+        let step = self.shape();
         let last = step.ground_timing().frames - 1;
         let position = self.position / step.detail.stride() as f32;
         let first = (position.floor() as usize).min(last);
@@ -360,8 +322,9 @@ impl GaitGenerator {
 
     pub(crate) fn plan_from_character(&self) -> GroundTransform {
         let (frame, next, weight) = self.frames();
-        let share = self.position / self.walker.step().timing.frames as f32;
-        let facing = self.walker.facing(share);
+        let share = self.position / self.shape().timing.frames as f32;
+        let [before, now] = self.steps.source().facing();
+        let facing = before + smooth_step(share) * (now - before);
         GroundTransform {
             position: frame.ground_position.lerp(next.ground_position, weight),
             heading: frame.heading + weight * (next.heading - frame.heading) - facing,
@@ -377,20 +340,16 @@ impl GaitGenerator {
     }
 }
 
-/// The walker that a seed draws.
-pub(crate) fn walker_of(space: &StyleSpace, config: &GeneratorConfig) -> Planner {
-    let variation = f64::from(config.variation.clamp(0.0, 2.0));
-    Planner::new(space.model(), config.seed, variation)
-}
-
-/// The place of a step in its walk. That a step is the last but one is known only when it is over.
-fn position_after(before: StepPosition, amplitude: Amplitude) -> StepPosition {
-    match (amplitude.from < 1.0, amplitude.to < 1.0) {
-        (true, false) => StepPosition::First,
-        (false, true) => StepPosition::Last,
-        (false, false) if before == StepPosition::First => StepPosition::Second,
-        _ => StepPosition::Inside,
+/// Checks what every walker needs, and tells the foot that lands first.
+fn check(skeleton: &Skeleton, config: &GeneratorConfig) -> Result<Side, SynthError> {
+    skeleton.check()?;
+    for (setting, value) in [("phase", config.phase), ("variation", config.variation)] {
+        if !value.is_finite() {
+            return Err(SynthError::Setting { setting, value });
+        }
     }
+    let phase = config.phase.rem_euclid(1.0);
+    Ok(if phase < 0.5 { Side::Left } else { Side::Right })
 }
 
 fn finite_or(value: f32, otherwise: f32) -> f32 {

@@ -114,13 +114,12 @@ impl Trial<'_> {
         for step in 0..4 {
             let timing = walker.step().timing;
             if step >= 2 {
-                let from = walker.frames[0].pose.root_position;
-                travel += walker.frames[timing.frames].pose.root_position - from;
+                travel += walker.stage().travel(walker.step());
                 frames += timing.frames;
             }
             let ahead = Planner::mean_draw(timing.leading);
             walker.advance(planner, self.blend, ahead, request);
         }
-        Ok((travel * Vec3::new(1.0, 0.0, 1.0), frames))
+        Ok((travel, frames))
     }
 }

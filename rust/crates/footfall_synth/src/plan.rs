@@ -19,11 +19,8 @@ const MAX_WALKER_WEIGHT: f64 = 2.0;
 /// The same for steps, which are many: cut off closer, they would be too alike.
 const MAX_STEP_WEIGHT: f64 = 2.5;
 
-/// Frames of a step that are put on the ground at least.
-const LEAST_GROUND_FRAMES: usize = 4;
-
 /// A step lasts at most this long, seconds.
-const MAX_STEP_SECS: f64 = 3.0;
+pub(crate) const MAX_STEP_SECS: f64 = 3.0;
 
 /// How fast a step is to be: what the speed response and the limits of the model make of a speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,14 +60,10 @@ pub(crate) struct StepDraw {
     pub(crate) weights: [f64; MAX_COMPONENTS],
 }
 
-/// A step ready to be generated.
-#[derive(Clone, Debug)]
-pub(crate) struct StepPlan {
+/// What the ground has to know about a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepShape {
     pub(crate) timing: StepTiming,
-    /// Frames of each state.
-    pub(crate) state_frames: [usize; STATES_PER_STEP],
-    /// The means of every state, state by state.
-    pub(crate) means: Vec<f64>,
     /// Factor on the legs' reach.
     pub(crate) stride: f64,
     /// How much of the walk there is in the step.
@@ -78,21 +71,39 @@ pub(crate) struct StepPlan {
     pub(crate) detail: Detail,
 }
 
-impl StepPlan {
-    /// A plan that [`Planner::realise`] can fill without allocating.
-    pub(crate) fn empty() -> Self {
+/// A step ready to be generated.
+#[derive(Clone, Debug)]
+pub(crate) struct StepPlan {
+    pub(crate) shape: StepShape,
+    /// Frames of each state.
+    pub(crate) state_frames: [usize; STATES_PER_STEP],
+    /// The means of every state, state by state.
+    pub(crate) means: Vec<f64>,
+}
+
+impl StepShape {
+    /// A step of the walk of so many frames; `terminal` is when the other foot leaves the ground, as a fraction of it.
+    ///
+    /// Frames become a whole number of those that are put on the ground.
+    pub(crate) fn of_walk(
+        leading: Side,
+        frames: usize,
+        terminal: f64,
+        stride: f64,
+        detail: Detail,
+    ) -> Self {
+        let frames = detail.whole_frames(frames);
+        let terminal = (terminal.clamp(0.02, 0.6) * frames as f64).round() as usize;
         Self {
             timing: StepTiming {
-                leading: Side::Left,
-                frames: 0,
-                terminal: 0,
+                leading,
+                frames,
+                terminal: terminal.clamp(1, frames - 2),
                 rests: false,
             },
-            state_frames: [0; STATES_PER_STEP],
-            means: vec![0.0; STATES_PER_STEP * OBSERVATION_COUNT],
-            stride: 1.0,
+            stride,
             amplitude: Amplitude::WALK,
-            detail: Detail::Full,
+            detail,
         }
     }
 
@@ -114,6 +125,17 @@ impl StepPlan {
         if amplitude.from < amplitude.to {
             let least = (START_TERMINAL * self.timing.frames as f64).round() as usize;
             self.timing.terminal = self.timing.terminal.max(least);
+        }
+    }
+}
+
+impl StepPlan {
+    /// A plan that [`Planner::realise`] can fill without allocating.
+    pub(crate) fn empty() -> Self {
+        Self {
+            shape: StepShape::of_walk(Side::Left, 1, 0.0, 1.0, Detail::Full),
+            state_frames: [0; STATES_PER_STEP],
+            means: vec![0.0; STATES_PER_STEP * OBSERVATION_COUNT],
         }
     }
 }
@@ -193,8 +215,8 @@ impl Planner {
 
     /// Frames of the longest step that [`realise`](Self::realise) can make.
     pub(crate) fn longest_step(model: &GaitModel) -> usize {
-        let slack = STATES_PER_STEP + LEAST_GROUND_FRAMES * Detail::Quarter.stride();
-        (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize + slack
+        let longest = (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize + STATES_PER_STEP;
+        Detail::Quarter.whole_frames(longest)
     }
 
     /// The step of this walker without chance, for measuring.
@@ -249,23 +271,10 @@ impl Planner {
             plan.state_frames[state] = end - passed;
             passed = end;
         }
-        // A step ends with a frame that is put on the ground.
-        let stride = detail.stride();
-        let whole = passed
-            .next_multiple_of(stride)
-            .max(LEAST_GROUND_FRAMES * stride);
+        let whole = detail.whole_frames(passed);
         plan.state_frames[STATES_PER_STEP - 1] += whole - passed;
-        let passed = whole;
-        let terminal = (step.other_terminal + self.offset.other_terminal).clamp(0.02, 0.6);
-        plan.timing = StepTiming {
-            leading: draw.side,
-            frames: passed,
-            terminal: ((terminal * passed as f64).round() as usize).clamp(1, passed - 2),
-            rests: false,
-        };
-        plan.stride = pace.stride;
-        plan.amplitude = Amplitude::WALK;
-        plan.detail = detail;
+        let terminal = step.other_terminal + self.offset.other_terminal;
+        plan.shape = StepShape::of_walk(draw.side, whole, terminal, pace.stride, detail);
     }
 
     fn normal(&mut self, most: f64) -> f64 {

@@ -4,6 +4,7 @@
 //! ends a walk grows out of it or shrinks into it: features between the two, with the same planted feet.
 
 use crate::planting::smooth_step;
+use crate::stage::Posture;
 use footfall_core::rotation::log_map;
 use footfall_core::{Joint, Side};
 use footfall_model::layout::{feature_offset, mirror};
@@ -44,8 +45,8 @@ impl Amplitude {
     }
 }
 
-/// Features of the standing walker: the mean of the walk, the same left and right, on straight legs.
-pub(crate) fn standing_features(model: &GaitModel) -> [f32; FEATURE_COUNT] {
+/// Features of the standing walker of a model.
+pub(crate) fn standing_features(model: &GaitModel) -> Posture {
     let mut mean = [0.0; FEATURE_COUNT];
     let states = model.steps.iter().flat_map(|step| &step.states);
     let total: f64 = states.clone().map(|state| state.duration_mean).sum();
@@ -54,6 +55,11 @@ pub(crate) fn standing_features(model: &GaitModel) -> [f32; FEATURE_COUNT] {
             *mean += value * state.duration_mean / total;
         }
     }
+    standing_posture(mean)
+}
+
+/// Features of the standing walker: the mean of a walk, the same left and right, on straight legs.
+pub(crate) fn standing_posture(mut mean: [f64; FEATURE_COUNT]) -> Posture {
     let mut mirrored = mean;
     mirror(&mut mirrored);
     for (mean, mirrored) in mean.iter_mut().zip(mirrored) {

@@ -6,23 +6,29 @@
 
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform, Worn, walker_of};
+use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
 use crate::pace::PaceTable;
 use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
 use crate::planting::PlanterState;
 use crate::standing::Amplitude;
+use crate::steps::Steps;
+use crate::styled::{StyledSteps, Worn, walker_of};
+use crate::switching::{SwitchingOrigin, SwitchingSteps};
 use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
-use footfall_core::{Side, StepPosition};
+use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_ik::Plant;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The version of the layout that this build writes and reads.
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 
 /// Nothing that a state holds is larger than this: metres, radians, frames and factors are not.
 const MAX_VALUE: f64 = 1e7;
+
+/// No step is slower than this factor on its tempo.
+const LEAST_TEMPO: f64 = 1e-3;
 
 /// Why a state cannot be taken up.
 #[derive(Debug, thiserror::Error)]
@@ -63,25 +69,43 @@ struct State {
     seed: u64,
     phase: f32,
     variation: f32,
-    /// Weights of the step before, of this one and of the next.
-    weights: [Vec<f32>; 3],
     chance_position: u64,
     position: f32,
     speed_mps: f32,
     plan_from_start: [f32; 4],
-    /// Whether the first step of the window is a left one; then the weights of its components.
-    left_first: bool,
-    draws: Vec<f64>,
-    /// Covariate, tempo and stride of the step before and of this one.
-    paces: [[f64; 3]; 2],
     amplitude: [f32; 2],
-    /// Places of the step before and of this one, as [`StepPosition::index`].
-    positions: [u8; 2],
-    /// Details of the step before, of this one and of the next, finest first.
-    details: [u8; 3],
     turn_rate: f32,
     facing: [f32; 2],
     feet: Option<Feet>,
+    /// Of the next step.
+    detail: u8,
+    steps: Source,
+}
+
+#[derive(Serialize, Deserialize)]
+enum Source {
+    Styled {
+        /// Weights of the step before, of this one and of the next.
+        weights: [Vec<f32>; 3],
+        /// Whether the first step of the window is a left one; then the weights of its components.
+        left_first: bool,
+        draws: Vec<f64>,
+        /// Covariate, tempo and stride of the step before and of this one.
+        paces: [[f64; 3]; 2],
+        /// Places of the step before and of this one, as [`StepPosition::index`].
+        positions: [u8; 2],
+        /// Details of the step before and of this one, finest first.
+        details: [u8; 2],
+        /// The last frames of the step before; empty for the first.
+        tie: Vec<f32>,
+    },
+    Switching {
+        left: bool,
+        /// Tempo and stride.
+        pace: [f64; 2],
+        detail: u8,
+        expected: Vec<f32>,
+    },
 }
 
 /// What a step takes over from the one before.
@@ -95,49 +119,63 @@ struct Feet {
     turn_rate: f32,
     ground_position: [f32; 3],
     ground_velocity: Option<[f32; 3]>,
-    tie: Vec<f32>,
 }
 
 impl GaitGenerator {
-    /// Everything that [`restore`](Self::restore) needs to go on from here: about 1.5 kB and four bytes per style.
+    /// Everything that [`restore`](Self::restore) needs to go on from here: about 1.5 kB and four bytes per style; some 200 bytes
+    /// for a walker of a switching model.
     pub fn state(&self) -> Vec<u8> {
-        let origin = self.walker.origin();
-        let components = self.space.model().variation.step.len();
-        let draws = self.walker.draws();
-        let used = draws.iter().flat_map(|draw| {
-            let used = draw.weights.len().min(components);
-            draw.weights[..used].iter().copied()
-        });
-        let manners = [origin.manner_before, origin.request.manner];
-        let blends = self.walker.blends();
         let place = &self.plan_from_start;
+        let [facing_before, facing] = self.steps.source().facing();
+        let (model, chance_position, speed_mps, amplitude, turn_rate, planter) = match &self.steps {
+            Steps::Styled(steps) => {
+                let origin = steps.walker.origin();
+                let request = &origin.request;
+                (
+                    steps.space.fingerprint(),
+                    steps.planner.chance_position(),
+                    steps.speed_mps,
+                    request.amplitude,
+                    request.turn_rate,
+                    origin.planter,
+                )
+            }
+            Steps::Switching(steps) => {
+                let origin = &steps.origin;
+                (
+                    steps.fingerprint,
+                    origin.chance_position,
+                    steps.speed_mps,
+                    origin.amplitude,
+                    origin.turn_rate,
+                    origin.planter,
+                )
+            }
+        };
         let state = State {
             version: VERSION,
-            model: self.space.fingerprint(),
+            model,
             seed: self.config.seed,
             phase: self.config.phase,
             variation: self.config.variation,
-            weights: [blends[0], blends[1], &self.worn.blend].map(|blend| blend.weights.clone()),
-            chance_position: self.planner.chance_position(),
+            chance_position,
             position: self.position,
-            speed_mps: self.speed_mps,
+            speed_mps,
             plan_from_start: [
                 place.position.x,
                 place.position.y,
                 place.position.z,
                 place.heading,
             ],
-            left_first: draws[0].side == Side::Left,
-            draws: used.collect(),
-            paces: manners
-                .map(|manner| manner.pace)
-                .map(|pace| [pace.covariate_mps, pace.tempo, pace.stride]),
-            amplitude: [origin.request.amplitude.from, origin.request.amplitude.to],
-            positions: manners.map(|manner| manner.position.index() as u8),
-            details: [manners[0].detail, manners[1].detail, self.detail].map(|detail| detail as u8),
-            turn_rate: origin.request.turn_rate,
-            facing: [origin.facing_before, origin.request.facing],
-            feet: origin.planter.map(|planter| Feet::of(&planter, origin)),
+            amplitude: [amplitude.from, amplitude.to],
+            turn_rate,
+            facing: [facing_before, facing],
+            feet: planter.as_ref().map(Feet::of),
+            detail: self.detail as u8,
+            steps: match &self.steps {
+                Steps::Styled(steps) => Source::of_styled(steps),
+                Steps::Switching(steps) => Source::of_switching(steps),
+            },
         };
         // Writing to memory does not fail; an empty state is refused like any other that is not one.
         postcard::to_stdvec(&state).unwrap_or_default()
@@ -152,15 +190,7 @@ impl GaitGenerator {
         if state.version != VERSION {
             return Err(StateError::Version(state.version));
         }
-        if state.model != self.space.fingerprint() {
-            return Err(StateError::OtherModel);
-        }
-        let found = self.space.styles().len();
-        if let Some(weights) = state.weights.iter().find(|w| w.len() != found) {
-            let expected = weights.len();
-            return Err(StateError::OtherStyles { expected, found });
-        }
-        if !state.is_sensible(self.space.model().variation.step.len()) {
+        if !state.is_sensible() {
             return Err(StateError::Damaged);
         }
         let config = GeneratorConfig {
@@ -168,58 +198,107 @@ impl GaitGenerator {
             phase: state.phase,
             variation: state.variation,
         };
-        let mut planner = walker_of(&self.space, &config);
-        let [before, now, next] = state.weights.each_ref().map(|w| self.space.blend(w));
-        // The same mixture must be one and the same: a walker tells changes by it.
-        let now = if state.weights[1] == state.weights[2] {
-            Arc::clone(&next)
-        } else {
-            now
-        };
-        let draws = state.draws();
-        planner.resume(state.chance_position, &draws);
-        let paces = PaceTable::measure(&planner, &self.skeleton, &next)?;
-        let mut walker = Walker::new(&self.skeleton, &now);
-        walker.restore(&mut planner, [&before, &now], draws, state.origin())?;
-        self.planner = planner;
-        self.walker = walker;
+        match &mut self.steps {
+            Steps::Styled(steps) => **steps = state.styled(steps, &self.skeleton, &config)?,
+            Steps::Switching(steps) => state.resume(steps, &config)?,
+        }
         self.config = config;
-        self.worn = Worn { blend: next, paces };
-        self.detail = state.detail(2);
-        self.speed_mps = state.speed_mps;
+        self.detail = detail_of(state.detail);
         let [x, y, z, heading] = state.plan_from_start;
         self.plan_from_start = GroundTransform {
             position: Vec3::new(x, y, z),
             heading,
         };
-        self.position = state
-            .position
-            .clamp(0.0, self.walker.step().timing.frames as f32);
+        let frames = self.steps.source().shape().timing.frames as f32;
+        self.position = state.position.clamp(0.0, frames);
         self.tell_place();
         Ok(())
     }
 }
 
-impl State {
-    fn draws(&self) -> [StepDraw; WINDOW] {
-        let components = self.draws.len() / WINDOW;
-        let mut side = if self.left_first {
-            Side::Right
-        } else {
-            Side::Left
-        };
-        core::array::from_fn(|step| {
-            side = side.other();
-            let mut weights = [0.0; MAX_COMPONENTS];
-            weights[..components].copy_from_slice(&self.draws[step * components..][..components]);
-            StepDraw { side, weights }
-        })
+impl Source {
+    fn of_styled(steps: &StyledSteps) -> Self {
+        let origin = steps.walker.origin();
+        let components = steps.space.model().variation.step.len();
+        let draws = steps.walker.draws();
+        let used = draws.iter().flat_map(|draw| {
+            let used = draw.weights.len().min(components);
+            draw.weights[..used].iter().copied()
+        });
+        let manners = [origin.manner_before, origin.request.manner];
+        let blends = steps.walker.blends();
+        Self::Styled {
+            weights: [blends[0], blends[1], &steps.worn.blend].map(|blend| blend.weights.clone()),
+            left_first: draws[0].side == Side::Left,
+            draws: used.collect(),
+            paces: manners
+                .map(|manner| manner.pace)
+                .map(|pace| [pace.covariate_mps, pace.tempo, pace.stride]),
+            positions: manners.map(|manner| manner.position.index() as u8),
+            details: manners.map(|manner| manner.detail as u8),
+            tie: if origin.planter.is_some() {
+                origin.tie.to_vec()
+            } else {
+                Vec::new()
+            },
+        }
     }
 
-    fn origin(&self) -> Origin {
+    fn of_switching(steps: &SwitchingSteps) -> Self {
+        let origin = &steps.origin;
+        Self::Switching {
+            left: origin.leading == Side::Left,
+            pace: [origin.tempo, origin.stride],
+            detail: origin.detail as u8,
+            expected: origin.expected.clone(),
+        }
+    }
+}
+
+impl State {
+    /// The styled steps that go on from here.
+    fn styled(
+        &self,
+        current: &StyledSteps,
+        skeleton: &Skeleton,
+        config: &GeneratorConfig,
+    ) -> Result<StyledSteps, StateError> {
+        let space = &current.space;
+        if self.model != space.fingerprint() {
+            return Err(StateError::OtherModel);
+        }
+        let Source::Styled {
+            weights,
+            left_first,
+            draws,
+            paces,
+            positions,
+            details,
+            tie,
+        } = &self.steps
+        else {
+            return Err(StateError::OtherModel);
+        };
+        let found = space.styles().len();
+        if let Some(weights) = weights.iter().find(|w| w.len() != found) {
+            let expected = weights.len();
+            return Err(StateError::OtherStyles { expected, found });
+        }
+        let components = space.model().variation.step.len().min(MAX_COMPONENTS);
+        let ties = self.feet.is_none() || tie.len() == TIE_LEN;
+        if draws.len() != WINDOW * components || !ties {
+            return Err(StateError::Damaged);
+        }
+        let mut side = if *left_first { Side::Right } else { Side::Left };
+        let draws = core::array::from_fn(|step| {
+            side = side.other();
+            let mut weights = [0.0; MAX_COMPONENTS];
+            weights[..components].copy_from_slice(&draws[step * components..][..components]);
+            StepDraw { side, weights }
+        });
         let manner = |step: usize| {
-            let [covariate_mps, tempo, stride] = self.paces[step];
-            let position = StepPosition::ALL.get(usize::from(self.positions[step]));
+            let [covariate_mps, tempo, stride] = paces[step];
+            let position = StepPosition::ALL.get(usize::from(positions[step]));
             Manner {
                 pace: Pace {
                     covariate_mps,
@@ -227,42 +306,92 @@ impl State {
                     stride,
                 },
                 position: position.copied().unwrap_or_default(),
-                detail: self.detail(step),
+                detail: detail_of(details[step]),
             }
         };
-        let mut tie = [0.0; TIE_LEN];
-        if let Some(feet) = &self.feet {
-            tie.copy_from_slice(&feet.tie);
-        }
-        Origin {
+        let mut origin = Origin {
             request: Request {
                 manner: manner(1),
-                amplitude: Amplitude {
-                    from: self.amplitude[0],
-                    to: self.amplitude[1],
-                },
+                amplitude: self.amplitude(),
                 turn_rate: self.turn_rate,
                 facing: self.facing[1],
             },
             manner_before: manner(0),
             facing_before: self.facing[0],
             planter: self.feet.as_ref().map(Feet::planter),
-            tie,
+            tie: [0.0; TIE_LEN],
+        };
+        if tie.len() == TIE_LEN {
+            origin.tie.copy_from_slice(tie);
+        }
+        let mut planner = walker_of(space, config);
+        let [before, now, next] = weights.each_ref().map(|w| space.blend(w));
+        // The same mixture must be one and the same: a walker tells changes by it.
+        let now = if weights[1] == weights[2] {
+            Arc::clone(&next)
+        } else {
+            now
+        };
+        planner.resume(self.chance_position, &draws);
+        let paces = PaceTable::measure(&planner, skeleton, &next)?;
+        let mut walker = Walker::new(skeleton, &now);
+        walker.restore(&mut planner, [&before, &now], draws, origin)?;
+        let worn = Worn { blend: next, paces };
+        Ok(StyledSteps::resumed(
+            space,
+            planner,
+            walker,
+            worn,
+            self.speed_mps,
+        ))
+    }
+
+    /// Takes switching steps up from here.
+    fn resume(
+        &self,
+        steps: &mut SwitchingSteps,
+        config: &GeneratorConfig,
+    ) -> Result<(), StateError> {
+        let Source::Switching {
+            left,
+            pace: [tempo, stride],
+            detail,
+            expected,
+        } = &self.steps
+        else {
+            return Err(StateError::OtherModel);
+        };
+        if self.model != steps.fingerprint {
+            return Err(StateError::OtherModel);
+        }
+        if ![0, 2 * steps.model.components.len()].contains(&expected.len()) {
+            return Err(StateError::Damaged);
+        }
+        let origin = SwitchingOrigin {
+            leading: if *left { Side::Left } else { Side::Right },
+            tempo: *tempo,
+            stride: *stride,
+            detail: detail_of(*detail),
+            amplitude: self.amplitude(),
+            turn_rate: self.turn_rate,
+            facing: self.facing,
+            chance_position: self.chance_position,
+            expected: expected.clone(),
+            planter: self.feet.as_ref().map(Feet::planter),
+        };
+        steps.resume(config, origin, self.speed_mps);
+        Ok(())
+    }
+
+    fn amplitude(&self) -> Amplitude {
+        Amplitude {
+            from: self.amplitude[0],
+            to: self.amplitude[1],
         }
     }
 
-    fn detail(&self, step: usize) -> Detail {
-        let detail = Detail::ALL.get(usize::from(self.details[step]));
-        detail.copied().unwrap_or_default()
-    }
-
-    /// Whether shapes fit and no number is beyond reason.
-    fn is_sensible(&self, components: usize) -> bool {
-        let shapes = self.draws.len() == WINDOW * components.min(MAX_COMPONENTS)
-            && self
-                .feet
-                .as_ref()
-                .is_none_or(|feet| feet.tie.len() == TIE_LEN);
+    /// Whether no number is beyond reason.
+    fn is_sensible(&self) -> bool {
         let singles = [
             self.phase,
             self.variation,
@@ -276,22 +405,48 @@ impl State {
             .chain(self.plan_from_start)
             .chain(self.amplitude)
             .chain(self.facing)
-            .chain(feet)
-            .map(f64::from);
-        let wide = self
-            .draws
-            .iter()
-            .copied()
-            .chain(self.paces.into_iter().flatten());
-        let places =
-            usize::from(self.positions[0].max(self.positions[1])) < StepPosition::ALL.len();
-        let positive = self.paces.iter().all(|[_, tempo, _]| *tempo > 1e-3);
-        shapes && places && positive && narrow.chain(wide).all(|value| value.abs() < MAX_VALUE)
+            .chain(feet);
+        narrow.map(f64::from).all(is_reasonable) && self.steps.is_sensible()
     }
 }
 
+impl Source {
+    fn is_sensible(&self) -> bool {
+        match self {
+            Self::Styled {
+                draws,
+                paces,
+                positions,
+                tie,
+                ..
+            } => {
+                let places = positions
+                    .iter()
+                    .all(|place| usize::from(*place) < StepPosition::ALL.len());
+                let positive = paces.iter().all(|[_, tempo, _]| *tempo > LEAST_TEMPO);
+                let wide = draws.iter().chain(paces.iter().flatten()).copied();
+                let tie = tie.iter().map(|value| f64::from(*value));
+                places && positive && wide.chain(tie).all(is_reasonable)
+            }
+            Self::Switching { pace, expected, .. } => {
+                let expected = expected.iter().map(|value| f64::from(*value));
+                pace[0] > LEAST_TEMPO && pace.iter().copied().chain(expected).all(is_reasonable)
+            }
+        }
+    }
+}
+
+fn is_reasonable(value: f64) -> bool {
+    value.abs() < MAX_VALUE
+}
+
+fn detail_of(index: u8) -> Detail {
+    let detail = Detail::ALL.get(usize::from(index));
+    detail.copied().unwrap_or_default()
+}
+
 impl Feet {
-    fn of(planter: &PlanterState, origin: &Origin) -> Self {
+    fn of(planter: &PlanterState) -> Self {
         Self {
             plants: planter.plants.map(|plant| {
                 let [x, y, z] = plant.flat_ankle.to_array();
@@ -303,7 +458,6 @@ impl Feet {
             turn_rate: planter.turn_rate,
             ground_position: planter.ground_position.to_array(),
             ground_velocity: planter.ground_velocity.map(|v| v.to_array()),
-            tie: origin.tie.to_vec(),
         }
     }
 
@@ -331,6 +485,5 @@ impl Feet {
             .chain(self.ground_position)
             .chain([self.heading, self.turn_rate])
             .chain(velocities.into_iter().flatten().flatten())
-            .chain(self.tie.iter().copied())
     }
 }

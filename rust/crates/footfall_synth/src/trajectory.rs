@@ -89,7 +89,7 @@ impl<R: Real> TrajectorySolver<R> {
             self.window_means
                 .extend(plan.means.iter().map(|mean| R::narrow(*mean)));
             self.window_precisions
-                .extend_from_slice(&statistics.precisions[plan.timing.leading.index()]);
+                .extend_from_slice(&statistics.precisions[plan.shape.timing.leading.index()]);
             for (state, frames) in plan.state_frames.iter().enumerate() {
                 let state = (step * STATES_PER_STEP + state) as u32;
                 self.state_of_frame
@@ -105,7 +105,7 @@ impl<R: Real> TrajectorySolver<R> {
     fn centre(&mut self, stride: Option<&[StepPlan; 2]>) {
         let mut centre = [0.0; FEATURE_COUNT];
         if let Some(stride) = stride {
-            let frames: usize = stride.iter().map(|plan| plan.timing.frames).sum();
+            let frames: usize = stride.iter().map(|plan| plan.shape.timing.frames).sum();
             for plan in stride {
                 let means = plan.means.chunks_exact(OBSERVATION_COUNT);
                 for (mean, duration) in means.zip(plan.state_frames) {

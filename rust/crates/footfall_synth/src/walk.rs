@@ -5,8 +5,8 @@ use crate::pace::PaceTable;
 use crate::plan::{Manner, Planner, StepDraw, StepPlan};
 use crate::planting::{Course, PlantedFrame, Planter};
 use crate::raw::RawFrame;
+use crate::recording;
 use crate::space::StyleSpace;
-use crate::standing_walk;
 use crate::variance;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton};
@@ -52,19 +52,6 @@ pub struct SynthesizedWalk {
 }
 
 impl SynthesizedWalk {
-    /// Leaves out what comes later.
-    pub(crate) fn cut_to(&mut self, seconds: f64) {
-        let frames = (seconds * self.clip.frame_rate_hz).round() as usize + 1;
-        self.clip.poses.truncate(frames);
-        let last = self.clip.poses.len().saturating_sub(1);
-        for contacts in &mut self.contacts {
-            contacts.retain(|span| span.first <= last);
-            for span in contacts {
-                span.last = span.last.min(last);
-            }
-        }
-    }
-
     /// The ends of the contacts, but for those at the clip's own ends.
     pub fn events(&self) -> Vec<GaitEvent> {
         let last = self.clip.poses.len() - 1;
@@ -103,7 +90,7 @@ pub fn synthesize(
     check_finite("turn rate", config.turn_rate_radps)?;
     check_finite("variation", config.variation)?;
     if config.from_standing {
-        return standing_walk::synthesize(model, skeleton, config);
+        return recording::from_standing(model, skeleton, config);
     }
     let mut planner = Planner::new(
         model,
@@ -164,7 +151,7 @@ pub(crate) fn put_on_ground(
     let mut elapsed = 0.0;
     let mut start_heading = 0.0;
     for (index, plan) in plans[..shown.end].iter().enumerate() {
-        let timing = &plan.timing;
+        let timing = &plan.shape.timing;
         let mut raw = vec![RawFrame::default(); timing.frames + 1];
         let rows = trajectory[begin * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let mut frames = vec![PlantedFrame::default(); timing.frames + 1];
@@ -174,7 +161,7 @@ pub(crate) fn put_on_ground(
                 *narrow = *feature as f32;
             }
             let rotations = &mut frame.pose.rotations;
-            raw.decode(&narrow, skeleton, plan.stride as f32, rotations);
+            raw.decode(&narrow, skeleton, plan.shape.stride as f32, rotations);
         }
         begin += timing.frames;
         let terminal = planter
@@ -201,7 +188,7 @@ pub(crate) fn put_on_ground(
     let shown = &plans[shown];
     if let Some(last) = shown.last() {
         // The last frame is the next initial contact.
-        stances[last.timing.leading.other().index()].push([elapsed, f64::INFINITY]);
+        stances[last.shape.timing.leading.other().index()].push([elapsed, f64::INFINITY]);
     }
     start_at_origin(&mut poses, start_heading);
     let clip = Clip {

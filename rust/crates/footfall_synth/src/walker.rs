@@ -1,10 +1,10 @@
 //! One walker, step after step: planning, trajectory and planting in a row.
 
 use crate::error::SynthError;
-use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan};
-use crate::planting::{Course, PlantedFrame, Planter, PlanterState, smooth_step};
-use crate::raw::RawFrame;
+use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan, StepShape};
+use crate::planting::PlanterState;
 use crate::space::Blend;
+use crate::stage::{Placing, Stage};
 use crate::standing::Amplitude;
 use crate::trajectory::TrajectorySolver;
 use footfall_core::{Side, Skeleton, StepPosition};
@@ -47,7 +47,6 @@ pub(crate) struct Origin {
 /// The stage between the planner's draws and frames on the ground; allocates nothing after it was made.
 #[derive(Debug)]
 pub(crate) struct Walker {
-    skeleton: Skeleton,
     solver: TrajectorySolver<f32>,
     blend: Arc<Blend>,
     /// The mixture of the step before.
@@ -60,12 +59,7 @@ pub(crate) struct Walker {
     trajectory: Vec<f32>,
     current: usize,
     origin: Origin,
-    raw: Vec<RawFrame>,
-    planter: Option<Planter>,
-    frame_secs: f32,
-    /// The current step on the ground, at its own detail, one frame longer than the step; what lies beyond is left from
-    /// others.
-    pub(crate) frames: Vec<PlantedFrame>,
+    stage: Stage,
 }
 
 impl Walker {
@@ -83,7 +77,6 @@ impl Walker {
             facing: 0.0,
         };
         Self {
-            skeleton: skeleton.clone(),
             solver: TrajectorySolver::new(WINDOW, room),
             blend: Arc::clone(blend),
             blend_before: Arc::clone(blend),
@@ -99,10 +92,7 @@ impl Walker {
                 planter: None,
                 tie: [0.0; TIE_LEN],
             },
-            raw: vec![RawFrame::default(); longest + 1],
-            planter: None,
-            frame_secs: (1.0 / blend.model.frame_rate_hz) as f32,
-            frames: vec![PlantedFrame::default(); longest + 1],
+            stage: Stage::new(skeleton, blend.model.frame_rate_hz, longest),
         }
     }
 
@@ -127,16 +117,16 @@ impl Walker {
         self.origin.planter = None;
         for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
             planner.realise(draw, request.manner, plan);
-            plan.set_amplitude(request.amplitude);
+            plan.shape.set_amplitude(request.amplitude);
         }
         let frames = self.solver.load(&blend.statistics, &self.plans, 0);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
         self.solver
             .solve(&blend.statistics, &mut self.trajectory, 0)?;
-        self.planter = None;
+        self.stage.clear();
         self.current = 0;
         self.put_on_ground(0);
-        self.current = self.plans[0].timing.frames;
+        self.current = self.plans[0].shape.timing.frames;
         self.put_on_ground(1);
         Ok(())
     }
@@ -149,7 +139,7 @@ impl Walker {
         draw: StepDraw,
         request: Request,
     ) {
-        let frames = self.plans[1].timing.frames;
+        let frames = self.plans[1].shape.timing.frames;
         let tie_at = (self.current + frames + 1 - TIE) * FEATURE_COUNT;
         self.origin
             .tie
@@ -166,7 +156,7 @@ impl Walker {
             && Arc::ptr_eq(&self.blend, blend);
         self.blend_before = core::mem::replace(&mut self.blend, Arc::clone(blend));
         self.origin.request = request;
-        self.origin.planter = self.planter.as_ref().map(Planter::state);
+        self.origin.planter = self.stage.planter_state();
         self.stale = false;
         self.realise(planner, if same { WINDOW - 1 } else { 1 });
         self.solve_tied();
@@ -193,8 +183,7 @@ impl Walker {
         planner.wear(&blend.model);
         self.blend_before = Arc::clone(blend_before);
         self.blend = Arc::clone(blend);
-        let frame_secs = self.frame_secs * origin.request.manner.detail.stride() as f32;
-        self.planter = Some(Planter::resume(&self.skeleton, frame_secs, state));
+        self.stage.resume(state);
         self.origin = origin;
         self.stale = false;
         self.realise(planner, 1);
@@ -218,12 +207,12 @@ impl Walker {
             };
             planner.realise(draw, manner, plan);
         }
-        self.plans[1].set_amplitude(request.amplitude);
+        self.plans[1].shape.set_amplitude(request.amplitude);
     }
 
     /// Solves the current step and the one ahead, tied to the step before, and puts the current one on the ground.
     fn solve_tied(&mut self) {
-        let skip = (self.plans[0].timing.frames + 1).saturating_sub(TIE);
+        let skip = (self.plans[0].shape.timing.frames + 1).saturating_sub(TIE);
         let statistics = &self.blend.statistics;
         let frames = self.solver.load(statistics, &self.plans, skip);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
@@ -238,13 +227,13 @@ impl Walker {
     }
 
     /// The step that is on the ground now.
-    pub(crate) fn step(&self) -> &StepPlan {
-        &self.plans[1]
+    pub(crate) fn step(&self) -> &StepShape {
+        &self.plans[1].shape
     }
 
-    /// Where the feet were put last; `None` before [`start`](Self::start).
-    pub(crate) fn planter(&self) -> Option<&Planter> {
-        self.planter.as_ref()
+    /// The ground that it is on.
+    pub(crate) fn stage(&self) -> &Stage {
+        &self.stage
     }
 
     /// Where the current step came from.
@@ -262,59 +251,17 @@ impl Walker {
         [&self.blend_before, &self.blend]
     }
 
-    /// Heading under which the walk goes along +Z, at part `s` of the current step.
-    pub(crate) fn facing(&self, s: f32) -> f32 {
-        let [before, now] = [self.origin.facing_before, self.origin.request.facing];
-        before + smooth_step(s) * (now - before)
-    }
-
     /// Puts a step of the window, which begins at `current`, on the ground.
     fn put_on_ground(&mut self, step: usize) {
-        let plan = &self.plans[step];
-        let timing = plan.ground_timing();
-        let detail = plan.detail.stride();
         let rows = self.trajectory[self.current * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
-        let rows = rows.step_by(detail);
-        let raw = &mut self.raw[..=timing.frames];
-        let frames = &mut self.frames[..=timing.frames];
-        let stride = plan.stride as f32;
-        for (index, ((raw, frame), features)) in
-            raw.iter_mut().zip(&mut *frames).zip(rows).enumerate()
-        {
-            let rotations = &mut frame.pose.rotations;
-            if plan.amplitude == Amplitude::WALK {
-                raw.decode(features, &self.skeleton, stride, rotations);
-                continue;
-            }
-            let s = index as f32 / timing.frames as f32;
-            let amplitude = plan.amplitude.at(s);
-            let change = smooth_step(s);
-            let mut blended = [0.0; FEATURE_COUNT];
-            let postures = self.blend_before.standing.iter().zip(&self.blend.standing);
-            let pairs = postures.zip(features);
-            for (value, ((before, standing), walking)) in blended.iter_mut().zip(pairs) {
-                let standing = before + change * (standing - before);
-                *value = standing + amplitude * (walking - standing);
-            }
-            let stride = 1.0 + amplitude * (stride - 1.0);
-            raw.decode(&blended, &self.skeleton, stride, rotations);
-        }
-        let request = &self.origin.request;
-        let frame_secs = self.frame_secs * detail as f32;
-        let planter = self.planter.get_or_insert_with(|| {
-            Planter::new(
-                &self.skeleton,
-                frame_secs,
-                &raw[0],
-                timing.leading,
-                request.facing,
-            )
-        });
-        let course = Course {
-            turn_rate: request.turn_rate,
-            shift: request.facing - self.origin.facing_before,
-        };
-        planter.set_frame_secs(frame_secs);
-        planter.plant_step(raw, &timing, course, frames);
+        self.stage.put(
+            rows,
+            &Placing {
+                shape: &self.plans[step].shape,
+                standing: [&self.blend_before.standing, &self.blend.standing],
+                turn_rate: self.origin.request.turn_rate,
+                facing: [self.origin.facing_before, self.origin.request.facing],
+            },
+        );
     }
 }

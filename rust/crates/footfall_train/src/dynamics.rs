@@ -12,7 +12,9 @@ use crate::dataset::{EncodeConfig, encode_clip};
 use crate::error::TrainError;
 use crate::sequence::Sequence;
 use crate::train::{TrainingClip, mean_terminal};
-use footfall_core::{Side, StepPosition};
+use footfall_core::{
+    JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, StepPosition, forward_kinematics,
+};
 use footfall_model::{DynamicsModel, FEATURE_COUNT, OBSERVATION_COUNT, Provenance, Regime};
 use footfall_motion::steps::{Step, Walk};
 use footfall_motion::switches::detect_switches;
@@ -28,6 +30,12 @@ const SEGMENT_SECS: [f64; 2] = [0.15, 1.5];
 /// Kinematic and switching contacts this close are one, seconds.
 const SAME_CONTACT_SECS: f64 = 0.12;
 
+/// Frames of a column in identification: tried in turn.
+const WINDOWS: [usize; 10] = [2, 3, 4, 5, 6, 8, 11, 15, 20, 30];
+
+/// A joint that moves nothing beyond it counts as if it moved this much a radian, metres: feet's toes and hands are seen too.
+const LEAST_REACH: f64 = 0.02;
+
 /// How to fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicsConfig {
@@ -37,8 +45,6 @@ pub struct DynamicsConfig {
     pub components: usize,
     /// Order of each system; 12 in the paper.
     pub order: usize,
-    /// Frames of past and future in identification.
-    pub window: usize,
     /// Steps of refinement at most.
     pub refine_steps: usize,
 }
@@ -50,8 +56,7 @@ impl Default for DynamicsConfig {
             frame_rate_hz: 60.0,
             components: 8,
             order: 12,
-            window: 5,
-            refine_steps: 20,
+            refine_steps: 400,
         }
     }
 }
@@ -78,8 +83,14 @@ pub fn fit_dynamics(
     config: &DynamicsConfig,
     provenance: Provenance,
 ) -> Result<FittedDynamics, TrainError> {
+    let skeleton = clips
+        .first()
+        .ok_or(TrainError::NoSteps)?
+        .clip
+        .skeleton
+        .clone();
     let recordings = Recordings::read(clips, config)?;
-    let pose = PoseSpace::of(&recordings.sequences, config.components)?;
+    let pose = PoseSpace::of(&recordings.sequences, &skeleton, config.components)?;
     let outputs = Outputs::of(&recordings.sequences, &pose);
     let mut segments = [0; 2];
     let mut one_step_error = [0.0; 2];
@@ -97,12 +108,6 @@ pub fn fit_dynamics(
     let Ok(regimes) = <[Regime; 2]>::try_from(regimes) else {
         return Err(TrainError::NoSteps);
     };
-    let skeleton = clips
-        .first()
-        .ok_or(TrainError::NoSteps)?
-        .clip
-        .skeleton
-        .clone();
     let model = DynamicsModel {
         frame_rate_hz: config.frame_rate_hz,
         skeleton,
@@ -164,14 +169,7 @@ struct FittedSystem {
 }
 
 fn fit_system(segments: &[&[f64]], config: &DynamicsConfig) -> Result<FittedSystem, TrainError> {
-    let identified = identify(
-        segments,
-        config.components,
-        &IdentifyConfig {
-            order: config.order,
-            window: config.window,
-        },
-    )?;
+    let identified = identify_best(segments, config)?;
     let alone = refine(
         &identified,
         segments,
@@ -189,6 +187,36 @@ fn fit_system(segments: &[&[f64]], config: &DynamicsConfig) -> Result<FittedSyst
         system: predicting.system,
         starts: predicting.starts,
     })
+}
+
+/// Of the systems that windows of different lengths tell of, the one that comes closest to the segments when left to itself: short
+/// windows take noise for the system, long ones leave few columns.
+fn identify_best(segments: &[&[f64]], config: &DynamicsConfig) -> Result<AffineSystem, TrainError> {
+    let mut best: Option<(f64, AffineSystem)> = None;
+    let mut failed = None;
+    for window in WINDOWS {
+        let size = IdentifyConfig {
+            order: config.order,
+            window,
+        };
+        let tried = identify(segments, config.components, &size).and_then(|system| {
+            let alone = refine(&system, segments, Refinement::Simulation, 0)?;
+            Ok((alone.errors[0], system))
+        });
+        match tried {
+            Ok(tried) => {
+                if best.as_ref().is_none_or(|(least, _)| tried.0 < *least) {
+                    best = Some(tried);
+                }
+            }
+            Err(error) => failed = Some(error),
+        }
+    }
+    match (best, failed) {
+        (Some((_, system)), _) => Ok(system),
+        (None, Some(error)) => Err(error.into()),
+        (None, None) => Err(TrainError::NoSteps),
+    }
 }
 
 struct Recordings {
@@ -268,12 +296,15 @@ fn switch_walks(clip: &TrainingClip) -> Result<Vec<Walk>, TrainError> {
 /// Mean and principal components of the static features.
 struct PoseSpace {
     mean: Vec<f64>,
+    /// From features to the weights of the components, and back.
+    directions: Vec<Vec<f64>>,
     components: Vec<Vec<f64>>,
     explained: f64,
 }
 
 impl PoseSpace {
-    fn of(sequences: &[Sequence], most: usize) -> Result<Self, TrainError> {
+    /// The directions in which the joints' places vary most, to first order: a hip that turns moves a whole leg, a hand little.
+    fn of(sequences: &[Sequence], skeleton: &Skeleton, most: usize) -> Result<Self, TrainError> {
         let statics = || {
             let rows = sequences
                 .iter()
@@ -290,13 +321,13 @@ impl PoseSpace {
                 *mean += value / count as f64;
             }
         }
+        let reach = reach(skeleton);
         let mut scatter = DMatrix::<f64>::zeros(FEATURE_COUNT, FEATURE_COUNT);
         for row in statics() {
-            let centred = nalgebra::DVector::from_iterator(
-                FEATURE_COUNT,
-                row.iter().zip(&mean).map(|(value, mean)| value - mean),
-            );
-            scatter.ger(1.0 / count as f64, &centred, &centred, 1.0);
+            let centred = row.iter().zip(&mean).map(|(value, mean)| value - mean);
+            let moved = centred.zip(&reach).map(|(value, reach)| value * reach);
+            let moved = nalgebra::DVector::from_iterator(FEATURE_COUNT, moved);
+            scatter.ger(1.0 / count as f64, &moved, &moved, 1.0);
         }
         let total = scatter.trace();
         let eigen = SymmetricEigen::new(scatter);
@@ -304,26 +335,68 @@ impl PoseSpace {
         rank.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
         rank.truncate(most);
         let held: f64 = rank.iter().map(|index| eigen.eigenvalues[*index]).sum();
+        let scaled = |scale: &dyn Fn(f64, f64) -> f64| {
+            let column = |index: &usize| {
+                let column = eigen.eigenvectors.column(*index);
+                column.iter().zip(&reach).map(|(v, r)| scale(*v, *r)).collect()
+            };
+            rank.iter().map(column).collect::<Vec<Vec<f64>>>()
+        };
         Ok(Self {
             mean,
-            components: rank
-                .iter()
-                .map(|index| eigen.eigenvectors.column(*index).as_slice().to_vec())
-                .collect(),
+            directions: scaled(&|value, reach| value * reach),
+            components: scaled(&|value, reach| value / reach),
             explained: if total > 0.0 { held / total } else { 1.0 },
         })
     }
 
-    /// The weights of the components in a frame.
+    /// The weights of the components in a frame, metres.
     fn project(&self, features: &[f64], weights: &mut Vec<f64>) {
-        weights.extend(self.components.iter().map(|component| {
+        weights.extend(self.directions.iter().map(|direction| {
             let centred = features
                 .iter()
                 .zip(&self.mean)
                 .map(|(value, mean)| value - mean);
-            centred.zip(component).map(|(a, b)| a * b).sum::<f64>()
+            centred.zip(direction).map(|(a, b)| a * b).sum::<f64>()
         }));
     }
+}
+
+/// How far the joints that a joint moves are from it, root mean square over all joints, for every feature: what a radian there
+/// moves, metres. A leg's joints move the foot half of the time, and all the rest of the body while the foot stands.
+fn reach(skeleton: &Skeleton) -> Vec<f64> {
+    let mut rest = ModelPose::default();
+    forward_kinematics(skeleton, &Pose::rest(skeleton), &mut rest);
+    let legs = Side::BOTH.map(|side| [side.upper_leg(), side.lower_leg(), side.foot()]);
+    let reach = |joint: Joint| {
+        let of_leg = legs.iter().flatten().any(|leg| *leg == joint);
+        let squares = Joint::ALL.into_iter().map(|other| {
+            let share = match (of_leg, is_beyond(other, joint)) {
+                (true, _) => 0.5,
+                (false, true) => 1.0,
+                (false, false) => 0.0,
+            };
+            share * rest.position(other).distance_squared(rest.position(joint))
+        });
+        let mean = squares.sum::<f32>() / JOINT_COUNT as f32;
+        f64::from(mean.sqrt()).max(LEAST_REACH)
+    };
+    Joint::ALL
+        .into_iter()
+        .flat_map(|joint| [reach(joint); 3])
+        .collect()
+}
+
+/// Whether a joint hangs on another.
+fn is_beyond(joint: Joint, on: Joint) -> bool {
+    let mut parent = joint.parent();
+    while let Some(joint) = parent {
+        if joint == on {
+            return true;
+        }
+        parent = joint.parent();
+    }
+    false
 }
 
 /// The component weights of all sequences, and where their segments are.

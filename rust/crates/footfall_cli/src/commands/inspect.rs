@@ -1,6 +1,7 @@
 //! `footfall inspect`: what is in a file.
 
 mod corpus_index;
+mod dynamics;
 mod model;
 mod motion;
 mod style;
@@ -17,14 +18,15 @@ use std::path::{Path, PathBuf};
 /// Tell what is in a file
 ///
 /// A recording (.bvh): skeleton, frames, rate, speed, contacts and steps. A model (.footfall): where it comes from, states,
-/// durations, speeds. A style (.footstyle): which base it fits, where it comes from. An index (.csv): clips by category, style and subject.
+/// durations, speeds. A style (.footstyle): which base it fits, where it comes from. A
+/// switching model (.footdyn): its two systems. An index (.csv): clips by category, style and subject.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall inspect walk.bvh\n  \
     footfall inspect walk.footfall --json\n  \
     footfall inspect index.csv")]
 pub(crate) struct InspectArgs {
-    /// A .bvh, a .footfall, a .footstyle or an index.csv
+    /// A .bvh, a .footfall, a .footstyle, a .footdyn or an index.csv
     #[arg(value_name = "FILE")]
     input: PathBuf,
     #[command(flatten)]
@@ -41,6 +43,7 @@ enum Finding {
     Motion(motion::MotionFacts),
     GaitModel(Box<model::ModelFacts>),
     GaitStyle(style::StyleFacts),
+    DynamicsModel(dynamics::DynamicsFacts),
     CorpusIndex(corpus_index::IndexFacts),
 }
 
@@ -48,6 +51,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
     let finding = match kind_of(&args.input)? {
         Kind::Model => Finding::GaitModel(Box::new(model::inspect(&args.input)?)),
         Kind::Style => Finding::GaitStyle(style::inspect(&args.input)?),
+        Kind::Dynamics => Finding::DynamicsModel(dynamics::inspect(&args.input)?),
         Kind::Index => Finding::CorpusIndex(corpus_index::inspect(&args.input)?),
         Kind::Motion => Finding::Motion(motion::inspect(&args.input, args.map.read()?)?),
     };
@@ -58,6 +62,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
         Finding::Motion(facts) => facts.lines(),
         Finding::GaitModel(facts) => facts.lines(),
         Finding::GaitStyle(facts) => facts.lines(),
+        Finding::DynamicsModel(facts) => facts.lines(),
         Finding::CorpusIndex(facts) => facts.lines(),
     };
     output::print_text(&lines.join("\n"))
@@ -67,6 +72,7 @@ enum Kind {
     Motion,
     Model,
     Style,
+    Dynamics,
     Index,
 }
 
@@ -84,6 +90,8 @@ fn kind_of(path: &Path) -> Result<Kind> {
     };
     Ok(if has("footstyle") {
         Kind::Style
+    } else if has("footdyn") {
+        Kind::Dynamics
     } else if start[..read] == *b"FOOTFALL" || has("footfall") {
         Kind::Model
     } else if has("csv") {

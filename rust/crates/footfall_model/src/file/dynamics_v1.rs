@@ -1,6 +1,6 @@
 //! Format version 1 of a `.footdyn` file's payload. Never edited after release.
 
-use super::v1::{SkeletonV1, decode_skeleton, encode_skeleton};
+use super::v1::{SkeletonV1, decode_skeleton, encode_skeleton, narrow, widen};
 use super::{ModelFileError, undecodable};
 use crate::dynamics::{DynamicsModel, Regime};
 use crate::provenance::Provenance;
@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 struct DynamicsV1 {
     frame_rate_hz: f64,
     skeleton: SkeletonV1,
-    mean: Vec<f64>,
-    components: Vec<Vec<f64>>,
+    mean: Vec<f32>,
+    components: Vec<Vec<f32>>,
     regimes: [RegimeV1; 2],
 }
 
@@ -20,25 +20,25 @@ struct DynamicsV1 {
 struct RegimeV1 {
     order: u32,
     /// Transition, drift, output matrix, offset, gain; matrices row by row.
-    system: [Vec<f64>; 5],
-    starts: Vec<Vec<f64>>,
+    system: [Vec<f32>; 5],
+    starts: Vec<Vec<f32>>,
     /// Mean and variance of the segments' lengths.
-    frames: [f64; 2],
-    other_terminal: f64,
+    frames: [f32; 2],
+    other_terminal: f32,
 }
 
 pub(super) fn encode(model: &DynamicsModel) -> Result<Vec<u8>, ModelFileError> {
     let dto = DynamicsV1 {
         frame_rate_hz: model.frame_rate_hz,
         skeleton: encode_skeleton(&model.skeleton),
-        mean: model.mean.clone(),
-        components: model.components.clone(),
+        mean: narrow(&model.mean),
+        components: narrow_all(&model.components),
         regimes: model.regimes.each_ref().map(|regime| RegimeV1 {
             order: regime.system.order() as u32,
-            system: regime.system.to_rows(),
-            starts: regime.starts.clone(),
-            frames: [regime.frames_mean, regime.frames_variance],
-            other_terminal: regime.other_terminal,
+            system: regime.system.to_rows().each_ref().map(|rows| narrow(rows)),
+            starts: narrow_all(&regime.starts),
+            frames: [regime.frames_mean as f32, regime.frames_variance as f32],
+            other_terminal: regime.other_terminal as f32,
         }),
     };
     postcard::to_stdvec(&dto).map_err(|error| undecodable("payload", &error))
@@ -55,8 +55,8 @@ pub(super) fn decode(
     Ok(DynamicsModel {
         frame_rate_hz: dto.frame_rate_hz,
         skeleton: decode_skeleton(&dto.skeleton)?,
-        mean: dto.mean,
-        components: dto.components,
+        mean: widen(&dto.mean),
+        components: widen_all(&dto.components),
         regimes: [
             decode_regime(left, channels)?,
             decode_regime(right, channels)?,
@@ -66,16 +66,25 @@ pub(super) fn decode(
 }
 
 fn decode_regime(dto: RegimeV1, channels: usize) -> Result<Regime, ModelFileError> {
-    let rows = dto.system.each_ref().map(Vec::as_slice);
+    let rows = dto.system.each_ref().map(|rows| widen(rows));
+    let rows = rows.each_ref().map(Vec::as_slice);
     // More than a million numbers in a system are no system of ours; the lengths are checked against them.
     let order = (dto.order as usize).min(1000);
     let system = AffineSystem::from_rows(order, channels.min(1000), rows)
         .map_err(|error| undecodable("payload", &error))?;
     Ok(Regime {
         system,
-        starts: dto.starts,
-        frames_mean: dto.frames[0],
-        frames_variance: dto.frames[1],
-        other_terminal: dto.other_terminal,
+        starts: widen_all(&dto.starts),
+        frames_mean: f64::from(dto.frames[0]),
+        frames_variance: f64::from(dto.frames[1]),
+        other_terminal: f64::from(dto.other_terminal),
     })
+}
+
+fn narrow_all(rows: &[Vec<f64>]) -> Vec<Vec<f32>> {
+    rows.iter().map(|row| narrow(row)).collect()
+}
+
+fn widen_all(rows: &[Vec<f32>]) -> Vec<Vec<f64>> {
+    rows.iter().map(|row| widen(row)).collect()
 }

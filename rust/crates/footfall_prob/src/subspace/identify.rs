@@ -9,18 +9,19 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 pub struct IdentifyConfig {
     /// Order n of the system.
     pub order: usize,
-    /// Frames of past and future in the Hankel matrices; with m outputs, at least n / m.
+    /// Frames of a column of the Hankel matrix; with m outputs, at least n / m.
     pub window: usize,
 }
 
-/// Weight of a small identity in least squares, relative to the mean of the diagonal: short data do not tell every direction.
-const RIDGE: f64 = 1e-3;
+/// Weight of a small identity in least squares, relative to the mean of the diagonal: states may say one thing twice.
+const RIDGE: f64 = 1e-12;
 
 /// The system that the segments tell of, each T × `channels` frame by frame. Hankel columns of all segments stand side by side, none
 /// across two, so that a segment may be far shorter than the order needs.
 ///
-/// Futures are regressed on pasts and a constant; the strongest directions of what is foretold are the states (equation 6); A, b,
-/// C and d follow from neighbouring states by least squares, K from what is left of both.
+/// The strongest directions of the columns span what the system can be seen to do (equations 3 and 5 with no input but the offset);
+/// the columns' coordinates there are the states. A, b, C and d follow from neighbouring states by least squares, K from what is
+/// left of both. Futures are not regressed on pasts first, as for a long recording: that would cost half the frames of a segment.
 ///
 /// # Errors
 /// [`ProbError::SequenceTooShort`] when all segments together have too few frames; other [`ProbError`]s for an order that the window
@@ -49,39 +50,29 @@ pub fn identify(
         check_len("segment", segment.len() % channels, 0)?;
         check_finite("segment", segment)?;
     }
-    // Columns of each segment; the first frame of column c's future is c + window.
     let counts: Vec<usize> = segments
         .iter()
-        .map(|segment| (segment.len() / channels + 1).saturating_sub(2 * window))
+        .map(|segment| (segment.len() / channels + 1).saturating_sub(window))
         .collect();
-    let columns: usize = counts.iter().sum();
-    if columns < rows + 2 {
+    let pairs: usize = counts.iter().map(|count| count.saturating_sub(1)).sum();
+    if pairs <= order {
         return Err(ProbError::SequenceTooShort {
             frames: segments
                 .iter()
                 .map(|segment| segment.len() / channels)
                 .sum(),
-            segments: rows + 2 + 2 * window,
+            segments: order + 1 + window,
         });
     }
-    let mut past = DMatrix::<f64>::zeros(rows + 1, columns);
-    let mut future = DMatrix::<f64>::zeros(rows, columns);
-    let mut column = 0;
+    let mut hankel = DMatrix::<f64>::zeros(rows, counts.iter().sum());
+    let mut columns = hankel.column_iter_mut();
     for (segment, count) in segments.iter().zip(&counts) {
-        for first in 0..*count {
-            let at = |frame: usize| &segment[frame * channels..][..rows];
-            past.view_mut((0, column), (rows, 1))
-                .copy_from_slice(at(first));
-            past[(rows, column)] = 1.0;
-            future
-                .column_mut(column)
-                .copy_from_slice(at(first + window));
-            column += 1;
+        for (first, mut column) in (0..*count).zip(&mut columns) {
+            column.copy_from_slice(&segment[first * channels..][..rows]);
         }
     }
-    let foretold = regress(&future, &past)? * &past;
-    let states = strongest(&foretold, order);
-    realise(segments, channels, &counts, window, &states)
+    let states = strongest(&hankel, order);
+    realise(segments, channels, &counts, &states)
 }
 
 /// The matrix M that takes `inputs` to `targets` by least squares.
@@ -98,18 +89,18 @@ fn regress(targets: &DMatrix<f64>, inputs: &DMatrix<f64>) -> Result<DMatrix<f64>
 }
 
 /// The coordinates of the columns, about their mean, along their strongest directions, each scaled to a spread of one.
-fn strongest(foretold: &DMatrix<f64>, order: usize) -> DMatrix<f64> {
-    let mean = foretold.column_mean();
-    let mut centred = foretold.clone();
+fn strongest(hankel: &DMatrix<f64>, order: usize) -> DMatrix<f64> {
+    let mean = hankel.column_mean();
+    let mut centred = hankel.clone();
     for mut column in centred.column_iter_mut() {
         column -= &mean;
     }
-    let scatter = &centred * centred.transpose() / foretold.ncols() as f64;
+    let scatter = &centred * centred.transpose() / hankel.ncols() as f64;
     let eigen = SymmetricEigen::new(scatter);
     let mut rank: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
     rank.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
     let greatest = eigen.eigenvalues[rank[0]].max(f64::MIN_POSITIVE);
-    let mut directions = DMatrix::<f64>::zeros(order, foretold.nrows());
+    let mut directions = DMatrix::<f64>::zeros(order, hankel.nrows());
     for (row, index) in rank.into_iter().take(order).enumerate() {
         let spread = eigen.eigenvalues[index].max(1e-12 * greatest).sqrt();
         directions.set_row(
@@ -124,7 +115,6 @@ fn realise(
     segments: &[&[f64]],
     channels: usize,
     counts: &[usize],
-    window: usize,
     states: &DMatrix<f64>,
 ) -> Result<AffineSystem, ProbError> {
     let order = states.nrows();
@@ -139,7 +129,7 @@ fn realise(
             inputs[(order, column)] = 1.0;
             let next = states.column(first + offset + 1);
             targets.view_mut((0, column), (order, 1)).copy_from(&next);
-            let outputs = &segment[(offset + window) * channels..][..channels];
+            let outputs = &segment[offset * channels..][..channels];
             targets
                 .view_mut((order, column), (channels, 1))
                 .copy_from_slice(outputs);

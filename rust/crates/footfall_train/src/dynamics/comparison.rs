@@ -60,7 +60,7 @@ pub fn compare_dynamics(
         return Ok(None);
     };
     let sequence = [sequence];
-    let pose = PoseSpace::of(&sequence, config.components)?;
+    let pose = PoseSpace::of(&sequence, &clip.clip.skeleton, config.components)?;
     let outputs = Outputs::of(&sequence, &pose);
     let fits = Side::BOTH.map(|side| fit_system(&outputs.segments(side), config));
     let whole = [outputs.sequences[0].as_slice()];

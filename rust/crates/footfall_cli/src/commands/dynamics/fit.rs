@@ -30,6 +30,9 @@ pub(crate) struct FitArgs {
     output: PathBuf,
     #[command(flatten)]
     size: SizeArgs,
+    /// What the model is fitted to, in your words, for its provenance; the conditions when absent
+    #[arg(long, value_name = "TEXT")]
+    describe: Option<String>,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -105,7 +108,13 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
         args.size.order,
         name_of(&args.output)
     );
-    let provenance = describe(&corpus, &args.corpus, &args.conditions, None, command);
+    let provenance = describe(
+        &corpus,
+        &args.corpus,
+        &args.conditions,
+        args.describe.as_deref(),
+        command,
+    );
     let FittedDynamics {
         model,
         segments,

@@ -5,9 +5,10 @@ use crate::model_file::read_dynamics;
 use crate::output;
 use anyhow::{Context as _, Result, ensure};
 use footfall_motion::bvh::{self, clip_to_bvh};
-use footfall_synth::{DynamicsWalkConfig, synthesize_dynamics};
+use footfall_synth::{SwitchingWalkConfig, synthesize_switching};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Make a walk from a switching model
 ///
@@ -25,6 +26,20 @@ pub(crate) struct DynamicsSynthArgs {
     /// Which of its walks
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Speed over the ground in m/s; that of the recordings when absent
+    #[arg(long)]
+    speed: Option<f32>,
+    /// How far steps stray from the average: 0 not at all, 1 as in the recordings
+    #[arg(long, default_value_t = 1.0)]
+    variation: f32,
+    /// Turning in degrees per second, positive to the left
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        value_name = "DEG_PER_S"
+    )]
+    turn: f32,
     /// Frames per second; the model's when absent
     #[arg(long)]
     fps: Option<f64>,
@@ -73,12 +88,16 @@ pub(crate) fn run(args: &DynamicsSynthArgs) -> Result<()> {
         args.seconds
     );
     let model = read_dynamics(&args.model)?;
-    let config = DynamicsWalkConfig {
+    let model = Arc::new(model);
+    let config = SwitchingWalkConfig {
         seconds: args.seconds,
         seed: args.seed,
+        variation: args.variation,
+        speed_mps: args.speed,
+        turn_rate_radps: args.turn.to_radians(),
         frame_rate_hz: args.fps,
     };
-    let walk = synthesize_dynamics(&model, &model.skeleton, &config)
+    let walk = synthesize_switching(&model, &model.skeleton, &config)
         .with_context(|| args.model.display().to_string())?;
     output::write_atomic(
         &args.output,

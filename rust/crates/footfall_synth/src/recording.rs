@@ -1,4 +1,4 @@
-//! A whole walk out of standing and back into it, as the streaming generator walks it.
+//! Whole walks as the streaming generator walks them.
 
 use crate::error::SynthError;
 use crate::generator::{Controls, GaitGenerator, GeneratorConfig};
@@ -6,7 +6,7 @@ use crate::space::StyleSpace;
 use crate::walk::{SynthesizedWalk, WalkConfig};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Clip, FrameSpan, Joint, Pose, Skeleton};
-use footfall_model::GaitModel;
+use footfall_model::{DynamicsModel, GaitModel};
 use std::sync::Arc;
 
 /// Standing before and after the walk, seconds.
@@ -20,7 +20,8 @@ const STAND: Controls = Controls {
     turn_rate_radps: 0.0,
 };
 
-pub(crate) fn synthesize(
+/// A walk out of standing and back into it.
+pub(crate) fn from_standing(
     model: &Arc<GaitModel>,
     skeleton: &Skeleton,
     config: &WalkConfig,
@@ -33,12 +34,8 @@ pub(crate) fn synthesize(
     };
     let mut generator = GaitGenerator::new(&space, &[], skeleton, &walker)?;
     generator.stand();
-    let mut recording = Recording {
-        generator,
-        frame_rate_hz: config.frame_rate_hz.unwrap_or(model.frame_rate_hz),
-        poses: Vec::new(),
-        contact: [Vec::new(), Vec::new()],
-    };
+    let rate = config.frame_rate_hz.unwrap_or(model.frame_rate_hz);
+    let mut recording = Recording::new(generator, rate);
     let frames = |secs: f64| (secs * recording.frame_rate_hz).round() as usize;
     let (rest, longest) = (frames(STANDING_SECS), frames(LONGEST_STEP_SECS));
     let walking = Controls {
@@ -69,6 +66,62 @@ pub(crate) fn synthesize(
     Ok(recording.into_walk(skeleton))
 }
 
+/// What walk of a switching model to make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwitchingWalkConfig {
+    /// How long.
+    pub seconds: f64,
+    /// Which of its walks.
+    pub seed: u64,
+    /// How far steps stray from the average: 0 not at all, 1 as in the recordings.
+    pub variation: f32,
+    /// Speed over the ground, m/s; that of the recordings when absent.
+    pub speed_mps: Option<f32>,
+    /// Turning, rad/s, positive to the left.
+    pub turn_rate_radps: f32,
+    /// Frames per second of the clip; the model's when absent.
+    pub frame_rate_hz: Option<f64>,
+}
+
+/// Generates a walk of a switching model (*Gait as a switching dynamical system*, section 4), which begins with an initial contact
+/// of the left foot.
+///
+/// # Errors
+/// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
+pub fn synthesize_switching(
+    model: &Arc<DynamicsModel>,
+    skeleton: &Skeleton,
+    config: &SwitchingWalkConfig,
+) -> Result<SynthesizedWalk, SynthError> {
+    let rate = config.frame_rate_hz.unwrap_or(model.frame_rate_hz);
+    let settings = [
+        ("seconds", config.seconds as f32),
+        ("frame rate", rate as f32),
+        ("speed", config.speed_mps.unwrap_or(0.0)),
+        ("turn rate", config.turn_rate_radps),
+    ];
+    for (setting, value) in settings {
+        if !value.is_finite() {
+            return Err(SynthError::Setting { setting, value });
+        }
+    }
+    let walker = GeneratorConfig {
+        seed: config.seed,
+        phase: 0.0,
+        variation: config.variation,
+    };
+    let generator = GaitGenerator::switching(model, skeleton, &walker)?;
+    let controls = Controls {
+        speed_mps: config.speed_mps.unwrap_or(generator.usual_speed_mps()),
+        turn_rate_radps: config.turn_rate_radps,
+    };
+    let mut recording = Recording::new(generator, rate);
+    for _ in 0..=(config.seconds.max(0.0) * rate).round() as usize {
+        recording.step(controls);
+    }
+    Ok(recording.into_walk(skeleton))
+}
+
 struct Recording {
     generator: GaitGenerator,
     frame_rate_hz: f64,
@@ -77,6 +130,15 @@ struct Recording {
 }
 
 impl Recording {
+    fn new(generator: GaitGenerator, frame_rate_hz: f64) -> Self {
+        Self {
+            generator,
+            frame_rate_hz,
+            poses: Vec::new(),
+            contact: [Vec::new(), Vec::new()],
+        }
+    }
+
     /// Records a frame and tells how many steps began.
     fn step(&mut self, controls: Controls) -> usize {
         // The first frame is where the walker stands.

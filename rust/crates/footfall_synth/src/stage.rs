@@ -1,0 +1,122 @@
+//! The ground under one walker: steps of generated features become frames on it.
+
+use crate::plan::StepShape;
+use crate::planting::{Course, PlantedFrame, Planter, PlanterState, smooth_step};
+use crate::raw::RawFrame;
+use crate::standing::Amplitude;
+use footfall_core::{Side, Skeleton};
+use footfall_ik::Plant;
+use footfall_model::FEATURE_COUNT;
+use glam::Vec3;
+
+/// Static features of one posture.
+pub(crate) type Posture = [f32; FEATURE_COUNT];
+
+/// How a step is put on the ground.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placing<'a> {
+    pub(crate) shape: &'a StepShape,
+    /// The standing posture before the step and after it.
+    pub(crate) standing: [&'a Posture; 2],
+    /// Turning at its end, rad/s.
+    pub(crate) turn_rate: f32,
+    /// Headings under which the walk goes along +Z, before the step and after it, radians.
+    pub(crate) facing: [f32; 2],
+}
+
+/// Puts one step after another on the ground; allocates nothing after it was made.
+#[derive(Debug)]
+pub(crate) struct Stage {
+    skeleton: Skeleton,
+    frame_secs: f32,
+    raw: Vec<RawFrame>,
+    /// Where the feet were put last; `None` before the first step.
+    planter: Option<Planter>,
+    /// The last step on the ground, at its own detail, one frame longer than the step; what lies beyond is left from others.
+    pub(crate) frames: Vec<PlantedFrame>,
+}
+
+impl Stage {
+    /// For steps of at most `longest` frames, which come at `frame_rate_hz`.
+    pub(crate) fn new(skeleton: &Skeleton, frame_rate_hz: f64, longest: usize) -> Self {
+        Self {
+            skeleton: skeleton.clone(),
+            frame_secs: (1.0 / frame_rate_hz) as f32,
+            raw: vec![RawFrame::default(); longest + 1],
+            planter: None,
+            frames: vec![PlantedFrame::default(); longest + 1],
+        }
+    }
+
+    /// The next step is the first.
+    pub(crate) fn clear(&mut self) {
+        self.planter = None;
+    }
+
+    /// The next step goes on from these feet.
+    pub(crate) fn resume(&mut self, state: PlanterState) {
+        self.planter = Some(Planter::resume(&self.skeleton, self.frame_secs, state));
+    }
+
+    /// What the next step begins with; `None` before the first.
+    pub(crate) fn planter_state(&self) -> Option<PlanterState> {
+        self.planter.as_ref().map(Planter::state)
+    }
+
+    /// Where this foot was put last; `None` before the first step.
+    pub(crate) fn plant(&self, side: Side) -> Option<&Plant> {
+        self.planter.as_ref().map(|planter| planter.plant(side))
+    }
+
+    /// How far the hips travelled over the ground in the step that was put there.
+    pub(crate) fn travel(&self, shape: &StepShape) -> Vec3 {
+        let last = shape.ground_timing().frames;
+        let [from, to] = [0, last].map(|frame| self.frames[frame].pose.root_position);
+        (to - from) * Vec3::new(1.0, 0.0, 1.0)
+    }
+
+    /// Puts a step on the ground: `rows` are the features of its frames, and of the first frame of the next step.
+    pub(crate) fn put<'a>(
+        &mut self,
+        rows: impl Iterator<Item = &'a [f32]>,
+        placing: &Placing<'_>,
+    ) {
+        let shape = placing.shape;
+        let timing = shape.ground_timing();
+        let detail = shape.detail.stride();
+        let raw = &mut self.raw[..=timing.frames];
+        let frames = &mut self.frames[..=timing.frames];
+        let stride = shape.stride as f32;
+        let rows = rows.step_by(detail).enumerate();
+        for ((raw, frame), (index, features)) in raw.iter_mut().zip(&mut *frames).zip(rows) {
+            let rotations = &mut frame.pose.rotations;
+            if shape.amplitude == Amplitude::WALK {
+                raw.decode(features, &self.skeleton, stride, rotations);
+                continue;
+            }
+            let s = index as f32 / timing.frames as f32;
+            let amplitude = shape.amplitude.at(s);
+            let change = smooth_step(s);
+            let mut blended = [0.0; FEATURE_COUNT];
+            let [before, after] = placing.standing;
+            let pairs = before.iter().zip(after).zip(features);
+            for (value, ((before, standing), walking)) in blended.iter_mut().zip(pairs) {
+                let standing = before + change * (standing - before);
+                *value = standing + amplitude * (walking - standing);
+            }
+            let stride = 1.0 + amplitude * (stride - 1.0);
+            raw.decode(&blended, &self.skeleton, stride, rotations);
+        }
+        let [facing_before, facing] = placing.facing;
+        let frame_secs = self.frame_secs * detail as f32;
+        let planter = self.planter.get_or_insert_with(|| {
+            Planter::new(&self.skeleton, frame_secs, &raw[0], timing.leading, facing)
+        });
+        let course = Course {
+            turn_rate: placing.turn_rate,
+            shift: facing - facing_before,
+        };
+        planter.set_frame_secs(frame_secs);
+        planter.plant_step(raw, &timing, course, frames);
+    }
+}

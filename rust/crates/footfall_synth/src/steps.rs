@@ -1,0 +1,63 @@
+//! Where a walker's steps come from.
+
+use crate::detail::Detail;
+use crate::plan::StepShape;
+use crate::stage::Stage;
+use crate::standing::Amplitude;
+use crate::styled::StyledSteps;
+use crate::switching::SwitchingSteps;
+
+/// A step's speed differs by at most this much from the speed of the step before, m/s: nobody brakes faster.
+pub(crate) const MAX_SPEED_CHANGE_MPS: f32 = 0.5;
+
+/// What the next step is asked to be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ask {
+    pub(crate) speed_mps: f32,
+    pub(crate) turn_rate: f32,
+    pub(crate) amplitude: Amplitude,
+    pub(crate) detail: Detail,
+}
+
+/// One walker's steps, put on the ground one after the other.
+pub(crate) trait StepSource {
+    /// The step that is on the ground now.
+    fn shape(&self) -> &StepShape;
+
+    /// The ground that it is on.
+    fn stage(&self) -> &Stage;
+
+    /// Headings under which the walk goes along +Z, before the current step and after it, radians.
+    fn facing(&self) -> [f32; 2];
+
+    /// Starts over, standing; whether it could.
+    fn stand(&mut self, detail: Detail) -> bool;
+
+    /// Goes on to the next step.
+    fn advance(&mut self, ask: &Ask);
+}
+
+/// The kinds of models that walk.
+#[derive(Debug)]
+pub(crate) enum Steps {
+    /// A hidden semi-Markov model in styles.
+    Styled(Box<StyledSteps>),
+    /// Two linear systems that take turns.
+    Switching(Box<SwitchingSteps>),
+}
+
+impl Steps {
+    pub(crate) fn source(&self) -> &dyn StepSource {
+        match self {
+            Self::Styled(steps) => &**steps,
+            Self::Switching(steps) => &**steps,
+        }
+    }
+
+    pub(crate) fn source_mut(&mut self) -> &mut dyn StepSource {
+        match self {
+            Self::Styled(steps) => &mut **steps,
+            Self::Switching(steps) => &mut **steps,
+        }
+    }
+}

@@ -1,0 +1,356 @@
+//! Steps of a switching model: two linear systems take turns, each from a state in which a recorded segment began (*Gait as a
+//! switching dynamical system*, section 4).
+
+mod system;
+
+use crate::detail::Detail;
+use crate::error::SynthError;
+use crate::generator::{GeneratorConfig, STANDING_SPEED_MPS};
+use crate::plan::{MAX_STEP_SECS, StepShape};
+use crate::planting::PlanterState;
+use crate::stage::{Placing, Posture, Stage};
+use crate::standing::{Amplitude, standing_posture};
+use crate::steps::{Ask, MAX_SPEED_CHANGE_MPS, StepSource};
+use footfall_core::{Side, Skeleton};
+use footfall_model::{DynamicsModel, FEATURE_COUNT, LONGEST_SEGMENT};
+use glam::Vec3;
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, StandardNormal};
+use std::sync::Arc;
+use system::RunningSystem;
+
+/// A segment begins where one of so many nearest recorded ones began: the pose goes on, and still varies.
+const NEAREST: usize = 4;
+
+/// What the pose jumps by at a switch dies away in this time, seconds.
+const SETTLE_SECS: f64 = 0.1;
+
+/// A segment's length stays within this many standard deviations, and this share of the mean.
+const MAX_LENGTH_WEIGHT: f64 = 2.0;
+const LENGTHS: [f64; 2] = [0.7, LONGEST_SEGMENT];
+
+/// A segment ends this many frames before or after its drawn length, where the next one begins most alike.
+const SWITCH_REACH: usize = 2;
+
+/// Speeds up to this many times the recorded one are walked.
+const MAX_SPEED_RATIO: f64 = 1.6;
+
+/// Least factor on the tempo: slower walks take shorter strides instead.
+const MIN_TEMPO: f64 = 0.8;
+
+/// Two systems that take turns.
+#[derive(Debug)]
+pub(crate) struct SwitchingSteps {
+    pub(crate) model: Arc<DynamicsModel>,
+    /// [`DynamicsModel::fingerprint`].
+    pub(crate) fingerprint: u32,
+    systems: [RunningSystem; 2],
+    mean: Posture,
+    components: Vec<f32>,
+    standing: Posture,
+    stage: Stage,
+    rng: ChaCha8Rng,
+    variation: f64,
+    shape: StepShape,
+    pub(crate) origin: SwitchingOrigin,
+    /// Component weights of the current segment, frame by frame, two frames beyond its end.
+    weights: Vec<f32>,
+    features: Vec<f32>,
+    /// Speed of the recorded walk on this body, m/s, and the heading under which it goes along +Z.
+    pub(crate) own_speed_mps: f64,
+    facing: f32,
+    /// Speed of the current step.
+    pub(crate) speed_mps: f32,
+}
+
+/// Where the current step came from: with the model all that it takes to make it again.
+#[derive(Clone, Debug)]
+pub(crate) struct SwitchingOrigin {
+    pub(crate) leading: Side,
+    pub(crate) tempo: f64,
+    pub(crate) stride: f64,
+    pub(crate) detail: Detail,
+    pub(crate) amplitude: Amplitude,
+    pub(crate) turn_rate: f32,
+    pub(crate) facing: [f32; 2],
+    /// How far chance had come.
+    pub(crate) chance_position: u64,
+    /// The next two frames of the segment before, had nothing switched; empty for the first.
+    pub(crate) expected: Vec<f32>,
+    /// The feet before the step; `None` for the first.
+    pub(crate) planter: Option<PlanterState>,
+}
+
+impl SwitchingSteps {
+    /// Walking already, with the initial contact of the foot `first`.
+    ///
+    /// # Errors
+    /// [`SynthError::Model`] when the model cannot be used.
+    pub(crate) fn new(
+        model: &Arc<DynamicsModel>,
+        skeleton: &Skeleton,
+        config: &GeneratorConfig,
+        first: Side,
+    ) -> Result<Self, SynthError> {
+        model.check()?;
+        let mut steps = Self::prepare(model, skeleton, model.fingerprint()?);
+        steps.measure();
+        steps.draw_by(config);
+        steps.begin(first, Amplitude::WALK, steps.own_speed_mps, Detail::Full);
+        Ok(steps)
+    }
+
+    fn prepare(model: &Arc<DynamicsModel>, skeleton: &Skeleton, fingerprint: u32) -> Self {
+        let mut mean = [0.0; FEATURE_COUNT];
+        mean.copy_from_slice(&model.mean);
+        let longest = (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize;
+        let longest = Detail::Quarter.whole_frames(longest);
+        let channels = model.components.len();
+        Self {
+            systems: Side::BOTH.map(|side| RunningSystem::new(model.regime(side))),
+            standing: standing_posture(mean),
+            mean: mean.map(|value| value as f32),
+            components: model.components.iter().flatten().map(|v| *v as f32).collect(),
+            stage: Stage::new(skeleton, model.frame_rate_hz, longest),
+            rng: ChaCha8Rng::seed_from_u64(0),
+            variation: 0.0,
+            shape: StepShape::of_walk(Side::Left, 1, 0.0, 1.0, Detail::Full),
+            origin: SwitchingOrigin {
+                leading: Side::Left,
+                tempo: 1.0,
+                stride: 1.0,
+                detail: Detail::Full,
+                amplitude: Amplitude::WALK,
+                turn_rate: 0.0,
+                facing: [0.0; 2],
+                chance_position: 0,
+                expected: Vec::with_capacity(2 * channels),
+                planter: None,
+            },
+            weights: Vec::with_capacity((longest + SWITCH_REACH + 2) * channels),
+            features: Vec::with_capacity((longest + 1) * FEATURE_COUNT),
+            own_speed_mps: 1.0,
+            facing: 0.0,
+            speed_mps: 0.0,
+            model: Arc::clone(model),
+            fingerprint,
+        }
+    }
+
+    /// From here on chance is that of a seed.
+    fn draw_by(&mut self, config: &GeneratorConfig) {
+        self.rng = ChaCha8Rng::seed_from_u64(config.seed);
+        self.variation = f64::from(config.variation.clamp(0.0, 2.0));
+    }
+
+    /// Walks a few steps without chance, to learn how fast and which way they go.
+    fn measure(&mut self) {
+        let rate = self.model.frame_rate_hz;
+        // First the way, under which the speed is then measured.
+        for _ in 0..2 {
+            let ask = Ask {
+                speed_mps: self.own_speed_mps as f32,
+                turn_rate: 0.0,
+                amplitude: Amplitude::WALK,
+                detail: Detail::Full,
+            };
+            self.begin(Side::Left, ask.amplitude, self.own_speed_mps, ask.detail);
+            let (mut travel, mut frames) = (Vec3::ZERO, 0);
+            for step in 0..6 {
+                self.advance(&ask);
+                if step >= 2 {
+                    travel += self.stage.travel(&self.shape);
+                    frames += self.shape.timing.frames;
+                }
+            }
+            self.facing -= travel.x.atan2(travel.z);
+            let speed = f64::from(travel.length()) * rate / frames as f64;
+            self.own_speed_mps = speed.max(0.05);
+        }
+    }
+
+    /// Starts over: one step that does not show, then the first.
+    fn begin(&mut self, first: Side, amplitude: Amplitude, speed_mps: f64, detail: Detail) {
+        self.stage.clear();
+        self.weights.clear();
+        self.origin.facing = [self.facing; 2];
+        self.origin.turn_rate = 0.0;
+        self.origin.amplitude = amplitude;
+        self.origin.detail = detail;
+        self.speed_mps = speed_mps as f32;
+        self.set_pace();
+        for side in [first.other(), first] {
+            self.take_over(side);
+            self.realise();
+        }
+    }
+
+    /// Takes up an [`origin`](SwitchingOrigin) and makes its step again.
+    pub(crate) fn resume(
+        &mut self,
+        config: &GeneratorConfig,
+        origin: SwitchingOrigin,
+        speed_mps: f32,
+    ) {
+        self.draw_by(config);
+        self.rng.set_word_pos(u128::from(origin.chance_position));
+        match origin.planter {
+            Some(state) => self.stage.resume(state),
+            None => self.stage.clear(),
+        }
+        let mut expected = core::mem::take(&mut self.origin.expected);
+        expected.clear();
+        // Its room stays: steps allocate nothing.
+        expected.extend_from_slice(&origin.expected);
+        self.origin = SwitchingOrigin { expected, ..origin };
+        self.speed_mps = speed_mps;
+        self.realise();
+    }
+
+    /// The tempo and the stride that give a speed, shared between both.
+    fn set_pace(&mut self) {
+        let ratio = f64::from(self.speed_mps) / self.own_speed_mps;
+        let ratio = ratio.clamp(0.0, MAX_SPEED_RATIO);
+        self.origin.tempo = ratio.sqrt().max(MIN_TEMPO);
+        self.origin.stride = ratio / self.origin.tempo;
+    }
+
+    /// Makes what the current step left behind the origin of the next.
+    fn take_over(&mut self, leading: Side) {
+        self.origin.leading = leading;
+        self.origin.chance_position = self.rng.get_word_pos() as u64;
+        self.origin.planter = self.stage.planter_state();
+        let channels = self.model.components.len();
+        self.origin.expected.clear();
+        let end = self.weights.len().saturating_sub(2 * channels);
+        self.origin.expected.extend_from_slice(&self.weights[end..]);
+    }
+
+    /// Works the step of the [`origin`](SwitchingOrigin) out and puts it on the ground.
+    fn realise(&mut self) {
+        let side = self.origin.leading;
+        let drawn = self.draw_length(side);
+        let start = self.draw_start(side);
+        let settle = SETTLE_SECS * self.model.frame_rate_hz;
+        let reach = SWITCH_REACH.min(drawn - 1);
+        let system = &mut self.systems[side.index()];
+        system.run(
+            start,
+            drawn + reach + 2,
+            &self.origin.expected,
+            settle as f32,
+            &mut self.weights,
+        );
+        let length = self.switch_near(drawn, reach);
+
+        let frames = (length as f64 / self.origin.tempo).round() as usize;
+        let longest = (MAX_STEP_SECS * self.model.frame_rate_hz) as usize;
+        let terminal = self.model.regime(side).other_terminal;
+        let frames = frames.min(longest);
+        self.shape =
+            StepShape::of_walk(side, frames, terminal, self.origin.stride, self.origin.detail);
+        self.shape.set_amplitude(self.origin.amplitude);
+        self.write_features(length);
+        let rows = self.features.chunks_exact(FEATURE_COUNT);
+        self.stage.put(
+            rows,
+            &Placing {
+                shape: &self.shape,
+                standing: [&self.standing; 2],
+                turn_rate: self.origin.turn_rate,
+                facing: self.origin.facing,
+            },
+        );
+    }
+
+    /// Frames of a segment of the model's own tempo.
+    fn draw_length(&mut self, side: Side) -> usize {
+        let regime = self.model.regime(side);
+        let weight: f64 = StandardNormal.sample(&mut self.rng);
+        let weight = weight.clamp(-MAX_LENGTH_WEIGHT, MAX_LENGTH_WEIGHT);
+        let mean = regime.frames_mean;
+        let drawn = mean + self.variation * weight * regime.frames_variance.sqrt();
+        let longest = MAX_STEP_SECS * self.model.frame_rate_hz;
+        let drawn = drawn.clamp(LENGTHS[0] * mean, LENGTHS[1] * mean).min(longest);
+        (drawn.round() as usize).max(1)
+    }
+
+    /// The frame, at most `reach` away from a drawn length, at which the other system takes over best: there the segment ends.
+    fn switch_near(&mut self, drawn: usize, reach: usize) -> usize {
+        let channels = self.model.components.len();
+        let other = &self.systems[self.origin.leading.other().index()];
+        let gap = |end: usize| other.nearest::<1>(&self.weights[end * channels..][..2 * channels]);
+        let length = (drawn - reach..=drawn + reach)
+            .min_by(|a, b| gap(*a).distance().total_cmp(&gap(*b).distance()))
+            .unwrap_or(drawn);
+        self.weights.truncate((length + 2) * channels);
+        length
+    }
+
+    /// One of the recorded starts that go on best from where the pose is.
+    fn draw_start(&mut self, side: Side) -> usize {
+        let system = &self.systems[side.index()];
+        let nearest = system.nearest::<NEAREST>(&self.origin.expected);
+        let among = if self.variation > 0.0 { nearest.len() } else { 1 };
+        // Drawn in any case, so that chance comes as far in either.
+        let drawn = self.rng.random_range(0..nearest.len());
+        nearest.get(drawn.min(among - 1))
+    }
+
+    /// The features of the step's frames and of the one after, at its own tempo.
+    fn write_features(&mut self, length: usize) {
+        let channels = self.model.components.len();
+        let frames = self.shape.timing.frames;
+        self.features.clear();
+        for frame in 0..=frames {
+            let time = (frame * length) as f32 / frames as f32;
+            let first = (time as usize).min(length);
+            let share = time - first as f32;
+            let here = &self.weights[first * channels..][..2 * channels];
+            let row = self.features.len();
+            self.features.extend_from_slice(&self.mean);
+            let row = &mut self.features[row..];
+            for (channel, component) in self.components.chunks_exact(FEATURE_COUNT).enumerate() {
+                let weight = here[channel] + share * (here[channels + channel] - here[channel]);
+                for (feature, value) in row.iter_mut().zip(component) {
+                    *feature += weight * value;
+                }
+            }
+        }
+    }
+}
+
+impl StepSource for SwitchingSteps {
+    fn shape(&self) -> &StepShape {
+        &self.shape
+    }
+
+    fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    fn facing(&self) -> [f32; 2] {
+        self.origin.facing
+    }
+
+    fn stand(&mut self, detail: Detail) -> bool {
+        let first = self.origin.leading;
+        let speed = f64::from(STANDING_SPEED_MPS);
+        self.begin(first, Amplitude::STAND, speed, detail);
+        self.speed_mps = 0.0;
+        true
+    }
+
+    fn advance(&mut self, ask: &Ask) {
+        let change = ask.speed_mps - self.speed_mps;
+        self.speed_mps += change.clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
+        self.take_over(self.origin.leading.other());
+        self.set_pace();
+        self.origin.turn_rate = ask.turn_rate;
+        self.origin.amplitude = ask.amplitude;
+        self.origin.detail = ask.detail;
+        self.origin.facing = [self.origin.facing[1], self.facing];
+        self.realise();
+    }
+}
