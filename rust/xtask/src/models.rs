@@ -16,7 +16,12 @@ const WALK: &str = "addons/footfall/models/walk.footfall";
 const DYNAMICS: &str = "addons/footfall/models/walk.footdyn";
 
 /// Walks of one person, who has the most of them: two linear systems hold one way of walking.
-const WALKS_OF_ONE: [&str; 4] = ["--where", "category=neutral_walk", "--where", "subject=cmu35"];
+const WALKS_OF_ONE: [&str; 4] = [
+    "--where",
+    "category=neutral_walk",
+    "--where",
+    "subject=cmu35",
+];
 
 /// The recordings that are free for commercial use: neutral walks.
 const NEUTRAL_WALKS: [&str; 4] = ["--where", "category=neutral_walk", "--where", "path=cmu/*"];

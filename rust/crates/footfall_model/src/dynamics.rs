@@ -127,7 +127,9 @@ impl DynamicsModel {
         }
         for start in &regime.starts {
             let start = DVector::from_column_slice(start);
-            let outputs = regime.system.simulate(&start, frames as usize + SLACK_FRAMES);
+            let outputs = regime
+                .system
+                .simulate(&start, frames as usize + SLACK_FRAMES);
             let mut poses = outputs.chunks_exact(self.components.len());
             if !poses.all(|weights| {
                 let features = self.features(weights);

@@ -180,7 +180,11 @@ impl Planter {
         let (hips, heading) = (last.pose.root_position, last.heading);
         let trailing = timing.leading.other();
         let next_plant = self.next_plant(raw, timing, hips, heading, course.turn_rate);
-        let swing = Swing::new(&self.swing_ends(raw, timing, out, &next_plant), timing);
+        let ends = self.swing_ends(raw, timing, out, &next_plant);
+        let before = timing.frames - 1;
+        let (hips, level) = (out[before].pose.root_position, out[before].level);
+        let arrival = free_foot(&raw[before], trailing, hips, level).ankle;
+        let swing = Swing::new(&ends, arrival, timing, self.frame_secs);
         for (index, (frame, raw)) in out.iter_mut().zip(raw).enumerate() {
             let level = frame.level;
             let hips = frame.pose.root_position;

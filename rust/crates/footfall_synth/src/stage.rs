@@ -76,11 +76,7 @@ impl Stage {
     }
 
     /// Puts a step on the ground: `rows` are the features of its frames, and of the first frame of the next step.
-    pub(crate) fn put<'a>(
-        &mut self,
-        rows: impl Iterator<Item = &'a [f32]>,
-        placing: &Placing<'_>,
-    ) {
+    pub(crate) fn put<'a>(&mut self, rows: impl Iterator<Item = &'a [f32]>, placing: &Placing<'_>) {
         let shape = placing.shape;
         let timing = shape.ground_timing();
         let detail = shape.detail.stride();

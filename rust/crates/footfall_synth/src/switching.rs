@@ -24,7 +24,7 @@ use system::RunningSystem;
 const NEAREST: usize = 4;
 
 /// What the pose jumps by at a switch dies away in this time, seconds.
-const SETTLE_SECS: f64 = 0.1;
+const SETTLE_SECS: f64 = 0.06;
 
 /// A segment's length stays within this many standard deviations, and this share of the mean.
 const MAX_LENGTH_WEIGHT: f64 = 2.0;
@@ -34,7 +34,7 @@ const LENGTHS: [f64; 2] = [0.7, LONGEST_SEGMENT];
 const SWITCH_REACH: usize = 2;
 
 /// Speeds up to this many times the recorded one are walked.
-const MAX_SPEED_RATIO: f64 = 1.6;
+const MAX_SPEED_RATIO: f64 = 1.4;
 
 /// Least factor on the tempo: slower walks take shorter strides instead.
 const MIN_TEMPO: f64 = 0.8;
@@ -111,7 +111,12 @@ impl SwitchingSteps {
             systems: Side::BOTH.map(|side| RunningSystem::new(model.regime(side))),
             standing: standing_posture(mean),
             mean: mean.map(|value| value as f32),
-            components: model.components.iter().flatten().map(|v| *v as f32).collect(),
+            components: model
+                .components
+                .iter()
+                .flatten()
+                .map(|v| *v as f32)
+                .collect(),
             stage: Stage::new(skeleton, model.frame_rate_hz, longest),
             rng: ChaCha8Rng::seed_from_u64(0),
             variation: 0.0,
@@ -248,8 +253,13 @@ impl SwitchingSteps {
         let longest = (MAX_STEP_SECS * self.model.frame_rate_hz) as usize;
         let terminal = self.model.regime(side).other_terminal;
         let frames = frames.min(longest);
-        self.shape =
-            StepShape::of_walk(side, frames, terminal, self.origin.stride, self.origin.detail);
+        self.shape = StepShape::of_walk(
+            side,
+            frames,
+            terminal,
+            self.origin.stride,
+            self.origin.detail,
+        );
         self.shape.set_amplitude(self.origin.amplitude);
         self.write_features(length);
         let rows = self.features.chunks_exact(FEATURE_COUNT);
@@ -272,7 +282,9 @@ impl SwitchingSteps {
         let mean = regime.frames_mean;
         let drawn = mean + self.variation * weight * regime.frames_variance.sqrt();
         let longest = MAX_STEP_SECS * self.model.frame_rate_hz;
-        let drawn = drawn.clamp(LENGTHS[0] * mean, LENGTHS[1] * mean).min(longest);
+        let drawn = drawn
+            .clamp(LENGTHS[0] * mean, LENGTHS[1] * mean)
+            .min(longest);
         (drawn.round() as usize).max(1)
     }
 
@@ -292,7 +304,11 @@ impl SwitchingSteps {
     fn draw_start(&mut self, side: Side) -> usize {
         let system = &self.systems[side.index()];
         let nearest = system.nearest::<NEAREST>(&self.origin.expected);
-        let among = if self.variation > 0.0 { nearest.len() } else { 1 };
+        let among = if self.variation > 0.0 {
+            nearest.len()
+        } else {
+            1
+        };
         // Drawn in any case, so that chance comes as far in either.
         let drawn = self.rng.random_range(0..nearest.len());
         nearest.get(drawn.min(among - 1))

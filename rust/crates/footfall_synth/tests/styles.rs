@@ -4,7 +4,9 @@
 
 use footfall_core::{Joint, ModelPose, Pose, Skeleton, forward_kinematics};
 use footfall_model::layout::feature_offset;
-use footfall_model::{GaitModel, GaitStyle, OBSERVATION_COUNT, StepSpread, StyleError};
+use footfall_model::{
+    DynamicsModel, GaitModel, GaitStyle, OBSERVATION_COUNT, StepSpread, StyleError,
+};
 use footfall_synth::{
     Controls, Detail, GaitGenerator, GeneratorConfig, StateError, StyleSpace, SynthError,
 };
@@ -266,7 +268,24 @@ fn a_state_of_another_model_or_other_styles_is_refused() {
         phase: 0.0,
         variation: 1.0,
     };
-    let mut other = GaitGenerator::new(&plain, &[], &Skeleton::standard(), &config).unwrap();
+    let skeleton = Skeleton::standard();
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../../addons/footfall/models/walk.footdyn"
+    );
+    let dynamics = DynamicsModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
+    let mut switching = GaitGenerator::switching(&Arc::new(dynamics), &skeleton, &config).unwrap();
+    let refused = switching.restore(&walker.state());
+    assert!(
+        matches!(refused, Err(StateError::OtherModel)),
+        "{refused:?}"
+    );
+    let mut other = GaitGenerator::new(&plain, &[], &skeleton, &config).unwrap();
+    let refused = other.restore(&switching.state());
+    assert!(
+        matches!(refused, Err(StateError::OtherModel)),
+        "{refused:?}"
+    );
     let refused = other.restore(&walker.state());
     assert!(matches!(
         refused,

@@ -338,7 +338,11 @@ impl PoseSpace {
         let scaled = |scale: &dyn Fn(f64, f64) -> f64| {
             let column = |index: &usize| {
                 let column = eigen.eigenvectors.column(*index);
-                column.iter().zip(&reach).map(|(v, r)| scale(*v, *r)).collect()
+                column
+                    .iter()
+                    .zip(&reach)
+                    .map(|(v, r)| scale(*v, *r))
+                    .collect()
             };
             rank.iter().map(column).collect::<Vec<Vec<f64>>>()
         };

@@ -15,6 +15,12 @@ const CLEARANCE_SOFTNESS_M: f32 = 0.004;
 /// How fast the disagreement from the last stance dies away, per swing.
 const SETTLE_RATE: f32 = 8.0;
 
+/// A foot lands at most this fast, m/s: people brake their swing before the heel strikes.
+const MAX_LANDING_MPS: f32 = 1.2;
+
+/// Over this time at most a faster foot is braked, seconds.
+const BRAKING_SECS: f32 = 0.16;
+
 /// What planted and generated foot disagree about, from the foot's last frame on the ground to its next first.
 pub(super) struct Swing {
     first: usize,
@@ -23,6 +29,9 @@ pub(super) struct Swing {
     rotation: Correction,
     /// The toes' own rotation; straight at its end.
     toes: Correction,
+    /// By how much the foot would land too fast, metres a frame, and over how many frames it is braked.
+    excess: Vec3,
+    braking: f32,
 }
 
 /// A correction at both ends of the swing, and how fast it changes when the foot leaves the ground (per swing).
@@ -41,8 +50,14 @@ impl Correction {
 }
 
 impl Swing {
-    /// `ends`: the planted and the free foot one frame before the swing, at its start and at its end.
-    pub(super) fn new(ends: &[(FootTarget, FootTarget); 3], timing: &StepTiming) -> Self {
+    /// `ends`: the planted and the free foot one frame before the swing, at its start and at its end; `arrival`: where the free
+    /// foot is one frame before the end.
+    pub(super) fn new(
+        ends: &[(FootTarget, FootTarget); 3],
+        arrival: Vec3,
+        timing: &StepTiming,
+        frame_secs: f32,
+    ) -> Self {
         let first = timing.terminal;
         let frames = (timing.frames - first).max(1) as f32;
         let correction = |difference: &dyn Fn(&FootTarget, &FootTarget) -> Vec3| {
@@ -58,9 +73,13 @@ impl Swing {
         // Captured toes are too noisy to follow, as most marker sets guess them: from their bend at the end of the stance
         // they straighten.
         let toes = correction(&|planted, _| log_map(planted.foot.inverse() * planted.toes));
+        // The corrections have come to rest by then.
+        let landing = ends[2].1.ankle - arrival;
         Self {
             first,
             frames,
+            excess: landing - landing.clamp_length_max(MAX_LANDING_MPS * frame_secs),
+            braking: (BRAKING_SECS / frame_secs).min(frames),
             position: correction(&|planted, free| planted.ankle - free.ankle),
             rotation: correction(&|planted, free| log_map(planted.foot * free.foot.inverse())),
             toes: Correction {
@@ -79,6 +98,10 @@ impl Swing {
             foot: rotation,
             toes: rotation * exp_map(self.toes.at(s)),
         };
+        // Ahead at first, so as to arrive slower.
+        let left = self.frames - (index - self.first) as f32;
+        let b = (1.0 - left / self.braking).max(0.0);
+        target.ankle += self.excess * (self.braking * b * b * (1.0 - b));
         let clearance = CLEARANCE_M * (PI * s).sin().powi(2);
         let softness = CLEARANCE_SOFTNESS_M * (PI * s).sin() + 1e-6;
         let short = (clearance - foot.lowest_point(&target)) / softness;

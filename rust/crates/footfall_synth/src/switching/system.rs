@@ -70,7 +70,12 @@ impl RunningSystem {
             channels,
             columns,
             offsets: offsets.map(|value| *value as f32).collect(),
-            starts: regime.starts.iter().flatten().map(|value| *value as f32).collect(),
+            starts: regime
+                .starts
+                .iter()
+                .flatten()
+                .map(|value| *value as f32)
+                .collect(),
             begins: Vec::new(),
             state: vec![0.0; order],
             next: vec![0.0; order + channels],
@@ -93,7 +98,7 @@ impl RunningSystem {
             len: 0,
         };
         for (start, begins) in self.begins.chunks_exact(2 * self.channels).enumerate() {
-            let pairs = begins.iter().zip(expected).take(self.channels);
+            let pairs = begins.iter().zip(expected);
             let distance: f32 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
             nearest.offer(distance, start);
         }
@@ -111,14 +116,15 @@ impl RunningSystem {
         weights: &mut Vec<f32>,
     ) {
         let (order, channels) = (self.order, self.channels);
-        self.state.copy_from_slice(&self.starts[start * order..][..order]);
+        self.state
+            .copy_from_slice(&self.starts[start * order..][..order]);
         self.jump.fill([0.0; 2]);
         if let (Some(begins), [_, ..]) = (self.begins.get(start * 2 * channels..), expected) {
             for (channel, jump) in self.jump.iter_mut().enumerate() {
                 let gap = |frame: usize| {
                     expected[frame * channels + channel] - begins[frame * channels + channel]
                 };
-                *jump = [gap(0), gap(0) / settle];
+                *jump = [gap(0), gap(1) - gap(0) + gap(0) / settle];
             }
         }
         let decay = (-1.0 / settle).exp();
@@ -136,7 +142,9 @@ impl RunningSystem {
             self.state.copy_from_slice(state);
             let pairs = outputs.iter().zip(&self.jump);
             let frame = frame as f32;
-            weights.extend(pairs.map(|(output, [gap, slope])| output + remains * (gap + slope * frame)));
+            weights.extend(
+                pairs.map(|(output, [gap, slope])| output + remains * (gap + slope * frame)),
+            );
             remains *= decay;
         }
     }
