@@ -1,5 +1,5 @@
 class_name Paint
-## Colours a character.
+## Colours a character, and names it.
 
 
 static func apply(walker: Node3D, colour: Color) -> void:
@@ -12,3 +12,15 @@ static func apply(walker: Node3D, colour: Color) -> void:
 			paint.rim_enabled = true
 			paint.rim = 0.2
 		mesh.set_surface_override_material(0, paint)
+
+
+## Writes a name above its head.
+static func label(walker: Node3D, title: String) -> void:
+	var text := Label3D.new()
+	text.text = title
+	text.position.y = 1.95
+	text.billboard = BaseMaterial3D.BILLBOARD_ENABLED
+	text.font_size = 64
+	text.pixel_size = 0.0035
+	text.outline_size = 20
+	walker.add_child(text)

@@ -67,14 +67,7 @@ func _add_walker(title: String, place: Vector3, colour: Color) -> GaitGenerator3
 	walker.position = place
 	Paint.apply(walker, colour)
 	add_child(walker)
-	var label := Label3D.new()
-	label.text = title.replace("_", " ")
-	label.position.y = 1.95
-	label.billboard = BaseMaterial3D.BILLBOARD_ENABLED
-	label.font_size = 64
-	label.pixel_size = 0.0035
-	label.outline_size = 20
-	walker.add_child(label)
+	Paint.label(walker, title.replace("_", " "))
 	var gait := gait_of(walker)
 	gait.seed = 1 + walkers.size()
 	gait.phase = fposmod(walkers.size() * 0.618034, 1.0)

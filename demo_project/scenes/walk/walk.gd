@@ -28,7 +28,6 @@ func _ready() -> void:
 	%Panel.seed_changed.connect(func(first: int) -> void:
 		for index: int in walkers.size():
 			gait_of(walkers[index]).seed = first + index)
-	%Other.pressed.connect(func() -> void: get_tree().change_scene_to_file("res://scenes/styles/styles.tscn"))
 	_set_all(&"speed", %Panel.SPEED)
 
 

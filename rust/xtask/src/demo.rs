@@ -5,9 +5,10 @@ use anyhow::{Context as _, Result, bail};
 use std::fs;
 
 /// The demo's scenes by topic, the first the one that it begins with.
-pub(crate) const SCENES: [(&str, &str); 2] = [
+pub(crate) const SCENES: [(&str, &str); 3] = [
     ("walk", "res://scenes/walk/walk.tscn"),
     ("styles", "res://scenes/styles/styles.tscn"),
+    ("switching", "res://scenes/switching/switching.tscn"),
 ];
 
 /// Builds all that the demo needs and shows it.

@@ -6,8 +6,10 @@ use crate::character;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use crate::skeleton_binding::SkeletonBinding;
+use crate::walk_source::WalkSource;
 use footfall_core::Side;
-use footfall_synth::{Controls, Detail, GeneratorConfig, StyleSpace};
+use footfall_model::WalkModel;
+use footfall_synth::{Controls, Detail, GeneratorConfig};
 use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
 use session::Session;
@@ -26,7 +28,8 @@ use std::sync::Arc;
 #[derive(GodotClass)]
 #[class(tool, init, base = SkeletonModifier3D)]
 pub(crate) struct GaitGenerator3D {
-    /// The trained walk, an imported `.footfall` file such as `addons/footfall/models/walk.footfall`.
+    /// The way of walking: an imported `.footfall` file such as `addons/footfall/models/walk.footfall`, or a `.footdyn` file such as
+    /// `addons/footfall/models/walk.footdyn`, a switching model, which is smaller and wears no styles.
     #[export]
     #[var(set = set_model)]
     model: Option<Gd<GaitModel>>,
@@ -116,7 +119,7 @@ pub(crate) struct GaitGenerator3D {
     bone_map: Option<Gd<BoneMap>>,
 
     /// The model and its styles; `None` until they are needed.
-    space: Option<Arc<StyleSpace>>,
+    source: Option<WalkSource>,
     /// A state that the next walk goes on from.
     pending_state: Option<PackedByteArray>,
     /// The walk under way; `None` until the next frame that can start it.
@@ -254,14 +257,14 @@ impl GaitGenerator3D {
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
         self.model = model;
-        self.space = None;
+        self.source = None;
         self.restart();
     }
 
     #[func]
     fn set_styles(&mut self, styles: Array<Option<Gd<GaitStyle>>>) {
         self.styles = styles;
-        self.space = None;
+        self.source = None;
         self.restart();
     }
 
@@ -326,7 +329,7 @@ impl GaitGenerator3D {
 impl GaitGenerator3D {
     fn problems(&self) -> PackedStringArray {
         let mut problems = PackedStringArray::new();
-        if let Err(problem) = self.find_space() {
+        if let Err(problem) = self.find_source() {
             problems.push(&GString::from(&problem));
         }
         let (styles, weights) = (self.styles.len(), self.style_weights.len());
@@ -350,9 +353,9 @@ impl GaitGenerator3D {
 
     /// The walk under way, or a new one where there is none, the model was replaced or the body changed.
     fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
-        let space = self.take_space()?;
+        let source = self.take_source()?;
         if let Some(session) = self.session.take()
-            && session.is_for(&space, skeleton)
+            && session.is_for(&source, skeleton)
         {
             return Ok(session);
         }
@@ -364,7 +367,7 @@ impl GaitGenerator3D {
         };
         let weights = self.style_weights.as_slice();
         Session::new(
-            &space,
+            &source,
             weights,
             character,
             binding,
@@ -380,7 +383,7 @@ impl GaitGenerator3D {
         }
     }
 
-    fn trained(&self) -> Result<Arc<footfall_model::GaitModel>, String> {
+    fn trained(&self) -> Result<Arc<WalkModel>, String> {
         let Some(model) = &self.model else {
             return Err(
                 "No gait model. Load a .footfall file into Model, for example addons/footfall/models/walk.footfall."
@@ -395,22 +398,22 @@ impl GaitGenerator3D {
     }
 
     /// The model with its styles, prepared if it is not yet or if a resource has changed.
-    fn take_space(&mut self) -> Result<Arc<StyleSpace>, String> {
-        if let Some(space) = &self.space
-            && self.is_current(space)
+    fn take_source(&mut self) -> Result<WalkSource, String> {
+        if let Some(source) = &self.source
+            && self.is_current(source)
         {
-            return Ok(Arc::clone(space));
+            return Ok(source.clone());
         }
-        let space = self.find_space()?;
-        self.space = Some(Arc::clone(&space));
-        Ok(space)
+        let source = self.find_source()?;
+        self.source = Some(source.clone());
+        Ok(source)
     }
 
-    /// Whether a space is that of the resources as they are now.
-    fn is_current(&self, space: &StyleSpace) -> bool {
+    /// Whether a source is that of the resources as they are now.
+    fn is_current(&self, source: &WalkSource) -> bool {
         let model = self.model.as_ref().map(|model| model.bind().trained());
-        let known = space.styles();
-        matches!(model, Some(Ok(model)) if Arc::ptr_eq(&model, space.model()))
+        let known = source.styles();
+        matches!(model, Some(Ok(model)) if source.is_of(&model))
             && known.len() == self.styles.len()
             && self.styles.iter_shared().zip(known).all(|(style, known)| {
                 let style = style.map(|style| style.bind().trained());
@@ -418,7 +421,7 @@ impl GaitGenerator3D {
             })
     }
 
-    fn find_space(&self) -> Result<Arc<StyleSpace>, String> {
+    fn find_source(&self) -> Result<WalkSource, String> {
         self.trained()?;
         let mut styles = Vec::with_capacity(self.styles.len());
         for (index, style) in self.styles.iter_shared().enumerate() {
@@ -439,8 +442,8 @@ impl GaitGenerator3D {
             return Err("No gait model.".to_owned());
         };
         let mut model = model.clone();
-        let space = model.bind_mut().space(&styles);
-        space.map_err(|error| format!("The styles cannot be worn: {error}"))
+        let source = model.bind_mut().source(&styles);
+        source.map_err(|error| format!("The styles cannot be worn: {error}"))
     }
 
     fn bind(&self, skeleton: &Gd<Skeleton3D>) -> Result<(Gd<Node3D>, SkeletonBinding), String> {

@@ -1,20 +1,24 @@
 //! `GaitModel`: a trained walk as a Godot resource.
 
 use crate::loaded::Loaded;
-use footfall_model::{GaitModel as TrainedModel, GaitStyle as TrainedStyle};
-use footfall_synth::StyleSpace;
+use crate::walk_source::WalkSource;
+use footfall_core::Side;
+use footfall_model::{GaitStyle as TrainedStyle, WalkModel};
+use footfall_synth::{GaitGenerator, GeneratorConfig, StyleSpace};
 use godot::classes::{IResource, Resource};
 use godot::prelude::*;
 use std::sync::{Arc, Weak};
 
-/// A trained way of walking, made by `footfall train` and stored in a `.footfall` file.
+/// A way of walking that was learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
+/// (`.footdyn`, made by `footfall dynamics fit`).
 ///
-/// Put a `.footfall` file into the project and it is imported as this resource. Give it to a `GaitGenerator3D`'s `model`.
-/// One model serves any number of characters.
+/// Put either file into the project and it is imported as this resource. Give it to a `GaitGenerator3D`'s `model`. One model serves
+/// any number of characters. A trained walk knows many walkers, changes its step with its speed and wears styles; a switching model is a
+/// hundredth of its size, and is one person's way of walking.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct GaitModel {
-    /// The bytes of the `.footfall` file.
+    /// The bytes of the `.footfall` or `.footdyn` file.
     ///
     /// Plain bytes, so that loading the imported resource needs nothing but built-in storage.
     #[var(set = set_data, usage_flags = [STORAGE])]
@@ -25,7 +29,7 @@ pub(crate) struct GaitModel {
     description: PhantomVar<GString>,
 
     /// The model in `data`, or why there is none.
-    loaded: Loaded<TrainedModel>,
+    loaded: Loaded<WalkModel>,
     /// What characters in the same styles share.
     spaces: Vec<Weak<StyleSpace>>,
     base: Base<Resource>,
@@ -36,7 +40,7 @@ impl IResource for GaitModel {}
 
 #[godot_api]
 impl GaitModel {
-    /// Makes a model from the bytes of a `.footfall` file, for example one that the game downloaded.
+    /// Makes a model from the bytes of a `.footfall` or `.footdyn` file, for example one that the game downloaded.
     ///
     /// Ask `get_error()` whether the bytes were a model.
     #[func]
@@ -46,10 +50,10 @@ impl GaitModel {
         model
     }
 
-    /// Replaces the model by the one in these bytes of a `.footfall` file.
+    /// Replaces the model by the one in these bytes of a `.footfall` or `.footdyn` file.
     #[func]
     pub(crate) fn set_data(&mut self, data: PackedByteArray) {
-        self.loaded = Loaded::read(&data, TrainedModel::from_bytes);
+        self.loaded = Loaded::read(&data, WalkModel::from_bytes);
         self.spaces.clear();
         self.data = data;
         self.base_mut().emit_changed();
@@ -68,15 +72,22 @@ impl GaitModel {
             .map_or_else(|error| GString::from(&error), |_| GString::new())
     }
 
-    /// The slowest and the fastest walk that the model was trained on, in metres per second. Zero for a broken model.
+    /// The slowest and the fastest walk that the model was trained on, in metres per second. Zero for a broken model; a switching
+    /// model knows one speed.
     ///
     /// A `GaitGenerator3D` also walks outside this range, by extrapolation.
     #[func]
     fn get_speed_range(&self) -> Vector2 {
         self.trained().map_or(Vector2::ZERO, |model| {
-            let [slowest, fastest] = model.speed_range();
-            Vector2::new(slowest as f32, fastest as f32)
+            let [slowest, fastest] = speed_range(&model);
+            Vector2::new(slowest, fastest)
         })
+    }
+
+    /// Whether this is a switching model, which wears no styles.
+    #[func]
+    fn is_switching(&self) -> bool {
+        matches!(self.trained().as_deref(), Ok(WalkModel::Dynamics(_)))
     }
 }
 
@@ -85,20 +96,28 @@ impl GaitModel {
     ///
     /// # Errors
     /// What is wrong with the file, for the user.
-    pub(crate) fn trained(&self) -> Result<Arc<TrainedModel>, String> {
+    pub(crate) fn trained(&self) -> Result<Arc<WalkModel>, String> {
         self.loaded
-            .content("the gait model is empty: load a .footfall file into it")
+            .content("the gait model is empty: load a .footfall or a .footdyn file into it")
     }
 
     /// The model with these styles, prepared once for all characters that wear the same.
     ///
     /// # Errors
     /// What is wrong with the model or why it cannot wear the styles, for the user.
-    pub(crate) fn space(
-        &mut self,
-        styles: &[Arc<TrainedStyle>],
-    ) -> Result<Arc<StyleSpace>, String> {
-        let trained = self.trained()?;
+    pub(crate) fn source(&mut self, styles: &[Arc<TrainedStyle>]) -> Result<WalkSource, String> {
+        let trained = match &*self.trained()? {
+            WalkModel::Gait(model) => Arc::clone(model),
+            WalkModel::Dynamics(model) if styles.is_empty() => {
+                return Ok(WalkSource::Switching(Arc::clone(model)));
+            }
+            WalkModel::Dynamics(_) => {
+                return Err(
+                    "a switching model (.footdyn) wears no styles: empty Styles, or take a .footfall model"
+                        .to_owned(),
+                );
+            }
+        };
         self.spaces.retain(|space| space.strong_count() > 0);
         let holds_these = |space: &Arc<StyleSpace>| {
             let pairs = space.styles().iter().zip(styles);
@@ -107,21 +126,49 @@ impl GaitModel {
         };
         let known = self.spaces.iter().filter_map(Weak::upgrade);
         if let Some(space) = known.into_iter().find(holds_these) {
-            return Ok(space);
+            return Ok(WalkSource::Styled(space));
         }
         let space = StyleSpace::new(&trained, styles).map_err(|error| error.to_string())?;
         let space = Arc::new(space);
         self.spaces.push(Arc::downgrade(&space));
-        Ok(space)
+        Ok(WalkSource::Styled(space))
+    }
+}
+
+fn speed_range(model: &WalkModel) -> [f32; 2] {
+    match model {
+        WalkModel::Gait(model) => model.speed_range().map(|speed| speed as f32),
+        WalkModel::Dynamics(model) => {
+            let config = GeneratorConfig {
+                seed: 0,
+                phase: 0.0,
+                variation: 0.0,
+            };
+            let walker = GaitGenerator::switching(model, &model.skeleton, &config);
+            [walker.map_or(0.0, |walker| walker.usual_speed_mps()); 2]
+        }
     }
 }
 
 /// The model in words, for the inspector.
-fn describe(model: &TrainedModel) -> String {
-    let from = &model.provenance;
-    let [slowest, fastest] = model.speed_range();
+fn describe(model: &WalkModel) -> String {
+    let from = model.provenance();
+    let [slowest, fastest] = speed_range(model);
+    let what = match model {
+        WalkModel::Gait(_) => format!(
+            "{} steps of {} people in {} recordings, at {slowest:.2} to {fastest:.2} m/s.",
+            from.steps, from.subjects, from.clips
+        ),
+        WalkModel::Dynamics(model) => format!(
+            "Two systems of order {} that switch when a foot lands, at {slowest:.2} m/s: {} steps of {} people in {} recordings.",
+            model.regime(Side::Left).system.order(),
+            from.steps,
+            from.subjects,
+            from.clips
+        ),
+    };
     format!(
-        "{} steps of {} people in {} recordings, at {slowest:.2} to {fastest:.2} m/s.\nCorpus: {}\nTerms: {}\nMade by: {}",
-        from.steps, from.subjects, from.clips, from.corpus, from.terms, from.command
+        "{what}\nCorpus: {}\nTerms: {}\nMade by: {}",
+        from.corpus, from.terms, from.command
     )
 }

@@ -1,8 +1,8 @@
-//! Imports `.footfall` files as [`GaitModel`] resources and `.footstyle` files as [`GaitStyle`] resources.
+//! Imports `.footfall` and `.footdyn` files as [`GaitModel`] resources and `.footstyle` files as [`GaitStyle`] resources.
 
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
-use footfall_model::{GaitModel as TrainedModel, GaitStyle as TrainedStyle};
+use footfall_model::{GaitStyle as TrainedStyle, WalkModel};
 use godot::classes::{
     EditorImportPlugin, FileAccess, IEditorImportPlugin, Resource, ResourceSaver,
     resource_saver::SaverFlags,
@@ -18,7 +18,7 @@ pub(crate) enum Kind {
     Style,
 }
 
-/// Imports `.footfall` files as `GaitModel`, or `.footstyle` files as `GaitStyle`.
+/// Imports `.footfall` and `.footdyn` files as `GaitModel`, or `.footstyle` files as `GaitStyle`.
 #[derive(GodotClass)]
 #[class(tool, init, internal, base = EditorImportPlugin)]
 pub(crate) struct FootfallImportPlugin {
@@ -61,7 +61,8 @@ impl IEditorImportPlugin for FootfallImportPlugin {
     }
 
     fn get_recognized_extensions(&self) -> PackedStringArray {
-        PackedStringArray::from(&[self.by_kind("footfall", "footstyle").into()])
+        let extensions: &[&str] = self.by_kind(&["footfall", "footdyn"], &["footstyle"]);
+        extensions.iter().map(|name| GString::from(*name)).collect()
     }
 
     fn get_import_options(&self, _path: GString, _preset_index: i32) -> Array<AnyDictionary> {
@@ -131,7 +132,7 @@ fn import(kind: Kind, source_file: &GString, save_path: &GString) -> Result<(), 
         |error: footfall_model::ModelFileError| (Error::ERR_FILE_CORRUPT, error.to_string());
     let resource: Gd<Resource> = match kind {
         Kind::Model => {
-            TrainedModel::from_bytes(bytes.as_slice()).map_err(damaged)?;
+            WalkModel::from_bytes(bytes.as_slice()).map_err(damaged)?;
             let mut model = GaitModel::new_gd();
             model.bind_mut().set_data(bytes);
             model.upcast()

@@ -29,6 +29,7 @@ mod import_plugin;
 mod loaded;
 mod rest_body;
 mod skeleton_binding;
+mod walk_source;
 
 use godot::prelude::{ExtensionLibrary, gdextension};
 

@@ -21,6 +21,7 @@ use crate::gait_model::{GaitModel, ModelError};
 use crate::provenance::Provenance;
 use crate::style::GaitStyle;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// The latest version that this build writes; it reads all versions up to this one. A file has the earliest version that
 /// can hold its content.
@@ -189,6 +190,36 @@ impl DynamicsModel {
     /// [`ModelError::Value`] when the model cannot be encoded.
     pub fn fingerprint(&self) -> Result<u32, ModelError> {
         fingerprint(dynamics_v1::encode(self))
+    }
+}
+
+/// Any model that walks, as its file's header says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WalkModel {
+    /// Of a `.footfall` file.
+    Gait(Arc<GaitModel>),
+    /// Of a `.footdyn` file.
+    Dynamics(Arc<DynamicsModel>),
+}
+
+impl WalkModel {
+    /// The model in the bytes of a `.footfall` or a `.footdyn` file.
+    ///
+    /// # Errors
+    /// [`ModelFileError`] says what is wrong with the bytes; no input panics.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
+        if read_header(bytes).is_ok_and(|(_, header)| header.kind == DYNAMICS_KIND) {
+            return Ok(Self::Dynamics(Arc::new(DynamicsModel::from_bytes(bytes)?)));
+        }
+        Ok(Self::Gait(Arc::new(GaitModel::from_bytes(bytes)?)))
+    }
+
+    /// Where the model comes from.
+    pub fn provenance(&self) -> &Provenance {
+        match self {
+            Self::Gait(model) => &model.provenance,
+            Self::Dynamics(model) => &model.provenance,
+        }
     }
 }
 

@@ -13,7 +13,7 @@ pub mod provenance;
 pub mod style;
 
 pub use dynamics::{DynamicsModel, LONGEST_SEGMENT, Regime};
-pub use file::{FORMAT_VERSION, ModelFileError};
+pub use file::{FORMAT_VERSION, ModelFileError, WalkModel};
 pub use gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,
     StepContext, StepModel, StepOffset, Variation,

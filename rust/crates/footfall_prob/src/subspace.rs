@@ -4,12 +4,14 @@
 //! x[k+1] = A x[k] + b + K e[k], y[k] = C x[k] + d + e[k]. The offsets b and d stand for what keeps the body up and moving: the
 //! system is affine. Nothing is assumed about stability: a segment of gait ends long before an unstable system is far.
 //!
-//! In reading order: [`AffineSystem`], [`identify`], [`refine`], [`initial_state`].
+//! In reading order: [`AffineSystem`], [`identify`], [`refine`], [`initial_states`].
 
 mod identify;
+mod initial;
 mod refine;
 
 pub use identify::{IdentifyConfig, identify};
+pub use initial::{initial_state, initial_states};
 pub use refine::{Refined, Refinement, refine};
 
 use crate::error::{ProbError, check_finite, check_len};
@@ -106,38 +108,4 @@ impl AffineSystem {
         }
         errors
     }
-}
-
-/// The state from which the system left to itself comes closest to a segment (least squares, slightly held near zero).
-///
-/// # Errors
-/// [`ProbError`] when the segment is empty, no whole frames or not finite.
-pub fn initial_state(system: &AffineSystem, segment: &[f64]) -> Result<DVector<f64>, ProbError> {
-    let (order, channels) = (system.order(), system.channels());
-    let frames = segment.len() / channels.max(1);
-    if frames == 0 {
-        return Err(ProbError::Empty { what: "segment" });
-    }
-    check_len("segment", segment.len(), frames * channels)?;
-    check_finite("segment", segment)?;
-    // y[k] = C Aᵏ x + (what the offsets alone put out).
-    let mut power = DMatrix::<f64>::identity(order, order);
-    let alone = system.simulate(&DVector::zeros(order), frames);
-    let mut normal = DMatrix::<f64>::identity(order, order) * 1e-9;
-    let mut target = DVector::<f64>::zeros(order);
-    for frame in 0..frames {
-        let row = &system.output * &power;
-        let range = frame * channels..(frame + 1) * channels;
-        let rest = DVector::from_column_slice(&segment[range.clone()])
-            - DVector::from_column_slice(&alone[range]);
-        normal += row.tr_mul(&row);
-        target += row.tr_mul(&rest);
-        power = &system.transition * power;
-    }
-    normal
-        .cholesky()
-        .map(|factor| factor.solve(&target))
-        .ok_or(ProbError::NoData {
-            what: "an initial state",
-        })
 }

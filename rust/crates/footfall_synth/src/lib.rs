@@ -24,6 +24,8 @@ mod trajectory;
 mod variance;
 mod walk;
 mod walker;
+#[doc(hidden)]
+pub mod workload;
 
 pub use detail::Detail;
 pub use error::SynthError;

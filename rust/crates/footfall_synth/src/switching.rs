@@ -18,7 +18,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 use std::sync::Arc;
-use system::RunningSystem;
+use system::{FeatureLanes, Pose, RunningSystem};
 
 /// A segment begins where one of so many nearest recorded ones began: the pose goes on, and still varies.
 const NEAREST: usize = 4;
@@ -46,8 +46,7 @@ pub(crate) struct SwitchingSteps {
     /// [`DynamicsModel::fingerprint`].
     pub(crate) fingerprint: u32,
     systems: [RunningSystem; 2],
-    mean: Posture,
-    components: Vec<f32>,
+    pose: Pose,
     standing: Posture,
     stage: Stage,
     rng: ChaCha8Rng,
@@ -56,7 +55,7 @@ pub(crate) struct SwitchingSteps {
     pub(crate) origin: SwitchingOrigin,
     /// Component weights of the current segment, frame by frame, two frames beyond its end.
     weights: Vec<f32>,
-    features: Vec<f32>,
+    features: Vec<FeatureLanes>,
     /// Speed of the recorded walk on this body, m/s, and the heading under which it goes along +Z.
     pub(crate) own_speed_mps: f64,
     facing: f32,
@@ -102,21 +101,13 @@ impl SwitchingSteps {
     }
 
     fn prepare(model: &Arc<DynamicsModel>, skeleton: &Skeleton, fingerprint: u32) -> Self {
-        let mut mean = [0.0; FEATURE_COUNT];
-        mean.copy_from_slice(&model.mean);
         let longest = (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize;
         let longest = Detail::Quarter.whole_frames(longest);
         let channels = model.components.len();
         Self {
             systems: Side::BOTH.map(|side| RunningSystem::new(model.regime(side))),
-            standing: standing_posture(mean),
-            mean: mean.map(|value| value as f32),
-            components: model
-                .components
-                .iter()
-                .flatten()
-                .map(|v| *v as f32)
-                .collect(),
+            standing: standing_of(&model.mean),
+            pose: Pose::new(model),
             stage: Stage::new(skeleton, model.frame_rate_hz, longest),
             rng: ChaCha8Rng::seed_from_u64(0),
             variation: 0.0,
@@ -134,7 +125,7 @@ impl SwitchingSteps {
                 planter: None,
             },
             weights: Vec::with_capacity((longest + SWITCH_REACH + 2) * channels),
-            features: Vec::with_capacity((longest + 1) * FEATURE_COUNT),
+            features: Vec::with_capacity(longest + 1),
             own_speed_mps: 1.0,
             facing: 0.0,
             speed_mps: 0.0,
@@ -204,11 +195,11 @@ impl SwitchingSteps {
             Some(state) => self.stage.resume(state),
             None => self.stage.clear(),
         }
-        let mut expected = core::mem::take(&mut self.origin.expected);
-        expected.clear();
-        // Its room stays: steps allocate nothing.
-        expected.extend_from_slice(&origin.expected);
-        self.origin = SwitchingOrigin { expected, ..origin };
+        self.origin = origin;
+        // Steps allocate nothing.
+        self.origin
+            .expected
+            .reserve(2 * self.model.components.len());
         self.speed_mps = speed_mps;
         self.realise();
     }
@@ -234,6 +225,28 @@ impl SwitchingSteps {
 
     /// Works the step of the [`origin`](SwitchingOrigin) out and puts it on the ground.
     fn realise(&mut self) {
+        self.work_out();
+        let rows = self.features.iter();
+        let rows = rows.map(|row| &row.as_flattened()[..FEATURE_COUNT]);
+        self.stage.put(
+            rows,
+            &Placing {
+                shape: &self.shape,
+                standing: [&self.standing; 2],
+                turn_rate: self.origin.turn_rate,
+                facing: self.origin.facing,
+            },
+        );
+    }
+
+    /// The next step's features, without putting it on the ground; returns how many frames they are for.
+    pub(crate) fn work_out_next(&mut self) -> usize {
+        self.take_over(self.origin.leading.other());
+        self.work_out();
+        self.shape.timing.frames
+    }
+
+    fn work_out(&mut self) {
         let side = self.origin.leading;
         let drawn = self.draw_length(side);
         let start = self.draw_start(side);
@@ -262,16 +275,6 @@ impl SwitchingSteps {
         );
         self.shape.set_amplitude(self.origin.amplitude);
         self.write_features(length);
-        let rows = self.features.chunks_exact(FEATURE_COUNT);
-        self.stage.put(
-            rows,
-            &Placing {
-                shape: &self.shape,
-                standing: [&self.standing; 2],
-                turn_rate: self.origin.turn_rate,
-                facing: self.origin.facing,
-            },
-        );
     }
 
     /// Frames of a segment of the model's own tempo.
@@ -292,10 +295,15 @@ impl SwitchingSteps {
     fn switch_near(&mut self, drawn: usize, reach: usize) -> usize {
         let channels = self.model.components.len();
         let other = &self.systems[self.origin.leading.other().index()];
-        let gap = |end: usize| other.nearest::<1>(&self.weights[end * channels..][..2 * channels]);
-        let length = (drawn - reach..=drawn + reach)
-            .min_by(|a, b| gap(*a).distance().total_cmp(&gap(*b).distance()))
-            .unwrap_or(drawn);
+        let mut best = (f32::INFINITY, drawn);
+        for end in drawn - reach..=drawn + reach {
+            let after = &self.weights[end * channels..][..2 * channels];
+            let gap = other.least_distance(after);
+            if gap < best.0 {
+                best = (gap, end);
+            }
+        }
+        let length = best.1;
         self.weights.truncate((length + 2) * channels);
         length
     }
@@ -316,24 +324,11 @@ impl SwitchingSteps {
 
     /// The features of the step's frames and of the one after, at its own tempo.
     fn write_features(&mut self, length: usize) {
-        let channels = self.model.components.len();
         let frames = self.shape.timing.frames;
-        self.features.clear();
-        for frame in 0..=frames {
-            let time = (frame * length) as f32 / frames as f32;
-            let first = (time as usize).min(length);
-            let share = time - first as f32;
-            let here = &self.weights[first * channels..][..2 * channels];
-            let row = self.features.len();
-            self.features.extend_from_slice(&self.mean);
-            let row = &mut self.features[row..];
-            for (channel, component) in self.components.chunks_exact(FEATURE_COUNT).enumerate() {
-                let weight = here[channel] + share * (here[channels + channel] - here[channel]);
-                for (feature, value) in row.iter_mut().zip(component) {
-                    *feature += weight * value;
-                }
-            }
-        }
+        self.features.resize(frames + 1, FeatureLanes::default());
+        let frames_per_row = length as f32 / frames as f32;
+        self.pose
+            .write(&self.weights, frames_per_row, &mut self.features);
     }
 }
 
@@ -369,4 +364,10 @@ impl StepSource for SwitchingSteps {
         self.origin.facing = [self.origin.facing[1], self.facing];
         self.realise();
     }
+}
+
+fn standing_of(mean: &[f64]) -> Posture {
+    let mut wide = [0.0; FEATURE_COUNT];
+    wide.copy_from_slice(mean);
+    standing_posture(wide)
 }

@@ -19,7 +19,7 @@ use footfall_model::{DynamicsModel, FEATURE_COUNT, OBSERVATION_COUNT, Provenance
 use footfall_motion::steps::{Step, Walk};
 use footfall_motion::switches::detect_switches;
 use footfall_prob::subspace::{
-    AffineSystem, IdentifyConfig, Refinement, identify, initial_state, refine,
+    AffineSystem, IdentifyConfig, Refinement, identify, initial_states, refine,
 };
 use footfall_prob::windows::Windows;
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -30,8 +30,8 @@ const SEGMENT_SECS: [f64; 2] = [0.15, 1.5];
 /// Kinematic and switching contacts this close are one, seconds.
 const SAME_CONTACT_SECS: f64 = 0.12;
 
-/// Frames of a column in identification: tried in turn.
-const WINDOWS: [usize; 10] = [2, 3, 4, 5, 6, 8, 11, 15, 20, 30];
+/// Frames of a column in identification: tried in turn, up to half of the longest segment.
+pub const WINDOWS: [usize; 10] = [2, 3, 4, 5, 6, 8, 11, 15, 20, 30];
 
 /// A joint that moves nothing beyond it counts as if it moved this much a radian, metres: feet's toes and hands are seen too.
 const LEAST_REACH: f64 = 0.02;
@@ -100,7 +100,7 @@ pub fn fit_dynamics(
         if own.is_empty() {
             return Err(TrainError::MissingSide { side });
         }
-        let system = fit_system(&own, config)?;
+        let system = fit_segments(&own, config)?;
         segments[side.index()] = own.len();
         one_step_error[side.index()] = system.error / outputs.spread;
         regimes.push(regime(&system.system, &own, &recordings.sequences, side)?);
@@ -137,10 +137,10 @@ fn regime(
     sequences: &[Sequence],
     side: Side,
 ) -> Result<Regime, TrainError> {
-    let starts = segments
+    let starts = initial_states(system, segments)?
         .iter()
-        .map(|segment| Ok(initial_state(system, segment)?.as_slice().to_vec()))
-        .collect::<Result<_, TrainError>>()?;
+        .map(|start| start.as_slice().to_vec())
+        .collect();
     let lengths = || {
         let channels = system.channels();
         segments
@@ -160,15 +160,26 @@ fn regime(
     })
 }
 
-/// A system and its root mean square one-step error.
-struct FittedSystem {
-    system: AffineSystem,
-    error: f64,
-    /// Where prediction begins in each segment.
-    starts: Vec<nalgebra::DVector<f64>>,
+/// One fitted system.
+#[derive(Clone, Debug)]
+pub struct FittedSystem {
+    /// The system.
+    pub system: AffineSystem,
+    /// Its root mean square one-step error.
+    pub error: f64,
+    /// The state in which each segment begins.
+    pub starts: Vec<nalgebra::DVector<f64>>,
 }
 
-fn fit_system(segments: &[&[f64]], config: &DynamicsConfig) -> Result<FittedSystem, TrainError> {
+/// Fits one system to segments of component weights, each T × [`components`](DynamicsConfig::components) frame by frame: identified
+/// in closed form, then refined, first left to itself, then the gain alone.
+///
+/// # Errors
+/// [`TrainError`] when the system cannot be told from the segments.
+pub fn fit_segments(
+    segments: &[&[f64]],
+    config: &DynamicsConfig,
+) -> Result<FittedSystem, TrainError> {
     let identified = identify_best(segments, config)?;
     let alone = refine(
         &identified,
@@ -194,7 +205,12 @@ fn fit_system(segments: &[&[f64]], config: &DynamicsConfig) -> Result<FittedSyst
 fn identify_best(segments: &[&[f64]], config: &DynamicsConfig) -> Result<AffineSystem, TrainError> {
     let mut best: Option<(f64, AffineSystem)> = None;
     let mut failed = None;
-    for window in WINDOWS {
+    let longest = segments.iter().map(|segment| segment.len()).max();
+    let most = longest.unwrap_or(0) / (2 * config.components.max(1));
+    for window in WINDOWS
+        .into_iter()
+        .filter(|window| *window <= most.max(WINDOWS[0]))
+    {
         let size = IdentifyConfig {
             order: config.order,
             window,

@@ -1,5 +1,6 @@
 //! `footfall bench`: each kernel beside its peer, in one process.
 
+mod dynamics;
 mod inference;
 mod mlpg;
 mod runtime;
@@ -63,6 +64,22 @@ struct Report {
     /// The longest call of those, in the best repetition.
     walker_worst_us: f64,
     forward_kinematics_us: f64,
+    /// Ten segments of a switching model: identified in closed form, windows and initial states tried; and with refinement.
+    dynamics_fit_ms: f64,
+    dynamics_refined_fit_ms: f64,
+    /// The same identification by dense singular value decompositions.
+    dynamics_fit_dense_ms: f64,
+    /// Switches of a clip of 400 frames, angles and all; and the projection residual of four channels alone.
+    switches_400_frames_ms: f64,
+    projection_400_frames_ms: f64,
+    /// The same residual by a dense pseudo-inverse, and the largest difference between both.
+    projection_dense_ms: f64,
+    projection_max_difference: f64,
+    /// Features of a frame of a switching model; and the same from dense f64 matrices.
+    switching_us_per_frame: f64,
+    switching_dense_us_per_frame: f64,
+    /// One `GaitGenerator::step` of a switching model.
+    switching_walker_us_per_frame: f64,
     repetitions: u16,
 }
 
@@ -76,6 +93,10 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
     let peer_solve = peer.solver();
     let mut hsmm = inference::ForwardBackward::new()?;
     let mut walker = runtime::WalkerBench::new(model)?;
+    let dynamics = dynamics::DynamicsBench::new()?;
+    let mut switching = dynamics.switching()?;
+    let mut switching_walker = runtime::WalkerBench::switching(dynamics.model())?;
+    let projection_max_difference = dynamics.max_difference_from_dense()?;
     let jbonsai_max_difference = ours.max_difference(&peer.trajectory());
     let dense_max_difference = ours.max_difference_from_dense()?;
 
@@ -93,6 +114,16 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         best.walker.take(walked.mean);
         best.walker_worst.take(walked.worst);
         best.kinematics.take(walker.forward_kinematics());
+        best.fit.take(time(|| dynamics.fit(0))?);
+        best.refined_fit.take(time(|| dynamics.fit_refined())?);
+        best.dense_fit.take(time(|| dynamics.fit_dense())?);
+        best.switches.take(time(|| dynamics.detect())?);
+        best.projection.take(time(|| dynamics.project())?);
+        best.dense_projection
+            .take(time(|| dynamics.project_dense())?);
+        best.switching.take(switching.run());
+        best.dense_switching.take(dynamics.simulate_dense());
+        best.switching_walker.take(switching_walker.walk().mean);
     }
     progress.finish();
 
@@ -113,6 +144,16 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         walker_us_per_frame: best.walker.0,
         walker_worst_us: best.walker_worst.0,
         forward_kinematics_us: best.kinematics.0,
+        dynamics_fit_ms: 1e-3 * best.fit.0,
+        dynamics_refined_fit_ms: 1e-3 * best.refined_fit.0,
+        dynamics_fit_dense_ms: 1e-3 * best.dense_fit.0,
+        switches_400_frames_ms: 1e-3 * best.switches.0,
+        projection_400_frames_ms: 1e-3 * best.projection.0,
+        projection_dense_ms: 1e-3 * best.dense_projection.0,
+        projection_max_difference,
+        switching_us_per_frame: best.switching.0,
+        switching_dense_us_per_frame: best.dense_switching.0,
+        switching_walker_us_per_frame: best.switching_walker.0,
         repetitions: args.repetitions,
     };
     if args.json {
@@ -156,6 +197,38 @@ impl Report {
                 "forward kinematics, 22 joints              {:9.4} µs",
                 self.forward_kinematics_us
             ),
+            format!(
+                "switching model, fit of ten segments       {:9.4} ms, {:.1} ms refined",
+                self.dynamics_fit_ms, self.dynamics_refined_fit_ms
+            ),
+            format!(
+                "  dense singular value decompositions      {:9.4} ms",
+                self.dynamics_fit_dense_ms
+            ),
+            format!(
+                "switches of 400 frames                     {:9.4} ms",
+                self.switches_400_frames_ms
+            ),
+            format!(
+                "  projection residual alone                {:9.4} ms",
+                self.projection_400_frames_ms
+            ),
+            format!(
+                "  dense pseudo-inverse                     {:9.4} ms, at most {:.1e} apart",
+                self.projection_dense_ms, self.projection_max_difference
+            ),
+            format!(
+                "switching model, features                  {:9.4} µs a frame",
+                self.switching_us_per_frame
+            ),
+            format!(
+                "  dense matrices, f64                      {:9.4} µs a frame",
+                self.switching_dense_us_per_frame
+            ),
+            format!(
+                "  one walker                               {:9.4} µs a frame",
+                self.switching_walker_us_per_frame
+            ),
         ]
     }
 }
@@ -185,6 +258,15 @@ struct Best {
     walker: Least,
     walker_worst: Least,
     kinematics: Least,
+    fit: Least,
+    refined_fit: Least,
+    dense_fit: Least,
+    switches: Least,
+    projection: Least,
+    dense_projection: Least,
+    switching: Least,
+    dense_switching: Least,
+    switching_walker: Least,
 }
 
 /// How long one run takes, microseconds.

@@ -2,17 +2,17 @@
 
 use crate::convert;
 use crate::skeleton_binding::SkeletonBinding;
+use crate::walk_source::WalkSource;
 use footfall_core::{Pose, Side, rotation};
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, GroundTransform, StyleSpace};
+use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, GroundTransform};
 use glam::{Affine3A, Quat};
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
-use std::sync::Arc;
 
 /// A generator, the skeleton that it poses and the node that travels.
 pub(super) struct Session {
     pub(super) generator: GaitGenerator,
-    space: Arc<StyleSpace>,
+    source: WalkSource,
     character: Gd<Node3D>,
     binding: SkeletonBinding,
     pose: Pose,
@@ -35,14 +35,15 @@ impl Session {
     /// # Errors
     /// Why the generator refuses, for the user.
     pub(super) fn new(
-        space: &Arc<StyleSpace>,
+        source: &WalkSource,
         style_weights: &[f32],
         character: Gd<Node3D>,
         binding: SkeletonBinding,
         config: &GeneratorConfig,
         controls: Controls,
     ) -> Result<Self, String> {
-        let mut generator = GaitGenerator::new(space, style_weights, &binding.body, config)
+        let mut generator = source
+            .generator(style_weights, &binding.body, config)
             .map_err(|error| format!("The walk cannot start: {error}"))?;
         if controls.is_standing() {
             generator.stand();
@@ -51,7 +52,7 @@ impl Session {
         Ok(Self {
             pose: Pose::rest(&binding.body),
             generator,
-            space: Arc::clone(space),
+            source: source.clone(),
             character,
             binding,
             start_from_ground,
@@ -59,8 +60,8 @@ impl Session {
     }
 
     /// Whether this walk still is one of the model, its styles, the skeleton and the character.
-    pub(super) fn is_for(&self, space: &Arc<StyleSpace>, skeleton: &Gd<Skeleton3D>) -> bool {
-        Arc::ptr_eq(&self.space, space)
+    pub(super) fn is_for(&self, source: &WalkSource, skeleton: &Gd<Skeleton3D>) -> bool {
+        self.source.is(source)
             && self.character.is_instance_valid()
             && self.character.is_inside_tree()
             && self.binding.fits(skeleton, &self.character)

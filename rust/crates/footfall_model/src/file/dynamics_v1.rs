@@ -58,14 +58,14 @@ pub(super) fn decode(
         mean: widen(&dto.mean),
         components: widen_all(&dto.components),
         regimes: [
-            decode_regime(left, channels)?,
-            decode_regime(right, channels)?,
+            decode_regime(&left, channels)?,
+            decode_regime(&right, channels)?,
         ],
         provenance,
     })
 }
 
-fn decode_regime(dto: RegimeV1, channels: usize) -> Result<Regime, ModelFileError> {
+fn decode_regime(dto: &RegimeV1, channels: usize) -> Result<Regime, ModelFileError> {
     let rows = dto.system.each_ref().map(|rows| widen(rows));
     let rows = rows.each_ref().map(Vec::as_slice);
     // More than a million numbers in a system are no system of ours; the lengths are checked against them.

@@ -4,7 +4,7 @@
 //! The gradient runs backwards through each segment; L-BFGS takes the steps (J. Nocedal and S. Wright, "Numerical Optimization",
 //! 2006, section 7.2).
 
-use super::{AffineSystem, initial_state};
+use super::{AffineSystem, initial_states};
 use crate::error::ProbError;
 use nalgebra::{DMatrix, DVector};
 
@@ -45,17 +45,14 @@ pub struct Refined {
 /// A gain with which predictions run away is made smaller first.
 ///
 /// # Errors
-/// As [`initial_state`] for a segment that is empty or not finite.
+/// As [`initial_states`] for a segment that is empty or not finite.
 pub fn refine(
     system: &AffineSystem,
     segments: &[&[f64]],
     refinement: Refinement,
     steps: usize,
 ) -> Result<Refined, ProbError> {
-    let starts = segments
-        .iter()
-        .map(|segment| initial_state(system, segment))
-        .collect::<Result<Vec<_>, _>>()?;
+    let starts = initial_states(system, segments)?;
     let problem = Problem {
         order: system.order(),
         channels: system.channels(),
@@ -324,7 +321,7 @@ fn add(target: &mut [f64], values: &[f64], weight: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::subspace::{IdentifyConfig, identify};
+    use crate::subspace::{IdentifyConfig, identify, initial_state};
 
     /// Two mixed oscillations, one of them growing, on offsets.
     fn known() -> AffineSystem {

@@ -1,6 +1,6 @@
 //! Two systems that switch against one that does not (figure 5 of the paper): prediction errors over time.
 
-use super::{DynamicsConfig, FittedSystem, Outputs, PoseSpace, Recordings, fit_system};
+use super::{DynamicsConfig, FittedSystem, Outputs, PoseSpace, Recordings, fit_segments};
 use crate::error::TrainError;
 use crate::train::TrainingClip;
 use footfall_core::Side;
@@ -62,9 +62,9 @@ pub fn compare_dynamics(
     let sequence = [sequence];
     let pose = PoseSpace::of(&sequence, &clip.clip.skeleton, config.components)?;
     let outputs = Outputs::of(&sequence, &pose);
-    let fits = Side::BOTH.map(|side| fit_system(&outputs.segments(side), config));
+    let fits = Side::BOTH.map(|side| fit_segments(&outputs.segments(side), config));
     let whole = [outputs.sequences[0].as_slice()];
-    let (Ok(left), Ok(right), Ok(single)) = (&fits[0], &fits[1], &fit_system(&whole, config))
+    let (Ok(left), Ok(right), Ok(single)) = (&fits[0], &fits[1], &fit_segments(&whole, config))
     else {
         return Ok(None);
     };

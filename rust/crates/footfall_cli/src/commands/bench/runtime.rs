@@ -3,7 +3,7 @@
 use super::{microseconds, now};
 use anyhow::{Context as _, Result};
 use footfall_core::{ModelPose, Pose, Skeleton, forward_kinematics};
-use footfall_model::GaitModel;
+use footfall_model::{DynamicsModel, GaitModel};
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
 use std::hint::black_box;
 use std::sync::Arc;
@@ -11,6 +11,12 @@ use std::sync::Arc;
 /// About a hundred steps.
 const FRAMES: usize = 3500;
 const KINEMATICS_RUNS: usize = 10_000;
+
+const CONFIG: GeneratorConfig = GeneratorConfig {
+    seed: 1,
+    phase: 0.0,
+    variation: 1.0,
+};
 
 /// A walker and its body.
 pub(super) struct WalkerBench {
@@ -35,19 +41,31 @@ impl WalkerBench {
             turn_rate_radps: 0.1,
         };
         let dt_secs = (1.0 / model.frame_rate_hz) as f32;
-        let config = GeneratorConfig {
-            seed: 1,
-            phase: 0.0,
-            variation: 1.0,
-        };
         let space = StyleSpace::new(&Arc::new(model), &[]).context("the model does not walk")?;
-        let generator = GaitGenerator::new(&Arc::new(space), &[], &skeleton, &config)
+        let generator = GaitGenerator::new(&Arc::new(space), &[], &skeleton, &CONFIG)
             .context("the model does not walk")?;
         Ok(Self {
             generator,
             skeleton,
             controls,
             dt_secs,
+            pose: Pose::default(),
+        })
+    }
+
+    /// A walker of a switching model.
+    pub(super) fn switching(model: &Arc<DynamicsModel>) -> Result<Self> {
+        let skeleton = model.skeleton.clone();
+        let generator = GaitGenerator::switching(model, &skeleton, &CONFIG)
+            .context("the switching model does not walk")?;
+        Ok(Self {
+            controls: Controls {
+                speed_mps: generator.usual_speed_mps(),
+                turn_rate_radps: 0.1,
+            },
+            generator,
+            skeleton,
+            dt_secs: (1.0 / model.frame_rate_hz) as f32,
             pose: Pose::default(),
         })
     }

@@ -9,6 +9,12 @@ const SPEED := 1.3
 const TURN := 0.0
 const FIRST_SEED := 1
 
+## What the panel says above its sliders.
+@export var title := ""
+## What the button to another scene says, and the scene.
+@export var other_title := ""
+@export_file("*.tscn") var other_scene := ""
+
 @onready var _speed: HSlider = %Speed
 @onready var _turn: HSlider = %Turn
 @onready var _seed: SpinBox = %Seed
@@ -22,6 +28,9 @@ func _ready() -> void:
 		%TurnValue.text = "%.0f °/s" % value
 		turn_changed.emit(deg_to_rad(value)))
 	_seed.value_changed.connect(func(value: float) -> void: seed_changed.emit(int(value)))
+	%Title.text = title
+	%Other.text = other_title
+	%Other.pressed.connect(func() -> void: get_tree().change_scene_to_file(other_scene))
 	%Reset.pressed.connect(reset)
 	reset()
 

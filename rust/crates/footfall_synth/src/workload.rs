@@ -1,0 +1,30 @@
+//! What benchmarks run that is no part of the interface.
+
+use crate::error::SynthError;
+use crate::generator::GeneratorConfig;
+use crate::switching::SwitchingSteps;
+use footfall_core::{Side, Skeleton};
+use footfall_model::DynamicsModel;
+use std::sync::Arc;
+
+/// A switching model that puts out the features of one segment after another, on no ground.
+#[derive(Debug)]
+pub struct SwitchingWorkload(SwitchingSteps);
+
+impl SwitchingWorkload {
+    /// # Errors
+    /// [`SynthError`] when the model cannot be used.
+    pub fn new(model: &Arc<DynamicsModel>) -> Result<Self, SynthError> {
+        let config = GeneratorConfig {
+            seed: 1,
+            phase: 0.0,
+            variation: 1.0,
+        };
+        SwitchingSteps::new(model, &Skeleton::standard(), &config, Side::Left).map(Self)
+    }
+
+    /// Works out the next segment; returns how many frames it has.
+    pub fn segment(&mut self) -> usize {
+        self.0.work_out_next()
+    }
+}
