@@ -1,9 +1,12 @@
 //! A model of every released format version still loads, and says where it comes from.
 
 use footfall_model::file::read_header;
-use footfall_model::{FORMAT_VERSION, GaitModel, GaitStyle, ModelFileError, StepSpread};
+use footfall_model::{
+    DynamicsModel, FORMAT_VERSION, GaitModel, GaitStyle, ModelFileError, StepSpread, WalkModel,
+};
 use footfall_tests::data::repository;
 use std::fs;
+use std::sync::Arc;
 
 fn bytes_of(version: u32) -> Vec<u8> {
     let path = repository().join(format!("tests/model_versions/v{version}.footfall"));
@@ -43,6 +46,28 @@ fn every_version_of_a_style_loads() {
         let again = GaitStyle::from_bytes(&style.to_bytes().unwrap()).unwrap();
         assert_eq!(again, style);
     }
+}
+
+#[test]
+fn the_version_of_a_switching_model_loads() {
+    let path = repository().join("tests/model_versions/v1.footdyn");
+    let bytes = fs::read(&path).unwrap();
+    assert_eq!(read_header(&bytes).unwrap().0, 1);
+    let model = DynamicsModel::from_bytes(&bytes).unwrap();
+    assert!(model.provenance.steps > 20, "{:?}", model.provenance);
+    let again = DynamicsModel::from_bytes(&model.to_bytes().unwrap()).unwrap();
+    assert_eq!(again, model);
+    assert_eq!(again.fingerprint().unwrap(), model.fingerprint().unwrap());
+    // Any model that walks is told by its header.
+    let dynamics = WalkModel::from_bytes(&bytes).unwrap();
+    assert_eq!(dynamics, WalkModel::Dynamics(Arc::new(model.clone())));
+    let gait = WalkModel::from_bytes(&bytes_of(1)).unwrap();
+    assert!(matches!(gait, WalkModel::Gait(_)));
+    // Nothing is assumed about stability, but what runs away within a segment is no gait.
+    let mut wild = model;
+    wild.regimes[0].system.transition *= 3.0;
+    let error = wild.to_bytes().unwrap_err();
+    assert!(error.to_string().contains("left foot"), "{error}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "counting allocations takes an allocator")]
 
 use footfall_core::Pose;
-use footfall_model::GaitModel;
+use footfall_model::{DynamicsModel, GaitModel};
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
 use footfall_tests::data::repository;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -47,10 +47,33 @@ fn allocations() -> usize {
     ALLOCATIONS.with(Cell::get)
 }
 
+/// Faster and slower, left and right, small and large steps in time, and nonsense.
+fn assert_no_allocation(mut generator: GaitGenerator, seed: u64) {
+    let mut pose = Pose::default();
+    for frame in 0..3000_u16 {
+        let wave = (f32::from(frame) * 0.01).sin();
+        let controls = Controls {
+            speed_mps: if frame == 2000 {
+                f32::NAN
+            } else {
+                1.2 + 1.5 * wave
+            },
+            turn_rate_radps: 2.0 * wave,
+        };
+        let dt_secs = if frame % 1000 == 999 { 3.0 } else { 1.0 / 60.0 };
+        let before = allocations();
+        generator.step(dt_secs, &controls, &mut pose);
+        assert_eq!(allocations() - before, 0, "seed {seed}, frame {frame}");
+        assert!(generator.footsteps().len() <= 64);
+    }
+    assert!(pose.root_position.is_finite());
+}
+
 #[test]
 fn a_step_of_the_generator_allocates_nothing() {
-    let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall")).unwrap();
-    let model = Arc::new(GaitModel::from_bytes(&bytes).unwrap());
+    let read = |name: &str| std::fs::read(repository().join("tests/model_versions").join(name));
+    let model = Arc::new(GaitModel::from_bytes(&read("v1.footfall").unwrap()).unwrap());
+    let switching = Arc::new(DynamicsModel::from_bytes(&read("v1.footdyn").unwrap()).unwrap());
     let skeleton = model.skeleton.clone();
     let space = Arc::new(StyleSpace::new(&model, &[]).unwrap());
     for seed in 0..24 {
@@ -59,26 +82,14 @@ fn a_step_of_the_generator_allocates_nothing() {
             phase: 0.3,
             variation: 1.0,
         };
-        let mut generator = GaitGenerator::new(&space, &[], &skeleton, &config).unwrap();
-        let mut pose = Pose::default();
-        for frame in 0..3000_u16 {
-            // Faster and slower, left and right, small and large steps in time, and nonsense.
-            let wave = (f32::from(frame) * 0.01).sin();
-            let controls = Controls {
-                speed_mps: if frame == 2000 {
-                    f32::NAN
-                } else {
-                    1.2 + 1.5 * wave
-                },
-                turn_rate_radps: 2.0 * wave,
-            };
-            let dt_secs = if frame % 1000 == 999 { 3.0 } else { 1.0 / 60.0 };
-            let before = allocations();
-            generator.step(dt_secs, &controls, &mut pose);
-            assert_eq!(allocations() - before, 0, "seed {seed}, frame {frame}");
-            assert!(generator.footsteps().len() <= 64);
-        }
-        assert!(pose.root_position.is_finite());
+        let styled = GaitGenerator::new(&space, &[], &skeleton, &config).unwrap();
+        assert_no_allocation(styled, seed);
+        let walker = GaitGenerator::switching(&switching, &skeleton, &config).unwrap();
+        // One that goes on from a state too.
+        let mut other = GaitGenerator::switching(&switching, &skeleton, &config).unwrap();
+        other.restore(&walker.state()).unwrap();
+        assert_no_allocation(walker, seed);
+        assert_no_allocation(other, seed);
     }
     // The counter counts.
     let before = allocations();

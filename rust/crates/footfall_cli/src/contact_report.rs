@@ -54,14 +54,19 @@ impl ContactReport {
     /// From detected contacts and steps.
     pub(crate) fn new(contacts: &Contacts, walks: &[Walk]) -> Self {
         let stances = Side::BOTH.map(|side| contacts.foot(side).stances.as_slice());
-        let mut report = Self::from_spans(
+        let report = Self::from_spans(
             contacts.frame_rate_hz,
             contacts.frames,
             stances,
             &contacts.events(),
         );
+        report.with_steps(walks)
+    }
+
+    /// The same with the steps of these walks.
+    pub(crate) fn with_steps(mut self, walks: &[Walk]) -> Self {
         for (index, walk) in walks.iter().enumerate() {
-            report.steps.extend(walk.steps.iter().map(|step| StepEntry {
+            self.steps.extend(walk.steps.iter().map(|step| StepEntry {
                 foot: step.side.name().to_owned(),
                 first: step.first,
                 last: step.end - 1,
@@ -69,7 +74,7 @@ impl ContactReport {
                 walk: index,
             }));
         }
-        report
+        self
     }
 
     /// From stances and events, without steps.

@@ -10,12 +10,11 @@ use footfall_core::{Side, Skeleton};
 use footfall_prob::subspace::AffineSystem;
 use nalgebra::DVector;
 
-/// No segment is run for longer than this many times the mean and these frames more.
-pub const LONGEST_SEGMENT: f64 = 1.4;
-const SLACK_FRAMES: usize = 8;
+/// A segment is run for at most so many frames more than were recorded.
+pub const SEGMENT_SLACK: usize = 6;
 
-/// A segment of more frames is none.
-const MAX_FRAMES: f64 = 2000.0;
+/// Frames of a segment.
+const SEGMENT_FRAMES: core::ops::RangeInclusive<usize> = 2..=2000;
 
 /// Rotation vectors are not longer.
 const MAX_RADIANS: f64 = 4.0 * core::f64::consts::PI;
@@ -44,12 +43,27 @@ pub struct Regime {
     pub system: AffineSystem,
     /// States in which segments began.
     pub starts: Vec<Vec<f64>>,
-    /// Mean and variance of the segments' lengths in frames.
-    pub frames_mean: f64,
-    /// See [`frames_mean`](Self::frames_mean).
-    pub frames_variance: f64,
+    /// How many frames the segments that began so had.
+    pub frames: Vec<usize>,
     /// When the other foot leaves the ground, as a fraction of the segment.
     pub other_terminal: f64,
+}
+
+impl Regime {
+    /// Mean of the segments' lengths, frames.
+    pub fn mean_frames(&self) -> f64 {
+        self.frames.iter().sum::<usize>() as f64 / self.frames.len().max(1) as f64
+    }
+
+    /// Standard deviation of the segments' lengths, frames.
+    pub fn frames_spread(&self) -> f64 {
+        let mean = self.mean_frames();
+        let squares = self
+            .frames
+            .iter()
+            .map(|frames| (*frames as f64 - mean).powi(2));
+        (squares.sum::<f64>() / self.frames.len().max(1) as f64).sqrt()
+    }
 }
 
 impl DynamicsModel {
@@ -110,7 +124,13 @@ impl DynamicsModel {
                 check_len(&part, start, regime.system.order())?;
                 check_finite(&part, start)?;
             }
-            check_positive(&part, &[regime.frames_mean, regime.frames_variance])?;
+            if regime.frames.len() != regime.starts.len() {
+                return Err(ModelError::Shape {
+                    part: format!("lengths of the {} foot's segments", side.name()),
+                    expected: regime.starts.len(),
+                    found: regime.frames.len(),
+                });
+            }
             check_finite(&part, &[regime.other_terminal])?;
             self.check_reach(regime, &part)?;
         }
@@ -119,17 +139,14 @@ impl DynamicsModel {
 
     /// Nothing is assumed about stability, but within a segment nothing may run away.
     fn check_reach(&self, regime: &Regime, part: &str) -> Result<(), ModelError> {
-        let frames = LONGEST_SEGMENT * regime.frames_mean;
-        if frames > MAX_FRAMES {
-            return Err(ModelError::Value {
-                part: format!("length of a segment of the {part}"),
-            });
-        }
-        for start in &regime.starts {
+        for (start, frames) in regime.starts.iter().zip(&regime.frames) {
+            if !SEGMENT_FRAMES.contains(frames) {
+                return Err(ModelError::Value {
+                    part: format!("length of a segment of the {part}"),
+                });
+            }
             let start = DVector::from_column_slice(start);
-            let outputs = regime
-                .system
-                .simulate(&start, frames as usize + SLACK_FRAMES);
+            let outputs = regime.system.simulate(&start, frames + SEGMENT_SLACK);
             let mut poses = outputs.chunks_exact(self.components.len());
             if !poses.all(|weights| {
                 let features = self.features(weights);

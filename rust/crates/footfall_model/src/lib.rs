@@ -12,7 +12,7 @@ pub mod layout;
 pub mod provenance;
 pub mod style;
 
-pub use dynamics::{DynamicsModel, LONGEST_SEGMENT, Regime};
+pub use dynamics::{DynamicsModel, Regime, SEGMENT_SLACK};
 pub use file::{FORMAT_VERSION, ModelFileError, WalkModel};
 pub use gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,

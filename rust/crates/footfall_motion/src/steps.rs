@@ -40,8 +40,8 @@ pub struct Walk {
 }
 
 /// Limits of a plausible step: shorter ones in time are jumps onto both feet, longer ones pauses.
-const SHORTEST_STEP_SECS: f64 = 0.15;
-const LONGEST_STEP_SECS: f64 = 1.5;
+pub(crate) const SHORTEST_STEP_SECS: f64 = 0.15;
+pub(crate) const LONGEST_STEP_SECS: f64 = 1.5;
 /// A longer stride of the canonical body, metres, is a jump or an error of capture.
 const LONGEST_STEP_M: f32 = 3.0;
 /// Initial contacts of both feet so close together are a landing from a jump.

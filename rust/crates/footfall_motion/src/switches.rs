@@ -22,8 +22,9 @@
 //! Limits: it needs steps that repeat. Walks of a few steps out of standing and into it, tight turns, walking backwards, hops
 //! and jumps are beyond it.
 
+use crate::steps::{LONGEST_STEP_SECS, SHORTEST_STEP_SECS, Step, Walk};
 use footfall_core::rotation::log_map;
-use footfall_core::{Clip, FrameSpan, Side};
+use footfall_core::{Clip, FrameSpan, Side, StepPosition};
 use footfall_prob::ProbError;
 use footfall_prob::switching::{ProjectionResidual, median};
 
@@ -132,6 +133,34 @@ pub fn stances(switches: &[Switch], frames: usize) -> [Vec<FrameSpan>; 2] {
         });
     }
     stances
+}
+
+/// The steps between switches, as walks; steps shorter than 0.15 s or longer than 1.5 s break a walk. Which steps begin and end a
+/// walk, and when feet leave the ground, switches do not tell.
+pub fn walks(switches: &[Switch], frame_rate_hz: f64) -> Vec<Walk> {
+    let mut walks: Vec<Walk> = Vec::new();
+    let mut last_end = None;
+    for pair in switches.windows(2) {
+        let (side, first, end) = (pair[0].side, pair[0].frame, pair[1].frame);
+        let secs = end.saturating_sub(first) as f64 / frame_rate_hz;
+        if side == pair[1].side || !(SHORTEST_STEP_SECS..=LONGEST_STEP_SECS).contains(&secs) {
+            continue;
+        }
+        let step = Step {
+            side,
+            first,
+            end,
+            position: StepPosition::Inside,
+            other_terminal: None,
+            heel_rise: None,
+        };
+        match walks.last_mut() {
+            Some(walk) if last_end == Some(first) => walk.steps.push(step),
+            _ => walks.push(Walk { steps: vec![step] }),
+        }
+        last_end = Some(end);
+    }
+    walks
 }
 
 /// Sagittal angles of hips and knees, radians, at [`ANGLE_RATE_HZ`].

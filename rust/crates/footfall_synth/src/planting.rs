@@ -29,6 +29,9 @@ const MEETING_FROM: f32 = 0.4;
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
 const MAX_LANDING_EXTENSION: f32 = 0.985;
 
+/// Share of the straight leg by which a swinging leg can be stretched beyond that.
+const SWING_ROOM: f32 = 0.0145;
+
 /// One frame of a walk on the ground.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PlantedFrame {
@@ -198,7 +201,12 @@ impl Planter {
                     foot.stand(&next_plant, leg.pitch)
                 } else {
                     let free = free_foot(raw, side, hips, level);
-                    swing.guide(index, &free, foot)
+                    let mut target = swing.guide(index, &free, foot);
+                    let hip = hips + level * raw.legs[side.index()].hip;
+                    let length = self.leg_lengths[side.index()];
+                    let yielded = hip + yielding(target.ankle - hip, length);
+                    target.ankle = target.ankle.lerp(yielded, swing.freed(index));
+                    target
                 };
                 let leg = &self.legs[side.index()];
                 leg.solve(hips, hips_rotation, &target, &mut frame.pose);
@@ -361,6 +369,17 @@ fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget 
         foot,
         toes: foot,
     }
+}
+
+/// A swinging leg that gets ever harder to stretch: one that is straightened all at once snaps its knee.
+fn yielding(ankle_from_hip: Vec3, length: f32) -> Vec3 {
+    let (from, room) = (MAX_LANDING_EXTENSION * length, SWING_ROOM * length);
+    let reach = ankle_from_hip.length();
+    if reach <= from {
+        return ankle_from_hip;
+    }
+    let yielded = from + room * (1.0 - (-(reach - from) / room).exp());
+    ankle_from_hip * (yielded / reach)
 }
 
 /// The shift over the ground that brings the end of a leg within reach of the hip.

@@ -12,11 +12,10 @@ use crate::stage::{Placing, Posture, Stage};
 use crate::standing::{Amplitude, standing_posture};
 use crate::steps::{Ask, MAX_SPEED_CHANGE_MPS, StepSource};
 use footfall_core::{Side, Skeleton};
-use footfall_model::{DynamicsModel, FEATURE_COUNT, LONGEST_SEGMENT};
+use footfall_model::{DynamicsModel, FEATURE_COUNT, SEGMENT_SLACK};
 use glam::Vec3;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution as _, StandardNormal};
 use std::sync::Arc;
 use system::{FeatureLanes, Pose, RunningSystem};
 
@@ -26,12 +25,17 @@ const NEAREST: usize = 4;
 /// What the pose jumps by at a switch dies away in this time, seconds.
 const SETTLE_SECS: f64 = 0.06;
 
-/// A segment's length stays within this many standard deviations, and this share of the mean.
-const MAX_LENGTH_WEIGHT: f64 = 2.0;
-const LENGTHS: [f64; 2] = [0.7, LONGEST_SEGMENT];
-
-/// A segment ends this many frames before or after its drawn length, where the next one begins most alike.
+/// A segment ends this many frames before or after the end of the recorded one, where the next one begins most alike.
 const SWITCH_REACH: usize = 2;
+
+// Two frames beyond the end are looked at.
+const _: () = assert!(SWITCH_REACH + 2 <= SEGMENT_SLACK);
+
+/// Ratios of the recorded speed at which the way is measured, the recorded one last.
+const FACING_RATIOS: [f64; 2] = [0.4, 1.0];
+
+/// Steps of which the speed is measured: all of chance's in the long run, so that any walk keeps it.
+const MEASURED_STEPS: usize = 80;
 
 /// Speeds up to this many times the recorded one are walked.
 const MAX_SPEED_RATIO: f64 = 1.4;
@@ -56,9 +60,10 @@ pub(crate) struct SwitchingSteps {
     /// Component weights of the current segment, frame by frame, two frames beyond its end.
     weights: Vec<f32>,
     features: Vec<FeatureLanes>,
-    /// Speed of the recorded walk on this body, m/s, and the heading under which it goes along +Z.
+    /// Speed of the recorded walk on this body, m/s.
     pub(crate) own_speed_mps: f64,
-    facing: f32,
+    /// Headings under which the walk goes along +Z at each of [`FACING_RATIOS`], radians.
+    facings: [f32; 2],
     /// Speed of the current step.
     pub(crate) speed_mps: f32,
 }
@@ -94,6 +99,7 @@ impl SwitchingSteps {
     ) -> Result<Self, SynthError> {
         model.check()?;
         let mut steps = Self::prepare(model, skeleton, model.fingerprint()?);
+        steps.draw_by(&GeneratorConfig { seed: 0, ..*config });
         steps.measure();
         steps.draw_by(config);
         steps.begin(first, Amplitude::WALK, steps.own_speed_mps, Detail::Full);
@@ -127,7 +133,7 @@ impl SwitchingSteps {
             weights: Vec::with_capacity((longest + SWITCH_REACH + 2) * channels),
             features: Vec::with_capacity(longest + 1),
             own_speed_mps: 1.0,
-            facing: 0.0,
+            facings: [0.0; 2],
             speed_mps: 0.0,
             model: Arc::clone(model),
             fingerprint,
@@ -140,42 +146,57 @@ impl SwitchingSteps {
         self.variation = f64::from(config.variation.clamp(0.0, 2.0));
     }
 
-    /// Walks a few steps without chance, to learn how fast and which way they go.
+    /// Walks some steps, to learn how fast and which way they go: first the ways, under which the speed is then measured.
     fn measure(&mut self) {
-        let rate = self.model.frame_rate_hz;
-        // First the way, under which the speed is then measured.
+        let mut own = 1.0;
         for _ in 0..2 {
-            let ask = Ask {
-                speed_mps: self.own_speed_mps as f32,
-                turn_rate: 0.0,
-                amplitude: Amplitude::WALK,
-                detail: Detail::Full,
-            };
-            self.begin(Side::Left, ask.amplitude, self.own_speed_mps, ask.detail);
-            let (mut travel, mut frames) = (Vec3::ZERO, 0);
-            for step in 0..6 {
-                self.advance(&ask);
-                if step >= 2 {
-                    travel += self.stage.travel(&self.shape);
-                    frames += self.shape.timing.frames;
-                }
+            for (index, ratio) in FACING_RATIOS.into_iter().enumerate() {
+                let (travel, frames) = self.travel(ratio);
+                self.facings[index] -= travel.x.atan2(travel.z);
+                own = f64::from(travel.length()) * self.model.frame_rate_hz / frames as f64;
             }
-            self.facing -= travel.x.atan2(travel.z);
-            let speed = f64::from(travel.length()) * rate / frames as f64;
-            self.own_speed_mps = speed.max(0.05);
         }
+        self.own_speed_mps = own.max(0.05);
+    }
+
+    /// Travel over the ground and frames of some steps at this ratio of the own speed.
+    fn travel(&mut self, ratio: f64) -> (Vec3, usize) {
+        let speed = ratio * self.own_speed_mps;
+        let ask = Ask {
+            speed_mps: speed as f32,
+            turn_rate: 0.0,
+            amplitude: Amplitude::WALK,
+            detail: Detail::Full,
+        };
+        self.begin(Side::Left, ask.amplitude, speed, ask.detail);
+        let (mut travel, mut frames) = (Vec3::ZERO, 0);
+        for step in 0..2 + MEASURED_STEPS {
+            self.advance(&ask);
+            if step >= 2 {
+                travel += self.stage.travel(&self.shape);
+                frames += self.shape.timing.frames;
+            }
+        }
+        (travel, frames)
+    }
+
+    /// Heading under which the walk goes along +Z at a stride.
+    fn facing(&self) -> f32 {
+        let [low, high] = FACING_RATIOS.map(|ratio| pace_of(ratio)[1]);
+        let share = ((self.origin.stride - low) / (high - low)).clamp(0.0, 1.0);
+        self.facings[0] + share as f32 * (self.facings[1] - self.facings[0])
     }
 
     /// Starts over: one step that does not show, then the first.
     fn begin(&mut self, first: Side, amplitude: Amplitude, speed_mps: f64, detail: Detail) {
         self.stage.clear();
         self.weights.clear();
-        self.origin.facing = [self.facing; 2];
         self.origin.turn_rate = 0.0;
         self.origin.amplitude = amplitude;
         self.origin.detail = detail;
         self.speed_mps = speed_mps as f32;
         self.set_pace();
+        self.origin.facing = [self.facing(); 2];
         for side in [first.other(), first] {
             self.take_over(side);
             self.realise();
@@ -207,9 +228,7 @@ impl SwitchingSteps {
     /// The tempo and the stride that give a speed, shared between both.
     fn set_pace(&mut self) {
         let ratio = f64::from(self.speed_mps) / self.own_speed_mps;
-        let ratio = ratio.clamp(0.0, MAX_SPEED_RATIO);
-        self.origin.tempo = ratio.sqrt().max(MIN_TEMPO);
-        self.origin.stride = ratio / self.origin.tempo;
+        [self.origin.tempo, self.origin.stride] = pace_of(ratio);
     }
 
     /// Makes what the current step left behind the origin of the next.
@@ -248,8 +267,9 @@ impl SwitchingSteps {
 
     fn work_out(&mut self) {
         let side = self.origin.leading;
-        let drawn = self.draw_length(side);
         let start = self.draw_start(side);
+        let longest = (MAX_STEP_SECS * self.model.frame_rate_hz) as usize;
+        let drawn = self.model.regime(side).frames[start].min(longest);
         let settle = SETTLE_SECS * self.model.frame_rate_hz;
         let reach = SWITCH_REACH.min(drawn - 1);
         let system = &mut self.systems[side.index()];
@@ -263,7 +283,6 @@ impl SwitchingSteps {
         let length = self.switch_near(drawn, reach);
 
         let frames = (length as f64 / self.origin.tempo).round() as usize;
-        let longest = (MAX_STEP_SECS * self.model.frame_rate_hz) as usize;
         let terminal = self.model.regime(side).other_terminal;
         let frames = frames.min(longest);
         self.shape = StepShape::of_walk(
@@ -277,21 +296,7 @@ impl SwitchingSteps {
         self.write_features(length);
     }
 
-    /// Frames of a segment of the model's own tempo.
-    fn draw_length(&mut self, side: Side) -> usize {
-        let regime = self.model.regime(side);
-        let weight: f64 = StandardNormal.sample(&mut self.rng);
-        let weight = weight.clamp(-MAX_LENGTH_WEIGHT, MAX_LENGTH_WEIGHT);
-        let mean = regime.frames_mean;
-        let drawn = mean + self.variation * weight * regime.frames_variance.sqrt();
-        let longest = MAX_STEP_SECS * self.model.frame_rate_hz;
-        let drawn = drawn
-            .clamp(LENGTHS[0] * mean, LENGTHS[1] * mean)
-            .min(longest);
-        (drawn.round() as usize).max(1)
-    }
-
-    /// The frame, at most `reach` away from a drawn length, at which the other system takes over best: there the segment ends.
+    /// The frame, at most `reach` away from the recorded end, at which the other system takes over best: there the segment ends.
     fn switch_near(&mut self, drawn: usize, reach: usize) -> usize {
         let channels = self.model.components.len();
         let other = &self.systems[self.origin.leading.other().index()];
@@ -361,9 +366,16 @@ impl StepSource for SwitchingSteps {
         self.origin.turn_rate = ask.turn_rate;
         self.origin.amplitude = ask.amplitude;
         self.origin.detail = ask.detail;
-        self.origin.facing = [self.origin.facing[1], self.facing];
+        self.origin.facing = [self.origin.facing[1], self.facing()];
         self.realise();
     }
+}
+
+/// Tempo and stride at a ratio of the recorded speed.
+fn pace_of(ratio: f64) -> [f64; 2] {
+    let ratio = ratio.clamp(0.0, MAX_SPEED_RATIO);
+    let tempo = ratio.sqrt().max(MIN_TEMPO);
+    [tempo, ratio / tempo]
 }
 
 fn standing_of(mean: &[f64]) -> Posture {

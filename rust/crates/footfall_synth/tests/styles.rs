@@ -259,6 +259,54 @@ proptest! {
     }
 }
 
+fn switching(seed: u64) -> GaitGenerator {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../../addons/footfall/models/walk.footdyn"
+    );
+    let model = DynamicsModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
+    let config = GeneratorConfig {
+        seed,
+        phase: 0.0,
+        variation: 1.0,
+    };
+    GaitGenerator::switching(&Arc::new(model), &Skeleton::standard(), &config).unwrap()
+}
+
+#[test]
+fn a_restored_switching_walker_goes_on_bit_for_bit() {
+    for (seed, saved_at, stands) in [(1, 0, false), (2, 1, true), (3, 150, false), (4, 333, true)] {
+        let mut walker = switching(seed);
+        if stands {
+            walker.stand();
+        }
+        for frame in 0..saved_at {
+            play(&mut walker, frame);
+        }
+        let state = walker.state();
+        assert!(state.len() < 350, "{} bytes", state.len());
+        let mut other = switching(seed + 1);
+        play(&mut other, 40);
+        other.restore(&state).unwrap();
+        assert_eq!(other.state(), state);
+        for frame in saved_at..saved_at + 400 {
+            assert_eq!(
+                play(&mut walker, frame),
+                play(&mut other, frame),
+                "frame {frame}"
+            );
+            assert_eq!(walker.start_from_character(), other.start_from_character());
+        }
+        for at in 0..state.len() {
+            let mut damaged = state.clone();
+            damaged[at] ^= 0x55;
+            if other.restore(&damaged).is_ok() {
+                assert!(play(&mut other, 1).root_position.is_finite());
+            }
+        }
+    }
+}
+
 #[test]
 fn a_state_of_another_model_or_other_styles_is_refused() {
     let walker = generator(1);
@@ -269,12 +317,7 @@ fn a_state_of_another_model_or_other_styles_is_refused() {
         variation: 1.0,
     };
     let skeleton = Skeleton::standard();
-    let path = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../../addons/footfall/models/walk.footdyn"
-    );
-    let dynamics = DynamicsModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
-    let mut switching = GaitGenerator::switching(&Arc::new(dynamics), &skeleton, &config).unwrap();
+    let mut switching = switching(1);
     let refused = switching.restore(&walker.state());
     assert!(
         matches!(refused, Err(StateError::OtherModel)),

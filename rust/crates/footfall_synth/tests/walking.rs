@@ -309,7 +309,7 @@ fn motion_is_continuous_through_changes_of_control() {
 }
 
 fn assert_continuous(kind: Kind, frames: &[Frame]) {
-    // 120 m/s² at 60 fps: an impact of the toes is below it, a pop is not. Two systems swing a hurried knee a little harder.
+    // 120 m/s² at 60 fps: an impact of the toes is below it, a pop is not. Two systems straighten a knee harder.
     let most = match kind {
         Kind::Styled => 0.034,
         Kind::Switching => 0.04,

@@ -12,20 +12,15 @@ use crate::dataset::{EncodeConfig, encode_clip};
 use crate::error::TrainError;
 use crate::sequence::Sequence;
 use crate::train::{TrainingClip, mean_terminal};
-use footfall_core::{
-    JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, StepPosition, forward_kinematics,
-};
+use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_model::{DynamicsModel, FEATURE_COUNT, OBSERVATION_COUNT, Provenance, Regime};
-use footfall_motion::steps::{Step, Walk};
-use footfall_motion::switches::detect_switches;
+use footfall_motion::steps::Walk;
+use footfall_motion::switches::{detect_switches, walks};
 use footfall_prob::subspace::{
     AffineSystem, IdentifyConfig, Refinement, identify, initial_states, refine,
 };
 use footfall_prob::windows::Windows;
 use nalgebra::{DMatrix, SymmetricEigen};
-
-/// A segment lasts at least and at most so long, seconds.
-const SEGMENT_SECS: [f64; 2] = [0.15, 1.5];
 
 /// Kinematic and switching contacts this close are one, seconds.
 const SAME_CONTACT_SECS: f64 = 0.12;
@@ -141,21 +136,13 @@ fn regime(
         .iter()
         .map(|start| start.as_slice().to_vec())
         .collect();
-    let lengths = || {
-        let channels = system.channels();
-        segments
-            .iter()
-            .map(move |segment| (segment.len() / channels) as f64)
-    };
-    let count = segments.len() as f64;
-    let frames_mean = lengths().sum::<f64>() / count;
-    let squares = lengths().map(|length| (length - frames_mean).powi(2));
     Ok(Regime {
         system: system.clone(),
         starts,
-        frames_mean,
-        // Whole frames are known no better.
-        frames_variance: (squares.sum::<f64>() / count).max(0.25),
+        frames: segments
+            .iter()
+            .map(|segment| segment.len() / system.channels())
+            .collect(),
         other_terminal: mean_terminal(sequences, side),
     })
 }
@@ -273,38 +260,19 @@ impl Recordings {
     }
 }
 
-/// The steps of a clip as its switches cut them.
+/// The steps of a clip as its switches cut them; when the other foot leaves the ground is taken from the kinematic steps.
 fn switch_walks(clip: &TrainingClip) -> Result<Vec<Walk>, TrainError> {
     let rate = clip.clip.frame_rate_hz;
-    let switches = detect_switches(&clip.clip, clip.skip_frames)?;
-    let kinematic = || clip.walks.iter().flat_map(|walk| &walk.steps);
-    let mut walks: Vec<Walk> = Vec::new();
-    let mut last_end = None;
-    for pair in switches.windows(2) {
-        let (first, end) = (pair[0].frame, pair[1].frame);
-        let secs = (end - first) as f64 / rate;
-        if pair[0].side == pair[1].side || !(SEGMENT_SECS[0]..=SEGMENT_SECS[1]).contains(&secs) {
-            continue;
-        }
-        let same = kinematic().find(|step| {
-            step.side == pair[0].side
-                && step.first.abs_diff(first) as f64 <= SAME_CONTACT_SECS * rate
+    let mut walks = walks(&detect_switches(&clip.clip, clip.skip_frames)?, rate);
+    for step in walks.iter_mut().flat_map(|walk| &mut walk.steps) {
+        let mut kinematic = clip.walks.iter().flat_map(|walk| &walk.steps);
+        let same = kinematic.find(|known| {
+            known.side == step.side
+                && known.first.abs_diff(step.first) as f64 <= SAME_CONTACT_SECS * rate
         });
-        let step = Step {
-            side: pair[0].side,
-            first,
-            end,
-            position: StepPosition::Inside,
-            other_terminal: same
-                .and_then(|step| step.other_terminal)
-                .filter(|frame| (first..end).contains(frame)),
-            heel_rise: None,
-        };
-        match walks.last_mut() {
-            Some(walk) if last_end == Some(first) => walk.steps.push(step),
-            _ => walks.push(Walk { steps: vec![step] }),
-        }
-        last_end = Some(end);
+        step.other_terminal = same
+            .and_then(|known| known.other_terminal)
+            .filter(|frame| (step.first..step.end).contains(frame));
     }
     Ok(walks)
 }

@@ -7,7 +7,7 @@ use anyhow::{Context as _, Result};
 use clap::ValueEnum;
 use footfall_core::{EventKind, GaitEvent};
 use footfall_motion::retarget::Retargeted;
-use footfall_motion::switches::{detect_switches, stances};
+use footfall_motion::switches::{detect_switches, stances, walks};
 use std::path::PathBuf;
 
 /// Find ground contacts, gait events and steps
@@ -94,10 +94,7 @@ fn switching(motion: &Retargeted) -> Result<ContactReport> {
         .collect();
     let stances = stances(&switches, frames);
     let [left, right] = stances.each_ref().map(Vec::as_slice);
-    Ok(ContactReport::from_spans(
-        motion.clip.frame_rate_hz,
-        frames,
-        [left, right],
-        &events,
-    ))
+    let rate = motion.clip.frame_rate_hz;
+    let report = ContactReport::from_spans(rate, frames, [left, right], &events);
+    Ok(report.with_steps(&walks(&switches, rate)))
 }

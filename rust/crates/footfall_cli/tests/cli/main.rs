@@ -3,6 +3,7 @@
 mod bad_input;
 mod common;
 mod designs;
+mod dynamics;
 mod evaluate;
 mod pipeline;
 mod recordings;

@@ -22,8 +22,8 @@ struct RegimeV1 {
     /// Transition, drift, output matrix, offset, gain; matrices row by row.
     system: [Vec<f32>; 5],
     starts: Vec<Vec<f32>>,
-    /// Mean and variance of the segments' lengths.
-    frames: [f32; 2],
+    /// Of the segments that began so.
+    frames: Vec<u32>,
     other_terminal: f32,
 }
 
@@ -37,7 +37,7 @@ pub(super) fn encode(model: &DynamicsModel) -> Result<Vec<u8>, ModelFileError> {
             order: regime.system.order() as u32,
             system: regime.system.to_rows().each_ref().map(|rows| narrow(rows)),
             starts: narrow_all(&regime.starts),
-            frames: [regime.frames_mean as f32, regime.frames_variance as f32],
+            frames: regime.frames.iter().map(|frames| *frames as u32).collect(),
             other_terminal: regime.other_terminal as f32,
         }),
     };
@@ -75,8 +75,7 @@ fn decode_regime(dto: &RegimeV1, channels: usize) -> Result<Regime, ModelFileErr
     Ok(Regime {
         system,
         starts: widen_all(&dto.starts),
-        frames_mean: f64::from(dto.frames[0]),
-        frames_variance: f64::from(dto.frames[1]),
+        frames: dto.frames.iter().map(|frames| *frames as usize).collect(),
         other_terminal: f64::from(dto.other_terminal),
     })
 }

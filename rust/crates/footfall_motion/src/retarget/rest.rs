@@ -32,13 +32,18 @@ pub(super) fn canonical_direction(joint: Joint) -> Vec3 {
     }
 }
 
+/// Sine of the least angle between a direction and its side.
+const LEAST_SIDE: f32 = 1e-3;
+
 /// The rotation that turns `from` onto `to` and, as well as it can, `from_side` onto `to_side`.
 fn aligning(from: Vec3, to: Vec3, from_side: Vec3, to_side: Vec3) -> Quat {
     let basis = |main: Vec3, side: Vec3| {
-        let main = main.normalize_or_zero();
-        let side = (side - main * main.dot(side)).try_normalize()?;
-        (main != Vec3::ZERO)
-            .then(|| Quat::from_mat3(&Mat3::from_cols(main, side, main.cross(side))))
+        let main = main.try_normalize()?;
+        let across = main.cross(side.try_normalize()?);
+        // A side that points along the main direction is none.
+        let across = (across.length() > LEAST_SIDE).then(|| across.normalize())?;
+        let side = across.cross(main).normalize();
+        Some(Quat::from_mat3(&Mat3::from_cols(main, side, across)))
     };
     match (basis(from, from_side), basis(to, to_side)) {
         (Some(from), Some(to)) => (to * from.inverse()).normalize(),

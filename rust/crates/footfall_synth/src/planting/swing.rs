@@ -18,6 +18,9 @@ const SETTLE_RATE: f32 = 8.0;
 /// A foot lands at most this fast, m/s: people brake their swing before the heel strikes.
 const MAX_LANDING_MPS: f32 = 1.2;
 
+/// Part of the swing by which a foot is free of how it stood.
+const FREED_BY: f32 = 0.3;
+
 /// Over this time at most a faster foot is braked, seconds.
 const BRAKING_SECS: f32 = 0.16;
 
@@ -87,6 +90,11 @@ impl Swing {
                 ..toes
             },
         }
+    }
+
+    /// How far the foot has come away from how it stood, from 0 to 1.
+    pub(super) fn freed(&self, index: usize) -> f32 {
+        smooth_step((index - self.first) as f32 / (FREED_BY * self.frames))
     }
 
     /// The foot at a frame of the step, from where it would be free.

@@ -54,7 +54,7 @@ impl DynamicsBench {
         let segments = starts
             .enumerate()
             .map(|(index, start)| {
-                let frames = regime.frames_mean as usize + index % 3;
+                let frames = regime.mean_frames() as usize + index % 3;
                 let start = DVector::from_column_slice(start);
                 let mut segment = regime.system.simulate(&start, frames);
                 // No recording is without noise, which refinement works on; a rough wave does for it.
@@ -203,7 +203,7 @@ impl DynamicsBench {
         let mut frames = 0;
         for side in Side::BOTH {
             let regime = self.model.regime(side);
-            let length = regime.frames_mean as usize;
+            let length = regime.mean_frames() as usize;
             for start in &regime.starts {
                 let start = DVector::from_column_slice(start);
                 let outputs = regime.system.simulate(&start, length);

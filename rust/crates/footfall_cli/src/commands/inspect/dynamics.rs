@@ -45,8 +45,8 @@ pub(super) fn inspect(path: &Path) -> Result<DynamicsFacts> {
         SystemFacts {
             order: regime.system.order(),
             starts: regime.starts.len(),
-            segment_seconds: regime.frames_mean / model.frame_rate_hz,
-            segment_seconds_spread: regime.frames_variance.sqrt() / model.frame_rate_hz,
+            segment_seconds: regime.mean_frames() / model.frame_rate_hz,
+            segment_seconds_spread: regime.frames_spread() / model.frame_rate_hz,
             spectral_radius: poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max),
         }
     });
