@@ -7,5 +7,6 @@ mod dynamics;
 mod evaluate;
 mod pipeline;
 mod recordings;
+mod sensors;
 mod study;
 mod style;

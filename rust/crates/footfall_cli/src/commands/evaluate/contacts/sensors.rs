@@ -1,0 +1,81 @@
+//! Switches of foot sensors against the events of a reference.
+
+use super::Agreement;
+use anyhow::{Context as _, Result, ensure};
+use footfall_core::EventKind;
+use footfall_motion::corpus::read_index;
+use footfall_motion::imu_csv;
+use footfall_motion::sensor_switches::detect_sensor_switches;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// Events so far outside of the known ones are not judged, seconds: the reference may not have looked there.
+const MARGIN_SECS: f64 = 0.2;
+
+/// The column that names a recording's events.
+const EVENTS_COLUMN: &str = "events";
+
+#[derive(Deserialize)]
+struct Events {
+    events: Vec<Event>,
+}
+
+#[derive(Deserialize)]
+struct Event {
+    time_s: f64,
+    kind: String,
+}
+
+/// Agreement of every recording of an index, by category and kind of contact.
+pub(super) fn compare(index: &Path, tolerance_ms: f64) -> Result<BTreeMap<String, Agreement>> {
+    let mut agreements: BTreeMap<String, Agreement> = BTreeMap::new();
+    for row in read_index(index)? {
+        let events = row.column(EVENTS_COLUMN).unwrap_or_default();
+        ensure!(
+            !events.is_empty(),
+            "{}, line {}: column \"{EVENTS_COLUMN}\" is missing or empty; name the file with the known events there",
+            index.display(),
+            row.line
+        );
+        let events = read_events(&index.parent().unwrap_or(Path::new("")).join(events))?;
+        let recording = imu_csv::read(&row.path)?;
+        let switches = detect_sensor_switches(&recording.samples, recording.rate_hz)
+            .with_context(|| row.path.display().to_string())?;
+        let times = || events.iter().map(|event| event.time_s);
+        let judged = times().fold(f64::INFINITY, f64::min) - MARGIN_SECS
+            ..=times().fold(f64::NEG_INFINITY, f64::max) + MARGIN_SECS;
+        for kind in [EventKind::InitialContact, EventKind::TerminalContact] {
+            let known = events.iter().filter(|event| event.kind == kind.name());
+            let found = switches.iter().filter(|switch| switch.kind == kind);
+            let found = found.map(|switch| recording.start_secs + switch.time_secs);
+            let name = format!("{}, {}", row.category(), kind.name().replace('_', " "));
+            let agreement = agreements.entry(name).or_default();
+            agreement.recordings += 1;
+            agreement.add(
+                known.map(|event| event.time_s).collect(),
+                found.filter(|time| judged.contains(time)).collect(),
+                tolerance_ms,
+            );
+        }
+    }
+    Ok(agreements)
+}
+
+fn read_events(path: &Path) -> Result<Vec<Event>> {
+    let text = fs::read_to_string(path)
+        .with_context(|| format!("{}: cannot read the events", path.display()))?;
+    let events: Events = serde_json::from_str(&text).with_context(|| {
+        format!(
+            "{}: not what `footfall imu events --json` writes",
+            path.display()
+        )
+    })?;
+    ensure!(
+        !events.events.is_empty() && events.events.iter().all(|event| event.time_s.is_finite()),
+        "{}: there are no events; give those of the reference",
+        path.display()
+    );
+    Ok(events.events)
+}
