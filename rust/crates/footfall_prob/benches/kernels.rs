@@ -6,6 +6,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use footfall_prob::duration::GaussianDuration;
 use footfall_prob::hsmm::{Boundary, ChainState, hsmm_forward_backward};
 use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Real, mlpg};
+use footfall_prob::subspace::{IdentifyConfig, Refinement, identify, refine};
+use footfall_prob::switching::{ProjectionResidual, StreamingResidual};
 use footfall_prob::windows::Windows;
 use footfall_prob::workload::MlpgWorkload;
 use jbonsai::mlpg_adjust::MlpgAdjust;
@@ -149,5 +151,41 @@ fn hsmm_kernels(c: &mut Criterion) {
     );
 }
 
-criterion_group!(kernels, mlpg_kernels, hsmm_kernels);
+/// Ten segments of 34 frames × 8 outputs, and 400 frames × 4 outputs: what a switching model of gait is fitted to and found in.
+fn switching_kernels(c: &mut Criterion) {
+    let wave = |length: usize, seed: f64| -> Vec<f64> {
+        let value = |index: usize| {
+            let (frame, channel) = ((index / 8) as f64, (index % 8) as f64);
+            (0.2 * frame + seed + channel).sin() + 0.3 * (0.55 * frame - channel * seed).cos()
+        };
+        (0..length).map(value).collect()
+    };
+    let segments: Vec<Vec<f64>> = (0..10).map(|k| wave(34 * 8, f64::from(k))).collect();
+    let views: Vec<&[f64]> = segments.iter().map(Vec::as_slice).collect();
+    let config = IdentifyConfig {
+        order: 12,
+        window: 4,
+    };
+    c.bench_function("identify, 10 segments of 34 x 8, order 12", |b| {
+        b.iter(|| identify(black_box(&views), 8, &config));
+    });
+    let system = identify(&views, 8, &config).expect("segments of a system");
+    c.bench_function("refine, the same, 20 steps", |b| {
+        b.iter(|| refine(&system, black_box(&views), Refinement::Simulation, 20));
+    });
+    let angles = wave(400 * 4, 0.7);
+    c.bench_function("projection residual, 400 x 4, window 2", |b| {
+        b.iter(|| ProjectionResidual::new(black_box(&angles), 4, 2).map(|r| r.norms()));
+    });
+    let mut live = StreamingResidual::new(4, 2).expect("channels and a window");
+    c.bench_function("streaming residual, 400 frames of 4, window 2", |b| {
+        b.iter(|| {
+            for frame in angles.chunks_exact(4) {
+                black_box(live.push(black_box(frame)));
+            }
+        });
+    });
+}
+
+criterion_group!(kernels, mlpg_kernels, hsmm_kernels, switching_kernels);
 criterion_main!(kernels);

@@ -1,13 +1,14 @@
 //! Linear systems from many short segments: subspace identification and prediction-error refinement (*Gait as a switching
 //! dynamical system*, section 3.2, equations 10 and 11).
 //!
-//! x[k+1] = A x[k] + b + K e[k], y[k] = C x[k] + d + e[k]. The offsets b and d stand for what keeps the body up and moving: the
+//! `x[k+1] = A x[k] + b + K e[k]`, `y[k] = C x[k] + d + e[k]`. The offsets b and d stand for what keeps the body up and moving: the
 //! system is affine. Nothing is assumed about stability: a segment of gait ends long before an unstable system is far.
 //!
 //! In reading order: [`AffineSystem`], [`identify`], [`refine`], [`initial_states`].
 
 mod identify;
 mod initial;
+mod problem;
 mod refine;
 
 pub use identify::{IdentifyConfig, identify};
@@ -97,7 +98,7 @@ impl AffineSystem {
         outputs
     }
 
-    /// The prediction errors e[k] = y[k] − ŷ[k|k−1] of a segment from a state, frame by frame.
+    /// The prediction errors `e[k] = y[k] − ŷ[k|k−1]` of a segment from a state, frame by frame.
     pub fn prediction_errors(&self, start: &DVector<f64>, segment: &[f64]) -> Vec<f64> {
         let mut state = start.clone();
         let mut errors = Vec::with_capacity(segment.len());

@@ -1,6 +1,7 @@
 //! Two systems that switch against one that does not (figure 5 of the paper): prediction errors over time.
 
-use super::{DynamicsConfig, FittedSystem, Outputs, PoseSpace, Recordings, fit_segments};
+use super::pose_space::PoseSpace;
+use super::{DynamicsConfig, FittedSystem, Outputs, Recordings, fit_segments};
 use crate::error::TrainError;
 use crate::train::TrainingClip;
 use footfall_core::Side;
