@@ -4,22 +4,18 @@
 //! and what it took over from the step before (where the feet stood and the last frames of the trajectory). The rest is
 //! made again from the model.
 
+mod source;
+
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
-use crate::pace::PaceTable;
-use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
 use crate::planting::PlanterState;
 use crate::standing::Amplitude;
 use crate::steps::Steps;
-use crate::styled::{StyledSteps, Worn, walker_of};
-use crate::switching::{SwitchingOrigin, SwitchingSteps};
-use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
-use footfall_core::{Side, Skeleton, StepPosition};
+use footfall_core::StepPosition;
 use footfall_ik::Plant;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// The version of the layout that this build writes and reads.
 const VERSION: u8 = 3;
@@ -216,173 +212,7 @@ impl GaitGenerator {
     }
 }
 
-impl Source {
-    fn of_styled(steps: &StyledSteps) -> Self {
-        let origin = steps.walker.origin();
-        let components = steps.space.model().variation.step.len();
-        let draws = steps.walker.draws();
-        let used = draws.iter().flat_map(|draw| {
-            let used = draw.weights.len().min(components);
-            draw.weights[..used].iter().copied()
-        });
-        let manners = [origin.manner_before, origin.request.manner];
-        let blends = steps.walker.blends();
-        Self::Styled {
-            weights: [blends[0], blends[1], &steps.worn.blend].map(|blend| blend.weights.clone()),
-            left_first: draws[0].side == Side::Left,
-            draws: used.collect(),
-            paces: manners
-                .map(|manner| manner.pace)
-                .map(|pace| [pace.covariate_mps, pace.tempo, pace.stride]),
-            positions: manners.map(|manner| manner.position.index() as u8),
-            details: manners.map(|manner| manner.detail as u8),
-            tie: if origin.planter.is_some() {
-                origin.tie.to_vec()
-            } else {
-                Vec::new()
-            },
-        }
-    }
-
-    fn of_switching(steps: &SwitchingSteps) -> Self {
-        let origin = &steps.origin;
-        Self::Switching {
-            left: origin.leading == Side::Left,
-            pace: [origin.tempo, origin.stride],
-            detail: origin.detail as u8,
-            expected: origin.expected.clone(),
-        }
-    }
-}
-
 impl State {
-    /// The styled steps that go on from here.
-    fn styled(
-        &self,
-        current: &StyledSteps,
-        skeleton: &Skeleton,
-        config: &GeneratorConfig,
-    ) -> Result<StyledSteps, StateError> {
-        let space = &current.space;
-        if self.model != space.fingerprint() {
-            return Err(StateError::OtherModel);
-        }
-        let Source::Styled {
-            weights,
-            left_first,
-            draws,
-            paces,
-            positions,
-            details,
-            tie,
-        } = &self.steps
-        else {
-            return Err(StateError::OtherModel);
-        };
-        let found = space.styles().len();
-        if let Some(weights) = weights.iter().find(|w| w.len() != found) {
-            let expected = weights.len();
-            return Err(StateError::OtherStyles { expected, found });
-        }
-        let components = space.model().variation.step.len().min(MAX_COMPONENTS);
-        let ties = self.feet.is_none() || tie.len() == TIE_LEN;
-        if draws.len() != WINDOW * components || !ties {
-            return Err(StateError::Damaged);
-        }
-        let mut side = if *left_first { Side::Right } else { Side::Left };
-        let draws = core::array::from_fn(|step| {
-            side = side.other();
-            let mut weights = [0.0; MAX_COMPONENTS];
-            weights[..components].copy_from_slice(&draws[step * components..][..components]);
-            StepDraw { side, weights }
-        });
-        let manner = |step: usize| {
-            let [covariate_mps, tempo, stride] = paces[step];
-            let position = StepPosition::ALL.get(usize::from(positions[step]));
-            Manner {
-                pace: Pace {
-                    covariate_mps,
-                    tempo,
-                    stride,
-                },
-                position: position.copied().unwrap_or_default(),
-                detail: detail_of(details[step]),
-            }
-        };
-        let mut origin = Origin {
-            request: Request {
-                manner: manner(1),
-                amplitude: self.amplitude(),
-                turn_rate: self.turn_rate,
-                facing: self.facing[1],
-            },
-            manner_before: manner(0),
-            facing_before: self.facing[0],
-            planter: self.feet.as_ref().map(Feet::planter),
-            tie: [0.0; TIE_LEN],
-        };
-        if tie.len() == TIE_LEN {
-            origin.tie.copy_from_slice(tie);
-        }
-        let mut planner = walker_of(space, config);
-        let [before, now, next] = weights.each_ref().map(|w| space.blend(w));
-        // The same mixture must be one and the same: a walker tells changes by it.
-        let now = if weights[1] == weights[2] {
-            Arc::clone(&next)
-        } else {
-            now
-        };
-        planner.resume(self.chance_position, &draws);
-        let paces = PaceTable::measure(&planner, skeleton, &next)?;
-        let mut walker = Walker::new(skeleton, &now);
-        walker.restore(&mut planner, [&before, &now], draws, origin)?;
-        let worn = Worn { blend: next, paces };
-        Ok(StyledSteps::resumed(
-            space,
-            planner,
-            walker,
-            worn,
-            self.speed_mps,
-        ))
-    }
-
-    /// Takes switching steps up from here.
-    fn resume(
-        &self,
-        steps: &mut SwitchingSteps,
-        config: &GeneratorConfig,
-    ) -> Result<(), StateError> {
-        let Source::Switching {
-            left,
-            pace: [tempo, stride],
-            detail,
-            expected,
-        } = &self.steps
-        else {
-            return Err(StateError::OtherModel);
-        };
-        if self.model != steps.fingerprint {
-            return Err(StateError::OtherModel);
-        }
-        if ![0, 2 * steps.model.components.len()].contains(&expected.len()) {
-            return Err(StateError::Damaged);
-        }
-        let origin = SwitchingOrigin {
-            leading: if *left { Side::Left } else { Side::Right },
-            tempo: *tempo,
-            stride: *stride,
-            detail: detail_of(*detail),
-            amplitude: self.amplitude(),
-            turn_rate: self.turn_rate,
-            facing: self.facing,
-            chance_position: self.chance_position,
-            expected: expected.clone(),
-            planter: self.feet.as_ref().map(Feet::planter),
-        };
-        steps.resume(config, origin, self.speed_mps);
-        Ok(())
-    }
-
     fn amplitude(&self) -> Amplitude {
         Amplitude {
             from: self.amplitude[0],
