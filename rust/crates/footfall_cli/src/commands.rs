@@ -12,6 +12,7 @@ mod sheet;
 mod study;
 mod synth;
 mod train;
+mod walk_output;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};

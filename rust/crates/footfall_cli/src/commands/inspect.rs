@@ -9,9 +9,11 @@ mod style;
 use crate::motion_input::MapArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
+use footfall_model::Provenance;
+use footfall_model::file::read_header;
 use serde::Serialize;
 use std::ffi::OsStr;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -104,4 +106,65 @@ fn kind_of(path: &Path) -> Result<Kind> {
 /// `name   value`, aligned.
 fn fact(name: &str, value: impl std::fmt::Display) -> String {
     format!("{name:<14} {value}")
+}
+
+/// What every model file of ours tells.
+#[derive(Serialize)]
+struct FileFacts {
+    file: PathBuf,
+    bytes: u64,
+    format_version: u32,
+    written_by: String,
+    provenance: Provenance,
+}
+
+impl FileFacts {
+    /// Of a file that was read as a model.
+    fn of(path: &Path) -> Result<Self> {
+        let bytes = fs::read(path).with_context(|| path.display().to_string())?;
+        let (format_version, header) =
+            read_header(&bytes).with_context(|| path.display().to_string())?;
+        Ok(Self {
+            file: path.to_owned(),
+            bytes: bytes.len() as u64,
+            format_version,
+            written_by: header.written_by,
+            provenance: header.provenance,
+        })
+    }
+
+    /// File and format, then what stands between them and the corpus, then where the model comes from.
+    fn lines(&self, kind: &str, between: Vec<String>) -> Vec<String> {
+        let provenance = &self.provenance;
+        let mut lines = vec![
+            fact(
+                kind,
+                format!("{} ({} bytes)", self.file.display(), self.bytes),
+            ),
+            fact(
+                "format",
+                format!(
+                    "{}, written by Footfall {}",
+                    self.format_version, self.written_by
+                ),
+            ),
+        ];
+        lines.extend(between);
+        lines.extend([
+            fact("made from", &provenance.corpus),
+            fact(
+                "corpus",
+                format!(
+                    "{} clips, {} subjects, {} steps",
+                    provenance.clips, provenance.subjects, provenance.steps
+                ),
+            ),
+            fact("terms", &provenance.terms),
+            fact("made by", &provenance.command),
+        ]);
+        if !provenance.commit.is_empty() {
+            lines.push(fact("commit", &provenance.commit));
+        }
+        lines
+    }
 }

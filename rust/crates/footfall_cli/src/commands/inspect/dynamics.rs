@@ -1,22 +1,17 @@
 //! Facts of a switching model.
 
-use super::fact;
+use super::{FileFacts, fact};
 use crate::model_file::read_dynamics;
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use footfall_core::Side;
-use footfall_model::{Provenance, file::read_header};
 use serde::Serialize;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Facts of a switching model.
 #[derive(Serialize)]
 pub(super) struct DynamicsFacts {
-    file: PathBuf,
-    bytes: u64,
-    format_version: u32,
-    written_by: String,
-    provenance: Provenance,
+    #[serde(flatten)]
+    file: FileFacts,
     fps: f64,
     components: usize,
     /// Of the left foot, then of the right.
@@ -36,9 +31,6 @@ struct SystemFacts {
 /// Reads a switching model.
 pub(super) fn inspect(path: &Path) -> Result<DynamicsFacts> {
     let model = read_dynamics(path)?;
-    let bytes = fs::read(path).with_context(|| path.display().to_string())?;
-    let (format_version, header) =
-        read_header(&bytes).with_context(|| path.display().to_string())?;
     let systems = Side::BOTH.map(|side| {
         let regime = model.regime(side);
         let poles = regime.system.transition.complex_eigenvalues();
@@ -51,11 +43,7 @@ pub(super) fn inspect(path: &Path) -> Result<DynamicsFacts> {
         }
     });
     Ok(DynamicsFacts {
-        file: path.to_owned(),
-        bytes: bytes.len() as u64,
-        format_version,
-        written_by: header.written_by,
-        provenance: header.provenance,
+        file: FileFacts::of(path)?,
         fps: model.frame_rate_hz,
         components: model.components.len(),
         systems,
@@ -64,34 +52,11 @@ pub(super) fn inspect(path: &Path) -> Result<DynamicsFacts> {
 
 impl DynamicsFacts {
     pub(super) fn lines(&self) -> Vec<String> {
-        let provenance = &self.provenance;
-        let mut lines = vec![
-            fact(
-                "dynamics model",
-                format!("{} ({} bytes)", self.file.display(), self.bytes),
-            ),
-            fact(
-                "format",
-                format!(
-                    "{}, written by Footfall {}",
-                    self.format_version, self.written_by
-                ),
-            ),
-            fact("fitted to", &provenance.corpus),
-            fact(
-                "corpus",
-                format!(
-                    "{} clips of {} people, {} segments",
-                    provenance.clips, provenance.subjects, provenance.steps
-                ),
-            ),
-            fact("terms", &provenance.terms),
-            fact("made by", &provenance.command),
-            fact(
-                "pose",
-                format!("{} components at {} fps", self.components, self.fps),
-            ),
-        ];
+        let mut lines = self.file.lines("dynamics model", Vec::new());
+        lines.push(fact(
+            "pose",
+            format!("{} components at {} fps", self.components, self.fps),
+        ));
         lines.extend(Side::BOTH.iter().zip(&self.systems).map(|(side, system)| {
             fact(
                 &format!("{} foot", side.name()),

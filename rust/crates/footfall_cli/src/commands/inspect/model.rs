@@ -1,22 +1,18 @@
 //! Facts of a gait model.
 
-use super::fact;
+use super::{FileFacts, fact};
 use crate::model_file::read_model;
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use footfall_core::Side;
-use footfall_model::{GaitModel, OBSERVATION_COUNT, Provenance, file::read_header};
+use footfall_model::{GaitModel, OBSERVATION_COUNT};
 use serde::Serialize;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Facts of a model.
 #[derive(Serialize)]
 pub(super) struct ModelFacts {
-    file: PathBuf,
-    bytes: u64,
-    format_version: u32,
-    written_by: String,
-    provenance: Provenance,
+    #[serde(flatten)]
+    file: FileFacts,
     fps: f64,
     windows: String,
     leg_length_m: f32,
@@ -48,9 +44,6 @@ struct StepFacts {
 /// Reads a model.
 pub(super) fn inspect(path: &Path) -> Result<ModelFacts> {
     let model = read_model(path)?;
-    let bytes = fs::read(path).with_context(|| path.display().to_string())?;
-    let (format_version, header) =
-        read_header(&bytes).with_context(|| path.display().to_string())?;
     let step = |side: Side| {
         let step = model.step(side);
         let secs = |frames: f64| frames / model.frame_rate_hz;
@@ -77,10 +70,7 @@ pub(super) fn inspect(path: &Path) -> Result<ModelFacts> {
         speed, variation, ..
     } = &model;
     Ok(ModelFacts {
-        file: path.to_owned(),
-        bytes: bytes.len() as u64,
-        format_version,
-        written_by: header.written_by,
+        file: FileFacts::of(path)?,
         fps: model.frame_rate_hz,
         windows: format!("{:?}", model.windows).to_lowercase(),
         leg_length_m: model.skeleton.mean_leg_length(),
@@ -97,39 +87,12 @@ pub(super) fn inspect(path: &Path) -> Result<ModelFacts> {
             .iter()
             .map(|context| format!("{} {}", context.position.name(), context.side.name()))
             .collect(),
-        provenance: header.provenance,
     })
 }
 
 impl ModelFacts {
     pub(super) fn lines(&self) -> Vec<String> {
-        let provenance = &self.provenance;
-        let mut lines = vec![
-            fact(
-                "gait model",
-                format!("{} ({} bytes)", self.file.display(), self.bytes),
-            ),
-            fact(
-                "format",
-                format!(
-                    "{}, written by Footfall {}",
-                    self.format_version, self.written_by
-                ),
-            ),
-            fact("trained on", &provenance.corpus),
-            fact(
-                "corpus",
-                format!(
-                    "{} clips, {} subjects, {} steps",
-                    provenance.clips, provenance.subjects, provenance.steps
-                ),
-            ),
-            fact("terms", &provenance.terms),
-            fact("made by", &provenance.command),
-        ];
-        if !provenance.commit.is_empty() {
-            lines.push(fact("commit", &provenance.commit));
-        }
+        let mut lines = self.file.lines("gait model", Vec::new());
         let [slowest, fastest] = self.speed_range_mps;
         let [fewest, most] = self.cadence_range_per_minute;
         lines.extend([

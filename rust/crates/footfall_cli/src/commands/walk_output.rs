@@ -1,0 +1,145 @@
+//! What `synth` and `dynamics synth` have in common: how to walk, and the files that a walk becomes.
+
+use crate::contact_report::{ContactReport, StepEntry};
+use crate::output;
+use anyhow::{Context as _, Result, ensure};
+use footfall_core::{FrameSpan, Side};
+use footfall_motion::bvh::{self, clip_to_bvh};
+use footfall_synth::SynthesizedWalk;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// How to walk, and where to write it.
+#[derive(Debug, clap::Args)]
+pub(super) struct WalkArgs {
+    /// Which walker, and which of its walks
+    #[arg(long, default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Frames per second; the model's when absent
+    #[arg(long)]
+    pub(super) fps: Option<f64>,
+    /// Speed over the ground in m/s; that of the recordings when absent
+    #[arg(long)]
+    pub(super) speed: Option<f32>,
+    /// Turning in degrees per second, positive to the left
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        value_name = "DEG_PER_S"
+    )]
+    pub(super) turn: f32,
+    /// How far the walker strays from the average: 0 not at all, 1 as in the recordings
+    #[arg(long, default_value_t = 1.0)]
+    pub(super) variation: f32,
+    /// Where to write
+    #[arg(short, long, value_name = "OUT.bvh")]
+    pub(super) output: PathBuf,
+    /// Where to write the contacts, as `footfall contacts --json` prints them
+    #[arg(long, value_name = "OUT.json")]
+    contacts: Option<PathBuf>,
+}
+
+/// What became of a walk.
+#[derive(Serialize)]
+pub(super) struct WalkFacts<'a> {
+    output: &'a Path,
+    contacts: Option<&'a Path>,
+    pub(super) fps: f64,
+    pub(super) frames: usize,
+    pub(super) seconds: f64,
+    seed: u64,
+    pub(super) speed_mps: f32,
+}
+
+impl WalkArgs {
+    /// Checks what can be checked before anything is read or written.
+    pub(super) fn check(&self, inputs: &[&Path]) -> Result<()> {
+        for output in [Some(&self.output), self.contacts.as_ref()]
+            .into_iter()
+            .flatten()
+        {
+            output::refuse_overwrite(inputs, output)?;
+        }
+        ensure!(
+            self.contacts.as_ref() != Some(&self.output),
+            "{} is both the motion and the contacts; give --contacts another name",
+            self.output.display()
+        );
+        ensure!(
+            self.fps.is_none_or(|fps| (1.0..=1000.0).contains(&fps)),
+            "{} frames per second cannot be written; give --fps a number from 1 to 1000",
+            self.fps.unwrap_or_default()
+        );
+        ensure!(
+            self.speed
+                .is_none_or(|speed| speed > 0.0 && speed.is_finite()),
+            "a walk at {} m/s goes nowhere; give --speed a number above zero",
+            self.speed.unwrap_or_default()
+        );
+        Ok(())
+    }
+
+    /// Writes a walk and its contacts.
+    pub(super) fn write(&self, walk: &SynthesizedWalk) -> Result<WalkFacts<'_>> {
+        let clip = &walk.clip;
+        output::write_atomic(&self.output, bvh::write(&clip_to_bvh(clip)).as_bytes())?;
+        if let Some(path) = &self.contacts {
+            let text = serde_json::to_string(&contact_report(walk)).context("the contacts")?;
+            output::write_atomic(path, format!("{text}\n").as_bytes())?;
+        }
+        let seconds = clip.duration_secs();
+        let way = match (clip.poses.first(), clip.poses.last()) {
+            (Some(first), Some(last)) => (last.root_position - first.root_position)
+                .with_y(0.0)
+                .length(),
+            _ => 0.0,
+        };
+        Ok(WalkFacts {
+            output: &self.output,
+            contacts: self.contacts.as_deref(),
+            fps: clip.frame_rate_hz,
+            frames: clip.poses.len(),
+            seconds,
+            seed: self.seed,
+            speed_mps: way / seconds as f32,
+        })
+    }
+}
+
+/// Contacts and steps of a generated walk. It begins and ends in full stride, so every step is inside.
+fn contact_report(walk: &SynthesizedWalk) -> ContactReport {
+    let clip = &walk.clip;
+    let stances = Side::BOTH.map(|side| walk.contacts[side.index()].as_slice());
+    let mut report = ContactReport::from_spans(
+        clip.frame_rate_hz,
+        clip.poses.len(),
+        stances,
+        &walk.events(),
+    );
+    let mut landings: Vec<(usize, Side)> = Side::BOTH
+        .into_iter()
+        .flat_map(|side| landings(stances[side.index()], side))
+        .collect();
+    landings.sort_unstable();
+    report.steps = landings
+        .windows(2)
+        .map(|pair| StepEntry {
+            foot: pair[0].1.name().to_owned(),
+            first: pair[0].0,
+            last: pair[1].0.saturating_sub(1),
+            position: "inside".to_owned(),
+            walk: 0,
+        })
+        .collect();
+    report
+}
+
+/// Frames of initial contact. The walk begins with one of the left foot; the right foot's first stance began before.
+fn landings(stances: &[FrameSpan], side: Side) -> Vec<(usize, Side)> {
+    stances
+        .iter()
+        .filter(|stance| side == Side::Left || stance.first > 0)
+        .map(|stance| (stance.first, side))
+        .collect()
+}
