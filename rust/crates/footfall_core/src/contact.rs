@@ -12,6 +12,21 @@ pub struct FrameSpan {
 }
 
 impl FrameSpan {
+    /// The runs of frames in which something holds.
+    pub fn runs(holds: &[bool]) -> Vec<Self> {
+        let mut runs: Vec<Self> = Vec::new();
+        for (frame, _) in holds.iter().enumerate().filter(|(_, holds)| **holds) {
+            match runs.last_mut() {
+                Some(run) if run.last + 1 == frame => run.last = frame,
+                _ => runs.push(Self {
+                    first: frame,
+                    last: frame,
+                }),
+            }
+        }
+        runs
+    }
+
     /// Whether a frame lies in the run.
     pub const fn contains(self, frame: usize) -> bool {
         frame >= self.first && frame <= self.last

@@ -27,7 +27,7 @@ mod hysteresis;
 mod signals;
 
 use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Side};
-use hysteresis::{Gate, close_gaps, drop_short, gate, spans};
+use hysteresis::{Gate, close_gaps, drop_short, gate};
 use signals::FootSignals;
 
 /// Limits of the detector. Heights are above the level at which the point itself rests in this clip.
@@ -161,7 +161,7 @@ pub fn detect_contacts(clip: &Clip, config: &ContactConfig) -> Contacts {
             FootContacts {
                 heel,
                 toe,
-                stances: spans(&any),
+                stances: FrameSpan::runs(&any),
             }
         }),
     }

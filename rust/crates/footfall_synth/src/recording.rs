@@ -164,7 +164,7 @@ impl Recording {
 
     fn into_walk(self, skeleton: &Skeleton) -> SynthesizedWalk {
         SynthesizedWalk {
-            contacts: self.contact.map(|contact| spans(&contact)),
+            contacts: self.contact.map(|contact| FrameSpan::runs(&contact)),
             clip: Clip {
                 skeleton: skeleton.clone(),
                 frame_rate_hz: self.frame_rate_hz,
@@ -172,19 +172,4 @@ impl Recording {
             },
         }
     }
-}
-
-/// The runs of frames that hold.
-fn spans(holds: &[bool]) -> Vec<FrameSpan> {
-    let mut spans: Vec<FrameSpan> = Vec::new();
-    for (frame, _) in holds.iter().enumerate().filter(|(_, holds)| **holds) {
-        match spans.last_mut() {
-            Some(span) if span.last + 1 == frame => span.last = frame,
-            _ => spans.push(FrameSpan {
-                first: frame,
-                last: frame,
-            }),
-        }
-    }
-    spans
 }

@@ -30,24 +30,9 @@ pub(super) fn gate(signal: &PointSignal, limits: &Gate) -> Vec<bool> {
         .collect()
 }
 
-/// Runs of set flags.
-pub(super) fn spans(flags: &[bool]) -> Vec<FrameSpan> {
-    let mut spans: Vec<FrameSpan> = Vec::new();
-    for (frame, _) in flags.iter().enumerate().filter(|(_, flag)| **flag) {
-        match spans.last_mut() {
-            Some(span) if span.last + 1 == frame => span.last = frame,
-            _ => spans.push(FrameSpan {
-                first: frame,
-                last: frame,
-            }),
-        }
-    }
-    spans
-}
-
 /// Sets the flags in gaps of fewer than `least` frames between set ones.
 pub(super) fn close_gaps(flags: &mut [bool], least: usize) {
-    let runs = spans(flags);
+    let runs = FrameSpan::runs(flags);
     for pair in runs.windows(2) {
         if pair[1].first - pair[0].last - 1 < least {
             flags[pair[0].last..pair[1].first].fill(true);
@@ -58,7 +43,7 @@ pub(super) fn close_gaps(flags: &mut [bool], least: usize) {
 /// Clears runs of fewer than `least` frames, except at the ends, where the clip may have cut them.
 pub(super) fn drop_short(flags: &mut [bool], least: usize) {
     let end = flags.len();
-    for span in spans(flags) {
+    for span in FrameSpan::runs(flags) {
         if span.frames() < least && span.first > 0 && span.last + 1 < end {
             flags[span.first..=span.last].fill(false);
         }
