@@ -48,7 +48,7 @@ func gait_of(walker: Node3D) -> GaitGenerator3D:
 func _add_walker(row: int, column: int) -> void:
 	var walker: Node3D = WALKER.instantiate()
 	walker.name = "%s %d" % [COLUMNS[column][1].capitalize(), row + 1]
-	walker.position = Vector3((column - 0.5) * BETWEEN_COLUMNS_M, 0.0, -row * BETWEEN_ROWS_M)
+	walker.position = Vector3((0.5 - column) * BETWEEN_COLUMNS_M, 0.0, -row * BETWEEN_ROWS_M)
 	Paint.apply(walker, COLUMNS[column][2])
 	var gait := gait_of(walker)
 	gait.model = COLUMNS[column][0]
