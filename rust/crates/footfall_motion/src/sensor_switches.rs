@@ -13,7 +13,7 @@
 //! | gaitmap example, two feet, 204.8 Hz | initial | 57 | 0.82 | +18 | 7 |
 //! | the same | terminal | 57 | 0.93 | 0 | 6 |
 //!
-//! As many are found as there are; what is missed is 35 to 60 ms away, where the references too differ in what they call contact.
+//! About as many are found as there are. Within 60 ms F1 is 0.82 and 0.79 for ipol, 0.99 and 0.98 for gaitmap.
 
 use footfall_core::EventKind;
 use footfall_prob::ProbError;
