@@ -1,7 +1,6 @@
-extends Node3D
+extends WalkingScene
 ## Eleven styles side by side, and in front of them a walker in the mixture that the sliders say.
 
-const WALKER: PackedScene = preload("res://scenes/shared/walker.tscn")
 const STYLES: Array[GaitStyle] = [
 	preload("res://addons/footfall/models/proud.footstyle"),
 	preload("res://addons/footfall/models/decided.footstyle"),
@@ -22,14 +21,6 @@ const AHEAD_M := 2.2
 ## All walk at one speed, or the row would fall apart.
 const SPEED := 1.0
 
-## How many footsteps were signalled.
-var footsteps := 0
-## The walker in the mixture first.
-var walkers: Array[Node3D] = []
-
-@onready var _camera: Camera3D = $Stage/Camera
-@onready var _footprints: MultiMeshInstance3D = $Stage/Footprints
-
 
 func _ready() -> void:
 	_camera.distance_m = 13.0
@@ -47,9 +38,7 @@ func _ready() -> void:
 		gait.style_weights = PackedFloat32Array([1.0])
 	%Panel.build(STYLES)
 	%Panel.weights_changed.connect(func(weights: PackedFloat32Array) -> void: mixer.style_weights = weights)
-	%Panel.speed_changed.connect(func(speed: float) -> void:
-		for walker: Node3D in walkers:
-			gait_of(walker).speed = speed)
+	%Panel.speed_changed.connect(func(speed: float) -> void: set_all(&"speed", speed))
 	%Panel.reset()
 
 
@@ -57,23 +46,8 @@ func _process(_delta: float) -> void:
 	_camera.target_position = walkers[0].global_position + Vector3(-1.7, 0.85, -0.5 * AHEAD_M)
 
 
-func gait_of(walker: Node3D) -> GaitGenerator3D:
-	return walker.get_node(^"%GaitGenerator3D")
-
-
 func _add_walker(title: String, place: Vector3, colour: Color) -> GaitGenerator3D:
-	var walker: Node3D = WALKER.instantiate()
-	walker.name = title
-	walker.position = place
-	Paint.apply(walker, colour)
-	add_child(walker)
-	Paint.label(walker, title.replace("_", " "))
-	var gait := gait_of(walker)
-	gait.seed = 1 + walkers.size()
-	gait.phase = fposmod(walkers.size() * 0.618034, 1.0)
+	var gait := add_walker(title, place, colour)
 	gait.speed = SPEED
-	gait.footstep.connect(func(foot: StringName, at: Vector3) -> void:
-		footsteps += 1
-		_footprints.mark(foot, at, walker))
-	walkers.append(walker)
+	Paint.label(walkers[-1], title.replace("_", " "))
 	return gait
