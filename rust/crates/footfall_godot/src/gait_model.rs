@@ -7,6 +7,7 @@ use footfall_model::{GaitStyle as TrainedStyle, WalkModel};
 use footfall_synth::{GaitGenerator, GeneratorConfig, StyleSpace};
 use godot::classes::{IResource, Resource};
 use godot::prelude::*;
+use std::cell::OnceCell;
 use std::sync::{Arc, Weak};
 
 /// A way of walking that was learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
@@ -30,6 +31,8 @@ pub(crate) struct GaitModel {
 
     /// The model in `data`, or why there is none.
     loaded: Loaded<WalkModel>,
+    /// The slowest and the fastest walk, once they were asked for: those of a switching model have to be walked.
+    speeds: OnceCell<[f32; 2]>,
     /// What characters in the same styles share.
     spaces: Vec<Weak<StyleSpace>>,
     base: Base<Resource>,
@@ -54,6 +57,7 @@ impl GaitModel {
     #[func]
     pub(crate) fn set_data(&mut self, data: PackedByteArray) {
         self.loaded = Loaded::read(&data, WalkModel::from_bytes);
+        self.speeds = OnceCell::new();
         self.spaces.clear();
         self.data = data;
         self.base_mut().emit_changed();
@@ -62,7 +66,8 @@ impl GaitModel {
     /// What the model is and what it was trained on, or what is wrong with its file.
     #[func]
     fn get_description(&self) -> GString {
-        self.loaded.describe(describe)
+        self.loaded
+            .describe(|model| describe(model, self.speeds_of(model)))
     }
 
     /// What is wrong with the model's file, with the next thing to do; empty when nothing is.
@@ -79,7 +84,7 @@ impl GaitModel {
     #[func]
     fn get_speed_range(&self) -> Vector2 {
         self.trained().map_or(Vector2::ZERO, |model| {
-            let [slowest, fastest] = speed_range(&model);
+            let [slowest, fastest] = self.speeds_of(&model);
             Vector2::new(slowest, fastest)
         })
     }
@@ -92,6 +97,10 @@ impl GaitModel {
 }
 
 impl GaitModel {
+    fn speeds_of(&self, model: &WalkModel) -> [f32; 2] {
+        *self.speeds.get_or_init(|| speed_range(model))
+    }
+
     /// The model, shared with every character that walks with it.
     ///
     /// # Errors
@@ -151,9 +160,8 @@ fn speed_range(model: &WalkModel) -> [f32; 2] {
 }
 
 /// The model in words, for the inspector.
-fn describe(model: &WalkModel) -> String {
+fn describe(model: &WalkModel, [slowest, fastest]: [f32; 2]) -> String {
     let from = model.provenance();
-    let [slowest, fastest] = speed_range(model);
     let what = match model {
         WalkModel::Gait(_) => format!(
             "{} steps of {} people in {} recordings, at {slowest:.2} to {fastest:.2} m/s.",

@@ -77,13 +77,19 @@ impl PaceTable {
                 pair[0][0] + share * (pair[1][0] - pair[0][0])
             });
         let residual = (speed_mps / within.max(1e-3)).clamp(0.0, MAX_RESIDUAL);
-        let tempo = residual.sqrt().max(MIN_TEMPO);
+        let (tempo, stride) = tempo_and_stride(residual);
         Pace {
             covariate_mps,
             tempo,
-            stride: residual / tempo,
+            stride,
         }
     }
+}
+
+/// Tempo and stride that share a factor on the speed.
+pub(crate) fn tempo_and_stride(factor: f64) -> (f64, f64) {
+    let tempo = factor.sqrt().max(MIN_TEMPO);
+    (tempo, factor / tempo)
 }
 
 /// A walker that walks without chance, to be measured.

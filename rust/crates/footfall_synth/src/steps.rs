@@ -8,7 +8,7 @@ use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
 
 /// A step's speed differs by at most this much from the speed of the step before, m/s: nobody brakes faster.
-pub(crate) const MAX_SPEED_CHANGE_MPS: f32 = 0.5;
+const MAX_SPEED_CHANGE_MPS: f32 = 0.5;
 
 /// What the next step is asked to be.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +17,14 @@ pub(crate) struct Ask {
     pub(crate) turn_rate: f32,
     pub(crate) amplitude: Amplitude,
     pub(crate) detail: Detail,
+}
+
+impl Ask {
+    /// The speed of the next step, after one of this speed.
+    pub(crate) fn speed_after(&self, speed_mps: f32) -> f32 {
+        let change = self.speed_mps - speed_mps;
+        speed_mps + change.clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS)
+    }
 }
 
 /// One walker's steps, put on the ground one after the other.

@@ -8,7 +8,7 @@ use crate::plan::{Manner, Planner, StepShape};
 use crate::space::{Blend, StyleSpace};
 use crate::stage::Stage;
 use crate::standing::Amplitude;
-use crate::steps::{Ask, MAX_SPEED_CHANGE_MPS, StepSource};
+use crate::steps::{Ask, StepSource};
 use crate::walker::{Request, Walker};
 use footfall_core::{Side, Skeleton, StepPosition};
 use std::sync::Arc;
@@ -154,8 +154,7 @@ impl StepSource for StyledSteps {
                 self.speed_mps = ask.speed_mps;
             }
         } else {
-            let change = ask.speed_mps - self.speed_mps;
-            self.speed_mps += change.clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
+            self.speed_mps = ask.speed_after(self.speed_mps);
         }
         let request = Request {
             manner: Manner {

@@ -6,11 +6,12 @@ mod system;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::generator::{GeneratorConfig, STANDING_SPEED_MPS};
+use crate::pace::tempo_and_stride;
 use crate::plan::{MAX_STEP_SECS, StepShape};
 use crate::planting::PlanterState;
 use crate::stage::{Placing, Posture, Stage};
 use crate::standing::{Amplitude, standing_posture};
-use crate::steps::{Ask, MAX_SPEED_CHANGE_MPS, StepSource};
+use crate::steps::{Ask, StepSource};
 use footfall_core::{Side, Skeleton};
 use footfall_model::{DynamicsModel, FEATURE_COUNT, SEGMENT_SLACK};
 use glam::Vec3;
@@ -39,9 +40,6 @@ const MEASURED_STEPS: usize = 80;
 
 /// Speeds up to this many times the recorded one are walked.
 const MAX_SPEED_RATIO: f64 = 1.4;
-
-/// Least factor on the tempo: slower walks take shorter strides instead.
-const MIN_TEMPO: f64 = 0.8;
 
 /// Two systems that take turns.
 #[derive(Debug)]
@@ -182,7 +180,7 @@ impl SwitchingSteps {
 
     /// Heading under which the walk goes along +Z at a stride.
     fn facing(&self) -> f32 {
-        let [low, high] = FACING_RATIOS.map(|ratio| pace_of(ratio)[1]);
+        let [low, high] = FACING_RATIOS.map(|ratio| pace_of(ratio).1);
         let share = ((self.origin.stride - low) / (high - low)).clamp(0.0, 1.0);
         self.facings[0] + share as f32 * (self.facings[1] - self.facings[0])
     }
@@ -228,7 +226,7 @@ impl SwitchingSteps {
     /// The tempo and the stride that give a speed, shared between both.
     fn set_pace(&mut self) {
         let ratio = f64::from(self.speed_mps) / self.own_speed_mps;
-        [self.origin.tempo, self.origin.stride] = pace_of(ratio);
+        (self.origin.tempo, self.origin.stride) = pace_of(ratio);
     }
 
     /// Makes what the current step left behind the origin of the next.
@@ -359,8 +357,7 @@ impl StepSource for SwitchingSteps {
     }
 
     fn advance(&mut self, ask: &Ask) {
-        let change = ask.speed_mps - self.speed_mps;
-        self.speed_mps += change.clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS);
+        self.speed_mps = ask.speed_after(self.speed_mps);
         self.take_over(self.origin.leading.other());
         self.set_pace();
         self.origin.turn_rate = ask.turn_rate;
@@ -372,10 +369,8 @@ impl StepSource for SwitchingSteps {
 }
 
 /// Tempo and stride at a ratio of the recorded speed.
-fn pace_of(ratio: f64) -> [f64; 2] {
-    let ratio = ratio.clamp(0.0, MAX_SPEED_RATIO);
-    let tempo = ratio.sqrt().max(MIN_TEMPO);
-    [tempo, ratio / tempo]
+fn pace_of(ratio: f64) -> (f64, f64) {
+    tempo_and_stride(ratio.clamp(0.0, MAX_SPEED_RATIO))
 }
 
 fn standing_of(mean: &[f64]) -> Posture {
