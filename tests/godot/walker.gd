@@ -48,6 +48,8 @@ var footsteps: Array[Array] = []
 ## Joint → global transform of its bone after the modifier, and the same of the frame before.
 var bones: Dictionary[String, Transform3D] = {}
 var bones_before: Dictionary[String, Transform3D] = {}
+## Every bone's own pose after the modifier.
+var bone_poses: Array[Transform3D] = []
 
 
 ## Makes the skeleton. Without `with_model` the node stays without a model.
@@ -146,6 +148,9 @@ func _present_parent(joint: String) -> String:
 
 func _read_bones() -> void:
 	bones_before = bones.duplicate()
+	bone_poses.clear()
+	for bone: int in skeleton.get_bone_count():
+		bone_poses.append(skeleton.get_bone_pose(bone))
 	for joint_name: String in BODY:
 		var bone := skeleton.find_bone(prefix + joint_name)
 		if bone >= 0:

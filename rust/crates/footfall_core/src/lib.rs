@@ -5,10 +5,11 @@
 //! transform is named `target_from_source`. Nothing here reads a file, a clock or a random number.
 //!
 //! Modules in suggested reading order: [`joint`], [`skeleton`], [`pose`], [`rotation`], [`clip`], [`contact`],
-//! [`step_position`].
+//! [`step_position`], [`ease`].
 
 pub mod clip;
 pub mod contact;
+pub mod ease;
 pub mod joint;
 pub mod pose;
 pub mod rotation;

@@ -1,6 +1,7 @@
 //! Smooth curves through given points.
 
 use core::f32::consts::TAU;
+use footfall_core::ease::hermite;
 
 /// A curve over the gait cycle, 0 to 1, that closes without a kink.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,24 +101,6 @@ fn limited(before: f32, after: f32) -> f32 {
     } else {
         2.0 * before * after / (before + after)
     }
-}
-
-/// Cubic Hermite curve at `s` in 0..1; tangents are per unit of `s`.
-pub(crate) fn hermite<T>(from: T, departure: T, to: T, arrival: T, s: f32) -> T
-where
-    T: core::ops::Mul<f32, Output = T> + core::ops::Add<Output = T>,
-{
-    let (s2, s3) = (s * s, s * s * s);
-    from * (2.0 * s3 - 3.0 * s2 + 1.0)
-        + departure * (s3 - 2.0 * s2 + s)
-        + to * (3.0 * s2 - 2.0 * s3)
-        + arrival * (s3 - s2)
-}
-
-/// From 0 at 0 to 1 at 1, level at both ends and beyond.
-pub(crate) fn smooth_step(s: f32) -> f32 {
-    let s = s.clamp(0.0, 1.0);
-    s * s * (3.0 - 2.0 * s)
 }
 
 /// +1 in the middle of the left foot's stance, -1 in the middle of the right one's, for a phase in strides since the left

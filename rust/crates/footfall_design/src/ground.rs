@@ -2,10 +2,11 @@
 
 use crate::chance::{drift, normal};
 use crate::course::Course;
-use crate::curve::{hermite, smooth_step, smoothed, stance_wave};
+use crate::curve::{smoothed, stance_wave};
 use crate::sheet::StyleSheet;
 use crate::timeline::Timeline;
 use core::f32::consts::PI;
+use footfall_core::ease::{hermite, smooth_step};
 use footfall_core::rotation::{exp_map, from_heading, log_map, wrap_angle};
 use footfall_core::{Clip, FrameSpan, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_ik::{

@@ -1,5 +1,6 @@
 //! Vectors and rotations between Godot and glam. Both are right-handed with Y up, so only the types differ.
 
+use footfall_ik::placement::Frame;
 use glam::{Affine3A, Quat, Vec3};
 use godot::builtin::{Basis, Quaternion, Transform3D, Vector3};
 
@@ -49,4 +50,17 @@ pub(crate) fn rotation(transform: &Affine3A) -> Quat {
     let x = columns.x_axis.normalize_or(Vec3::X);
     let y = (columns.y_axis - x * x.dot(columns.y_axis)).normalize_or(x.any_orthonormal_vector());
     Quat::from_mat3(&glam::Mat3::from_cols(x, y, x.cross(y))).normalize()
+}
+
+/// A transform without its scale, Godot to glam.
+pub(crate) fn frame(transform: Transform3D) -> Frame {
+    Frame {
+        position: vec3(transform.origin),
+        rotation: rotation(&affine(transform)),
+    }
+}
+
+/// A frame, glam to Godot.
+pub(crate) fn frame_transform(frame: &Frame) -> Transform3D {
+    transform(frame.rotation, frame.position)
 }

@@ -7,7 +7,8 @@ use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use crate::skeleton_binding::SkeletonBinding;
 use crate::walk_source::WalkSource;
-use footfall_core::Side;
+use footfall_core::{Side, rotation};
+use footfall_ik::placement::{Frame, Landing};
 use footfall_model::WalkModel;
 use footfall_synth::{Controls, Detail, GeneratorConfig};
 use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
@@ -127,6 +128,11 @@ pub(crate) struct GaitGenerator3D {
     /// What was last reported, so that it is reported once.
     reported: Option<String>,
     root_motion_delta: Transform3D,
+    /// What is left of the speed on the ground at hand: 1 on level ground.
+    #[init(val = 1.0)]
+    slowed: f32,
+    /// The foot whose next landing was announced last.
+    announced: Option<Side>,
     base: Base<SkeletonModifier3D>,
 }
 
@@ -191,6 +197,12 @@ impl GaitGenerator3D {
     /// Emitted exactly once for every initial contact, not in the editor.
     #[signal]
     fn footstep(foot: StringName, position: Vector3);
+
+    /// A step begins: `foot`, `left` or `right`, will land at `position` in `seconds`, as long as the walk goes on as it does.
+    ///
+    /// `position` is in global space, on the flat floor of the walk. Emitted once for every step, not in the editor.
+    #[signal]
+    fn foothold_planned(foot: StringName, position: Vector3, seconds: f64);
 
     /// How far and about what the character travelled in the last frame, in its own space: axes and scale are those of its node.
     ///
@@ -378,7 +390,7 @@ impl GaitGenerator3D {
 
     fn controls(&self) -> Controls {
         Controls {
-            speed_mps: self.speed as f32,
+            speed_mps: self.speed as f32 * self.slowed,
             turn_rate_radps: self.turn_rate as f32,
         }
     }
@@ -446,9 +458,43 @@ impl GaitGenerator3D {
         source.map_err(|error| format!("The styles cannot be worn: {error}"))
     }
 
-    fn bind(&self, skeleton: &Gd<Skeleton3D>) -> Result<(Gd<Node3D>, SkeletonBinding), String> {
+    /// The node that travels.
+    ///
+    /// # Errors
+    /// What to set, when there is none.
+    pub(crate) fn find_character(&self, skeleton: &Gd<Skeleton3D>) -> Result<Gd<Node3D>, String> {
         let node = self.base().clone().upcast::<Node>();
-        let character = character::find(&node, skeleton, &self.character)?;
+        character::find(&node, skeleton, &self.character)
+    }
+
+    /// What tells bones from joints.
+    pub(crate) fn bones(&self) -> Option<Gd<BoneMap>> {
+        self.bone_map.clone()
+    }
+
+    /// Which feet stand and where they land next, on the floor of the walk; `None` while nobody walks.
+    pub(crate) fn feet(&self) -> Option<([bool; 2], [Option<Landing>; 2])> {
+        let session = self.session.as_ref()?;
+        let mut landings = [None; 2];
+        if let Some((footstep, secs)) = session.generator.next_footstep() {
+            landings[footstep.side.index()] = Some(Landing {
+                flat: Frame {
+                    position: footstep.position,
+                    rotation: rotation::from_heading(footstep.heading),
+                },
+                secs,
+            });
+        }
+        Some((session.generator.feet_in_contact(), landings))
+    }
+
+    /// Walks at this share of the speed from the next step on.
+    pub(crate) fn slow_down(&mut self, share: f32) {
+        self.slowed = share;
+    }
+
+    fn bind(&self, skeleton: &Gd<Skeleton3D>) -> Result<(Gd<Node3D>, SkeletonBinding), String> {
+        let character = self.find_character(skeleton)?;
         let binding = SkeletonBinding::new(skeleton, &character, self.bone_map.as_ref())
             .map_err(|error| error.to_string())?;
         Ok((character, binding))
@@ -489,10 +535,21 @@ impl GaitGenerator3D {
         } else {
             session.footsteps(&travel)
         };
+        let foothold = session.next_foothold(&travel).filter(|_| !in_editor);
         self.session = Some(session);
         for (side, position) in footsteps {
             let foot = StringName::from(side.name());
             self.signals().footstep().emit(&foot, position);
+        }
+        let side = foothold.map(|(side, ..)| side);
+        if side != self.announced {
+            self.announced = side;
+            if let Some((side, position, secs)) = foothold {
+                let foot = StringName::from(side.name());
+                self.signals()
+                    .foothold_planned()
+                    .emit(&foot, position, f64::from(secs));
+            }
         }
     }
 

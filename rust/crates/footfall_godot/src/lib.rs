@@ -1,9 +1,9 @@
 //! The Godot nodes: the only crate that names `godot`.
 //!
 //! `gait_model` is the resource that holds a trained walk, `gait_style` one that holds a style of it, `gait_generator_3d` the
-//! node that walks a character with them; `loaded` is what a resource made of a file.
+//! node that walks a character with them, `foot_placement_3d` the one that puts feet on uneven ground; `loaded` is what a resource made of a file.
 //! Between the engine and the runtime stand `rest_body` (proportions of any character from its rest pose),
-//! `skeleton_binding` (joints to bones and back), `character` (which node travels) and `convert` (vectors).
+//! `skeleton_binding` (joints to bones and back), `character` (which node travels), `physics_ground` (what feet stand on) and `convert` (vectors).
 //!
 //! Two flavours are built. With the feature `editor` the library also holds the import plugin for `.footfall` and `.footstyle` files and the
 //! class reference that the editor shows; exported games get the library without. Both register the same runtime classes.
@@ -21,12 +21,14 @@ mod character;
 mod convert;
 #[cfg(feature = "editor")]
 mod editor_plugin;
+mod foot_placement_3d;
 mod gait_generator_3d;
 mod gait_model;
 mod gait_style;
 #[cfg(feature = "editor")]
 mod import_plugin;
 mod loaded;
+mod physics_ground;
 mod rest_body;
 mod skeleton_binding;
 mod walk_source;

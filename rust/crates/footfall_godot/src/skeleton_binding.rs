@@ -137,22 +137,71 @@ impl SkeletonBinding {
         self.key.equals(&BindingKey::of(skeleton, character))
     }
 
-    /// Writes a pose, given on the ground, to the bones. Unmapped bones keep the pose that they have.
-    pub(crate) fn write(&mut self, skeleton: &mut Gd<Skeleton3D>, pose: &Pose) {
-        forward_kinematics(&self.body, pose, &mut self.model_pose);
+    /// Reads how the bones of hips and legs are posed, on the ground; other joints of `pose` stay as they are.
+    pub(crate) fn read_legs(&self, skeleton: &Gd<Skeleton3D>, pose: &mut Pose) {
         let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
+        let mut turned = [Quat::IDENTITY; JOINT_COUNT];
         for (index, bound) in self.bones.iter().enumerate() {
+            if !is_leg(bound.turned_by) {
+                continue;
+            }
             let above = if let Some(parent) = bound.parent {
                 bound.links.iter().fold(rotations[parent], |above, link| {
                     above * convert::quat(skeleton.get_bone_pose_rotation(*link))
                 })
             } else {
-                let above = bound
-                    .links
-                    .iter()
-                    .fold(self.ground_from_skeleton, |above, link| {
-                        above * convert::affine(skeleton.get_bone_pose(*link))
-                    });
+                let above = self.above_hips(skeleton, &bound.links);
+                let hips = convert::vec3(skeleton.get_bone_pose_position(bound.bone));
+                pose.root_position = above.transform_point3(hips);
+                convert::rotation(&above)
+            };
+            let local = convert::quat(skeleton.get_bone_pose_rotation(bound.bone));
+            rotations[index] = (above * local).normalize();
+            let joint = bound.turned_by;
+            let model = rotations[index] * bound.ground_from_bone.conjugate();
+            let parent = joint
+                .parent()
+                .map_or(Quat::IDENTITY, |parent| turned[parent.index()]);
+            turned[joint.index()] = model;
+            pose.rotations[joint.index()] = (parent.conjugate() * model).normalize();
+        }
+    }
+
+    /// Writes hips and legs of a pose, given on the ground, to the bones; all others keep the pose that they have.
+    pub(crate) fn write_legs(&mut self, skeleton: &mut Gd<Skeleton3D>, pose: &Pose) {
+        self.write_where(skeleton, pose, is_leg);
+    }
+
+    /// Writes a pose, given on the ground, to the bones. Unmapped bones keep the pose that they have.
+    pub(crate) fn write(&mut self, skeleton: &mut Gd<Skeleton3D>, pose: &Pose) {
+        self.write_where(skeleton, pose, |_| true);
+    }
+
+    /// From the ground to the bone above the hips' bone.
+    fn above_hips(&self, skeleton: &Gd<Skeleton3D>, links: &[i32]) -> Affine3A {
+        links.iter().fold(self.ground_from_skeleton, |above, link| {
+            above * convert::affine(skeleton.get_bone_pose(*link))
+        })
+    }
+
+    fn write_where(
+        &mut self,
+        skeleton: &mut Gd<Skeleton3D>,
+        pose: &Pose,
+        wanted: impl Fn(Joint) -> bool,
+    ) {
+        forward_kinematics(&self.body, pose, &mut self.model_pose);
+        let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
+        for (index, bound) in self.bones.iter().enumerate() {
+            if !wanted(bound.turned_by) {
+                continue;
+            }
+            let above = if let Some(parent) = bound.parent {
+                bound.links.iter().fold(rotations[parent], |above, link| {
+                    above * convert::quat(skeleton.get_bone_pose_rotation(*link))
+                })
+            } else {
+                let above = self.above_hips(skeleton, &bound.links);
                 let hips = self.model_pose.position(Joint::Hips);
                 let position = above.inverse().transform_point3(hips);
                 skeleton.set_bone_pose_position(bound.bone, convert::vector3(position));
@@ -190,6 +239,14 @@ impl BindingKey {
             && a.matrix3.abs_diff_eq(b.matrix3, 1e-3 * scale)
             && a.translation.abs_diff_eq(b.translation, 1e-2)
     }
+}
+
+/// Whether a joint is the hips or one of a leg.
+fn is_leg(joint: Joint) -> bool {
+    let of_leg = |side: Side| {
+        [side.upper_leg(), side.lower_leg(), side.foot(), side.toes()].contains(&joint)
+    };
+    joint == Joint::Hips || Side::BOTH.into_iter().any(of_leg)
 }
 
 /// Heading of a body whose left hip joint is in this direction from the right one.

@@ -57,6 +57,11 @@ impl Leg {
         }
     }
 
+    /// The way from the hip joint to the ankle of a leg that is turned so in model space, metres.
+    pub fn ankle_from_hip(&self, thigh: Quat, shank: Quat) -> Vec3 {
+        (thigh * self.thigh_axis + shank * self.shank_axis).into()
+    }
+
     /// Turns thigh, shank, foot and toes of a pose so that the foot meets its target. `hips_rotation` is the hips' in
     /// model space.
     ///

@@ -1,9 +1,10 @@
-//! Leg inverse kinematics and the standing foot: the runtime's way of keeping a foot where it was put.
+//! Leg inverse kinematics, the standing foot, and feet on real ground: the runtime's way of keeping a foot where it was put.
 //!
 //! Godot 4.6 has a `TwoBoneIK3D`, but it ignores the target's rotation and knows nothing of contacts; this crate turns
 //! the ankle too and is the same code in the editor, in tests and on the command line.
 
 pub mod leg;
+pub mod placement;
 pub mod rocker;
 
 pub use leg::{FootTarget, Leg, LegSolution, reach_height, solve_leg};

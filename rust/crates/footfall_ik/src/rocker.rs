@@ -99,11 +99,28 @@ impl RockerFoot {
 
     /// Height of the sole's lowest point, metres.
     pub fn lowest_point(&self, target: &FootTarget) -> f32 {
-        let toe_joint = target.ankle + target.foot * self.toe_joint;
-        let heel = target.ankle + target.foot * self.heel;
-        let ball = toe_joint + target.toes * self.ball;
-        let tip = toe_joint + target.toes * self.toe_tip;
+        let [heel, ball, tip] = self.points(target);
         heel.y.min(ball.y).min(tip.y)
+    }
+
+    /// Back edge of the heel, ball and toe tip of a flat sole, from the ground under the ankle and in the axes of the foot.
+    pub fn sole_points(&self) -> [Vec3; 3] {
+        let flat = |point: Vec3| Vec3::new(point.x, 0.0, point.z);
+        [
+            flat(self.heel),
+            flat(self.toe_joint + self.ball),
+            flat(self.toe_joint + self.toe_tip),
+        ]
+    }
+
+    /// The same three points of a foot that does not lie flat.
+    pub fn points(&self, target: &FootTarget) -> [Vec3; 3] {
+        let toe_joint = target.ankle + target.foot * self.toe_joint;
+        [
+            target.ankle + target.foot * self.heel,
+            toe_joint + target.toes * self.ball,
+            toe_joint + target.toes * self.toe_tip,
+        ]
     }
 
     /// The ground under the ankle of a flat foot: where a footprint is drawn.
@@ -157,13 +174,10 @@ mod tests {
                     moved < 0.01 * 0.25,
                     "the ankle jumps by {moved} at step {step}"
                 );
+                let joint = |target: &FootTarget| target.ankle + target.foot * foot.toe_joint;
                 let points = |target: &FootTarget| {
-                    let joint = target.ankle + target.foot * foot.toe_joint;
-                    [
-                        target.ankle + target.foot * foot.heel,
-                        joint,
-                        joint + target.toes * foot.toe_tip,
-                    ]
+                    let [heel, _, tip] = foot.points(target);
+                    [heel, joint(target), tip]
                 };
                 let slip = points(&target)
                     .into_iter()

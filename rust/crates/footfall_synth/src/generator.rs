@@ -3,12 +3,13 @@
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::plan::StepShape;
-use crate::planting::{PlantedFrame, smooth_step};
+use crate::planting::PlantedFrame;
 use crate::space::StyleSpace;
 use crate::standing::Amplitude;
 use crate::steps::{Ask, Steps};
 use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
+use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::RockerFoot;
@@ -264,6 +265,26 @@ impl GaitGenerator {
     /// The initial contacts during the last [`step`](Self::step), oldest first.
     pub fn footsteps(&self) -> &[Footstep] {
         &self.footsteps
+    }
+
+    /// Where the foot on its way will land, in the character's space as it is now, and the seconds until then: as long as the
+    /// character goes on as it does. `None` for a walker that rests.
+    pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
+        if self.is_standing() {
+            return None;
+        }
+        let timing = &self.shape().timing;
+        let side = timing.leading.other();
+        let plant = self.steps.source().stage().plant(side)?;
+        let from = self.plan_from_character();
+        let character_from_plan = from_heading(-from.heading);
+        let footstep = Footstep {
+            side,
+            position: character_from_plan * (RockerFoot::footprint(plant) - from.position),
+            heading: wrap_angle(plant.heading - from.heading),
+        };
+        let secs = (timing.frames as f32 - self.position) / self.frame_rate_hz;
+        Some((footstep, secs.max(0.0)))
     }
 
     /// Whether the walker has come to a stand and rests.

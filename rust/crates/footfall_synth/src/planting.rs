@@ -9,6 +9,7 @@ mod support;
 mod swing;
 
 use crate::raw::RawFrame;
+use footfall_core::ease::{hermite, smooth_step};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, Leg, Plant, RockerFoot};
@@ -387,19 +388,4 @@ fn within_reach(ankle_from_hip: Vec3, reach: f32) -> Vec3 {
     let level = Vec3::new(ankle_from_hip.x, 0.0, ankle_from_hip.z);
     let level_reach = (reach * reach - ankle_from_hip.y.powi(2)).max(0.0).sqrt();
     level.clamp_length_max(level_reach) - level
-}
-
-/// From 0 at 0 to 1 at 1, level at both ends and beyond.
-pub(crate) fn smooth_step(s: f32) -> f32 {
-    let s = s.clamp(0.0, 1.0);
-    s * s * (3.0 - 2.0 * s)
-}
-
-/// Cubic Hermite curve at `s` in 0..1; the tangents are per unit of `s`.
-fn hermite(from: Vec3, departure: Vec3, to: Vec3, arrival: Vec3, s: f32) -> Vec3 {
-    let (s2, s3) = (s * s, s * s * s);
-    from * (2.0 * s3 - 3.0 * s2 + 1.0)
-        + departure * (s3 - 2.0 * s2 + s)
-        + to * (3.0 * s2 - 2.0 * s3)
-        + arrival * (s3 - s2)
 }

@@ -1,9 +1,10 @@
 //! The ground under one walker: steps of generated features become frames on it.
 
 use crate::plan::StepShape;
-use crate::planting::{Course, PlantedFrame, Planter, PlanterState, smooth_step};
+use crate::planting::{Course, PlantedFrame, Planter, PlanterState};
 use crate::raw::RawFrame;
 use crate::standing::Amplitude;
+use footfall_core::ease::smooth_step;
 use footfall_core::{Side, Skeleton};
 use footfall_ik::Plant;
 use footfall_model::FEATURE_COUNT;

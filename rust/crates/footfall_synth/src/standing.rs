@@ -3,8 +3,8 @@
 //! The model knows walking only. Standing is its mean posture over a straight pair of legs, and a step that starts or
 //! ends a walk grows out of it or shrinks into it: features between the two, with the same planted feet.
 
-use crate::planting::smooth_step;
 use crate::stage::Posture;
+use footfall_core::ease::smooth_step;
 use footfall_core::rotation::log_map;
 use footfall_core::{Joint, Side};
 use footfall_model::layout::{feature_offset, mirror};

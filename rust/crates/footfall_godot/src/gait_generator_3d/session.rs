@@ -142,6 +142,14 @@ impl Session {
         self.binding.write(skeleton, &self.pose);
     }
 
+    /// The foot that lands next, where in global space, and the seconds until then.
+    pub(super) fn next_foothold(&self, travel: &Travel) -> Option<(Side, Vector3, f32)> {
+        let (footstep, secs) = self.generator.next_footstep()?;
+        let world_from_ground = travel.world_from_ground * travel.ground;
+        let position = world_from_ground.transform_point3(footstep.position);
+        Some((footstep.side, convert::vector3(position), secs))
+    }
+
     /// The initial contacts of the last frame, in global space.
     ///
     /// The same whether this node moved the character or the game will by the delta.

@@ -1,7 +1,8 @@
 //! The swinging foot: from where it stood to where it lands, along the generated path.
 
-use super::{StepTiming, smooth_step};
+use super::StepTiming;
 use core::f32::consts::PI;
+use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{exp_map, log_map};
 use footfall_ik::{FootTarget, RockerFoot};
 use glam::Vec3;

@@ -1,0 +1,21 @@
+//! Curves between two values.
+
+use core::ops::{Add, Mul};
+
+/// From 0 at 0 to 1 at 1, level at both ends and beyond.
+pub fn smooth_step(s: f32) -> f32 {
+    let s = s.clamp(0.0, 1.0);
+    s * s * (3.0 - 2.0 * s)
+}
+
+/// Cubic Hermite curve at `s` in 0..1; the tangents `departure` and `arrival` are per unit of `s`.
+pub fn hermite<T>(from: T, departure: T, to: T, arrival: T, s: f32) -> T
+where
+    T: Mul<f32, Output = T> + Add<Output = T>,
+{
+    let (s2, s3) = (s * s, s * s * s);
+    from * (2.0 * s3 - 3.0 * s2 + 1.0)
+        + departure * (s3 - 2.0 * s2 + s)
+        + to * (3.0 * s2 - 2.0 * s3)
+        + arrival * (s3 - s2)
+}

@@ -1,0 +1,466 @@
+//! `FootPlacement3D`: keeps feet on uneven ground.
+
+mod marks;
+
+use crate::character;
+use crate::convert;
+use crate::gait_generator_3d::GaitGenerator3D;
+use crate::physics_ground::{PhysicsGround, own_bodies};
+use crate::skeleton_binding::SkeletonBinding;
+use footfall_core::{Pose, Side};
+use footfall_ik::placement::{
+    ContactThresholds, FootPlacer, Frame, PlacementConfig, PlacementInput,
+};
+use glam::Affine3A;
+use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
+use godot::prelude::*;
+use marks::Marks;
+
+/// Time constant with which the character rises and falls with the ground, seconds.
+const RISE_SECS: f32 = 0.12;
+
+/// Puts the feet of an animation on the ground: slopes, stairs, rough ground and platforms that move.
+///
+/// Add it under a `Skeleton3D` with humanoid bones, below whatever animates it: a `GaitGenerator3D`, or an `AnimationPlayer` or
+/// `AnimationTree` elsewhere. A foot that stands is locked where it was put, in the plane of the ground; the pelvis moves so that
+/// both legs reach, and a foot on its way keeps clear of edges. With a `GaitGenerator3D` the node knows beforehand where and when each
+/// foot will land. For other animations it finds out when a foot is low and slow; feet settle a little later then.
+///
+/// The animation should move over a flat floor at the height of the character's origin. The ground is what is on `collision_mask`.
+#[derive(GodotClass)]
+#[class(tool, init, base = SkeletonModifier3D)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "the inspector shows check boxes"
+)]
+pub(crate) struct FootPlacement3D {
+    /// The physics layers that are ground. Bodies that belong to the character itself are never ground.
+    #[export(flags_3d_physics)]
+    #[var(set = set_collision_mask)]
+    #[init(val = 1)]
+    collision_mask: u32,
+
+    /// Ground is looked for with spheres of this radius. At 0 it is looked for with rays, which is faster; spheres pass over gaps.
+    #[export(range = (0.0, 0.2, 0.001, suffix = "m"))]
+    #[var(set = set_cast_radius)]
+    cast_radius: f64,
+
+    /// Ground that is more than this above the higher foot or below the lower one is out of reach.
+    #[export(range = (0.0, 1.0, 0.01, or_greater, suffix = "m"))]
+    #[init(val = 0.5)]
+    max_step: f64,
+
+    /// Feet are tilted against the animation by this much at most.
+    #[export(range = (0.0, 60.0, 0.1, radians_as_degrees))]
+    #[init(val = 0.6)]
+    max_tilt: f64,
+
+    /// How long the pelvis takes for half of its way up or down.
+    #[export(range = (0.01, 0.5, 0.01, or_greater, suffix = "s"))]
+    #[init(val = 0.08)]
+    pelvis_half_life: f64,
+
+    /// How far the pelvis moves against the animation at most.
+    #[export(range = (0.0, 1.0, 0.01, or_greater, suffix = "m"))]
+    #[init(val = 0.6)]
+    max_pelvis_offset: f64,
+
+    /// A foot that the animation drags this far from where it is locked is put anew.
+    #[export(range = (0.0, 0.5, 0.01, or_greater, suffix = "m"))]
+    #[init(val = 0.2)]
+    max_drift: f64,
+
+    /// A foot that the animation turns this far from where it is locked is put anew.
+    #[export(range = (0.0, 90.0, 0.1, radians_as_degrees))]
+    #[init(val = 0.6)]
+    max_twist: f64,
+
+    /// Whether a foot that would stand across an edge, as on stairs, is put ahead of it or behind it.
+    #[export]
+    #[init(val = true)]
+    adjust_footholds: bool,
+
+    /// Whether a `GaitGenerator3D` beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking
+    /// function, down to 0.45 of its speed).
+    #[export]
+    #[init(val = true)]
+    adapt_speed: bool,
+
+    /// Whether the character rises and falls with the ground under its feet, for characters that no physics holds there.
+    ///
+    /// Leave it off for a `CharacterBody3D` with gravity and `move_and_slide()`.
+    #[export]
+    follow_ground: bool,
+
+    /// Whether the character is in the air: feet are left to the animation. Set it from the game, for example
+    /// `foot_placement.in_air = not is_on_floor()`.
+    #[var]
+    in_air: bool,
+
+    /// The `Node3D` whose origin is on the floor of the animation, above the `Skeleton3D`. Its Y axis is up.
+    ///
+    /// Left empty, it is the one that a `GaitGenerator3D` beside this node moves, or would move.
+    #[export(node_path = ("Node3D"))]
+    #[var(set = set_character)]
+    character: NodePath,
+
+    /// Tells which bones are which joints, where they are not named as in SkeletonProfileHumanoid. Left empty, it is that of a
+    /// `GaitGenerator3D` beside this node.
+    #[export]
+    #[var(set = set_bone_map)]
+    bone_map: Option<Gd<BoneMap>>,
+
+    /// Whether soles and the normals of the ground are drawn: green where a foot is locked, orange where it is not.
+    #[export]
+    debug_draw: bool,
+
+    /// What is bound to the skeleton; `None` until the next frame that can.
+    session: Option<Session>,
+    reported: Option<String>,
+    marks: Marks,
+    base: Base<SkeletonModifier3D>,
+}
+
+/// The feet of one skeleton.
+struct Session {
+    binding: SkeletonBinding,
+    character: Gd<Node3D>,
+    placer: FootPlacer,
+    ground: PhysicsGround,
+    pose: Pose,
+}
+
+#[godot_api]
+impl ISkeletonModifier3D for FootPlacement3D {
+    fn enter_tree(&mut self) {
+        self.forget();
+    }
+
+    fn exit_tree(&mut self) {
+        self.marks.remove();
+    }
+
+    fn skeleton_changed(&mut self, _old: Option<Gd<Skeleton3D>>, _new: Option<Gd<Skeleton3D>>) {
+        self.forget();
+    }
+
+    fn process_modification_with_delta(&mut self, delta: f64) {
+        let Some(skeleton) = self.base().get_skeleton() else {
+            return;
+        };
+        if !skeleton.is_inside_tree() {
+            return;
+        }
+        match self.take_session(&skeleton) {
+            Ok(session) => self.place(session, skeleton, delta),
+            Err(problem) if delta > 0.0 => self.report(problem),
+            Err(_) => {}
+        }
+    }
+
+    fn get_configuration_warnings(&self) -> PackedStringArray {
+        self.problems()
+    }
+}
+
+#[godot_api]
+impl FootPlacement3D {
+    /// A foot is locked to the ground: `foot` is `left` or `right`, `position` the ground under its ankle in global space, `normal` the
+    /// ground's. Emitted once for every contact, not in the editor.
+    #[signal]
+    fn foot_planted(foot: StringName, position: Vector3, normal: Vector3);
+
+    /// A foot leaves the ground. Not emitted in the editor.
+    #[signal]
+    fn foot_lifted(foot: StringName);
+
+    /// Whether a foot, `left` or `right`, is locked to the ground.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn is_foot_planted(&self, foot: StringName) -> bool {
+        self.foot(&foot).is_some_and(|placed| placed.locked)
+    }
+
+    /// Where the sole of a foot, `left` or `right`, is, in global space: its origin lies on the ground under the ankle of the flat foot,
+    /// +Y is the ground's normal and +Z points to the toes. For a foot on its way, of the place over which it is.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn get_foot_transform(&self, foot: StringName) -> Transform3D {
+        self.foot(&foot).map_or(Transform3D::IDENTITY, |placed| {
+            convert::frame_transform(&placed.sole)
+        })
+    }
+
+    /// What a foot, `left` or `right`, is locked to: the body, or null.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn get_foot_support(&self, foot: StringName) -> Option<Gd<Node3D>> {
+        let support = self.foot(&foot)?.support?;
+        let id = InstanceId::try_from_i64(support.cast_signed())?;
+        Gd::try_from_instance_id(id).ok()
+    }
+
+    /// How far the pelvis is moved up against the animation, in metres.
+    #[func]
+    fn get_pelvis_offset(&self) -> f64 {
+        let session = self.session.as_ref();
+        session.map_or(0.0, |session| f64::from(session.placer.pelvis_offset_m()))
+    }
+
+    /// How steep the way under the feet is: rise by run, positive uphill.
+    #[func]
+    fn get_grade(&self) -> f64 {
+        let session = self.session.as_ref();
+        session.map_or(0.0, |session| f64::from(session.placer.grade()))
+    }
+
+    /// Forgets where the feet were put, for example after the character was put elsewhere. Also measures the skeleton anew.
+    #[func]
+    fn reset(&mut self) {
+        self.forget();
+        self.base_mut().update_configuration_warnings();
+    }
+
+    /// What keeps the feet from being placed, each with what to do next; empty when nothing does.
+    ///
+    /// The editor shows the same as configuration warnings.
+    #[func]
+    fn get_problems(&self) -> PackedStringArray {
+        self.problems()
+    }
+
+    #[func]
+    fn set_collision_mask(&mut self, collision_mask: u32) {
+        self.collision_mask = collision_mask;
+        self.reset();
+    }
+
+    #[func]
+    fn set_cast_radius(&mut self, cast_radius: f64) {
+        if cast_radius.is_finite() {
+            self.cast_radius = cast_radius.max(0.0);
+            self.reset();
+        }
+    }
+
+    #[func]
+    fn set_character(&mut self, character: NodePath) {
+        self.character = character;
+        self.reset();
+    }
+
+    #[func]
+    fn set_bone_map(&mut self, bone_map: Option<Gd<BoneMap>>) {
+        self.bone_map = bone_map;
+        self.reset();
+    }
+}
+
+impl FootPlacement3D {
+    fn forget(&mut self) {
+        self.session = None;
+        self.reported = None;
+    }
+
+    fn foot(&self, foot: &StringName) -> Option<&footfall_ik::placement::PlacedFoot> {
+        let side = Side::BOTH.into_iter().find(|side| *foot == side.name())?;
+        let session = self.session.as_ref()?;
+        Some(&session.placer.feet()[side.index()])
+    }
+
+    fn problems(&self) -> PackedStringArray {
+        let mut problems = PackedStringArray::new();
+        let Some(skeleton) = self.base().get_skeleton() else {
+            problems.push("Put this node under a Skeleton3D.");
+            return problems;
+        };
+        if self.collision_mask == 0 {
+            problems.push("Collision Mask is empty: choose the physics layers that are ground.");
+        }
+        if skeleton.is_inside_tree()
+            && let Err(problem) = self.bind(&skeleton)
+        {
+            problems.push(&GString::from(&problem));
+        }
+        if let Some(generator) = generator_beside(&skeleton)
+            && generator.get_index() > self.base().get_index()
+        {
+            problems.push(
+                "Move this node below the GaitGenerator3D: modifiers work from top to bottom.",
+            );
+        }
+        problems
+    }
+
+    fn config(&self) -> PlacementConfig {
+        let or = |value: f64, otherwise: f32| {
+            if value.is_finite() {
+                value.max(0.0) as f32
+            } else {
+                otherwise
+            }
+        };
+        let usual = PlacementConfig::default();
+        PlacementConfig {
+            max_step_m: or(self.max_step, usual.max_step_m),
+            max_tilt: or(self.max_tilt, usual.max_tilt),
+            pelvis_half_life_secs: or(self.pelvis_half_life, usual.pelvis_half_life_secs),
+            max_pelvis_m: or(self.max_pelvis_offset, usual.max_pelvis_m),
+            max_drift_m: or(self.max_drift, usual.max_drift_m),
+            max_twist: or(self.max_twist, usual.max_twist),
+            adjust_footholds: self.adjust_footholds,
+            contact: ContactThresholds::default(),
+        }
+    }
+
+    fn bind(&self, skeleton: &Gd<Skeleton3D>) -> Result<(Gd<Node3D>, SkeletonBinding), String> {
+        let node = self.base().clone().upcast::<Node>();
+        let mut bone_map = self.bone_map.clone();
+        let mut found = None;
+        if let Some(generator) = generator_beside(skeleton) {
+            let generator = generator.bind();
+            bone_map = bone_map.or_else(|| generator.bones());
+            if self.character.is_empty() {
+                found = Some(generator.find_character(skeleton)?);
+            }
+        }
+        let character = match found {
+            Some(character) => character,
+            None => character::find(&node, skeleton, &self.character)?,
+        };
+        let binding = SkeletonBinding::new(skeleton, &character, bone_map.as_ref())
+            .map_err(|error| error.to_string())?;
+        Ok((character, binding))
+    }
+
+    fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
+        if let Some(session) = self.session.take()
+            && session.character.is_instance_valid()
+            && session.character.is_inside_tree()
+            && session.binding.fits(skeleton, &session.character)
+        {
+            return Ok(session);
+        }
+        let (character, binding) = self.bind(skeleton)?;
+        let exclude = own_bodies(&character);
+        Ok(Session {
+            placer: FootPlacer::new(&binding.body, &self.config()),
+            pose: Pose::rest(&binding.body),
+            ground: PhysicsGround::new(self.collision_mask, self.cast_radius as f32, &exclude),
+            binding,
+            character,
+        })
+    }
+
+    /// One frame: the pose is read, put on the ground and written.
+    fn place(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
+        self.reported = None;
+        let space = skeleton
+            .get_world_3d()
+            .and_then(|world| world.get_direct_space_state());
+        let Some(space) = space else {
+            self.session = Some(session);
+            return;
+        };
+        let dt_secs = if delta.is_finite() {
+            delta.max(0.0) as f32
+        } else {
+            0.0
+        };
+        let in_editor = Engine::singleton().is_editor_hint();
+        if self.follow_ground && !in_editor && !self.in_air && dt_secs > 0.0 {
+            let share = 1.0 - (-dt_secs / RISE_SECS).exp();
+            let up = convert::frame(session.character.get_global_transform()).up();
+            let rise = convert::vector3(up * (share * session.placer.ground_offset_m()));
+            if rise != Vector3::ZERO {
+                let place = session.character.get_global_position() + rise;
+                session.character.set_global_position(place);
+            }
+        }
+        let generator = generator_beside(&skeleton);
+        let mut input = PlacementInput {
+            world_from_floor: floor(&session),
+            contacts: None,
+            landings: [None; 2],
+            airborne: self.in_air,
+        };
+        if let Some(mut generator) = generator.filter(|generator| generator.is_active()) {
+            let mut generator = generator.bind_mut();
+            if let Some((contacts, landings)) = generator.feet() {
+                input.contacts = Some(contacts);
+                input.landings = landings;
+            }
+            let slowed = if self.adapt_speed {
+                slowed_by(session.placer.grade())
+            } else {
+                1.0
+            };
+            generator.slow_down(slowed);
+        }
+        session.placer.set_config(&self.config());
+        session.binding.read_legs(&skeleton, &mut session.pose);
+        let mut ground = session.ground.now(space);
+        session
+            .placer
+            .step(dt_secs, &input, &mut ground, &mut session.pose);
+        session.binding.write_legs(&mut skeleton, &session.pose);
+        let feet = *session.placer.feet();
+        self.session = Some(session);
+        let host = skeleton.upcast::<Node>();
+        self.marks.show(self.debug_draw, &host, &feet);
+        if in_editor {
+            return;
+        }
+        for (side, placed) in Side::BOTH.into_iter().zip(feet) {
+            let foot = StringName::from(side.name());
+            if placed.landed {
+                let position = convert::vector3(placed.sole.position);
+                let normal = convert::vector3(placed.sole.up());
+                self.signals().foot_planted().emit(&foot, position, normal);
+            } else if placed.left {
+                self.signals().foot_lifted().emit(&foot);
+            }
+        }
+    }
+
+    /// Tells the log what keeps the feet from being placed, once.
+    fn report(&mut self, problem: String) {
+        if self.reported.as_ref() == Some(&problem) {
+            return;
+        }
+        if Engine::singleton().is_editor_hint() {
+            self.base_mut().update_configuration_warnings();
+        } else {
+            let node = self.base().get_path();
+            godot_warn!("{node}: {problem}");
+        }
+        self.reported = Some(problem);
+    }
+}
+
+/// The floor of the animation in the world.
+fn floor(session: &Session) -> Frame {
+    let world = convert::frame(session.character.get_global_transform());
+    let ground: Affine3A = session.binding.character_from_ground;
+    world.child(&Frame {
+        position: ground.translation.into(),
+        rotation: convert::rotation(&ground),
+    })
+}
+
+/// The generator that walks the same skeleton.
+fn generator_beside(skeleton: &Gd<Skeleton3D>) -> Option<Gd<GaitGenerator3D>> {
+    let children = skeleton.get_children();
+    children
+        .iter_shared()
+        .find_map(|child| child.try_cast::<GaitGenerator3D>().ok())
+}
+
+/// What is left of a walker's speed on a grade: Tobler's hiking function (1993) relative to level ground, and no less than people
+/// keep on stairs.
+fn slowed_by(grade: f32) -> f32 {
+    const STEEPNESS: f32 = 3.5;
+    const EASIEST: f32 = -0.05;
+    let speed = |grade: f32| (-STEEPNESS * (grade - EASIEST).abs()).exp();
+    (speed(grade) / speed(0.0)).clamp(0.45, 1.0)
+}

@@ -1,0 +1,343 @@
+//! Feet on real ground: any animation of a walk over a flat floor, put on slopes, stairs and things that move.
+//!
+//! The animation moves over its own flat floor. [`FootPlacer`] looks for the ground under each foot, locks a foot that stands to it,
+//! carries a swinging foot from one foothold to the next, moves the pelvis so that both legs reach, and solves the legs. Whatever
+//! supports a foot may move: its foothold moves along.
+//!
+//! Modules in suggested reading order: `frame`, `terrain`, `correction`, `foothold`, `contact`, `foot`, `swing`,
+//! `pelvis`, `carry`.
+
+mod carry;
+mod contact;
+mod correction;
+mod foot;
+mod foothold;
+mod frame;
+mod pelvis;
+mod swing;
+mod terrain;
+
+use crate::leg::{FootTarget, Leg};
+use crate::rocker::{RockerFoot, foot_heading, foot_pitch, settled_pitch};
+pub use contact::ContactThresholds;
+pub use foot::Landing;
+use foot::{Animated, Foot, Mode, Scene};
+use footfall_core::rotation::from_heading;
+use footfall_core::{Joint, Pose, Side, Skeleton};
+pub use frame::Frame;
+use glam::{Quat, Vec3};
+use pelvis::Follower;
+pub use terrain::{Ground, SupportId, Terrain};
+
+/// A character that moved farther than this in a frame was put somewhere else, metres.
+const TELEPORT_M: f32 = 1.0;
+
+/// How feet meet the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacementConfig {
+    /// Ground that is higher above or deeper below the animation's floor than this is out of reach, metres.
+    pub max_step_m: f32,
+    /// Feet are tilted against the animation by this much at most, radians.
+    pub max_tilt: f32,
+    /// How long the pelvis takes for half of its way up or down, seconds.
+    pub pelvis_half_life_secs: f32,
+    /// How far the pelvis moves against the animation's floor at most, metres.
+    pub max_pelvis_m: f32,
+    /// A foot that the animation drags this far from where it is locked is put anew, metres.
+    pub max_drift_m: f32,
+    /// A foot that the animation turns this far from where it is locked is put anew, radians.
+    pub max_twist: f32,
+    /// Whether a foot that would stand across an edge is put ahead of it or behind it.
+    pub adjust_footholds: bool,
+    /// When a foot stands, for animations that do not tell.
+    pub contact: ContactThresholds,
+}
+
+impl Default for PlacementConfig {
+    fn default() -> Self {
+        Self {
+            max_step_m: 0.5,
+            max_tilt: 0.6,
+            pelvis_half_life_secs: 0.08,
+            max_pelvis_m: 0.6,
+            max_drift_m: 0.2,
+            max_twist: 0.6,
+            adjust_footholds: true,
+            contact: ContactThresholds::default(),
+        }
+    }
+}
+
+/// One frame of the animation.
+#[derive(Clone, Copy, Debug)]
+pub struct PlacementInput {
+    /// `world_from_floor`: the flat floor that the animation moves over. +Y is up, against gravity.
+    pub world_from_floor: Frame,
+    /// Which feet stand, where the animation tells; otherwise height and speed of the feet do.
+    pub contacts: Option<[bool; 2]>,
+    /// Where the left and the right foot will land next, where the animation knows.
+    pub landings: [Option<Landing>; 2],
+    /// Whether the character is in the air: feet are left to the animation.
+    pub airborne: bool,
+}
+
+/// What a foot does now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedFoot {
+    /// Whether it is locked to the ground.
+    pub locked: bool,
+    /// `world_from_sole`: the ground under the ankle of the flat foot, +Y the ground's normal, +Z to the toes. For a foot
+    /// on its way, of the place over which it is.
+    pub sole: Frame,
+    /// What it is locked to.
+    pub support: Option<SupportId>,
+    /// Whether it was locked in this very frame.
+    pub landed: bool,
+    /// Whether it was let go in this very frame.
+    pub left: bool,
+}
+
+/// Places the feet of one character. Allocates nothing after it was made.
+#[derive(Clone, Debug)]
+pub struct FootPlacer {
+    config: PlacementConfig,
+    hips_from_hip: [Vec3; 2],
+    leg_lengths: [f32; 2],
+    legs: [Leg; 2],
+    rockers: [RockerFoot; 2],
+    feet: [Foot; 2],
+    placed: [PlacedFoot; 2],
+    /// Height in the world of the ground under the pelvis.
+    pelvis: Follower,
+    ground_m: f32,
+    grade: f32,
+    memory: Option<Memory>,
+}
+
+/// What the frame before left.
+#[derive(Clone, Copy, Debug)]
+struct Memory {
+    world_from_floor: Frame,
+    /// The soles' points of the animation, in the world.
+    points: [[Vec3; 3]; 2],
+    stood: [bool; 2],
+    soles: [Frame; 2],
+}
+
+impl FootPlacer {
+    /// For a body with these proportions.
+    pub fn new(skeleton: &Skeleton, config: &PlacementConfig) -> Self {
+        let placed = PlacedFoot {
+            locked: false,
+            sole: Frame::IDENTITY,
+            support: None,
+            landed: false,
+            left: false,
+        };
+        Self {
+            config: *config,
+            hips_from_hip: Side::BOTH.map(|side| skeleton.offset(side.upper_leg())),
+            leg_lengths: Side::BOTH.map(|side| skeleton.leg_length(side)),
+            legs: Side::BOTH.map(|side| Leg::new(skeleton, side)),
+            rockers: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
+            feet: [Foot::default(); 2],
+            placed: [placed; 2],
+            pelvis: Follower::default(),
+            ground_m: 0.0,
+            grade: 0.0,
+            memory: None,
+        }
+    }
+
+    /// Takes other settings from now on.
+    pub fn set_config(&mut self, config: &PlacementConfig) {
+        self.config = *config;
+    }
+
+    /// Forgets where the feet were put.
+    pub fn reset(&mut self) {
+        self.memory = None;
+        self.feet = [Foot::default(); 2];
+        self.ground_m = 0.0;
+        self.grade = 0.0;
+    }
+
+    /// The feet after the last step, left and right.
+    pub fn feet(&self) -> &[PlacedFoot; 2] {
+        &self.placed
+    }
+
+    /// Height of the ground under the pelvis above the animation's floor, metres: how far the last step moved the pelvis.
+    pub fn pelvis_offset_m(&self) -> f32 {
+        self.memory.map_or(0.0, |memory| {
+            let floor = memory.world_from_floor;
+            self.pelvis.value - floor.position.dot(floor.up())
+        })
+    }
+
+    /// Height of the ground under the body above the animation's floor, metres: how far a character that is to stay on the ground
+    /// has to rise. 0 where there is no ground.
+    pub fn ground_offset_m(&self) -> f32 {
+        self.ground_m
+    }
+
+    /// How steep the way is from one foothold to the other in the direction that the character faces: rise by run, positive uphill.
+    pub fn grade(&self) -> f32 {
+        self.grade
+    }
+
+    /// Puts hips and legs of a pose, given over the animation's floor, on the ground; the rest of the pose stays.
+    ///
+    /// With `dt_secs` 0 nothing moves on, and what is placed is the pose as it is given.
+    pub fn step(
+        &mut self,
+        dt_secs: f32,
+        input: &PlacementInput,
+        terrain: &mut impl Terrain,
+        pose: &mut Pose,
+    ) {
+        let floor = input.world_from_floor;
+        let teleported = |memory: &Memory| {
+            memory.world_from_floor.position.distance(floor.position) > TELEPORT_M
+        };
+        if self.memory.as_ref().is_some_and(teleported) {
+            self.reset();
+        }
+        let animated = self.animated(dt_secs, input, pose, terrain);
+        let mut scene = Scene {
+            terrain,
+            world_from_floor: floor,
+            config: &self.config,
+            soles_m: self.memory.map_or([0.0; 2], |memory| {
+                let [left, right] = memory.soles.map(|sole| floor.local_point(sole.position).y);
+                [left.min(right), left.max(right)]
+            }),
+            dt_secs,
+        };
+        let mut targets = [FootTarget {
+            ankle: Vec3::ZERO,
+            foot: Quat::IDENTITY,
+            toes: Quat::IDENTITY,
+        }; 2];
+        for index in 0..2 {
+            let (foot, rocker) = (&mut self.feet[index], &self.rockers[index]);
+            targets[index] = foot.step(&mut scene, rocker, &animated[index], input.airborne);
+        }
+        let soles = [0, 1].map(|index| floor.child(&self.feet[index].sole));
+        self.measure_grade(dt_secs);
+        self.carry_pelvis(dt_secs, input, &soles, pose, &targets);
+        let hips_rotation = pose.rotations[Joint::Hips.index()];
+        for (leg, target) in self.legs.iter().zip(&targets) {
+            leg.solve(pose.root_position, hips_rotation, target, pose);
+        }
+        for (index, sole) in soles.into_iter().enumerate() {
+            let foot = &self.feet[index];
+            let before = self.placed[index].locked;
+            let locked = foot.mode == Mode::Locked;
+            self.placed[index] = PlacedFoot {
+                locked,
+                sole,
+                support: foot.hold.map(|hold| hold.support()),
+                landed: locked && !before,
+                left: before && !locked,
+            };
+        }
+        self.memory = Some(Memory {
+            world_from_floor: floor,
+            points: [0, 1].map(|index| {
+                let points = self.rockers[index].points(&animated[index].foot);
+                points.map(|point| floor.point(point))
+            }),
+            stood: [0, 1].map(|index| animated[index].contact),
+            soles,
+        });
+    }
+
+    /// The feet as the animation has them.
+    fn animated(
+        &self,
+        dt_secs: f32,
+        input: &PlacementInput,
+        pose: &Pose,
+        terrain: &mut impl Terrain,
+    ) -> [Animated; 2] {
+        Side::BOTH.map(|side| {
+            let index = side.index();
+            let rocker = &self.rockers[index];
+            let foot = self.foot_of(side, pose);
+            let heading = foot_heading(foot.foot);
+            let mut pitch = foot_pitch(foot.foot);
+            let plant = rocker.plant_under(foot.ankle, heading, pitch);
+            let contact = if let Some(contacts) = input.contacts {
+                contacts[index]
+            } else {
+                pitch = settled_pitch(pitch);
+                self.stands(dt_secs, input, index, &foot, terrain)
+            };
+            Animated {
+                foot,
+                flat: Frame {
+                    position: RockerFoot::footprint(&plant),
+                    rotation: from_heading(heading),
+                },
+                pitch,
+                contact,
+                landing: input.landings[index],
+            }
+        })
+    }
+
+    fn foot_of(&self, side: Side, pose: &Pose) -> FootTarget {
+        let hips = pose.rotations[Joint::Hips.index()];
+        let thigh = hips * pose.rotation(side.upper_leg());
+        let shank = thigh * pose.rotation(side.lower_leg());
+        let foot = (shank * pose.rotation(side.foot())).normalize();
+        FootTarget {
+            ankle: pose.root_position
+                + hips * self.hips_from_hip[side.index()]
+                + self.legs[side.index()].ankle_from_hip(thigh, shank),
+            foot,
+            toes: (foot * pose.rotation(side.toes())).normalize(),
+        }
+    }
+
+    /// Whether a foot of an animation that does not tell stands.
+    fn stands(
+        &self,
+        dt_secs: f32,
+        input: &PlacementInput,
+        index: usize,
+        foot: &FootTarget,
+        terrain: &mut impl Terrain,
+    ) -> bool {
+        let points = self.rockers[index].points(foot);
+        let height = points.iter().map(|point| point.y).fold(f32::MAX, f32::min);
+        let Some(memory) = &self.memory else {
+            return self.config.contact.stands(false, 0.0, height);
+        };
+        if dt_secs <= 0.0 {
+            return memory.stood[index];
+        }
+        // On something that moves, a foot that moves along stands.
+        let carried = self.feet[index].hold.and_then(|hold| {
+            let sole = hold.world_from_sole(terrain)?;
+            Some(sole.position - memory.soles[index].position)
+        });
+        let carried = carried.unwrap_or_default();
+        let speed = points
+            .iter()
+            .zip(&memory.points[index])
+            .map(|(now, then)| {
+                let moved = input.world_from_floor.point(*now) - (*then + carried);
+                // That the floor goes up or down a slope is no motion of the foot over it.
+                moved
+                    .reject_from_normalized(input.world_from_floor.up())
+                    .length()
+            })
+            .fold(f32::MAX, f32::min)
+            / dt_secs;
+        self.config
+            .contact
+            .stands(memory.stood[index], speed, height)
+    }
+}

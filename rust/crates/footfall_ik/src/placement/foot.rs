@@ -1,0 +1,304 @@
+//! One foot: locked where it was put, or on its way to the next place.
+
+use crate::leg::FootTarget;
+use crate::placement::PlacementConfig;
+use crate::placement::correction::{Correction, Residual};
+use crate::placement::foothold::{Foothold, Search};
+use crate::placement::frame::Frame;
+use crate::placement::pelvis::Follower;
+use crate::placement::swing::Plan;
+use crate::placement::terrain::Terrain;
+use crate::rocker::{Plant, RockerFoot};
+use footfall_core::rotation::{heading, wrap_angle};
+use glam::{Quat, Vec3};
+
+/// Time constant with which what is left of a jump fades, seconds.
+const RESIDUAL_SECS: f32 = 0.06;
+/// Time constant with which a foot that goes nobody knows where follows the ground under it, seconds.
+pub(super) const FOLLOW_SECS: f32 = 0.08;
+/// A foot that slid too far from its lock is put anew, for at least so long, seconds.
+pub(super) const REPLANT_SECS: f32 = 0.22;
+
+/// Where the animation will put a foot, relative to the animation's floor now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landing {
+    /// The flat sole: origin on the floor under the ankle, +Z to the toes.
+    pub flat: Frame,
+    /// Time until it lands, seconds.
+    pub secs: f32,
+}
+
+/// One foot of the animation, relative to its floor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Animated {
+    pub(super) foot: FootTarget,
+    /// Where it would lie if it were put down flat.
+    pub(super) flat: Frame,
+    pub(super) pitch: f32,
+    pub(super) contact: bool,
+    pub(super) landing: Option<Landing>,
+}
+
+/// What a foot does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Mode {
+    /// As the animation has it.
+    Free,
+    Swinging,
+    Locked,
+}
+
+/// The end of a swing, relative to the floor of the animation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lands {
+    /// Where the animation puts it.
+    pub(super) flat: Vec3,
+    /// The ground under the ankle of the flat foot.
+    pub(super) sole: Vec3,
+    pub(super) secs: f32,
+}
+
+/// What goes from frame to frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Foot {
+    pub(super) mode: Mode,
+    pub(super) hold: Option<Foothold>,
+    /// Whether there is ground within reach.
+    pub(super) over_ground: bool,
+    /// Where the sole is, or would be if it were put down, relative to the floor of the animation.
+    pub(super) sole: Frame,
+    /// Where and when it will stand next, as far as that is known.
+    pub(super) lands: Option<Lands>,
+    pub(super) plan: Option<Plan>,
+    /// What was on the way to a foothold that was given up in this frame.
+    pub(super) dropped: Option<(Correction, f32)>,
+    /// Where in the world the animation had a foot that follows the ground.
+    pub(super) followed: Option<Vec3>,
+    pub(super) lifted_with: Correction,
+    pub(super) correction: Correction,
+    pub(super) locked_with: Correction,
+    pub(super) swing_secs: f32,
+    pub(super) replant_secs: f32,
+    pub(super) guard: Follower,
+    pub(super) residual: Residual,
+    /// What a lock makes of the animated foot, beyond its correction.
+    pub(super) at_lock: Residual,
+    pub(super) begun: bool,
+}
+
+/// The floor of the animation, the ground, and how a foot meets it.
+pub(super) struct Scene<'a, T> {
+    pub(super) terrain: &'a mut T,
+    pub(super) world_from_floor: Frame,
+    pub(super) config: &'a PlacementConfig,
+    /// Heights of the lower and of the higher sole over the animation's floor, metres.
+    pub(super) soles_m: [f32; 2],
+    pub(super) dt_secs: f32,
+}
+
+impl<T: Terrain> Scene<'_, T> {
+    pub(super) fn search(&self) -> Search {
+        Search {
+            up: self.world_from_floor.up(),
+            above_m: self.config.max_step_m + self.soles_m[1].max(0.0),
+            below_m: self.config.max_step_m - self.soles_m[0].min(0.0),
+            max_tilt: self.config.max_tilt,
+            may_shift: self.config.adjust_footholds,
+        }
+    }
+
+    pub(super) fn sole(&mut self, foothold: &Foothold) -> Option<Frame> {
+        let sole = foothold.world_from_sole(self.terrain)?;
+        Some(self.world_from_floor.local(&sole))
+    }
+
+    /// Height of the ground above the animation's floor at a place on it.
+    pub(super) fn ground(&mut self, at: Vec3) -> Option<(f32, Vec3)> {
+        let floor = self.world_from_floor;
+        let search = self.search();
+        let hit = search.cast(self.terrain, floor.point(Vec3::new(at.x, 0.0, at.z)))?;
+        let normal = floor.rotation.conjugate() * hit.normal;
+        Some((floor.local_point(hit.position).y, normal))
+    }
+}
+
+impl Default for Foot {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Free,
+            hold: None,
+            over_ground: false,
+            sole: Frame::IDENTITY,
+            lands: None,
+            plan: None,
+            dropped: None,
+            followed: None,
+            lifted_with: Correction::NONE,
+            correction: Correction::NONE,
+            locked_with: Correction::NONE,
+            swing_secs: 0.0,
+            replant_secs: 0.0,
+            guard: Follower::default(),
+            residual: Residual::NONE,
+            at_lock: Residual::NONE,
+            begun: false,
+        }
+    }
+}
+
+impl Foot {
+    /// Where the foot goes this frame, relative to the floor of the animation.
+    pub(super) fn step<T: Terrain>(
+        &mut self,
+        scene: &mut Scene<'_, T>,
+        rocker: &RockerFoot,
+        animated: &Animated,
+        airborne: bool,
+    ) -> FootTarget {
+        self.replant_secs = (self.replant_secs - scene.dt_secs).max(0.0);
+        self.swing_secs += scene.dt_secs;
+        let was = self.mode;
+        if was == Mode::Locked && (airborne || !animated.contact) {
+            self.let_go(if airborne { Mode::Free } else { Mode::Swinging });
+        }
+        let mut target = self.target(scene, rocker, animated);
+        if was == Mode::Locked && self.mode != Mode::Locked {
+            // From here on it goes as the animation does from where the lock had it in the last frame.
+            self.residual = self.at_lock;
+        }
+        let mode = self.mode;
+        if airborne {
+            if mode != Mode::Free {
+                self.let_go(Mode::Free);
+            }
+        } else if animated.contact && mode != Mode::Locked && self.replant_secs == 0.0 {
+            self.put(scene, rocker, animated);
+        } else if mode == Mode::Free {
+            self.let_go(Mode::Swinging);
+        }
+        if self.mode == mode || !self.begun {
+            if self.mode != mode {
+                target = self.target(scene, rocker, animated);
+            }
+            self.residual.fade((-scene.dt_secs / RESIDUAL_SECS).exp());
+        } else {
+            // What it would be had it gone on as it did, so that its own motion is not taken for a jump.
+            let was = self.residual.apply(&target);
+            target = self.target(scene, rocker, animated);
+            self.residual = Residual::of(&was, &target);
+        }
+        self.begun = true;
+        let out = self.residual.apply(&target);
+        if self.mode == Mode::Locked {
+            let unlocked = self.correction.apply(&animated.flat, &animated.foot);
+            self.at_lock = Residual::of(&out, &unlocked);
+        }
+        out
+    }
+
+    /// Where the foot goes in its mode.
+    fn target<T: Terrain>(
+        &mut self,
+        scene: &mut Scene<'_, T>,
+        rocker: &RockerFoot,
+        animated: &Animated,
+    ) -> FootTarget {
+        if self.mode == Mode::Locked
+            && let Some(target) = self.stand(scene, rocker, animated)
+        {
+            return target;
+        }
+        match self.mode {
+            Mode::Free => self.float(scene, animated),
+            Mode::Swinging | Mode::Locked => self.swing(scene, rocker, animated),
+        }
+    }
+
+    fn let_go(&mut self, mode: Mode) {
+        self.mode = mode;
+        self.hold = None;
+        self.plan = None;
+        self.lands = None;
+        self.followed = None;
+        self.lifted_with = self.correction;
+        self.swing_secs = 0.0;
+        self.guard.jump(0.0);
+    }
+
+    /// Locks the foot to the ground where it is put, if there is any.
+    fn put<T: Terrain>(
+        &mut self,
+        scene: &mut Scene<'_, T>,
+        rocker: &RockerFoot,
+        animated: &Animated,
+    ) {
+        let planned = self.plan.map(|plan| plan.foothold);
+        let hold = planned.or_else(|| {
+            // Where the foot is now and not where the animation has it, so that it need not slide.
+            let mut flat = animated.flat;
+            flat.position += self.correction.shift * Vec3::new(1.0, 0.0, 1.0);
+            let world = scene.world_from_floor.child(&flat);
+            scene.search().find(scene.terrain, &world, rocker)
+        });
+        let Some(hold) = hold else {
+            if self.mode == Mode::Free {
+                self.let_go(Mode::Swinging);
+            }
+            return;
+        };
+        let Some(sole) = scene.sole(&hold) else {
+            return;
+        };
+        self.let_go(Mode::Locked);
+        self.hold = Some(hold);
+        self.locked_with = Correction::between(&animated.flat, &sole);
+    }
+
+    /// Where a locked foot stands; `None` when it can no longer, and swings.
+    fn stand<T: Terrain>(
+        &mut self,
+        scene: &mut Scene<'_, T>,
+        rocker: &RockerFoot,
+        animated: &Animated,
+    ) -> Option<FootTarget> {
+        let sole = self.hold.and_then(|hold| scene.sole(&hold));
+        let Some(sole) = sole else {
+            self.let_go(Mode::Swinging);
+            return None;
+        };
+        let correction = Correction::between(&animated.flat, &sole);
+        let drift = correction.shift - self.locked_with.shift;
+        let drift = Vec3::new(drift.x, 0.0, drift.z).length();
+        let twist = heading(correction.tilt) - heading(self.locked_with.tilt);
+        if drift > scene.config.max_drift_m || wrap_angle(twist).abs() > scene.config.max_twist {
+            self.let_go(Mode::Swinging);
+            self.replant_secs = REPLANT_SECS;
+            return None;
+        }
+        self.correction = correction;
+        self.sole = sole;
+        self.over_ground = true;
+        let plant = Plant {
+            flat_ankle: Vec3::Y * rocker.ankle_height(),
+            heading: 0.0,
+        };
+        let on_sole = rocker.stand_level(&plant, Quat::IDENTITY, animated.pitch);
+        Some(world_target(&sole, &on_sole))
+    }
+
+    /// In the air a foot is where the animation has it.
+    fn float<T: Terrain>(&mut self, scene: &Scene<'_, T>, animated: &Animated) -> FootTarget {
+        let share = 1.0 - (-scene.dt_secs / FOLLOW_SECS).exp();
+        self.correction = self.correction.toward(&Correction::NONE, share, share);
+        self.sole = animated.flat;
+        self.correction.apply(&animated.flat, &animated.foot)
+    }
+}
+
+fn world_target(frame: &Frame, target: &FootTarget) -> FootTarget {
+    FootTarget {
+        ankle: frame.point(target.ankle),
+        foot: (frame.rotation * target.foot).normalize(),
+        toes: (frame.rotation * target.toes).normalize(),
+    }
+}

@@ -1,0 +1,201 @@
+//! Where on the ground a sole can lie.
+
+use crate::placement::frame::Frame;
+use crate::placement::terrain::{Ground, SupportId, Terrain};
+use crate::rocker::RockerFoot;
+use glam::{Quat, Vec3};
+
+/// A flat sole is on the ground as long as none of its points is farther from it than this, metres.
+const FLAT_M: f32 = 0.008;
+
+/// What is looked at reaches so much beyond heel and toes: a sole whose very edge is over the edge of a step stands badly.
+const MARGIN_M: f32 = 0.005;
+
+/// Heel and toes keep so far from ground that is higher, where they can, metres: the foot comes from above.
+const CLEAR_M: f32 = 0.05;
+/// Ground that is higher by less is stepped over.
+const HIGHER_M: f32 = 0.03;
+
+/// A foot that would stand across an edge is put so much farther ahead or back, in the order of trial, metres.
+const SHIFTS_M: [f32; 17] = [
+    0.0, 0.02, -0.02, 0.04, -0.04, 0.06, -0.06, 0.08, -0.08, 0.1, -0.1, 0.12, -0.12, 0.14, -0.14,
+    0.16, -0.16,
+];
+
+/// A place for a sole, on something that may move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Foothold {
+    support: SupportId,
+    support_from_sole: Frame,
+}
+
+impl Foothold {
+    /// Where the sole is in the world now: the origin lies on the ground under the ankle of a flat foot, +Y is the ground's normal
+    /// and +Z points to the toes. `None` when what it stands on is gone.
+    pub(crate) fn world_from_sole(&self, terrain: &mut impl Terrain) -> Option<Frame> {
+        let support = terrain.support(self.support)?;
+        Some(support.child(&self.support_from_sole))
+    }
+
+    /// What it stands on.
+    pub(crate) fn support(&self) -> SupportId {
+        self.support
+    }
+
+    fn new(
+        world_from_sole: &Frame,
+        support: SupportId,
+        terrain: &mut impl Terrain,
+    ) -> Option<Self> {
+        Some(Self {
+            support,
+            support_from_sole: terrain.support(support)?.local(world_from_sole),
+        })
+    }
+}
+
+/// What a place costs: a metre of shift, and higher ground close by. A sole across an edge costs more than either.
+const SHIFT_COST: f32 = 1.0;
+const TIGHT_COST: f32 = 0.08;
+
+/// What limits a foothold.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Search {
+    /// The direction against gravity, of the world.
+    pub(crate) up: Vec3,
+    /// How far above the animation's floor ground is looked for, and how far below it, metres.
+    pub(crate) above_m: f32,
+    pub(crate) below_m: f32,
+    /// A sole is tilted by this much at most, radians.
+    pub(crate) max_tilt: f32,
+    /// Whether the sole may move ahead or back, out of the way of an edge.
+    pub(crate) may_shift: bool,
+}
+
+impl Search {
+    /// The ground above or below a point.
+    pub(crate) fn cast(&self, terrain: &mut impl Terrain, at: Vec3) -> Option<Ground> {
+        let way = self.up * (self.above_m + self.below_m);
+        terrain.cast(at + self.up * self.above_m, -way)
+    }
+
+    /// The best place for a sole that the animation puts at `world_from_flat`; `None` where there is no ground.
+    pub(crate) fn find(
+        &self,
+        terrain: &mut impl Terrain,
+        world_from_flat: &Frame,
+        foot: &RockerFoot,
+    ) -> Option<Foothold> {
+        let forward = world_from_flat.forward();
+        let shifts = if self.may_shift {
+            &SHIFTS_M[..]
+        } else {
+            &SHIFTS_M[..1]
+        };
+        let mut best: Option<(f32, Frame, SupportId)> = None;
+        for shift in shifts {
+            // No farther one is better.
+            if best.is_some_and(|(least, ..)| least <= SHIFT_COST * shift.abs()) {
+                break;
+            }
+            let flat = Frame {
+                position: world_from_flat.position + forward * *shift,
+                ..*world_from_flat
+            };
+            let Some((sole, support, gap)) = self.lay(terrain, &flat, foot) else {
+                continue;
+            };
+            let crossing = if gap > FLAT_M { 1.0 + gap } else { 0.0 };
+            let mut cost = SHIFT_COST * shift.abs() + crossing;
+            if crossing == 0.0 && self.is_tight(terrain, &sole, foot) {
+                cost += TIGHT_COST;
+            }
+            if best.is_none_or(|(least, ..)| cost < least) {
+                best = Some((cost, sole, support));
+            }
+        }
+        let (_, sole, support) = best?;
+        Foothold::new(&sole, support, terrain)
+    }
+
+    /// Whether higher ground stands close behind the heel or before the toes of a sole.
+    fn is_tight(&self, terrain: &mut impl Terrain, sole: &Frame, foot: &RockerFoot) -> bool {
+        let [heel, _, tip] = foot.sole_points();
+        [heel - Vec3::Z * CLEAR_M, tip + Vec3::Z * CLEAR_M]
+            .into_iter()
+            .any(|point| {
+                let ground = self.cast(terrain, sole.point(point));
+                ground.is_some_and(|ground| sole.local_point(ground.position).y > HIGHER_M)
+            })
+    }
+
+    /// A sole laid on the ground here, what it lies on, and how far from the ground its farthest point is.
+    fn lay(
+        &self,
+        terrain: &mut impl Terrain,
+        flat: &Frame,
+        foot: &RockerFoot,
+    ) -> Option<(Frame, SupportId, f32)> {
+        let [heel, ball, tip] = foot.sole_points();
+        let margin = Vec3::Z * MARGIN_M;
+        let [heel, ball, tip] =
+            [heel - margin, ball, tip + margin].map(|point| self.cast(terrain, flat.point(point)));
+        let ball = ball.or(heel).or(tip)?;
+        let across = ball.normal;
+        let along_ground = match (heel, tip) {
+            (Some(heel), Some(tip)) => (tip.position - heel.position).normalize_or(flat.forward()),
+            _ => flat.forward(),
+        };
+        let on_plane = |normal: Vec3| {
+            let normal = self.limited(normal);
+            let rotation = laid(normal, flat.forward());
+            // The plane goes through the highest point of the ground under the sole.
+            let rise = [heel, Some(ball), tip]
+                .into_iter()
+                .flatten()
+                .map(|ground| (ground.position - ball.position).dot(normal))
+                .fold(f32::NEG_INFINITY, f32::max);
+            let gap = [heel, Some(ball), tip]
+                .into_iter()
+                .map(|ground| {
+                    ground.map_or(self.above_m, |ground| {
+                        rise - (ground.position - ball.position).dot(normal)
+                    })
+                })
+                .fold(0.0, f32::max);
+            let on_plane = ball.position + normal * rise - flat.position;
+            let height = on_plane.dot(normal) / self.up.dot(normal);
+            let sole = Frame {
+                position: flat.position + self.up * height,
+                rotation,
+            };
+            (sole, ball.support, gap)
+        };
+        let by_normal = on_plane(across);
+        // Over a crest or through a dip the line from heel to toes lies better than the normal under the ball.
+        let by_line =
+            on_plane((across - along_ground * across.dot(along_ground)).normalize_or(across));
+        Some(if by_normal.2 <= by_line.2.max(FLAT_M) {
+            by_normal
+        } else {
+            by_line
+        })
+    }
+
+    /// A normal that is not tilted too far.
+    fn limited(&self, normal: Vec3) -> Vec3 {
+        let angle = self.up.angle_between(normal);
+        if angle <= self.max_tilt {
+            return normal;
+        }
+        let tilt = Quat::from_rotation_arc(self.up, normal);
+        Quat::IDENTITY.slerp(tilt, self.max_tilt / angle) * self.up
+    }
+}
+
+/// The axes of a sole on a plane with this normal, pointing as near to `forward` as the plane lets it.
+fn laid(normal: Vec3, forward: Vec3) -> Quat {
+    let along =
+        (forward - normal * normal.dot(forward)).normalize_or(normal.any_orthonormal_vector());
+    Quat::from_mat3(&glam::Mat3::from_cols(normal.cross(along), normal, along))
+}

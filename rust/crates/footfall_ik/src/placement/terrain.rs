@@ -1,0 +1,28 @@
+//! What feet can stand on.
+
+use crate::placement::frame::Frame;
+use glam::Vec3;
+
+/// Tells one thing to stand on from another. 0 is the world itself, which never moves.
+pub type SupportId = u64;
+
+/// A point of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// Where it is in the world, metres.
+    pub position: Vec3,
+    /// The unit normal of the ground there.
+    pub normal: Vec3,
+    /// What it belongs to.
+    pub support: SupportId,
+}
+
+/// The ground of a scene, however it is found: by casting rays, from a height map, from a formula.
+pub trait Terrain {
+    /// The first ground on the way from `from` along `way`, both of the world in metres; `None` when there is none. Ground in which
+    /// `from` itself lies is not met.
+    fn cast(&mut self, from: Vec3, way: Vec3) -> Option<Ground>;
+
+    /// Where a support is in the world now: `world_from_support`. `None` when it is gone.
+    fn support(&mut self, support: SupportId) -> Option<Frame>;
+}

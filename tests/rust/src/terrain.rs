@@ -1,0 +1,188 @@
+//! Ground from formulas, and a walker on it.
+
+use footfall_core::rotation::from_heading;
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_ik::placement::{
+    FootPlacer, Frame, Ground, Landing, PlacementConfig, PlacementInput, SupportId, Terrain,
+};
+use footfall_synth::{Controls, GaitGenerator};
+use glam::{Quat, Vec3};
+
+/// Ground whose height is a function of the place, on a support that may move.
+pub struct Relief {
+    /// Height at x and z of the support, metres.
+    pub height: fn(f32, f32) -> f32,
+    /// Where the support is in the world.
+    pub support: Frame,
+}
+
+impl Relief {
+    /// Ground that does not move.
+    pub fn still(height: fn(f32, f32) -> f32) -> Self {
+        Self {
+            height,
+            support: Frame::IDENTITY,
+        }
+    }
+
+    /// The ground above or below a place of the world.
+    pub fn at(&self, place: Vec3) -> Ground {
+        let local = self.support.local_point(place);
+        let height = |x: f32, z: f32| (self.height)(x, z);
+        let (x, z) = (local.x, local.z);
+        let step = 1e-3;
+        let slope = |dx: f32, dz: f32| {
+            let ahead = height(x + dx, z + dz) - height(x, z);
+            // An edge is not a slope: the ground before it is level.
+            if ahead.abs() > 5.0 * step {
+                0.0
+            } else {
+                ahead / step
+            }
+        };
+        let normal = Vec3::new(-slope(step, 0.0), 1.0, -slope(0.0, step)).normalize();
+        Ground {
+            position: self.support.point(Vec3::new(x, height(x, z), z)),
+            normal: self.support.rotation * normal,
+            support: 1,
+        }
+    }
+}
+
+impl Terrain for Relief {
+    fn cast(&mut self, from: Vec3, way: Vec3) -> Option<Ground> {
+        let ground = self.at(from);
+        let below = from.y - ground.position.y;
+        (below >= 0.0 && below <= -way.y).then_some(ground)
+    }
+
+    fn support(&mut self, _support: SupportId) -> Option<Frame> {
+        Some(self.support)
+    }
+}
+
+/// A generated walk on uneven ground; the character's origin follows the ground as a game's would.
+pub struct PlacedWalker {
+    /// The walk.
+    pub generator: GaitGenerator,
+    /// What puts it on the ground.
+    pub placer: FootPlacer,
+    /// The body that walks.
+    pub skeleton: Skeleton,
+    /// Where the character began: `world_from_start`.
+    pub world_from_start: Frame,
+    /// The animation's floor in the last frame.
+    pub world_from_floor: Frame,
+    /// The pose before it was placed, over the floor.
+    pub animated: Pose,
+    /// The pose after it was placed, over the floor.
+    pub pose: Pose,
+    /// Every joint in the world.
+    pub world: ModelPose,
+    height: f32,
+}
+
+impl PlacedWalker {
+    /// At the origin of the world.
+    pub fn new(generator: GaitGenerator, config: &PlacementConfig) -> Self {
+        let skeleton = Skeleton::standard();
+        Self {
+            generator,
+            placer: FootPlacer::new(&skeleton, config),
+            skeleton,
+            world_from_start: Frame::IDENTITY,
+            world_from_floor: Frame::IDENTITY,
+            animated: Pose::default(),
+            pose: Pose::default(),
+            world: ModelPose::default(),
+            height: f32::NAN,
+        }
+    }
+
+    /// Lets time pass. Without `told` the placer finds contacts by itself and knows no footholds.
+    pub fn step(&mut self, dt_secs: f32, controls: Controls, terrain: &mut Relief, told: bool) {
+        let ground = terrain.at(self.origin(dt_secs, controls).position);
+        self.place(dt_secs, terrain, told, ground.position.y);
+    }
+
+    /// As [`step`](Self::step), with the character's origin at this height.
+    pub fn step_at(
+        &mut self,
+        dt_secs: f32,
+        controls: Controls,
+        terrain: &mut Relief,
+        told: bool,
+        height: f32,
+    ) {
+        self.origin(dt_secs, controls);
+        self.place(dt_secs, terrain, told, height);
+    }
+
+    /// Where the character is after another frame of its walk, at the height where it began.
+    fn origin(&mut self, dt_secs: f32, controls: Controls) -> Frame {
+        self.generator.step(dt_secs, &controls, &mut self.animated);
+        let place = self.generator.start_from_character();
+        self.world_from_floor = self.world_from_start.child(&Frame {
+            position: place.position,
+            rotation: from_heading(place.heading),
+        });
+        self.world_from_floor
+    }
+
+    fn place(&mut self, dt_secs: f32, terrain: &mut Relief, told: bool, ground: f32) {
+        let mut floor = self.world_from_floor;
+        if self.height.is_nan() {
+            self.height = ground;
+        }
+        self.height += (ground - self.height) * (1.0 - (-dt_secs / 0.15).exp());
+        floor.position.y = self.height;
+        let mut landings = [None; 2];
+        if let Some((footstep, secs)) = self.generator.next_footstep().filter(|_| told) {
+            landings[footstep.side.index()] = Some(Landing {
+                flat: Frame {
+                    position: footstep.position,
+                    rotation: from_heading(footstep.heading),
+                },
+                secs,
+            });
+        }
+        let input = PlacementInput {
+            world_from_floor: floor,
+            contacts: told.then(|| self.generator.feet_in_contact()),
+            landings,
+            airborne: false,
+        };
+        self.pose = self.animated.clone();
+        self.placer.step(dt_secs, &input, terrain, &mut self.pose);
+        self.world_from_floor = floor;
+        forward_kinematics(&self.skeleton, &self.pose, &mut self.world);
+        for position in &mut self.world.positions {
+            *position = floor.point(*position);
+        }
+        for rotation in &mut self.world.rotations {
+            *rotation = floor.rotation * *rotation;
+        }
+    }
+
+    /// Heel, ball and toe tip of a foot in the world.
+    pub fn sole(&self, side: Side) -> [Vec3; 3] {
+        let shape = self.skeleton.foot(side);
+        [
+            self.world.point(side.foot(), shape.heel),
+            self.world.point(side.toes(), shape.ball),
+            self.world.point(side.toes(), shape.toe_tip),
+        ]
+    }
+
+    /// How far a knee is bent, radians.
+    pub fn knee(&self, side: Side) -> f32 {
+        self.pose
+            .rotation(side.lower_leg())
+            .angle_between(Quat::IDENTITY)
+    }
+
+    /// Where the hips are in the world.
+    pub fn hips(&self) -> Vec3 {
+        self.world.position(Joint::Hips)
+    }
+}
