@@ -21,15 +21,15 @@ use std::sync::Arc;
 const MAX_FOOTSTEPS: usize = 64;
 
 /// A single call advances by this much at most, seconds.
-const MAX_DT_SECS: f32 = 10.0;
+pub(crate) const MAX_DT_SECS: f32 = 10.0;
 
 /// Slower and turning less than this is standing.
 pub(crate) const STANDING_SPEED_MPS: f32 = 0.1;
 const STANDING_TURN_RATE_RADPS: f32 = 0.05;
 
 /// Fastest speed and turning that are walked.
-const MAX_SPEED_MPS: f32 = 3.0;
-const MAX_TURN_RATE_RADPS: f32 = 2.0;
+pub(crate) const MAX_SPEED_MPS: f32 = 3.0;
+pub(crate) const MAX_TURN_RATE_RADPS: f32 = 2.0;
 
 /// Closer than this share of a frame counts as on it: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;
@@ -362,7 +362,7 @@ impl GaitGenerator {
 }
 
 /// Checks what every walker needs, and tells the foot that lands first.
-fn check(skeleton: &Skeleton, config: &GeneratorConfig) -> Result<Side, SynthError> {
+pub(crate) fn check(skeleton: &Skeleton, config: &GeneratorConfig) -> Result<Side, SynthError> {
     skeleton.check()?;
     for (setting, value) in [("phase", config.phase), ("variation", config.variation)] {
         if !value.is_finite() {
@@ -373,6 +373,6 @@ fn check(skeleton: &Skeleton, config: &GeneratorConfig) -> Result<Side, SynthErr
     Ok(if phase < 0.5 { Side::Left } else { Side::Right })
 }
 
-fn finite_or(value: f32, otherwise: f32) -> f32 {
+pub(crate) fn finite_or(value: f32, otherwise: f32) -> f32 {
     if value.is_finite() { value } else { otherwise }
 }

@@ -5,6 +5,7 @@
 //! the ground (`stage` and `planting`, on `rocker` feet). [`GaitGenerator`] does so in real time; [`synthesize`] solves a whole walk
 //! at once.
 
+mod crowd;
 mod detail;
 mod error;
 mod generator;
@@ -27,6 +28,7 @@ mod walker;
 #[doc(hidden)]
 pub mod workload;
 
+pub use crowd::{CrowdWalker, JointPlace, StyledBody, Workshop};
 pub use detail::Detail;
 pub use error::SynthError;
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};

@@ -3,8 +3,10 @@
 use crate::detail::Detail;
 use crate::planting::StepTiming;
 use crate::standing::{Amplitude, START_TERMINAL};
+use core::ops::Range;
 use footfall_core::{Side, StepPosition};
 use footfall_model::{GaitModel, OBSERVATION_COUNT, STATES_PER_STEP, StepOffset};
+use multiversion::multiversion;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
@@ -12,6 +14,9 @@ use std::sync::Arc;
 
 /// Components of the variation that a step can hold; a model has no more.
 pub(crate) const MAX_COMPONENTS: usize = 16;
+
+/// Offsets that a step is the sum of: the speed's, the place's, the walker's and its own.
+const MAX_OFFSETS: usize = 2 + 2 * MAX_COMPONENTS;
 
 /// Weights of components stay within this many standard deviations, so that every walker is a plausible one.
 const MAX_WALKER_WEIGHT: f64 = 2.0;
@@ -140,18 +145,75 @@ impl StepPlan {
     }
 }
 
+/// A weighted sum of offsets that is never written down: what is wanted of it is summed when it is wanted.
+struct Offsets<'a> {
+    parts: [(&'a StepOffset, f64); MAX_OFFSETS],
+    len: usize,
+}
+
+impl<'a> Offsets<'a> {
+    /// A sum that begins with this offset.
+    fn of(offset: &'a StepOffset, weight: f64) -> Self {
+        Self {
+            parts: [(offset, weight); MAX_OFFSETS],
+            len: 1,
+        }
+    }
+
+    fn add(&mut self, offset: &'a StepOffset, weight: f64) {
+        self.parts[self.len] = (offset, weight);
+        self.len += 1;
+    }
+
+    fn parts(&self) -> &[(&'a StepOffset, f64)] {
+        &self.parts[..self.len]
+    }
+
+    /// Writes these means of a state with their offsets.
+    fn add_means(&self, base: &[f64], block: Range<usize>, means: &mut [f64]) {
+        let means = &mut means[block.clone()];
+        means.copy_from_slice(base);
+        // Four offsets at a time: each pass over the means costs as much as the sums themselves.
+        for parts in self.parts().chunks(4) {
+            let part = |index: usize| {
+                let (offset, weight) = parts.get(index).unwrap_or(&parts[0]);
+                let weight = if index < parts.len() { *weight } else { 0.0 };
+                (&offset.means[block.clone()], weight)
+            };
+            add_rows(means, [0, 1, 2, 3].map(part));
+        }
+    }
+
+    fn log_duration(&self, state: usize) -> f64 {
+        let of = |(offset, weight): &(&StepOffset, f64)| weight * offset.log_durations[state];
+        self.parts().iter().map(of).sum()
+    }
+
+    fn other_terminal(&self) -> f64 {
+        let of = |(offset, weight): &(&StepOffset, f64)| weight * offset.other_terminal;
+        self.parts().iter().map(of).sum()
+    }
+}
+
+/// Adds four weighted rows.
+#[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
+fn add_rows(sums: &mut [f64], rows: [(&[f64], f64); 4]) {
+    let [(a, wa), (b, wb), (c, wc), (d, wd)] = rows;
+    for (sum, (((a, b), c), d)) in sums.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
+        *sum += (wa * a + wb * b) + (wc * c + wd * d);
+    }
+}
+
 /// One walker: draws steps that vary as the corpus does.
 #[derive(Clone, Debug)]
 pub(crate) struct Planner {
     model: Arc<GaitModel>,
     rng: ChaCha8Rng,
     variation: f64,
-    /// How this walker differs from the average, left and right step.
-    walker: [StepOffset; 2],
+    /// How this walker differs from the average: weights of the model's walker components.
+    walker: [f64; MAX_COMPONENTS],
     /// The last step's weights, per side.
     weights: [[f64; MAX_COMPONENTS]; 2],
-    /// Room for the sum of all offsets.
-    offset: StepOffset,
 }
 
 impl Planner {
@@ -161,15 +223,11 @@ impl Planner {
             model: Arc::clone(model),
             rng: ChaCha8Rng::seed_from_u64(seed),
             variation,
-            walker: [StepOffset::zero(), StepOffset::zero()],
+            walker: [0.0; MAX_COMPONENTS],
             weights: [[0.0; MAX_COMPONENTS]; 2],
-            offset: StepOffset::zero(),
         };
-        for component in &model.variation.walker {
-            let weight = variation * planner.normal(MAX_WALKER_WEIGHT);
-            for (walker, offset) in planner.walker.iter_mut().zip(component) {
-                walker.add_scaled(offset, weight);
-            }
+        for component in 0..model.variation.walker.len().min(MAX_COMPONENTS) {
+            planner.walker[component] = planner.normal(MAX_WALKER_WEIGHT);
         }
         for side in 0..2 {
             for component in 0..MAX_COMPONENTS {
@@ -177,6 +235,23 @@ impl Planner {
             }
         }
         planner
+    }
+
+    /// Who this walker is: weights of the model's walker components.
+    pub(crate) fn walker(&self) -> &[f64; MAX_COMPONENTS] {
+        &self.walker
+    }
+
+    /// Is the walker that [`new`](Self::new) made of these, in another place of its walk: see [`resume`](Self::resume).
+    pub(crate) fn become_walker(
+        &mut self,
+        seed: u64,
+        variation: f64,
+        walker: [f64; MAX_COMPONENTS],
+    ) {
+        self.rng = ChaCha8Rng::seed_from_u64(seed);
+        self.variation = variation;
+        self.walker = walker;
     }
 
     /// Wears another mixture of styles from the next step that is worked out.
@@ -228,7 +303,18 @@ impl Planner {
     }
 
     /// Works out a drawn step.
-    pub(crate) fn realise(&mut self, draw: &StepDraw, manner: Manner, plan: &mut StepPlan) {
+    pub(crate) fn realise(&self, draw: &StepDraw, manner: Manner, plan: &mut StepPlan) {
+        self.realise_from(draw, manner, 0, plan);
+    }
+
+    /// Works out how a drawn step ends: its frames, but the means of the states from this one on only.
+    pub(crate) fn realise_from(
+        &self,
+        draw: &StepDraw,
+        manner: Manner,
+        from_state: usize,
+        plan: &mut StepPlan,
+    ) {
         let Manner {
             pace,
             position,
@@ -236,20 +322,20 @@ impl Planner {
         } = manner;
         let side = draw.side.index();
         let model = &self.model;
-        self.offset.means.copy_from_slice(&self.walker[side].means);
-        self.offset
-            .log_durations
-            .copy_from_slice(&self.walker[side].log_durations);
-        self.offset.other_terminal = self.walker[side].other_terminal;
         let deviation = pace.covariate_mps - model.speed.reference_mps;
-        self.offset.add_scaled(&model.speed.slopes[side], deviation);
+        let mut offsets = Offsets::of(&model.speed.slopes[side], deviation);
         if let Some(context) = model.context(position, draw.side) {
             // Who turns on the spot hardly sets out.
-            self.offset.add_scaled(context, pace.stride.min(1.0));
+            offsets.add(context, pace.stride.min(1.0));
         }
-        for (component, weight) in model.variation.step.iter().zip(draw.weights) {
-            self.offset
-                .add_scaled(&component[side], self.variation * weight);
+        let drawn = [
+            (&model.variation.walker, &self.walker),
+            (&model.variation.step, &draw.weights),
+        ];
+        for (components, weights) in drawn {
+            for (component, weight) in components.iter().zip(weights) {
+                offsets.add(&component[side], self.variation * weight);
+            }
         }
 
         let step = &model.steps[side];
@@ -257,13 +343,11 @@ impl Planner {
         let mut passed = 0;
         for (state, parameters) in step.states.iter().enumerate() {
             let block = state * OBSERVATION_COUNT..(state + 1) * OBSERVATION_COUNT;
-            let means = plan.means[block.clone()].iter_mut();
-            for ((mean, base), offset) in means.zip(&parameters.mean).zip(&self.offset.means[block])
-            {
-                *mean = base + offset;
+            if state >= from_state {
+                offsets.add_means(&parameters.mean, block, &mut plan.means);
             }
             let longest = MAX_STEP_SECS * model.frame_rate_hz / STATES_PER_STEP as f64;
-            let stretch = self.offset.log_durations[state].clamp(-1.5, 1.5).exp();
+            let stretch = offsets.log_duration(state).clamp(-1.5, 1.5).exp();
             let frames = parameters.duration_mean * stretch / pace.tempo;
             // Rounding the running sum keeps the step's duration true to half a frame.
             elapsed += frames.clamp(1.0, longest);
@@ -273,7 +357,7 @@ impl Planner {
         }
         let whole = detail.whole_frames(passed);
         plan.state_frames[STATES_PER_STEP - 1] += whole - passed;
-        let terminal = step.other_terminal + self.offset.other_terminal;
+        let terminal = step.other_terminal + offsets.other_terminal();
         plan.shape = StepShape::of_walk(draw.side, whole, terminal, pace.stride, detail);
     }
 

@@ -11,6 +11,7 @@ use crate::standing::Amplitude;
 use crate::steps::{Ask, StepSource};
 use crate::walker::{Request, Walker};
 use footfall_core::{Side, Skeleton, StepPosition};
+use footfall_model::GaitModel;
 use std::sync::Arc;
 
 /// A planner and a walker in a mixture of styles.
@@ -34,6 +35,66 @@ pub(crate) struct Worn {
     pub(crate) paces: PaceTable,
 }
 
+impl Worn {
+    /// What the next step has to be, which `side` begins, after one at this place in the walk. `speed_mps` is the walk's and
+    /// follows.
+    pub(crate) fn request(
+        &self,
+        ask: &Ask,
+        model: &GaitModel,
+        before: StepPosition,
+        side: Side,
+        speed_mps: &mut f32,
+    ) -> Request {
+        let amplitude = ask.amplitude;
+        let stops = amplitude.to < 1.0;
+        let position = position_after(before, amplitude);
+        if model.context(position, side).is_some() {
+            // The model knows how this step gets to the speed of the walk or away from it.
+            if !stops {
+                *speed_mps = ask.speed_mps;
+            }
+        } else {
+            *speed_mps = ask.speed_after(*speed_mps);
+        }
+        Request {
+            manner: Manner {
+                pace: self.paces.pace(f64::from(*speed_mps)),
+                position,
+                detail: ask.detail,
+            },
+            amplitude,
+            turn_rate: ask.turn_rate,
+            facing: self.paces.facing,
+        }
+    }
+
+    /// A walk under way at the speed that suits it.
+    pub(crate) fn first_request(&self, detail: Detail) -> Request {
+        Request {
+            manner: Manner {
+                detail,
+                ..Manner::inside(self.paces.pace(self.blend.model.speed.reference_mps))
+            },
+            amplitude: Amplitude::WALK,
+            turn_rate: 0.0,
+            facing: self.paces.facing,
+        }
+    }
+
+    /// Someone who stands.
+    pub(crate) fn standing_request(&self, detail: Detail) -> Request {
+        Request {
+            manner: Manner {
+                detail,
+                ..Manner::inside(self.paces.pace(f64::from(STANDING_SPEED_MPS)))
+            },
+            amplitude: Amplitude::STAND,
+            ..self.first_request(detail)
+        }
+    }
+}
+
 impl StyledSteps {
     /// Walking already, with the initial contact of the foot `first`.
     ///
@@ -52,19 +113,15 @@ impl StyledSteps {
         let paces = PaceTable::measure(&planner, skeleton, &blend)?;
         let mut walker = Walker::new(skeleton, &blend);
         let speed = blend.model.speed.reference_mps;
-        let request = Request {
-            manner: Manner::inside(paces.pace(speed)),
-            amplitude: Amplitude::WALK,
-            turn_rate: 0.0,
-            facing: paces.facing,
-        };
+        let worn = Worn { blend, paces };
+        let request = worn.first_request(Detail::Full);
         let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
-        walker.start(&mut planner, &blend, draws, request)?;
+        walker.start(&mut planner, &worn.blend, draws, request)?;
         Ok(Self {
             space: Arc::clone(space),
             planner,
             walker,
-            worn: Worn { blend, paces },
+            worn,
             retired: None,
             speed_mps: speed as f32,
         })
@@ -123,15 +180,7 @@ impl StepSource for StyledSteps {
 
     fn stand(&mut self, detail: Detail) -> bool {
         let first = self.walker.step().timing.leading;
-        let request = Request {
-            manner: Manner {
-                detail,
-                ..Manner::inside(self.worn.paces.pace(f64::from(STANDING_SPEED_MPS)))
-            },
-            amplitude: Amplitude::STAND,
-            turn_rate: 0.0,
-            facing: self.worn.paces.facing,
-        };
+        let request = self.worn.standing_request(detail);
         let draws = [first.other(), first, first.other()].map(|side| self.planner.draw(side));
         self.planner.wear(&self.worn.blend.model);
         let (planner, blend) = (&mut self.planner, &self.worn.blend);
@@ -144,28 +193,12 @@ impl StepSource for StyledSteps {
     }
 
     fn advance(&mut self, ask: &Ask) {
-        let amplitude = ask.amplitude;
-        let stops = amplitude.to < 1.0;
-        let position = position_after(self.walker.origin().request.manner.position, amplitude);
+        let before = self.walker.origin().request.manner.position;
         let side = self.walker.step().timing.leading.other();
-        if self.space.model().context(position, side).is_some() {
-            // The model knows how this step gets to the speed of the walk or away from it.
-            if !stops {
-                self.speed_mps = ask.speed_mps;
-            }
-        } else {
-            self.speed_mps = ask.speed_after(self.speed_mps);
-        }
-        let request = Request {
-            manner: Manner {
-                pace: self.worn.paces.pace(f64::from(self.speed_mps)),
-                position,
-                detail: ask.detail,
-            },
-            amplitude,
-            turn_rate: ask.turn_rate,
-            facing: self.worn.paces.facing,
-        };
+        let model = self.space.model();
+        let request = self
+            .worn
+            .request(ask, model, before, side, &mut self.speed_mps);
         let draw = self.planner.draw(self.walker.step().timing.leading);
         self.planner.wear(&self.worn.blend.model);
         self.walker

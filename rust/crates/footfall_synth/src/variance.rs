@@ -80,7 +80,7 @@ fn plain_variance(
 
 /// The average walk without chance.
 fn sample_walk(model: &Arc<GaitModel>) -> Vec<StepPlan> {
-    let mut planner = Planner::new(model, 0, 0.0);
+    let planner = Planner::new(model, 0, 0.0);
     let pace = Pace {
         covariate_mps: model.speed.reference_mps,
         tempo: 1.0,

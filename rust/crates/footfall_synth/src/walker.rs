@@ -8,7 +8,7 @@ use crate::stage::{Placing, Stage};
 use crate::standing::Amplitude;
 use crate::trajectory::TrajectorySolver;
 use footfall_core::{Side, Skeleton, StepPosition};
-use footfall_model::FEATURE_COUNT;
+use footfall_model::{FEATURE_COUNT, STATES_PER_STEP};
 use std::sync::Arc;
 
 /// Steps in a window: the one before, the one to be put on the ground, and one ahead, which shapes its end. What lies
@@ -17,6 +17,9 @@ pub(crate) const WINDOW: usize = 3;
 
 /// Frames that tie a window to the one before: the longest dynamic window couples no more.
 const TIE: usize = 4;
+
+/// The state of a step in which its last frames are at the earliest: each lasts a frame at least.
+const TIE_FROM_STATE: usize = STATES_PER_STEP - TIE;
 
 /// Numbers that tie a window to the one before.
 pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;
@@ -139,30 +142,37 @@ impl Walker {
         draw: StepDraw,
         request: Request,
     ) {
-        let frames = self.plans[1].shape.timing.frames;
-        let tie_at = (self.current + frames + 1 - TIE) * FEATURE_COUNT;
-        self.origin
-            .tie
-            .copy_from_slice(&self.trajectory[tie_at..][..TIE_LEN]);
-        self.origin.manner_before = self.origin.request.manner;
-        self.origin.facing_before = self.origin.request.facing;
-        self.draws.rotate_left(1);
-        self.plans.rotate_left(1);
-        self.draws[WINDOW - 1] = draw;
         // A new pace or style is taken up by every step ahead: what is asked now takes effect at once.
         let same = !self.stale
             && self.origin.request.manner == request.manner
             && request.manner.position == StepPosition::Inside
             && Arc::ptr_eq(&self.blend, blend);
+        self.origin = self.next_origin(request);
+        self.draws.rotate_left(1);
+        self.plans.rotate_left(1);
+        self.draws[WINDOW - 1] = draw;
         self.blend_before = core::mem::replace(&mut self.blend, Arc::clone(blend));
-        self.origin.request = request;
-        self.origin.planter = self.stage.planter_state();
         self.stale = false;
         self.realise(planner, if same { WINDOW - 1 } else { 1 });
         self.solve_tied();
     }
 
-    /// Makes a step again from where it came from.
+    /// Where the step after the current one will come from when it is asked to be this.
+    pub(crate) fn next_origin(&self, request: Request) -> Origin {
+        let frames = self.plans[1].shape.timing.frames;
+        let tie_at = (self.current + frames + 1 - TIE) * FEATURE_COUNT;
+        let mut tie = [0.0; TIE_LEN];
+        tie.copy_from_slice(&self.trajectory[tie_at..][..TIE_LEN]);
+        Origin {
+            request,
+            manner_before: self.origin.request.manner,
+            facing_before: self.origin.request.facing,
+            planter: self.stage.planter_state(),
+            tie,
+        }
+    }
+
+    /// Makes a step from where it comes from.
     ///
     /// # Errors
     /// [`SynthError::Inference`] when the model gives no trajectory.
@@ -179,7 +189,9 @@ impl Walker {
         };
         self.draws = draws;
         planner.wear(&blend_before.model);
-        planner.realise(&self.draws[0], origin.manner_before, &mut self.plans[0]);
+        // Of the step before only the last frames count.
+        let plan = &mut self.plans[0];
+        planner.realise_from(&self.draws[0], origin.manner_before, TIE_FROM_STATE, plan);
         planner.wear(&blend.model);
         self.blend_before = Arc::clone(blend_before);
         self.blend = Arc::clone(blend);
