@@ -8,16 +8,24 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// Complaints that fail a run wherever they stand. Godot's own exit code says nothing of them.
-const FATAL: [&str; 6] = [
+const FATAL: [&str; 7] = [
     "SCRIPT ERROR",
     "Can't open dynamic library",
     "GDExtension library not found",
     "panicked at",
     "Parse Error",
     "Failed to load script",
+    "SHADER ERROR",
 ];
 /// Errors fail a run when they name something of ours.
-const OURS: [&str; 4] = ["GaitModel", "GaitGenerator3D", "ootfall", "res://"];
+const OURS: [&str; 6] = [
+    "GaitModel",
+    "GaitGenerator3D",
+    "GaitCrowd3D",
+    "FootPlacement3D",
+    "ootfall",
+    "res://",
+];
 /// Tests of bad input print these around errors that they provoke.
 const EXPECTED_FROM: &str = "expected errors: begin";
 const EXPECTED_TO: &str = "expected errors: end";

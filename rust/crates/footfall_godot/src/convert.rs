@@ -64,3 +64,8 @@ pub(crate) fn frame(transform: Transform3D) -> Frame {
 pub(crate) fn frame_transform(frame: &Frame) -> Transform3D {
     transform(frame.rotation, frame.position)
 }
+
+/// A count as the engine counts.
+pub(crate) fn count(count: usize) -> i32 {
+    i32::try_from(count).unwrap_or(i32::MAX)
+}

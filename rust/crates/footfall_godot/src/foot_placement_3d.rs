@@ -9,7 +9,7 @@ use crate::physics_ground::{PhysicsGround, own_bodies};
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::{Pose, Side};
 use footfall_ik::placement::{
-    ContactThresholds, FootPlacer, Frame, PlacementConfig, PlacementInput,
+    ContactThresholds, FootPlacer, Frame, Landing, PlacementConfig, PlacementInput,
 };
 use glam::Affine3A;
 use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
@@ -117,6 +117,8 @@ pub(crate) struct FootPlacement3D {
     /// What is bound to the skeleton; `None` until the next frame that can.
     session: Option<Session>,
     reported: Option<String>,
+    /// Contacts and landings that somebody told for this frame.
+    fed: Option<([bool; 2], [Option<Landing>; 2])>,
     marks: Marks,
     base: Base<SkeletonModifier3D>,
 }
@@ -257,7 +259,13 @@ impl FootPlacement3D {
 }
 
 impl FootPlacement3D {
-    fn forget(&mut self) {
+    /// Is told of contacts and landings for the next frame by who poses the skeleton.
+    pub(crate) fn feed(&mut self, contacts: [bool; 2], landings: [Option<Landing>; 2]) {
+        self.fed = Some((contacts, landings));
+    }
+
+    /// Begins anew with the next frame.
+    pub(crate) fn forget(&mut self) {
         self.session = None;
         self.reported = None;
     }
@@ -396,6 +404,10 @@ impl FootPlacement3D {
                 1.0
             };
             generator.slow_down(slowed);
+        }
+        if let Some((contacts, landings)) = self.fed.take() {
+            input.contacts = Some(contacts);
+            input.landings = landings;
         }
         session.placer.set_config(&self.config());
         session.binding.read_legs(&skeleton, &mut session.pose);

@@ -1,7 +1,7 @@
 //! The Godot nodes: the only crate that names `godot`.
 //!
 //! `gait_model` is the resource that holds a trained walk, `gait_style` one that holds a style of it, `gait_generator_3d` the
-//! node that walks a character with them, `foot_placement_3d` the one that puts feet on uneven ground; `loaded` is what a resource made of a file.
+//! node that walks a character with them, `foot_placement_3d` the one that puts feet on uneven ground, `gait_crowd_3d` the one that walks thousands; `loaded` is what a resource made of a file.
 //! Between the engine and the runtime stand `rest_body` (proportions of any character from its rest pose),
 //! `skeleton_binding` (joints to bones and back), `character` (which node travels), `physics_ground` (what feet stand on) and `convert` (vectors).
 //!
@@ -22,6 +22,7 @@ mod convert;
 #[cfg(feature = "editor")]
 mod editor_plugin;
 mod foot_placement_3d;
+mod gait_crowd_3d;
 mod gait_generator_3d;
 mod gait_model;
 mod gait_style;

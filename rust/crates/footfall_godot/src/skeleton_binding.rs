@@ -3,6 +3,7 @@
 use crate::convert;
 use crate::rest_body::{RestBody, RestJoints, is_optional};
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_synth::CrowdPose;
 use glam::{Affine3A, Quat, Vec3};
 use godot::classes::{BoneMap, Skeleton3D};
 use godot::prelude::*;
@@ -69,6 +70,8 @@ struct BindingKey {
 #[derive(Debug)]
 struct BoundBone {
     bone: i32,
+    /// The joint that it is.
+    joint: Joint,
     /// The joint whose rotation it takes.
     turned_by: Joint,
     /// Its rotation in the T-pose, in the axes of the ground.
@@ -177,6 +180,52 @@ impl SkeletonBinding {
         self.write_where(skeleton, pose, |_| true);
     }
 
+    /// Writes a pose of which every joint is known on the ground.
+    pub(crate) fn write_joints(&mut self, skeleton: &mut Gd<Skeleton3D>, pose: &CrowdPose) {
+        for joint in Joint::ALL {
+            self.model_pose.rotations[joint.index()] = pose.rotation(joint);
+            self.model_pose.positions[joint.index()] = pose.position(joint);
+        }
+        self.write_model(skeleton, |_| true);
+    }
+
+    /// The joint whose rotation the bone of each joint takes.
+    pub(crate) fn turned_by(&self) -> [Joint; JOINT_COUNT] {
+        let mut turned_by = Joint::ALL;
+        for bound in &self.bones {
+            turned_by[bound.joint.index()] = bound.turned_by;
+        }
+        turned_by
+    }
+
+    /// For every bone of the skeleton the joint that it moves with, and how its rest pose becomes the T-pose: from the skeleton's
+    /// space to the ground. Bones above the hips move with them.
+    pub(crate) fn t_pose_of_bones(&self, skeleton: &Gd<Skeleton3D>) -> Vec<(Joint, Affine3A)> {
+        let mut t_pose = ModelPose::default();
+        forward_kinematics(&self.body, &Pose::rest(&self.body), &mut t_pose);
+        let of_bound = |bound: &BoundBone| {
+            let rest = convert::affine(skeleton.get_bone_global_rest(bound.bone));
+            let rest = self.ground_from_skeleton * rest;
+            let turn = bound.ground_from_bone * convert::rotation(&rest).conjugate();
+            let from_rest = Affine3A::from_rotation_translation(turn, t_pose.position(bound.joint))
+                * Affine3A::from_translation(-Vec3::from(rest.translation));
+            (bound.joint, from_rest * self.ground_from_skeleton)
+        };
+        let hips = self.bones.first().map(of_bound);
+        (0..skeleton.get_bone_count())
+            .filter_map(|bone| {
+                let mut above = bone;
+                while above >= 0 {
+                    if let Some(bound) = self.bones.iter().find(|bound| bound.bone == above) {
+                        return Some(of_bound(bound));
+                    }
+                    above = skeleton.get_bone_parent(above);
+                }
+                hips
+            })
+            .collect()
+    }
+
     /// From the ground to the bone above the hips' bone.
     fn above_hips(&self, skeleton: &Gd<Skeleton3D>, links: &[i32]) -> Affine3A {
         links.iter().fold(self.ground_from_skeleton, |above, link| {
@@ -191,6 +240,10 @@ impl SkeletonBinding {
         wanted: impl Fn(Joint) -> bool,
     ) {
         forward_kinematics(&self.body, pose, &mut self.model_pose);
+        self.write_model(skeleton, wanted);
+    }
+
+    fn write_model(&self, skeleton: &mut Gd<Skeleton3D>, wanted: impl Fn(Joint) -> bool) {
         let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
         for (index, bound) in self.bones.iter().enumerate() {
             if !wanted(bound.turned_by) {
@@ -320,6 +373,7 @@ fn bound_bones(
         }
         bound.push(BoundBone {
             bone,
+            joint,
             turned_by: rest.turned_by[joint.index()],
             ground_from_bone: rest.t_pose_from_rest[joint.index()] * ground_from_resting(bone),
             parent: bound

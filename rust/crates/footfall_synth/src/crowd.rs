@@ -22,16 +22,19 @@ use crate::walker::{Origin, WINDOW, Walker};
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{ModelPose, Pose, Skeleton};
 use footfall_ik::RockerFoot;
-use frames::CrowdFrame;
-pub use frames::JointPlace;
+use frames::CrowdFrames;
+pub use frames::CrowdPose;
 use std::sync::Arc;
 
 /// A mixture of styles on a body, measured once for all walkers of a crowd that share it.
 #[derive(Clone, Debug)]
-pub struct StyledBody {
+pub struct StyledBody(Arc<Styled>);
+
+#[derive(Debug)]
+struct Styled {
     space: Arc<StyleSpace>,
     skeleton: Skeleton,
-    worn: Arc<Worn>,
+    worn: Worn,
 }
 
 impl StyledBody {
@@ -49,26 +52,26 @@ impl StyledBody {
         let blend = space.blend(style_weights);
         let average = Planner::new(&blend.model, 0, 0.0);
         let paces = PaceTable::measure(&average, skeleton, &blend)?;
-        Ok(Self {
+        Ok(Self(Arc::new(Styled {
             space: Arc::clone(space),
             skeleton: skeleton.clone(),
-            worn: Arc::new(Worn { blend, paces }),
-        })
+            worn: Worn { blend, paces },
+        })))
     }
 
     /// The body.
     pub fn skeleton(&self) -> &Skeleton {
-        &self.skeleton
+        &self.0.skeleton
     }
 
     /// The weights of the styles, as they are used.
     pub fn style_weights(&self) -> &[f32] {
-        &self.worn.blend.weights
+        &self.0.worn.blend.weights
     }
 
     /// The speed that suits it best, m/s.
     pub fn usual_speed_mps(&self) -> f32 {
-        self.worn.blend.model.speed.reference_mps as f32
+        self.0.worn.blend.model.speed.reference_mps as f32
     }
 }
 
@@ -84,14 +87,29 @@ pub struct Workshop {
 impl Workshop {
     /// For walkers like this one.
     pub fn new(styled: &StyledBody) -> Self {
-        let blend = &styled.worn.blend;
+        let blend = &styled.0.worn.blend;
         Self {
             planner: Planner::new(&blend.model, 0, 0.0),
-            walker: Walker::new(&styled.skeleton, blend),
+            walker: Walker::new(&styled.0.skeleton, blend),
             pose: Pose::default(),
             model_pose: ModelPose::default(),
         }
     }
+}
+
+/// Where a step that is walked again goes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Base {
+    place: GroundTransform,
+    /// How far it turns from its first frame to its last, radians, about the middle of the step.
+    turn: f32,
+}
+
+/// A step that can be walked again.
+#[derive(Debug)]
+struct Before {
+    frames: CrowdFrames,
+    shape: StepShape,
 }
 
 /// One walker of a crowd: walks as a [`GaitGenerator`](crate::GaitGenerator) of its seed would, in a hundredth of the memory.
@@ -107,9 +125,9 @@ pub struct CrowdWalker {
     /// Who it is: weights of the model's walker components.
     walker: [f64; MAX_COMPONENTS],
     chance_position: u64,
-    draws: [StepDraw; WINDOW],
-    /// Where the next step comes from, all but its request.
-    next: Origin,
+    draws: Box<[StepDraw; WINDOW]>,
+    /// Where the next step comes from, all but its request. Boxed like the draws: most frames need neither.
+    next: Box<Origin>,
     shape: StepShape,
     /// Headings under which the walk goes along +Z, before the current step and after it.
     facing: [f32; 2],
@@ -117,7 +135,16 @@ pub struct CrowdWalker {
     detail: Detail,
     /// Frames since the step began.
     position: f32,
-    frames: Vec<CrowdFrame>,
+    frame_rate_hz: f32,
+    frames: CrowdFrames,
+    /// Where the frames' plan is in the walker's.
+    base: Base,
+    /// The step before, to be walked again.
+    before: Option<Before>,
+    /// Whether steps are repeated instead of worked out.
+    repeating: bool,
+    /// Whether an odd number of steps was repeated, so that the step before the last one worked out is walked.
+    odd: bool,
     plan_from_start: GroundTransform,
     start_from_character: GroundTransform,
     footstep: Option<Footstep>,
@@ -134,8 +161,8 @@ impl CrowdWalker {
         standing: bool,
         workshop: &mut Workshop,
     ) -> Result<Self, SynthError> {
-        let first = check(&styled.skeleton, config)?;
-        let worn = &styled.worn;
+        let first = check(&styled.0.skeleton, config)?;
+        let worn = &styled.0.worn;
         let Workshop {
             planner, walker, ..
         } = &mut *workshop;
@@ -154,8 +181,8 @@ impl CrowdWalker {
             blend: Arc::clone(&worn.blend),
             walker: *planner.walker(),
             chance_position: 0,
-            draws: walker.draws().clone(),
-            next: walker.next_origin(request),
+            draws: Box::new(walker.draws().clone()),
+            next: Box::new(walker.next_origin(request)),
             shape,
             facing: [worn.paces.facing; 2],
             speed_mps: if standing {
@@ -165,7 +192,12 @@ impl CrowdWalker {
             },
             detail: Detail::Full,
             position: 0.0,
-            frames: Vec::with_capacity(shape.timing.frames + shape.timing.frames / 2),
+            frame_rate_hz: styled.0.space.model().frame_rate_hz as f32,
+            frames: CrowdFrames::default(),
+            base: Base::default(),
+            before: None,
+            repeating: false,
+            odd: false,
             plan_from_start: GroundTransform::default(),
             start_from_character: GroundTransform::default(),
             footstep: None,
@@ -191,10 +223,16 @@ impl CrowdWalker {
         self.detail = detail;
     }
 
+    /// Whether its last two steps are walked again and again instead of new ones being worked out, for walkers far away: it
+    /// turns, but its speed stays. Those who start, stop or stand are not affected.
+    pub fn set_repeating(&mut self, repeating: bool) {
+        self.repeating = repeating;
+    }
+
     /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before.
     pub fn step(&mut self, dt_secs: f32, controls: Controls, workshop: &mut Workshop) {
         self.footstep = None;
-        let rate = self.styled.space.model().frame_rate_hz as f32;
+        let rate = self.frame_rate_hz;
         if dt_secs > 0.0 {
             self.position += dt_secs.min(MAX_DT_SECS) * rate;
         }
@@ -205,7 +243,9 @@ impl CrowdWalker {
                 break;
             }
             self.position -= frames;
-            self.next_step(controls, workshop);
+            if !self.repeat_step(controls) {
+                self.next_step(controls, workshop);
+            }
         }
         self.start_from_character = self.to_start(&self.plan_from_character());
     }
@@ -220,16 +260,36 @@ impl CrowdWalker {
         self.footstep.as_ref()
     }
 
+    /// Where the foot on its way will land, in the character's space as it is now, and the seconds until then. `None` for someone
+    /// who rests or repeats steps.
+    pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
+        if self.is_standing() || self.odd || self.repeating {
+            return None;
+        }
+        let timing = &self.shape.timing;
+        let side = timing.leading.other();
+        let plant = self.next.planter.as_ref()?.plants[side.index()];
+        let from = self.plan_from_character();
+        let footstep = Footstep {
+            side,
+            position: from_heading(-from.heading) * (RockerFoot::footprint(&plant) - from.position),
+            heading: wrap_angle(plant.heading - from.heading),
+        };
+        let rate = self.frame_rate_hz;
+        let secs = (timing.frames as f32 - self.position) / rate;
+        Some((footstep, secs.max(0.0)))
+    }
+
     /// Whether the left and the right foot bear on the ground.
     pub fn feet_in_contact(&self) -> [bool; 2] {
-        let (frame, next, weight) = self.around();
-        core::array::from_fn(|side| {
-            if weight < 0.5 {
-                frame.contact[side]
-            } else {
-                next.contact[side]
-            }
-        })
+        let (frame, weight) = self.frame_at(self.position);
+        self.frames.places[frame + usize::from(weight >= 0.5)].contact
+    }
+
+    /// Seconds until the next step begins, 0 for someone who rests.
+    pub fn secs_to_next_step(&self) -> f32 {
+        let rate = self.frame_rate_hz;
+        (self.shape.timing.frames as f32 - self.position).max(0.0) / rate
     }
 
     /// Whether it has come to a stand and rests.
@@ -244,14 +304,40 @@ impl CrowdWalker {
         (0.5 * (half + share)).fract()
     }
 
-    /// Writes where every joint is, in the character's own space, in the order of [`Joint::ALL`](footfall_core::Joint::ALL).
-    pub fn pose(&self, out: &mut [JointPlace; footfall_core::JOINT_COUNT]) {
-        let (frame, next, weight) = self.around();
-        frame.blend(next, weight, out);
+    /// Writes how it is posed in its own space.
+    pub fn pose(&self, out: &mut CrowdPose) {
+        let (frame, weight) = self.frame_at(self.position);
+        self.frames.blend(frame, weight, out);
+    }
+
+    /// Walks the step before the current one again, if that is wanted and can be.
+    fn repeat_step(&mut self, controls: Controls) -> bool {
+        let wanted = self.odd || (self.repeating && !controls.is_standing());
+        let walks = self.shape.amplitude == Amplitude::WALK;
+        let end = self.end();
+        let Some(before) = self
+            .before
+            .as_mut()
+            .filter(|before| wanted && walks && before.shape.amplitude == Amplitude::WALK)
+        else {
+            return false;
+        };
+        core::mem::swap(&mut before.frames, &mut self.frames);
+        core::mem::swap(&mut before.shape, &mut self.shape);
+        self.odd = !self.odd;
+        let secs = self.shape.timing.frames as f32 / self.frame_rate_hz;
+        let rate = finite_or(controls.turn_rate_radps, 0.0);
+        let turn = rate.clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS) * secs;
+        let first = self.frames.places.first();
+        let first = first.map(|first| first.place).unwrap_or_default();
+        self.base = Base::starting(&end, &first, turn);
+        true
     }
 
     fn next_step(&mut self, controls: Controls, workshop: &mut Workshop) {
-        let worn = Arc::clone(&self.styled.worn);
+        let end = self.end();
+        let styled = Arc::clone(&self.styled.0);
+        let worn = &styled.worn;
         let ask = Ask {
             speed_mps: finite_or(controls.speed_mps, 0.0).clamp(0.0, MAX_SPEED_MPS),
             turn_rate: finite_or(controls.turn_rate_radps, 0.0)
@@ -264,18 +350,22 @@ impl CrowdWalker {
         };
         let leading = self.shape.timing.leading;
         let before = self.next.request.manner.position;
-        let model = self.styled.space.model();
+        let model = styled.space.model();
         let request = worn.request(&ask, model, before, leading.other(), &mut self.speed_mps);
-        let origin = Origin {
+        let mut origin = Origin {
             request,
-            ..self.next.clone()
+            ..(*self.next).clone()
         };
+        if let (Some(feet), Some(last)) = (&origin.planter, self.frames.places.last()) {
+            // Where repeated steps have brought it.
+            origin.planter = Some(feet.moved(&last.place, &end));
+        }
         let Workshop {
             planner, walker, ..
         } = &mut *workshop;
         planner.become_walker(self.config.seed, variation(&self.config), self.walker);
-        planner.resume(self.chance_position, &self.draws);
-        let mut draws = self.draws.clone();
+        planner.resume(self.chance_position, &*self.draws);
+        let mut draws = (*self.draws).clone();
         draws.rotate_left(1);
         draws[WINDOW - 1] = planner.draw(leading);
         let blends = [&self.blend, &worn.blend];
@@ -283,10 +373,18 @@ impl CrowdWalker {
         if walker.restore(planner, blends, draws, origin).is_err() {
             return;
         }
+        let done = core::mem::take(&mut self.frames);
+        let before = self.before.take();
+        self.frames = before.map_or_else(CrowdFrames::default, |before| before.frames);
+        self.before = Some(Before {
+            frames: done,
+            shape: self.shape,
+        });
+        self.base = Base::default();
         self.facing = [self.next.facing_before, request.facing];
         self.blend = Arc::clone(&worn.blend);
-        self.draws = walker.draws().clone();
-        self.next = walker.next_origin(request);
+        (*self.draws).clone_from(walker.draws());
+        *self.next = walker.next_origin(request);
         self.shape = *walker.step();
         self.take_over(workshop);
         let side = self.shape.timing.leading;
@@ -313,31 +411,38 @@ impl CrowdWalker {
         self.chance_position = workshop.planner.chance_position();
         let timing = self.shape.ground_timing();
         let stage = &workshop.walker.stage().frames[..=timing.frames];
-        self.frames.resize_with(stage.len(), CrowdFrame::default);
         let [before, now] = self.facing;
-        for (index, (kept, frame)) in self.frames.iter_mut().zip(stage).enumerate() {
-            let share = index as f32 / timing.frames as f32;
-            let facing = before + footfall_core::ease::smooth_step(share) * (now - before);
-            let (pose, model_pose) = (&mut workshop.pose, &mut workshop.model_pose);
-            kept.set(frame, facing, &self.styled.skeleton, pose, model_pose);
-        }
+        let facing = |share| before + footfall_core::ease::smooth_step(share) * (now - before);
+        let (pose, model_pose) = (&mut workshop.pose, &mut workshop.model_pose);
+        self.frames
+            .set(stage, facing, &self.styled.0.skeleton, pose, model_pose);
     }
 
-    /// The frames on both sides of now, and the weight of the later one.
-    fn around(&self) -> (&CrowdFrame, &CrowdFrame, f32) {
-        let last = self.frames.len() - 2;
-        let position = self.position / self.shape.detail.stride() as f32;
-        let first = (position.floor() as usize).min(last);
-        let weight = position - first as f32;
-        (&self.frames[first], &self.frames[first + 1], weight)
+    /// The frame before a time of the step, and the weight of the one after it.
+    fn frame_at(&self, position: f32) -> (usize, f32) {
+        let position = position / self.shape.detail.stride() as f32;
+        let frame = (position.floor() as usize).min(self.frames.len() - 2);
+        (frame, position - frame as f32)
     }
 
     fn plan_from_character(&self) -> GroundTransform {
-        let (frame, next, weight) = self.around();
-        GroundTransform {
-            position: frame.place.position.lerp(next.place.position, weight),
-            heading: frame.place.heading + weight * (next.place.heading - frame.place.heading),
-        }
+        let (frame, weight) = self.frame_at(self.position);
+        let share = (self.position / self.shape.timing.frames as f32).min(1.0);
+        let [from, to] = [frame, frame + 1].map(|frame| self.frames.places[frame].place);
+        self.base.at(
+            &GroundTransform {
+                position: from.position.lerp(to.position, weight),
+                heading: from.heading + weight * (to.heading - from.heading),
+            },
+            share,
+        )
+    }
+
+    /// Where the current step ends.
+    fn end(&self) -> GroundTransform {
+        let last = self.frames.places.last();
+        self.base
+            .at(&last.map(|last| last.place).unwrap_or_default(), 1.0)
     }
 
     fn to_start(&self, plan: &GroundTransform) -> GroundTransform {
@@ -345,6 +450,29 @@ impl CrowdWalker {
         GroundTransform {
             position: start_from_plan * (plan.position - self.plan_from_start.position),
             heading: wrap_angle(plan.heading - self.plan_from_start.heading),
+        }
+    }
+}
+
+impl Base {
+    /// The base under which a step whose first frame this is starts at `start` and turns by `turn`.
+    fn starting(start: &GroundTransform, first: &GroundTransform, turn: f32) -> Self {
+        // On the whole it goes in the direction that it has in the middle of its turn.
+        let heading = start.heading - first.heading + 0.5 * turn;
+        Self {
+            place: GroundTransform {
+                position: start.position - from_heading(heading) * first.position,
+                heading,
+            },
+            turn,
+        }
+    }
+
+    /// Where a frame of the step is, of which this share is over.
+    fn at(&self, place: &GroundTransform, share: f32) -> GroundTransform {
+        GroundTransform {
+            position: self.place.position + from_heading(self.place.heading) * place.position,
+            heading: self.place.heading + place.heading + self.turn * (share - 0.5),
         }
     }
 }

@@ -28,7 +28,7 @@ mod walker;
 #[doc(hidden)]
 pub mod workload;
 
-pub use crowd::{CrowdWalker, JointPlace, StyledBody, Workshop};
+pub use crowd::{CrowdPose, CrowdWalker, StyledBody, Workshop};
 pub use detail::Detail;
 pub use error::SynthError;
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};

@@ -8,6 +8,7 @@
 mod support;
 mod swing;
 
+use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
 use footfall_core::ease::{hermite, smooth_step};
 use footfall_core::rotation::from_heading;
@@ -81,6 +82,27 @@ pub(crate) struct PlanterState {
     pub(crate) turn_rate: f32,
     pub(crate) ground_position: Vec3,
     pub(crate) ground_velocity: Option<Vec3>,
+}
+
+impl PlanterState {
+    /// The same feet and hips for a walker who is at `to` instead of at `from`.
+    pub(crate) fn moved(&self, from: &GroundTransform, to: &GroundTransform) -> Self {
+        let turn = to.heading - from.heading;
+        let rotation = from_heading(turn);
+        let point = |point: Vec3| to.position + rotation * (point - from.position);
+        Self {
+            plants: self.plants.map(|plant| Plant {
+                flat_ankle: point(plant.flat_ankle),
+                heading: plant.heading + turn,
+            }),
+            hips: point(self.hips),
+            hips_velocity: self.hips_velocity.map(|velocity| rotation * velocity),
+            heading: self.heading + turn,
+            turn_rate: self.turn_rate,
+            ground_position: point(self.ground_position),
+            ground_velocity: self.ground_velocity.map(|velocity| rotation * velocity),
+        }
+    }
 }
 
 /// Where a step goes.

@@ -3,10 +3,10 @@
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 
 use core::f32::consts::TAU;
-use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics};
+use footfall_core::{Joint, ModelPose, Pose, Skeleton, forward_kinematics};
 use footfall_model::GaitModel;
 use footfall_synth::{
-    Controls, CrowdWalker, Detail, GaitGenerator, GeneratorConfig, JointPlace, StyleSpace,
+    Controls, CrowdPose, CrowdWalker, Detail, GaitGenerator, GeneratorConfig, StyleSpace,
     StyledBody, Workshop,
 };
 use glam::Vec3;
@@ -66,7 +66,7 @@ fn a_walker_of_a_crowd_walks_as_a_generator_does() {
             CrowdWalker::new(&styled, &self::config(9, 0.3, 1.0), false, &mut workshop).unwrap();
         let mut pose = Pose::default();
         let mut model = ModelPose::default();
-        let mut joints = [JointPlace::default(); JOINT_COUNT];
+        let mut joints = CrowdPose::default();
         for frame in 0..1300 {
             let controls = asked(frame);
             generator.step(DT, &controls, &mut pose);
@@ -90,7 +90,7 @@ fn a_walker_of_a_crowd_walks_as_a_generator_does() {
             assert_eq!(generator.is_standing(), walker.is_standing());
             forward_kinematics(&skeleton, &pose, &mut model);
             for joint in Joint::ALL {
-                let place = Vec3::from(joints[joint.index()].position);
+                let place = joints.position(joint);
                 let off = place.distance(model.position(joint));
                 assert!(off < 4e-3, "frame {frame}: {joint:?} is {off} m off");
             }
@@ -150,4 +150,43 @@ fn less_detail_stays_on_the_way() {
     assert!(full.length() > 20.0);
     assert!(full.distance(half) < 0.05 * full.length());
     assert!(full.distance(quarter) < 0.05 * full.length());
+}
+
+#[test]
+fn repeated_steps_go_on_where_the_last_one_ended_and_so_do_new_ones() {
+    let styled = styled();
+    let mut workshop = Workshop::new(&styled);
+    let config = config(6, 0.0, 1.0);
+    let mut walker = CrowdWalker::new(&styled, &config, false, &mut workshop).unwrap();
+    let mut joints = CrowdPose::default();
+    let mut before: Option<(Vec3, f32, [Vec3; 2])> = None;
+    for frame in 0..1800 {
+        // Far for a while, near for a while.
+        walker.set_repeating(frame / 200 % 2 == 1);
+        let controls = Controls {
+            speed_mps: 1.25,
+            turn_rate_radps: if frame < 900 { 0.0 } else { 0.3 },
+        };
+        walker.step(DT, controls, &mut workshop);
+        walker.pose(&mut joints);
+        let place = walker.start_from_character();
+        let turn = footfall_core::rotation::from_heading(place.heading);
+        let feet = [Joint::LeftFoot, Joint::RightFoot]
+            .map(|joint| place.position + turn * joints.position(joint));
+        if let Some((position, heading, feet_before)) = before {
+            let speed = place.position.distance(position) / DT;
+            assert!((0.6..2.2).contains(&speed), "frame {frame}: {speed} m/s");
+            let turned = footfall_core::rotation::wrap_angle(place.heading - heading);
+            assert!(turned.abs() < 0.05, "frame {frame}: turned by {turned}");
+            for (now, then) in feet.iter().zip(feet_before) {
+                assert!(
+                    now.distance(then) < 0.1,
+                    "frame {frame}: a foot jumps by {}",
+                    now.distance(then)
+                );
+            }
+        }
+        before = Some((place.position, place.heading, feet));
+    }
+    assert!(walker.start_from_character().position.length() > 10.0);
 }

@@ -1,72 +1,161 @@
-//! A frame of a step as a crowd keeps it: joints where they are drawn.
+//! A step as a crowd keeps it: joints where they are drawn, in small numbers.
 
 use crate::generator::GroundTransform;
 use crate::planting::PlantedFrame;
 use footfall_core::rotation::from_heading;
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics};
-use glam::{Quat, Vec3A};
+use glam::{Quat, Vec3};
+use multiversion::multiversion;
 
-/// Where a joint is and how it is turned against the T-pose, in the character's own space.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)]
-pub struct JointPlace {
-    /// `character_from_joint` rotation.
-    pub rotation: Quat,
-    /// Position, metres.
-    pub position: Vec3A,
+/// Numbers of one joint: its rotation, its position, and one to spare.
+const JOINT_NUMBERS: usize = 8;
+const POSE_NUMBERS: usize = JOINT_COUNT * JOINT_NUMBERS;
+
+/// Rotations and positions (metres) as whole numbers: to 0.03 mrad, and to a tenth of a millimetre within 3.2 m.
+const ROTATION_STEPS: f32 = 32_767.0;
+const POSITION_STEPS: f32 = 10_000.0;
+
+/// Where every joint is and how it is turned against the T-pose, in the character's own space, in the order of [`Joint::ALL`].
+#[derive(Clone, Debug)]
+#[repr(align(32))]
+pub struct CrowdPose([f32; POSE_NUMBERS]);
+
+impl Default for CrowdPose {
+    fn default() -> Self {
+        Self([0.0; POSE_NUMBERS])
+    }
 }
 
-#[derive(Clone, Debug, Default)]
-pub(super) struct CrowdFrame {
+impl CrowdPose {
+    /// Eight numbers a joint: `character_from_joint` rotation (x, y, z, w), of length 1 to within a percent; position in metres;
+    /// and 0.
+    pub fn numbers(&self) -> &[f32; POSE_NUMBERS] {
+        &self.0
+    }
+
+    /// `character_from_joint` rotation.
+    pub fn rotation(&self, joint: Joint) -> Quat {
+        let at = joint.index() * JOINT_NUMBERS;
+        Quat::from_slice(&self.0[at..]).normalize()
+    }
+
+    /// Position in metres.
+    pub fn position(&self, joint: Joint) -> Vec3 {
+        Vec3::from_slice(&self.0[joint.index() * JOINT_NUMBERS + 4..])
+    }
+}
+
+/// Where a character is in one frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CrowdPlace {
     /// The character on the ground: `plan_from_character`.
     pub(super) place: GroundTransform,
     pub(super) contact: [bool; 2],
-    joints: [JointPlace; JOINT_COUNT],
 }
 
-impl CrowdFrame {
-    /// Becomes a frame on the ground that faces so much off its heading. `pose` and `model` are room to work in.
+/// A step: one entry a frame in both lists. They are apart because each frame of a game needs a place, and not every one a pose.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CrowdFrames {
+    pub(super) places: Vec<CrowdPlace>,
+    poses: Vec<[i16; POSE_NUMBERS]>,
+}
+
+impl CrowdFrames {
+    /// Takes over a step on the ground. `facing` tells by how much the character faces off its heading for a share of the step;
+    /// `pose` and `model` are room to work in.
     pub(super) fn set(
         &mut self,
-        frame: &PlantedFrame,
-        facing: f32,
+        frames: &[PlantedFrame],
+        facing: impl Fn(f32) -> f32,
         skeleton: &Skeleton,
         pose: &mut Pose,
         model: &mut ModelPose,
     ) {
-        self.place = GroundTransform {
-            position: frame.ground_position,
-            heading: frame.heading - facing,
-        };
-        self.contact = frame.contact;
-        let character_from_plan = from_heading(-self.place.heading);
-        let on_plan = frame.pose.root_position - self.place.position;
-        pose.rotations = frame.pose.rotations;
-        pose.root_position = character_from_plan * on_plan;
-        let hips = &mut pose.rotations[Joint::Hips.index()];
-        *hips = (character_from_plan * *hips).normalize();
-        forward_kinematics(skeleton, pose, model);
-        let places = model.rotations.iter().zip(&model.positions);
-        for (joint, (rotation, position)) in self.joints.iter_mut().zip(places) {
-            *joint = JointPlace {
-                rotation: *rotation,
-                position: (*position).into(),
+        self.places.resize(frames.len(), CrowdPlace::default());
+        self.poses.resize(frames.len(), [0; POSE_NUMBERS]);
+        let last = (frames.len() - 1) as f32;
+        let mut before = [Quat::IDENTITY; JOINT_COUNT];
+        let kept = self.places.iter_mut().zip(&mut self.poses);
+        for (index, (frame, (place, numbers))) in frames.iter().zip(kept).enumerate() {
+            place.place = GroundTransform {
+                position: frame.ground_position,
+                heading: frame.heading - facing(index as f32 / last),
             };
+            place.contact = frame.contact;
+            let character_from_plan = from_heading(-place.place.heading);
+            let on_plan = frame.pose.root_position - place.place.position;
+            pose.rotations = frame.pose.rotations;
+            pose.root_position = character_from_plan * on_plan;
+            let hips = &mut pose.rotations[Joint::Hips.index()];
+            *hips = (character_from_plan * *hips).normalize();
+            forward_kinematics(skeleton, pose, model);
+            let joints = model.rotations.iter().zip(&model.positions);
+            let mut values = CrowdPose::default();
+            let rows = values.0.chunks_exact_mut(JOINT_NUMBERS);
+            for ((row, (rotation, position)), before) in rows.zip(joints).zip(&mut before) {
+                // Of the two quaternions of a rotation the one near to the last: frames can be blended number by number.
+                let sign = if rotation.dot(*before) < 0.0 {
+                    -1.0
+                } else {
+                    1.0
+                };
+                *before = *rotation * sign;
+                row[..4].copy_from_slice(&before.to_array());
+                row[4..7].copy_from_slice(&position.to_array());
+            }
+            shrink(&values.0, numbers);
         }
     }
 
-    /// Writes the blend of this frame towards the one that follows.
-    pub(super) fn blend(&self, next: &Self, weight: f32, out: &mut [JointPlace; JOINT_COUNT]) {
-        let pairs = self.joints.iter().zip(&next.joints);
-        for (blend, (now, then)) in out.iter_mut().zip(pairs) {
-            let sign = if now.rotation.dot(then.rotation) < 0.0 {
-                -1.0
-            } else {
-                1.0
-            };
-            let sum = now.rotation * (1.0 - weight) + then.rotation * (sign * weight);
-            blend.rotation = sum.normalize();
-            blend.position = now.position.lerp(then.position, weight);
+    /// How many frames there are.
+    pub(super) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Writes the blend of a frame towards the one that follows.
+    pub(super) fn blend(&self, frame: usize, weight: f32, out: &mut CrowdPose) {
+        blend(
+            &self.poses[frame],
+            &self.poses[frame + 1],
+            weight,
+            &mut out.0,
+        );
+    }
+}
+
+/// Steps per unit of the numbers of a joint.
+const STEPS: [f32; JOINT_NUMBERS] = {
+    let (rotation, position) = (ROTATION_STEPS, POSITION_STEPS);
+    [
+        rotation, rotation, rotation, rotation, position, position, position, 1.0,
+    ]
+};
+
+#[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
+fn shrink(values: &[f32; POSE_NUMBERS], out: &mut [i16; POSE_NUMBERS]) {
+    let rows = out.chunks_exact_mut(JOINT_NUMBERS);
+    for (out, values) in rows.zip(values.chunks_exact(JOINT_NUMBERS)) {
+        for ((out, value), steps) in out.iter_mut().zip(values).zip(STEPS) {
+            *out = (value * steps).round_ties_even() as i16;
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
+fn blend(
+    now: &[i16; POSE_NUMBERS],
+    next: &[i16; POSE_NUMBERS],
+    weight: f32,
+    out: &mut [f32; POSE_NUMBERS],
+) {
+    let scales = STEPS.map(f32::recip);
+    let rows = now
+        .chunks_exact(JOINT_NUMBERS)
+        .zip(next.chunks_exact(JOINT_NUMBERS));
+    for (out, (now, next)) in out.chunks_exact_mut(JOINT_NUMBERS).zip(rows) {
+        for (((out, now), next), scale) in out.iter_mut().zip(now).zip(next).zip(scales) {
+            let (now, next) = (f32::from(*now), f32::from(*next));
+            *out = (now + weight * (next - now)) * scale;
         }
     }
 }

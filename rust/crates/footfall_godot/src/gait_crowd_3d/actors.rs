@@ -1,0 +1,172 @@
+//! Whole scenes with skeletons, lent to the walkers that are nearest.
+
+use super::agent::Agent;
+use super::crowd_mesh::skeleton_of;
+use super::tiers::Tier;
+use crate::convert;
+use crate::foot_placement_3d::FootPlacement3D;
+use crate::gait_generator_3d::GaitGenerator3D;
+use crate::skeleton_binding::SkeletonBinding;
+use footfall_core::rotation::from_heading;
+use footfall_ik::placement::{Frame, Landing};
+use footfall_synth::CrowdPose;
+use godot::classes::node::ProcessMode;
+use godot::classes::{Node, Node3D, PackedScene, Skeleton3D};
+use godot::prelude::*;
+
+/// One scene.
+struct Actor {
+    node: Gd<Node3D>,
+    skeleton: Gd<Skeleton3D>,
+    binding: SkeletonBinding,
+    placement: Option<Gd<FootPlacement3D>>,
+    plays: Option<u32>,
+}
+
+/// All of them.
+#[derive(Default)]
+pub(super) struct Actors {
+    all: Vec<Actor>,
+    /// Which walkers are played.
+    playing: Vec<bool>,
+    broken: bool,
+}
+
+impl Actors {
+    /// Lends scenes to the walkers of this tier, and takes them back from all others. Who has one keeps it.
+    pub(super) fn lend(&mut self, tiers: &[Tier], scene: &Gd<PackedScene>, host: &mut Gd<Node3D>) {
+        let is_full = |index: u32| tiers.get(index as usize) == Some(&Tier::Full);
+        self.playing.clear();
+        self.playing.resize(tiers.len(), false);
+        for actor in &mut self.all {
+            let Some(index) = actor.plays else {
+                continue;
+            };
+            if is_full(index) {
+                self.playing[index as usize] = true;
+            } else {
+                actor.plays = None;
+                actor.node.set_visible(false);
+                actor.node.set_process_mode(ProcessMode::DISABLED);
+            }
+        }
+        let mut next = 0;
+        for walker in 0..tiers.len() as u32 {
+            if !is_full(walker) || self.playing[walker as usize] {
+                continue;
+            }
+            while self
+                .all
+                .get(next)
+                .is_some_and(|actor| actor.plays.is_some())
+            {
+                next += 1;
+            }
+            if next == self.all.len() {
+                let made = if self.broken {
+                    None
+                } else {
+                    Actor::new(scene, host)
+                };
+                let Some(actor) = made else {
+                    self.broken = true;
+                    return;
+                };
+                self.all.push(actor);
+            }
+            let actor = &mut self.all[next];
+            actor.plays = Some(walker);
+            self.playing[walker as usize] = true;
+            actor.node.set_visible(true);
+            actor.node.set_process_mode(ProcessMode::INHERIT);
+            if let Some(placement) = &mut actor.placement {
+                placement.bind_mut().forget();
+            }
+        }
+    }
+
+    /// Poses every scene as the walker that it plays.
+    pub(super) fn pose(&mut self, agents: &[Agent]) {
+        let mut pose = CrowdPose::default();
+        for actor in &mut self.all {
+            let Some(agent) = actor.plays.and_then(|index| agents.get(index as usize)) else {
+                continue;
+            };
+            let turn = Basis::from_quaternion(convert::quaternion(from_heading(agent.heading)));
+            let scaled = turn.scaled(Vector3::splat(agent.size));
+            let place = Transform3D::new(scaled, convert::vector3(agent.place));
+            actor.node.set_transform(place);
+            agent.walker.pose(&mut pose);
+            actor.binding.write_joints(&mut actor.skeleton, &pose);
+            if let Some(placement) = &mut actor.placement {
+                let mut landings = [None; 2];
+                if let Some((footstep, secs)) = agent.walker.next_footstep() {
+                    landings[footstep.side.index()] = Some(Landing {
+                        flat: Frame {
+                            position: footstep.position * agent.size,
+                            rotation: from_heading(footstep.heading),
+                        },
+                        secs: secs * agent.size.sqrt(),
+                    });
+                }
+                let contacts = agent.walker.feet_in_contact();
+                placement.bind_mut().feed(contacts, landings);
+            }
+        }
+    }
+
+    /// Whether a scene plays this walker.
+    pub(super) fn plays(&self, walker: u32) -> bool {
+        self.playing
+            .get(walker as usize)
+            .is_some_and(|plays| *plays)
+    }
+
+    /// Removes all scenes.
+    pub(super) fn clear(&mut self) {
+        for actor in self.all.drain(..) {
+            if actor.node.is_instance_valid() {
+                actor.node.free();
+            }
+        }
+        self.playing.clear();
+        self.broken = false;
+    }
+}
+
+impl Actor {
+    fn new(scene: &Gd<PackedScene>, host: &mut Gd<Node3D>) -> Option<Self> {
+        let mut node = scene.instantiate()?.try_cast::<Node3D>().ok()?;
+        host.add_child_ex(&node)
+            .internal(godot::classes::node::InternalMode::BACK)
+            .done();
+        let upright = node.get_global_transform();
+        node.set_global_transform(Transform3D::IDENTITY);
+        let made = (|| {
+            let skeleton = skeleton_of(&node)?;
+            let binding = SkeletonBinding::new(&skeleton, &node, None).ok()?;
+            let mut placement = None;
+            for child in skeleton.get_children().iter_shared() {
+                // The crowd walks it: two walks at once would fight.
+                if let Ok(mut generator) = child.clone().try_cast::<GaitGenerator3D>() {
+                    generator.set_active(false);
+                } else if let Ok(found) = child.try_cast::<FootPlacement3D>() {
+                    placement = Some(found);
+                }
+            }
+            Some((skeleton, binding, placement))
+        })();
+        let Some((skeleton, binding, placement)) = made else {
+            node.upcast::<Node>().free();
+            return None;
+        };
+        node.set_global_transform(upright);
+        Some(Self {
+            node,
+            skeleton,
+            binding,
+            placement,
+            plays: None,
+        })
+    }
+}

@@ -1,0 +1,246 @@
+//! One walker of a crowd: where it is, where it wants to go, and how it gets there. Nothing here knows the engine.
+
+use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop};
+use glam::{Vec2, Vec3};
+
+/// Who is this close to a place has arrived there, metres.
+pub(super) const ARRIVED_M: f32 = 1.0;
+/// How fast somebody turns towards where it wants to go: rad/s for each radian that is missing, and at most.
+const TURN_GAIN: f32 = 1.6;
+const MAX_TURN_RADPS: f32 = 1.3;
+/// Others are seen this far, metres, and avoided when they would come this close within this time, seconds.
+pub(super) const SIGHT_M: f32 = 6.0;
+const PERSONAL_M: f32 = 1.0;
+const FORESIGHT_SECS: f32 = 4.0;
+/// By how much who will meet somebody turns away at once, radians.
+const AVOIDING_TURN: f32 = 0.9;
+/// Time constant with which a walker rises and falls with the ground, seconds.
+const RISE_SECS: f32 = 0.15;
+
+/// A tint is packed into one number, eight bits for each of red, green and blue.
+pub(super) const WHITE: f32 = 16_777_215.0;
+
+/// What a walker is asked to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Goal {
+    /// A turn rate, rad/s.
+    Turn(f32),
+    /// A place, in the plane of the crowd.
+    Place(Vec2),
+}
+
+/// Somebody as others see it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Seen {
+    pub(super) place: Vec2,
+    pub(super) velocity: Vec2,
+}
+
+/// What is drawn of a walker: where it was when it moved last but one, and where it is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Drawn {
+    pub(super) places: [Vec3; 2],
+    /// The second is within half a turn of the first.
+    pub(super) headings: [f32; 2],
+    pub(super) size: f32,
+    pub(super) tint: f32,
+}
+
+impl Drawn {
+    /// Place and heading on the way from the one to the other.
+    pub(super) fn at(&self, share: f32) -> (Vec3, f32) {
+        let [from, to] = self.headings;
+        (
+            self.places[0].lerp(self.places[1], share),
+            from + share * (to - from),
+        )
+    }
+}
+
+/// One walker in the space of the crowd: +Y up.
+#[derive(Debug)]
+pub(super) struct Agent {
+    pub(super) walker: CrowdWalker,
+    pub(super) goal: Goal,
+    /// What it would like to walk, m/s.
+    pub(super) speed_mps: f32,
+    /// Its height against that of the character.
+    pub(super) size: f32,
+    pub(super) tint: f32,
+    pub(super) seed: u64,
+    pub(super) place: Vec3,
+    pub(super) heading: f32,
+    pub(super) ground_m: f32,
+    pub(super) velocity: Vec2,
+    /// Weights of the styles that it wears.
+    pub(super) weights: Vec<f32>,
+    /// How far along a path it is, metres, and how far beside its middle.
+    pub(super) progress_m: f32,
+    pub(super) aside_m: f32,
+    /// The foot that landed in the last frame and where, if one did.
+    pub(super) landed: Option<(footfall_core::Side, Vec3)>,
+    /// The crowd's time until which it has walked, seconds.
+    pub(super) clock_secs: f64,
+    chance: u64,
+    walked: GroundTransform,
+    controls: Controls,
+}
+
+impl Agent {
+    pub(super) fn new(walker: CrowdWalker, place: Vec3, heading: f32, seed: u64) -> Self {
+        Self {
+            walked: walker.start_from_character(),
+            walker,
+            goal: Goal::Turn(0.0),
+            speed_mps: 1.3,
+            size: 1.0,
+            tint: WHITE,
+            seed,
+            place,
+            heading,
+            ground_m: place.y,
+            velocity: Vec2::ZERO,
+            weights: Vec::new(),
+            progress_m: 0.0,
+            aside_m: 0.0,
+            landed: None,
+            clock_secs: 0.0,
+            chance: seed,
+            controls: Controls {
+                speed_mps: 0.0,
+                turn_rate_radps: 0.0,
+            },
+        }
+    }
+
+    /// Decides what to do next; what it decides is taken up with the next step.
+    pub(super) fn decide<'a>(&mut self, others: impl Iterator<Item = &'a Seen>) {
+        let mut speed = self.speed_mps;
+        let turn = match self.goal {
+            Goal::Turn(rate) => rate,
+            Goal::Place(place) => {
+                let way = place - self.level();
+                let far = way.length();
+                if far < 0.5 * ARRIVED_M {
+                    speed = 0.0;
+                }
+                let mut off = wrap_angle(way.x.atan2(way.y) - self.heading);
+                let (aside, slower) = self.avoid(others);
+                off += aside;
+                // Who has to turn far does so first.
+                speed *= slower * (1.2 - off.abs()).clamp(0.25, 1.0);
+                if speed <= 0.0 {
+                    0.0
+                } else {
+                    (TURN_GAIN * off).clamp(-MAX_TURN_RADPS, MAX_TURN_RADPS)
+                }
+            }
+        };
+        // A large body takes longer steps in more time: speeds go with the root of its size (Froude).
+        let froude = self.size.sqrt();
+        self.controls = Controls {
+            speed_mps: speed / froude,
+            turn_rate_radps: turn * froude,
+        };
+    }
+
+    /// By how much to turn for the sake of others, and which share of the speed to keep.
+    fn avoid<'a>(&self, others: impl Iterator<Item = &'a Seen>) -> (f32, f32) {
+        let forward = Vec2::from_angle(core::f32::consts::FRAC_PI_2 - self.heading);
+        let velocity = forward * self.speed_mps;
+        let (mut aside, mut slower) = (0.0, 1.0_f32);
+        for other in others {
+            let way = other.place - self.level();
+            let far = way.length();
+            if !(1e-3..SIGHT_M).contains(&far) || way.dot(forward) < 0.0 {
+                continue;
+            }
+            let approach = velocity - other.velocity;
+            let secs = (way.dot(approach) / approach.length_squared().max(1e-3))
+                .clamp(0.0, FORESIGHT_SECS);
+            let nearest = way - approach * secs;
+            let close = 1.0 - nearest.length() / PERSONAL_M;
+            if close <= 0.0 {
+                continue;
+            }
+            let urgent = close.sqrt() * (1.0 - secs / FORESIGHT_SECS);
+            // To the side that the other is not on; straight ahead, to the right.
+            let to_left = Vec2::new(forward.y, -forward.x).dot(nearest);
+            let side = if to_left > 0.05 { -1.0 } else { 1.0 };
+            aside += if to_left.abs() < 0.05 {
+                -urgent
+            } else {
+                side * urgent
+            };
+            slower = slower.min(1.0 - 0.7 * urgent * (1.0 - far / SIGHT_M));
+        }
+        (AVOIDING_TURN * aside.clamp(-1.0, 1.0), slower.max(0.3))
+    }
+
+    /// Lets time pass.
+    pub(super) fn advance(&mut self, dt_secs: f32, workshop: &mut Workshop) {
+        let own_secs = dt_secs / self.size.sqrt();
+        self.walker.step(own_secs, self.controls, workshop);
+        let now = self.walker.start_from_character();
+        let back = from_heading(-self.walked.heading);
+        let moved = back * (now.position - self.walked.position) * self.size;
+        let step = from_heading(self.heading) * moved;
+        self.landed = self.walker.footstep().map(|footstep| {
+            let from = back * (footstep.position - self.walked.position) * self.size;
+            (
+                footstep.side,
+                self.place + from_heading(self.heading) * from,
+            )
+        });
+        self.place += step;
+        let rise = 1.0 - (-dt_secs / RISE_SECS).exp();
+        self.place.y += (self.ground_m - self.place.y) * rise;
+        self.heading = wrap_angle(self.heading + now.heading - self.walked.heading);
+        self.walked = now;
+        if dt_secs > 0.0 {
+            let blend = 1.0 - (-dt_secs / 0.3).exp();
+            self.velocity += (Vec2::new(step.x, step.z) / dt_secs - self.velocity) * blend;
+        }
+    }
+
+    /// What is drawn of it, after it moved from there.
+    pub(super) fn drawn(&self, from: Vec3, from_heading: f32) -> Drawn {
+        let turned = wrap_angle(self.heading - from_heading);
+        Drawn {
+            places: [from, self.place],
+            headings: [from_heading, from_heading + turned],
+            size: self.size,
+            tint: self.tint,
+        }
+    }
+
+    /// Whether it will take up a decision in this time: then is the time to decide.
+    pub(super) fn is_about_to_step(&self, dt_secs: f32) -> bool {
+        self.walker.secs_to_next_step() <= dt_secs / self.size.sqrt()
+    }
+
+    /// A number between 0 and 1, another one at every call and the same ones for equal seeds (`SplitMix64`).
+    pub(super) fn chance(&mut self) -> f32 {
+        self.chance = self.chance.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = self.chance;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((bits ^ (bits >> 31)) >> 40) as f32 / 16_777_216.0
+    }
+
+    pub(super) fn level(&self) -> Vec2 {
+        Vec2::new(self.place.x, self.place.z)
+    }
+
+    pub(super) fn seen(&self) -> Seen {
+        Seen {
+            place: self.level(),
+            velocity: self.velocity,
+        }
+    }
+
+    pub(super) fn pose(&self, out: &mut CrowdPose) {
+        self.walker.pose(out);
+    }
+}

@@ -1,0 +1,292 @@
+//! A character's meshes as a crowd draws them: in the T-pose, with joints and weights where a shader finds them.
+
+use crate::convert;
+use crate::skeleton_binding::SkeletonBinding;
+use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics};
+use glam::{Affine3A, Vec3, Vec3A};
+use godot::classes::mesh::{ArrayType, PrimitiveType};
+use godot::classes::{
+    ArrayMesh, BaseMaterial3D, Material, Mesh, MeshInstance3D, Node3D, PackedScene, ShaderMaterial,
+    Skeleton3D,
+};
+use godot::obj::EngineEnum as _;
+use godot::prelude::*;
+
+/// Joints that move one vertex.
+const INFLUENCES: usize = 4;
+
+/// What a crowd needs to know of its character.
+pub(super) struct CrowdMesh {
+    /// For walkers whose pose is new in every frame, and for those far away.
+    pub(super) meshes: [Gd<ArrayMesh>; 2],
+    pub(super) body: Skeleton,
+    /// Where the joints are in the T-pose.
+    pub(super) rest: [Vec3; JOINT_COUNT],
+    /// The joint whose rotation each joint's bone takes.
+    pub(super) turned_by: [Joint; JOINT_COUNT],
+}
+
+/// Finds the skeleton of a character.
+pub(super) fn skeleton_of(character: &Gd<Node3D>) -> Option<Gd<Skeleton3D>> {
+    let found = character
+        .find_children_ex("*")
+        .type_("Skeleton3D")
+        .owned(false)
+        .done();
+    let first = found.iter_shared().next();
+    first.and_then(|node| node.try_cast::<Skeleton3D>().ok())
+}
+
+impl CrowdMesh {
+    /// Takes a character to pieces. `host` is a node in the tree, under which it is put for a moment.
+    ///
+    /// # Errors
+    /// What is wrong with the character, for the user.
+    pub(super) fn new(scene: &Gd<PackedScene>, host: &mut Gd<Node3D>) -> Result<Self, String> {
+        let made = scene
+            .instantiate()
+            .ok_or("Character cannot be instantiated: open the scene and repair it.")?;
+        let mut character = made.try_cast::<Node3D>().map_err(|node| {
+            node.free();
+            "The root of Character is no Node3D: choose a scene with a character.".to_owned()
+        })?;
+        host.add_child_ex(&character)
+            .internal(godot::classes::node::InternalMode::BACK)
+            .done();
+        character.set_global_transform(Transform3D::IDENTITY);
+        let taken = Self::of(&character);
+        character.free();
+        taken
+    }
+
+    fn of(character: &Gd<Node3D>) -> Result<Self, String> {
+        let skeleton = skeleton_of(character).ok_or(
+            "Character has no Skeleton3D: choose a scene with a humanoid character, such as an imported .glb.",
+        )?;
+        let binding = SkeletonBinding::new(&skeleton, character, None)
+            .map_err(|error| format!("Character: {error}"))?;
+        let bones = binding.t_pose_of_bones(&skeleton);
+        let mut instances: Vec<(f32, Gd<MeshInstance3D>)> = Vec::new();
+        for node in skeleton
+            .find_children_ex("*")
+            .type_("MeshInstance3D")
+            .owned(false)
+            .done()
+            .iter_shared()
+        {
+            if let Ok(instance) = node.try_cast::<MeshInstance3D>()
+                && instance.get_mesh().is_some()
+                && instance.get_skin_reference().is_some()
+            {
+                instances.push((instance.get_visibility_range_begin(), instance));
+            }
+        }
+        if instances.is_empty() {
+            return Err("Character has no skinned mesh under its Skeleton3D.".to_owned());
+        }
+        // Meshes that take over with the distance: the second for those near, the last for those far away.
+        let mut begins: Vec<f32> = instances.iter().map(|(begin, _)| *begin).collect();
+        begins.sort_by(f32::total_cmp);
+        begins.dedup();
+        let levels = [begins[1.min(begins.len() - 1)], begins[begins.len() - 1]];
+        let meshes = levels.map(|level| {
+            let mut mesh = ArrayMesh::new_gd();
+            for (begin, instance) in &instances {
+                if (*begin - level).abs() < 1e-3 {
+                    add_surfaces(&mut mesh, instance, &skeleton, &bones);
+                }
+            }
+            mesh
+        });
+        let mut t_pose = ModelPose::default();
+        forward_kinematics(&binding.body, &Pose::rest(&binding.body), &mut t_pose);
+        Ok(Self {
+            meshes,
+            rest: t_pose.positions,
+            turned_by: binding.turned_by(),
+            body: binding.body,
+        })
+    }
+}
+
+/// Adds the surfaces of one skinned mesh.
+fn add_surfaces(
+    mesh: &mut Gd<ArrayMesh>,
+    instance: &Gd<MeshInstance3D>,
+    skeleton: &Gd<Skeleton3D>,
+    bones: &[(Joint, Affine3A)],
+) {
+    let (Some(source), Some(skin)) = (
+        instance.get_mesh(),
+        instance
+            .get_skin_reference()
+            .and_then(|skin| skin.get_skin()),
+    ) else {
+        return;
+    };
+    let binds: Vec<(Joint, Affine3A)> = (0..skin.get_bind_count())
+        .map(|bind| {
+            let name = skin.get_bind_name(bind);
+            let bone = if name.is_empty() {
+                skin.get_bind_bone(bind)
+            } else {
+                skeleton.find_bone(&GString::from(&name))
+            };
+            let index = usize::try_from(bone).unwrap_or(0).min(bones.len() - 1);
+            let (joint, t_pose) = bones[index];
+            let rest = convert::affine(skeleton.get_bone_global_rest(convert::count(index)));
+            (
+                joint,
+                t_pose * rest * convert::affine(skin.get_bind_pose(bind)),
+            )
+        })
+        .collect();
+    for surface in 0..source.get_surface_count() {
+        let arrays = source.surface_get_arrays(surface);
+        let Some(arrays) = t_posed(&arrays, &binds) else {
+            continue;
+        };
+        let index = mesh.get_surface_count();
+        mesh.add_surface_from_arrays(PrimitiveType::TRIANGLES, &arrays);
+        let material = instance.get_active_material(surface);
+        if let Some(material) = crowd_material(material) {
+            mesh.surface_set_material(index, &material);
+        }
+    }
+}
+
+/// The arrays of a surface in the T-pose; `None` for one without bones.
+fn t_posed(arrays: &VarArray, binds: &[(Joint, Affine3A)]) -> Option<VarArray> {
+    let slot = |kind: ArrayType| kind.ord() as usize;
+    let get = |kind: ArrayType| arrays.get(slot(kind));
+    let vertices = get(ArrayType::VERTEX)?
+        .try_to::<PackedVector3Array>()
+        .ok()?;
+    let normals = get(ArrayType::NORMAL)?
+        .try_to::<PackedVector3Array>()
+        .ok()?;
+    let bones = get(ArrayType::BONES)?.try_to::<PackedInt32Array>().ok()?;
+    let weights = get(ArrayType::WEIGHTS)?
+        .try_to::<PackedFloat32Array>()
+        .ok()?;
+    let count = vertices.len();
+    let each = bones.len().checked_div(count)?;
+    if each == 0 || weights.len() != bones.len() || normals.len() != count {
+        return None;
+    }
+    let mut places = Vec::with_capacity(count);
+    let mut directions = Vec::with_capacity(count);
+    let mut joint_bytes = Vec::with_capacity(INFLUENCES * count);
+    let mut weight_bytes = Vec::with_capacity(INFLUENCES * count);
+    for vertex in 0..count {
+        let mut by_joint = [0.0; JOINT_COUNT];
+        let point = Vec3A::from(convert::vec3(vertices.as_slice()[vertex]));
+        let normal = Vec3A::from(convert::vec3(normals.as_slice()[vertex]));
+        let (mut place, mut direction) = (Vec3A::ZERO, Vec3A::ZERO);
+        let range = vertex * each..(vertex + 1) * each;
+        let total: f32 = weights.as_slice()[range.clone()].iter().sum();
+        for influence in range {
+            let weight = weights.as_slice()[influence] / total.max(1e-6);
+            let bind = usize::try_from(bones.as_slice()[influence]).unwrap_or(0);
+            let Some((joint, t_pose)) = binds.get(bind).filter(|_| weight > 0.0) else {
+                continue;
+            };
+            by_joint[joint.index()] += weight;
+            place += weight * t_pose.transform_point3a(point);
+            direction += weight * t_pose.transform_vector3a(normal);
+        }
+        places.push(convert::vector3(place.into()));
+        directions.push(convert::vector3(
+            Vec3::from(direction).normalize_or(Vec3::Y),
+        ));
+        let (joints, shares) = strongest(&by_joint);
+        joint_bytes.extend_from_slice(&joints);
+        weight_bytes.extend_from_slice(&shares);
+    }
+    let mut made = VarArray::new();
+    made.resize(slot(ArrayType::MAX), &Variant::nil());
+    made.set(
+        slot(ArrayType::VERTEX),
+        &PackedVector3Array::from(places).to_variant(),
+    );
+    made.set(
+        slot(ArrayType::NORMAL),
+        &PackedVector3Array::from(directions).to_variant(),
+    );
+    made.set(
+        slot(ArrayType::CUSTOM0),
+        &PackedByteArray::from(joint_bytes).to_variant(),
+    );
+    made.set(
+        slot(ArrayType::CUSTOM1),
+        &PackedByteArray::from(weight_bytes).to_variant(),
+    );
+    for kept in [ArrayType::COLOR, ArrayType::TEX_UV, ArrayType::INDEX] {
+        if let Some(values) = get(kept) {
+            made.set(slot(kept), &values);
+        }
+    }
+    Some(made)
+}
+
+/// The four joints that move a vertex most, and their weights in 255ths.
+fn strongest(by_joint: &[f32; JOINT_COUNT]) -> ([u8; INFLUENCES], [u8; INFLUENCES]) {
+    let mut order: [u8; JOINT_COUNT] = core::array::from_fn(|joint| joint as u8);
+    order.sort_by(|a, b| by_joint[usize::from(*b)].total_cmp(&by_joint[usize::from(*a)]));
+    let joints: [u8; INFLUENCES] = core::array::from_fn(|index| order[index]);
+    let total: f32 = joints
+        .iter()
+        .map(|joint| by_joint[usize::from(*joint)])
+        .sum();
+    let mut weights =
+        joints.map(|joint| (255.0 * by_joint[usize::from(joint)] / total.max(1e-6)).round() as u8);
+    // They add up to one, or the vertex would be drawn towards the origin.
+    let rest: i32 = weights[1..].iter().map(|weight| i32::from(*weight)).sum();
+    weights[0] = (255 - rest).clamp(0, 255) as u8;
+    (joints, weights)
+}
+
+/// The crowd's shader with what a character's own material says.
+fn crowd_material(own: Option<Gd<Material>>) -> Option<Gd<ShaderMaterial>> {
+    let shader =
+        try_load::<godot::classes::Shader>("res://addons/footfall/shaders/crowd.gdshader").ok()?;
+    let mut material = ShaderMaterial::new_gd();
+    material.set_shader(&shader);
+    if let Some(own) = own.and_then(|own| own.try_cast::<BaseMaterial3D>().ok()) {
+        use godot::classes::base_material_3d::{Flags, TextureParam};
+        material.set_shader_parameter("albedo", &own.get_albedo().to_variant());
+        material.set_shader_parameter("roughness", &own.get_roughness().to_variant());
+        material.set_shader_parameter("metallic", &own.get_metallic().to_variant());
+        let colours = own.get_flag(Flags::ALBEDO_FROM_VERTEX_COLOR);
+        material.set_shader_parameter("vertex_colours", &colours.to_variant());
+        if let Some(texture) = own.get_texture(TextureParam::ALBEDO) {
+            material.set_shader_parameter("albedo_texture", &texture.to_variant());
+        }
+    }
+    Some(material)
+}
+
+/// Lets the shaders of a mesh read these poses.
+pub(super) fn give_poses(
+    mesh: &Gd<ArrayMesh>,
+    rest: &[Vec3; JOINT_COUNT],
+    poses: &Gd<godot::classes::ImageTexture>,
+    over: Option<&Gd<ShaderMaterial>>,
+) -> Gd<ArrayMesh> {
+    let mut own = mesh.duplicate_resource();
+    let rest: PackedVector3Array = rest.iter().map(|place| convert::vector3(*place)).collect();
+    for surface in 0..own.clone().upcast::<Mesh>().get_surface_count() {
+        let shown = over.cloned().or_else(|| {
+            let material = mesh.surface_get_material(surface)?;
+            material.try_cast::<ShaderMaterial>().ok()
+        });
+        let Some(shown) = shown else {
+            continue;
+        };
+        let mut material = shown.duplicate_resource();
+        material.set_shader_parameter("crowd_poses", &poses.to_variant());
+        material.set_shader_parameter("crowd_rest", &rest.to_variant());
+        own.surface_set_material(surface, &material);
+    }
+    own
+}

@@ -1,0 +1,165 @@
+//! Walkers that are drawn together: one `MultiMesh`, and the texture that its shader reads their poses from.
+
+use super::crowd_mesh::{CrowdMesh, give_poses};
+use crate::convert;
+use footfall_core::{JOINT_COUNT, Joint};
+use footfall_synth::CrowdPose;
+use glam::{Quat, Vec3};
+use godot::classes::image::Format;
+use godot::classes::multi_mesh::TransformFormat;
+use godot::classes::{
+    Image, ImageTexture, MultiMesh, MultiMeshInstance3D, Node, RenderingServer, ShaderMaterial,
+};
+use godot::prelude::*;
+use half::f16;
+use half::slice::HalfFloatSliceExt as _;
+
+/// Poses beside each other in the texture, as `crowd_pose.gdshaderinc` has it.
+const POSES_PER_ROW: usize = 32;
+/// Numbers of one joint: a rotation, a position, and one to spare.
+const JOINT_NUMBERS: usize = 8;
+const POSE_NUMBERS: usize = JOINT_COUNT * JOINT_NUMBERS;
+/// Bytes of one pose.
+pub(super) const POSE_BYTES: usize = POSE_NUMBERS * size_of::<f16>();
+/// Numbers of one instance: a transform and custom data.
+pub(super) const INSTANCE_NUMBERS: usize = 16;
+
+/// A group of instances and their poses.
+pub(super) struct Flock {
+    instance: Gd<MultiMeshInstance3D>,
+    multimesh: Gd<MultiMesh>,
+    image: Gd<Image>,
+    texture: Gd<ImageTexture>,
+    /// Two of each, written in turn: the engine still holds the one that it was given last, and a shared array is copied when it is
+    /// written.
+    poses: [PackedByteArray; 2],
+    instances: [PackedFloat32Array; 2],
+    turn: [usize; 2],
+    height: i32,
+}
+
+impl Flock {
+    /// Room for so many instances and so many poses.
+    pub(super) fn new(
+        host: &Gd<Node>,
+        mesh: &CrowdMesh,
+        level: usize,
+        room: usize,
+        poses: usize,
+        material: Option<&Gd<ShaderMaterial>>,
+    ) -> Option<Self> {
+        let width = convert::count(POSES_PER_ROW * JOINT_COUNT * 2);
+        let height = poses.div_ceil(POSES_PER_ROW).max(1);
+        let image = Image::create_empty(width, convert::count(height), false, Format::RGBAH)?;
+        let texture = ImageTexture::create_from_image(&image)?;
+        let shown = give_poses(&mesh.meshes[level], &mesh.rest, &texture, material);
+        let mut multimesh = MultiMesh::new_gd();
+        multimesh.set_transform_format(TransformFormat::TRANSFORM_3D);
+        multimesh.set_use_custom_data(true);
+        multimesh.set_mesh(&shown);
+        multimesh.set_instance_count(convert::count(room));
+        multimesh.set_visible_instance_count(0);
+        let mut instance = MultiMeshInstance3D::new_alloc();
+        instance.set_multimesh(&multimesh);
+        host.clone()
+            .add_child_ex(&instance)
+            .internal(godot::classes::node::InternalMode::BACK)
+            .done();
+        let bytes = height * POSES_PER_ROW * POSE_BYTES;
+        let numbers = room * INSTANCE_NUMBERS;
+        Some(Self {
+            instance,
+            multimesh,
+            image,
+            texture,
+            poses: [(); 2].map(|()| std::iter::repeat_n(0_u8, bytes).collect()),
+            instances: [(); 2].map(|()| std::iter::repeat_n(0.0_f32, numbers).collect()),
+            turn: [0; 2],
+            height: convert::count(height),
+        })
+    }
+
+    /// The poses, [`POSE_BYTES`] each, to be written anew; what they were two uploads ago is in them.
+    pub(super) fn poses(&mut self) -> &mut [u8] {
+        self.poses[self.turn[0]].as_mut_slice()
+    }
+
+    /// The same, and the poses as they were uploaded last.
+    pub(super) fn poses_and_last(&mut self) -> (&mut [u8], &[u8]) {
+        let [first, second] = &mut self.poses;
+        let (now, last) = if self.turn[0] == 0 {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        (now.as_mut_slice(), last.as_slice())
+    }
+
+    /// The instances, [`INSTANCE_NUMBERS`] each, to be written anew.
+    pub(super) fn instances(&mut self) -> &mut [f32] {
+        self.instances[self.turn[1]].as_mut_slice()
+    }
+
+    /// Hands the poses that were written to the renderer.
+    pub(super) fn upload_poses(&mut self) {
+        let width = convert::count(POSES_PER_ROW * JOINT_COUNT * 2);
+        let poses = &self.poses[self.turn[0]];
+        self.image
+            .set_data(width, self.height, false, Format::RGBAH, poses);
+        self.texture.update(&self.image);
+        self.turn[0] = 1 - self.turn[0];
+    }
+
+    /// Hands so many instances, which lie in this box of the crowd's space, to the renderer.
+    pub(super) fn upload_instances(&mut self, count: usize, bounds: Aabb) {
+        let numbers = &self.instances[self.turn[1]];
+        let id = self.multimesh.get_rid();
+        if count > 0 {
+            RenderingServer::singleton().multimesh_set_buffer(id, numbers);
+            self.instance.set_custom_aabb(bounds);
+            self.turn[1] = 1 - self.turn[1];
+        }
+        self.multimesh
+            .set_visible_instance_count(convert::count(count));
+        self.instance.set_visible(count > 0);
+    }
+
+    /// Removes what is drawn.
+    pub(super) fn free(self) {
+        if self.instance.is_instance_valid() {
+            self.instance.free();
+        }
+    }
+}
+
+/// Writes a pose as the shader reads it.
+pub(super) fn write_pose(pose: &CrowdPose, turned_by: &[Joint; JOINT_COUNT], out: &mut [u8]) {
+    let mut halves = [f16::ZERO; POSE_NUMBERS];
+    halves.convert_from_f32_slice(pose.numbers());
+    for joint in Joint::ALL {
+        let turning = turned_by[joint.index()];
+        if turning != joint {
+            let from = turning.index() * JOINT_NUMBERS;
+            halves.copy_within(from..from + 4, joint.index() * JOINT_NUMBERS);
+        }
+    }
+    for (bytes, half) in out.chunks_exact_mut(2).zip(halves) {
+        bytes.copy_from_slice(&half.to_le_bytes());
+    }
+}
+
+/// Writes an instance: where it stands, its two poses, the way between them and its tint.
+pub(super) fn write_instance(
+    place: Vec3,
+    heading: f32,
+    size: f32,
+    custom: [f32; 4],
+    out: &mut [f32],
+) {
+    let turn = glam::Mat3::from_quat(Quat::from_rotation_y(heading)) * size;
+    for row in 0..3 {
+        out[4 * row..4 * row + 3].copy_from_slice(&turn.row(row).to_array());
+        out[4 * row + 3] = place[row];
+    }
+    out[12..16].copy_from_slice(&custom);
+}

@@ -1,0 +1,339 @@
+//! What is seen of a crowd.
+
+use super::actors::Actors;
+use super::flock::{Flock, INSTANCE_NUMBERS, POSE_BYTES, write_instance, write_pose};
+use super::tiers::{Chooser, Limits, Tier};
+use super::walkers::{GROUPS, Walkers};
+use crate::convert;
+use crate::physics_ground::PhysicsGround;
+use footfall_ik::placement::Terrain as _;
+use footfall_synth::CrowdPose;
+use glam::{Vec3, Vec4};
+use godot::classes::{Node, Node3D, PackedScene, ShaderMaterial};
+use godot::prelude::*;
+use rayon::prelude::*;
+
+/// Tiers are chosen anew in every so many frames.
+const CHOOSE_EVERY: u64 = 8;
+/// Who is this close to what the camera sees counts as seen, metres: poses must be there before they are needed.
+const MARGIN_M: f32 = 3.0;
+/// Ground is looked for so far above and below a walker, metres.
+const GROUND_REACH_M: f32 = 1.5;
+
+/// How the node wants its crowd to look.
+pub(super) struct Look {
+    pub(super) character: Option<Gd<PackedScene>>,
+    pub(super) material: Option<Gd<ShaderMaterial>>,
+    pub(super) culls: bool,
+}
+
+/// What draws a crowd.
+pub(super) struct CrowdScene {
+    near: Flock,
+    far: Vec<Flock>,
+    actors: Actors,
+    chooser: Chooser,
+    /// Frames that were drawn.
+    drawn: u64,
+    /// The walkers in each instance of the near flock, and in each of a far one.
+    shown: Vec<u32>,
+    /// When each walker's pose among those far away was written last, counted in frames.
+    ticks: Vec<u64>,
+}
+
+/// Finds the ground under walkers that have just put a foot down.
+pub(super) fn find_ground(walkers: &mut Walkers, host: &Gd<Node3D>, mask: u32) {
+    if mask == 0 {
+        return;
+    }
+    let space = host
+        .get_world_3d()
+        .and_then(|world| world.get_direct_space_state());
+    let Some(space) = space else {
+        return;
+    };
+    let world = convert::frame(host.get_global_transform());
+    let mut rays = PhysicsGround::new(mask, 0.0, &Array::new());
+    let mut ground = rays.now(space);
+    for index in 0..walkers.agents.len() {
+        let moved = walkers.moved(index);
+        let agent = &mut walkers.agents[index];
+        if !moved || agent.landed.is_none() {
+            continue;
+        }
+        // A little ahead, where it will be in the middle of the step.
+        let ahead = agent.place + 0.25 * Vec3::new(agent.velocity.x, 0.0, agent.velocity.y);
+        let from = world.point(ahead + Vec3::Y * GROUND_REACH_M);
+        let way = world.up() * (-2.0 * GROUND_REACH_M);
+        if let Some(hit) = ground.cast(from, way) {
+            agent.ground_m = world.local_point(hit.position).y;
+        }
+    }
+}
+
+impl CrowdScene {
+    pub(super) fn new(
+        host: &Gd<Node3D>,
+        walkers: &Walkers,
+        limits: &Limits,
+        look: &Look,
+    ) -> Option<Self> {
+        let material = look.material.as_ref();
+        let count = walkers.agents.len();
+        let node = host.clone().upcast::<Node>();
+        let room = count.min(limits.counts[0] + limits.counts[1]).max(1);
+        let near = Flock::new(&node, &walkers.mesh, 0, room, room, material)?;
+        let each = count.div_ceil(GROUPS).max(1);
+        let far = (0..GROUPS)
+            .map(|_| Flock::new(&node, &walkers.mesh, 1, each, 2 * each, material))
+            .collect::<Option<Vec<_>>>()?;
+        Some(Self {
+            near,
+            far,
+            actors: Actors::default(),
+            chooser: Chooser::default(),
+            drawn: 0,
+            shown: Vec::with_capacity(count),
+            ticks: vec![0; count],
+        })
+    }
+
+    /// Draws everybody as they are now.
+    pub(super) fn draw(
+        &mut self,
+        walkers: &mut Walkers,
+        host: &Gd<Node3D>,
+        limits: &Limits,
+        look: &Look,
+    ) {
+        self.drawn += 1;
+        walkers.tiers.resize(walkers.agents.len(), Tier::Far);
+        let camera = host
+            .get_viewport()
+            .and_then(|viewport| viewport.get_camera_3d());
+        if self.drawn % CHOOSE_EVERY == 1 {
+            let place = camera.as_ref().map_or(Vec3::ZERO, |camera| {
+                convert::vec3(host.to_local(camera.get_global_position()))
+            });
+            let places = walkers.drawn.iter().map(|drawn| drawn.places[1]);
+            self.chooser
+                .choose(place, limits, places, &mut walkers.tiers);
+            self.lend(walkers, host, look);
+        }
+        let planes = match camera.filter(|_| look.culls) {
+            Some(camera) => planes_of(&camera, host),
+            None => Vec::new(),
+        };
+        self.draw_near(walkers, &planes);
+        self.draw_far(walkers, &planes);
+        self.actors.pose(&walkers.agents);
+    }
+
+    /// Removes what was drawn.
+    pub(super) fn free(mut self) {
+        self.actors.clear();
+        self.near.free();
+        for flock in self.far {
+            flock.free();
+        }
+    }
+
+    fn lend(&mut self, walkers: &Walkers, host: &Gd<Node3D>, look: &Look) {
+        if let Some(character) = &look.character {
+            let mut host = host.clone();
+            self.actors.lend(&walkers.tiers, character, &mut host);
+        }
+    }
+
+    /// Everybody with a new pose in every frame, and those for whom there was no scene.
+    fn draw_near(&mut self, walkers: &Walkers, planes: &[Vec4]) {
+        let Walkers {
+            agents,
+            tiers,
+            mesh,
+            drawn,
+            ..
+        } = walkers;
+        self.shown.clear();
+        let room = self.near.poses().len() / POSE_BYTES;
+        for (index, (drawn, tier)) in drawn.iter().zip(tiers).enumerate() {
+            let index = index as u32;
+            let wanted = match tier {
+                Tier::Full => !self.actors.plays(index),
+                Tier::Near => true,
+                Tier::Far => false,
+            };
+            if wanted && self.shown.len() < room && is_seen(drawn.places[1], planes) {
+                self.shown.push(index);
+            }
+        }
+        let shown = &self.shown;
+        let turned_by = &mesh.turned_by;
+        self.near
+            .poses()
+            .par_chunks_mut(POSE_BYTES)
+            .zip(shown)
+            .with_min_len(64)
+            .for_each(|(out, index)| {
+                let mut pose = CrowdPose::default();
+                agents[*index as usize].pose(&mut pose);
+                write_pose(&pose, turned_by, out);
+            });
+        if !shown.is_empty() {
+            self.near.upload_poses();
+        }
+        self.near
+            .instances()
+            .par_chunks_mut(INSTANCE_NUMBERS)
+            .zip(shown)
+            .enumerate()
+            .with_min_len(256)
+            .for_each(|(slot, (out, index))| {
+                let drawn = &drawn[*index as usize];
+                let (place, heading) = drawn.at(1.0);
+                let custom = [slot as f32, 0.0, 0.0, drawn.tint];
+                write_instance(place, heading, drawn.size, custom, out);
+            });
+        let mut bounds = Bounds::default();
+        for index in shown {
+            bounds.add(drawn[*index as usize].places[1]);
+        }
+        self.near.upload_instances(shown.len(), bounds.aabb());
+    }
+
+    /// Everybody far away: the group that has just moved gets the poses where it was and where it is, and is drawn on its way from
+    /// the one to the other.
+    fn draw_far(&mut self, walkers: &Walkers, planes: &[Vec4]) {
+        let Walkers {
+            tiers,
+            drawn,
+            frame,
+            ..
+        } = walkers;
+        let frame = *frame;
+        for (group, flock) in self.far.iter_mut().enumerate() {
+            let since = (frame + GROUPS as u64 - group as u64) % GROUPS as u64;
+            if since == 0 {
+                write_far(flock, group, walkers, planes, &self.ticks);
+                for index in (group..drawn.len()).step_by(GROUPS) {
+                    if tiers[index] == Tier::Far && is_seen(drawn[index].places[1], planes) {
+                        self.ticks[index] = frame;
+                    }
+                }
+                flock.upload_poses();
+            }
+            let share = (since + 1) as f32 / GROUPS as f32;
+            let mut bounds = Bounds::default();
+            let mut count = 0;
+            let mut rows = flock.instances().chunks_exact_mut(INSTANCE_NUMBERS);
+            for (slot, index) in (group..drawn.len()).step_by(GROUPS).enumerate() {
+                if tiers[index] != Tier::Far || frame - self.ticks[index] >= GROUPS as u64 {
+                    continue;
+                }
+                let Some(out) = rows.next() else {
+                    break;
+                };
+                let drawn = &drawn[index];
+                let (place, heading) = drawn.at(share);
+                bounds.add(place);
+                let first = 2.0 * slot as f32;
+                let custom = [first, first + 1.0, share, drawn.tint];
+                write_instance(place, heading, drawn.size, custom, out);
+                count += 1;
+            }
+            flock.upload_instances(count, bounds.aabb());
+        }
+    }
+}
+
+/// Writes the two poses of every walker of a group that is far away and seen: where it was, and where it is.
+fn write_far(flock: &mut Flock, group: usize, walkers: &Walkers, planes: &[Vec4], ticks: &[u64]) {
+    let Walkers {
+        agents,
+        tiers,
+        drawn,
+        mesh,
+        frame,
+        ..
+    } = walkers;
+    let (agents, turned_by) = (agents.as_slice(), &mesh.turned_by);
+    let (poses, last) = flock.poses_and_last();
+    poses
+        .par_chunks_mut(2 * POSE_BYTES)
+        .zip(last.par_chunks(2 * POSE_BYTES))
+        .enumerate()
+        .with_min_len(64)
+        .for_each(|(slot, (out, last))| {
+            let index = group + slot * GROUPS;
+            let Some(agent) = agents.get(index) else {
+                return;
+            };
+            if tiers[index] != Tier::Far || !is_seen(drawn[index].places[1], planes) {
+                return;
+            }
+            let mut pose = CrowdPose::default();
+            let (was, is) = out.split_at_mut(POSE_BYTES);
+            agent.pose(&mut pose);
+            write_pose(&pose, turned_by, is);
+            if frame - ticks[index] == GROUPS as u64 {
+                was.copy_from_slice(&last[POSE_BYTES..]);
+            } else {
+                was.copy_from_slice(is);
+            }
+        });
+}
+
+/// A box around places.
+struct Bounds {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self {
+            low: Vec3::MAX,
+            high: Vec3::MIN,
+        }
+    }
+}
+
+impl Bounds {
+    fn add(&mut self, place: Vec3) {
+        self.low = self.low.min(place);
+        self.high = self.high.max(place);
+    }
+
+    /// Around the bodies of who stands there.
+    fn aabb(&self) -> Aabb {
+        let (low, high) = (
+            self.low - Vec3::new(1.5, 0.5, 1.5),
+            self.high + Vec3::new(1.5, 3.0, 1.5),
+        );
+        if low.x > high.x {
+            return Aabb::default();
+        }
+        Aabb::new(convert::vector3(low), convert::vector3(high - low))
+    }
+}
+
+/// The planes around what a camera sees, in the crowd's space: normals outwards, and distances.
+fn planes_of(camera: &Gd<godot::classes::Camera3D>, host: &Gd<Node3D>) -> Vec<Vec4> {
+    let world = convert::frame(host.get_global_transform());
+    let planes = camera.get_frustum();
+    planes
+        .iter_shared()
+        .map(|plane| {
+            let normal = convert::vec3(plane.normal);
+            let local = world.rotation.conjugate() * normal;
+            local.extend(plane.d - normal.dot(world.position))
+        })
+        .collect()
+}
+
+fn is_seen(place: Vec3, planes: &[Vec4]) -> bool {
+    let middle = place + Vec3::Y * 0.9;
+    planes
+        .iter()
+        .all(|plane| plane.truncate().dot(middle) - plane.w < MARGIN_M)
+}

@@ -1,0 +1,139 @@
+//! Where walkers of a crowd go by themselves.
+
+use super::agent::{ARRIVED_M, Agent, Goal};
+use glam::Vec2;
+
+/// Who follows a path looks so far ahead on it, metres.
+const AHEAD_M: f32 = 2.5;
+
+/// What all walkers of a crowd do.
+#[derive(Debug, Default)]
+pub(super) enum Way {
+    /// What scripts tell them.
+    #[default]
+    Told,
+    /// From one place of a rectangle about the origin to another.
+    Wander {
+        /// Half its sides, metres.
+        half: Vec2,
+    },
+    /// Along a path, beside each other.
+    Path(Path),
+}
+
+/// A line through points of the plane.
+#[derive(Debug, Default)]
+pub(super) struct Path {
+    points: Vec<Vec2>,
+    /// Length of the way to each point.
+    lengths: Vec<f32>,
+    closed: bool,
+}
+
+impl Path {
+    /// `None` for a line without length.
+    pub(super) fn new(points: Vec<Vec2>) -> Option<Self> {
+        let mut lengths = Vec::with_capacity(points.len());
+        let mut length = 0.0;
+        let mut before: Option<Vec2> = None;
+        for point in &points {
+            length += before.map_or(0.0, |before| before.distance(*point));
+            lengths.push(length);
+            before = Some(*point);
+        }
+        let ends = points.first().zip(points.last());
+        let closed = ends.is_some_and(|(first, last)| first.distance(*last) < 0.5);
+        (length > 0.1).then_some(Self {
+            points,
+            lengths,
+            closed,
+        })
+    }
+
+    pub(super) fn length(&self) -> f32 {
+        self.lengths.last().copied().unwrap_or(0.0)
+    }
+
+    /// The place and the direction at so many metres from its beginning. A closed path goes round, an open one there and back.
+    pub(super) fn at(&self, along: f32) -> (Vec2, Vec2) {
+        let length = self.length();
+        let (along, sign) = if self.closed {
+            (along.rem_euclid(length), 1.0)
+        } else {
+            let twice = along.rem_euclid(2.0 * length);
+            if twice <= length {
+                (twice, 1.0)
+            } else {
+                (2.0 * length - twice, -1.0)
+            }
+        };
+        let index = self.lengths.partition_point(|at| *at < along);
+        let index = index.clamp(1, self.points.len() - 1);
+        let (from, to) = (self.points[index - 1], self.points[index]);
+        let span = self.lengths[index] - self.lengths[index - 1];
+        let share = ((along - self.lengths[index - 1]) / span.max(1e-6)).clamp(0.0, 1.0);
+        (
+            from.lerp(to, share),
+            sign * (to - from).normalize_or(Vec2::Y),
+        )
+    }
+
+    /// The place beside it: positive to the left.
+    pub(super) fn beside(&self, along: f32, aside: f32) -> (Vec2, Vec2) {
+        let (place, direction) = self.at(along);
+        // Seen from above with +X to the right and +Z towards the viewer, left of +Z is +X.
+        let left = Vec2::new(direction.y, -direction.x);
+        (place + left * aside, direction)
+    }
+}
+
+impl Way {
+    /// Sets a walker's goal, if the crowd goes anywhere by itself.
+    pub(super) fn lead(&self, agent: &mut Agent) {
+        match self {
+            Self::Told => {}
+            Self::Wander { half } => {
+                let arrived = match agent.goal {
+                    Goal::Place(place) => place.distance(agent.level()) < ARRIVED_M,
+                    Goal::Turn(_) => true,
+                };
+                if arrived {
+                    let next = [agent.chance(), agent.chance()].map(|share| 2.0 * share - 1.0);
+                    agent.goal = Goal::Place(Vec2::from(next) * *half);
+                }
+            }
+            Self::Path(path) => {
+                // Progress is where it stands when its way is laid onto the path's direction.
+                let (on_path, direction) = path.beside(agent.progress_m, agent.aside_m);
+                let along = (agent.level() - on_path).dot(direction);
+                agent.progress_m += along.clamp(0.0, 1.5);
+                let ahead = agent.progress_m + AHEAD_M;
+                agent.goal = Goal::Place(path.beside(ahead, agent.aside_m).0);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_followed_there_and_back_or_round() {
+        let open = Path::new(vec![Vec2::ZERO, Vec2::new(0.0, 10.0)]).unwrap();
+        assert_eq!(open.at(3.0), (Vec2::new(0.0, 3.0), Vec2::Y));
+        assert_eq!(open.at(13.0), (Vec2::new(0.0, 7.0), Vec2::NEG_Y));
+        let corners = [
+            (0.0, 0.0),
+            (10.0, 0.0),
+            (10.0, 10.0),
+            (0.0, 10.0),
+            (0.0, 0.0),
+        ];
+        let round = Path::new(corners.map(Vec2::from).to_vec()).unwrap();
+        assert!((round.length() - 40.0).abs() < 1e-4);
+        assert_eq!(round.at(45.0), (Vec2::new(5.0, 0.0), Vec2::X));
+        assert_eq!(round.beside(5.0, 1.0).0, Vec2::new(5.0, -1.0));
+        assert!(Path::new(vec![Vec2::ZERO; 3]).is_none());
+    }
+}

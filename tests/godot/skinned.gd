@@ -1,0 +1,55 @@
+class_name Skinned
+## Scenes with the canonical body and a mesh that hangs from all its bones.
+
+
+static func scene(without: PackedStringArray = []) -> PackedScene:
+	var walker := Walker.new()
+	walker.missing = without
+	walker.build(false)
+	var root := Node3D.new()
+	var skeleton := walker.skeleton
+	walker.remove_child(skeleton)
+	skeleton.remove_child(walker.gait)
+	walker.gait.free()
+	root.add_child(skeleton)
+	skeleton.owner = root
+	skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_IDLE
+	var mesh := MeshInstance3D.new()
+	mesh.mesh = _triangles(skeleton)
+	skeleton.add_child(mesh)
+	mesh.skin = skeleton.create_skin_from_rest_transforms()
+	mesh.skeleton = ^".."
+	mesh.owner = root
+	var packed := PackedScene.new()
+	packed.pack(root)
+	root.free()
+	walker.free()
+	return packed
+
+
+## A small triangle at every bone.
+static func _triangles(skeleton: Skeleton3D) -> ArrayMesh:
+	var vertices := PackedVector3Array()
+	var normals := PackedVector3Array()
+	var bones := PackedInt32Array()
+	var weights := PackedFloat32Array()
+	for bone: int in skeleton.get_bone_count():
+		var place := Vector3.ZERO
+		var above := bone
+		while above >= 0:
+			place = skeleton.get_bone_rest(above) * place
+			above = skeleton.get_bone_parent(above)
+		for corner: Vector3 in [Vector3.ZERO, Vector3(0.03, 0, 0), Vector3(0, 0.03, 0)]:
+			vertices.append(place + corner)
+			normals.append(Vector3.BACK)
+			bones.append_array([bone, 0, 0, 0])
+			weights.append_array([1.0, 0.0, 0.0, 0.0])
+	var arrays := []
+	arrays.resize(Mesh.ARRAY_MAX)
+	arrays[Mesh.ARRAY_VERTEX] = vertices
+	arrays[Mesh.ARRAY_NORMAL] = normals
+	arrays[Mesh.ARRAY_BONES] = bones
+	arrays[Mesh.ARRAY_WEIGHTS] = weights
+	var mesh := ArrayMesh.new()
+	mesh.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, arrays)
+	return mesh
