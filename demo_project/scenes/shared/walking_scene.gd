@@ -8,6 +8,8 @@ const WALKER: PackedScene = preload("res://scenes/shared/walker.tscn")
 var footsteps := 0
 var walkers: Array[Node3D] = []
 
+var _starts: Array[Vector3] = []
+
 @onready var _camera: Camera3D = $Stage/Camera
 @onready var _footprints: MultiMeshInstance3D = $Stage/Footprints
 
@@ -54,3 +56,35 @@ func follow(panel: Control) -> void:
 		for index: int in walkers.size():
 			gait_of(walkers[index]).seed = first + index)
 	set_all(&"speed", panel.SPEED)
+
+
+## What pictures show closely: walkers whom nobody hides.
+func close_ups() -> Dictionary[String, Array]:
+	var at := func(index: int) -> Vector3: return walkers[index].global_position + Vector3.UP * 0.9
+	return {
+		"side": [at.call(4), 90.0, 5.0, 3.4],
+		"front": [at.call(4), 3.0, 6.0, 3.4],
+		"three_quarter": [at.call(0), 38.0, 12.0, 3.9],
+	}
+
+
+func begin_check() -> void:
+	for walker: Node3D in walkers:
+		_starts.append(walker.global_position)
+
+
+## Who did not walk as far as its speed promises in so many frames.
+func problems(frames: int) -> PackedStringArray:
+	var found := PackedStringArray()
+	if _starts.is_empty():
+		found.append("nobody is there")
+	for index: int in _starts.size():
+		var walked := walkers[index].global_position.distance_to(_starts[index])
+		# Half of what the speed promises, after a second to get going.
+		var expected := 0.5 * gait_of(walkers[index]).speed * maxf(frames / 60.0 - 1.0, 0.0)
+		if not walked > expected:
+			found.append("%s walked %.2f m instead of more than %.2f" % [walkers[index].name, walked, expected])
+	var least := _starts.size() * (frames / 60.0 - 1.0)
+	if footsteps < least:
+		found.append("%d footsteps in %d frames, less than %d" % [footsteps, frames, least])
+	return found

@@ -21,7 +21,7 @@ func build(styles: Array[GaitStyle]) -> void:
 	_speed = _add_row("Speed, m/s", 0.0, 2.2, "%.2f", func(value: float) -> void: speed_changed.emit(value))
 	%Reset.pressed.connect(reset)
 	%Random.pressed.connect(randomise)
-	%Other.pressed.connect(func() -> void: get_tree().change_scene_to_file("res://scenes/switching/switching.tscn"))
+	%Other.pressed.connect(func() -> void: get_tree().change_scene_to_file("res://scenes/menu/menu.tscn"))
 
 
 func weights() -> PackedFloat32Array:

@@ -4,10 +4,16 @@ use crate::{contact_sheet, display, engine_run, godot, library, link, open, path
 use anyhow::{Context as _, Result, bail};
 use std::fs;
 
-/// The demo's scenes by topic, the first the one that it begins with.
-pub(crate) const SCENES: [(&str, &str); 3] = [
+/// The demo's scenes by topic.
+pub(crate) const SCENES: [(&str, &str); 6] = [
     ("walk", "res://scenes/walk/walk.tscn"),
     ("styles", "res://scenes/styles/styles.tscn"),
+    ("uneven", "res://scenes/uneven/uneven.tscn"),
+    ("crowd", "res://scenes/crowd/crowd.tscn"),
+    (
+        "third_person",
+        "res://scenes/third_person/third_person.tscn",
+    ),
     ("switching", "res://scenes/switching/switching.tscn"),
 ];
 

@@ -16,7 +16,7 @@ use std::process::Command;
 /// The oldest Godot that has what the add-on uses, as (major, minor).
 const OLDEST: (u32, u32) = (4, 6);
 /// Raised when the cache is laid out in another way, so that an older one is made anew.
-const LAYOUT: &str = "footfall godot cache 1";
+const LAYOUT: &str = "footfall godot cache 2";
 
 /// A Godot that runs on this machine.
 #[derive(Debug, Clone)]
@@ -95,6 +95,19 @@ fn program_in_marker(marker: &str) -> Option<PathBuf> {
     let mut lines = marker.lines();
     (lines.next()? == LAYOUT).then_some(())?;
     lines.nth(1).map(PathBuf::from)
+}
+
+/// A command that starts a game that was exported with this engine's own template.
+///
+/// # Errors
+/// When a game that was exported with Debian's template cannot be made to start here.
+pub(crate) fn exported_game(engine: &Engine, game: &Path) -> Result<Command> {
+    let cache = paths::godot_cache()?;
+    if engine.release_template.is_some() && engine.release_template == template_of(&cache) {
+        apt::game(&cache, game)
+    } else {
+        Ok(Command::new(game))
+    }
 }
 
 fn template_of(cache: &Path) -> Option<PathBuf> {

@@ -9,10 +9,12 @@
 #![expect(clippy::disallowed_methods, reason = "steps are timed for the user")]
 
 mod addon;
+mod bench_crowd;
 mod contact_sheet;
 mod demo;
 mod display;
 mod engine_run;
+mod export;
 mod godot;
 mod golden;
 mod library;
@@ -75,6 +77,20 @@ enum Command {
     },
     /// Build all and open the demo; without a display, leave pictures of it.
     Demo,
+    /// Export the demo as a game for this machine into `rust/target/export`, and start it once without a window.
+    Export,
+    /// Measure crowds in headless Godot; prints one JSON object, times in ms and µs.
+    BenchCrowd {
+        /// Instances.
+        #[arg(long, default_value_t = 10_000)]
+        instances: u32,
+        /// Whole skeletons.
+        #[arg(long, default_value_t = 1500)]
+        skeletons: u32,
+        /// Print JSON, as is always done.
+        #[arg(long)]
+        json: bool,
+    },
     /// Start Godot on a project folder, on a display in memory where there is none.
     Open {
         /// The project's folder, from the repository's root.
@@ -107,6 +123,12 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Tidy => tidy::command(),
         Command::Verify { steps } => verify::command(steps),
         Command::Demo => demo::command(),
+        Command::Export => export::command(),
+        Command::BenchCrowd {
+            instances,
+            skeletons,
+            ..
+        } => bench_crowd::command(*instances, *skeletons),
         Command::Open { project, arguments } => open::command(project, arguments),
     }
 }

@@ -1,6 +1,6 @@
 //! `cargo verify`: everything that must hold before a change goes in, in the order in which it fails soonest.
 
-use crate::{demo, engine_run, godot, library, link, open, paths, process, tidy};
+use crate::{demo, engine_run, export, godot, library, link, open, paths, process, tidy};
 use anyhow::{Context as _, Result, bail};
 use std::path::Path;
 use std::time::Instant;
@@ -14,7 +14,7 @@ struct Step {
     check: fn() -> Result<()>,
 }
 
-const STEPS: [Step; 9] = [
+const STEPS: [Step; 10] = [
     Step {
         name: "format",
         check: format,
@@ -50,6 +50,10 @@ const STEPS: [Step; 9] = [
     Step {
         name: "godot-demo",
         check: demo_in_godot,
+    },
+    Step {
+        name: "export",
+        check: exported_demo,
     },
 ];
 
@@ -173,6 +177,25 @@ fn demo_in_godot() -> Result<()> {
         )?;
     }
     Ok(())
+}
+
+/// The demo as players get it: with the library's other flavour, and without an editor.
+fn exported_demo() -> Result<()> {
+    if !cfg!(target_os = "linux") {
+        eprintln!("skipped: the demo is exported on Linux only");
+        return Ok(());
+    }
+    let engine = godot::provision()?;
+    if engine.release_template.is_none() {
+        eprintln!("skipped: this Godot came without an export template");
+        return Ok(());
+    }
+    library::build(&library::Options {
+        all: true,
+        ..library::Options::default()
+    })?;
+    let game = export::export(&engine)?;
+    export::start(&engine, &game)
 }
 
 /// Imports a project and runs a scene of it, the main one if none is named, without a window.

@@ -354,7 +354,7 @@ impl GaitCrowd3D {
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_tints(&mut self, colours: PackedColorArray) {
         self.set_each(colours.as_slice(), |agent, colour| {
-            agent.tint = packed(*colour);
+            agent.tint = linear(*colour);
         });
     }
 
@@ -657,7 +657,7 @@ impl GaitCrowd3D {
             let _released = self.base_mut();
             crowd_mesh::CrowdMesh::new(&character, &mut host)?
         };
-        let tints = self.colours.as_slice().iter().map(|colour| packed(*colour));
+        let tints = self.colours.as_slice().iter().map(|colour| linear(*colour));
         let settings = walkers::Settings {
             seed: self.seed.cast_unsigned(),
             speeds_mps: [self.speed_range.x, self.speed_range.y],
@@ -745,9 +745,8 @@ impl GaitCrowd3D {
     }
 }
 
-/// A colour as the shader unpacks it.
-fn packed(colour: Color) -> f32 {
+/// A colour as instances have it.
+fn linear(colour: Color) -> [f32; 4] {
     let colour = colour.srgb_to_linear();
-    let byte = |share: f32| (255.0 * share.clamp(0.0, 1.0)).round();
-    65536.0 * byte(colour.r) + 256.0 * byte(colour.g) + byte(colour.b)
+    [colour.r, colour.g, colour.b, colour.a]
 }

@@ -18,10 +18,11 @@ use std::time::Duration;
 
 /// The suite of Debian whose Godot is at least 4.6.
 const SUITE: &str = "forky";
-/// Godot, its export template, and software rendering for machines without a graphics card.
-const PACKAGES: [&str; 8] = [
+/// Godot, its export template and what makes games of it start here, and software rendering for machines without a graphics card.
+const PACKAGES: [&str; 9] = [
     "godot",
     "godot-template-release",
+    "patchelf",
     "libgl1-mesa-dri",
     "libegl1",
     "libgl1",
@@ -234,6 +235,52 @@ fn starter_script(architecture: &Architecture) -> String {
          LIBGL_DRIVERS_PATH=\"$root/{libraries}/dri\" exec \"$root/{loader}\" \\\n  \
          --library-path \"$root/{libraries}:$root/{libraries}/pulseaudio:$root/usr/lib\" \"$root/usr/bin/godot\" \"$@\"\n"
     )
+}
+
+/// A command that starts a game which was exported with Debian's template. It needs the loader and the libraries that the template came
+/// with, so a copy of it is made beside it that names that loader: started through the loader it would not find its data.
+pub(super) fn game(cache: &Path, game: &Path) -> Result<Command> {
+    let root = cache.join("root");
+    let architecture = Architecture::of_host()?;
+    let library_path = [
+        root.join(architecture.libraries),
+        root.join(architecture.libraries).join("pulseaudio"),
+        root.join("usr/lib"),
+    ]
+    .map(|folder| folder.display().to_string())
+    .join(":");
+    let loader = root.join(architecture.loader);
+    let folder = game.with_extension("started");
+    if folder.exists() {
+        fs::remove_dir_all(&folder)
+            .with_context(|| format!("cannot clear {}", folder.display()))?;
+    }
+    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    let home = game.parent().context("a game without a folder")?;
+    for entry in fs::read_dir(home).with_context(|| format!("cannot read {}", home.display()))? {
+        let file = entry?.path();
+        if let Some(name) = file.file_name().filter(|_| file.is_file()) {
+            fs::copy(&file, folder.join(name))
+                .with_context(|| format!("cannot copy {}", file.display()))?;
+        }
+    }
+    let copy = folder.join(game.file_name().context("a game without a name")?);
+    process::read(
+        Command::new(&loader)
+            .arg("--library-path")
+            .arg(&library_path)
+            .arg(root.join("usr/bin/patchelf"))
+            .arg("--set-interpreter")
+            .args([&loader, &copy]),
+    )
+    .context("patchelf cannot change the exported game")?;
+    make_executable(&copy)?;
+    let mut command = Command::new(copy);
+    command.env("LD_LIBRARY_PATH", library_path).env(
+        "LIBGL_DRIVERS_PATH",
+        root.join(architecture.libraries).join("dri"),
+    );
+    Ok(command)
 }
 
 #[cfg(unix)]

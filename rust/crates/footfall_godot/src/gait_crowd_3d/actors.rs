@@ -11,7 +11,7 @@ use footfall_core::rotation::from_heading;
 use footfall_ik::placement::{Frame, Landing};
 use footfall_synth::CrowdPose;
 use godot::classes::node::ProcessMode;
-use godot::classes::{Node, Node3D, PackedScene, Skeleton3D};
+use godot::classes::{BaseMaterial3D, MeshInstance3D, Node, Node3D, PackedScene, Skeleton3D};
 use godot::prelude::*;
 
 /// One scene.
@@ -20,6 +20,8 @@ struct Actor {
     skeleton: Gd<Skeleton3D>,
     binding: SkeletonBinding,
     placement: Option<Gd<FootPlacement3D>>,
+    /// The scene's own materials, copied, and their colours without any tint.
+    materials: Vec<(Gd<BaseMaterial3D>, Color)>,
     plays: Option<u32>,
 }
 
@@ -34,7 +36,13 @@ pub(super) struct Actors {
 
 impl Actors {
     /// Lends scenes to the walkers of this tier, and takes them back from all others. Who has one keeps it.
-    pub(super) fn lend(&mut self, tiers: &[Tier], scene: &Gd<PackedScene>, host: &mut Gd<Node3D>) {
+    pub(super) fn lend(
+        &mut self,
+        tiers: &[Tier],
+        agents: &[Agent],
+        scene: &Gd<PackedScene>,
+        host: &mut Gd<Node3D>,
+    ) {
         let is_full = |index: u32| tiers.get(index as usize) == Some(&Tier::Full);
         self.playing.clear();
         self.playing.resize(tiers.len(), false);
@@ -76,6 +84,14 @@ impl Actors {
             }
             let actor = &mut self.all[next];
             actor.plays = Some(walker);
+            if let Some(agent) = agents.get(walker as usize) {
+                let [r, g, b, _] = agent.tint;
+                for (material, own) in &mut actor.materials {
+                    let own = own.srgb_to_linear();
+                    let tinted = Color::from_rgba(own.r * r, own.g * g, own.b * b, own.a);
+                    material.set_albedo(tinted.linear_to_srgb());
+                }
+            }
             self.playing[walker as usize] = true;
             actor.node.set_visible(true);
             actor.node.set_process_mode(ProcessMode::INHERIT);
@@ -161,12 +177,36 @@ impl Actor {
             return None;
         };
         node.set_global_transform(upright);
+        let materials = own_materials(&skeleton);
         Some(Self {
             node,
             skeleton,
             binding,
             placement,
+            materials,
             plays: None,
         })
     }
+}
+
+/// Gives the meshes of a skeleton materials of their own, so that a tint does not reach other scenes.
+fn own_materials(skeleton: &Gd<Skeleton3D>) -> Vec<(Gd<BaseMaterial3D>, Color)> {
+    let mut materials = Vec::new();
+    for node in skeleton.get_children().iter_shared() {
+        let Ok(mut mesh) = node.try_cast::<MeshInstance3D>() else {
+            continue;
+        };
+        for surface in 0..mesh.get_surface_override_material_count() {
+            let material = mesh
+                .get_active_material(surface)
+                .and_then(|material| material.try_cast::<BaseMaterial3D>().ok());
+            if let Some(material) = material {
+                let own = material.duplicate_resource();
+                mesh.set_surface_override_material(surface, &own);
+                let colour = own.get_albedo();
+                materials.push((own, colour));
+            }
+        }
+    }
+    materials
 }

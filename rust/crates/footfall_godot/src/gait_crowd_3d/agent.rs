@@ -18,8 +18,8 @@ const AVOIDING_TURN: f32 = 0.9;
 /// Time constant with which a walker rises and falls with the ground, seconds.
 const RISE_SECS: f32 = 0.15;
 
-/// A tint is packed into one number, eight bits for each of red, green and blue.
-pub(super) const WHITE: f32 = 16_777_215.0;
+/// A tint that changes nothing: red, green, blue and opacity.
+pub(super) const WHITE: [f32; 4] = [1.0; 4];
 
 /// What a walker is asked to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub(super) struct Drawn {
     /// The second is within half a turn of the first.
     pub(super) headings: [f32; 2],
     pub(super) size: f32,
-    pub(super) tint: f32,
+    pub(super) tint: [f32; 4],
 }
 
 impl Drawn {
@@ -67,7 +67,7 @@ pub(super) struct Agent {
     pub(super) speed_mps: f32,
     /// Its height against that of the character.
     pub(super) size: f32,
-    pub(super) tint: f32,
+    pub(super) tint: [f32; 4],
     pub(super) seed: u64,
     pub(super) place: Vec3,
     pub(super) heading: f32,

@@ -4,12 +4,12 @@ use crate::convert;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics};
 use glam::{Affine3A, Vec3, Vec3A};
-use godot::classes::mesh::{ArrayType, PrimitiveType};
+use godot::classes::mesh::{ArrayCustomFormat, ArrayFormat, ArrayType, PrimitiveType};
 use godot::classes::{
     ArrayMesh, BaseMaterial3D, Material, Mesh, MeshInstance3D, Node3D, PackedScene, ShaderMaterial,
     Skeleton3D,
 };
-use godot::obj::EngineEnum as _;
+use godot::obj::{EngineBitfield as _, EngineEnum as _};
 use godot::prelude::*;
 
 /// Joints that move one vertex.
@@ -147,12 +147,30 @@ fn add_surfaces(
             continue;
         };
         let index = mesh.get_surface_count();
-        mesh.add_surface_from_arrays(PrimitiveType::TRIANGLES, &arrays);
+        mesh.add_surface_from_arrays_ex(PrimitiveType::TRIANGLES, &arrays)
+            .flags(custom_format())
+            .done();
         let material = instance.get_active_material(surface);
         if let Some(material) = crowd_material(material) {
             mesh.surface_set_material(index, &material);
         }
     }
+}
+
+/// Four floats in each custom channel. The Compatibility renderer of Godot 4.6 reads only part of four bytes.
+fn custom_format() -> ArrayFormat {
+    let floats = ArrayCustomFormat::RGBA_FLOAT.ord().cast_unsigned();
+    let shift = |format: ArrayFormat| format.ord();
+    let channels = [
+        shift(ArrayFormat::CUSTOM0_SHIFT),
+        shift(ArrayFormat::CUSTOM1_SHIFT),
+    ];
+    ArrayFormat::from_ord(
+        channels
+            .map(|shift| u64::from(floats) << shift)
+            .iter()
+            .sum(),
+    )
 }
 
 /// The arrays of a surface in the T-pose; `None` for one without bones.
@@ -176,8 +194,8 @@ fn t_posed(arrays: &VarArray, binds: &[(Joint, Affine3A)]) -> Option<VarArray> {
     }
     let mut places = Vec::with_capacity(count);
     let mut directions = Vec::with_capacity(count);
-    let mut joint_bytes = Vec::with_capacity(INFLUENCES * count);
-    let mut weight_bytes = Vec::with_capacity(INFLUENCES * count);
+    let mut joint_numbers = Vec::with_capacity(INFLUENCES * count);
+    let mut weight_numbers = Vec::with_capacity(INFLUENCES * count);
     for vertex in 0..count {
         let mut by_joint = [0.0; JOINT_COUNT];
         let point = Vec3A::from(convert::vec3(vertices.as_slice()[vertex]));
@@ -200,8 +218,8 @@ fn t_posed(arrays: &VarArray, binds: &[(Joint, Affine3A)]) -> Option<VarArray> {
             Vec3::from(direction).normalize_or(Vec3::Y),
         ));
         let (joints, shares) = strongest(&by_joint);
-        joint_bytes.extend_from_slice(&joints);
-        weight_bytes.extend_from_slice(&shares);
+        joint_numbers.extend_from_slice(&joints);
+        weight_numbers.extend_from_slice(&shares);
     }
     let mut made = VarArray::new();
     made.resize(slot(ArrayType::MAX), &Variant::nil());
@@ -215,11 +233,11 @@ fn t_posed(arrays: &VarArray, binds: &[(Joint, Affine3A)]) -> Option<VarArray> {
     );
     made.set(
         slot(ArrayType::CUSTOM0),
-        &PackedByteArray::from(joint_bytes).to_variant(),
+        &PackedFloat32Array::from(joint_numbers).to_variant(),
     );
     made.set(
         slot(ArrayType::CUSTOM1),
-        &PackedByteArray::from(weight_bytes).to_variant(),
+        &PackedFloat32Array::from(weight_numbers).to_variant(),
     );
     for kept in [ArrayType::COLOR, ArrayType::TEX_UV, ArrayType::INDEX] {
         if let Some(values) = get(kept) {
@@ -229,21 +247,14 @@ fn t_posed(arrays: &VarArray, binds: &[(Joint, Affine3A)]) -> Option<VarArray> {
     Some(made)
 }
 
-/// The four joints that move a vertex most, and their weights in 255ths.
-fn strongest(by_joint: &[f32; JOINT_COUNT]) -> ([u8; INFLUENCES], [u8; INFLUENCES]) {
-    let mut order: [u8; JOINT_COUNT] = core::array::from_fn(|joint| joint as u8);
-    order.sort_by(|a, b| by_joint[usize::from(*b)].total_cmp(&by_joint[usize::from(*a)]));
-    let joints: [u8; INFLUENCES] = core::array::from_fn(|index| order[index]);
-    let total: f32 = joints
-        .iter()
-        .map(|joint| by_joint[usize::from(*joint)])
-        .sum();
-    let mut weights =
-        joints.map(|joint| (255.0 * by_joint[usize::from(joint)] / total.max(1e-6)).round() as u8);
-    // They add up to one, or the vertex would be drawn towards the origin.
-    let rest: i32 = weights[1..].iter().map(|weight| i32::from(*weight)).sum();
-    weights[0] = (255 - rest).clamp(0, 255) as u8;
-    (joints, weights)
+/// The four joints that move a vertex most, and their weights, which add up to one.
+fn strongest(by_joint: &[f32; JOINT_COUNT]) -> ([f32; INFLUENCES], [f32; INFLUENCES]) {
+    let mut order: [usize; JOINT_COUNT] = core::array::from_fn(|joint| joint);
+    order.sort_by(|a, b| by_joint[*b].total_cmp(&by_joint[*a]));
+    let joints: [usize; INFLUENCES] = core::array::from_fn(|index| order[index]);
+    let total: f32 = joints.iter().map(|joint| by_joint[*joint]).sum();
+    let weights = joints.map(|joint| by_joint[joint] / total.max(1e-6));
+    (joints.map(|joint| joint as f32), weights)
 }
 
 /// The crowd's shader with what a character's own material says.
@@ -253,12 +264,10 @@ fn crowd_material(own: Option<Gd<Material>>) -> Option<Gd<ShaderMaterial>> {
     let mut material = ShaderMaterial::new_gd();
     material.set_shader(&shader);
     if let Some(own) = own.and_then(|own| own.try_cast::<BaseMaterial3D>().ok()) {
-        use godot::classes::base_material_3d::{Flags, TextureParam};
+        use godot::classes::base_material_3d::TextureParam;
         material.set_shader_parameter("albedo", &own.get_albedo().to_variant());
         material.set_shader_parameter("roughness", &own.get_roughness().to_variant());
         material.set_shader_parameter("metallic", &own.get_metallic().to_variant());
-        let colours = own.get_flag(Flags::ALBEDO_FROM_VERTEX_COLOR);
-        material.set_shader_parameter("vertex_colours", &colours.to_variant());
         if let Some(texture) = own.get_texture(TextureParam::ALBEDO) {
             material.set_shader_parameter("albedo_texture", &texture.to_variant());
         }

@@ -1,5 +1,6 @@
 //! Walkers that are drawn together: one `MultiMesh`, and the texture that its shader reads their poses from.
 
+use super::agent::Drawn;
 use super::crowd_mesh::{CrowdMesh, give_poses};
 use crate::convert;
 use footfall_core::{JOINT_COUNT, Joint};
@@ -21,8 +22,8 @@ const JOINT_NUMBERS: usize = 8;
 const POSE_NUMBERS: usize = JOINT_COUNT * JOINT_NUMBERS;
 /// Bytes of one pose.
 pub(super) const POSE_BYTES: usize = POSE_NUMBERS * size_of::<f16>();
-/// Numbers of one instance: a transform and custom data.
-pub(super) const INSTANCE_NUMBERS: usize = 16;
+/// Numbers of one instance: a transform, a colour and custom data.
+pub(super) const INSTANCE_NUMBERS: usize = 20;
 
 /// A group of instances and their poses.
 pub(super) struct Flock {
@@ -55,6 +56,7 @@ impl Flock {
         let shown = give_poses(&mesh.meshes[level], &mesh.rest, &texture, material);
         let mut multimesh = MultiMesh::new_gd();
         multimesh.set_transform_format(TransformFormat::TRANSFORM_3D);
+        multimesh.set_use_colors(true);
         multimesh.set_use_custom_data(true);
         multimesh.set_mesh(&shown);
         multimesh.set_instance_count(convert::count(room));
@@ -148,18 +150,21 @@ pub(super) fn write_pose(pose: &CrowdPose, turned_by: &[Joint; JOINT_COUNT], out
     }
 }
 
-/// Writes an instance: where it stands, its two poses, the way between them and its tint.
+/// Writes an instance: where it stands, its tint, the slot of its pose, and the way from there to the pose in the next slot.
 pub(super) fn write_instance(
     place: Vec3,
     heading: f32,
-    size: f32,
-    custom: [f32; 4],
+    drawn: &Drawn,
+    (slot, blend): (usize, f32),
     out: &mut [f32],
 ) {
-    let turn = glam::Mat3::from_quat(Quat::from_rotation_y(heading)) * size;
+    let turn = glam::Mat3::from_quat(Quat::from_rotation_y(heading)) * drawn.size;
     for row in 0..3 {
         out[4 * row..4 * row + 3].copy_from_slice(&turn.row(row).to_array());
         out[4 * row + 3] = place[row];
     }
-    out[12..16].copy_from_slice(&custom);
+    out[12..16].copy_from_slice(&drawn.tint);
+    // The Compatibility renderer keeps half floats, which are exact up to 2048.
+    let (low, high) = (slot % 1024, slot / 1024);
+    out[16..20].copy_from_slice(&[low as f32, high as f32, blend, 0.0]);
 }

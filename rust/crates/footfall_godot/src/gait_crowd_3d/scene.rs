@@ -141,7 +141,8 @@ impl CrowdScene {
     fn lend(&mut self, walkers: &Walkers, host: &Gd<Node3D>, look: &Look) {
         if let Some(character) = &look.character {
             let mut host = host.clone();
-            self.actors.lend(&walkers.tiers, character, &mut host);
+            self.actors
+                .lend(&walkers.tiers, &walkers.agents, character, &mut host);
         }
     }
 
@@ -191,8 +192,7 @@ impl CrowdScene {
             .for_each(|(slot, (out, index))| {
                 let drawn = &drawn[*index as usize];
                 let (place, heading) = drawn.at(1.0);
-                let custom = [slot as f32, 0.0, 0.0, drawn.tint];
-                write_instance(place, heading, drawn.size, custom, out);
+                write_instance(place, heading, drawn, (slot, 0.0), out);
             });
         let mut bounds = Bounds::default();
         for index in shown {
@@ -236,9 +236,7 @@ impl CrowdScene {
                 let drawn = &drawn[index];
                 let (place, heading) = drawn.at(share);
                 bounds.add(place);
-                let first = 2.0 * slot as f32;
-                let custom = [first, first + 1.0, share, drawn.tint];
-                write_instance(place, heading, drawn.size, custom, out);
+                write_instance(place, heading, drawn, (2 * slot, share), out);
                 count += 1;
             }
             flock.upload_instances(count, bounds.aabb());

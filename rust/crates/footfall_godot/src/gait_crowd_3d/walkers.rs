@@ -31,7 +31,7 @@ pub(super) struct Settings {
     pub(super) speeds_mps: [f32; 2],
     pub(super) sizes: [f32; 2],
     pub(super) style_amount: f32,
-    pub(super) tints: Vec<f32>,
+    pub(super) tints: Vec<[f32; 4]>,
     pub(super) half_area: Vec2,
     pub(super) path_width: f32,
 }

@@ -37,15 +37,11 @@ pub(super) const ARCHITECTURES: [Architecture; 2] = [
     },
 ];
 
-impl Archive {
-    /// Asks the machine's own apt for the archive.
-    pub(in crate::godot) fn find(cache: &Path) -> Result<Self> {
-        for tool in ["apt-get", "dpkg"] {
-            paths::on_path(&[tool])
-                .with_context(|| format!("there is no `{tool}` on this system"))?;
-        }
+impl Architecture {
+    /// This machine's.
+    pub(super) fn of_host() -> Result<&'static Self> {
         let debian = process::read(Command::new("dpkg").arg("--print-architecture"))?;
-        let architecture = ARCHITECTURES
+        ARCHITECTURES
             .iter()
             .find(|one| one.debian == debian.trim())
             .with_context(|| {
@@ -53,7 +49,18 @@ impl Archive {
                     "Debian's {} is not among the architectures known here",
                     debian.trim()
                 )
-            })?;
+            })
+    }
+}
+
+impl Archive {
+    /// Asks the machine's own apt for the archive.
+    pub(in crate::godot) fn find(cache: &Path) -> Result<Self> {
+        for tool in ["apt-get", "dpkg"] {
+            paths::on_path(&[tool])
+                .with_context(|| format!("there is no `{tool}` on this system"))?;
+        }
+        let architecture = Architecture::of_host()?;
         let (site, entry) = match debian_site(&targets(&[])?) {
             Some(found) => found,
             // Where the system's lists are empty, apt does not know its archive yet: fetch lists of our own.

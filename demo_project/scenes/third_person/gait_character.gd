@@ -1,0 +1,82 @@
+class_name GaitCharacter
+extends CharacterBody3D
+## A character for keyboard and gamepad that walks by its own steps: root motion moves the body, physics stops it.
+##
+## Needs a character below it with a `GaitGenerator3D` (`root_motion` off, unique name) and, for uneven ground, a `FootPlacement3D`.
+## Copy it into your game.
+
+## How fast the character walks and hurries, metres per second. Keep to what the model knows: `GaitModel.get_speed_range()`.
+@export var walk_speed := 1.3
+@export var hurry_speed := 2.0
+## How fast it turns towards where it is asked to go: radians per second for each radian, and at most.
+@export var turn_gain := 3.0
+@export var max_turn_rate := 2.0
+## Higher edges than this are walls, metres.
+@export var step_height := 0.22
+
+## Where the camera looks, radians about +Y; what "forwards" on the stick means.
+var view_heading := PI
+## Set to walk without a player: a direction on the ground, of length 0 to 1.
+var autopilot := Vector3.ZERO
+
+@onready var gait: GaitGenerator3D = $Body.get_node(^"%GaitGenerator3D")
+@onready var placement: FootPlacement3D = $Body.get_node(^"%FootPlacement3D")
+
+
+func _ready() -> void:
+	Actions.register()
+	gait.root_motion = false
+	gait.speed = 0.0
+	placement.follow_ground = false
+	var skeleton := gait.get_skeleton()
+	# Body and steps move in the same frame, and it is physics' frame.
+	skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_PHYSICS
+	gait.modification_processed.connect(_follow_steps)
+
+
+func _physics_process(_delta: float) -> void:
+	var wish := _wish()
+	if wish.length() < 0.1:
+		gait.speed = 0.0
+		gait.turn_rate = 0.0
+		return
+	var off := wrapf(atan2(wish.x, wish.z) - rotation.y, -PI, PI)
+	gait.turn_rate = clampf(turn_gain * off, -max_turn_rate, max_turn_rate)
+	var top := hurry_speed if Input.is_action_pressed(&"hurry") else walk_speed
+	# Who has to turn far slows down, or turns on the spot.
+	gait.speed = minf(wish.length(), 1.0) * top * clampf(1.3 - absf(off), 0.0, 1.0)
+
+
+func _wish() -> Vector3:
+	if autopilot != Vector3.ZERO:
+		return autopilot
+	var stick := Input.get_vector(&"walk_left", &"walk_right", &"walk_forward", &"walk_back")
+	return Vector3(stick.x, 0.0, stick.y).rotated(Vector3.UP, view_heading)
+
+
+## Moves the body by what the last steps travelled. Called by the generator in every physics frame, before the feet are placed.
+func _follow_steps() -> void:
+	var delta := get_physics_process_delta_time()
+	var motion := gait.get_root_motion_delta()
+	var fall := velocity.y - 9.8 * delta if not is_on_floor() else 0.0
+	velocity = global_basis * motion.origin / delta + Vector3.UP * fall
+	_step_up(delta)
+	move_and_slide()
+	rotation.y += motion.basis.get_euler().y
+	placement.in_air = not is_on_floor() and fall < -2.0
+
+
+## Climbs an edge that is low enough: a capsule alone would stop at it.
+func _step_up(delta: float) -> void:
+	var ahead := Vector3(velocity.x, 0.0, velocity.z) * delta
+	if ahead.length() < 1e-4 or not is_on_floor():
+		return
+	var reach := ahead.normalized() * 0.08 + ahead
+	if not test_move(global_transform, reach):
+		return
+	var raised := global_transform.translated(Vector3.UP * step_height)
+	if test_move(raised, reach):
+		return
+	var down := KinematicCollision3D.new()
+	if test_move(raised.translated(reach), Vector3.DOWN * step_height, down):
+		global_position.y += step_height + down.get_travel().y
