@@ -1,13 +1,23 @@
-//! `GaitGenerator::step` allocates nothing, whatever it is asked to do.
+//! What runs in every frame allocates nothing, whatever it is asked to do.
 #![expect(unsafe_code, reason = "counting allocations takes an allocator")]
 
 use footfall_core::Pose;
+use footfall_ik::placement::PlacementConfig;
 use footfall_model::{DynamicsModel, GaitModel};
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
+use footfall_synth::{
+    Controls, CrowdWalker, Detail, GaitGenerator, GeneratorConfig, StyleSpace, StyledBody, Workshop,
+};
 use footfall_tests::data::repository;
+use footfall_tests::terrain::{PlacedWalker, Relief};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
+
+const CONFIG: GeneratorConfig = GeneratorConfig {
+    seed: 3,
+    phase: 0.3,
+    variation: 1.0,
+};
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
@@ -69,6 +79,42 @@ fn assert_no_allocation(mut generator: GaitGenerator, seed: u64) {
     assert!(pose.root_position.is_finite());
 }
 
+/// Feet on stairs, told of footholds and not.
+fn assert_placing_allocates_nothing(generator: GaitGenerator) {
+    let mut terrain = Relief::still(|_, z| (z / 0.4).floor().clamp(0.0, 20.0) * 0.15);
+    let mut walker = PlacedWalker::new(generator, &PlacementConfig::default());
+    let controls = Controls {
+        speed_mps: 0.9,
+        turn_rate_radps: 0.0,
+    };
+    for frame in 0..900 {
+        let before = allocations();
+        walker.step(1.0 / 60.0, controls, &mut terrain, frame < 450);
+        assert_eq!(allocations() - before, 0, "placing, frame {frame}");
+    }
+}
+
+/// A walker of a crowd allocates only for a step that is longer than any before: slow ones in full detail come first.
+fn assert_crowds_allocate_nothing(styled: &StyledBody) {
+    let mut workshop = Workshop::new(styled);
+    let mut walker = CrowdWalker::new(styled, &CONFIG, false, &mut workshop).unwrap();
+    for frame in 0..3000 {
+        walker.set_repeating(frame % 1000 > 700);
+        if frame > 600 {
+            walker.set_detail(Detail::Quarter);
+        }
+        let controls = Controls {
+            speed_mps: if frame < 600 { 0.4 } else { 1.3 },
+            turn_rate_radps: 0.2,
+        };
+        let before = allocations();
+        walker.step(1.0 / 60.0, controls, &mut workshop);
+        if frame > 600 {
+            assert_eq!(allocations() - before, 0, "crowd, frame {frame}");
+        }
+    }
+}
+
 #[test]
 fn a_step_of_the_generator_allocates_nothing() {
     let read = |name: &str| std::fs::read(repository().join("tests/model_versions").join(name));
@@ -91,6 +137,8 @@ fn a_step_of_the_generator_allocates_nothing() {
         assert_no_allocation(walker, seed);
         assert_no_allocation(other, seed);
     }
+    assert_placing_allocates_nothing(GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap());
+    assert_crowds_allocate_nothing(&StyledBody::new(&space, &[], &skeleton).unwrap());
     // The counter counts.
     let before = allocations();
     drop(std::hint::black_box(vec![0_u8; 100]));
