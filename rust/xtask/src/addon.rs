@@ -1,8 +1,10 @@
 //! `cargo xtask addon`: one archive that a user unpacks into a Godot project.
 
 use crate::library::{self, Options};
-use crate::{paths, progress};
+use crate::{paths, process, progress};
 use anyhow::{Context as _, Result, bail};
+use sha2::{Digest as _, Sha256};
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
@@ -16,6 +18,10 @@ const NEEDED: [&str; 5] = [
     "README.md",
     "models/walk.footfall",
 ];
+
+/// What the archive holds besides the add-on's own files.
+const THIRD_PARTY: &str = "addons/footfall/THIRD_PARTY.md";
+const CHECKSUMS: &str = "addons/footfall/SHA256SUMS";
 
 /// Writes `rust/target/footfall-addon.zip`, with this machine's library in both flavours, or with `packed` with those of
 /// all platforms, which must be in `bin/` already.
@@ -43,9 +49,60 @@ pub(crate) fn command(packed: bool) -> Result<()> {
         eprintln!("not in the archive, since it is not built here: {name}");
     }
     let archive = paths::target_folder().join("footfall-addon.zip");
-    let files = pack(&addon, &archive)?;
+    let files = pack(&addon, &archive, &third_party()?)?;
+    let sums = archive.with_extension("zip.sha256");
+    let bytes = fs::read(&archive).with_context(|| format!("cannot read {}", archive.display()))?;
+    fs::write(&sums, format!("{}  footfall-addon.zip\n", sha256(&bytes)))
+        .with_context(|| format!("cannot write {}", sums.display()))?;
     eprintln!("{} ({files} files)", archive.display());
     Ok(())
+}
+
+/// What the library is built from besides this project, and under which terms.
+fn third_party() -> Result<String> {
+    let tree = process::read(process::cargo().args([
+        "tree",
+        "--locked",
+        "--package",
+        "footfall_godot",
+        "--features",
+        "footfall_godot/editor",
+        "--edges",
+        "normal",
+        "--target",
+        "all",
+        "--prefix",
+        "none",
+        "--format",
+        "{p}|{l}|{r}",
+    ]))?;
+    Ok(notices(&tree))
+}
+
+/// A table of crates from `cargo tree`, each once; those without a source of their own are this project's.
+fn notices(tree: &str) -> String {
+    let rows: BTreeSet<String> = tree
+        .lines()
+        .filter_map(|line| {
+            let mut parts = line.trim_end_matches(" (*)").split('|');
+            let (name, licence, source) = (parts.next()?, parts.next()?, parts.next()?);
+            let own = name.contains(" (") && !name.contains("proc-macro");
+            let name = name.trim_end_matches(" (proc-macro)");
+            (!own && !licence.is_empty()).then(|| format!("| {name} | {licence} | {source} |"))
+        })
+        .collect();
+    let rows: Vec<String> = rows.into_iter().collect();
+    format!(
+        "# Third-party notices\n\n\
+         The library in `bin/` contains these crates. Each may be used under the terms beside it; their texts are at the sources.\n\n\
+         | crate | terms | source |\n| --- | --- | --- |\n{}\n",
+        rows.join("\n")
+    )
+}
+
+/// A checksum as `sha256sum` prints it.
+fn sha256(bytes: &[u8]) -> String {
+    format!("{:x}", Sha256::digest(bytes))
 }
 
 /// The libraries that the `.gdextension` file names but `bin/` does not hold.
@@ -73,8 +130,9 @@ fn named_libraries(gdextension: &str) -> Vec<String> {
     names
 }
 
-/// Writes every file of the add-on, in order and without times, so that equal add-ons give equal archives.
-fn pack(addon: &Path, archive: &Path) -> Result<usize> {
+/// Writes every file of the add-on, in order and without times, so that equal add-ons give equal archives; then the notices, and the
+/// checksums of all of them.
+fn pack(addon: &Path, archive: &Path, notices: &str) -> Result<usize> {
     let mut files = Vec::new();
     collect(addon, &mut files)?;
     files.sort();
@@ -86,6 +144,7 @@ fn pack(addon: &Path, archive: &Path) -> Result<usize> {
     let options = SimpleFileOptions::default()
         .last_modified_time(zip::DateTime::default())
         .unix_permissions(0o644);
+    let mut sums = Vec::new();
     for file in &files {
         let inside = file
             .strip_prefix(addon)
@@ -95,15 +154,22 @@ fn pack(addon: &Path, archive: &Path) -> Result<usize> {
             .display()
             .to_string()
             .replace('\\', "/");
+        let bytes = fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+        sums.push(format!("{}  {name}", sha256(&bytes)));
         zip.start_file(name, options)?;
-        zip.write_all(&fs::read(file).with_context(|| format!("cannot read {}", file.display()))?)?;
+        zip.write_all(&bytes)?;
         bar.inc(1);
     }
+    sums.push(format!("{}  {THIRD_PARTY}", sha256(notices.as_bytes())));
+    zip.start_file(THIRD_PARTY, options)?;
+    zip.write_all(notices.as_bytes())?;
+    zip.start_file(CHECKSUMS, options)?;
+    zip.write_all(format!("{}\n", sums.join("\n")).as_bytes())?;
     zip.finish()?.flush()?;
     bar.finish_and_clear();
     fs::rename(&partial, archive)
         .with_context(|| format!("cannot create {}", archive.display()))?;
-    Ok(files.len())
+    Ok(files.len() + 2)
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
@@ -135,6 +201,22 @@ mod tests {
     }
 
     #[test]
+    fn notices_name_every_crate_once_and_not_our_own() {
+        let tree = "footfall_core v0.1.0 (/somewhere)|MIT OR Apache-2.0|\nglam v0.32.1|MIT OR Apache-2.0|https://a\n\
+                    glam v0.32.1|MIT OR Apache-2.0|https://a (*)\nserde_derive v1.0.0 (proc-macro)|MIT|https://b\n";
+        let text = notices(tree);
+        assert_eq!(text.matches("glam").count(), 1);
+        assert!(text.contains("| serde_derive v1.0.0 | MIT | https://b |"));
+        assert!(!text.contains("footfall_core"));
+    }
+
+    #[test]
+    fn checksums_are_those_of_sha256sum() {
+        let empty = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
+        assert_eq!(sha256(b""), empty);
+    }
+
+    #[test]
     fn an_archive_holds_every_file_under_the_add_ons_folder_and_is_the_same_twice() {
         let folder = std::env::temp_dir().join(format!("footfall_addon_{}", std::process::id()));
         let addon = folder.join("addon");
@@ -143,8 +225,8 @@ mod tests {
         fs::write(addon.join("bin/x/lib.so"), [7_u8; 5000]).unwrap();
         fs::write(addon.join("bin/x/lib.fresh"), "half").unwrap();
         let (first, second) = (folder.join("a.zip"), folder.join("b.zip"));
-        assert_eq!(pack(&addon, &first).unwrap(), 2);
-        pack(&addon, &second).unwrap();
+        assert_eq!(pack(&addon, &first, "notices").unwrap(), 4);
+        pack(&addon, &second, "notices").unwrap();
         assert_eq!(fs::read(&first).unwrap(), fs::read(&second).unwrap());
         let mut zip = zip::ZipArchive::new(File::open(&first).unwrap()).unwrap();
         assert_eq!(
@@ -156,6 +238,14 @@ mod tests {
             5000
         );
         assert!(zip.by_name("addons/footfall/plugin.cfg").is_ok());
+        let sums = std::io::read_to_string(zip.by_name(CHECKSUMS).unwrap()).unwrap();
+        // What `printf notices | sha256sum` prints.
+        let notices = sha256(b"notices");
+        assert!(
+            sums.contains(&format!("{notices}  {THIRD_PARTY}")),
+            "{sums}"
+        );
+        assert_eq!(sums.lines().count(), 3);
         fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -6,6 +6,7 @@
 use crate::{paths, process};
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
+use std::env;
 use std::env::consts::{ARCH, OS};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -140,6 +141,12 @@ fn build_one(
     if let Some(target) = target {
         cargo.args(["--target", target]);
         folder.push(target);
+        if let Some((variable, linker)) = debian_linker(target)
+            && env::var_os(variable).is_none()
+            && paths::on_path(&[linker]).is_some()
+        {
+            cargo.env(variable, linker);
+        }
     }
     if flavour == Flavour::Editor {
         cargo.args(["--features", "editor"]);
@@ -152,6 +159,15 @@ fn build_one(
     }
     process::run(&mut cargo)?;
     Ok(folder.join(platform.built()))
+}
+
+/// The linker for another architecture as Debian names it, and the variable in which cargo looks for it.
+fn debian_linker(target: &str) -> Option<(&'static str, &'static str)> {
+    let foreign = target == "aarch64-unknown-linux-gnu" && ARCH != "aarch64";
+    foreign.then_some((
+        "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER",
+        "aarch64-linux-gnu-gcc",
+    ))
 }
 
 fn build_universal(flavour: Flavour, options: &Options, platform: &Platform) -> Result<PathBuf> {

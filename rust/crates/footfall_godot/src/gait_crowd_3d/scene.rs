@@ -213,7 +213,8 @@ impl CrowdScene {
         let frame = *frame;
         for (group, flock) in self.far.iter_mut().enumerate() {
             let since = (frame + GROUPS as u64 - group as u64) % GROUPS as u64;
-            if since == 0 {
+            // At first all are, so that a crowd whose time stands still is seen.
+            if since == 0 || self.drawn == 1 {
                 write_far(flock, group, walkers, planes, &self.ticks);
                 for index in (group..drawn.len()).step_by(GROUPS) {
                     if tiers[index] == Tier::Far && is_seen(drawn[index].places[1], planes) {
