@@ -95,9 +95,7 @@ fn assert_placing_allocates_nothing(generator: GaitGenerator) {
 }
 
 /// A walker of a crowd allocates only for a step that is longer than any before: slow ones in full detail come first.
-fn assert_crowds_allocate_nothing(styled: &StyledBody) {
-    let mut workshop = Workshop::new(styled);
-    let mut walker = CrowdWalker::new(styled, &CONFIG, false, &mut workshop).unwrap();
+fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Workshop) {
     for frame in 0..3000 {
         walker.set_repeating(frame % 1000 > 700);
         if frame > 600 {
@@ -108,7 +106,7 @@ fn assert_crowds_allocate_nothing(styled: &StyledBody) {
             turn_rate_radps: 0.2,
         };
         let before = allocations();
-        walker.step(1.0 / 60.0, controls, &mut workshop);
+        walker.step(1.0 / 60.0, controls, workshop);
         if frame > 600 {
             assert_eq!(allocations() - before, 0, "crowd, frame {frame}");
         }
@@ -138,7 +136,10 @@ fn a_step_of_the_generator_allocates_nothing() {
         assert_no_allocation(other, seed);
     }
     assert_placing_allocates_nothing(GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap());
-    assert_crowds_allocate_nothing(&StyledBody::new(&space, &[], &skeleton).unwrap());
+    let styled = StyledBody::new(&space, &[], &skeleton).unwrap();
+    let mut workshop = Workshop::new(&styled);
+    let walker = CrowdWalker::new(&styled, &CONFIG, false, &mut workshop).unwrap();
+    assert_crowds_allocate_nothing(walker, &mut workshop);
     // The counter counts.
     let before = allocations();
     drop(std::hint::black_box(vec![0_u8; 100]));
