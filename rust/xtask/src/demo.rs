@@ -5,7 +5,7 @@ use anyhow::{Context as _, Result, bail};
 use std::fs;
 
 /// The demo's scenes by topic.
-pub(crate) const SCENES: [(&str, &str); 6] = [
+pub(crate) const SCENES: [(&str, &str); 7] = [
     ("walk", "res://scenes/walk/walk.tscn"),
     ("styles", "res://scenes/styles/styles.tscn"),
     ("uneven", "res://scenes/uneven/uneven.tscn"),
@@ -13,6 +13,10 @@ pub(crate) const SCENES: [(&str, &str); 6] = [
     (
         "third_person",
         "res://scenes/third_person/third_person.tscn",
+    ),
+    (
+        "own_character",
+        "res://scenes/own_character/own_character.tscn",
     ),
     ("switching", "res://scenes/switching/switching.tscn"),
 ];
