@@ -89,7 +89,7 @@ func close_ups() -> Dictionary[String, Array]:
 	return {
 		"ramp": [at.call(0), 90.0, 4.0, 3.6],
 		"stairs": [at.call(1), 80.0, 8.0, 3.6],
-		"rubble": [at.call(2), 60.0, 10.0, 3.4],
+		"rubble": [at.call(2), 325.0, 16.0, 3.4],
 		"across": [at.call(3), 5.0, 8.0, 3.4],
 		"platform": [at.call(4), 320.0, 14.0, 4.2],
 	}
