@@ -150,6 +150,21 @@ func test_feet_ride_on_a_platform() -> void:
 	platform.queue_free()
 
 
+func test_who_hangs_from_a_platform_stands_on_it() -> void:
+	var platform := _ground(Transform3D(Basis.IDENTITY, Vector3(0, 0.35, 0)), Vector3(8, 0.16, 8), AnimatableBody3D.new())
+	var below := _ground(Transform3D.IDENTITY)
+	var walker := _walker(func(made: Walker) -> void: made.gait.speed = 0.0)
+	remove_child(walker)
+	platform.add_child(walker)
+	await get_tree().physics_frame
+	walker.walk(30)
+	for foot: StringName in Walker.FEET:
+		check_equal(_placement(walker).get_foot_support(foot), platform, "what it stands on")
+		check_near(walker.sole(foot)[1].y, 0.35, 0.01, "its soles are on the platform")
+	platform.queue_free()
+	below.queue_free()
+
+
 func test_stairs_take_whole_soles() -> void:
 	var steps: Array[Node] = []
 	for index: int in 12:

@@ -51,12 +51,15 @@ impl PhysicsGround {
     }
 }
 
-/// The bodies that belong to a character: above its node, itself and below it.
+/// The bodies that belong to a character: itself, those below it, and those above that move as characters do. Who is carried by a
+/// platform may hang from it, and stands on it.
 pub(crate) fn own_bodies(character: &Gd<Node3D>) -> Array<Rid> {
     let mut bodies = Array::new();
     let mut above = character.get_parent();
     while let Some(node) = above {
-        if let Ok(body) = node.clone().try_cast::<CollisionObject3D>() {
+        if let Ok(body) = node.clone().try_cast::<CollisionObject3D>()
+            && !body.is_class("StaticBody3D")
+        {
             bodies.push(body.get_rid());
         }
         above = node.get_parent();
