@@ -3,9 +3,9 @@
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_ik::placement::{
-    FootPlacer, Frame, Ground, Landing, PlacementConfig, PlacementInput, SupportId, Terrain,
+    FootPlacer, Frame, Ground, PlacementConfig, PlacementInput, SupportId, Terrain,
 };
-use footfall_synth::{Controls, GaitGenerator};
+use footfall_synth::{Controls, Footstep, GaitGenerator};
 use glam::{Quat, Vec3};
 
 /// Ground whose height is a function of the place, on a support that may move.
@@ -136,16 +136,8 @@ impl PlacedWalker {
         }
         self.height += (ground - self.height) * (1.0 - (-dt_secs / 0.15).exp());
         floor.position.y = self.height;
-        let mut landings = [None; 2];
-        if let Some((footstep, secs)) = self.generator.next_footstep().filter(|_| told) {
-            landings[footstep.side.index()] = Some(Landing {
-                flat: Frame {
-                    position: footstep.position,
-                    rotation: from_heading(footstep.heading),
-                },
-                secs,
-            });
-        }
+        let next = self.generator.next_footstep().filter(|_| told);
+        let landings = Footstep::landings(next);
         let input = PlacementInput {
             world_from_floor: floor,
             contacts: told.then(|| self.generator.feet_in_contact()),

@@ -6,6 +6,7 @@ use crate::character;
 use crate::convert;
 use crate::gait_generator_3d::GaitGenerator3D;
 use crate::physics_ground::{PhysicsGround, own_bodies};
+use crate::report;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::{Pose, Side};
 use footfall_ik::placement::{
@@ -440,12 +441,7 @@ impl FootPlacement3D {
         if self.reported.as_ref() == Some(&problem) {
             return;
         }
-        if Engine::singleton().is_editor_hint() {
-            self.base_mut().update_configuration_warnings();
-        } else {
-            let node = self.base().get_path();
-            godot_warn!("{node}: {problem}");
-        }
+        report::tell(&self.base_mut(), &problem);
         self.reported = Some(problem);
     }
 }

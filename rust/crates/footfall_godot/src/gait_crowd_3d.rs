@@ -4,6 +4,7 @@ mod actors;
 mod agent;
 mod crowd_mesh;
 mod flock;
+mod making;
 mod neighbours;
 mod save;
 mod scene;
@@ -12,17 +13,19 @@ mod walkers;
 mod way;
 
 use crate::convert;
-use crate::gait_model::GaitModel;
+use crate::gait_model::{GaitModel, NO_MODEL};
 use crate::gait_style::GaitStyle;
 use agent::Goal;
 use footfall_core::Side;
 use glam::{Vec2, Vec3};
-use godot::classes::{Engine, INode3D, Node3D, PackedScene, Path3D, ShaderMaterial};
+use godot::classes::{Engine, INode3D, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
 use scene::{CrowdScene, Look};
 use tiers::Limits;
 use walkers::Walkers;
-use way::{Path, Way};
+
+/// What to do where there is no character.
+const NO_CHARACTER: &str = "No character. Load a scene with a humanoid character into Character, for example an imported .glb.";
 
 /// More walkers than this are refused: their steps alone would take gigabytes.
 const MOST_AGENTS: i64 = 100_000;
@@ -552,9 +555,7 @@ impl GaitCrowd3D {
         let mut problems = PackedStringArray::new();
         let mut say = |problem: &str| problems.push(&GString::from(problem));
         match &self.model {
-            None => say(
-                "No gait model. Load a .footfall file into Model, for example addons/footfall/models/walk.footfall.",
-            ),
+            None => say(NO_MODEL),
             Some(model) => {
                 if let Err(problem) = self.space(model) {
                     say(&problem);
@@ -562,9 +563,7 @@ impl GaitCrowd3D {
             }
         }
         if self.character.is_none() {
-            say(
-                "No character. Load a scene with a humanoid character into Character, for example an imported .glb.",
-            );
+            say(NO_CHARACTER);
         }
         if self.behaviour == CrowdBehaviour::Path
             && let Err(problem) = self.way()
@@ -572,104 +571,6 @@ impl GaitCrowd3D {
             say(&problem);
         }
         problems
-    }
-
-    fn space(
-        &self,
-        model: &Gd<GaitModel>,
-    ) -> Result<std::sync::Arc<footfall_synth::StyleSpace>, String> {
-        let mut styles = Vec::new();
-        for (index, style) in self.styles.iter_shared().enumerate() {
-            let style = style.ok_or_else(|| {
-                format!("Style {index} is empty. Load a .footstyle file into it, or remove it from Styles.")
-            })?;
-            styles.push(style.bind().trained()?);
-        }
-        let mut model = model.clone();
-        match model.bind_mut().source(&styles)? {
-            crate::walk_source::WalkSource::Styled(space) => Ok(space),
-            crate::walk_source::WalkSource::Switching(_) => Err(
-                "A crowd walks with a trained walk (.footfall), not with a switching model: load another Model.".to_owned(),
-            ),
-        }
-    }
-
-    fn way(&self) -> Result<Way, String> {
-        match self.behaviour {
-            CrowdBehaviour::Scripted => Ok(Way::Told),
-            CrowdBehaviour::Wander => Ok(Way::Wander {
-                half: 0.5 * Vec2::new(self.area.x, self.area.y),
-            }),
-            CrowdBehaviour::Path => {
-                let path = self.base().get_node_or_null(&self.path);
-                let path = path
-                    .and_then(|node| node.try_cast::<Path3D>().ok())
-                    .ok_or("Path names no Path3D: choose one, or another Behaviour.")?;
-                let points = path
-                    .get_curve()
-                    .map(|curve| curve.get_baked_points())
-                    .unwrap_or_default();
-                let to_crowd = self.base().get_global_transform().affine_inverse()
-                    * path.get_global_transform();
-                let points = points.as_slice().iter().map(|point| {
-                    let place = to_crowd * *point;
-                    Vec2::new(place.x, place.z)
-                });
-                Path::new(points.collect())
-                    .map(Way::Path)
-                    .ok_or_else(|| "The Path3D has no length: draw its curve.".to_owned())
-            }
-        }
-    }
-
-    /// Makes the walkers if there are none yet; whether there are.
-    fn make(&mut self) -> bool {
-        if self.walkers.is_some() {
-            return true;
-        }
-        if self.failed || !self.base().is_inside_tree() {
-            return false;
-        }
-        match self.made() {
-            Ok(walkers) => self.walkers = Some(walkers),
-            Err(problem) => {
-                self.failed = true;
-                if !Engine::singleton().is_editor_hint() {
-                    let node = self.base().get_path();
-                    godot_warn!("{node}: {problem}");
-                }
-            }
-        }
-        self.walkers.is_some()
-    }
-
-    fn made(&mut self) -> Result<Walkers, String> {
-        let model = self.model.clone().ok_or(
-            "No gait model. Load a .footfall file into Model, for example addons/footfall/models/walk.footfall.",
-        )?;
-        let character = self.character.clone().ok_or(
-            "No character. Load a scene with a humanoid character into Character, for example an imported .glb.",
-        )?;
-        let space = self.space(&model)?;
-        let way = self.way()?;
-        let mut host = self.to_gd().upcast::<Node3D>();
-        let mesh = {
-            let _released = self.base_mut();
-            crowd_mesh::CrowdMesh::new(&character, &mut host)?
-        };
-        let tints = self.colours.as_slice().iter().map(|colour| linear(*colour));
-        let settings = walkers::Settings {
-            seed: self.seed.cast_unsigned(),
-            speeds_mps: [self.speed_range.x, self.speed_range.y],
-            sizes: [self.size_range.x, self.size_range.y],
-            style_amount: self.style_amount as f32,
-            tints: tints.collect(),
-            half_area: 0.5 * Vec2::new(self.area.x, self.area.y),
-            path_width: self.path_width as f32,
-        };
-        let mut walkers = Walkers::new(&space, mesh, way, settings)?;
-        walkers.populate(self.count as usize);
-        Ok(walkers)
     }
 
     fn advance_by(&mut self, dt_secs: f32) {

@@ -3,14 +3,15 @@
 mod session;
 
 use crate::character;
-use crate::gait_model::GaitModel;
-use crate::gait_style::GaitStyle;
+use crate::gait_model::{GaitModel, NO_MODEL};
+use crate::gait_style::{self, GaitStyle};
+use crate::report;
 use crate::skeleton_binding::SkeletonBinding;
 use crate::walk_source::WalkSource;
-use footfall_core::{Side, rotation};
-use footfall_ik::placement::{Frame, Landing};
+use footfall_core::Side;
+use footfall_ik::placement::Landing;
 use footfall_model::WalkModel;
-use footfall_synth::{Controls, Detail, GeneratorConfig};
+use footfall_synth::{Controls, Detail, Footstep, GeneratorConfig};
 use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
 use session::Session;
@@ -397,10 +398,7 @@ impl GaitGenerator3D {
 
     fn trained(&self) -> Result<Arc<WalkModel>, String> {
         let Some(model) = &self.model else {
-            return Err(
-                "No gait model. Load a .footfall file into Model, for example addons/footfall/models/walk.footfall."
-                    .to_owned(),
-            );
+            return Err(NO_MODEL.to_owned());
         };
         model.bind().trained().map_err(|error| {
             let path = model.get_path();
@@ -435,23 +433,9 @@ impl GaitGenerator3D {
 
     fn find_source(&self) -> Result<WalkSource, String> {
         self.trained()?;
-        let mut styles = Vec::with_capacity(self.styles.len());
-        for (index, style) in self.styles.iter_shared().enumerate() {
-            let Some(style) = style else {
-                return Err(format!(
-                    "Style {index} is empty. Load a .footstyle file into it, or remove it from Styles."
-                ));
-            };
-            let trained = style.bind().trained().map_err(|error| {
-                format!(
-                    "Style {index} cannot be used ({}): {error}",
-                    style.get_path()
-                )
-            })?;
-            styles.push(trained);
-        }
+        let styles = gait_style::trained_all(&self.styles)?;
         let Some(model) = &self.model else {
-            return Err("No gait model.".to_owned());
+            return Err(NO_MODEL.to_owned());
         };
         let mut model = model.clone();
         let source = model.bind_mut().source(&styles);
@@ -475,16 +459,7 @@ impl GaitGenerator3D {
     /// Which feet stand and where they land next, on the floor of the walk; `None` while nobody walks.
     pub(crate) fn feet(&self) -> Option<([bool; 2], [Option<Landing>; 2])> {
         let session = self.session.as_ref()?;
-        let mut landings = [None; 2];
-        if let Some((footstep, secs)) = session.generator.next_footstep() {
-            landings[footstep.side.index()] = Some(Landing {
-                flat: Frame {
-                    position: footstep.position,
-                    rotation: rotation::from_heading(footstep.heading),
-                },
-                secs,
-            });
-        }
+        let landings = Footstep::landings(session.generator.next_footstep());
         Some((session.generator.feet_in_contact(), landings))
     }
 
@@ -558,13 +533,7 @@ impl GaitGenerator3D {
         if self.reported.as_ref() == Some(&problem) {
             return;
         }
-        // The editor shows it at the node instead.
-        if Engine::singleton().is_editor_hint() {
-            self.base_mut().update_configuration_warnings();
-        } else {
-            let node = self.base().get_path();
-            godot_warn!("{node}: {problem}");
-        }
+        report::tell(&self.base_mut(), &problem);
         self.reported = Some(problem);
     }
 }

@@ -10,6 +10,9 @@ use godot::prelude::*;
 use std::cell::OnceCell;
 use std::sync::{Arc, Weak};
 
+/// What to do where there is no model.
+pub(crate) const NO_MODEL: &str = "No gait model. Load a .footfall file into Model, for example addons/footfall/models/walk.footfall.";
+
 /// A way of walking that was learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
 /// (`.footdyn`, made by `footfall dynamics fit`).
 ///

@@ -91,6 +91,26 @@ impl GaitStyle {
     }
 }
 
+/// All styles of a list.
+///
+/// # Errors
+/// Which one is empty or broken, and what to do.
+pub(crate) fn trained_all(
+    styles: &Array<Option<Gd<GaitStyle>>>,
+) -> Result<Vec<Arc<TrainedStyle>>, String> {
+    let styles = styles.iter_shared().enumerate();
+    styles
+        .map(|(index, style)| {
+            let style = style.ok_or_else(|| {
+                format!("Style {index} is empty. Load a .footstyle file into it, or remove it from Styles.")
+            })?;
+            style.bind().trained().map_err(|error| {
+                format!("Style {index} cannot be used ({}): {error}", style.get_path())
+            })
+        })
+        .collect()
+}
+
 /// The style in words, for the inspector.
 fn describe(style: &TrainedStyle) -> String {
     let from = &style.provenance;

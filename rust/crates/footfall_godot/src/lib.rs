@@ -30,6 +30,7 @@ mod gait_style;
 mod import_plugin;
 mod loaded;
 mod physics_ground;
+mod report;
 mod rest_body;
 mod skeleton_binding;
 mod walk_source;

@@ -149,9 +149,7 @@ impl SkeletonBinding {
                 continue;
             }
             let above = if let Some(parent) = bound.parent {
-                bound.links.iter().fold(rotations[parent], |above, link| {
-                    above * convert::quat(skeleton.get_bone_pose_rotation(*link))
-                })
+                turned_by_links(skeleton, rotations[parent], &bound.links)
             } else {
                 let above = self.above_hips(skeleton, &bound.links);
                 let hips = convert::vec3(skeleton.get_bone_pose_position(bound.bone));
@@ -250,9 +248,7 @@ impl SkeletonBinding {
                 continue;
             }
             let above = if let Some(parent) = bound.parent {
-                bound.links.iter().fold(rotations[parent], |above, link| {
-                    above * convert::quat(skeleton.get_bone_pose_rotation(*link))
-                })
+                turned_by_links(skeleton, rotations[parent], &bound.links)
             } else {
                 let above = self.above_hips(skeleton, &bound.links);
                 let hips = self.model_pose.position(Joint::Hips);
@@ -292,6 +288,13 @@ impl BindingKey {
             && a.matrix3.abs_diff_eq(b.matrix3, 1e-3 * scale)
             && a.translation.abs_diff_eq(b.translation, 1e-2)
     }
+}
+
+/// A rotation turned on by the bones between two joints.
+fn turned_by_links(skeleton: &Gd<Skeleton3D>, above: Quat, links: &[i32]) -> Quat {
+    links.iter().fold(above, |above, link| {
+        above * convert::quat(skeleton.get_bone_pose_rotation(*link))
+    })
 }
 
 /// Whether a joint is the hips or one of a leg.

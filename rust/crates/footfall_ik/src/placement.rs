@@ -35,7 +35,8 @@ const TELEPORT_M: f32 = 1.0;
 /// How feet meet the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacementConfig {
-    /// Ground that is higher above or deeper below the animation's floor than this is out of reach, metres.
+    /// Ground that is farther above the animation's floor and the higher sole, or farther below the floor and the lower one, is out of
+    /// reach, metres.
     pub max_step_m: f32,
     /// Feet are tilted against the animation by this much at most, radians.
     pub max_tilt: f32,

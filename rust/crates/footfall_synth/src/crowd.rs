@@ -8,10 +8,7 @@ mod frames;
 
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::generator::{
-    Controls, Footstep, GeneratorConfig, GroundTransform, MAX_DT_SECS, MAX_SPEED_MPS,
-    MAX_TURN_RATE_RADPS, check, finite_or,
-};
+use crate::generator::{Controls, Footstep, GeneratorConfig, GroundTransform, MAX_DT_SECS, check};
 use crate::pace::PaceTable;
 use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape};
 use crate::space::{Blend, StyleSpace};
@@ -19,9 +16,9 @@ use crate::standing::Amplitude;
 use crate::steps::Ask;
 use crate::styled::Worn;
 use crate::walker::{Origin, WINDOW, Walker};
-use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_core::ease::smooth_step;
+use footfall_core::rotation::from_heading;
 use footfall_core::{ModelPose, Pose, Skeleton};
-use footfall_ik::RockerFoot;
 use frames::CrowdFrames;
 pub use frames::CrowdPose;
 use std::sync::Arc;
@@ -62,11 +59,6 @@ impl StyledBody {
     /// The body.
     pub fn skeleton(&self) -> &Skeleton {
         &self.0.skeleton
-    }
-
-    /// The weights of the styles, as they are used.
-    pub fn style_weights(&self) -> &[f32] {
-        &self.0.worn.blend.weights
     }
 
     /// The speed that suits it best, m/s.
@@ -232,9 +224,8 @@ impl CrowdWalker {
     /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before.
     pub fn step(&mut self, dt_secs: f32, controls: Controls, workshop: &mut Workshop) {
         self.footstep = None;
-        let rate = self.frame_rate_hz;
         if dt_secs > 0.0 {
-            self.position += dt_secs.min(MAX_DT_SECS) * rate;
+            self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
         }
         while self.position >= self.shape.timing.frames as f32 {
             let frames = self.shape.timing.frames as f32;
@@ -247,7 +238,7 @@ impl CrowdWalker {
                 self.next_step(controls, workshop);
             }
         }
-        self.start_from_character = self.to_start(&self.plan_from_character());
+        self.start_from_character = self.plan_from_start.local(&self.plan_from_character());
     }
 
     /// Where it is and where it faces, from where it began.
@@ -269,15 +260,8 @@ impl CrowdWalker {
         let timing = &self.shape.timing;
         let side = timing.leading.other();
         let plant = self.next.planter.as_ref()?.plants[side.index()];
-        let from = self.plan_from_character();
-        let footstep = Footstep {
-            side,
-            position: from_heading(-from.heading) * (RockerFoot::footprint(&plant) - from.position),
-            heading: wrap_angle(plant.heading - from.heading),
-        };
-        let rate = self.frame_rate_hz;
-        let secs = (timing.frames as f32 - self.position) / rate;
-        Some((footstep, secs.max(0.0)))
+        let footstep = Footstep::seen_from(&self.plan_from_character(), side, &plant);
+        Some((footstep, self.secs_to_next_step()))
     }
 
     /// Whether the left and the right foot bear on the ground.
@@ -288,8 +272,7 @@ impl CrowdWalker {
 
     /// Seconds until the next step begins, 0 for someone who rests.
     pub fn secs_to_next_step(&self) -> f32 {
-        let rate = self.frame_rate_hz;
-        (self.shape.timing.frames as f32 - self.position).max(0.0) / rate
+        (self.shape.timing.frames as f32 - self.position).max(0.0) / self.frame_rate_hz
     }
 
     /// Whether it has come to a stand and rests.
@@ -326,8 +309,7 @@ impl CrowdWalker {
         core::mem::swap(&mut before.shape, &mut self.shape);
         self.odd = !self.odd;
         let secs = self.shape.timing.frames as f32 / self.frame_rate_hz;
-        let rate = finite_or(controls.turn_rate_radps, 0.0);
-        let turn = rate.clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS) * secs;
+        let turn = controls.turn_rate() * secs;
         let first = self.frames.places.first();
         let first = first.map(|first| first.place).unwrap_or_default();
         self.base = Base::starting(&end, &first, turn);
@@ -338,16 +320,7 @@ impl CrowdWalker {
         let end = self.end();
         let styled = Arc::clone(&self.styled.0);
         let worn = &styled.worn;
-        let ask = Ask {
-            speed_mps: finite_or(controls.speed_mps, 0.0).clamp(0.0, MAX_SPEED_MPS),
-            turn_rate: finite_or(controls.turn_rate_radps, 0.0)
-                .clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS),
-            amplitude: Amplitude {
-                from: self.shape.amplitude.to,
-                to: if controls.is_standing() { 0.0 } else { 1.0 },
-            },
-            detail: self.detail,
-        };
+        let ask = Ask::after(&self.shape, controls, self.detail);
         let leading = self.shape.timing.leading;
         let before = self.next.request.manner.position;
         let model = styled.space.model();
@@ -363,7 +336,13 @@ impl CrowdWalker {
         let Workshop {
             planner, walker, ..
         } = &mut *workshop;
-        planner.become_walker(self.config.seed, variation(&self.config), self.walker);
+        let model = &self.blend.model;
+        planner.become_walker(
+            model,
+            self.config.seed,
+            variation(&self.config),
+            self.walker,
+        );
         planner.resume(self.chance_position, &*self.draws);
         let mut draws = (*self.draws).clone();
         draws.rotate_left(1);
@@ -388,22 +367,9 @@ impl CrowdWalker {
         self.shape = *walker.step();
         self.take_over(workshop);
         let side = self.shape.timing.leading;
-        if let Some(plant) = self
-            .next
-            .planter
-            .as_ref()
-            .map(|feet| feet.plants[side.index()])
-        {
-            let place = self.to_start(&GroundTransform {
-                position: RockerFoot::footprint(&plant),
-                heading: plant.heading,
-            });
-            self.footstep = Some(Footstep {
-                side,
-                position: place.position,
-                heading: place.heading,
-            });
-        }
+        self.footstep = self.next.planter.as_ref().map(|feet| {
+            Footstep::seen_from(&self.plan_from_start, side, &feet.plants[side.index()])
+        });
     }
 
     /// Keeps the step that was just worked out.
@@ -412,7 +378,7 @@ impl CrowdWalker {
         let timing = self.shape.ground_timing();
         let stage = &workshop.walker.stage().frames[..=timing.frames];
         let [before, now] = self.facing;
-        let facing = |share| before + footfall_core::ease::smooth_step(share) * (now - before);
+        let facing = |share| before + smooth_step(share) * (now - before);
         let (pose, model_pose) = (&mut workshop.pose, &mut workshop.model_pose);
         self.frames
             .set(stage, facing, &self.styled.0.skeleton, pose, model_pose);
@@ -443,14 +409,6 @@ impl CrowdWalker {
         let last = self.frames.places.last();
         self.base
             .at(&last.map(|last| last.place).unwrap_or_default(), 1.0)
-    }
-
-    fn to_start(&self, plan: &GroundTransform) -> GroundTransform {
-        let start_from_plan = from_heading(-self.plan_from_start.heading);
-        GroundTransform {
-            position: start_from_plan * (plan.position - self.plan_from_start.position),
-            heading: wrap_angle(plan.heading - self.plan_from_start.heading),
-        }
     }
 }
 

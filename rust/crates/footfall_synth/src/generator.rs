@@ -5,16 +5,16 @@ use crate::error::SynthError;
 use crate::plan::StepShape;
 use crate::planting::PlantedFrame;
 use crate::space::StyleSpace;
-use crate::standing::Amplitude;
 use crate::steps::{Ask, Steps};
 use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{Joint, Pose, Side, Skeleton};
-use footfall_ik::RockerFoot;
+use footfall_ik::placement::{Frame, Landing};
+use footfall_ik::{Plant, RockerFoot};
 use footfall_model::DynamicsModel;
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use std::sync::Arc;
 
 /// Initial contacts that one call of [`GaitGenerator::step`] reports at most.
@@ -28,8 +28,8 @@ pub(crate) const STANDING_SPEED_MPS: f32 = 0.1;
 const STANDING_TURN_RATE_RADPS: f32 = 0.05;
 
 /// Fastest speed and turning that are walked.
-pub(crate) const MAX_SPEED_MPS: f32 = 3.0;
-pub(crate) const MAX_TURN_RATE_RADPS: f32 = 2.0;
+const MAX_SPEED_MPS: f32 = 3.0;
+const MAX_TURN_RATE_RADPS: f32 = 2.0;
 
 /// Closer than this share of a frame counts as on it: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;
@@ -58,6 +58,16 @@ pub struct Controls {
 }
 
 impl Controls {
+    /// The turning that is walked: within bounds, and none where it is not finite.
+    pub(crate) fn turn_rate(self) -> f32 {
+        finite_or(self.turn_rate_radps, 0.0).clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS)
+    }
+
+    /// The speed that is walked.
+    pub(crate) fn speed(self) -> f32 {
+        finite_or(self.speed_mps, 0.0).clamp(0.0, MAX_SPEED_MPS)
+    }
+
     /// Whether this asks for neither travel nor turning, so that the walker stands.
     pub fn is_standing(self) -> bool {
         finite_or(self.speed_mps, 0.0) < STANDING_SPEED_MPS
@@ -74,6 +84,16 @@ pub struct GroundTransform {
     pub heading: f32,
 }
 
+impl GroundTransform {
+    /// A place of the space that this one is in, as it is seen from here.
+    pub(crate) fn local(&self, place: &Self) -> Self {
+        Self {
+            position: from_heading(-self.heading) * (place.position - self.position),
+            heading: wrap_angle(place.heading - self.heading),
+        }
+    }
+}
+
 /// An initial contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footstep {
@@ -83,6 +103,36 @@ pub struct Footstep {
     pub position: Vec3,
     /// Heading of the foot in that space, radians.
     pub heading: f32,
+}
+
+impl Footstep {
+    /// Where each foot lands next, from what `next_footstep` tells, for who puts feet on real ground.
+    pub fn landings(next: Option<(Self, f32)>) -> [Option<Landing>; 2] {
+        let mut landings = [None; 2];
+        if let Some((footstep, secs)) = next {
+            landings[footstep.side.index()] = Some(Landing {
+                flat: Frame {
+                    position: footstep.position,
+                    rotation: from_heading(footstep.heading),
+                },
+                secs,
+            });
+        }
+        landings
+    }
+
+    /// A foot that was put there, as it is seen from a place of the same space.
+    pub(crate) fn seen_from(from: &GroundTransform, side: Side, plant: &Plant) -> Self {
+        let place = from.local(&GroundTransform {
+            position: RockerFoot::footprint(plant),
+            heading: plant.heading,
+        });
+        Self {
+            side,
+            position: place.position,
+            heading: place.heading,
+        }
+    }
 }
 
 /// Walks one body in real time, in styles of a [`GaitModel`](footfall_model::GaitModel) or as a [`DynamicsModel`] does.
@@ -248,13 +298,13 @@ impl GaitGenerator {
         let root = Joint::Hips.index();
         out.rotations[root] = (character_from_plan * out.rotations[root]).normalize();
         self.contact = contact;
-        self.start_from_character = self.to_start(&plan_from_character);
+        self.start_from_character = self.plan_from_start.local(&plan_from_character);
     }
 
     /// Tells where the character is now, as after a step of no time.
     pub(crate) fn tell_place(&mut self) {
         self.footsteps.clear();
-        self.start_from_character = self.to_start(&self.plan_from_character());
+        self.start_from_character = self.plan_from_start.local(&self.plan_from_character());
     }
 
     /// Where the character is and where it faces, from where it began.
@@ -276,13 +326,7 @@ impl GaitGenerator {
         let timing = &self.shape().timing;
         let side = timing.leading.other();
         let plant = self.steps.source().stage().plant(side)?;
-        let from = self.plan_from_character();
-        let character_from_plan = from_heading(-from.heading);
-        let footstep = Footstep {
-            side,
-            position: character_from_plan * (RockerFoot::footprint(plant) - from.position),
-            heading: wrap_angle(plant.heading - from.heading),
-        };
+        let footstep = Footstep::seen_from(&self.plan_from_character(), side, plant);
         let secs = (timing.frames as f32 - self.position) / self.frame_rate_hz;
         Some((footstep, secs.max(0.0)))
     }
@@ -303,30 +347,14 @@ impl GaitGenerator {
     }
 
     fn next_step(&mut self, controls: &Controls) {
-        let ask = Ask {
-            speed_mps: finite_or(controls.speed_mps, 0.0).clamp(0.0, MAX_SPEED_MPS),
-            turn_rate: finite_or(controls.turn_rate_radps, 0.0)
-                .clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS),
-            amplitude: Amplitude {
-                from: self.shape().amplitude.to,
-                to: if controls.is_standing() { 0.0 } else { 1.0 },
-            },
-            detail: self.detail,
-        };
+        let ask = Ask::after(self.shape(), *controls, self.detail);
         self.steps.source_mut().advance(&ask);
         let side = self.shape().timing.leading;
         if let Some(plant) = self.steps.source().stage().plant(side)
             && self.footsteps.len() < MAX_FOOTSTEPS
         {
-            let place = self.to_start(&GroundTransform {
-                position: RockerFoot::footprint(plant),
-                heading: plant.heading,
-            });
-            self.footsteps.push(Footstep {
-                side,
-                position: place.position,
-                heading: place.heading,
-            });
+            let footstep = Footstep::seen_from(&self.plan_from_start, side, plant);
+            self.footsteps.push(footstep);
         }
     }
 
@@ -351,14 +379,6 @@ impl GaitGenerator {
             heading: frame.heading + weight * (next.heading - frame.heading) - facing,
         }
     }
-
-    fn to_start(&self, plan: &GroundTransform) -> GroundTransform {
-        let start_from_plan: Quat = from_heading(-self.plan_from_start.heading);
-        GroundTransform {
-            position: start_from_plan * (plan.position - self.plan_from_start.position),
-            heading: wrap_angle(plan.heading - self.plan_from_start.heading),
-        }
-    }
 }
 
 /// Checks what every walker needs, and tells the foot that lands first.
@@ -373,6 +393,6 @@ pub(crate) fn check(skeleton: &Skeleton, config: &GeneratorConfig) -> Result<Sid
     Ok(if phase < 0.5 { Side::Left } else { Side::Right })
 }
 
-pub(crate) fn finite_or(value: f32, otherwise: f32) -> f32 {
+fn finite_or(value: f32, otherwise: f32) -> f32 {
     if value.is_finite() { value } else { otherwise }
 }

@@ -245,10 +245,12 @@ impl Planner {
     /// Is the walker that [`new`](Self::new) made of these, in another place of its walk: see [`resume`](Self::resume).
     pub(crate) fn become_walker(
         &mut self,
+        model: &Arc<GaitModel>,
         seed: u64,
         variation: f64,
         walker: [f64; MAX_COMPONENTS],
     ) {
+        self.model = Arc::clone(model);
         self.rng = ChaCha8Rng::seed_from_u64(seed);
         self.variation = variation;
         self.walker = walker;

@@ -1,6 +1,7 @@
 //! Where a walker's steps come from.
 
 use crate::detail::Detail;
+use crate::generator::Controls;
 use crate::plan::StepShape;
 use crate::stage::Stage;
 use crate::standing::Amplitude;
@@ -20,6 +21,19 @@ pub(crate) struct Ask {
 }
 
 impl Ask {
+    /// What the controls make of the step after one like this.
+    pub(crate) fn after(shape: &StepShape, controls: Controls, detail: Detail) -> Self {
+        Self {
+            speed_mps: controls.speed(),
+            turn_rate: controls.turn_rate(),
+            amplitude: Amplitude {
+                from: shape.amplitude.to,
+                to: if controls.is_standing() { 0.0 } else { 1.0 },
+            },
+            detail,
+        }
+    }
+
     /// The speed of the next step, after one of this speed.
     pub(crate) fn speed_after(&self, speed_mps: f32) -> f32 {
         let change = self.speed_mps - speed_mps;

@@ -8,8 +8,7 @@ use crate::foot_placement_3d::FootPlacement3D;
 use crate::gait_generator_3d::GaitGenerator3D;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::rotation::from_heading;
-use footfall_ik::placement::{Frame, Landing};
-use footfall_synth::CrowdPose;
+use footfall_synth::{CrowdPose, Footstep};
 use godot::classes::node::ProcessMode;
 use godot::classes::{BaseMaterial3D, MeshInstance3D, Node, Node3D, PackedScene, Skeleton3D};
 use godot::prelude::*;
@@ -115,16 +114,18 @@ impl Actors {
             agent.walker.pose(&mut pose);
             actor.binding.write_joints(&mut actor.skeleton, &pose);
             if let Some(placement) = &mut actor.placement {
-                let mut landings = [None; 2];
-                if let Some((footstep, secs)) = agent.walker.next_footstep() {
-                    landings[footstep.side.index()] = Some(Landing {
-                        flat: Frame {
-                            position: footstep.position * agent.size,
-                            rotation: from_heading(footstep.heading),
+                // The scene is scaled, and a large body takes longer for its steps.
+                let next = agent.walker.next_footstep().map(|(footstep, secs)| {
+                    let position = footstep.position * agent.size;
+                    (
+                        Footstep {
+                            position,
+                            ..footstep
                         },
-                        secs: secs * agent.size.sqrt(),
-                    });
-                }
+                        secs * agent.size.sqrt(),
+                    )
+                });
+                let landings = Footstep::landings(next);
                 let contacts = agent.walker.feet_in_contact();
                 placement.bind_mut().feed(contacts, landings);
             }

@@ -17,8 +17,9 @@ use half::slice::HalfFloatSliceExt as _;
 
 /// Poses beside each other in the texture, as `crowd_pose.gdshaderinc` has it.
 const POSES_PER_ROW: usize = 32;
-/// Numbers of one joint: a rotation, a position, and one to spare.
-const JOINT_NUMBERS: usize = 8;
+/// Texels of a row of the texture: four numbers each.
+const ROW_TEXELS: usize = POSES_PER_ROW * POSE_NUMBERS / 4;
+const JOINT_NUMBERS: usize = CrowdPose::JOINT_NUMBERS;
 const POSE_NUMBERS: usize = JOINT_COUNT * JOINT_NUMBERS;
 /// Bytes of one pose.
 pub(super) const POSE_BYTES: usize = POSE_NUMBERS * size_of::<f16>();
@@ -49,7 +50,7 @@ impl Flock {
         poses: usize,
         material: Option<&Gd<ShaderMaterial>>,
     ) -> Option<Self> {
-        let width = convert::count(POSES_PER_ROW * JOINT_COUNT * 2);
+        let width = convert::count(ROW_TEXELS);
         let height = poses.div_ceil(POSES_PER_ROW).max(1);
         let image = Image::create_empty(width, convert::count(height), false, Format::RGBAH)?;
         let texture = ImageTexture::create_from_image(&image)?;
@@ -104,7 +105,7 @@ impl Flock {
 
     /// Hands the poses that were written to the renderer.
     pub(super) fn upload_poses(&mut self) {
-        let width = convert::count(POSES_PER_ROW * JOINT_COUNT * 2);
+        let width = convert::count(ROW_TEXELS);
         let poses = &self.poses[self.turn[0]];
         self.image
             .set_data(width, self.height, false, Format::RGBAH, poses);

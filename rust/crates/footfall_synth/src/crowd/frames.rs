@@ -7,8 +7,7 @@ use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinem
 use glam::{Quat, Vec3};
 use multiversion::multiversion;
 
-/// Numbers of one joint: its rotation, its position, and one to spare.
-const JOINT_NUMBERS: usize = 8;
+const JOINT_NUMBERS: usize = CrowdPose::JOINT_NUMBERS;
 const POSE_NUMBERS: usize = JOINT_COUNT * JOINT_NUMBERS;
 
 /// Rotations and positions (metres) as whole numbers: to 0.03 mrad, and to a tenth of a millimetre within 3.2 m.
@@ -27,6 +26,9 @@ impl Default for CrowdPose {
 }
 
 impl CrowdPose {
+    /// Numbers of one joint: its rotation, its position, and one to spare.
+    pub const JOINT_NUMBERS: usize = 8;
+
     /// Eight numbers a joint: `character_from_joint` rotation (x, y, z, w), of length 1 to within a percent; position in metres;
     /// and 0.
     pub fn numbers(&self) -> &[f32; POSE_NUMBERS] {
