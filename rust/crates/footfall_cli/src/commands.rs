@@ -6,6 +6,7 @@ mod contacts;
 mod design;
 mod dynamics;
 mod evaluate;
+mod imu;
 mod inspect;
 mod retarget;
 mod sheet;
@@ -43,6 +44,7 @@ enum Command {
     Synth(synth::SynthArgs),
     Design(Box<design::DesignArgs>),
     Dynamics(dynamics::DynamicsArgs),
+    Imu(imu::ImuArgs),
     Sheet(sheet::SheetArgs),
     Evaluate(evaluate::EvaluateArgs),
     Study(study::StudyArgs),
@@ -61,6 +63,7 @@ impl Cli {
             Command::Synth(args) => synth::run(args),
             Command::Design(args) => design::run(args),
             Command::Dynamics(args) => dynamics::run(args),
+            Command::Imu(args) => imu::run(args),
             Command::Sheet(args) => sheet::run(args),
             Command::Evaluate(args) => evaluate::run(args),
             Command::Study(args) => study::run(args),

@@ -36,6 +36,18 @@ impl Pose {
         self.rotations[joint.index()]
     }
 
+    /// The pose of the mirrored body: left and right change places in the plane x = 0.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let mut mirrored = self.clone();
+        mirrored.root_position.x = -mirrored.root_position.x;
+        for joint in Joint::ALL {
+            let turn = self.rotation(joint.mirrored());
+            mirrored.rotations[joint.index()] = Quat::from_xyzw(turn.x, -turn.y, -turn.z, turn.w);
+        }
+        mirrored
+    }
+
     /// Blends towards `other`: 0 keeps this pose, 1 takes the other. Rotations take the short way.
     #[must_use]
     pub fn interpolate(&self, other: &Self, weight: f32) -> Self {
@@ -149,6 +161,18 @@ mod tests {
                     let length = model.position(joint).distance(model.position(parent));
                     prop_assert!((length - skeleton.offset(joint).length()).abs() < 1e-5);
                 }
+            }
+        }
+
+        #[test]
+        fn a_mirrored_pose_is_the_mirrored_body(pose in any_pose()) {
+            let skeleton = Skeleton::standard();
+            let (mut model, mut mirrored) = (ModelPose::default(), ModelPose::default());
+            forward_kinematics(&skeleton, &pose, &mut model);
+            forward_kinematics(&skeleton, &pose.mirrored(), &mut mirrored);
+            for joint in Joint::ALL {
+                let expected = model.position(joint.mirrored()) * Vec3::new(-1.0, 1.0, 1.0);
+                prop_assert!(mirrored.position(joint).distance(expected) < 1e-4);
             }
         }
 

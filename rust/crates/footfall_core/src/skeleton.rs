@@ -126,6 +126,24 @@ impl Skeleton {
         scaled
     }
 
+    /// The same body with left and right changed.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        const MIRROR: Vec3 = Vec3::new(-1.0, 1.0, 1.0);
+        let mut mirrored = self.clone();
+        for joint in Joint::ALL {
+            mirrored.offsets[joint.index()] = self.offset(joint.mirrored()) * MIRROR;
+        }
+        mirrored.feet.swap(0, 1);
+        for foot in &mut mirrored.feet {
+            for point in [&mut foot.heel, &mut foot.ball, &mut foot.toe_tip] {
+                *point *= MIRROR;
+            }
+        }
+        mirrored.head_top *= MIRROR;
+        mirrored
+    }
+
     /// Checks that legs and feet have a length, so that a walk can be planted on them.
     ///
     /// # Errors

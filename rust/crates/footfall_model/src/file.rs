@@ -1,4 +1,4 @@
-//! The container that every model file shares, and the `.footfall`, `.footstyle` and `.footdyn` files.
+//! The container that every model file shares, and the `.footfall`, `.footstyle`, `.footdyn` and `.footimu` files.
 //!
 //! | bytes | content |
 //! | --- | --- |
@@ -11,6 +11,7 @@
 //! | 4 | CRC-32 of all that precedes |
 
 mod dynamics_v1;
+mod imu_v1;
 mod style_v1;
 mod style_v2;
 mod v1;
@@ -18,6 +19,7 @@ mod v2;
 
 use crate::dynamics::DynamicsModel;
 use crate::gait_model::{GaitModel, ModelError};
+use crate::imu_model::ImuModel;
 use crate::provenance::Provenance;
 use crate::style::GaitStyle;
 use serde::{Deserialize, Serialize};
@@ -34,11 +36,12 @@ const MAGIC: &[u8; 8] = b"FOOTFALL";
 const GAIT_KIND: &str = "gait";
 const STYLE_KIND: &str = "style";
 const DYNAMICS_KIND: &str = "dynamics";
+const IMU_KIND: &str = "imu";
 
 /// The part of a file that every version can read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
-    /// What the payload is: `gait`, `style` or `dynamics`.
+    /// What the payload is: `gait`, `style`, `dynamics` or `imu`.
     pub kind: String,
     /// The version of Footfall that wrote the file.
     pub written_by: String,
@@ -190,6 +193,30 @@ impl DynamicsModel {
     /// [`ModelError::Value`] when the model cannot be encoded.
     pub fn fingerprint(&self) -> Result<u32, ModelError> {
         fingerprint(dynamics_v1::encode(self))
+    }
+}
+
+impl ImuModel {
+    /// The bytes of a `.footimu` file. Numbers of frames are stored in 16 bits.
+    ///
+    /// # Errors
+    /// [`ModelFileError::Content`] when the model would not load again.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
+        self.check()?;
+        let payload = imu_v1::encode(self)?;
+        write_container(FORMAT_1, IMU_KIND, &self.provenance, &payload)
+    }
+
+    /// The model in the bytes of a `.footimu` file.
+    ///
+    /// # Errors
+    /// [`ModelFileError`] says what is wrong with the bytes; no input panics.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
+        let (_, header, payload) = read_container(bytes)?;
+        check_kind(&header, IMU_KIND)?;
+        let model = imu_v1::decode(payload, header.provenance)?;
+        model.check()?;
+        Ok(model)
     }
 }
 

@@ -3,11 +3,12 @@
 //! Probability is in f64 and poses are in f32; the two meet in [`layout`]. The crate works on bytes: it reads and
 //! writes no file.
 //!
-//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`provenance`], [`mod@file`].
+//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`imu_model`], [`provenance`], [`mod@file`].
 
 pub mod dynamics;
 pub mod file;
 pub mod gait_model;
+pub mod imu_model;
 pub mod layout;
 pub mod provenance;
 pub mod style;
@@ -18,6 +19,7 @@ pub use gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,
     StepContext, StepModel, StepOffset, Variation,
 };
+pub use imu_model::ImuModel;
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;
 pub use style::{GaitStyle, StepSpread, StyleError};

@@ -2,13 +2,15 @@
 //!
 //! Modules in the order in which data flows: [`bvh`] text to joints and channels, [`retarget`] to a clip on the canonical
 //! body, [`contacts`] of its feet with the ground, [`steps`] of its walks, and [`corpus`], many files at once.
-//! [`switches`] are contacts from joint angles alone, [`sensor_switches`] from a sensor on a foot, which [`imu_csv`] reads.
+//! [`switches`] are contacts from joint angles alone, [`sensor_switches`] from a sensor on a foot. [`virtual_imu`]
+//! measures what a sensor on the body would have, and [`phases`] cuts any locomotion at its contacts and extremes.
 
 pub mod bvh;
 pub mod contacts;
 pub mod corpus;
-pub mod imu_csv;
+pub mod phases;
 pub mod retarget;
 pub mod sensor_switches;
 pub mod steps;
 pub mod switches;
+pub mod virtual_imu;

@@ -39,6 +39,18 @@ pub enum TrainError {
         /// What was asked for.
         frame_rate_hz: f64,
     },
+    /// A number of sensors that no model has.
+    #[error("{found} sensors cannot be trained on; name one site or two")]
+    Sensors {
+        /// What was asked for.
+        found: usize,
+    },
+    /// Nothing moves long enough, or there is too much.
+    #[error("the clips have {found} frames for a sensor model; choose between 1 and 2000000")]
+    ImuFrames {
+        /// How many there are.
+        found: usize,
+    },
     /// Inference failed.
     #[error("the walk cannot be explained by the model: {0}")]
     Inference(#[from] ProbError),

@@ -2,7 +2,7 @@
 //!
 //! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
 //! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps), [`contexts`] (the ends of a walk);
-//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); and [`evaluate`], which judges what comes out.
+//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); and [`evaluate`], which judges what comes out.
 
 pub mod adapt;
 pub mod average;
@@ -12,6 +12,7 @@ pub mod differences;
 pub mod dynamics;
 pub mod error;
 pub mod evaluate;
+pub mod imu;
 pub mod normalise;
 pub mod progress;
 pub mod sequence;

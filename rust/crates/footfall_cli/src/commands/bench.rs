@@ -1,6 +1,7 @@
 //! `footfall bench`: each kernel beside its peer, in one process.
 
 mod dynamics;
+mod imu;
 mod inference;
 mod mlpg;
 mod runtime;
@@ -11,6 +12,7 @@ use anyhow::{Context as _, Result};
 use footfall_model::GaitModel;
 use serde::Serialize;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A small model that the project's own generator and trainer made: speed does not depend on what a model learned.
@@ -80,6 +82,9 @@ struct Report {
     switching_dense_us_per_frame: f64,
     /// One `GaitGenerator::step` of a switching model.
     switching_walker_us_per_frame: f64,
+    /// A body that one sensor at 100 Hz drives: samples, tracking, pose and feet, by a model of 10,000 frames; tracking is linear in them.
+    imu_us_per_frame_10k: f64,
+    imu_us_per_frame_100k: f64,
     repetitions: u16,
 }
 
@@ -92,6 +97,11 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
     let peer = mlpg::Peer::new();
     let peer_solve = peer.solver();
     let mut hsmm = inference::ForwardBackward::new()?;
+    let gait = Arc::new(model.clone());
+    let mut bodies = [
+        imu::ReconstructorBench::new(&gait, 10_000)?,
+        imu::ReconstructorBench::new(&gait, 100_000)?,
+    ];
     let mut walker = runtime::WalkerBench::new(model)?;
     let dynamics = dynamics::DynamicsBench::new()?;
     let mut switching = dynamics.switching()?;
@@ -124,6 +134,9 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         best.switching.take(switching.run());
         best.dense_switching.take(dynamics.simulate_dense());
         best.switching_walker.take(switching_walker.walk().mean);
+        for (best, body) in best.bodies.iter_mut().zip(&mut bodies) {
+            best.take(body.run());
+        }
     }
     progress.finish();
 
@@ -154,6 +167,8 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         switching_us_per_frame: best.switching.0,
         switching_dense_us_per_frame: best.dense_switching.0,
         switching_walker_us_per_frame: best.switching_walker.0,
+        imu_us_per_frame_10k: best.bodies[0].0,
+        imu_us_per_frame_100k: best.bodies[1].0,
         repetitions: args.repetitions,
     };
     if args.json {
@@ -229,6 +244,10 @@ impl Report {
                 "  one walker                               {:9.4} µs a frame",
                 self.switching_walker_us_per_frame
             ),
+            format!(
+                "a body from one sensor, 10,000 frames      {:9.4} µs a frame, {:.1} µs with 100,000",
+                self.imu_us_per_frame_10k, self.imu_us_per_frame_100k
+            ),
         ]
     }
 }
@@ -267,6 +286,7 @@ struct Best {
     switching: Least,
     dense_switching: Least,
     switching_walker: Least,
+    bodies: [Least; 2],
 }
 
 /// How long one run takes, microseconds.

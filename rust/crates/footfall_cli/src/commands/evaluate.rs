@@ -2,6 +2,7 @@
 
 mod contacts;
 mod dynamics;
+mod imu;
 mod style;
 mod style_report;
 mod training;
@@ -20,6 +21,7 @@ pub(crate) struct EvaluateArgs {
 enum What {
     Contacts(contacts::ContactsArgs),
     Dynamics(dynamics::DynamicsArgs),
+    Imu(imu::ImuArgs),
     Style(style::StyleArgs),
     Training(training::TrainingArgs),
 }
@@ -28,6 +30,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<()> {
     match &args.what {
         What::Contacts(args) => contacts::run(args),
         What::Dynamics(args) => dynamics::run(args),
+        What::Imu(args) => imu::run(args),
         What::Style(args) => style::run(args),
         What::Training(args) => training::run(args),
     }

@@ -2,6 +2,7 @@
 
 mod corpus_index;
 mod dynamics;
+mod imu;
 mod model;
 mod motion;
 mod style;
@@ -21,14 +22,15 @@ use std::path::{Path, PathBuf};
 ///
 /// A recording (.bvh): skeleton, frames, rate, speed, contacts and steps. A model (.footfall): where it comes from, states,
 /// durations, speeds. A style (.footstyle): which base it fits, where it comes from. A
-/// switching model (.footdyn): its two systems. An index (.csv): clips by category, style and subject.
+/// switching model (.footdyn): its two systems. A sensor model (.footimu): sites, frames, behaviours. An index (.csv): clips by
+/// category, style and subject. A recording of a sensor (.csv): samples, rate, what is wrong with it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall inspect walk.bvh\n  \
     footfall inspect walk.footfall --json\n  \
     footfall inspect index.csv")]
 pub(crate) struct InspectArgs {
-    /// A .bvh, a .footfall, a .footstyle, a .footdyn or an index.csv
+    /// A .bvh, .footfall, .footstyle, .footdyn or .footimu, an index.csv or a sensor's .csv
     #[arg(value_name = "FILE")]
     input: PathBuf,
     #[command(flatten)]
@@ -46,6 +48,8 @@ enum Finding {
     GaitModel(Box<model::ModelFacts>),
     GaitStyle(style::StyleFacts),
     DynamicsModel(dynamics::DynamicsFacts),
+    ImuModel(imu::ImuModelFacts),
+    ImuRecording(imu::ImuRecordingFacts),
     CorpusIndex(corpus_index::IndexFacts),
 }
 
@@ -54,6 +58,8 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
         Kind::Model => Finding::GaitModel(Box::new(model::inspect(&args.input)?)),
         Kind::Style => Finding::GaitStyle(style::inspect(&args.input)?),
         Kind::Dynamics => Finding::DynamicsModel(dynamics::inspect(&args.input)?),
+        Kind::Imu => Finding::ImuModel(imu::inspect_model(&args.input)?),
+        Kind::ImuRecording => Finding::ImuRecording(imu::inspect_recording(&args.input)?),
         Kind::Index => Finding::CorpusIndex(corpus_index::inspect(&args.input)?),
         Kind::Motion => Finding::Motion(motion::inspect(&args.input, args.map.read()?)?),
     };
@@ -65,6 +71,8 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
         Finding::GaitModel(facts) => facts.lines(),
         Finding::GaitStyle(facts) => facts.lines(),
         Finding::DynamicsModel(facts) => facts.lines(),
+        Finding::ImuModel(facts) => facts.lines(),
+        Finding::ImuRecording(facts) => facts.lines(),
         Finding::CorpusIndex(facts) => facts.lines(),
     };
     output::print_text(&lines.join("\n"))
@@ -75,6 +83,8 @@ enum Kind {
     Model,
     Style,
     Dynamics,
+    Imu,
+    ImuRecording,
     Index,
 }
 
@@ -94,6 +104,10 @@ fn kind_of(path: &Path) -> Result<Kind> {
         Kind::Style
     } else if has("footdyn") {
         Kind::Dynamics
+    } else if has("footimu") {
+        Kind::Imu
+    } else if has("csv") && start[..read].starts_with(b"time_s,") {
+        Kind::ImuRecording
     } else if start[..read] == *b"FOOTFALL" || has("footfall") {
         Kind::Model
     } else if has("csv") {

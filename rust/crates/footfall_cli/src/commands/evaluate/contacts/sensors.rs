@@ -1,10 +1,11 @@
-//! Switches of foot sensors against the events of a reference.
+//! Switches and swings of foot sensors against the events of a reference.
 
 use super::Agreement;
 use anyhow::{Context as _, Result, ensure};
 use footfall_core::EventKind;
+use footfall_imu::csv;
+use footfall_imu::events::{detect_swings, events_of};
 use footfall_motion::corpus::read_index;
-use footfall_motion::imu_csv;
 use footfall_motion::sensor_switches::detect_sensor_switches;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -28,7 +29,7 @@ struct Event {
     kind: String,
 }
 
-/// Agreement of every recording of an index, by category and kind of contact.
+/// Agreement of every recording of an index, by category, kind of contact and detector.
 pub(super) fn compare(index: &Path, tolerance_ms: f64) -> Result<BTreeMap<String, Agreement>> {
     let mut agreements: BTreeMap<String, Agreement> = BTreeMap::new();
     for row in read_index(index)? {
@@ -40,24 +41,36 @@ pub(super) fn compare(index: &Path, tolerance_ms: f64) -> Result<BTreeMap<String
             row.line
         );
         let events = read_events(&index.parent().unwrap_or(Path::new("")).join(events))?;
-        let recording = imu_csv::read(&row.path)?;
-        let switches = detect_sensor_switches(&recording.samples, recording.rate_hz)
+        let recording = csv::read(&row.path)?;
+        let switches = detect_sensor_switches(&recording.channels(), recording.rate_hz())
             .with_context(|| row.path.display().to_string())?;
+        let switches = switches
+            .iter()
+            .map(|switch| (recording.start_secs() + switch.time_secs, switch.kind));
+        let found = events_of(&detect_swings(&recording));
+        let swings = found.iter().map(|event| (event.time_secs, event.kind));
+        let detectors: [(&str, Vec<(f64, EventKind)>); 2] = [
+            ("switches", switches.collect()),
+            ("swings", swings.collect()),
+        ];
         let times = || events.iter().map(|event| event.time_s);
         let judged = times().fold(f64::INFINITY, f64::min) - MARGIN_SECS
             ..=times().fold(f64::NEG_INFINITY, f64::max) + MARGIN_SECS;
-        for kind in [EventKind::InitialContact, EventKind::TerminalContact] {
-            let known = events.iter().filter(|event| event.kind == kind.name());
-            let found = switches.iter().filter(|switch| switch.kind == kind);
-            let found = found.map(|switch| recording.start_secs + switch.time_secs);
-            let name = format!("{}, {}", row.category(), kind.name().replace('_', " "));
-            let agreement = agreements.entry(name).or_default();
-            agreement.recordings += 1;
-            agreement.add(
-                known.map(|event| event.time_s).collect(),
-                found.filter(|time| judged.contains(time)).collect(),
-                tolerance_ms,
-            );
+        for (detector, found) in &detectors {
+            for kind in [EventKind::InitialContact, EventKind::TerminalContact] {
+                let known = events.iter().filter(|event| event.kind == kind.name());
+                let found = found.iter().filter(|(_, other)| *other == kind);
+                let found = found.map(|(time_secs, _)| *time_secs);
+                let kind = kind.name().replace('_', " ");
+                let name = format!("{}, {kind}, {detector}", row.category());
+                let agreement = agreements.entry(name).or_default();
+                agreement.recordings += 1;
+                agreement.add(
+                    known.map(|event| event.time_s).collect(),
+                    found.filter(|time| judged.contains(time)).collect(),
+                    tolerance_ms,
+                );
+            }
         }
     }
     Ok(agreements)

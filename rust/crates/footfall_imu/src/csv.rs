@@ -1,22 +1,13 @@
-//! Recordings of an inertial sensor as CSV: header `time_s,ax,ay,az,gx,gy,gz`; specific force in m/s², angular rate in rad/s.
+//! Recordings as CSV: header `time_s,ax,ay,az,gx,gy,gz`; specific force in m/s², angular rate in rad/s.
 
+use crate::sample::{ImuRecording, ImuSample};
+use glam::Vec3;
 use std::path::{Path, PathBuf};
 
 const HEADER: [&str; 7] = ["time_s", "ax", "ay", "az", "gx", "gy", "gz"];
 
 /// Longest recording that is read, samples: a day at 200 Hz is shorter.
 const MAX_SAMPLES: usize = 20_000_000;
-
-/// A recording of one sensor, in its own axes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ImuRecording {
-    /// Samples per second: the number of steps in time over the whole time.
-    pub rate_hz: f64,
-    /// Time of the first sample, seconds.
-    pub start_secs: f64,
-    /// Specific force x, y, z (m/s²), then angular rate x, y, z (rad/s).
-    pub samples: Vec<[f64; 6]>,
-}
 
 /// Why a recording cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -76,14 +67,16 @@ pub fn read(path: &Path) -> Result<ImuRecording, ImuCsvError> {
             found: header.iter().collect::<Vec<_>>().join(","),
         });
     }
-    let mut samples = Vec::new();
-    let (mut start_secs, mut last) = (0.0, f64::NEG_INFINITY);
+    let mut samples: Vec<ImuSample> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(csv_error)?;
+        let last = samples.last().map(|sample| sample.time_secs);
         let mut row = [0.0; 7];
         for ((value, text), column) in row.iter_mut().zip(&record).zip(HEADER) {
             let number = text.trim().parse().ok().filter(|number: &f64| {
-                number.is_finite() && (column != HEADER[0] || *number > last)
+                let in_order = column != HEADER[0] || last.is_none_or(|last| *number > last);
+                // Values are kept as f32, and what overflows there is no measurement.
+                number.abs() < 1e30 && in_order
             });
             *value = number.ok_or_else(|| ImuCsvError::Value {
                 path: path.to_owned(),
@@ -92,12 +85,12 @@ pub fn read(path: &Path) -> Result<ImuRecording, ImuCsvError> {
                 value: text.to_owned(),
             })?;
         }
-        let [time, sample @ ..] = row;
-        if samples.is_empty() {
-            start_secs = time;
-        }
-        last = time;
-        samples.push(sample);
+        let [time_secs, force @ .., gx, gy, gz] = row;
+        samples.push(ImuSample {
+            time_secs,
+            force: Vec3::from_array(force.map(|value| value as f32)),
+            rate: Vec3::from_array([gx, gy, gz].map(|value| value as f32)),
+        });
         if samples.len() > MAX_SAMPLES {
             break;
         }
@@ -108,11 +101,20 @@ pub fn read(path: &Path) -> Result<ImuRecording, ImuCsvError> {
             found: samples.len(),
         });
     }
-    Ok(ImuRecording {
-        rate_hz: (samples.len() - 1) as f64 / (last - start_secs),
-        start_secs,
-        samples,
-    })
+    Ok(ImuRecording { samples })
+}
+
+/// The text of a recording's file.
+pub fn write(recording: &ImuRecording) -> String {
+    let row = |sample: &ImuSample| {
+        let (force, rate) = (sample.force, sample.rate);
+        let values = [force.x, force.y, force.z, rate.x, rate.y, rate.z];
+        let values = values.map(|value| format!("{value:.6}"));
+        format!("{:.6},{}", sample.time_secs, values.join(","))
+    };
+    let rows = recording.samples.iter().map(row);
+    let lines: Vec<String> = core::iter::once(HEADER.join(",")).chain(rows).collect();
+    lines.join("\n") + "\n"
 }
 
 #[cfg(test)]
@@ -131,12 +133,14 @@ mod tests {
         let head = "time_s,ax,ay,az,gx,gy,gz\n";
         let good = format!("{head}1.0,0,9.81,0,0,0,0.5\n1.01,1,2,3,4,5,6\n1.02,1,2,3,4,5,6\n");
         let recording = read_text(&good).unwrap();
-        assert!((recording.rate_hz - 100.0).abs() < 1e-6);
+        assert!((recording.rate_hz() - 100.0).abs() < 1e-6);
         assert_eq!(recording.samples.len(), 3);
-        assert!((recording.samples[0][1] - 9.81).abs() < 1e-12);
-        assert!((recording.samples[2][5] - 6.0).abs() < 1e-12);
+        assert!((recording.samples[0].force.y - 9.81).abs() < 1e-6);
+        assert!((recording.channels()[2][5] - 6.0).abs() < 1e-12);
+        assert_eq!(read_text(&write(&recording)).unwrap(), recording);
         for (text, part) in [
             (good.replace("1.01,1", "1.01,nan"), "line 3: ax is 'nan'"),
+            (good.replace("1.01,1", "1.01,1e39"), "line 3: ax is '1e39'"),
             (good.replace("1.02,", "1.01,"), "line 4: time_s"),
             (good.replace("gx", "rx"), "line 1"),
             (format!("{head}1,0,0,0,0,0,0\n"), "1 samples"),

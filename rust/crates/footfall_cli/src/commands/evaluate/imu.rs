@@ -1,0 +1,234 @@
+//! `footfall evaluate imu`: bodies from sensors against the recorded ones.
+
+use crate::commands::imu::{imu_clip, parse_site};
+use crate::output;
+use anyhow::{Context as _, Result, ensure};
+use footfall_core::Site;
+use footfall_motion::corpus::{Corpus, Where};
+use footfall_train::imu::evaluate::{HeldOut, ImuTrial, evaluate_imu};
+use footfall_train::imu::{ImuClip, ImuTrainConfig};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Sites of figure 10 of the paper, each alone, and the pair of table 3.
+const SENSORS: [&[Site]; 6] = [
+    &[Site::RightFoot],
+    &[Site::RightFoot, Site::RightHand],
+    &[Site::RightKnee],
+    &[Site::RightHand],
+    &[Site::RightForearm],
+    &[Site::Root],
+];
+
+/// Bodies from one or two sensors against the recorded ones
+///
+/// Every recording is reconstructed by models that have not seen it: one trained on all other recordings, one on those of other
+/// subjects. Mean distance of the joints, hips and heading brought together, over the frames in which the body moves: live, as a game
+/// shows it, and whole, with what comes later in the recording. Categories are the index's.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall evaluate imu --corpus index.csv --where 'path=cmu/*'\n  \
+    footfall evaluate imu --corpus index.csv --where 'path=cmu/*' --site right_thigh --json")]
+pub(crate) struct ImuArgs {
+    /// Table of the recordings
+    #[arg(long, value_name = "INDEX.csv")]
+    corpus: PathBuf,
+    /// Condition on a column, for example `category=running`; may repeat
+    #[arg(long = "where", value_name = "COLUMN=VALUE")]
+    conditions: Vec<Where>,
+    /// Where the sensor sits, twice for two sensors; the foot, foot and hand, and the sites of the paper's figure 10 one by one when absent
+    #[arg(long = "site", value_parser = parse_site)]
+    sites: Vec<Site>,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    sensors: Vec<SensorReport>,
+}
+
+#[derive(Serialize)]
+struct SensorReport {
+    sites: Vec<&'static str>,
+    /// Models that have seen all other recordings.
+    other_recordings: BTreeMap<String, Figures>,
+    /// Models that have seen other subjects only; empty when there is but one.
+    other_subjects: BTreeMap<String, Figures>,
+}
+
+/// Means over the frames of a category's recordings.
+#[derive(Default, Serialize)]
+struct Figures {
+    recordings: usize,
+    frames: usize,
+    moving_frames: usize,
+    live_cm: f64,
+    whole_cm: f64,
+    /// Standing included.
+    live_all_cm: f64,
+    whole_all_cm: f64,
+    /// Standard deviation of `live_cm` between recordings.
+    live_spread_cm: f64,
+    /// One pose for all: the mean of the training data.
+    constant_cm: f64,
+    /// Share of the frames whose behaviour is recognised live.
+    recognised: f64,
+    /// Changes of behaviour, and the median delay with which they are recognised live.
+    changes: usize,
+    median_delay_s: Option<f64>,
+}
+
+pub(crate) fn run(args: &ImuArgs) -> Result<()> {
+    ensure!(
+        args.sites.len() <= 2,
+        "{} sensors cannot be used at once; give --site once or twice",
+        args.sites.len()
+    );
+    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
+    let clips: Vec<ImuClip<'_>> = corpus.clips.iter().map(imu_clip).collect();
+    let categories: Vec<&str> = corpus
+        .clips
+        .iter()
+        .map(|clip| clip.row.category())
+        .collect();
+    let several = clips.iter().any(|clip| clip.subject != clips[0].subject);
+    let asked: Vec<&[Site]> = if args.sites.is_empty() {
+        SENSORS.to_vec()
+    } else {
+        vec![&args.sites]
+    };
+    let mut sensors = Vec::new();
+    for sites in asked {
+        let names: Vec<&str> = sites.iter().map(|site| site.name()).collect();
+        output::note(&format!("reconstructing from {}", names.join(" and ")));
+        let config = ImuTrainConfig::new(sites);
+        let figures = |held_out: HeldOut| -> Result<BTreeMap<String, Figures>> {
+            let trials = evaluate_imu(&clips, &config, held_out)
+                .with_context(|| args.corpus.display().to_string())?;
+            Ok(summarise(&trials, &categories))
+        };
+        sensors.push(SensorReport {
+            sites: names,
+            other_recordings: figures(HeldOut::Recording)?,
+            other_subjects: if several {
+                figures(HeldOut::Subject)?
+            } else {
+                BTreeMap::new()
+            },
+        });
+    }
+    let report = Report { sensors };
+    if args.json {
+        return output::print_json(&report);
+    }
+    let mut lines = Vec::new();
+    for sensor in &report.sensors {
+        for (seen, figures) in [
+            ("other recordings", &sensor.other_recordings),
+            ("other subjects", &sensor.other_subjects),
+        ] {
+            if figures.is_empty() {
+                continue;
+            }
+            lines.push(format!(
+                "{}, trained on {seen}; cm over moving frames",
+                sensor.sites.join(" and ")
+            ));
+            lines.push(format!(
+                "{:28} {:>10} {:>7} {:>6} {:>7} {:>6} {:>9} {:>11} {:>6}",
+                "",
+                "recordings",
+                "frames",
+                "live",
+                "spread",
+                "whole",
+                "constant",
+                "recognised",
+                "delay"
+            ));
+            lines.extend(
+                figures
+                    .iter()
+                    .map(|(category, figures)| figures.line(category)),
+            );
+            lines.push(String::new());
+        }
+    }
+    output::print_text(lines.join("\n").trim_end())
+}
+
+impl Figures {
+    fn line(&self, category: &str) -> String {
+        let delay = self
+            .median_delay_s
+            .map_or("-".to_owned(), |d| format!("{d:.2} s"));
+        format!(
+            "{category:28} {:10} {:7} {:6.2} {:7.2} {:6.2} {:9.2} {:9.0} % {delay:>6}",
+            self.recordings,
+            self.moving_frames,
+            self.live_cm,
+            self.live_spread_cm,
+            self.whole_cm,
+            self.constant_cm,
+            100.0 * self.recognised,
+        )
+    }
+}
+
+fn summarise(trials: &[ImuTrial], categories: &[&str]) -> BTreeMap<String, Figures> {
+    let mut names: Vec<&str> = trials.iter().map(|trial| categories[trial.clip]).collect();
+    names.sort_unstable();
+    names.dedup();
+    let all = names.iter().map(|name| {
+        let own = trials
+            .iter()
+            .filter(|trial| categories[trial.clip] == *name);
+        ((*name).to_owned(), figures_of(&own.collect::<Vec<_>>()))
+    });
+    let mut all: BTreeMap<String, Figures> = all.collect();
+    if all.len() > 1 {
+        all.insert(
+            "total".to_owned(),
+            figures_of(&trials.iter().collect::<Vec<_>>()),
+        );
+    }
+    all
+}
+
+fn figures_of(trials: &[&ImuTrial]) -> Figures {
+    let weighed = |weight: fn(&ImuTrial) -> usize, value: fn(&ImuTrial) -> f64| {
+        let sum: f64 = trials.iter().map(|t| weight(t) as f64 * value(t)).sum();
+        sum / trials.iter().map(|t| weight(t)).sum::<usize>().max(1) as f64
+    };
+    let moving = |value: fn(&ImuTrial) -> f64| weighed(|t| t.moving, value);
+    let all = |value: fn(&ImuTrial) -> f64| weighed(|t| t.frames, value);
+    let moved: Vec<f64> = trials
+        .iter()
+        .filter(|t| t.moving > 0)
+        .map(|t| t.live.moving_cm)
+        .collect();
+    let mean = moved.iter().sum::<f64>() / moved.len().max(1) as f64;
+    let squares: f64 = moved.iter().map(|error| (error - mean).powi(2)).sum();
+    let mut delays: Vec<f64> = trials
+        .iter()
+        .flat_map(|t| t.delays_secs.iter().copied())
+        .collect();
+    delays.sort_by(f64::total_cmp);
+    Figures {
+        recordings: trials.len(),
+        frames: trials.iter().map(|t| t.frames).sum(),
+        moving_frames: trials.iter().map(|t| t.moving).sum(),
+        live_cm: moving(|t| t.live.moving_cm),
+        whole_cm: moving(|t| t.whole.moving_cm),
+        live_all_cm: all(|t| t.live.all_cm),
+        whole_all_cm: all(|t| t.whole.all_cm),
+        live_spread_cm: (squares / moved.len().max(1) as f64).sqrt(),
+        constant_cm: moving(|t| t.constant_cm),
+        recognised: all(|t| t.live.recognised),
+        changes: delays.len(),
+        median_delay_s: delays.get(delays.len() / 2).copied(),
+    }
+}

@@ -1,0 +1,121 @@
+//! `footfall imu simulate`: what a sensor on a recorded body would have measured.
+
+use super::parse_site;
+use crate::motion_input::{MapArgs, MotionInput};
+use crate::output;
+use anyhow::{Result, ensure};
+use footfall_core::Site;
+use footfall_imu::csv;
+use footfall_motion::virtual_imu::{SensorNoise, VirtualImuConfig, simulate};
+use glam::{EulerRot, Quat};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Measure what a sensor on a recorded body would have
+///
+/// Times are the recording's; frames before its motion (an artificial T-pose) are left out.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall imu simulate walk.bvh --site right_foot -o imu.csv\n  \
+    footfall imu simulate walk.bvh --site right_thigh --rate 50 --noise 1 --mounting 90,0,30 -o imu.csv")]
+pub(crate) struct SimulateArgs {
+    /// The recording
+    #[arg(value_name = "IN.bvh")]
+    input: PathBuf,
+    /// Where the sensor sits
+    #[arg(long, value_parser = parse_site)]
+    site: Site,
+    /// Samples per second
+    #[arg(long, default_value_t = 100.0)]
+    rate: f64,
+    /// Errors of the sensor: 0 for none, 1 for a phone's or hobby board's
+    #[arg(long, default_value_t = 0.0)]
+    noise: f32,
+    /// Seed of the errors
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How the sensor is turned against the site's axes: degrees about x, then y, then z of the site
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_angles, default_value = "0,0,0", allow_hyphen_values = true)]
+    mounting: Angles,
+    /// Where to write
+    #[arg(short, long, value_name = "IMU.csv")]
+    output: PathBuf,
+    #[command(flatten)]
+    map: MapArgs,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// Three angles, radians.
+#[derive(Clone, Copy, Debug)]
+struct Angles([f32; 3]);
+
+fn parse_angles(text: &str) -> Result<Angles, String> {
+    let numbers: Vec<f32> = text
+        .split(',')
+        .filter_map(|n| n.trim().parse().ok())
+        .collect();
+    match numbers.try_into() {
+        Ok(degrees) => Ok(Angles(<[f32; 3]>::map(degrees, f32::to_radians))),
+        Err(_) => Err("give three numbers with commas, for example 90,0,30".to_owned()),
+    }
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    output: &'a PathBuf,
+    site: &'static str,
+    rate_hz: f64,
+    samples: usize,
+    start_s: f64,
+    seconds: f64,
+}
+
+pub(crate) fn run(args: &SimulateArgs) -> Result<()> {
+    output::refuse_overwrite(&[&args.input], &args.output)?;
+    ensure!(
+        (1.0..=2000.0).contains(&args.rate),
+        "a sensor of {} samples a second cannot be simulated; give --rate a number from 1 to 2000",
+        args.rate
+    );
+    ensure!(
+        (0.0..=100.0).contains(&args.noise),
+        "--noise {} is no factor of a sensor's errors; give a number from 0 to 100",
+        args.noise
+    );
+    let motion = MotionInput::read(&args.input, args.map.read()?, None)?.retargeted;
+    let Angles([x, y, z]) = args.mounting;
+    let config = VirtualImuConfig {
+        mounting: Quat::from_euler(EulerRot::ZYXEx, z, y, x),
+        noise: (args.noise > 0.0).then(|| SensorNoise::consumer(args.noise)),
+        seed: args.seed,
+        ..VirtualImuConfig::ideal(args.rate)
+    };
+    let recording = simulate(&motion.clip, motion.first_frame, args.site, &config);
+    ensure!(
+        recording.samples.len() >= 2,
+        "{}: the motion is too short for two samples; give a longer recording",
+        args.input.display()
+    );
+    output::write_atomic(&args.output, csv::write(&recording).as_bytes())?;
+    let report = Report {
+        output: &args.output,
+        site: args.site.name(),
+        rate_hz: args.rate,
+        samples: recording.samples.len(),
+        start_s: recording.start_secs(),
+        seconds: recording.duration_secs(),
+    };
+    if args.json {
+        return output::print_json(&report);
+    }
+    output::note(&format!(
+        "{}: {} samples of {}, {} a second",
+        args.output.display(),
+        report.samples,
+        report.site,
+        report.rate_hz
+    ));
+    Ok(())
+}

@@ -1,0 +1,176 @@
+//! `footfall imu train`: a corpus becomes a model of what sensors on a body mean.
+
+use super::parse_site;
+use crate::commands::train::provenance::{describe, name_of};
+use crate::output::{self, write_atomic};
+use anyhow::{Context as _, Result, ensure};
+use footfall_core::Site;
+use footfall_motion::corpus::{Corpus, CorpusClip, Where};
+use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Learn what a sensor on a body means for the whole body
+///
+/// Every recording is cut into phases, with what a sensor at the site would have measured in each frame. Give --site twice for
+/// two sensors.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    footfall imu train --corpus index.csv --where 'path=cmu/*' --site right_foot -o body.footimu\n  \
+    footfall imu train --corpus index.csv --site right_foot --site right_hand -o body.footimu")]
+pub(crate) struct ImuTrainArgs {
+    /// Table of the recordings
+    #[arg(long, value_name = "INDEX.csv")]
+    corpus: PathBuf,
+    /// Condition on a column, for example `category=neutral_walk`; may repeat
+    #[arg(long = "where", value_name = "COLUMN=VALUE")]
+    conditions: Vec<Where>,
+    #[command(flatten)]
+    model: ModelArgs,
+    /// Where to write the model
+    #[arg(short, long, value_name = "BODY.footimu")]
+    output: PathBuf,
+    /// What the model is trained on, in your words, for its provenance; the conditions when absent
+    #[arg(long, value_name = "TEXT")]
+    describe: Option<String>,
+    /// Print one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+/// What a model is like.
+#[derive(Clone, Debug, clap::Args)]
+pub(in crate::commands) struct ModelArgs {
+    /// Where the sensor sits; twice for two sensors
+    #[arg(long = "site", value_parser = parse_site, required = true)]
+    pub(in crate::commands) sites: Vec<Site>,
+    /// Frames per second of the model
+    #[arg(long, default_value_t = 30.0)]
+    fps: f64,
+    /// Leave out the recordings' mirror images
+    #[arg(long)]
+    no_mirror: bool,
+}
+
+impl ModelArgs {
+    pub(in crate::commands) fn config(&self) -> Result<ImuTrainConfig> {
+        ensure!(
+            (20.0..=240.0).contains(&self.fps),
+            "a model of {} frames a second cannot be trained; give --fps a number from 20 to 240",
+            self.fps
+        );
+        ensure!(
+            self.sites.len() <= 2,
+            "{} sensors cannot be used at once; give --site once or twice",
+            self.sites.len()
+        );
+        Ok(ImuTrainConfig {
+            frame_rate_hz: self.fps,
+            mirror: !self.no_mirror,
+            ..ImuTrainConfig::new(&self.sites)
+        })
+    }
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    output: &'a Path,
+    sites: Vec<&'static str>,
+    clips: usize,
+    subjects: usize,
+    frames: usize,
+    segments: usize,
+    phases: usize,
+    bytes: usize,
+    skipped: Vec<String>,
+    seconds: f64,
+}
+
+/// A recording as the trainer takes it.
+pub(in crate::commands) fn imu_clip(clip: &CorpusClip) -> ImuClip<'_> {
+    ImuClip {
+        subject: clip.row.subject(),
+        clip: &clip.retargeted.clip,
+        first_frame: clip.retargeted.first_frame,
+        recordings: &[],
+    }
+}
+
+#[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
+pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
+    let begun = Instant::now();
+    output::refuse_overwrite(&[&args.corpus], &args.output)?;
+    let config = args.model.config()?;
+    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
+    for clip in &corpus.clips {
+        output::refuse_overwrite(&[&clip.row.path], &args.output)?;
+    }
+    let clips: Vec<ImuClip<'_>> = corpus.clips.iter().map(imu_clip).collect();
+    let provenance = describe(
+        &corpus,
+        &args.corpus,
+        &args.conditions,
+        args.describe.as_deref(),
+        command(args),
+    );
+    let model = train_imu_clips(&clips, &config, provenance)
+        .with_context(|| args.corpus.display().to_string())?;
+    let bytes = model.to_bytes().context("the trained model")?;
+    write_atomic(&args.output, &bytes)?;
+    let report = Report {
+        output: &args.output,
+        sites: model.sites.iter().map(|site| site.name()).collect(),
+        clips: clips.len(),
+        subjects: model.subjects,
+        frames: model.frame_count(),
+        segments: model.segments.len(),
+        phases: model.phases.len(),
+        bytes: bytes.len(),
+        skipped: corpus
+            .report
+            .skipped
+            .iter()
+            .map(|s| s.reason.clone())
+            .collect(),
+        seconds: begun.elapsed().as_secs_f64(),
+    };
+    for reason in &report.skipped {
+        output::note(&format!("warning: left out {reason}"));
+    }
+    if args.json {
+        return output::print_json(&report);
+    }
+    output::note(&format!(
+        "{}: {} frames in {} segments of {} phases, {} subjects in {} clips, {} bytes, {:.1} s",
+        args.output.display(),
+        report.frames,
+        report.segments,
+        report.phases,
+        report.subjects,
+        report.clips,
+        report.bytes,
+        report.seconds
+    ));
+    Ok(())
+}
+
+fn command(args: &ImuTrainArgs) -> String {
+    let mut words = vec![format!(
+        "footfall imu train --corpus {}",
+        name_of(&args.corpus)
+    )];
+    words.extend(args.conditions.iter().map(|c| format!("--where '{c}'")));
+    words.extend(
+        args.model
+            .sites
+            .iter()
+            .map(|site| format!("--site {}", site.name())),
+    );
+    words.push(format!(
+        "--fps {} -o {}",
+        args.model.fps,
+        name_of(&args.output)
+    ));
+    words.join(" ")
+}

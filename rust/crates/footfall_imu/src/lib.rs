@@ -1,0 +1,21 @@
+//! Runtime: what one inertial sensor tells.
+//!
+//! Modules in the order in which data flows: [`sample`]s, [`csv`] recordings and their [`checks`], [`orientation`] of the sensor, the
+//! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`].
+//!
+//! Everywhere specific force is in m/s² and holds gravity (a sensor at rest reads +9.81 along up), angular rate is in rad/s, and axes are
+//! right-handed.
+
+pub mod checks;
+pub mod csv;
+pub mod events;
+pub mod features;
+pub mod orientation;
+pub mod sample;
+pub mod strides;
+
+pub use checks::{RecordingFault, check_recording};
+pub use csv::ImuCsvError;
+pub use features::{FeatureFrame, FeatureStream, SENSOR_FEATURES};
+pub use orientation::OrientationFilter;
+pub use sample::{GRAVITY_MPS2, ImuRecording, ImuSample};

@@ -1,0 +1,126 @@
+//! What the body does in each frame, from contacts and from where hips and feet go.
+
+use super::track::{Track, flights};
+use crate::contacts::Contacts;
+use footfall_core::{Behaviour, Clip, FrameSpan, Side};
+use glam::Vec3;
+
+/// A foot belongs to a take-off or to a landing when its contact ends or begins this close to it, seconds.
+const TOGETHER_SECS: f64 = 0.12;
+
+/// Preparing for a flight and recovering from it belong to it for at most so long, seconds.
+const AROUND_FLIGHT_SECS: f64 = 0.4;
+
+/// Hips and feet of a body that stands move more slowly than this, m/s.
+const STAND_MPS: (f32, f32) = (0.15, 0.35);
+
+/// Speeds of standing are looked at over this time to either side, seconds.
+const STAND_SECS: f64 = 0.15;
+
+/// Directions of walking over this time to either side, seconds.
+const STEP_SECS: f64 = 0.5;
+
+/// Less speed sideways is no sidestep, m/s.
+const SIDESTEP_MPS: f32 = 0.15;
+
+/// A behaviour lasts at least so long, seconds.
+const LEAST_SECS: f64 = 0.2;
+
+/// The behaviour of every frame of a clip.
+pub fn detect_behaviours(clip: &Clip, contacts: &Contacts) -> Vec<Behaviour> {
+    let track = Track::of(clip, contacts);
+    let frames_of = |secs: f64| (secs * clip.frame_rate_hz).round() as usize;
+    let mut behaviours: Vec<Behaviour> = (0..contacts.frames)
+        .map(|frame| on_the_ground(&track, contacts, frame, &frames_of))
+        .collect();
+    let flights = flights(contacts);
+    for (n, flight) in flights.iter().enumerate() {
+        let behaviour = in_the_air(contacts, *flight, frames_of(TOGETHER_SECS));
+        // Ground between two flights is shared.
+        let reach = |gap: Option<usize>| {
+            let most = frames_of(AROUND_FLIGHT_SECS);
+            gap.map_or(most, |gap| gap.div_ceil(2).min(most))
+        };
+        let before = n.checked_sub(1).map(|n| flight.first - flights[n].last);
+        let after = flights.get(n + 1).map(|next| next.first - flight.last);
+        let first = flight.first.saturating_sub(reach(before));
+        let last = (flight.last + reach(after)).min(contacts.frames - 1);
+        behaviours[first.max(contacts.first_frame)..=last].fill(behaviour);
+    }
+    drop_short(&mut behaviours, frames_of(LEAST_SECS));
+    behaviours
+}
+
+/// Who leaves the ground and who lands tells what a flight is.
+fn in_the_air(contacts: &Contacts, flight: FrameSpan, together: usize) -> Behaviour {
+    let leaves = |side: Side| {
+        let stances = &contacts.foot(side).stances;
+        let mut ends = stances.iter().map(|stance| stance.last);
+        ends.any(|end| end < flight.first && end + together >= flight.first)
+    };
+    let lands = |side: Side| {
+        let stances = &contacts.foot(side).stances;
+        let mut begins = stances.iter().map(|stance| stance.first);
+        begins.any(|begin| begin > flight.last && begin <= flight.last + together)
+    };
+    let [left, right] = Side::BOTH.map(|side| (leaves(side), lands(side)));
+    // Who leaves alone and who lands alone; a recording that begins or ends in the air shows one of the two.
+    let alone = |a: bool, b: bool| a != b;
+    match (left, right) {
+        ((true, true), (false, false)) | ((false, false), (true, true)) => Behaviour::Hop,
+        ((left_leaves, left_lands), (right_leaves, right_lands))
+            if (alone(left_leaves, right_leaves) || !(left_leaves || right_leaves))
+                && (alone(left_lands, right_lands) || !(left_lands || right_lands))
+                && (left_leaves || right_leaves || left_lands || right_lands) =>
+        {
+            Behaviour::Run
+        }
+        _ => Behaviour::Jump,
+    }
+}
+
+fn on_the_ground(
+    track: &Track,
+    contacts: &Contacts,
+    frame: usize,
+    frames_of: &impl Fn(f64) -> usize,
+) -> Behaviour {
+    let (first, end) = (contacts.first_frame, contacts.frames);
+    let velocity = |points: &[Vec3], reach: usize| {
+        let from = frame.saturating_sub(reach).max(first);
+        let to = (frame + reach).min(end - 1).max(from);
+        let secs = (to - from).max(1) as f32 / contacts.frame_rate_hz as f32;
+        (points[to] - points[from]) / secs
+    };
+    let near = frames_of(STAND_SECS).max(1);
+    let slow = velocity(&track.hips, near).with_y(0.0).length() < STAND_MPS.0;
+    let feet_rest = Side::BOTH
+        .iter()
+        .all(|side| velocity(&track.ankles[side.index()], near).length() < STAND_MPS.1);
+    if slow && feet_rest {
+        return Behaviour::Stand;
+    }
+    let way = velocity(&track.hips, frames_of(STEP_SECS).max(1));
+    let forward = way.dot(track.forward[frame]);
+    let sideways = way.dot(track.forward[frame].cross(Vec3::Y));
+    if sideways.abs() > forward.abs().max(SIDESTEP_MPS) {
+        Behaviour::Sidestep
+    } else {
+        Behaviour::Walk
+    }
+}
+
+/// Gives runs that are too short to what comes before them.
+fn drop_short(behaviours: &mut [Behaviour], least: usize) {
+    let mut first = 0;
+    while first < behaviours.len() {
+        let behaviour = behaviours[first];
+        let run = behaviours[first..].iter().take_while(|b| **b == behaviour);
+        let end = first + run.count();
+        if first > 0 && end - first < least {
+            let previous = behaviours[first - 1];
+            behaviours[first..end].fill(previous);
+        }
+        first = end;
+    }
+}

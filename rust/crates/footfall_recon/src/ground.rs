@@ -1,0 +1,271 @@
+//! Where the body goes, and feet that stay where they were put.
+//!
+//! The body travels as the recordings do, and is then moved so that a standing foot keeps its place: the way comes from the legs. What is left
+//! when both stand is the legs' to take up. A standing foot is a rocker ([`footfall_ik::rocker`]): it cannot slide or sink.
+
+use crate::body::{BodyFrame, pose_of};
+use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_ik::{FootTarget, Leg, Plant, RockerFoot, foot_heading, foot_pitch, settled_pitch};
+use footfall_model::imu_model::{CONTACT, TURN, WAY};
+use glam::{Quat, Vec3};
+
+/// A foot comes to stand above the first of these probabilities and leaves the ground below the second.
+const STANDS: [f32; 2] = [0.55, 0.4];
+
+/// A foot whose leg would have to stretch so far to where it stands is put anew, metres.
+const MAX_DRIFT_M: f32 = 0.15;
+
+/// What remains of a correction when a foot lands or leaves halves in this time, seconds.
+const SETTLE_HALF_LIFE_SECS: f32 = 0.03;
+
+/// The height of the pelvis follows the standing feet with this half-life, seconds.
+const HEIGHT_HALF_LIFE_SECS: f32 = 0.05;
+
+/// Added to the bend of a knee before legs are weighed by it, radians.
+const KNEE_SLACK: f32 = 0.1;
+
+/// The heading follows the sensor's with this half-life, seconds.
+const HEADING_HALF_LIFE_SECS: f32 = 0.2;
+
+/// Travel, heading and feet of one body.
+#[derive(Clone, Debug)]
+pub struct Ground {
+    skeleton: Skeleton,
+    legs: [Leg; 2],
+    rockers: [RockerFoot; 2],
+    /// Metres of this body for one of the model's.
+    scale: f32,
+    place: Vec3,
+    heading: f32,
+    height_m: f32,
+    feet: [StandingFoot; 2],
+    model: ModelPose,
+}
+
+/// One foot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct StandingFoot {
+    plant: Option<Plant>,
+    /// What is left to settle: how far the ankle is from where it should be, and how the foot is turned against it.
+    ankle: Vec3,
+    turn: Quat,
+    /// Offset of the ankle and turn of the foot against the recordings, in the last frame.
+    last: (Vec3, Quat),
+    landed: bool,
+}
+
+impl StandingFoot {
+    const FREE: Self = Self {
+        plant: None,
+        ankle: Vec3::ZERO,
+        turn: Quat::IDENTITY,
+        last: (Vec3::ZERO, Quat::IDENTITY),
+        landed: false,
+    };
+}
+
+/// What a body does in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundInput {
+    /// Heading that the sensor gives, radians; `None` where it tells nothing.
+    pub heading: Option<f32>,
+    /// How many of the model's frames have passed.
+    pub frames: f32,
+    /// The same in seconds.
+    pub dt_secs: f32,
+}
+
+impl Ground {
+    /// For a body with these proportions; the model's body gives the scale.
+    pub fn new(skeleton: &Skeleton, model_skeleton: &Skeleton) -> Self {
+        Self {
+            legs: Side::BOTH.map(|side| Leg::new(skeleton, side)),
+            rockers: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
+            scale: skeleton.mean_leg_length() / model_skeleton.mean_leg_length(),
+            place: Vec3::ZERO,
+            heading: 0.0,
+            height_m: 0.0,
+            feet: [StandingFoot::FREE; 2],
+            model: ModelPose::default(),
+            skeleton: skeleton.clone(),
+        }
+    }
+
+    /// Back to the origin, facing +Z.
+    pub fn reset(&mut self) {
+        (self.place, self.heading, self.height_m) = (Vec3::ZERO, 0.0, 0.0);
+        self.feet = [StandingFoot::FREE; 2];
+    }
+
+    /// The body's proportions.
+    pub const fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
+    }
+
+    /// Heading of the body, radians.
+    pub const fn heading(&self) -> f32 {
+        self.heading
+    }
+
+    /// Faces another way from now on; feet are put anew.
+    pub fn set_heading(&mut self, heading: f32) {
+        self.heading = wrap_angle(heading);
+        for foot in &mut self.feet {
+            foot.plant = None;
+        }
+    }
+
+    /// Where each foot that came to stand in the last step was put.
+    pub fn landings(&self) -> [Option<Vec3>; 2] {
+        self.feet.map(|foot| {
+            let plant = foot.plant.filter(|_| foot.landed)?;
+            Some(RockerFoot::footprint(&plant))
+        })
+    }
+
+    /// Whether the left and the right foot stand.
+    pub fn stands(&self) -> [bool; 2] {
+        self.feet.map(|foot| foot.plant.is_some())
+    }
+
+    /// Goes on to a body and writes its pose.
+    pub fn step(&mut self, body: &BodyFrame, input: &GroundInput, pose: &mut Pose) {
+        pose_of(body, self.scale, pose);
+        self.turn(body, input);
+        let level = from_heading(self.heading);
+        pose.rotations[0] = level * pose.rotations[0];
+        let way = Vec3::new(body[WAY], 0.0, body[WAY + 1]) * (self.scale * input.frames);
+        self.place += level * way;
+        pose.root_position += self.place;
+        forward_kinematics(&self.skeleton, pose, &mut self.model);
+        self.bear(body, pose);
+        self.follow_height(input.dt_secs, pose);
+        forward_kinematics(&self.skeleton, pose, &mut self.model);
+        for side in Side::BOTH {
+            self.solve(side, body, input.dt_secs, pose);
+        }
+    }
+
+    fn turn(&mut self, body: &BodyFrame, input: &GroundInput) {
+        self.heading += body[TURN] * input.frames;
+        if let Some(target) = input.heading {
+            let share = follow_share(HEADING_HALF_LIFE_SECS, input.dt_secs);
+            self.heading += share * wrap_angle(target - self.heading);
+        }
+        self.heading = wrap_angle(self.heading);
+    }
+
+    /// Moves the body along the ground so that standing feet keep their places.
+    fn bear(&mut self, body: &BodyFrame, pose: &mut Pose) {
+        let (mut shift, mut weights) = (Vec3::ZERO, 0.0);
+        for side in Side::BOTH {
+            if let Some(plant) = self.feet[side.index()].plant {
+                let target = self.standing(side, &plant);
+                let weight = body[CONTACT + side.index()].clamp(0.05, 1.0);
+                shift += (target.ankle - self.model.position(side.foot())).with_y(0.0) * weight;
+                weights += weight;
+            }
+        }
+        if weights > 0.0 {
+            let shift = shift / weights;
+            self.place += shift;
+            pose.root_position += shift;
+        }
+    }
+
+    /// Raises or lowers the body so that feet that stand meet the floor, and none is below it.
+    ///
+    /// Legs that are nearly straight have the say: a centimetre more or less bends their knees by twenty degrees, and those of bent legs
+    /// hardly at all.
+    fn follow_height(&mut self, dt_secs: f32, pose: &mut Pose) {
+        let (mut wanted, mut weights) = (0.0, 0.0);
+        for side in Side::BOTH {
+            let ankle = self.model.position(side.foot());
+            let lift = if let Some(plant) = self.feet[side.index()].plant {
+                self.standing(side, &plant).ankle.y - ankle.y
+            } else {
+                let target = FootTarget {
+                    ankle,
+                    foot: self.model.rotation(side.foot()),
+                    toes: self.model.rotation(side.toes()),
+                };
+                -self.rockers[side.index()].lowest_point(&target)
+            };
+            if self.feet[side.index()].plant.is_some() || lift > 0.0 {
+                let bend = pose
+                    .rotation(side.lower_leg())
+                    .angle_between(Quat::IDENTITY);
+                let weight = (KNEE_SLACK + bend).powi(-2);
+                wanted += weight * lift;
+                weights += weight;
+            }
+        }
+        let wanted = if weights > 0.0 { wanted / weights } else { 0.0 };
+        let share = follow_share(HEIGHT_HALF_LIFE_SECS, dt_secs);
+        self.height_m += share * (wanted - self.height_m);
+        pose.root_position.y += self.height_m;
+    }
+
+    /// A planted foot as the recordings pitch it.
+    fn standing(&self, side: Side, plant: &Plant) -> FootTarget {
+        let pitch = settled_pitch(foot_pitch(self.model.rotation(side.foot())));
+        self.rockers[side.index()].stand(plant, pitch)
+    }
+
+    /// Puts one foot where it belongs.
+    fn solve(&mut self, side: Side, body: &BodyFrame, dt_secs: f32, pose: &mut Pose) {
+        let index = side.index();
+        let ankle = self.model.position(side.foot());
+        let (foot, toes) = (
+            self.model.rotation(side.foot()),
+            self.model.rotation(side.toes()),
+        );
+        let mut own = self.feet[index];
+        own.landed = false;
+        let stood = own.plant.is_some();
+        if let Some(plant) = own.plant {
+            let drift = self.standing(side, &plant).ankle.distance(ankle);
+            if body[CONTACT + index] < STANDS[1] || drift > MAX_DRIFT_M {
+                own.plant = None;
+            }
+        } else if body[CONTACT + index] > STANDS[0] {
+            let pitch = settled_pitch(foot_pitch(foot));
+            let settled = own.last.0.with_y(0.0);
+            let heading = foot_heading(foot);
+            own.plant = Some(self.rockers[index].plant_under(ankle + settled, heading, pitch));
+            own.landed = true;
+        }
+        let target = own.plant.map_or(FootTarget { ankle, foot, toes }, |plant| {
+            self.standing(side, &plant)
+        });
+        let wanted = (target.ankle - ankle, target.foot * foot.inverse());
+        if stood != own.plant.is_some() {
+            own.ankle = own.last.0 - wanted.0;
+            own.turn = own.last.1 * wanted.1.inverse();
+        }
+        let left = 1.0 - follow_share(SETTLE_HALF_LIFE_SECS, dt_secs);
+        own.ankle *= left;
+        own.turn = Quat::IDENTITY.slerp(own.turn, left);
+        own.last = (wanted.0 + own.ankle, own.turn * wanted.1);
+        let mut target = FootTarget {
+            ankle: ankle + own.last.0,
+            foot: own.last.1 * foot,
+            toes: own.turn * target.toes,
+        };
+        // Whatever settles, no sole goes below the floor.
+        let lowest = self.rockers[index].lowest_point(&target);
+        target.ankle.y += (-lowest).max(0.0);
+        let hips = (
+            self.model.position(Joint::Hips),
+            self.model.rotation(Joint::Hips),
+        );
+        self.legs[index].solve(hips.0, hips.1, &target, pose);
+        self.feet[index] = own;
+    }
+}
+
+/// The share of a way that is gone in a time, when half of it is gone in a half-life.
+fn follow_share(half_life_secs: f32, dt_secs: f32) -> f32 {
+    1.0 - (-core::f32::consts::LN_2 * dt_secs / half_life_secs).exp()
+}

@@ -1,0 +1,23 @@
+//! Runtime: what one or two inertial sensors measure becomes a body (Mousas 2017).
+//!
+//! Modules in the order in which data flows: [`prepared`] lays a model out for the loop that reads it, [`tracker`] tells how probable each of
+//! its frames is, [`body`] is what they say in the mean, [`blend`] keeps it continuous, [`ground`] moves it and keeps its feet in place.
+//! [`mounting`] finds how a sensor is worn; [`reconstructor`] is all of it for samples as they come, [`recording`] for a recording as a whole.
+
+pub mod blend;
+pub mod body;
+pub mod ground;
+mod kernels;
+mod measure;
+pub mod mounting;
+pub mod prepared;
+pub mod reconstructor;
+pub mod recording;
+pub mod tracker;
+
+pub use body::BodyFrame;
+pub use mounting::{Mounting, MountingError, find_mounting};
+pub use prepared::Prepared;
+pub use reconstructor::{ReconConfig, Reconstructor, SensorState};
+pub use recording::{Reconstructed, reconstruct_recording};
+pub use tracker::{Measurement, Tracker, TrackerConfig};

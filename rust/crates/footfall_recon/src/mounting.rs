@@ -1,0 +1,242 @@
+//! How a sensor is worn, from what it measures.
+//!
+//! Gravity tells two of the three angles: the mean of up over a stretch of motion points where it does in the model. The third is the one under which
+//! the model explains the motion best; a few candidates are then refined together with the other two, by turns finding the frames of the model and the rotation
+//! that brings what was measured closest to theirs (Wahba's problem). How much better the best is than any that differs by much says how sure it is.
+
+use crate::measure::measure;
+use crate::prepared::Prepared;
+use crate::tracker::{Measurement, Tracker, TrackerConfig};
+use core::f32::consts::TAU;
+use footfall_imu::{FeatureFrame, FeatureStream, ImuRecording};
+use footfall_model::imu_model::{MAX_SENSORS, SENSOR_COUNT};
+use glam::{Mat3, Quat, Vec3};
+use nalgebra::Matrix3;
+use std::sync::Arc;
+
+/// Turns about the vertical that are tried.
+const CANDIDATES: usize = 24;
+
+/// The best of them that are refined.
+const REFINED: usize = 5;
+
+/// How often each is refined.
+const ROUNDS: usize = 3;
+
+/// Frames that are listened to, 6 seconds at 30 frames a second.
+const MOST_FRAMES: usize = 180;
+
+/// Fewer frames of motion tell no mounting, seconds.
+const LEAST_SECS: f64 = 1.0;
+
+/// A sensor that turns more slowly rests, rad/s.
+const REST_RADPS: f32 = 0.5;
+
+/// Rotations closer to each other than this mean the same mounting, radians.
+const SAME: f32 = 0.6;
+
+/// How a sensor is worn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mounting {
+    /// Turns the sensor's axes into the site's.
+    pub site_from_sensor: Quat,
+    /// Probability that no very different rotation is right, 0 to 1.
+    pub certainty: f32,
+}
+
+/// Why a mounting cannot be found.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MountingError {
+    /// Too little motion was recorded.
+    #[error(
+        "the sensor moves for {moving_secs:.1} s, which is too little to tell how it is mounted; take a few steps, or mount it in line with the body and say so (`--mounting aligned`)"
+    )]
+    TooLittleMotion {
+        /// How long it moves.
+        moving_secs: f64,
+    },
+}
+
+/// Finds how the sensor at a site of the model is worn.
+///
+/// # Errors
+/// [`MountingError::TooLittleMotion`] when the recording shows less than a second of motion.
+pub fn find_mounting(
+    prepared: &Arc<Prepared>,
+    sensor: usize,
+    recording: &ImuRecording,
+    config: &TrackerConfig,
+) -> Result<Mounting, MountingError> {
+    let rate = prepared.model.frame_rate_hz;
+    let frames = moving_frames(recording, rate);
+    let moving = frames.iter().filter(|frame| turns(frame)).count();
+    let moving_secs = moving as f64 / rate;
+    if moving_secs < LEAST_SECS {
+        return Err(MountingError::TooLittleMotion { moving_secs });
+    }
+    let finder = Finder {
+        prepared,
+        sensor,
+        frames: &frames,
+    };
+    let mut tracker = Tracker::new(prepared, *config);
+    let level = finder.level();
+    let mut found: Vec<(f64, Quat)> = (0..CANDIDATES)
+        .map(|n| {
+            let turn = Quat::from_axis_angle(level.1, TAU * n as f32 / CANDIDATES as f32);
+            let candidate = turn * level.0;
+            (finder.explain(candidate, &mut tracker, None), candidate)
+        })
+        .collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found.truncate(REFINED);
+    for (likelihood, rotation) in &mut found {
+        for _ in 0..ROUNDS {
+            let mut attitude = Matrix3::zeros();
+            finder.explain(*rotation, &mut tracker, Some(&mut attitude));
+            *rotation = closest_rotation(&attitude).unwrap_or(*rotation);
+        }
+        *likelihood = finder.explain(*rotation, &mut tracker, None);
+    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let (best, site_from_sensor) = found[0];
+    let rival = found
+        .iter()
+        .find(|(_, rotation)| rotation.angle_between(site_from_sensor) > SAME)
+        .map_or(f64::NEG_INFINITY, |(likelihood, _)| *likelihood);
+    Ok(Mounting {
+        site_from_sensor,
+        certainty: (1.0 / (1.0 + (rival - best).exp())) as f32,
+    })
+}
+
+/// Frames in the sensor's axes, from shortly before it begins to move.
+fn moving_frames(recording: &ImuRecording, rate_hz: f64) -> Vec<FeatureFrame> {
+    let mut stream = FeatureStream::new(rate_hz);
+    let mut frames = Vec::new();
+    for sample in &recording.samples {
+        stream.push(*sample, |frame| frames.push(frame));
+    }
+    let begin = frames.iter().position(turns).unwrap_or(0);
+    let lead = (0.5 * rate_hz) as usize;
+    frames.drain(..begin.saturating_sub(lead));
+    frames.truncate(MOST_FRAMES);
+    frames
+}
+
+fn turns(frame: &FeatureFrame) -> bool {
+    frame
+        .values
+        .is_some_and(|values| Vec3::from_slice(&values[..3]).length() > REST_RADPS)
+}
+
+struct Finder<'a> {
+    prepared: &'a Prepared,
+    sensor: usize,
+    frames: &'a [FeatureFrame],
+}
+
+impl Finder<'_> {
+    /// A rotation that brings the mean of up to the model's, and that direction.
+    fn level(&self) -> (Quat, Vec3) {
+        let measured: Vec3 = self
+            .frames
+            .iter()
+            .filter_map(|frame| Some(Vec3::from_slice(&frame.values?[6..]) / frame.tilt_deviation))
+            .sum();
+        let model = &self.prepared.model;
+        let width = model.sensor_width();
+        let at = self.sensor * SENSOR_COUNT;
+        let up: Vec3 = model
+            .sensor
+            .chunks_exact(width)
+            .filter(|row| Vec3::from_slice(&row[at..at + 3]).length() > REST_RADPS)
+            .map(|row| Vec3::from_slice(&row[at + 6..at + 9]))
+            .sum();
+        let up = up.normalize_or(Vec3::Y);
+        (footfall_core::rotation::shortest_arc(measured, up), up)
+    }
+
+    /// How well the model explains the frames when they are turned so. Adds up what was expected by what was measured, if asked to.
+    fn explain(
+        &self,
+        site_from_sensor: Quat,
+        tracker: &mut Tracker,
+        mut attitude: Option<&mut Matrix3<f64>>,
+    ) -> f64 {
+        tracker.reset();
+        let at = self.sensor * SENSOR_COUNT;
+        for frame in self.frames {
+            let measured = self.measured(frame, site_from_sensor);
+            tracker.step(measured.as_ref());
+            let (Some(attitude), Some(values)) = (attitude.as_deref_mut(), frame.values) else {
+                continue;
+            };
+            let mut expected = [0.0; SENSOR_COUNT * MAX_SENSORS];
+            tracker.expected_sensor(&mut expected[..self.prepared.model.sensor_width()]);
+            let deviations = &self.prepared.model.deviations[at..];
+            // Specific force is left out: impacts make it the worst of the three.
+            for part in [0, 6] {
+                let spread: f32 = deviations[part..part + 3].iter().map(|d| d * d).sum();
+                let weight = 1.0 / spread / (1.0 + (frame.tilt_deviation / 0.1).powi(2));
+                let wanted = Vec3::from_slice(&expected[at + part..at + part + 3]) * weight;
+                let had = Vec3::from_slice(&values[part..part + 3]);
+                let product = Mat3::from_cols(wanted * had.x, wanted * had.y, wanted * had.z);
+                let columns = product.to_cols_array().map(f64::from);
+                *attitude += Matrix3::from_column_slice(&columns);
+            }
+        }
+        tracker.log_likelihood()
+    }
+
+    /// A frame as the tracker takes it, with this sensor alone.
+    fn measured(&self, frame: &FeatureFrame, site_from_sensor: Quat) -> Option<Measurement> {
+        let mut turned = *frame;
+        if let Some(values) = &mut turned.values {
+            for vector in values.chunks_exact_mut(3) {
+                let there = site_from_sensor * Vec3::from_slice(vector);
+                vector.copy_from_slice(&there.to_array());
+            }
+        }
+        let mut frames = [None; MAX_SENSORS];
+        frames[self.sensor] = Some(turned);
+        measure(&self.prepared.model, &frames)
+    }
+}
+
+/// The rotation that a sum of products of wanted and measured vectors is closest to (Wahba 1965, by singular values).
+fn closest_rotation(attitude: &Matrix3<f64>) -> Option<Quat> {
+    let parts = attitude.svd(true, true);
+    let (u, v) = (parts.u?, parts.v_t?);
+    let mut sign = Matrix3::identity();
+    sign[(2, 2)] = (u * v).determinant().signum();
+    let rotation = u * sign * v;
+    let columns: Vec<f32> = rotation.iter().map(|value| *value as f32).collect();
+    let quat = Quat::from_mat3(&Mat3::from_cols_slice(&columns)).normalize();
+    quat.is_finite().then_some(quat)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rotation_between_two_sets_of_vectors_is_found() {
+        let truth = Quat::from_scaled_axis(Vec3::new(0.7, -1.9, 0.4));
+        let mut attitude = Matrix3::zeros();
+        for vector in [
+            Vec3::X,
+            Vec3::new(0.3, 2.0, -1.0),
+            Vec3::new(-1.0, 0.2, 0.5),
+        ] {
+            let turned = truth * vector;
+            for (row, wanted) in turned.to_array().into_iter().enumerate() {
+                for (column, had) in vector.to_array().into_iter().enumerate() {
+                    attitude[(row, column)] += f64::from(wanted * had);
+                }
+            }
+        }
+        let found = closest_rotation(&attitude).unwrap();
+        assert!(found.angle_between(truth) < 1e-3, "{found} is not {truth}");
+    }
+}

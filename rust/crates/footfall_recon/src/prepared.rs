@@ -1,0 +1,105 @@
+//! A model laid out for the loop that reads it.
+
+use crate::kernels::BLOCK;
+use footfall_model::ImuModel;
+use footfall_model::ModelError;
+use footfall_model::imu_model::BODY_COUNT;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A model, checked and laid out. One serves any number of bodies.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    pub(crate) model: Arc<ImuModel>,
+    /// Frames of all segments.
+    pub(crate) frames: usize,
+    /// Frames in whole blocks.
+    pub(crate) padded: usize,
+    /// Sensor numbers over their deviations: for each block of frames the first number of all of them, then the second.
+    pub(crate) sensor: Vec<f32>,
+    /// First frame of each segment, and the end of the last.
+    pub(crate) starts: Vec<usize>,
+    /// Which segment a frame belongs to.
+    pub(crate) segment_of: Vec<u32>,
+    /// How many segments each subject has in each phase, subject by subject.
+    pub(crate) counts: Vec<f32>,
+    /// The segments of each phase.
+    pub(crate) of_phase: Vec<Vec<u32>>,
+}
+
+impl Prepared {
+    /// Checks a model and lays it out.
+    ///
+    /// # Errors
+    /// [`ModelError`] names the part at fault.
+    pub fn new(model: Arc<ImuModel>) -> Result<Self, ModelError> {
+        model.check()?;
+        let frames = model.frame_count();
+        let width = model.sensor_width();
+        let padded = frames.next_multiple_of(BLOCK);
+        let mut sensor = vec![0.0; padded * width];
+        for (frame, row) in model.sensor.chunks_exact(width).enumerate() {
+            let block = frame / BLOCK * BLOCK * width + frame % BLOCK;
+            for (n, (value, deviation)) in row.iter().zip(&model.deviations).enumerate() {
+                sensor[block + n * BLOCK] = value / deviation;
+            }
+        }
+        let kinds = model.phases.len();
+        let mut starts = Vec::with_capacity(model.segments.len() + 1);
+        let mut segment_of = Vec::with_capacity(frames);
+        let mut counts = vec![0.0; model.subjects * kinds];
+        for (n, segment) in model.segments.iter().enumerate() {
+            starts.push(segment_of.len());
+            segment_of.extend((0..segment.frames).map(|_| n as u32));
+            counts[usize::from(segment.subject) * kinds + usize::from(segment.phase)] += 1.0;
+        }
+        starts.push(segment_of.len());
+        let mut of_phase = vec![Vec::new(); kinds];
+        for (n, segment) in model.segments.iter().enumerate() {
+            of_phase[usize::from(segment.phase)].push(n as u32);
+        }
+        Ok(Self {
+            model,
+            frames,
+            padded,
+            sensor,
+            starts,
+            segment_of,
+            counts,
+            of_phase,
+        })
+    }
+
+    /// The model.
+    pub const fn model(&self) -> &Arc<ImuModel> {
+        &self.model
+    }
+
+    /// Frames of a segment.
+    pub(crate) fn frames_of(&self, segment: usize) -> Range<usize> {
+        self.starts[segment]..self.starts[segment + 1]
+    }
+
+    /// Whether the segment after this one follows it in the same recording.
+    pub(crate) fn is_followed(&self, segment: usize) -> bool {
+        self.model
+            .segments
+            .get(segment + 1)
+            .is_some_and(|next| next.follows)
+    }
+
+    /// A frame of the body.
+    pub(crate) fn body_row(&self, frame: usize) -> &[f32] {
+        &self.model.body[frame * BODY_COUNT..(frame + 1) * BODY_COUNT]
+    }
+
+    /// Whether a frame is the last of its chain.
+    pub(crate) fn ends_chain(&self, frame: usize) -> bool {
+        let next = frame + 1;
+        if next >= self.frames {
+            return true;
+        }
+        let segment = self.segment_of[next] as usize;
+        self.starts[segment] == next && !self.model.segments[segment].follows
+    }
+}

@@ -1,0 +1,302 @@
+//! Samples to poses, as they come.
+
+use crate::blend::Blend;
+use crate::body::BodyFrame;
+use crate::ground::{Ground, GroundInput};
+use crate::measure::{measure, sensor_heading};
+use crate::prepared::Prepared;
+use crate::tracker::{Tracker, TrackerConfig};
+use footfall_core::{Behaviour, Pose, Skeleton, SkeletonError};
+use footfall_imu::{FeatureFrame, FeatureStream, ImuSample};
+use footfall_model::imu_model::{BODY_COUNT, MAX_SENSORS};
+use glam::{Quat, Vec3};
+use std::sync::Arc;
+
+/// Frames of one sensor that wait for the other's; more mean that the other has stopped.
+const MOST_WAITING: usize = 6;
+
+/// Settings of a reconstructor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReconConfig {
+    /// How probable frames are found.
+    pub tracker: TrackerConfig,
+    /// Share of the way to what the recordings say that the body goes in a frame.
+    pub blend_gain: f32,
+    /// How long nothing may be heard of a sensor before it counts as lost, seconds.
+    pub lost_after_secs: f32,
+    /// A new behaviour shows when it is more probable than this.
+    pub behaviour_probability: f32,
+}
+
+impl Default for ReconConfig {
+    fn default() -> Self {
+        Self {
+            tracker: TrackerConfig::default(),
+            blend_gain: 0.6,
+            lost_after_secs: 0.5,
+            behaviour_probability: 0.6,
+        }
+    }
+}
+
+/// Whether anything is heard of the sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorState {
+    /// Nothing came yet.
+    Waiting,
+    /// Samples come.
+    Tracking,
+    /// None came for [`ReconConfig::lost_after_secs`]; the body goes on with what is probable, and comes to stand.
+    Lost,
+}
+
+/// Turns samples of one or two sensors into the poses of one body. [`push`](Self::push) and [`step`](Self::step) allocate nothing and cannot
+/// fail.
+#[derive(Clone, Debug)]
+pub struct Reconstructor {
+    prepared: Arc<Prepared>,
+    config: ReconConfig,
+    tracker: Tracker,
+    blend: Blend,
+    ground: Ground,
+    sensors: [Sensor; MAX_SENSORS],
+    behaviour: Behaviour,
+    silent_secs: f32,
+    /// Frames that were shown ahead of the last one measured.
+    ahead: f32,
+    heading: Option<f32>,
+    heading_offset: Option<f32>,
+}
+
+/// One sensor: its samples on their way to frames.
+#[derive(Clone, Copy, Debug)]
+struct Sensor {
+    /// `site_from_sensor` rotation.
+    mounting: Quat,
+    stream: FeatureStream,
+    waiting: [Option<FeatureFrame>; MOST_WAITING],
+    count: usize,
+}
+
+impl Sensor {
+    fn new(frame_rate_hz: f64) -> Self {
+        Self {
+            mounting: Quat::IDENTITY,
+            stream: FeatureStream::new(frame_rate_hz),
+            waiting: [None; MOST_WAITING],
+            count: 0,
+        }
+    }
+
+    fn take(&mut self) -> Option<FeatureFrame> {
+        let first = self.waiting[0].take();
+        if first.is_some() {
+            self.waiting.rotate_left(1);
+            self.count -= 1;
+        }
+        first
+    }
+}
+
+impl Reconstructor {
+    /// For a body with these proportions.
+    ///
+    /// # Errors
+    /// [`SkeletonError`] names a leg or foot without length.
+    pub fn new(
+        prepared: &Arc<Prepared>,
+        skeleton: &Skeleton,
+        config: &ReconConfig,
+    ) -> Result<Self, SkeletonError> {
+        skeleton.check()?;
+        let rate = prepared.model.frame_rate_hz;
+        Ok(Self {
+            tracker: Tracker::new(prepared, config.tracker),
+            blend: Blend::new(config.blend_gain),
+            ground: Ground::new(skeleton, &prepared.model.skeleton),
+            sensors: [Sensor::new(rate); MAX_SENSORS],
+            behaviour: Behaviour::Stand,
+            silent_secs: 0.0,
+            ahead: 0.0,
+            heading: None,
+            heading_offset: None,
+            config: *config,
+            prepared: Arc::clone(prepared),
+        })
+    }
+
+    /// How a sensor is worn: `site_from_sensor`. The identity for `aligned` mounting.
+    pub fn set_mounting(&mut self, sensor: usize, site_from_sensor: Quat) {
+        if let Some(sensor) = self.sensors.get_mut(sensor) {
+            sensor.mounting = site_from_sensor;
+        }
+    }
+
+    /// Forgets everything measured; the body stands at the origin.
+    pub fn reset(&mut self) {
+        let rate = self.prepared.model.frame_rate_hz;
+        for sensor in &mut self.sensors {
+            *sensor = Sensor {
+                mounting: sensor.mounting,
+                ..Sensor::new(rate)
+            };
+        }
+        self.tracker.reset();
+        self.blend.reset();
+        self.ground.reset();
+        (self.silent_secs, self.ahead) = (0.0, 0.0);
+        (self.heading, self.heading_offset) = (None, None);
+    }
+
+    /// The direction in which the body faces now is this heading from now on, radians.
+    pub fn reset_heading(&mut self, heading: f32) {
+        self.ground.set_heading(heading);
+        self.heading_offset = None;
+    }
+
+    /// What the body does.
+    pub const fn behaviour(&self) -> Behaviour {
+        self.behaviour
+    }
+
+    /// Whether anything is heard of the sensors.
+    pub fn sensor_state(&self) -> SensorState {
+        if !self.blend.started() {
+            SensorState::Waiting
+        } else if self.silent_secs > self.config.lost_after_secs {
+            SensorState::Lost
+        } else {
+            SensorState::Tracking
+        }
+    }
+
+    /// Where each foot that came to stand in the last step was put, metres.
+    pub fn landings(&self) -> [Option<Vec3>; 2] {
+        self.ground.landings()
+    }
+
+    /// Whether the left and the right foot stand.
+    pub fn stands(&self) -> [bool; 2] {
+        self.ground.stands()
+    }
+
+    /// How probable each behaviour is, in the order of [`Behaviour::ALL`].
+    pub const fn behaviours(&self) -> &[f32; Behaviour::ALL.len()] {
+        self.tracker.behaviours()
+    }
+
+    /// Samples that were not finite, repeated or late.
+    pub fn rejected_samples(&self) -> u64 {
+        self.sensors
+            .iter()
+            .map(|sensor| sensor.stream.rejected())
+            .sum()
+    }
+
+    /// Takes a sample of a sensor (0, or 1 for the second site of the model); others are ignored.
+    pub fn push(&mut self, sensor: usize, sample: ImuSample) {
+        let used = self.prepared.model.sites.len();
+        let Some(own) = self.sensors[..used].get_mut(sensor) else {
+            return;
+        };
+        let Sensor {
+            mounting,
+            stream,
+            waiting,
+            count,
+        } = own;
+        stream.push(sample.turned(*mounting), |frame| {
+            if *count == MOST_WAITING {
+                waiting.rotate_left(1);
+                *count -= 1;
+            }
+            waiting[*count] = Some(frame);
+            *count += 1;
+        });
+        self.catch_up();
+    }
+
+    /// Goes on by a frame of the model as often as every sensor has one, or one of them has too many.
+    fn catch_up(&mut self) {
+        let used = self.prepared.model.sites.len();
+        loop {
+            let sensors = &mut self.sensors[..used];
+            let all = sensors.iter().all(|sensor| sensor.count > 0);
+            let full = sensors.iter().any(|sensor| sensor.count == MOST_WAITING);
+            if !all && !full {
+                return;
+            }
+            let mut frames = [None; MAX_SENSORS];
+            for (frame, sensor) in frames.iter_mut().zip(sensors) {
+                *frame = sensor.take();
+            }
+            self.frame(&frames);
+        }
+    }
+
+    /// One frame of the model.
+    fn frame(&mut self, frames: &[Option<FeatureFrame>; MAX_SENSORS]) {
+        let measured = measure(&self.prepared.model, frames);
+        self.tracker.step(measured.as_ref());
+        let (mut body, mut velocity): (BodyFrame, BodyFrame) =
+            ([0.0; BODY_COUNT], [0.0; BODY_COUNT]);
+        self.tracker
+            .body(measured.as_ref(), &mut body, &mut velocity);
+        self.blend.step(&body, &velocity);
+        self.heading = sensor_heading(frames, &body);
+        if measured.is_some() {
+            self.silent_secs = 0.0;
+        }
+        // What was shown ahead is part of this frame.
+        self.ahead -= 1.0;
+        let behaviours = self.tracker.behaviours();
+        if let Some(likely) = Behaviour::ALL
+            .into_iter()
+            .find(|b| behaviours[b.index()] > self.config.behaviour_probability)
+        {
+            self.behaviour = likely;
+        }
+    }
+
+    /// Goes on by `dt_secs` and writes the pose; the rest pose until the first frame is measured.
+    pub fn step(&mut self, dt_secs: f32, pose: &mut Pose) {
+        let dt_secs = if dt_secs.is_finite() {
+            dt_secs.max(0.0)
+        } else {
+            0.0
+        };
+        let rate = self.prepared.model.frame_rate_hz as f32;
+        self.silent_secs += dt_secs;
+        if !self.blend.started() {
+            *pose = Pose::rest(self.ground.skeleton());
+            return;
+        }
+        if self.silent_secs > 2.5 / rate {
+            self.coast(dt_secs * rate);
+        }
+        self.ahead = (self.ahead + dt_secs * rate).clamp(0.0, 1.5);
+        let body = self.blend.body_after(self.ahead);
+        let heading = self.heading.map(|heading| {
+            let offset = *self
+                .heading_offset
+                .get_or_insert(self.ground.heading() - heading);
+            heading + offset
+        });
+        let input = GroundInput {
+            heading,
+            frames: dt_secs * rate,
+            dt_secs,
+        };
+        self.ground.step(&body, &input, pose);
+    }
+
+    /// Without samples the body goes on as the recordings do.
+    fn coast(&mut self, frames: f32) {
+        self.ahead += frames;
+        self.heading = None;
+        if self.ahead >= 1.0 {
+            self.frame(&[None; MAX_SENSORS]);
+        }
+        self.ahead -= frames;
+    }
+}

@@ -1,0 +1,201 @@
+//! A recording as a whole: what is measured later helps, too.
+
+use crate::blend::Blend;
+use crate::body::BodyFrame;
+use crate::ground::{Ground, GroundInput};
+use crate::measure::{measure, sensor_heading};
+use crate::prepared::Prepared;
+use crate::reconstructor::ReconConfig;
+use crate::tracker::{Measurement, Tracker};
+use footfall_core::{Behaviour, Clip, Pose, Skeleton, SkeletonError};
+use footfall_imu::{FeatureFrame, FeatureStream, ImuRecording};
+use footfall_model::imu_model::{BODY_COUNT, MAX_SENSORS};
+use std::sync::Arc;
+
+/// Frames that are looked back from at once; as many more are looked ahead at.
+const BLOCK_FRAMES: usize = 64;
+
+/// A body reconstructed from a recording.
+#[derive(Clone, Debug)]
+pub struct Reconstructed {
+    /// The motion at the model's rate.
+    pub clip: Clip,
+    /// Time of the first frame on the recording's clock, seconds.
+    pub start_secs: f64,
+    /// The most probable behaviour of each frame.
+    pub behaviours: Vec<Behaviour>,
+    /// Whether the left and the right foot stand in each frame.
+    pub stands: Vec<[bool; 2]>,
+}
+
+/// Reconstructs the body of recordings, one for each site of the model, already in the sites' axes.
+///
+/// With `live` each frame is what a [`Reconstructor`](crate::Reconstructor) shows when it is measured; otherwise two to four seconds of
+/// what comes after it are heard as well (forward-backward).
+///
+/// # Errors
+/// [`SkeletonError`] names a leg or foot without length.
+pub fn reconstruct_recording(
+    prepared: &Arc<Prepared>,
+    recordings: &[ImuRecording],
+    skeleton: &Skeleton,
+    config: &ReconConfig,
+    live: bool,
+) -> Result<Reconstructed, SkeletonError> {
+    skeleton.check()?;
+    let frames = frames_of(prepared, recordings);
+    let rate = prepared.model.frame_rate_hz;
+    let mut shown = Shown {
+        out: Reconstructed {
+            clip: Clip {
+                skeleton: skeleton.clone(),
+                frame_rate_hz: rate,
+                poses: Vec::with_capacity(frames.len()),
+            },
+            start_secs: recordings.first().map_or(0.0, ImuRecording::start_secs),
+            behaviours: Vec::with_capacity(frames.len()),
+            stands: Vec::with_capacity(frames.len()),
+        },
+        // What later frames tell is smooth already.
+        blend: Blend::new(if live { config.blend_gain } else { 1.0 }),
+        ground: Ground::new(skeleton, &prepared.model.skeleton),
+        heading_offset: None,
+        frame_secs: 1.0 / rate as f32,
+    };
+    let measured: Vec<Option<Measurement>> =
+        frames.iter().map(|f| measure(&prepared.model, f)).collect();
+    let mut tracker = Tracker::new(prepared, config.tracker);
+    if live {
+        for (frame, measured) in frames.iter().zip(&measured) {
+            tracker.step(measured.as_ref());
+            shown.add(&tracker, measured.as_ref(), frame);
+        }
+        return Ok(shown.out);
+    }
+    let mut back = Tracker::new(prepared, config.tracker);
+    let mut filtered: Vec<Vec<f32>> = Vec::new();
+    let mut later = vec![1.0_f32; prepared.frames];
+    for first in (0..frames.len()).step_by(BLOCK_FRAMES) {
+        let end = (first + BLOCK_FRAMES).min(frames.len());
+        let ahead = (end + BLOCK_FRAMES).min(frames.len());
+        for measured in &measured[first + filtered.len()..ahead] {
+            tracker.step(measured.as_ref());
+            filtered.push(tracker.probabilities().to_vec());
+        }
+        later.fill(1.0);
+        for frame in (first..ahead).rev() {
+            if frame < end {
+                weigh(&mut filtered[frame - first], &later);
+            }
+            if frame > first {
+                back.step_back(measured[frame].as_ref(), &mut later);
+            }
+        }
+        for frame in first..end {
+            back.set_probabilities(&filtered[frame - first]);
+            shown.add(&back, measured[frame].as_ref(), &frames[frame]);
+        }
+        filtered.drain(..end - first);
+    }
+    Ok(shown.out)
+}
+
+/// Multiplies probabilities with what came later, and brings their sum to one.
+fn weigh(probabilities: &mut [f32], later: &[f32]) {
+    let sum: f64 = probabilities
+        .iter()
+        .zip(later)
+        .map(|(p, l)| f64::from(*p) * f64::from(*l))
+        .sum();
+    if sum < 1e-30 {
+        return;
+    }
+    let norm = 1.0 / sum;
+    for (probability, later) in probabilities.iter_mut().zip(later) {
+        *probability = (f64::from(*probability) * f64::from(*later) * norm) as f32;
+    }
+}
+
+/// Frames of all sensors, side by side from their first ones on.
+fn frames_of(
+    prepared: &Prepared,
+    recordings: &[ImuRecording],
+) -> Vec<[Option<FeatureFrame>; MAX_SENSORS]> {
+    let mut frames: Vec<[Option<FeatureFrame>; MAX_SENSORS]> = Vec::new();
+    for (n, recording) in recordings.iter().enumerate().take(MAX_SENSORS) {
+        let mut stream = FeatureStream::new(prepared.model.frame_rate_hz);
+        let mut place = 0;
+        for sample in &recording.samples {
+            stream.push(*sample, |frame| {
+                if place == frames.len() {
+                    frames.push([None; MAX_SENSORS]);
+                }
+                frames[place][n] = Some(frame);
+                place += 1;
+            });
+        }
+    }
+    frames
+}
+
+/// What is shown of each frame.
+struct Shown {
+    out: Reconstructed,
+    blend: Blend,
+    ground: Ground,
+    heading_offset: Option<f32>,
+    frame_secs: f32,
+}
+
+impl Shown {
+    fn add(
+        &mut self,
+        tracker: &Tracker,
+        measured: Option<&Measurement>,
+        frames: &[Option<FeatureFrame>; MAX_SENSORS],
+    ) {
+        let (mut body, mut velocity): (BodyFrame, BodyFrame) =
+            ([0.0; BODY_COUNT], [0.0; BODY_COUNT]);
+        tracker.body(measured, &mut body, &mut velocity);
+        self.blend.step(&body, &velocity);
+        if self.out.clip.poses.is_empty() {
+            // A frame ends when it is measured; the recording begins one frame earlier.
+            self.pose(
+                &self.blend.body_after(-1.0),
+                tracker,
+                [None; MAX_SENSORS],
+                0.0,
+            );
+        }
+        self.pose(&self.blend.body_after(0.0), tracker, *frames, 1.0);
+    }
+
+    fn pose(
+        &mut self,
+        body: &BodyFrame,
+        tracker: &Tracker,
+        sensors: [Option<FeatureFrame>; MAX_SENSORS],
+        frames: f32,
+    ) {
+        let heading = sensor_heading(&sensors, body).map(|heading| {
+            let offset = *self
+                .heading_offset
+                .get_or_insert(self.ground.heading() - heading);
+            heading + offset
+        });
+        let input = GroundInput {
+            heading,
+            frames,
+            dt_secs: self.frame_secs,
+        };
+        let mut pose = Pose::default();
+        self.ground.step(body, &input, &mut pose);
+        self.out.clip.poses.push(pose);
+        self.out.stands.push(self.ground.stands());
+        let behaviours = tracker.behaviours();
+        let likely = Behaviour::ALL
+            .into_iter()
+            .max_by(|a, b| behaviours[a.index()].total_cmp(&behaviours[b.index()]));
+        self.out.behaviours.push(likely.unwrap_or(Behaviour::Stand));
+    }
+}

@@ -1,0 +1,533 @@
+//! How probable each frame of the model is, given everything measured so far: the forward algorithm (Mousas 2017, section 6 and
+//! appendix A), linear in the number of frames.
+
+use crate::kernels::{add, distances, scale, weigh};
+use crate::prepared::Prepared;
+use footfall_core::Behaviour;
+use footfall_model::imu_model::{BODY_COUNT, MAX_PHASES, MAX_SENSORS, SENSOR_COUNT};
+use std::sync::Arc;
+
+/// Settings of the forward algorithm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrackerConfig {
+    /// Probabilities to stay in a frame, to go on to the next, and to skip one (section 5.2; there 1/3 each).
+    pub stay_next_skip: [f32; 3],
+    /// Probability, at the end of a segment, to go on with the segment that followed it in the recording.
+    pub keep_recording: f32,
+    /// Probability to stay with a subject where the recording is left.
+    pub keep_subject: f32,
+    /// Probability of a frame to leave for anywhere else: the paper's exit.
+    pub exit: f32,
+    /// What a frame of the sensor counts: successive frames are alike, and would count several times over.
+    pub evidence: f32,
+    /// How many segments are interpolated (section 5.3; there 5).
+    pub interpolated: usize,
+    /// How much of the regression on the sensor is applied (equation 6), 0 to 1.
+    pub regression: f32,
+}
+
+impl Default for TrackerConfig {
+    fn default() -> Self {
+        Self {
+            stay_next_skip: [0.15, 0.7, 0.15],
+            keep_recording: 0.7,
+            keep_subject: 0.9,
+            exit: 0.01,
+            evidence: 0.5,
+            interpolated: 10,
+            // On recordings that a model has not seen it makes walks worse by half a centimetre.
+            regression: 0.0,
+        }
+    }
+}
+
+/// What the sensors measured in a frame, in the model's order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    /// The numbers; the first [`ImuModel::sensor_width`](footfall_model::ImuModel::sensor_width) count.
+    pub values: [f32; SENSOR_COUNT * MAX_SENSORS],
+    /// What each number counts, 0 to 1.
+    pub weights: [f32; SENSOR_COUNT * MAX_SENSORS],
+}
+
+/// What is probable after a frame.
+///
+/// Most frames are as good as impossible at any time. Only segments that hold some probability, those that can follow them, and a share of all
+/// others in turn are looked at.
+#[derive(Clone, Debug)]
+pub struct Tracker {
+    prepared: Arc<Prepared>,
+    config: TrackerConfig,
+    /// Of each frame; sums to one.
+    probability: Vec<f32>,
+    /// Segments that hold some of it.
+    active: Vec<u32>,
+    /// Segments that are looked at, and whether each is among them.
+    candidates: Vec<u32>,
+    listed: Vec<bool>,
+    /// Where the turn of the others is.
+    turn: usize,
+    /// Of each frame, in whole blocks.
+    predicted: Vec<f32>,
+    distance: Vec<f32>,
+    weighed: Vec<f32>,
+    /// What leaves for each phase, subject by subject.
+    entering: Vec<f32>,
+    entering_any: Vec<f32>,
+    /// The segments that are interpolated, and their weights.
+    chosen: Vec<(u32, f32)>,
+    behaviours: [f32; Behaviour::ALL.len()],
+    log_likelihood: f64,
+}
+
+/// Most numbers of all sensors together.
+const MAX_WIDTH: usize = SENSOR_COUNT * MAX_SENSORS;
+
+/// Frames that are predicted with less than this share of what each would have if all were alike are not compared with the measurement.
+const LEAST_SHARE: f32 = 0.15;
+
+/// Segments that held less than this are dropped.
+const LEAST_MASS: f32 = 2e-5;
+
+/// All segments are looked at within so many frames.
+const ROUND_FRAMES: usize = 24;
+
+impl Tracker {
+    /// Every frame is as probable as any other.
+    pub fn new(prepared: &Arc<Prepared>, config: TrackerConfig) -> Self {
+        let frames = prepared.frames;
+        let segments = prepared.model.segments.len();
+        let kinds = prepared.model.phases.len();
+        let mut tracker = Self {
+            config,
+            probability: vec![0.0; frames],
+            active: Vec::with_capacity(segments),
+            candidates: Vec::with_capacity(segments),
+            listed: vec![false; segments],
+            turn: 0,
+            predicted: vec![0.0; prepared.padded],
+            distance: vec![0.0; prepared.padded],
+            weighed: vec![0.0; prepared.padded],
+            entering: vec![0.0; prepared.model.subjects * kinds],
+            entering_any: vec![0.0; kinds],
+            chosen: Vec::with_capacity(config.interpolated.max(1)),
+            behaviours: [0.0; Behaviour::ALL.len()],
+            log_likelihood: 0.0,
+            prepared: Arc::clone(prepared),
+        };
+        tracker.reset();
+        tracker
+    }
+
+    /// Forgets everything measured.
+    pub fn reset(&mut self) {
+        self.probability.fill(1.0 / self.prepared.frames as f32);
+        self.active.clear();
+        self.active
+            .extend(0..self.prepared.model.segments.len() as u32);
+        self.turn = 0;
+        self.log_likelihood = 0.0;
+        self.weigh_segments();
+    }
+
+    /// Probability of each frame of the model.
+    pub fn probabilities(&self) -> &[f32] {
+        &self.probability
+    }
+
+    /// Probability of each behaviour, in the order of [`Behaviour::ALL`].
+    pub const fn behaviours(&self) -> &[f32; Behaviour::ALL.len()] {
+        &self.behaviours
+    }
+
+    /// Logarithm of the density of all that was measured, up to a constant.
+    pub const fn log_likelihood(&self) -> f64 {
+        self.log_likelihood
+    }
+
+    /// Goes on by a frame. `sensor` holds what was measured in it; `None` when nothing was.
+    pub fn step(&mut self, sensor: Option<&Measurement>) {
+        self.leave();
+        self.list_candidates();
+        self.predict();
+        let weighed = if let Some(sensor) = sensor {
+            self.update(sensor)
+        } else {
+            self.weighed.copy_from_slice(&self.predicted);
+            self.weighed.iter().sum()
+        };
+        self.keep(weighed);
+        self.weigh_segments();
+    }
+
+    /// What leaves the segments at their ends, and which phases it enters.
+    fn leave(&mut self) {
+        let prepared = &*self.prepared;
+        let model = &*prepared.model;
+        let kinds = model.phases.len();
+        let [_, next, skip] = self.moves();
+        self.entering.fill(0.0);
+        for &n in &self.active {
+            let segment = &model.segments[n as usize];
+            let old = &self.probability[prepared.frames_of(n as usize)];
+            let last_but_one = old.len().checked_sub(2).map_or(0.0, |n| old[n]);
+            let leaving = (next + skip) * old[old.len() - 1] + skip * last_but_one;
+            let share = if prepared.is_followed(n as usize) {
+                1.0 - self.config.keep_recording
+            } else {
+                1.0
+            };
+            let row = usize::from(segment.subject) * kinds;
+            self.entering[row + usize::from(segment.phase)] += leaving * share;
+        }
+        self.entering_any.fill(0.0);
+        for left in self.entering.chunks_exact_mut(kinds) {
+            let mut entered = [0.0_f32; MAX_PHASES];
+            for (phase, mass) in left.iter().enumerate().filter(|(_, mass)| **mass > 0.0) {
+                add(
+                    *mass,
+                    &model.next[phase * kinds..(phase + 1) * kinds],
+                    &mut entered,
+                );
+            }
+            left.copy_from_slice(&entered[..kinds]);
+            add(1.0, &entered[..kinds], &mut self.entering_any);
+        }
+    }
+
+    /// Probabilities to stay, to go on and to skip, without those of an exit.
+    fn moves(&self) -> [f32; 3] {
+        self.config
+            .stay_next_skip
+            .map(|p| p * (1.0 - self.config.exit))
+    }
+
+    /// Segments that may hold some probability after this frame, and those whose turn it is.
+    fn list_candidates(&mut self) {
+        let turn = self.turn();
+        let prepared = &*self.prepared;
+        let listed = &mut self.listed;
+        let candidates = &mut self.candidates;
+        candidates.clear();
+        let mut list = |n: u32| {
+            if !listed[n as usize] {
+                listed[n as usize] = true;
+                candidates.push(n);
+            }
+        };
+        for &n in &self.active {
+            list(n);
+            if prepared.is_followed(n as usize) {
+                list(n + 1);
+            }
+        }
+        for (phase, mass) in self.entering_any.iter().enumerate() {
+            let segments = &prepared.of_phase[phase];
+            if *mass > LEAST_MASS * segments.len() as f32 {
+                segments.iter().copied().for_each(&mut list);
+            }
+        }
+        turn.for_each(|n| list(n as u32));
+        for n in &self.candidates {
+            self.listed[*n as usize] = false;
+        }
+    }
+
+    /// The segments whose turn it is to be entered from anywhere.
+    fn turn(&self) -> core::ops::Range<usize> {
+        let all = self.prepared.model.segments.len();
+        let size = all.div_ceil(ROUND_FRAMES);
+        let first = (self.turn * size).min(all);
+        first..(first + size).min(all)
+    }
+
+    /// Where the body may be a frame later (appendix A, "prediction"): of each frame of the candidates.
+    fn predict(&mut self) {
+        self.predicted.fill(0.0);
+        let prepared = &*self.prepared;
+        let config = &self.config;
+        let model = &*prepared.model;
+        let kinds = model.phases.len();
+        let [stay, next, skip] = self.moves();
+        let turn = self.turn();
+        // What exits goes anywhere; with each turn as much as all of its frames would have had in the round.
+        let anywhere = config.exit * ROUND_FRAMES as f32 / prepared.frames as f32;
+        for &n in &self.candidates {
+            let segment = &model.segments[n as usize];
+            let frames = prepared.frames_of(n as usize);
+            let old = &self.probability[frames.clone()];
+            let new = &mut self.predicted[frames];
+            let mut back = if segment.follows {
+                let last = &self.probability[prepared.frames_of(n as usize - 1)];
+                let last_but_one = last.len().checked_sub(2).map_or(0.0, |n| last[n]);
+                [last_but_one, last[last.len() - 1]].map(|p| p * config.keep_recording)
+            } else {
+                [0.0; 2]
+            };
+            let exits = if turn.contains(&(n as usize)) {
+                anywhere
+            } else {
+                0.0
+            };
+            for (new, old) in new.iter_mut().zip(old) {
+                *new = stay * old + next * back[1] + skip * back[0] + exits;
+                back = [back[1], *old];
+            }
+            let (phase, subject) = (usize::from(segment.phase), usize::from(segment.subject));
+            let place = subject * kinds + phase;
+            let own = self.entering[place] / prepared.counts[place].max(1.0);
+            let any = self.entering_any[phase] / prepared.of_phase[phase].len().max(1) as f32;
+            new[0] += config.keep_subject * own + (1.0 - config.keep_subject) * any;
+        }
+        self.turn = (self.turn + 1) % ROUND_FRAMES;
+    }
+
+    /// Weighs what may be with what was measured (appendix A, "update"). Returns the sum.
+    fn update(&mut self, sensor: &Measurement) -> f32 {
+        let limit = LEAST_SHARE / self.prepared.frames as f32;
+        let nearest = self.measure(sensor, limit);
+        let factor = -0.5 * self.config.evidence;
+        let sum = weigh(
+            &self.predicted,
+            &self.distance,
+            factor,
+            nearest,
+            &mut self.weighed,
+        );
+        self.log_likelihood +=
+            f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
+        sum
+    }
+
+    /// How far the frames are from what was measured that are predicted with more than a limit. Returns the least distance.
+    fn measure(&mut self, sensor: &Measurement, limit: f32) -> f32 {
+        let (mut measured, mut weights) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
+        let deviations = &self.prepared.model.deviations;
+        for (n, deviation) in deviations.iter().enumerate() {
+            measured[n] = sensor.values[n] / deviation;
+            weights[n] = sensor.weights[n];
+        }
+        let width = deviations.len();
+        distances(
+            &self.prepared.sensor,
+            &measured[..width],
+            &weights[..width],
+            &self.predicted,
+            limit,
+            &mut self.distance,
+        )
+    }
+
+    /// Brings the weighed candidates to a sum of one, and drops those that hold next to nothing.
+    fn keep(&mut self, sum: f32) {
+        let prepared = &*self.prepared;
+        for &n in &self.active {
+            self.probability[prepared.frames_of(n as usize)].fill(0.0);
+        }
+        self.active.clear();
+        let norm = 1.0 / sum.max(f32::MIN_POSITIVE);
+        for &n in &self.candidates {
+            let frames = prepared.frames_of(n as usize);
+            let own = &self.weighed[frames.clone()];
+            let mass: f32 = own.iter().sum();
+            if mass * norm > LEAST_MASS {
+                self.active.push(n);
+                for (probability, weighed) in self.probability[frames].iter_mut().zip(own) {
+                    *probability = weighed * norm;
+                }
+            }
+        }
+        if self.active.is_empty() {
+            // Nothing explains what was measured: start anew.
+            let log_likelihood = self.log_likelihood;
+            self.reset();
+            self.log_likelihood = log_likelihood;
+        }
+    }
+
+    /// Sums up behaviours, and chooses the segments to interpolate.
+    fn weigh_segments(&mut self) {
+        let prepared = &*self.prepared;
+        self.behaviours = [0.0; Behaviour::ALL.len()];
+        self.chosen.clear();
+        let most = self.config.interpolated.max(1);
+        for &n in &self.active {
+            let mass: f32 = self.probability[prepared.frames_of(n as usize)]
+                .iter()
+                .sum();
+            let segment = &prepared.model.segments[n as usize];
+            let behaviour = prepared.model.phases[usize::from(segment.phase)].behaviour;
+            self.behaviours[behaviour.index()] += mass;
+            let full = self.chosen.len() == most;
+            if full && self.chosen.last().is_some_and(|(_, least)| *least >= mass) {
+                continue;
+            }
+            if full {
+                self.chosen.pop();
+            }
+            let place = self.chosen.partition_point(|(_, other)| *other >= mass);
+            self.chosen.insert(place, (n, mass));
+        }
+    }
+
+    /// Takes probabilities from outside, for which [`body`](Self::body) then stands.
+    pub(crate) fn set_probabilities(&mut self, probabilities: &[f32]) {
+        self.probability.copy_from_slice(probabilities);
+        self.active.clear();
+        for n in 0..self.prepared.model.segments.len() {
+            let own = &self.probability[self.prepared.frames_of(n)];
+            if own.iter().any(|p| *p > 0.0) {
+                self.active.push(n as u32);
+            }
+        }
+        self.weigh_segments();
+    }
+
+    /// Goes back by a frame: `later` tells of each frame how well it explains all that was measured after the frame of `sensor`, up to a factor,
+    /// and then what was measured in that frame and after it, given the frame before: the backward variable. All frames are looked at.
+    pub(crate) fn step_back(&mut self, sensor: Option<&Measurement>, later: &mut [f32]) {
+        let prepared = Arc::clone(&self.prepared);
+        if let Some(sensor) = sensor {
+            self.predicted[..later.len()].copy_from_slice(later);
+            let nearest = self.measure(sensor, f32::NEG_INFINITY);
+            let factor = -0.5 * self.config.evidence;
+            weigh(
+                &self.predicted,
+                &self.distance,
+                factor,
+                nearest,
+                &mut self.weighed,
+            );
+            later.copy_from_slice(&self.weighed[..later.len()]);
+        }
+        self.value_phases(later);
+        let config = &self.config;
+        let model = &*prepared.model;
+        let kinds = model.phases.len();
+        let [stay, next, skip] = self.moves();
+        let anywhere = config.exit * later.iter().sum::<f32>() / prepared.frames as f32;
+        for (n, segment) in model.segments.iter().enumerate() {
+            let frames = prepared.frames_of(n);
+            let place = usize::from(segment.subject) * kinds + usize::from(segment.phase);
+            let leave = self.entering[place];
+            let followed = prepared.is_followed(n);
+            let keep = if followed { config.keep_recording } else { 0.0 };
+            let beyond = |steps: usize| {
+                let over = later.get(frames.end + steps).copied();
+                keep * over.filter(|_| followed).unwrap_or(0.0) + (1.0 - keep) * leave
+            };
+            for frame in frames.clone() {
+                let at = |steps: usize| {
+                    let there = frame + steps;
+                    if there < frames.end {
+                        later[there]
+                    } else {
+                        beyond(there - frames.end)
+                    }
+                };
+                self.predicted[frame] =
+                    stay * later[frame] + next * at(1) + skip * at(2) + anywhere;
+            }
+        }
+        later.copy_from_slice(&self.predicted[..later.len()]);
+        let sum: f32 = later.iter().sum();
+        scale(later, later.len() as f32 / sum.max(f32::MIN_POSITIVE));
+    }
+
+    /// How good it is for what comes later to leave each phase of each subject at its end: into `entering`.
+    fn value_phases(&mut self, later: &[f32]) {
+        let prepared = &*self.prepared;
+        let config = &self.config;
+        let model = &*prepared.model;
+        let kinds = model.phases.len();
+        self.entering.fill(0.0);
+        self.entering_any.fill(0.0);
+        for (n, segment) in model.segments.iter().enumerate() {
+            let (phase, subject) = (usize::from(segment.phase), usize::from(segment.subject));
+            let first = later[prepared.starts[n]];
+            self.entering[subject * kinds + phase] += first;
+            self.entering_any[phase] += first;
+        }
+        let subjects = self.entering.chunks_exact_mut(kinds);
+        for (own, counts) in subjects.zip(prepared.counts.chunks_exact(kinds)) {
+            let mut entered = [0.0_f32; MAX_PHASES];
+            for (phase, (own, count)) in own.iter().zip(counts).enumerate() {
+                let any = self.entering_any[phase] / prepared.of_phase[phase].len().max(1) as f32;
+                entered[phase] =
+                    config.keep_subject * own / count.max(1.0) + (1.0 - config.keep_subject) * any;
+            }
+            for (phase, own) in own.iter_mut().enumerate() {
+                let row = &model.next[phase * kinds..(phase + 1) * kinds];
+                *own = row
+                    .iter()
+                    .zip(&entered)
+                    .map(|(share, entered)| share * entered)
+                    .sum();
+            }
+        }
+    }
+
+    /// The body of the most probable segments, interpolated (equations 11 and 13), and how it changes to the next frame.
+    ///
+    /// `sensor` as given to the last [`step`](Self::step).
+    pub fn body(
+        &self,
+        sensor: Option<&Measurement>,
+        body: &mut [f32; BODY_COUNT],
+        velocity: &mut [f32; BODY_COUNT],
+    ) {
+        let prepared = &*self.prepared;
+        let model = &*prepared.model;
+        body.fill(0.0);
+        velocity.fill(0.0);
+        let sum: f32 = self.chosen.iter().map(|(_, mass)| mass).sum();
+        let norm = 1.0 / sum.max(1e-30);
+        let width = model.sensor_width();
+        for &(n, mass) in &self.chosen {
+            let segment = n as usize;
+            let frames = prepared.frames_of(segment);
+            let mut expected = [0.0_f32; SENSOR_COUNT * MAX_SENSORS];
+            for frame in frames {
+                let weight = self.probability[frame] * norm;
+                if weight < 1e-6 {
+                    continue;
+                }
+                let row = prepared.body_row(frame);
+                add(weight, row, body);
+                if !prepared.ends_chain(frame) {
+                    add(weight, prepared.body_row(frame + 1), velocity);
+                    add(-weight, row, velocity);
+                }
+                add(
+                    weight,
+                    &model.sensor[frame * width..][..width],
+                    &mut expected,
+                );
+            }
+            let regression = &model.regressions[usize::from(model.segments[segment].phase)];
+            if let Some(sensor) = sensor
+                && !regression.is_empty()
+                && self.config.regression > 0.0
+            {
+                let weight = mass * norm;
+                for (body, row) in body.iter_mut().zip(regression.chunks_exact(width)) {
+                    let terms = row.iter().zip(&sensor.values).zip(&expected);
+                    let change: f32 = terms.map(|((r, y), e)| r * (weight * y - e)).sum();
+                    *body += self.config.regression * change;
+                }
+            }
+        }
+    }
+
+    /// What was measured in the probable frames, in the mean: what the sensor should have told.
+    pub(crate) fn expected_sensor(&self, out: &mut [f32]) {
+        let width = self.prepared.model.sensor_width();
+        out.fill(0.0);
+        for &n in &self.active {
+            for frame in self.prepared.frames_of(n as usize) {
+                let row = &self.prepared.model.sensor[frame * width..][..width];
+                add(self.probability[frame], row, out);
+            }
+        }
+    }
+}

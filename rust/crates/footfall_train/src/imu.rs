@@ -1,0 +1,127 @@
+//! From recordings of bodies to a model of what a sensor on them means (Mousas 2017, sections 4 and 5).
+//!
+//! [`observe`] turns a clip into a chain of phases with what sensors measure in each frame; [`train_imu`] puts chains together; [`evaluate`] tells how
+//! close the bodies come that a model makes.
+
+mod align;
+mod chain;
+pub mod evaluate;
+mod statistics;
+
+pub use chain::{Chain, ImuClip, observe};
+
+use crate::error::TrainError;
+use footfall_core::{PhaseKind, PhaseStart, Site, Skeleton};
+use footfall_model::Provenance;
+use footfall_model::imu_model::{ImuModel, MAX_FRAMES, MAX_SENSORS};
+use std::collections::BTreeMap;
+
+/// How a model is trained.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImuTrainConfig {
+    /// Frames per second of the model.
+    pub frame_rate_hz: f64,
+    /// Where the sensors sit; one or two.
+    pub sites: Vec<Site>,
+    /// Whether every recording is used mirrored, too.
+    pub mirror: bool,
+}
+
+impl ImuTrainConfig {
+    /// 30 frames a second, mirrored recordings too.
+    pub fn new(sites: &[Site]) -> Self {
+        Self {
+            frame_rate_hz: 30.0,
+            sites: sites.to_vec(),
+            mirror: true,
+        }
+    }
+
+    fn check(&self) -> Result<(), TrainError> {
+        if !(20.0..=240.0).contains(&self.frame_rate_hz) {
+            return Err(TrainError::FrameRate {
+                frame_rate_hz: self.frame_rate_hz,
+            });
+        }
+        if !(1..=MAX_SENSORS).contains(&self.sites.len()) {
+            return Err(TrainError::Sensors {
+                found: self.sites.len(),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// Observes every clip and trains on all of them.
+///
+/// # Errors
+/// [`TrainError`] for a configuration that cannot be, and for clips without a usable frame.
+pub fn train_imu_clips(
+    clips: &[ImuClip<'_>],
+    config: &ImuTrainConfig,
+    provenance: Provenance,
+) -> Result<ImuModel, TrainError> {
+    use rayon::prelude::*;
+    config.check()?;
+    let chains: Vec<Vec<Chain>> = clips.par_iter().map(|clip| observe(clip, config)).collect();
+    let chains: Vec<&Chain> = chains.iter().flatten().collect();
+    train_imu(&chains, config, provenance)
+}
+
+/// Puts chains together.
+///
+/// # Errors
+/// As [`train_imu_clips`].
+pub fn train_imu(
+    chains: &[&Chain],
+    config: &ImuTrainConfig,
+    provenance: Provenance,
+) -> Result<ImuModel, TrainError> {
+    config.check()?;
+    let frames: usize = chains.iter().map(|chain| chain.frames()).sum();
+    if frames == 0 || frames > MAX_FRAMES {
+        return Err(TrainError::ImuFrames { found: frames });
+    }
+    let kinds: BTreeMap<PhaseKind, usize> = chains
+        .iter()
+        .flat_map(|chain| chain.segments.iter().map(|segment| (segment.kind, 0)))
+        .collect();
+    let phases: Vec<PhaseKind> = kinds.into_keys().collect();
+    let subjects: BTreeMap<&str, usize> = chains.iter().map(|c| (c.subject.as_str(), 0)).collect();
+    let subjects: Vec<&str> = subjects.into_keys().collect();
+    let recordings = chains.iter().filter(|chain| !chain.mirrored);
+    let landings = recordings.clone().flat_map(|chain| &chain.segments);
+    let steps = landings.filter(|segment| segment.kind.start == PhaseStart::Landing);
+    let provenance = Provenance {
+        clips: recordings.clone().count(),
+        subjects: subjects.len(),
+        steps: steps.count(),
+        ..provenance
+    };
+    let statistics = statistics::Statistics::of(chains, &phases, config.sites.len());
+    let mut model = ImuModel {
+        frame_rate_hz: config.frame_rate_hz,
+        sites: config.sites.clone(),
+        skeleton: chains
+            .first()
+            .map_or_else(Skeleton::standard, |c| c.skeleton.clone()),
+        next: statistics.next,
+        subjects: subjects.len(),
+        segments: Vec::new(),
+        sensor: Vec::new(),
+        body: Vec::new(),
+        deviations: statistics.deviations,
+        regressions: statistics.regressions,
+        phases,
+        provenance,
+    };
+    for chain in chains {
+        let subject = subjects.binary_search(&chain.subject.as_str()).unwrap_or(0);
+        model
+            .segments
+            .extend(chain.model_segments(&model.phases, subject as u16));
+        model.sensor.extend_from_slice(&chain.sensor);
+        model.body.extend_from_slice(&chain.body);
+    }
+    Ok(model)
+}

@@ -1,0 +1,251 @@
+//! How close reconstructed bodies come to the recorded ones (Mousas 2017, section 7.2).
+//!
+//! Every recording is reconstructed by a model that has not seen it: trained on all other recordings (the same subject's stay in), or on those
+//! of other subjects. The sensors are virtual, 100 samples a second, with the noise and biases of a phone's. The error is the mean distance between the
+//! joints of both bodies, their hips and headings brought together.
+
+use super::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
+use crate::error::TrainError;
+use footfall_core::rotation::{from_heading, heading};
+use footfall_core::{
+    Behaviour, Clip, JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics,
+};
+use footfall_model::Provenance;
+use footfall_model::imu_model::BODY_COUNT;
+use footfall_motion::virtual_imu::{SensorNoise, VirtualImuConfig, simulate};
+use footfall_recon::body::pose_of;
+use footfall_recon::{Prepared, ReconConfig, reconstruct_recording};
+use glam::Vec3;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Samples a second of the sensors.
+const RATE_HZ: f64 = 100.0;
+
+/// A change of behaviour counts as recognised within this time, seconds; a behaviour that lasts less is not asked for.
+const CHANGE_SECS: f64 = 1.0;
+const LEAST_BEHAVIOUR_SECS: f64 = 0.5;
+
+/// Which recordings a model may have seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeldOut {
+    /// All but the recording itself.
+    Recording,
+    /// Those of other subjects.
+    Subject,
+}
+
+/// What a body's error is, centimetres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JointError {
+    /// Mean distance of the joints, over all frames.
+    pub all_cm: f64,
+    /// The same over the frames in which the recorded body does not stand still.
+    pub moving_cm: f64,
+    /// Share of the frames in which the behaviour is recognised.
+    pub recognised: f64,
+}
+
+/// What came of one recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImuTrial {
+    /// Which of the clips it is.
+    pub clip: usize,
+    /// Frames, and those in which the body moves.
+    pub frames: usize,
+    /// Frames in which the body does not stand still.
+    pub moving: usize,
+    /// As a game shows it.
+    pub live: JointError,
+    /// With what comes later.
+    pub whole: JointError,
+    /// One pose for all: the mean of the training data, centimetres over moving frames.
+    pub constant_cm: f64,
+    /// Delays with which changes of behaviour are recognised live, seconds; those that are not within a second count as one.
+    pub delays_secs: Vec<f64>,
+}
+
+/// Reconstructs every clip.
+///
+/// # Errors
+/// [`TrainError`] when a model cannot be trained, for example because there is but one subject.
+pub fn evaluate_imu(
+    clips: &[ImuClip<'_>],
+    config: &ImuTrainConfig,
+    held_out: HeldOut,
+) -> Result<Vec<ImuTrial>, TrainError> {
+    config.check()?;
+    let chains: Vec<Vec<Chain>> = clips.par_iter().map(|clip| observe(clip, config)).collect();
+    let trials: Vec<Option<ImuTrial>> = (0..clips.len())
+        .into_par_iter()
+        .map(|own| {
+            let seen = |other: usize| match held_out {
+                HeldOut::Recording => other != own,
+                HeldOut::Subject => clips[other].subject != clips[own].subject,
+            };
+            let training: Vec<&Chain> = (0..clips.len())
+                .filter(|other| seen(*other))
+                .flat_map(|other| &chains[other])
+                .collect();
+            let Some(truth) = chains[own].first() else {
+                return Ok(None);
+            };
+            let model = train_imu(&training, config, Provenance::default())?;
+            let prepared = Arc::new(Prepared::new(Arc::new(model))?);
+            Ok(Some(try_clip(
+                own,
+                &clips[own],
+                truth,
+                &prepared,
+                &training,
+            )))
+        })
+        .collect::<Result<_, TrainError>>()?;
+    Ok(trials.into_iter().flatten().collect())
+}
+
+fn try_clip(
+    own: usize,
+    clip: &ImuClip<'_>,
+    truth: &Chain,
+    prepared: &Arc<Prepared>,
+    training: &[&Chain],
+) -> ImuTrial {
+    let sites = &prepared.model().sites;
+    let recordings: Vec<_> = sites
+        .iter()
+        .enumerate()
+        .map(|(n, site)| {
+            let config = VirtualImuConfig {
+                noise: Some(SensorNoise::consumer(1.0)),
+                seed: (own * 2 + n) as u64,
+                ..VirtualImuConfig::ideal(RATE_HZ)
+            };
+            simulate(clip.clip, clip.first_frame, *site, &config)
+        })
+        .collect();
+    let bodies: Vec<[Vec3; JOINT_COUNT]> = (0..truth.frames())
+        .map(|frame| joints(&pose_of_row(truth.body_row(frame)), &truth.skeleton))
+        .collect();
+    let behaviours: Vec<Behaviour> = truth
+        .segments
+        .iter()
+        .flat_map(|s| core::iter::repeat_n(s.kind.behaviour, s.end - s.first))
+        .collect();
+    let skeleton = &truth.skeleton;
+    let config = ReconConfig::default();
+    let mut delays_secs = Vec::new();
+    let [live, whole] = [true, false].map(|live| {
+        let Ok(made) = reconstruct_recording(prepared, &recordings, skeleton, &config, live) else {
+            return JointError::default();
+        };
+        // The first pose is that of the recording's first sample, a frame before the first of the chain.
+        let found = made.behaviours.get(1..).unwrap_or_default();
+        if live {
+            delays_secs = delays(&behaviours, found, prepared.model().frame_rate_hz);
+        }
+        judge(&made.clip, found, &bodies, &behaviours)
+    });
+    let moving = |frame: &usize| behaviours[*frame] != Behaviour::Stand;
+    let constant = joints(&pose_of_row(&mean_row(training)), skeleton);
+    let errors = (0..bodies.len()).filter(moving);
+    let errors: Vec<f64> = errors
+        .map(|frame| distance_cm(&constant, &bodies[frame]))
+        .collect();
+    ImuTrial {
+        clip: own,
+        frames: bodies.len(),
+        moving: errors.len(),
+        live,
+        whole,
+        constant_cm: mean(&errors),
+        delays_secs,
+    }
+}
+
+fn judge(
+    made: &Clip,
+    found: &[Behaviour],
+    bodies: &[[Vec3; JOINT_COUNT]],
+    behaviours: &[Behaviour],
+) -> JointError {
+    let poses = made.poses.iter().skip(1).zip(bodies);
+    let errors: Vec<f64> = poses
+        .map(|(pose, truth)| distance_cm(&joints(pose, &made.skeleton), truth))
+        .collect();
+    let moving: Vec<f64> = errors
+        .iter()
+        .zip(behaviours)
+        .filter(|(_, behaviour)| **behaviour != Behaviour::Stand)
+        .map(|(error, _)| *error)
+        .collect();
+    let right = found.iter().zip(behaviours).filter(|(a, b)| a == b).count();
+    JointError {
+        all_cm: mean(&errors),
+        moving_cm: mean(&moving),
+        recognised: right as f64 / behaviours.len().max(1) as f64,
+    }
+}
+
+/// How long after each change of behaviour it is recognised.
+fn delays(behaviours: &[Behaviour], found: &[Behaviour], rate_hz: f64) -> Vec<f64> {
+    let frames_of = |secs: f64| (secs * rate_hz).round() as usize;
+    (1..behaviours.len())
+        .filter(|&frame| behaviours[frame] != behaviours[frame - 1])
+        .filter(|&frame| {
+            let run = behaviours[frame..]
+                .iter()
+                .take_while(|b| **b == behaviours[frame]);
+            run.count() >= frames_of(LEAST_BEHAVIOUR_SECS)
+        })
+        .map(|frame| {
+            let later = found[frame.min(found.len())..]
+                .iter()
+                .take(frames_of(CHANGE_SECS));
+            let delay = later.take_while(|b| **b != behaviours[frame]).count();
+            delay as f64 / rate_hz
+        })
+        .collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+fn mean_row(chains: &[&Chain]) -> Vec<f32> {
+    let mut sum = vec![0.0_f64; BODY_COUNT];
+    for row in chains
+        .iter()
+        .flat_map(|chain| chain.body.chunks_exact(BODY_COUNT))
+    {
+        for (sum, value) in sum.iter_mut().zip(row) {
+            *sum += f64::from(*value);
+        }
+    }
+    let frames: usize = chains.iter().map(|chain| chain.frames()).sum();
+    sum.iter()
+        .map(|sum| (sum / frames.max(1) as f64) as f32)
+        .collect()
+}
+
+fn pose_of_row(row: &[f32]) -> Pose {
+    let mut body = [0.0; BODY_COUNT];
+    body.copy_from_slice(row);
+    let mut pose = Pose::default();
+    pose_of(&body, 1.0, &mut pose);
+    pose
+}
+
+/// Joints relative to the hips, with the hips' heading removed.
+fn joints(pose: &Pose, skeleton: &Skeleton) -> [Vec3; JOINT_COUNT] {
+    let mut model = ModelPose::default();
+    forward_kinematics(skeleton, pose, &mut model);
+    let level = from_heading(-heading(pose.rotation(Joint::Hips)));
+    let hips = model.position(Joint::Hips);
+    model.positions.map(|position| level * (position - hips))
+}
+
+fn distance_cm(a: &[Vec3; JOINT_COUNT], b: &[Vec3; JOINT_COUNT]) -> f64 {
+    let sum: f32 = a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum();
+    100.0 * f64::from(sum) / JOINT_COUNT as f64
+}
