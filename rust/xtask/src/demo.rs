@@ -5,7 +5,7 @@ use anyhow::{Context as _, Result, bail};
 use std::fs;
 
 /// The demo's scenes by topic.
-pub(crate) const SCENES: [(&str, &str); 7] = [
+pub(crate) const SCENES: [(&str, &str); 8] = [
     ("walk", "res://scenes/walk/walk.tscn"),
     ("styles", "res://scenes/styles/styles.tscn"),
     ("uneven", "res://scenes/uneven/uneven.tscn"),
@@ -18,6 +18,7 @@ pub(crate) const SCENES: [(&str, &str); 7] = [
         "own_character",
         "res://scenes/own_character/own_character.tscn",
     ),
+    ("sensor", "res://scenes/sensor/sensor.tscn"),
     ("switching", "res://scenes/switching/switching.tscn"),
 ];
 

@@ -15,6 +15,9 @@ const WALK: &str = "addons/footfall/models/walk.footfall";
 
 const DYNAMICS: &str = "addons/footfall/models/walk.footdyn";
 
+/// Sensor models: a sensor on a foot, and a phone in the pocket of the trousers.
+const SENSORS: [&str; 2] = ["right_foot", "right_thigh"];
+
 /// Walks of one person, who has the most of them: two linear systems hold one way of walking.
 const WALKS_OF_ONE: [&str; 4] = [
     "--where",
@@ -65,11 +68,31 @@ pub(crate) fn command() -> Result<()> {
             DYNAMICS,
         ]);
     process::run(&mut fit)?;
+    for site in SENSORS {
+        train_sensor(&data, site)?;
+    }
     let made = styles::make(&data)?;
     eprintln!(
-        "{WALK}, {DYNAMICS} and {made} styles are made from the data: the tests check them, then commit them"
+        "{WALK}, {DYNAMICS}, {} sensor models and {made} styles are made from the data: the tests check them, then commit them",
+        SENSORS.len()
     );
     Ok(())
+}
+
+/// Everything that people of the free recordings do.
+fn train_sensor(data: &Data, site: &str) -> Result<()> {
+    let mut train = data.footfall("imu");
+    train
+        .args(["train", "--corpus"])
+        .arg(&data.index)
+        .args(["--where", "path=cmu/*", "--site", site, "--no-mirror"])
+        .args([
+            "--describe",
+            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu): walks, runs, jumps, hops, turns, a sidestep",
+            "-o",
+        ])
+        .arg(format!("addons/footfall/models/{site}.footimu"));
+    process::run(&mut train)
 }
 
 /// The motion data and how models are made from them.

@@ -1,8 +1,10 @@
 //! A model of every released format version still loads, and says where it comes from.
 
+use footfall_core::Site;
 use footfall_model::file::read_header;
 use footfall_model::{
-    DynamicsModel, FORMAT_VERSION, GaitModel, GaitStyle, ModelFileError, StepSpread, WalkModel,
+    DynamicsModel, FORMAT_VERSION, GaitModel, GaitStyle, ImuModel, ModelFileError, StepSpread,
+    WalkModel,
 };
 use footfall_tests::data::repository;
 use std::fs;
@@ -68,6 +70,43 @@ fn the_version_of_a_switching_model_loads() {
     wild.regimes[0].system.transition *= 3.0;
     let error = wild.to_bytes().unwrap_err();
     assert!(error.to_string().contains("left foot"), "{error}");
+}
+
+#[test]
+fn the_version_of_a_sensor_model_loads() {
+    let path = repository().join("tests/model_versions/v1.footimu");
+    let bytes = fs::read(&path).unwrap();
+    assert_eq!(read_header(&bytes).unwrap().0, 1);
+    let model = ImuModel::from_bytes(&bytes).unwrap();
+    assert!(model.frame_count() > 100 && model.sites == [Site::RightFoot]);
+    // Frames are stored in 16 bits: written again they may differ by a step of these.
+    let again = ImuModel::from_bytes(&model.to_bytes().unwrap()).unwrap();
+    let apart = again
+        .body
+        .iter()
+        .zip(&model.body)
+        .map(|(a, b)| (a - b).abs());
+    assert!(apart.fold(0.0, f32::max) < 1e-3);
+    assert_eq!(again.segments, model.segments);
+    // Every cut and every flipped bit is an error, never a panic.
+    for length in (0..bytes.len()).step_by(37) {
+        assert!(ImuModel::from_bytes(&bytes[..length]).is_err());
+    }
+    for place in (16..bytes.len()).step_by(101) {
+        let mut damaged = bytes.clone();
+        damaged[place] ^= 0x10;
+        assert!(ImuModel::from_bytes(&damaged).is_err());
+    }
+    let error = GaitModel::from_bytes(&bytes).unwrap_err().to_string();
+    assert!(
+        error.contains("'imu'") && error.contains("'gait'"),
+        "{error}"
+    );
+    // What does not fit together is named.
+    let mut wild = model;
+    wild.segments[0].phase = 999;
+    let error = wild.to_bytes().unwrap_err().to_string();
+    assert!(error.contains("segment"), "{error}");
 }
 
 #[test]

@@ -3,12 +3,15 @@
 
 use footfall_core::Pose;
 use footfall_ik::placement::PlacementConfig;
-use footfall_model::{DynamicsModel, GaitModel};
+use footfall_imu::ImuSample;
+use footfall_model::{DynamicsModel, GaitModel, ImuModel};
+use footfall_recon::{Prepared, ReconConfig, Reconstructor};
 use footfall_synth::{
     Controls, CrowdWalker, Detail, GaitGenerator, GeneratorConfig, StyleSpace, StyledBody, Workshop,
 };
 use footfall_tests::data::repository;
 use footfall_tests::terrain::{PlacedWalker, Relief};
+use glam::Vec3;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
@@ -55,6 +58,38 @@ static COUNTING: Counting = Counting;
 
 fn allocations() -> usize {
     ALLOCATIONS.with(Cell::get)
+}
+
+/// A body that a sensor drives: samples in time, late, missing and not finite, then silence.
+fn assert_driving_allocates_nothing(mut body: Reconstructor) {
+    let mut pose = Pose::default();
+    let before = allocations();
+    for n in 0..2000_u32 {
+        let time = f64::from(n) * 0.01;
+        let phase = time as f32 * 6.0;
+        let sample = ImuSample {
+            time_secs: if n % 97 == 0 { time - 0.5 } else { time },
+            force: Vec3::new(0.0, 9.8 + phase.sin(), 2.0 * phase.cos()),
+            rate: Vec3::new(
+                if n % 89 == 0 {
+                    f32::NAN
+                } else {
+                    4.0 * phase.sin()
+                },
+                0.1,
+                0.0,
+            ),
+        };
+        if n % 300 < 200 {
+            body.push(0, sample);
+        }
+        body.step(0.01, &mut pose);
+        assert!(
+            pose.rotations.iter().all(|turn| turn.is_finite()),
+            "at {time} s"
+        );
+    }
+    assert_eq!(allocations(), before, "a driven body allocates");
 }
 
 /// Faster and slower, left and right, small and large steps in time, and nonsense.
@@ -144,4 +179,14 @@ fn a_step_of_the_generator_allocates_nothing() {
     let before = allocations();
     drop(std::hint::black_box(vec![0_u8; 100]));
     assert!(allocations() > before);
+}
+
+#[test]
+fn a_body_that_sensors_drive_allocates_nothing() {
+    let bytes = std::fs::read(repository().join("tests/model_versions/v1.footimu")).unwrap();
+    let model = Arc::new(ImuModel::from_bytes(&bytes).unwrap());
+    let skeleton = model.skeleton.clone();
+    let prepared = Arc::new(Prepared::new(model).unwrap());
+    let body = Reconstructor::new(&prepared, &skeleton, &ReconConfig::default()).unwrap();
+    assert_driving_allocates_nothing(body);
 }

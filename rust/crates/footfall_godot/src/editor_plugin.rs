@@ -4,7 +4,7 @@ use crate::import_plugin::{FootfallImportPlugin, Kind};
 use godot::classes::{EditorPlugin, IEditorPlugin};
 use godot::prelude::*;
 
-/// Teaches the editor to import `.footfall` and `.footstyle` files.
+/// Teaches the editor to import `.footfall`, `.footstyle` and `.footimu` files.
 #[derive(GodotClass)]
 #[class(tool, init, internal, base = EditorPlugin)]
 struct FootfallEditorPlugin {
@@ -15,7 +15,7 @@ struct FootfallEditorPlugin {
 #[godot_api]
 impl IEditorPlugin for FootfallEditorPlugin {
     fn enter_tree(&mut self) {
-        for kind in [Kind::Model, Kind::Style] {
+        for kind in [Kind::Model, Kind::Style, Kind::Imu] {
             let importer = FootfallImportPlugin::of(kind);
             self.base_mut().add_import_plugin(&importer);
             self.importers.push(importer);

@@ -496,12 +496,12 @@ impl GaitGenerator3D {
             godot_warn!("{node}: the state is refused: {problem}");
         }
         let travel = session.advance(dt_secs, self.controls());
-        self.root_motion_delta = session.local_delta(&travel);
+        self.root_motion_delta = session.traveller.local_delta(&travel);
         {
             // Scripts may answer to what happens here and come back to this node: no borrow may be held.
             let _released = self.base_mut();
             if travels {
-                session.move_character(&travel);
+                session.traveller.move_character(&travel);
             }
             session.write(&mut skeleton);
         }

@@ -1,8 +1,9 @@
-//! Imports `.footfall` and `.footdyn` files as [`GaitModel`] resources and `.footstyle` files as [`GaitStyle`] resources.
+//! Imports `.footfall` and `.footdyn` files as [`GaitModel`] resources, `.footstyle` files as [`GaitStyle`] and `.footimu` files as [`ImuModel`].
 
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
-use footfall_model::{GaitStyle as TrainedStyle, WalkModel};
+use crate::imu_model::ImuModel;
+use footfall_model::{GaitStyle as TrainedStyle, ImuModel as TrainedImuModel, WalkModel};
 use godot::classes::{
     EditorImportPlugin, FileAccess, IEditorImportPlugin, Resource, ResourceSaver,
     resource_saver::SaverFlags,
@@ -16,9 +17,10 @@ pub(crate) enum Kind {
     #[default]
     Model,
     Style,
+    Imu,
 }
 
-/// Imports `.footfall` and `.footdyn` files as `GaitModel`, or `.footstyle` files as `GaitStyle`.
+/// Imports `.footfall` and `.footdyn` files as `GaitModel`, `.footstyle` files as `GaitStyle`, or `.footimu` files as `ImuModel`.
 #[derive(GodotClass)]
 #[class(tool, init, internal, base = EditorImportPlugin)]
 pub(crate) struct FootfallImportPlugin {
@@ -32,10 +34,11 @@ impl FootfallImportPlugin {
         Gd::from_init_fn(|base| Self { kind, base })
     }
 
-    fn by_kind<T>(&self, model: T, style: T) -> T {
+    fn by_kind<T>(&self, model: T, style: T, imu: T) -> T {
         match self.kind {
             Kind::Model => model,
             Kind::Style => style,
+            Kind::Imu => imu,
         }
     }
 }
@@ -44,12 +47,16 @@ impl FootfallImportPlugin {
 #[godot_api]
 impl IEditorImportPlugin for FootfallImportPlugin {
     fn get_importer_name(&self) -> GString {
-        self.by_kind("footfall.gait_model", "footfall.gait_style")
-            .into()
+        self.by_kind(
+            "footfall.gait_model",
+            "footfall.gait_style",
+            "footfall.imu_model",
+        )
+        .into()
     }
 
     fn get_visible_name(&self) -> GString {
-        self.by_kind("Gait Model", "Gait Style").into()
+        self.by_kind("Gait Model", "Gait Style", "IMU Model").into()
     }
 
     fn get_preset_count(&self) -> i32 {
@@ -61,7 +68,8 @@ impl IEditorImportPlugin for FootfallImportPlugin {
     }
 
     fn get_recognized_extensions(&self) -> PackedStringArray {
-        let extensions: &[&str] = self.by_kind(&["footfall", "footdyn"], &["footstyle"]);
+        let extensions: &[&str] =
+            self.by_kind(&["footfall", "footdyn"], &["footstyle"], &["footimu"]);
         extensions.iter().map(|name| GString::from(*name)).collect()
     }
 
@@ -83,7 +91,7 @@ impl IEditorImportPlugin for FootfallImportPlugin {
     }
 
     fn get_resource_type(&self) -> GString {
-        self.by_kind("GaitModel", "GaitStyle").into()
+        self.by_kind("GaitModel", "GaitStyle", "ImuModel").into()
     }
 
     fn get_priority(&self) -> f32 {
@@ -142,6 +150,12 @@ fn import(kind: Kind, source_file: &GString, save_path: &GString) -> Result<(), 
             let mut style = GaitStyle::new_gd();
             style.bind_mut().set_data(bytes);
             style.upcast()
+        }
+        Kind::Imu => {
+            TrainedImuModel::from_bytes(bytes.as_slice()).map_err(damaged)?;
+            let mut model = ImuModel::new_gd();
+            model.bind_mut().set_data(bytes);
+            model.upcast()
         }
     };
     let path = format!("{save_path}.res");

@@ -1,9 +1,10 @@
 //! The Godot nodes: the only crate that names `godot`.
 //!
 //! `gait_model` is the resource that holds a trained walk, `gait_style` one that holds a style of it, `gait_generator_3d` the
-//! node that walks a character with them, `foot_placement_3d` the one that puts feet on uneven ground, `gait_crowd_3d` the one that walks thousands; `loaded` is what a resource made of a file.
+//! node that walks a character with them, `foot_placement_3d` the one that puts feet on uneven ground, `gait_crowd_3d` the one that walks thousands;
+//! `imu_model` is the resource that knows what sensors mean, `replay_imu_source` one that plays their recordings, `imu_reconstructor_3d` the node that they drive; `loaded` is what a resource made of a file.
 //! Between the engine and the runtime stand `rest_body` (proportions of any character from its rest pose),
-//! `skeleton_binding` (joints to bones and back), `character` (which node travels), `physics_ground` (what feet stand on) and `convert` (vectors).
+//! `skeleton_binding` (joints to bones and back), `character` and `travel` (which node travels, and how), `physics_ground` (what feet stand on) and `convert` (vectors).
 //!
 //! Two flavours are built. With the feature `editor` the library also holds the import plugin for `.footfall` and `.footstyle` files and the
 //! class reference that the editor shows; exported games get the library without. Both register the same runtime classes.
@@ -28,11 +29,15 @@ mod gait_model;
 mod gait_style;
 #[cfg(feature = "editor")]
 mod import_plugin;
+mod imu_model;
+mod imu_reconstructor_3d;
 mod loaded;
 mod physics_ground;
+mod replay_imu_source;
 mod report;
 mod rest_body;
 mod skeleton_binding;
+mod travel;
 mod walk_source;
 
 use godot::prelude::{ExtensionLibrary, gdextension};

@@ -55,11 +55,29 @@ pub enum ImuCsvError {
 /// # Errors
 /// [`ImuCsvError`] names file, line and column.
 pub fn read(path: &Path) -> Result<ImuRecording, ImuCsvError> {
+    let reader = csv::Reader::from_path(path).map_err(|source| ImuCsvError::Csv {
+        path: path.to_owned(),
+        source,
+    })?;
+    parse(reader, path)
+}
+
+/// Parses the text of a recording's file; `path` names it in errors.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse_text(text: &str, path: &Path) -> Result<ImuRecording, ImuCsvError> {
+    parse(csv::Reader::from_reader(text.as_bytes()), path)
+}
+
+fn parse(
+    mut reader: csv::Reader<impl std::io::Read>,
+    path: &Path,
+) -> Result<ImuRecording, ImuCsvError> {
     let csv_error = |source| ImuCsvError::Csv {
         path: path.to_owned(),
         source,
     };
-    let mut reader = csv::Reader::from_path(path).map_err(csv_error)?;
     let header = reader.headers().map_err(csv_error)?;
     if header.iter().map(str::trim).ne(HEADER) {
         return Err(ImuCsvError::Header {

@@ -28,6 +28,9 @@ const KNEE_SLACK: f32 = 0.1;
 /// The heading follows the sensor's with this half-life, seconds.
 const HEADING_HALF_LIFE_SECS: f32 = 0.2;
 
+/// For so long the heading of the sensor is compared with the body's before the body follows it, seconds: what is probable is not settled at first.
+const HEADING_ANCHOR_SECS: f32 = 2.0;
+
 /// Travel, heading and feet of one body.
 #[derive(Clone, Debug)]
 pub struct Ground {
@@ -38,6 +41,9 @@ pub struct Ground {
     scale: f32,
     place: Vec3,
     heading: f32,
+    /// The body's heading less the sensor's, and for how long both were compared.
+    heading_offset: f32,
+    compared_secs: f32,
     height_m: f32,
     feet: [StandingFoot; 2],
     model: ModelPose,
@@ -68,7 +74,7 @@ impl StandingFoot {
 /// What a body does in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundInput {
-    /// Heading that the sensor gives, radians; `None` where it tells nothing.
+    /// Heading that the sensor gives the body, from an unknown direction on, radians; `None` where it tells nothing.
     pub heading: Option<f32>,
     /// How many of the model's frames have passed.
     pub frames: f32,
@@ -85,6 +91,8 @@ impl Ground {
             scale: skeleton.mean_leg_length() / model_skeleton.mean_leg_length(),
             place: Vec3::ZERO,
             heading: 0.0,
+            heading_offset: 0.0,
+            compared_secs: 0.0,
             height_m: 0.0,
             feet: [StandingFoot::FREE; 2],
             model: ModelPose::default(),
@@ -95,12 +103,18 @@ impl Ground {
     /// Back to the origin, facing +Z.
     pub fn reset(&mut self) {
         (self.place, self.heading, self.height_m) = (Vec3::ZERO, 0.0, 0.0);
+        self.forget_sensor_heading();
         self.feet = [StandingFoot::FREE; 2];
     }
 
     /// The body's proportions.
     pub const fn skeleton(&self) -> &Skeleton {
         &self.skeleton
+    }
+
+    /// Where the body is on the floor, metres.
+    pub const fn place(&self) -> Vec3 {
+        self.place
     }
 
     /// Heading of the body, radians.
@@ -111,9 +125,15 @@ impl Ground {
     /// Faces another way from now on; feet are put anew.
     pub fn set_heading(&mut self, heading: f32) {
         self.heading = wrap_angle(heading);
+        self.forget_sensor_heading();
         for foot in &mut self.feet {
             foot.plant = None;
         }
+    }
+
+    /// What the sensor says of the heading from now on begins anew: it may have been turned or exchanged.
+    pub const fn forget_sensor_heading(&mut self) {
+        self.compared_secs = 0.0;
     }
 
     /// Where each foot that came to stand in the last step was put.
@@ -149,9 +169,15 @@ impl Ground {
 
     fn turn(&mut self, body: &BodyFrame, input: &GroundInput) {
         self.heading += body[TURN] * input.frames;
-        if let Some(target) = input.heading {
-            let share = follow_share(HEADING_HALF_LIFE_SECS, input.dt_secs);
-            self.heading += share * wrap_angle(target - self.heading);
+        if let Some(sensor) = input.heading {
+            let apart = wrap_angle(self.heading - sensor - self.heading_offset);
+            if self.compared_secs < HEADING_ANCHOR_SECS {
+                self.compared_secs += input.dt_secs;
+                let share = (input.dt_secs / self.compared_secs.max(f32::MIN_POSITIVE)).min(1.0);
+                self.heading_offset += apart * share;
+            } else {
+                self.heading -= apart * follow_share(HEADING_HALF_LIFE_SECS, input.dt_secs);
+            }
         }
         self.heading = wrap_angle(self.heading);
     }

@@ -6,6 +6,7 @@ use crate::ground::{Ground, GroundInput};
 use crate::measure::{measure, sensor_heading};
 use crate::prepared::Prepared;
 use crate::tracker::{Tracker, TrackerConfig};
+use footfall_core::rotation::from_heading;
 use footfall_core::{Behaviour, Pose, Skeleton, SkeletonError};
 use footfall_imu::{FeatureFrame, FeatureStream, ImuSample};
 use footfall_model::imu_model::{BODY_COUNT, MAX_SENSORS};
@@ -65,7 +66,6 @@ pub struct Reconstructor {
     /// Frames that were shown ahead of the last one measured.
     ahead: f32,
     heading: Option<f32>,
-    heading_offset: Option<f32>,
 }
 
 /// One sensor: its samples on their way to frames.
@@ -119,7 +119,6 @@ impl Reconstructor {
             silent_secs: 0.0,
             ahead: 0.0,
             heading: None,
-            heading_offset: None,
             config: *config,
             prepared: Arc::clone(prepared),
         })
@@ -129,6 +128,9 @@ impl Reconstructor {
     pub fn set_mounting(&mut self, sensor: usize, site_from_sensor: Quat) {
         if let Some(sensor) = self.sensors.get_mut(sensor) {
             sensor.mounting = site_from_sensor;
+            // What it measured in other axes means nothing any more.
+            sensor.stream = FeatureStream::new(self.prepared.model.frame_rate_hz);
+            self.ground.forget_sensor_heading();
         }
     }
 
@@ -145,13 +147,17 @@ impl Reconstructor {
         self.blend.reset();
         self.ground.reset();
         (self.silent_secs, self.ahead) = (0.0, 0.0);
-        (self.heading, self.heading_offset) = (None, None);
+        self.heading = None;
     }
 
     /// The direction in which the body faces now is this heading from now on, radians.
     pub fn reset_heading(&mut self, heading: f32) {
         self.ground.set_heading(heading);
-        self.heading_offset = None;
+    }
+
+    /// Heading of the body, radians.
+    pub const fn heading(&self) -> f32 {
+        self.ground.heading()
     }
 
     /// What the body does.
@@ -276,18 +282,21 @@ impl Reconstructor {
         }
         self.ahead = (self.ahead + dt_secs * rate).clamp(0.0, 1.5);
         let body = self.blend.body_after(self.ahead);
-        let heading = self.heading.map(|heading| {
-            let offset = *self
-                .heading_offset
-                .get_or_insert(self.ground.heading() - heading);
-            heading + offset
-        });
         let input = GroundInput {
-            heading,
+            heading: self.heading,
             frames: dt_secs * rate,
             dt_secs,
         };
         self.ground.step(&body, &input, pose);
+    }
+
+    /// Splits a pose that [`step`](Self::step) wrote into the place and heading of the body on the ground, and the pose above it, which faces +Z.
+    pub fn split(&self, pose: &mut Pose) -> (Vec3, f32) {
+        let (place, heading) = (self.ground.place(), self.ground.heading());
+        let level = from_heading(-heading);
+        pose.root_position = level * (pose.root_position - place);
+        pose.rotations[0] = level * pose.rotations[0];
+        (place, heading)
     }
 
     /// Without samples the body goes on as the recordings do.

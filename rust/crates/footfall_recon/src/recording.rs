@@ -59,7 +59,6 @@ pub fn reconstruct_recording(
         // What later frames tell is smooth already.
         blend: Blend::new(if live { config.blend_gain } else { 1.0 }),
         ground: Ground::new(skeleton, &prepared.model.skeleton),
-        heading_offset: None,
         frame_secs: 1.0 / rate as f32,
     };
     let measured: Vec<Option<Measurement>> =
@@ -143,7 +142,6 @@ struct Shown {
     out: Reconstructed,
     blend: Blend,
     ground: Ground,
-    heading_offset: Option<f32>,
     frame_secs: f32,
 }
 
@@ -177,14 +175,8 @@ impl Shown {
         sensors: [Option<FeatureFrame>; MAX_SENSORS],
         frames: f32,
     ) {
-        let heading = sensor_heading(&sensors, body).map(|heading| {
-            let offset = *self
-                .heading_offset
-                .get_or_insert(self.ground.heading() - heading);
-            heading + offset
-        });
         let input = GroundInput {
-            heading,
+            heading: sensor_heading(&sensors, body),
             frames,
             dt_secs: self.frame_secs,
         };

@@ -5,6 +5,7 @@ mod common;
 mod designs;
 mod dynamics;
 mod evaluate;
+mod imu;
 mod pipeline;
 mod recordings;
 mod sensors;

@@ -1,0 +1,92 @@
+extends WalkingScene
+## A walker wears a sensor on the right foot; all that the second one knows is what this sensor measures.
+
+const MODEL: ImuModel = preload("res://addons/footfall/models/right_foot.footimu")
+## Where the sensor sits on the foot, metres ahead of and below the ankle.
+const ON_THE_FOOT := Vector3(0.0, -0.01, 0.07)
+
+var _leader: GaitGenerator3D
+var _skeleton: Skeleton3D
+var _foot := -1
+var _imu := VirtualImu.new()
+var _driven: ImuReconstructor3D
+var _delta := 0.0
+
+
+func _ready() -> void:
+	_camera.distance_m = 6.5
+	_camera.heading = deg_to_rad(24.0)
+	_camera.height = deg_to_rad(12.0)
+	_leader = add_walker("Leader", Vector3(1.1, 0.0, 0.0), Color("c96f53"))
+	Paint.label(walkers[0], "sensor")
+	_skeleton = _leader.get_skeleton()
+	_foot = _skeleton.find_bone("RightFoot")
+	_leader.modification_processed.connect(_measure)
+	_add_driven()
+	follow(%Panel)
+
+
+func _process(delta: float) -> void:
+	_delta = delta
+	_camera.target_position = middle() + Vector3.UP * 0.85
+	%Behaviour.text = "the sensor says: %s" % _driven.get_behaviour()
+
+
+## Everybody's own character, with a reconstructor in place of the generator.
+func _add_driven() -> void:
+	var character: Node3D = WALKER.instantiate()
+	character.name = "Driven"
+	character.position = Vector3(-1.1, 0.0, 0.0)
+	Paint.apply(character, Color("5f8fb0"))
+	Paint.label(character, "driven")
+	var gait := gait_of(character)
+	_driven = ImuReconstructor3D.new()
+	_driven.model = MODEL
+	_driven.mounting = ImuReconstructor3D.ALIGNED
+	_driven.footstep.connect(func(foot: StringName, at: Vector3) -> void:
+		footsteps += 1
+		_footprints.mark(foot, at, character))
+	gait.get_parent().add_child(_driven)
+	gait.free()
+	add_child(character)
+	walkers.append(character)
+
+
+func _measure() -> void:
+	var world := _skeleton.global_transform
+	var bone := world * _skeleton.get_bone_global_pose(_foot)
+	# Turned as in the T-pose, the sensor's axes are the body's.
+	var turn := (bone.basis * _skeleton.get_bone_global_rest(_foot).basis.inverse()).get_rotation_quaternion()
+	var sample := _imu.move(bone.origin + turn * ON_THE_FOOT, turn, _delta)
+	if not sample.is_empty():
+		_driven.push_sample(0, sample[0], sample[1], sample[2])
+
+
+func gait_of(walker: Node3D) -> GaitGenerator3D:
+	return walker.get_node_or_null(^"%GaitGenerator3D")
+
+
+func set_all(property: StringName, value: Variant) -> void:
+	_leader.set(property, value)
+
+
+func close_ups() -> Dictionary[String, Array]:
+	var at := func(index: int) -> Vector3: return walkers[index].global_position + Vector3.UP * 0.9
+	return {
+		"side": [at.call(1), 90.0, 5.0, 3.4],
+		"front": [at.call(1), 3.0, 6.0, 3.4],
+		"three_quarter": [at.call(1), 38.0, 12.0, 3.9],
+	}
+
+
+## Who did not keep up.
+func problems(frames: int) -> PackedStringArray:
+	var found := PackedStringArray()
+	var ways: Array[float] = []
+	for index: int in walkers.size():
+		ways.append(walkers[index].global_position.distance_to(_starts[index]))
+	if ways[1] < 0.7 * ways[0] or ways[1] > 1.3 * ways[0]:
+		found.append("the sensor's wearer went %.2f m and who is driven by it %.2f" % ways)
+	if frames > 120 and _driven.get_behaviour() != &"walk":
+		found.append("the walk is taken for a %s" % _driven.get_behaviour())
+	return found

@@ -1,0 +1,397 @@
+//! `footfall imu` and `footfall evaluate imu` from the outside.
+
+use crate::common::footfall;
+use crate::evaluate::write_index;
+use footfall_core::rotation::{from_heading, heading};
+use footfall_core::{Clip, Joint, ModelPose, forward_kinematics};
+use footfall_motion::bvh;
+use footfall_motion::retarget::{RetargetOptions, retarget};
+use footfall_tests::data::recordings;
+use footfall_tests::evaluator::evaluate;
+use glam::Vec3;
+use std::fs;
+use std::path::Path;
+
+/// Two walkers; the faster walk of the first is kept for what the model has not seen.
+const SEEN: [(&str, &str); 3] = [
+    ("walker_1_slow.bvh", "slow"),
+    ("walker_2_slow.bvh", "slow"),
+    ("walker_2_fast.bvh", "fast"),
+];
+const UNSEEN: &str = "walker_1_fast.bvh";
+
+fn prepare(folder: &Path, site: &str) -> String {
+    write_index(folder, "index.csv", &SEEN);
+    write_index(folder, "unseen.csv", &[(UNSEEN, "fast")]);
+    let train = [
+        "imu",
+        "train",
+        "--corpus",
+        "index.csv",
+        "--site",
+        site,
+        "-o",
+        "body.footimu",
+    ];
+    let report = footfall(folder, &[&train[..], &["--json"]].concat()).json();
+    assert_eq!(report["sites"][0], site);
+    assert!(
+        report["frames"].as_u64().expect("a trained model") > 500,
+        "{report}"
+    );
+    let path = footfall_tests::data::own_file(UNSEEN);
+    path.to_str().expect("a path in UTF-8").to_owned()
+}
+
+fn canonical(path: &Path) -> Clip {
+    let file = bvh::read(path).expect("a BVH file");
+    retarget(&file, &RetargetOptions::default())
+        .expect("a body")
+        .clip
+}
+
+/// Mean distance of the joints at the same times, hips and headings brought together, centimetres.
+fn apart_cm(truth: &Clip, made: &Clip, start_secs: f64) -> f64 {
+    let places = |clip: &Clip, secs: f64| {
+        let pose = clip.pose_at(secs).expect("frames");
+        let mut model = ModelPose::default();
+        forward_kinematics(&clip.skeleton, &pose, &mut model);
+        let level = from_heading(-heading(pose.rotation(Joint::Hips)));
+        model
+            .positions
+            .map(|place| level * (place - model.positions[0]))
+    };
+    let frames = made.poses.len();
+    let mut sum = 0.0;
+    for frame in 0..frames {
+        let secs = frame as f64 / made.frame_rate_hz;
+        let (own, true_places) = (places(made, secs), places(truth, start_secs + secs));
+        let distances = own
+            .iter()
+            .zip(&true_places)
+            .map(|(a, b): (&Vec3, &Vec3)| a.distance(*b));
+        sum += f64::from(distances.sum::<f32>()) / own.len() as f64;
+    }
+    100.0 * sum / frames as f64
+}
+
+#[test]
+fn a_sensor_on_a_foot_becomes_the_walk_it_was_worn_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let walk = prepare(folder, "right_foot");
+    let simulate = |more: &[&str], output: &str| {
+        let arguments = [
+            "imu",
+            "simulate",
+            &walk,
+            "--site",
+            "right_foot",
+            "-o",
+            output,
+        ];
+        footfall(folder, &[&arguments[..], more, &["--json"]].concat()).json()
+    };
+    let report = simulate(&[], "imu.csv");
+    let start_secs = report["start_s"].as_f64().unwrap();
+    simulate(&["--noise", "1", "--mounting", "70,-40,120"], "anyhow.csv");
+    assert_eq!(footfall(folder, &["inspect", "imu.csv"]).code, 0);
+    let facts = footfall(folder, &["inspect", "body.footimu"]);
+    assert!(facts.stdout.contains("right_foot"), "{}", facts.stdout);
+
+    let truth = canonical(Path::new(&walk));
+    let reconstruct = |imu: &str, more: &[&str]| {
+        let arguments = [
+            "imu",
+            "reconstruct",
+            "--model",
+            "body.footimu",
+            "--imu",
+            imu,
+            "-o",
+            "out.bvh",
+        ];
+        let report = footfall(folder, &[&arguments[..], more, &["--json"]].concat()).json();
+        assert!(
+            report["behaviours"][0].to_string().contains("walk"),
+            "{report}"
+        );
+        canonical(&folder.join("out.bvh"))
+    };
+    for (imu, more, most_cm) in [
+        ("imu.csv", &["--mounting", "aligned"][..], 2.5),
+        ("imu.csv", &["--mounting", "aligned", "--live"], 3.5),
+        ("anyhow.csv", &[], 2.8),
+    ] {
+        let made = reconstruct(imu, more);
+        let error = apart_cm(&truth, &made, start_secs);
+        assert!(error < most_cm, "{imu} {more:?}: {error:.2} cm");
+    }
+    // The same input gives the same bytes, and feet stay where they are.
+    reconstruct("imu.csv", &["--mounting", "aligned", "--fps", "60"]);
+    let bytes = fs::read(folder.join("out.bvh")).unwrap();
+    reconstruct("imu.csv", &["--mounting", "aligned", "--fps", "60"]);
+    assert_eq!(bytes, fs::read(folder.join("out.bvh")).unwrap());
+    let walked = evaluate(&bvh::read(folder.join("out.bvh")).unwrap());
+    assert!(
+        walked.median_slip_mps < 0.02,
+        "slip {} m/s",
+        walked.median_slip_mps
+    );
+    assert!(
+        walked.penetration_m < 0.005,
+        "{} m below the floor",
+        walked.penetration_m
+    );
+}
+
+#[test]
+fn two_sensors_go_in_the_order_of_the_models_sites() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write_index(folder, "index.csv", &SEEN);
+    let train = [
+        "imu",
+        "train",
+        "--corpus",
+        "index.csv",
+        "--site",
+        "right_foot",
+        "--site",
+        "left_hand",
+        "-o",
+        "two.footimu",
+    ];
+    assert_eq!(footfall(folder, &train).code, 0);
+    let walk = footfall_tests::data::own_file(UNSEEN);
+    let walk = walk.to_str().unwrap();
+    for site in ["right_foot", "left_hand"] {
+        let output = format!("{site}.csv");
+        let simulate = ["imu", "simulate", walk, "--site", site, "-o", &output];
+        assert_eq!(footfall(folder, &simulate).code, 0);
+    }
+    let reconstruct = |imus: &[&str]| {
+        let mut arguments = vec![
+            "imu",
+            "reconstruct",
+            "--model",
+            "two.footimu",
+            "-o",
+            "out.bvh",
+        ];
+        arguments.extend(["--mounting", "aligned"]);
+        for imu in imus {
+            arguments.extend(["--imu", imu]);
+        }
+        footfall(folder, &arguments)
+    };
+    assert_eq!(reconstruct(&["right_foot.csv", "left_hand.csv"]).code, 0);
+    let truth = canonical(Path::new(walk));
+    let error = apart_cm(&truth, &canonical(&folder.join("out.bvh")), 0.0);
+    assert!(error < 2.5, "{error:.2} cm");
+    reconstruct(&["right_foot.csv"]).fails_with(&["two sensors", "right_foot, left_hand"]);
+}
+
+#[test]
+fn events_and_strides_of_a_simulated_foot_are_those_of_the_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let walk = footfall_tests::data::own_file(UNSEEN);
+    let walk = walk.to_str().unwrap();
+    let simulate = [
+        "imu",
+        "simulate",
+        walk,
+        "--site",
+        "left_foot",
+        "--mounting",
+        "10,80,-30",
+        "-o",
+        "imu.csv",
+    ];
+    assert_eq!(footfall(folder, &simulate).code, 0);
+    let found = footfall(
+        folder,
+        &["imu", "events", "imu.csv", "--site", "left_foot", "--json"],
+    )
+    .json();
+    let known = footfall(folder, &["contacts", walk, "--json"]).json();
+    let times = |report: &serde_json::Value, kind: &str| -> Vec<f64> {
+        let events = report["events"].as_array().expect("events").iter();
+        events
+            .filter(|event| event["foot"] == "left" && event["kind"] == kind)
+            .map(|event| event["time_s"].as_f64().expect("a time"))
+            .collect()
+    };
+    for kind in ["initial_contact", "terminal_contact"] {
+        let (found, known) = (times(&found, kind), times(&known, kind));
+        // A swing that the recording cuts off is none.
+        let inner = &known[1..known.len() - 1];
+        assert!(inner.len() >= 2);
+        for time in inner {
+            let nearest = found
+                .iter()
+                .map(|f| (f - time).abs())
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < 0.07, "{kind} at {time}: {found:?}");
+        }
+        assert!(found.len() <= known.len() + 1);
+    }
+    let strides = found["strides"].as_array().unwrap();
+    let lengths: Vec<f64> = strides
+        .iter()
+        .map(|s| s["length_m"].as_f64().unwrap())
+        .collect();
+    let clip = canonical(Path::new(walk));
+    let way = clip.poses.last().unwrap().root_position - clip.poses[0].root_position;
+    let speed = f64::from(way.length()) / clip.duration_secs();
+    let (first, last) = (&strides[0], &strides[strides.len() - 1]);
+    let secs = last["end_s"].as_f64().unwrap() - first["start_s"].as_f64().unwrap();
+    let ratio = lengths.iter().sum::<f64>() / (speed * secs);
+    assert!(
+        (ratio - 1.0).abs() < 0.06,
+        "strides {lengths:?}, {ratio:.3} of the way"
+    );
+}
+
+#[test]
+fn what_cannot_be_used_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let walk = prepare(folder, "right_thigh");
+    let text = |change: fn(f64, f64) -> (f64, f64)| {
+        let simulate = [
+            "imu",
+            "simulate",
+            &walk,
+            "--site",
+            "right_thigh",
+            "-o",
+            "imu.csv",
+        ];
+        assert_eq!(footfall(folder, &simulate).code, 0);
+        let text = fs::read_to_string(folder.join("imu.csv")).expect("a recording");
+        let lines = text.lines().enumerate().map(|(n, line)| {
+            if n == 0 {
+                return line.to_owned();
+            }
+            let row: Vec<f64> = line
+                .split(',')
+                .map(|f| f.parse().expect("a number"))
+                .collect();
+            let changed = (1..7).map(|c| {
+                let (force, rate) = change(row[c], row[c]);
+                if c < 4 { force } else { rate }.to_string()
+            });
+            format!("{},{}", row[0], changed.collect::<Vec<_>>().join(","))
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    let reconstruct = |imu: &str| {
+        footfall(
+            folder,
+            &[
+                "imu",
+                "reconstruct",
+                "--model",
+                "body.footimu",
+                "--imu",
+                imu,
+                "-o",
+                "out.bvh",
+            ],
+        )
+    };
+    fs::write(
+        folder.join("g.csv"),
+        text(|force, rate| (force / 9.806_65, rate)),
+    )
+    .unwrap();
+    reconstruct("g.csv").fails_with(&["g.csv", "in g", "9.80665"]);
+    fs::write(
+        folder.join("degrees.csv"),
+        text(|force, rate| (force, rate.to_degrees())),
+    )
+    .unwrap();
+    reconstruct("degrees.csv").fails_with(&["degrees.csv", "degrees", "0.0174533"]);
+    fs::write(folder.join("nan.csv"), text(|force, _| (force, f64::NAN))).unwrap();
+    reconstruct("nan.csv").fails_with(&["nan.csv", "line 2", "NaN"]);
+    fs::write(folder.join("empty.csv"), "").unwrap();
+    reconstruct("empty.csv").fails_with(&["empty.csv"]);
+    let short: Vec<String> = text(|force, rate| (force, rate))
+        .lines()
+        .take(60)
+        .map(str::to_owned)
+        .collect();
+    fs::write(folder.join("short.csv"), short.join("\n")).unwrap();
+    reconstruct("short.csv").fails_with(&["short.csv", "--mounting aligned"]);
+    reconstruct("none.csv").fails_with(&["none.csv"]);
+    assert!(
+        !folder.join("out.bvh").exists(),
+        "nothing is written when it fails"
+    );
+
+    let events = ["imu", "events", "imu.csv", "--site", "right_thigh"];
+    footfall(folder, &events).fails_with(&["right_thigh", "right_foot or left_foot"]);
+    let no_site = footfall(folder, &["imu", "events", "imu.csv", "--site", "tail"]);
+    assert_eq!(no_site.code, 2);
+    assert!(
+        no_site.stderr.contains("left_forearm"),
+        "{}",
+        no_site.stderr
+    );
+    let other = [
+        "imu",
+        "reconstruct",
+        "--model",
+        "index.csv",
+        "--imu",
+        "imu.csv",
+        "-o",
+        "out.bvh",
+    ];
+    footfall(folder, &other).fails_with(&["index.csv", "not a Footfall model"]);
+    let onto = [
+        "imu", "simulate", &walk, "--site", "root", "--rate", "0", "-o", "x.csv",
+    ];
+    footfall(folder, &onto).fails_with(&["--rate"]);
+}
+
+#[test]
+fn bodies_from_the_cmu_recordings_are_as_close_as_promised() {
+    let Some(data) = recordings("imu") else {
+        return;
+    };
+    let index = data.join("index.csv");
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [
+        "evaluate",
+        "imu",
+        "--corpus",
+        index.to_str().unwrap(),
+        "--where",
+        "path=cmu/*",
+        "--site",
+        "right_foot",
+    ];
+    let report = footfall(folder.path(), &[&arguments[..], &["--json"]].concat()).json();
+    let figure = |seen: &str, category: &str, name: &str| {
+        let value = &report["sensors"][0][seen][category][name];
+        value
+            .as_f64()
+            .unwrap_or_else(|| panic!("{seen} {category} {name} in {report}"))
+    };
+    // Measured 2.6, 2.0, 3.6, 2.8 cm.
+    assert!(figure("other_recordings", "neutral_walk", "live_cm") < 2.7);
+    assert!(figure("other_recordings", "neutral_walk", "whole_cm") < 2.2);
+    assert!(figure("other_subjects", "neutral_walk", "live_cm") < 4.0);
+    assert!(figure("other_recordings", "running", "whole_cm") < 3.1);
+    for category in ["neutral_walk", "running", "jumping", "hopping", "turning"] {
+        let constant = figure("other_recordings", category, "constant_cm");
+        assert!(
+            figure("other_recordings", category, "live_cm") < 0.95 * constant,
+            "{category}"
+        );
+    }
+    assert!(figure("other_recordings", "total", "median_delay_s") < 0.4);
+}

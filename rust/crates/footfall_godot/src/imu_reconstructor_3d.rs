@@ -1,0 +1,396 @@
+//! `ImuReconstructor3D`: a character that sensors drive.
+
+mod worn;
+
+use crate::character;
+use crate::convert;
+use crate::imu_model::{ImuModel, NO_MODEL};
+use crate::replay_imu_source::ReplayImuSource;
+use crate::report;
+use crate::skeleton_binding::SkeletonBinding;
+use crate::travel::Traveller;
+use footfall_core::{Behaviour, Pose, Side};
+use footfall_imu::ImuSample;
+use footfall_recon::{Prepared, ReconConfig, Reconstructor, SensorState};
+use footfall_synth::GroundTransform;
+use glam::Vec3;
+use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
+use godot::prelude::*;
+use std::sync::Arc;
+use worn::Worn;
+
+/// Sensors that a model can have.
+const SENSORS: usize = 2;
+
+/// Drives a whole character from one or two inertial sensors on a person: walking, running, jumping, hopping, sidestepping.
+///
+/// Add it under a `Skeleton3D` with humanoid bones, give it a `model` for the place at which the sensor is worn, and a `source`; or push samples of
+/// any sensor with `push_sample`. The pose is that of recorded people whose sensors would have measured the same; feet that stand stay where they are.
+///
+/// Bones are found as by `GaitGenerator3D`. In the editor the character stands.
+#[derive(GodotClass)]
+#[class(tool, init, base = SkeletonModifier3D)]
+pub(crate) struct ImuReconstructor3D {
+    /// What the sensors mean: an imported `.footimu` file.
+    #[export]
+    #[var(set = set_model)]
+    model: Option<Gd<ImuModel>>,
+
+    /// Where the samples come from, for example a `ReplayImuSource`. May be empty when a script pushes them.
+    #[export]
+    source: Option<Gd<ReplayImuSource>>,
+
+    /// Where the samples of the second sensor come from, for a model of two.
+    #[export]
+    second_source: Option<Gd<ReplayImuSource>>,
+
+    /// How the sensors are worn.
+    #[export]
+    #[var(set = set_mounting)]
+    mounting: ImuMounting,
+
+    /// Whether the body's way moves the character. Off: it stays, and `get_root_motion_delta()` tells how far it would have gone.
+    #[export]
+    #[init(val = true)]
+    root_motion: bool,
+
+    /// The `Node3D` that travels, above the `Skeleton3D`; found as by `GaitGenerator3D` when empty.
+    #[export(node_path = ("Node3D"))]
+    #[var(set = set_character)]
+    character: NodePath,
+
+    /// Tells which bones are which joints, where they are not named as in `SkeletonProfileHumanoid`.
+    #[export]
+    #[var(set = set_bone_map)]
+    bone_map: Option<Gd<BoneMap>>,
+
+    /// The body under way; `None` until the next frame that can start it.
+    session: Option<Session>,
+    /// What was last reported, so that it is reported once.
+    reported: Option<String>,
+    root_motion_delta: Transform3D,
+    base: Base<SkeletonModifier3D>,
+}
+
+/// How a sensor is worn.
+#[derive(GodotConvert, Var, Export, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[godot(via = i64)]
+#[repr(i32)]
+pub(crate) enum ImuMounting {
+    /// Anyhow: its axes are found from how it moves, after about four seconds of motion.
+    #[default]
+    Auto = 0,
+    /// With its axes parallel to the body's in the T-pose: x to the left, y up, z forward.
+    Aligned = 1,
+}
+
+/// A reconstructor on a skeleton.
+struct Session {
+    reconstructor: Reconstructor,
+    prepared: Arc<Prepared>,
+    traveller: Traveller,
+    sensors: [Worn; SENSORS],
+    pose: Pose,
+    behaviour: Behaviour,
+    state: SensorState,
+}
+
+#[godot_api]
+impl ISkeletonModifier3D for ImuReconstructor3D {
+    fn process_modification_with_delta(&mut self, delta: f64) {
+        let Some(skeleton) = self.base().get_skeleton() else {
+            return;
+        };
+        match self.take_session(&skeleton) {
+            Ok(session) => self.drive(session, skeleton, delta),
+            Err(problem) => {
+                self.root_motion_delta = Transform3D::IDENTITY;
+                if self.reported.as_ref() != Some(&problem) {
+                    report::tell(&self.base_mut(), &problem);
+                    self.reported = Some(problem);
+                }
+            }
+        }
+    }
+
+    fn get_configuration_warnings(&self) -> PackedStringArray {
+        let mut problems = PackedStringArray::new();
+        let found = [
+            self.prepared().err(),
+            source_problem(self.source.as_ref()),
+            source_problem(self.second_source.as_ref()),
+        ];
+        for problem in found.into_iter().flatten() {
+            problems.push(&GString::from(&problem));
+        }
+        match self.base().get_skeleton() {
+            None => problems.push("Put this node under a Skeleton3D."),
+            Some(skeleton) if skeleton.is_inside_tree() => {
+                if let Err(problem) = self.bind(&skeleton) {
+                    problems.push(&GString::from(&problem));
+                }
+            }
+            Some(_) => {}
+        }
+        problems
+    }
+}
+
+#[godot_api]
+impl ImuReconstructor3D {
+    /// `mounting`: the sensors are worn anyhow.
+    #[constant]
+    const AUTO: i32 = ImuMounting::Auto as i32;
+    /// `mounting`: their axes are parallel to the body's in the T-pose.
+    #[constant]
+    const ALIGNED: i32 = ImuMounting::Aligned as i32;
+
+    /// A foot came down: `left` or `right`, and where in global space.
+    #[signal]
+    fn footstep(foot: StringName, position: Vector3);
+
+    /// The body does something else now: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
+    #[signal]
+    fn behaviour_changed(behaviour: StringName);
+
+    /// Nothing was heard of the sensors for half a second. The body goes on as is probable.
+    #[signal]
+    fn sensor_lost();
+
+    /// Samples come, for the first time or again.
+    #[signal]
+    fn sensor_found();
+
+    /// Takes a sample of a sensor: 0, or 1 for the second site of the model. `time` is the sensor's clock in seconds, `force` its specific
+    /// force in m/s² (gravity included), `rate` its angular rate in rad/s, both in its own axes.
+    ///
+    /// Samples that are late, repeated or not finite are left out.
+    #[func]
+    fn push_sample(&mut self, sensor: i64, time: f64, force: Vector3, rate: Vector3) {
+        let vector = |v: Vector3| Vec3::new(v.x, v.y, v.z);
+        let sample = ImuSample {
+            time_secs: time,
+            force: vector(force),
+            rate: vector(rate),
+        };
+        if let (Some(session), Ok(sensor)) = (&mut self.session, usize::try_from(sensor)) {
+            session.push(sensor, sample);
+        }
+    }
+
+    /// The direction in which the character faces now is straight ahead of the person from now on.
+    #[func]
+    fn reset_heading(&mut self) {
+        if let Some(session) = &mut self.session {
+            let heading = session.reconstructor.heading();
+            session.reconstructor.reset_heading(heading);
+        }
+    }
+
+    /// What the body does: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
+    #[func]
+    fn get_behaviour(&self) -> StringName {
+        let behaviour = self
+            .session
+            .as_ref()
+            .map_or(Behaviour::Stand, |s| s.behaviour);
+        StringName::from(behaviour.name())
+    }
+
+    /// How certain the mounting of a sensor is, 0 to 1; 0 before it was found.
+    #[func]
+    fn get_mounting_certainty(&self, sensor: i64) -> f64 {
+        if self.mounting == ImuMounting::Aligned {
+            return 1.0;
+        }
+        let sensor = usize::try_from(sensor).unwrap_or(usize::MAX);
+        let worn = self.session.as_ref().and_then(|s| s.sensors.get(sensor));
+        let mounting = worn.and_then(|worn| worn.mounting);
+        mounting.map_or(0.0, |mounting| f64::from(mounting.certainty))
+    }
+
+    /// How far the body went in the last frame, in the character's own space.
+    #[func]
+    fn get_root_motion_delta(&self) -> Transform3D {
+        self.root_motion_delta
+    }
+
+    #[func]
+    fn set_model(&mut self, model: Option<Gd<ImuModel>>) {
+        self.model = model;
+        self.restart();
+    }
+
+    #[func]
+    fn set_mounting(&mut self, mounting: ImuMounting) {
+        self.mounting = mounting;
+        self.restart();
+    }
+
+    #[func]
+    fn set_character(&mut self, character: NodePath) {
+        self.character = character;
+        self.restart();
+    }
+
+    #[func]
+    fn set_bone_map(&mut self, bone_map: Option<Gd<BoneMap>>) {
+        self.bone_map = bone_map;
+        self.restart();
+    }
+}
+
+impl ImuReconstructor3D {
+    fn restart(&mut self) {
+        self.session = None;
+        self.reported = None;
+        self.base_mut().update_configuration_warnings();
+    }
+
+    fn prepared(&self) -> Result<Arc<Prepared>, String> {
+        let Some(model) = &self.model else {
+            return Err(NO_MODEL.to_owned());
+        };
+        let prepared = model.bind().prepared();
+        prepared.map_err(|error| format!("The sensor model cannot be used: {error}"))
+    }
+
+    fn bind(&self, skeleton: &Gd<Skeleton3D>) -> Result<(Gd<Node3D>, SkeletonBinding), String> {
+        let node = self.base().clone().upcast::<Node>();
+        let character = character::find(&node, skeleton, &self.character)?;
+        let binding = SkeletonBinding::new(skeleton, &character, self.bone_map.as_ref())
+            .map_err(|error| error.to_string())?;
+        Ok((character, binding))
+    }
+
+    fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
+        let prepared = self.prepared()?;
+        if let Some(session) = self.session.take()
+            && Arc::ptr_eq(&session.prepared, &prepared)
+            && session.traveller.is_for(skeleton)
+        {
+            return Ok(session);
+        }
+        let (character, binding) = self.bind(skeleton)?;
+        let reconstructor = Reconstructor::new(&prepared, &binding.body, &ReconConfig::default())
+            .map_err(|error| error.to_string())?;
+        let origin = GroundTransform {
+            position: Vec3::ZERO,
+            heading: 0.0,
+        };
+        Ok(Session {
+            pose: Pose::rest(&binding.body),
+            traveller: Traveller::new(character, binding, origin),
+            reconstructor,
+            prepared,
+            sensors: Default::default(),
+            behaviour: Behaviour::Stand,
+            state: SensorState::Waiting,
+        })
+    }
+
+    /// One frame: samples are heard, the character travels, bones are posed, events are told.
+    fn drive(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
+        self.reported = None;
+        let in_editor = Engine::singleton().is_editor_hint();
+        let delta = if in_editor { 0.0 } else { delta.max(0.0) };
+        let sources = [self.source.clone(), self.second_source.clone()];
+        for (sensor, source) in sources.into_iter().enumerate() {
+            if let Some(source) = source.filter(|_| !in_editor) {
+                session.replay(sensor, &source.bind(), delta);
+            }
+        }
+        if self.mounting == ImuMounting::Auto {
+            session.find_mountings();
+        }
+        session.reconstructor.step(delta as f32, &mut session.pose);
+        let landings = session.reconstructor.landings();
+        let (position, heading) = session.reconstructor.split(&mut session.pose);
+        let travel = session
+            .traveller
+            .go_to(GroundTransform { position, heading });
+        self.root_motion_delta = session.traveller.local_delta(&travel);
+        let now = session.traveller.start_from_ground();
+        let world_from_start = travel.world_from_ground * travel.ground * now.inverse();
+        let travels = self.root_motion && !in_editor;
+        {
+            // Scripts may answer to what happens here and come back to this node: no borrow may be held.
+            let _released = self.base_mut();
+            if travels {
+                session.traveller.move_character(&travel);
+            }
+            session
+                .traveller
+                .binding
+                .write(&mut skeleton, &session.pose);
+        }
+        let state = session.reconstructor.sensor_state();
+        let behaviour = session.reconstructor.behaviour();
+        let told = (session.state, session.behaviour);
+        (session.state, session.behaviour) = (state, behaviour);
+        self.session = Some(session);
+        for (side, landing) in Side::BOTH.into_iter().zip(landings) {
+            if let Some(landing) = landing {
+                let place = convert::vector3(world_from_start.transform_point3(landing));
+                self.signals()
+                    .footstep()
+                    .emit(&StringName::from(side.name()), place);
+            }
+        }
+        if told.0 != state && state == SensorState::Lost {
+            self.signals().sensor_lost().emit();
+        }
+        if told.0 != state && state == SensorState::Tracking {
+            self.signals().sensor_found().emit();
+        }
+        if told.1 != behaviour {
+            let name = StringName::from(behaviour.name());
+            self.signals().behaviour_changed().emit(&name);
+        }
+    }
+}
+
+fn source_problem(source: Option<&Gd<ReplayImuSource>>) -> Option<String> {
+    source?.bind().recording().err()
+}
+
+impl Session {
+    fn push(&mut self, sensor: usize, sample: ImuSample) {
+        self.reconstructor.push(sensor, sample);
+        if let Some(worn) = self.sensors.get_mut(sensor)
+            && sample.is_finite()
+        {
+            worn.keep(sample);
+        }
+    }
+
+    fn replay(&mut self, sensor: usize, source: &ReplayImuSource, delta: f64) {
+        let Ok(recording) = source.recording() else {
+            return;
+        };
+        let reconstructor = &mut self.reconstructor;
+        let worn = &mut self.sensors[sensor];
+        worn.play(&recording);
+        let mut kept: [Option<ImuSample>; 64] = [None; 64];
+        let mut count = 0;
+        worn.replay(delta, source.repeats(), |sample| {
+            reconstructor.push(sensor, sample);
+            if let Some(place) = kept.get_mut(count) {
+                *place = Some(sample);
+                count += 1;
+            }
+        });
+        for sample in kept.into_iter().flatten() {
+            worn.keep(sample);
+        }
+    }
+
+    fn find_mountings(&mut self) {
+        let used = self.prepared.model().sites.len();
+        for (sensor, worn) in self.sensors.iter_mut().enumerate().take(used) {
+            if let Some(mounting) = worn.find_mounting(&self.prepared, sensor) {
+                self.reconstructor.set_mounting(sensor, mounting);
+            }
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! The forward algorithm against a slow one that writes down the whole transition matrix.
+
+use footfall_core::{Behaviour, PhaseKind, PhaseStart, Side, Site, Skeleton};
+use footfall_model::imu_model::{BODY_COUNT, SENSOR_COUNT, Segment};
+use footfall_model::{ImuModel, Provenance};
+use footfall_recon::{Measurement, Prepared, Tracker, TrackerConfig};
+use std::sync::Arc;
+
+const WIDTH: usize = SENSOR_COUNT * 2;
+
+/// Three recordings of two subjects, in three phases that follow each other in turn.
+fn model() -> ImuModel {
+    let kind = |start: PhaseStart, side: Side| PhaseKind {
+        behaviour: Behaviour::Walk,
+        start,
+        side,
+    };
+    let phases = vec![
+        kind(PhaseStart::Landing, Side::Left),
+        kind(PhaseStart::TakeOff, Side::Left),
+        kind(PhaseStart::Landing, Side::Right),
+    ];
+    let mut segments = Vec::new();
+    for (recording, subject) in [(0_u16, 0), (1, 1), (2, 0)] {
+        for n in 0..5_u16 {
+            segments.push(Segment {
+                phase: (recording + n) % 3,
+                subject,
+                frames: 1 + (n * 3 + recording) % 4,
+                follows: n > 0,
+            });
+        }
+    }
+    let frames: usize = segments.iter().map(|s| usize::from(s.frames)).sum();
+    let wave = |n: usize| ((n * 37 % 101) as f32 * 0.3).sin();
+    ImuModel {
+        frame_rate_hz: 30.0,
+        sites: vec![Site::RightFoot],
+        skeleton: Skeleton::standard(),
+        next: vec![0.0, 0.8, 0.2, 0.3, 0.0, 0.7, 1.0, 0.0, 0.0],
+        phases,
+        subjects: 2,
+        sensor: (0..frames * SENSOR_COUNT).map(wave).collect(),
+        body: (0..frames * BODY_COUNT)
+            .map(|n| 0.3 * wave(n + 7))
+            .collect(),
+        deviations: vec![0.7; SENSOR_COUNT],
+        regressions: vec![Vec::new(); 3],
+        segments,
+        provenance: Provenance::default(),
+    }
+}
+
+fn measured(n: usize) -> Measurement {
+    let mut measurement = Measurement {
+        values: [0.0; WIDTH],
+        weights: [1.0; WIDTH],
+    };
+    for (number, value) in measurement.values.iter_mut().enumerate() {
+        *value = ((n * 5 + number) as f32 * 0.7).cos();
+    }
+    measurement.weights[8] = 0.3;
+    measurement
+}
+
+/// Probability to go from each frame to each, without exits.
+fn transitions(model: &ImuModel, config: &TrackerConfig) -> Vec<Vec<f64>> {
+    let places: Vec<(usize, usize)> = model
+        .segments
+        .iter()
+        .enumerate()
+        .flat_map(|(n, segment)| (0..usize::from(segment.frames)).map(move |frame| (n, frame)))
+        .collect();
+    let first = |segment: usize| {
+        places
+            .iter()
+            .position(|p| *p == (segment, 0))
+            .expect("a segment")
+    };
+    let [stay, next, skip] = config.stay_next_skip.map(f64::from);
+    let (keep, keep_subject) = (
+        f64::from(config.keep_recording),
+        f64::from(config.keep_subject),
+    );
+    let mut matrix = vec![vec![0.0; places.len()]; places.len()];
+    for (from, (n, frame)) in places.iter().enumerate() {
+        let segment = &model.segments[*n];
+        let length = usize::from(segment.frames);
+        let followed = model.segments.get(n + 1).is_some_and(|next| next.follows);
+        matrix[from][from] += stay;
+        for (steps, share) in [(1, next), (2, skip)] {
+            if frame + steps < length {
+                matrix[from][from + steps] += share;
+                continue;
+            }
+            if followed {
+                // A skip from the last frame lands on the second of the next segment, if there is one.
+                let beyond = frame + steps - length;
+                if beyond < usize::from(model.segments[n + 1].frames) {
+                    matrix[from][first(n + 1) + beyond] += keep * share;
+                }
+            }
+            let leaving = if followed {
+                (1.0 - keep) * share
+            } else {
+                share
+            };
+            for (other, target) in model.segments.iter().enumerate() {
+                let kinds = model.phases.len();
+                let shares =
+                    model.next[usize::from(segment.phase) * kinds + usize::from(target.phase)];
+                let of_phase = model.segments.iter().filter(|s| s.phase == target.phase);
+                let own = of_phase
+                    .clone()
+                    .filter(|s| s.subject == segment.subject)
+                    .count();
+                let mut share = (1.0 - keep_subject) / of_phase.count() as f64;
+                if target.subject == segment.subject {
+                    share += keep_subject / own as f64;
+                }
+                matrix[from][first(other)] += leaving * f64::from(shares) * share;
+            }
+        }
+    }
+    matrix
+}
+
+#[test]
+fn the_forward_algorithm_is_that_of_the_whole_matrix() {
+    let model = model();
+    let config = TrackerConfig {
+        exit: 0.0,
+        ..TrackerConfig::default()
+    };
+    let matrix = transitions(&model, &config);
+    let frames = matrix.len();
+    let prepared = Arc::new(Prepared::new(Arc::new(model.clone())).unwrap());
+    let mut tracker = Tracker::new(&prepared, config);
+    let mut slow = vec![1.0 / frames as f64; frames];
+    for n in 0..60 {
+        // Every seventh frame is missing.
+        let sensor = (n % 7 != 6).then(|| measured(n));
+        tracker.step(sensor.as_ref());
+        let mut after = vec![0.0; frames];
+        for (to, after) in after.iter_mut().enumerate() {
+            *after = (0..frames).map(|from| slow[from] * matrix[from][to]).sum();
+            if let Some(sensor) = &sensor {
+                let row = &model.sensor[to * SENSOR_COUNT..(to + 1) * SENSOR_COUNT];
+                let numbers = row.iter().zip(&sensor.values).zip(&sensor.weights);
+                let squares = numbers.map(|((own, value), weight)| {
+                    f64::from(*weight) * (f64::from(own - value) / 0.7).powi(2)
+                });
+                *after *= (-0.5 * f64::from(config.evidence) * squares.sum::<f64>()).exp();
+            }
+        }
+        let sum: f64 = after.iter().sum();
+        slow = after.iter().map(|p| p / sum).collect();
+        for (fast, slow) in tracker.probabilities().iter().zip(&slow) {
+            assert!(
+                (f64::from(*fast) - slow).abs() < 2e-4,
+                "{fast} is not {slow} at {n}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_fits_nothing_leaves_a_whole_distribution() {
+    let prepared = Arc::new(Prepared::new(Arc::new(model())).unwrap());
+    let mut tracker = Tracker::new(&prepared, TrackerConfig::default());
+    for n in 0..50 {
+        let mut sensor = measured(n);
+        sensor.values[n % 9] = 1e6;
+        tracker.step(Some(&sensor));
+        let sum: f32 = tracker.probabilities().iter().sum();
+        assert!((sum - 1.0).abs() < 1e-3, "{sum}");
+        let sum: f32 = tracker.behaviours().iter().sum();
+        assert!((sum - 1.0).abs() < 1e-3, "{sum}");
+    }
+}
