@@ -3,6 +3,25 @@
 //! Every recording is reconstructed by a model that has not seen it: trained on all other recordings (the same subject's stay in), or on those
 //! of other subjects. The sensors are virtual, 100 samples a second, with the noise and biases of a phone's. The error is the mean distance between the
 //! joints of both bodies, their hips and headings brought together.
+//!
+//! Measured on the CMU recordings of the public data (72 clips, 14 subjects; `footfall evaluate imu`), centimetres over the frames in which the
+//! body moves: live, and with what comes later in the recording. The constant pose is the mean of the training data. Paper: table 3 and figure 10, which
+//! trains and tests on the same subject. Jumps and hops are one of a kind here: what is held out was seen once or not at all.
+//!
+//! | sensor | recordings | trained on other recordings: live / whole | trained on other subjects: live / whole | constant pose | paper |
+//! | --- | --- | --- | --- | --- | --- |
+//! | right foot | walking (39) | 2.6 / 2.0 | 3.6 ± 1.3 / 3.1 | 8.1 | 2.74 |
+//! | | running (5, of 1.4 s) | 3.7 / 2.8 | 6.0 / 5.3 | 13.3 | 2.79 |
+//! | | jumping (11) | 9.5 / 8.4 | 11.0 / 10.2 | 10.4 | 4.17 |
+//! | | hopping (3) | 9.2 / 9.2 | 12.2 / 13.2 | 10.6 | 2.46 |
+//! | | turning (6) | 5.8 / 4.8 | 6.5 / 5.8 | 7.7 | |
+//! | right foot and hand | walking | 2.4 / 1.9 | 3.2 / 3.0 | 8.1 | 2.07 |
+//! | right knee | walking | 2.5 / 2.0 | 3.4 / 2.9 | 8.1 | |
+//! | root | walking | 2.8 / 2.0 | 4.1 / 3.3 | 8.1 | |
+//! | right forearm | walking | 4.0 / 2.8 | 4.8 / 3.7 | 8.1 | |
+//! | right hand | walking | 4.8 / 3.6 | 5.6 / 4.4 | 8.1 | |
+//!
+//! Changes of behaviour are recognised live within 0.27 s in the median (other recordings, foot), 0.4 s on other subjects.
 
 use super::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
 use crate::error::TrainError;
