@@ -88,9 +88,9 @@ pub enum CorpusError {
         /// The column.
         column: String,
     },
-    /// A condition is not `column=value`.
+    /// A condition is neither `column=value` nor `column!=value`.
     #[error(
-        "\"{0}\" is no condition; write column=value, for example category=neutral_walk or path=walks/*"
+        "\"{0}\" is no condition; write column=value or column!=value, for example category=neutral_walk or path=walks/*"
     )]
     Condition(String),
     /// No row meets the conditions.

@@ -45,7 +45,8 @@ impl IndexRow {
     }
 }
 
-/// A condition on one column, written `column=value`; `*` in the value stands for any run of characters.
+/// A condition on one column, written `column=value`, or `column!=value` for what must not be; `*` in the value stands for any run of
+/// characters.
 ///
 /// ```
 /// use footfall_motion::corpus::Where;
@@ -59,6 +60,8 @@ pub struct Where {
     pub column: String,
     /// What its value must be.
     pub pattern: String,
+    /// Whether it must not be so instead.
+    pub negated: bool,
 }
 
 impl FromStr for Where {
@@ -66,10 +69,13 @@ impl FromStr for Where {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text.split_once('=') {
-            Some((column, pattern)) if !column.trim().is_empty() => Ok(Self {
-                column: column.trim().to_owned(),
-                pattern: pattern.trim().to_owned(),
-            }),
+            Some((column, pattern)) if !column.trim_end_matches('!').trim().is_empty() => {
+                Ok(Self {
+                    column: column.trim_end_matches('!').trim().to_owned(),
+                    pattern: pattern.trim().to_owned(),
+                    negated: column.ends_with('!'),
+                })
+            }
             _ => Err(CorpusError::Condition(text.to_owned())),
         }
     }
@@ -77,13 +83,18 @@ impl FromStr for Where {
 
 impl fmt::Display for Where {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}={}", self.column, self.pattern)
+        let is = if self.negated { "!=" } else { "=" };
+        write!(f, "{}{is}{}", self.column, self.pattern)
     }
 }
 
 impl Where {
     /// Whether a value of the column meets the condition.
     pub fn matches(&self, value: &str) -> bool {
+        self.fits(value) != self.negated
+    }
+
+    fn fits(&self, value: &str) -> bool {
         let mut parts = self.pattern.split('*');
         let first = parts.next().unwrap_or_default();
         let Some(mut rest) = value.strip_prefix(first) else {
@@ -233,6 +244,10 @@ mod tests {
         assert!(matches("a*c", "abc") && matches("a*c", "ac") && !matches("a*c", "ab"));
         assert!(matches("a*b*c", "a-b-b-c") && !matches("a*b*c", "a-c"));
         assert!(!matches("ab*ba", "aba"), "the ends may not overlap");
+        let negated: Where = "a!=b*".parse().unwrap();
+        assert!(negated.matches("a") && !negated.matches("bc"));
+        assert_eq!(negated.to_string(), "a!=b*");
+        assert!("!=x".parse::<Where>().is_err());
         assert!("walk".parse::<Where>().is_err() && "=x".parse::<Where>().is_err());
     }
 }
