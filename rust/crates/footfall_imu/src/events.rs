@@ -80,11 +80,9 @@ pub struct Swing {
 /// Finds the swings of a foot, in order. A recording in which nobody walks has none.
 pub fn detect_swings(recording: &ImuRecording) -> Vec<Swing> {
     let rate_hz = recording.rate_hz();
-    let rates = low_pass(
-        &evenly(recording, |sample| sample.rate),
-        rate_hz,
-        CUT_OFF_HZ,
-    );
+    let even = recording.evenly_spaced();
+    let rates: Vec<Vec3> = even.samples.iter().map(|sample| sample.rate).collect();
+    let rates = low_pass(&rates, rate_hz, CUT_OFF_HZ);
     let pitch = pitch_rates(&rates, rate_hz);
     let frames_of = |secs: f64| ((secs * rate_hz).round() as usize).max(1);
     let mut swings: Vec<Swing> = Vec::new();
@@ -135,27 +133,6 @@ pub fn events_of(swings: &[Swing]) -> Vec<SensorEvent> {
         ]
     });
     both.map(|(time_secs, kind)| SensorEvent { time_secs, kind })
-        .collect()
-}
-
-/// A vector at even intervals, by lines between the samples: lost samples leave no gap.
-pub(crate) fn evenly(
-    recording: &ImuRecording,
-    vector: impl Fn(&crate::ImuSample) -> Vec3,
-) -> Vec<Vec3> {
-    let samples = &recording.samples;
-    let (rate_hz, start) = (recording.rate_hz(), recording.start_secs());
-    let mut next = 0;
-    (0..samples.len())
-        .map(|n| {
-            let time = start + n as f64 / rate_hz;
-            while next + 2 < samples.len() && samples[next + 1].time_secs < time {
-                next += 1;
-            }
-            let (a, b) = (&samples[next], &samples[next + 1]);
-            let share = (time - a.time_secs) / (b.time_secs - a.time_secs);
-            vector(a).lerp(vector(b), share.clamp(0.0, 1.0) as f32)
-        })
         .collect()
 }
 

@@ -89,7 +89,7 @@ impl FeatureStream {
         let bridged = gap_secs <= LONGEST_BRIDGE_SECS.max(2.0 * self.period_secs);
         let mut from = last;
         while self.frame_end_secs <= sample.time_secs {
-            let end = between(&last, &sample, self.frame_end_secs);
+            let end = last.towards(&sample, self.frame_end_secs);
             if bridged {
                 self.cover(&from, &end);
             }
@@ -143,16 +143,6 @@ impl FeatureStream {
         });
         self.frame_end_secs += self.period_secs;
         (self.force, self.rate, self.covered_secs) = (Vec3::ZERO, Vec3::ZERO, 0.0);
-    }
-}
-
-/// What lies on the line between two samples at a time.
-fn between(from: &ImuSample, to: &ImuSample, time_secs: f64) -> ImuSample {
-    let share = ((time_secs - from.time_secs) / (to.time_secs - from.time_secs)) as f32;
-    ImuSample {
-        time_secs,
-        force: from.force.lerp(to.force, share),
-        rate: from.rate.lerp(to.rate, share),
     }
 }
 

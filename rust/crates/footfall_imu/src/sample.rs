@@ -22,6 +22,17 @@ impl ImuSample {
         self.time_secs.is_finite() && self.force.is_finite() && self.rate.is_finite()
     }
 
+    /// What lies on the line to a later sample at a time between both.
+    pub(crate) fn towards(&self, later: &Self, time_secs: f64) -> Self {
+        let share = (time_secs - self.time_secs) / (later.time_secs - self.time_secs);
+        let share = share.clamp(0.0, 1.0) as f32;
+        Self {
+            time_secs,
+            force: self.force.lerp(later.force, share),
+            rate: self.rate.lerp(later.rate, share),
+        }
+    }
+
     /// The same sample in other axes.
     #[must_use]
     pub fn turned(&self, axes_from_sensor: Quat) -> Self {
@@ -33,7 +44,7 @@ impl ImuSample {
     }
 }
 
-/// A recording of one sensor: at least two samples whose times rise.
+/// A recording of one sensor: samples whose times rise. What is read from a file has at least two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImuRecording {
     /// In the order of their times.
@@ -55,6 +66,26 @@ impl ImuRecording {
     pub fn duration_secs(&self) -> f64 {
         let last = self.samples.last().map_or(0.0, |sample| sample.time_secs);
         last - self.start_secs()
+    }
+
+    /// As many samples at even intervals, by lines between those that there are: lost samples leave no gap.
+    #[must_use]
+    pub fn evenly_spaced(&self) -> Self {
+        let (rate_hz, start) = (self.rate_hz(), self.start_secs());
+        let mut next = 0;
+        if self.samples.len() < 2 {
+            return self.clone();
+        }
+        let even = (0..self.samples.len()).map(|n| {
+            let time_secs = start + n as f64 / rate_hz;
+            while next + 2 < self.samples.len() && self.samples[next + 1].time_secs < time_secs {
+                next += 1;
+            }
+            self.samples[next].towards(&self.samples[next + 1], time_secs)
+        });
+        Self {
+            samples: even.collect(),
+        }
     }
 
     /// Specific force x, y, z, then angular rate x, y, z of every sample.

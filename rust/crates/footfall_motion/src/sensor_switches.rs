@@ -8,8 +8,8 @@
 //!
 //! | recordings | contacts | events | F1 | bias, ms | spread, ms |
 //! | --- | --- | --- | --- | --- | --- |
-//! | ipol, 32 feet in walks with a U-turn, 100 Hz | initial | 580 | 0.70 | +2 | 14 |
-//! | the same | terminal | 580 | 0.69 | +4 | 15 |
+//! | ipol, 32 feet in walks with a U-turn, 100 Hz | initial | 580 | 0.72 | +3 | 14 |
+//! | the same | terminal | 580 | 0.69 | +3 | 14 |
 //! | gaitmap example, two feet, 204.8 Hz | initial | 57 | 0.82 | +18 | 7 |
 //! | the same | terminal | 57 | 0.93 | 0 | 6 |
 //!

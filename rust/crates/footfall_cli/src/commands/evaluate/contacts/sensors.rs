@@ -42,8 +42,9 @@ pub(super) fn compare(index: &Path, tolerance_ms: f64) -> Result<BTreeMap<String
         );
         let events = read_events(&index.parent().unwrap_or(Path::new("")).join(events))?;
         let recording = csv::read(&row.path)?;
-        let switches = detect_sensor_switches(&recording.channels(), recording.rate_hz())
-            .with_context(|| row.path.display().to_string())?;
+        let switches =
+            detect_sensor_switches(&recording.evenly_spaced().channels(), recording.rate_hz())
+                .with_context(|| row.path.display().to_string())?;
         let switches = switches
             .iter()
             .map(|switch| (recording.start_secs() + switch.time_secs, switch.kind));
