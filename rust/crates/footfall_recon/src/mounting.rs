@@ -3,6 +3,8 @@
 //! Gravity tells two of the three angles: the mean of up over a stretch of motion points where it does in the model. The third is the one under which
 //! the model explains the motion best; a few candidates are then refined together with the other two, by turns finding the frames of the model and the rotation
 //! that brings what was measured closest to theirs (Wahba's problem). How much better the best is than any that differs by much says how sure it is.
+//!
+//! Found to within a few degrees from 2 s of walking, turning, jumping or hopping; of two runs of 1.4 s one was found and one was not, with certainty.
 
 use crate::measure::measure;
 use crate::prepared::Prepared;
