@@ -12,7 +12,7 @@
 //! | --- | --- | --- | --- | --- | --- |
 //! | right foot | walking (39) | 2.6 / 2.0 | 3.6 ± 1.3 / 3.1 | 8.1 | 2.74 |
 //! | | running (5, of 1.4 s) | 3.7 / 2.8 | 6.0 / 5.3 | 13.3 | 2.79 |
-//! | | jumping (11) | 9.5 / 8.4 | 11.0 / 10.2 | 10.4 | 4.17 |
+//! | | jumping (11) | 9.8 / 8.4 | 11.1 / 10.2 | 10.4 | 4.17 |
 //! | | hopping (3) | 9.2 / 9.2 | 12.2 / 13.2 | 10.6 | 2.46 |
 //! | | turning (6) | 5.8 / 4.8 | 6.5 / 5.8 | 7.7 | |
 //! | right foot and hand | walking | 2.4 / 1.9 | 3.2 / 3.0 | 8.1 | 2.07 |
@@ -21,7 +21,7 @@
 //! | right forearm | walking | 4.0 / 2.8 | 4.8 / 3.7 | 8.1 | |
 //! | right hand | walking | 4.8 / 3.6 | 5.6 / 4.4 | 8.1 | |
 //!
-//! Changes of behaviour are recognised live within 0.27 s in the median (other recordings, foot), 0.4 s on other subjects.
+//! Changes of behaviour are recognised live within 0.33 s in the median (other recordings, foot), 0.4 s on other subjects.
 
 use super::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
 use crate::error::TrainError;
