@@ -11,6 +11,7 @@ use crate::skeleton_binding::SkeletonBinding;
 use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose, Side};
 use footfall_imu::ImuSample;
+use footfall_model::imu_model::MAX_SENSORS;
 use footfall_recon::{Prepared, ReconConfig, Reconstructor, SensorState};
 use footfall_synth::GroundTransform;
 use glam::Vec3;
@@ -18,9 +19,6 @@ use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonM
 use godot::prelude::*;
 use std::sync::Arc;
 use worn::Worn;
-
-/// Sensors that a model can have.
-const SENSORS: usize = 2;
 
 /// Drives a whole character from one or two inertial sensors on a person: walking, running, jumping, hopping, sidestepping.
 ///
@@ -89,7 +87,7 @@ struct Session {
     reconstructor: Reconstructor,
     prepared: Arc<Prepared>,
     traveller: Traveller,
-    sensors: [Worn; SENSORS],
+    sensors: [Worn; MAX_SENSORS],
     pose: Pose,
     behaviour: Behaviour,
     state: SensorState,
@@ -167,11 +165,10 @@ impl ImuReconstructor3D {
     /// Samples that are late, repeated or not finite are left out.
     #[func]
     fn push_sample(&mut self, sensor: i64, time: f64, force: Vector3, rate: Vector3) {
-        let vector = |v: Vector3| Vec3::new(v.x, v.y, v.z);
         let sample = ImuSample {
             time_secs: time,
-            force: vector(force),
-            rate: vector(rate),
+            force: convert::vec3(force),
+            rate: convert::vec3(rate),
         };
         if let (Some(session), Ok(sensor)) = (&mut self.session, usize::try_from(sensor)) {
             session.push(sensor, sample);
@@ -371,18 +368,9 @@ impl Session {
         let reconstructor = &mut self.reconstructor;
         let worn = &mut self.sensors[sensor];
         worn.play(&recording);
-        let mut kept: [Option<ImuSample>; 64] = [None; 64];
-        let mut count = 0;
         worn.replay(delta, source.repeats(), |sample| {
             reconstructor.push(sensor, sample);
-            if let Some(place) = kept.get_mut(count) {
-                *place = Some(sample);
-                count += 1;
-            }
         });
-        for sample in kept.into_iter().flatten() {
-            worn.keep(sample);
-        }
     }
 
     fn find_mountings(&mut self) {

@@ -16,10 +16,8 @@
 //! What is missed are steps on the spot and the half step before standing: there the foot turns about the vertical or hardly at all. Of what is
 //! found more than 0.99 are events. The two references define initial contact 20 ms apart.
 
-mod filter;
-
+use crate::filter::{low_pass, means_around, principal_axis};
 use crate::sample::ImuRecording;
-use filter::{low_pass, principal_axis};
 use footfall_core::EventKind;
 use glam::Vec3;
 
@@ -160,12 +158,8 @@ fn pitch_rates(rates: &[Vec3], rate_hz: f64) -> Vec<f32> {
 fn quietest(rates: &[Vec3], rate_hz: f64) -> impl Iterator<Item = usize> {
     let frames_of = |secs: f64| ((secs * rate_hz).round() as usize).max(1);
     let (near, far) = (frames_of(0.5 * LEAST_REST_SECS), frames_of(REST_APART_SECS));
-    let motion: Vec<f32> = (0..rates.len())
-        .map(|n| {
-            let window = &rates[n.saturating_sub(near)..(n + near + 1).min(rates.len())];
-            window.iter().map(|rate| rate.length()).sum::<f32>() / window.len() as f32
-        })
-        .collect();
+    let motion: Vec<f32> = rates.iter().map(|rate| rate.length()).collect();
+    let motion = means_around(&motion, near);
     let mean = motion.iter().sum::<f32>() / motion.len().max(1) as f32;
     (0..motion.len()).filter(move |&n| {
         let around = &motion[n.saturating_sub(far)..(n + far + 1).min(motion.len())];

@@ -4,7 +4,7 @@
 //! time is reached and waits for no later sample.
 
 use crate::orientation::OrientationFilter;
-use crate::sample::ImuSample;
+use crate::sample::{ImuRecording, ImuSample};
 use glam::{Quat, Vec3};
 
 /// Numbers a sensor gives in a frame: angular rate (rad/s), specific force (m/s²), and up, each x, y, z in the sensor's axes.
@@ -55,6 +55,16 @@ impl FeatureStream {
             covered_secs: 0.0,
             rejected: 0,
         }
+    }
+
+    /// The frames of a whole recording.
+    pub fn frames_of(recording: &ImuRecording, frame_rate_hz: f64) -> Vec<FeatureFrame> {
+        let mut stream = Self::new(frame_rate_hz);
+        let mut frames = Vec::new();
+        for sample in &recording.samples {
+            stream.push(*sample, |frame| frames.push(frame));
+        }
+        frames
     }
 
     /// Samples that were not finite, repeated or came after later ones.

@@ -10,6 +10,7 @@ pub mod checks;
 pub mod csv;
 pub mod events;
 pub mod features;
+mod filter;
 pub mod orientation;
 pub mod sample;
 pub mod strides;

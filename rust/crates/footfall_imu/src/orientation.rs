@@ -71,11 +71,6 @@ impl OrientationFilter {
         self.bias
     }
 
-    /// How long the sensor has rested, seconds; 0 while it moves.
-    pub const fn rest_secs(&self) -> f32 {
-        self.rest_secs
-    }
-
     /// Goes on by `dt_secs`, in which specific force and angular rate had these means.
     pub fn step(&mut self, dt_secs: f32, force: Vec3, rate: Vec3) {
         let magnitude = force.length();

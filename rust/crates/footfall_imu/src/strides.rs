@@ -7,6 +7,7 @@
 //! 3.0 % mean absolute error; the outer forefoot of the right foot 2.4 %. gaitmap's own integration is 2.5 % on 52 of them, with a spread of 4.3 cm.
 
 use crate::events::Swing;
+use crate::filter::means_around;
 use crate::sample::{GRAVITY_MPS2, ImuRecording};
 use footfall_core::rotation::{exp_map, shortest_arc};
 use glam::{Quat, Vec3};
@@ -83,12 +84,8 @@ impl Quiet {
         };
         let own: Vec<f32> = forces.iter().zip(rates).map(own).collect();
         let reach = (REST_SECS * rate_hz).round() as usize;
-        let around = |n: usize| {
-            let window = &own[n.saturating_sub(reach)..(n + reach + 1).min(own.len())];
-            window.iter().sum::<f32>() / window.len() as f32
-        };
         Self {
-            motion: (0..own.len()).map(around).collect(),
+            motion: means_around(&own, reach),
         }
     }
 

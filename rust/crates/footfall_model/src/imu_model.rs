@@ -34,6 +34,9 @@ pub const SENSOR_HEADING: usize = FEATURE_COUNT + 6;
 /// Most sensors that a model can have.
 pub const MAX_SENSORS: usize = 2;
 
+/// Most numbers that all sensors give in a frame.
+pub const MAX_WIDTH: usize = SENSOR_COUNT * MAX_SENSORS;
+
 /// Most kinds of phases.
 pub const MAX_PHASES: usize = 256;
 

@@ -9,9 +9,8 @@
 mod behaviours;
 mod track;
 
-pub use behaviours::detect_behaviours;
-
 use crate::contacts::Contacts;
+use behaviours::behaviours_of;
 use footfall_core::{Behaviour, Clip, FrameSpan, PhaseKind, PhaseStart, Side};
 use track::{Track, flights, last_standing};
 
@@ -35,8 +34,9 @@ pub struct Phase {
 /// Cuts a clip from `contacts.first_frame` to its end into phases without gaps.
 pub fn segment_phases(clip: &Clip, contacts: &Contacts) -> Vec<Phase> {
     let first = contacts.first_frame;
-    let behaviours = detect_behaviours(clip, contacts);
-    let mut starts = phase_starts(&Track::of(clip, contacts), contacts, &behaviours);
+    let track = Track::of(clip, contacts);
+    let behaviours = behaviours_of(&track, contacts);
+    let mut starts = phase_starts(&track, contacts, &behaviours);
     // Of events that are close together the one that is listed first counts: contacts before all others.
     starts.sort_by_key(|start| (start.what, start.frame));
     let least = (LEAST_SECS * clip.frame_rate_hz).round().max(1.0) as usize;

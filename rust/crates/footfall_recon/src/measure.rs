@@ -5,7 +5,7 @@ use crate::tracker::Measurement;
 use footfall_core::rotation::heading;
 use footfall_imu::{FeatureFrame, SENSOR_FEATURES};
 use footfall_model::ImuModel;
-use footfall_model::imu_model::{MAX_SENSORS, SENSOR_COUNT, SENSOR_HEADING};
+use footfall_model::imu_model::{MAX_SENSORS, MAX_WIDTH, SENSOR_COUNT, SENSOR_HEADING};
 use glam::Vec3;
 
 const _: () = assert!(SENSOR_FEATURES == SENSOR_COUNT, "one layout of features");
@@ -22,8 +22,8 @@ pub(crate) fn measure(
     frames: &[Option<FeatureFrame>; MAX_SENSORS],
 ) -> Option<Measurement> {
     let mut measurement = Measurement {
-        values: [0.0; SENSOR_COUNT * MAX_SENSORS],
-        weights: [0.0; SENSOR_COUNT * MAX_SENSORS],
+        values: [0.0; MAX_WIDTH],
+        weights: [0.0; MAX_WIDTH],
     };
     let mut any = false;
     for (n, frame) in frames.iter().enumerate().take(model.sites.len()) {

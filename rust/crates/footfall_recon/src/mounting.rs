@@ -11,7 +11,7 @@ use crate::prepared::Prepared;
 use crate::tracker::{Measurement, Tracker, TrackerConfig};
 use core::f32::consts::TAU;
 use footfall_imu::{FeatureFrame, FeatureStream, ImuRecording};
-use footfall_model::imu_model::{MAX_SENSORS, SENSOR_COUNT};
+use footfall_model::imu_model::{MAX_SENSORS, MAX_WIDTH, SENSOR_COUNT};
 use glam::{Mat3, Quat, Vec3};
 use nalgebra::Matrix3;
 use std::sync::Arc;
@@ -114,11 +114,7 @@ pub fn find_mounting(
 
 /// Frames in the sensor's axes, from shortly before it begins to move.
 fn moving_frames(recording: &ImuRecording, rate_hz: f64) -> Vec<FeatureFrame> {
-    let mut stream = FeatureStream::new(rate_hz);
-    let mut frames = Vec::new();
-    for sample in &recording.samples {
-        stream.push(*sample, |frame| frames.push(frame));
-    }
+    let mut frames = FeatureStream::frames_of(recording, rate_hz);
     let begin = frames.iter().position(turns).unwrap_or(0);
     let lead = (0.5 * rate_hz) as usize;
     frames.drain(..begin.saturating_sub(lead));
@@ -174,7 +170,7 @@ impl Finder<'_> {
             let (Some(attitude), Some(values)) = (attitude.as_deref_mut(), frame.values) else {
                 continue;
             };
-            let mut expected = [0.0; SENSOR_COUNT * MAX_SENSORS];
+            let mut expected = [0.0; MAX_WIDTH];
             tracker.expected_sensor(&mut expected[..self.prepared.model.sensor_width()]);
             let deviations = &self.prepared.model.deviations[at..];
             // Specific force is left out: impacts make it the worst of the three.

@@ -48,16 +48,14 @@ impl Prepared {
         let mut starts = Vec::with_capacity(model.segments.len() + 1);
         let mut segment_of = Vec::with_capacity(frames);
         let mut counts = vec![0.0; model.subjects * kinds];
+        let mut of_phase = vec![Vec::new(); kinds];
         for (n, segment) in model.segments.iter().enumerate() {
             starts.push(segment_of.len());
             segment_of.extend((0..segment.frames).map(|_| n as u32));
             counts[usize::from(segment.subject) * kinds + usize::from(segment.phase)] += 1.0;
-        }
-        starts.push(segment_of.len());
-        let mut of_phase = vec![Vec::new(); kinds];
-        for (n, segment) in model.segments.iter().enumerate() {
             of_phase[usize::from(segment.phase)].push(n as u32);
         }
+        starts.push(segment_of.len());
         Ok(Self {
             model,
             frames,

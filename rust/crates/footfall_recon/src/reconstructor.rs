@@ -1,7 +1,6 @@
 //! Samples to poses, as they come.
 
 use crate::blend::Blend;
-use crate::body::BodyFrame;
 use crate::ground::{Ground, GroundInput};
 use crate::measure::{measure, sensor_heading};
 use crate::prepared::Prepared;
@@ -9,7 +8,7 @@ use crate::tracker::{Tracker, TrackerConfig};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Behaviour, Pose, Skeleton, SkeletonError};
 use footfall_imu::{FeatureFrame, FeatureStream, ImuSample};
-use footfall_model::imu_model::{BODY_COUNT, MAX_SENSORS};
+use footfall_model::imu_model::MAX_SENSORS;
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -244,10 +243,7 @@ impl Reconstructor {
     fn frame(&mut self, frames: &[Option<FeatureFrame>; MAX_SENSORS]) {
         let measured = measure(&self.prepared.model, frames);
         self.tracker.step(measured.as_ref());
-        let (mut body, mut velocity): (BodyFrame, BodyFrame) =
-            ([0.0; BODY_COUNT], [0.0; BODY_COUNT]);
-        self.tracker
-            .body(measured.as_ref(), &mut body, &mut velocity);
+        let (body, velocity) = self.tracker.body(measured.as_ref());
         self.blend.step(&body, &velocity);
         self.heading = sensor_heading(frames, &body);
         if measured.is_some() {
@@ -301,11 +297,9 @@ impl Reconstructor {
 
     /// Without samples the body goes on as the recordings do.
     fn coast(&mut self, frames: f32) {
-        self.ahead += frames;
         self.heading = None;
-        if self.ahead >= 1.0 {
+        if self.ahead + frames >= 1.0 {
             self.frame(&[None; MAX_SENSORS]);
         }
-        self.ahead -= frames;
     }
 }

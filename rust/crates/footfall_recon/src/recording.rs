@@ -9,7 +9,7 @@ use crate::reconstructor::ReconConfig;
 use crate::tracker::{Measurement, Tracker};
 use footfall_core::{Behaviour, Clip, Pose, Skeleton, SkeletonError};
 use footfall_imu::{FeatureFrame, FeatureStream, ImuRecording};
-use footfall_model::imu_model::{BODY_COUNT, MAX_SENSORS};
+use footfall_model::imu_model::MAX_SENSORS;
 use std::sync::Arc;
 
 /// Frames that are looked back from at once; as many more are looked ahead at.
@@ -24,8 +24,6 @@ pub struct Reconstructed {
     pub start_secs: f64,
     /// The most probable behaviour of each frame.
     pub behaviours: Vec<Behaviour>,
-    /// Whether the left and the right foot stand in each frame.
-    pub stands: Vec<[bool; 2]>,
 }
 
 /// Reconstructs the body of recordings, one for each site of the model, already in the sites' axes.
@@ -54,7 +52,6 @@ pub fn reconstruct_recording(
             },
             start_secs: recordings.first().map_or(0.0, ImuRecording::start_secs),
             behaviours: Vec::with_capacity(frames.len()),
-            stands: Vec::with_capacity(frames.len()),
         },
         // What later frames tell is smooth already.
         blend: Blend::new(if live { config.blend_gain } else { 1.0 }),
@@ -120,21 +117,15 @@ fn frames_of(
     prepared: &Prepared,
     recordings: &[ImuRecording],
 ) -> Vec<[Option<FeatureFrame>; MAX_SENSORS]> {
-    let mut frames: Vec<[Option<FeatureFrame>; MAX_SENSORS]> = Vec::new();
-    for (n, recording) in recordings.iter().enumerate().take(MAX_SENSORS) {
-        let mut stream = FeatureStream::new(prepared.model.frame_rate_hz);
-        let mut place = 0;
-        for sample in &recording.samples {
-            stream.push(*sample, |frame| {
-                if place == frames.len() {
-                    frames.push([None; MAX_SENSORS]);
-                }
-                frames[place][n] = Some(frame);
-                place += 1;
-            });
-        }
-    }
-    frames
+    let rate_hz = prepared.model.frame_rate_hz;
+    let sensors = recordings.iter().take(MAX_SENSORS);
+    let sensors: Vec<Vec<FeatureFrame>> = sensors
+        .map(|recording| FeatureStream::frames_of(recording, rate_hz))
+        .collect();
+    let count = sensors.iter().map(Vec::len).max().unwrap_or(0);
+    (0..count)
+        .map(|frame| core::array::from_fn(|n| sensors.get(n)?.get(frame).copied()))
+        .collect()
 }
 
 /// What is shown of each frame.
@@ -152,9 +143,7 @@ impl Shown {
         measured: Option<&Measurement>,
         frames: &[Option<FeatureFrame>; MAX_SENSORS],
     ) {
-        let (mut body, mut velocity): (BodyFrame, BodyFrame) =
-            ([0.0; BODY_COUNT], [0.0; BODY_COUNT]);
-        tracker.body(measured, &mut body, &mut velocity);
+        let (body, velocity) = tracker.body(measured);
         self.blend.step(&body, &velocity);
         if self.out.clip.poses.is_empty() {
             // A frame ends when it is measured; the recording begins one frame earlier.
@@ -183,7 +172,6 @@ impl Shown {
         let mut pose = Pose::default();
         self.ground.step(body, &input, &mut pose);
         self.out.clip.poses.push(pose);
-        self.out.stands.push(self.ground.stands());
         let behaviours = tracker.behaviours();
         let likely = Behaviour::ALL
             .into_iter()

@@ -1,10 +1,13 @@
 //! How probable each frame of the model is, given everything measured so far: the forward algorithm (Mousas 2017, section 6 and
 //! appendix A), linear in the number of frames.
 
-use crate::kernels::{add, distances, scale, weigh};
+mod backward;
+mod interpolation;
+
+use crate::kernels::{add, distances, weigh};
 use crate::prepared::Prepared;
 use footfall_core::Behaviour;
-use footfall_model::imu_model::{BODY_COUNT, MAX_PHASES, MAX_SENSORS, SENSOR_COUNT};
+use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
 use std::sync::Arc;
 
 /// Settings of the forward algorithm.
@@ -45,9 +48,9 @@ impl Default for TrackerConfig {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// The numbers; the first [`ImuModel::sensor_width`](footfall_model::ImuModel::sensor_width) count.
-    pub values: [f32; SENSOR_COUNT * MAX_SENSORS],
+    pub values: [f32; MAX_WIDTH],
     /// What each number counts, 0 to 1.
-    pub weights: [f32; SENSOR_COUNT * MAX_SENSORS],
+    pub weights: [f32; MAX_WIDTH],
 }
 
 /// What is probable after a frame.
@@ -79,9 +82,6 @@ pub struct Tracker {
     behaviours: [f32; Behaviour::ALL.len()],
     log_likelihood: f64,
 }
-
-/// Most numbers of all sensors together.
-const MAX_WIDTH: usize = SENSOR_COUNT * MAX_SENSORS;
 
 /// Frames that are predicted with less than this share of what each would have if all were alike are not compared with the measurement.
 const LEAST_SHARE: f32 = 0.15;
@@ -342,192 +342,6 @@ impl Tracker {
             let log_likelihood = self.log_likelihood;
             self.reset();
             self.log_likelihood = log_likelihood;
-        }
-    }
-
-    /// Sums up behaviours, and chooses the segments to interpolate.
-    fn weigh_segments(&mut self) {
-        let prepared = &*self.prepared;
-        self.behaviours = [0.0; Behaviour::ALL.len()];
-        self.chosen.clear();
-        let most = self.config.interpolated.max(1);
-        for &n in &self.active {
-            let mass: f32 = self.probability[prepared.frames_of(n as usize)]
-                .iter()
-                .sum();
-            let segment = &prepared.model.segments[n as usize];
-            let behaviour = prepared.model.phases[usize::from(segment.phase)].behaviour;
-            self.behaviours[behaviour.index()] += mass;
-            let full = self.chosen.len() == most;
-            if full && self.chosen.last().is_some_and(|(_, least)| *least >= mass) {
-                continue;
-            }
-            if full {
-                self.chosen.pop();
-            }
-            let place = self.chosen.partition_point(|(_, other)| *other >= mass);
-            self.chosen.insert(place, (n, mass));
-        }
-    }
-
-    /// Takes probabilities from outside, for which [`body`](Self::body) then stands.
-    pub(crate) fn set_probabilities(&mut self, probabilities: &[f32]) {
-        self.probability.copy_from_slice(probabilities);
-        self.active.clear();
-        for n in 0..self.prepared.model.segments.len() {
-            let own = &self.probability[self.prepared.frames_of(n)];
-            if own.iter().any(|p| *p > 0.0) {
-                self.active.push(n as u32);
-            }
-        }
-        self.weigh_segments();
-    }
-
-    /// Goes back by a frame: `later` tells of each frame how well it explains all that was measured after the frame of `sensor`, up to a factor,
-    /// and then what was measured in that frame and after it, given the frame before: the backward variable. All frames are looked at.
-    pub(crate) fn step_back(&mut self, sensor: Option<&Measurement>, later: &mut [f32]) {
-        let prepared = Arc::clone(&self.prepared);
-        if let Some(sensor) = sensor {
-            self.predicted[..later.len()].copy_from_slice(later);
-            let nearest = self.measure(sensor, f32::NEG_INFINITY);
-            let factor = -0.5 * self.config.evidence;
-            weigh(
-                &self.predicted,
-                &self.distance,
-                factor,
-                nearest,
-                &mut self.weighed,
-            );
-            later.copy_from_slice(&self.weighed[..later.len()]);
-        }
-        self.value_phases(later);
-        let config = &self.config;
-        let model = &*prepared.model;
-        let kinds = model.phases.len();
-        let [stay, next, skip] = self.moves();
-        let anywhere = config.exit * later.iter().sum::<f32>() / prepared.frames as f32;
-        for (n, segment) in model.segments.iter().enumerate() {
-            let frames = prepared.frames_of(n);
-            let place = usize::from(segment.subject) * kinds + usize::from(segment.phase);
-            let leave = self.entering[place];
-            let followed = prepared.is_followed(n);
-            let keep = if followed { config.keep_recording } else { 0.0 };
-            let beyond = |steps: usize| {
-                let over = later.get(frames.end + steps).copied();
-                keep * over.filter(|_| followed).unwrap_or(0.0) + (1.0 - keep) * leave
-            };
-            for frame in frames.clone() {
-                let at = |steps: usize| {
-                    let there = frame + steps;
-                    if there < frames.end {
-                        later[there]
-                    } else {
-                        beyond(there - frames.end)
-                    }
-                };
-                self.predicted[frame] =
-                    stay * later[frame] + next * at(1) + skip * at(2) + anywhere;
-            }
-        }
-        later.copy_from_slice(&self.predicted[..later.len()]);
-        let sum: f32 = later.iter().sum();
-        scale(later, later.len() as f32 / sum.max(f32::MIN_POSITIVE));
-    }
-
-    /// How good it is for what comes later to leave each phase of each subject at its end: into `entering`.
-    fn value_phases(&mut self, later: &[f32]) {
-        let prepared = &*self.prepared;
-        let config = &self.config;
-        let model = &*prepared.model;
-        let kinds = model.phases.len();
-        self.entering.fill(0.0);
-        self.entering_any.fill(0.0);
-        for (n, segment) in model.segments.iter().enumerate() {
-            let (phase, subject) = (usize::from(segment.phase), usize::from(segment.subject));
-            let first = later[prepared.starts[n]];
-            self.entering[subject * kinds + phase] += first;
-            self.entering_any[phase] += first;
-        }
-        let subjects = self.entering.chunks_exact_mut(kinds);
-        for (own, counts) in subjects.zip(prepared.counts.chunks_exact(kinds)) {
-            let mut entered = [0.0_f32; MAX_PHASES];
-            for (phase, (own, count)) in own.iter().zip(counts).enumerate() {
-                let any = self.entering_any[phase] / prepared.of_phase[phase].len().max(1) as f32;
-                entered[phase] =
-                    config.keep_subject * own / count.max(1.0) + (1.0 - config.keep_subject) * any;
-            }
-            for (phase, own) in own.iter_mut().enumerate() {
-                let row = &model.next[phase * kinds..(phase + 1) * kinds];
-                *own = row
-                    .iter()
-                    .zip(&entered)
-                    .map(|(share, entered)| share * entered)
-                    .sum();
-            }
-        }
-    }
-
-    /// The body of the most probable segments, interpolated (equations 11 and 13), and how it changes to the next frame.
-    ///
-    /// `sensor` as given to the last [`step`](Self::step).
-    pub fn body(
-        &self,
-        sensor: Option<&Measurement>,
-        body: &mut [f32; BODY_COUNT],
-        velocity: &mut [f32; BODY_COUNT],
-    ) {
-        let prepared = &*self.prepared;
-        let model = &*prepared.model;
-        body.fill(0.0);
-        velocity.fill(0.0);
-        let sum: f32 = self.chosen.iter().map(|(_, mass)| mass).sum();
-        let norm = 1.0 / sum.max(1e-30);
-        let width = model.sensor_width();
-        for &(n, mass) in &self.chosen {
-            let segment = n as usize;
-            let frames = prepared.frames_of(segment);
-            let mut expected = [0.0_f32; SENSOR_COUNT * MAX_SENSORS];
-            for frame in frames {
-                let weight = self.probability[frame] * norm;
-                if weight < 1e-6 {
-                    continue;
-                }
-                let row = prepared.body_row(frame);
-                add(weight, row, body);
-                if !prepared.ends_chain(frame) {
-                    add(weight, prepared.body_row(frame + 1), velocity);
-                    add(-weight, row, velocity);
-                }
-                add(
-                    weight,
-                    &model.sensor[frame * width..][..width],
-                    &mut expected,
-                );
-            }
-            let regression = &model.regressions[usize::from(model.segments[segment].phase)];
-            if let Some(sensor) = sensor
-                && !regression.is_empty()
-                && self.config.regression > 0.0
-            {
-                let weight = mass * norm;
-                for (body, row) in body.iter_mut().zip(regression.chunks_exact(width)) {
-                    let terms = row.iter().zip(&sensor.values).zip(&expected);
-                    let change: f32 = terms.map(|((r, y), e)| r * (weight * y - e)).sum();
-                    *body += self.config.regression * change;
-                }
-            }
-        }
-    }
-
-    /// What was measured in the probable frames, in the mean: what the sensor should have told.
-    pub(crate) fn expected_sensor(&self, out: &mut [f32]) {
-        let width = self.prepared.model.sensor_width();
-        out.fill(0.0);
-        for &n in &self.active {
-            for frame in self.prepared.frames_of(n as usize) {
-                let row = &self.prepared.model.sensor[frame * width..][..width];
-                add(self.probability[frame], row, out);
-            }
         }
     }
 }

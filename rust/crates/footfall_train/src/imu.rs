@@ -14,7 +14,7 @@ use crate::error::TrainError;
 use footfall_core::{PhaseKind, PhaseStart, Site, Skeleton};
 use footfall_model::Provenance;
 use footfall_model::imu_model::{ImuModel, MAX_FRAMES, MAX_SENSORS};
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 /// How a model is trained.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,11 @@ impl ImuTrainConfig {
         }
     }
 
-    fn check(&self) -> Result<(), TrainError> {
+    /// Checks rate and number of sensors, as everything that takes a configuration does.
+    ///
+    /// # Errors
+    /// [`TrainError::FrameRate`] and [`TrainError::Sensors`].
+    pub fn check(&self) -> Result<(), TrainError> {
         if !(20.0..=240.0).contains(&self.frame_rate_hz) {
             return Err(TrainError::FrameRate {
                 frame_rate_hz: self.frame_rate_hz,
@@ -82,13 +86,11 @@ pub fn train_imu(
     if frames == 0 || frames > MAX_FRAMES {
         return Err(TrainError::ImuFrames { found: frames });
     }
-    let kinds: BTreeMap<PhaseKind, usize> = chains
-        .iter()
-        .flat_map(|chain| chain.segments.iter().map(|segment| (segment.kind, 0)))
-        .collect();
-    let phases: Vec<PhaseKind> = kinds.into_keys().collect();
-    let subjects: BTreeMap<&str, usize> = chains.iter().map(|c| (c.subject.as_str(), 0)).collect();
-    let subjects: Vec<&str> = subjects.into_keys().collect();
+    let segments = chains.iter().flat_map(|chain| &chain.segments);
+    let phases: BTreeSet<PhaseKind> = segments.map(|segment| segment.kind).collect();
+    let phases: Vec<PhaseKind> = phases.into_iter().collect();
+    let subjects: BTreeSet<&str> = chains.iter().map(|c| c.subject.as_str()).collect();
+    let subjects: Vec<&str> = subjects.into_iter().collect();
     let recordings = chains.iter().filter(|chain| !chain.mirrored);
     let landings = recordings.clone().flat_map(|chain| &chain.segments);
     let steps = landings.filter(|segment| segment.kind.start == PhaseStart::Landing);

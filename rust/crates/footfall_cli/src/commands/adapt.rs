@@ -97,10 +97,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     let base = read_model(&args.base)?;
     let mut progress = train::TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
-    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
-    for clip in &corpus.clips {
-        output::refuse_overwrite(&[&clip.row.path], &args.output)?;
-    }
+    let corpus = train::read_corpus(&args.corpus, &args.conditions, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(train::training_clip).collect();
     let config = AdaptConfig {
         method: match args.method {

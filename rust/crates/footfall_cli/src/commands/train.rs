@@ -126,10 +126,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     );
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
-    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
-    for clip in &corpus.clips {
-        output::refuse_overwrite(&[&clip.row.path], &args.output)?;
-    }
+    let corpus = read_corpus(&args.corpus, &args.conditions, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(training_clip).collect();
     let trained = train_average(
         &clips,
@@ -157,6 +154,15 @@ fn config(args: &TrainArgs) -> TrainConfig {
             min_gain_per_frame: 1e-3,
         },
     }
+}
+
+/// Reads what a model is to be made of; nothing of it may be overwritten by the model.
+pub(super) fn read_corpus(index: &Path, conditions: &[Where], model: &Path) -> Result<Corpus> {
+    let corpus = Corpus::read(index, conditions)?;
+    for clip in &corpus.clips {
+        output::refuse_overwrite(&[&clip.row.path], model)?;
+    }
+    Ok(corpus)
 }
 
 /// A recording as the trainer takes it.

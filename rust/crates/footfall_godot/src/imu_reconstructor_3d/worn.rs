@@ -20,11 +20,39 @@ const MOST_SAMPLES: usize = 4096;
 #[derive(Debug, Default)]
 pub(super) struct Worn {
     replay: Option<Replay>,
-    kept: Vec<ImuSample>,
+    kept: Kept,
     looked_at_secs: Option<f64>,
     worker: Option<JoinHandle<Option<Mounting>>>,
     /// The best that was found.
     pub(super) mounting: Option<Mounting>,
+}
+
+/// The last samples of a sensor, whose times rise.
+#[derive(Debug, Default)]
+struct Kept(Vec<ImuSample>);
+
+impl Kept {
+    fn push(&mut self, sample: ImuSample) {
+        let since = sample.time_secs - KEPT_SECS;
+        if self.0.len() == MOST_SAMPLES
+            || self
+                .0
+                .first()
+                .is_some_and(|s| s.time_secs < since - KEPT_SECS)
+        {
+            let old = self.0.partition_point(|sample| sample.time_secs < since);
+            self.0.drain(..old.max(1));
+        }
+        if self
+            .0
+            .last()
+            .is_none_or(|last| sample.time_secs > last.time_secs)
+        {
+            self.0.push(sample);
+        } else {
+            self.0.clear();
+        }
+    }
 }
 
 /// A recording that plays.
@@ -52,7 +80,7 @@ impl Worn {
         }
     }
 
-    /// Gives the samples of the time that passes.
+    /// Gives the samples of the time that passes, and keeps them.
     pub(super) fn replay(&mut self, dt_secs: f64, repeats: bool, mut give: impl FnMut(ImuSample)) {
         let Some(replay) = &mut self.replay else {
             return;
@@ -76,34 +104,18 @@ impl Worn {
                 return;
             }
             replay.next += 1;
-            give(ImuSample {
+            let sample = ImuSample {
                 time_secs,
                 ..*sample
-            });
+            };
+            self.kept.push(sample);
+            give(sample);
         }
     }
 
     /// Keeps a sample for finding the mounting.
     pub(super) fn keep(&mut self, sample: ImuSample) {
-        let since = sample.time_secs - KEPT_SECS;
-        if self.kept.len() == MOST_SAMPLES
-            || self
-                .kept
-                .first()
-                .is_some_and(|s| s.time_secs < since - KEPT_SECS)
-        {
-            let old = self.kept.partition_point(|sample| sample.time_secs < since);
-            self.kept.drain(..old.max(1));
-        }
-        if self
-            .kept
-            .last()
-            .is_none_or(|last| sample.time_secs > last.time_secs)
-        {
-            self.kept.push(sample);
-        } else {
-            self.kept.clear();
-        }
+        self.kept.push(sample);
     }
 
     /// Looks for the mounting on another thread, now and then; gives what was found, once.
@@ -123,14 +135,17 @@ impl Worn {
                 return Some(found.site_from_sensor);
             }
         }
-        let (first, last) = (self.kept.first()?.time_secs, self.kept.last()?.time_secs);
+        let (first, last) = (
+            self.kept.0.first()?.time_secs,
+            self.kept.0.last()?.time_secs,
+        );
         let due = self
             .looked_at_secs
             .map_or(first + FIRST_SECS, |at| at + AGAIN_SECS);
         if self.worker.is_none() && last >= due {
             self.looked_at_secs = Some(last);
             let recording = ImuRecording {
-                samples: self.kept.clone(),
+                samples: self.kept.0.clone(),
             };
             let prepared = Arc::clone(prepared);
             let look = move || {

@@ -2,7 +2,7 @@
 
 use super::track::{Track, flights};
 use crate::contacts::Contacts;
-use footfall_core::{Behaviour, Clip, FrameSpan, Side};
+use footfall_core::{Behaviour, FrameSpan, Side};
 use glam::Vec3;
 
 /// A foot belongs to a take-off or to a landing when its contact ends or begins this close to it, seconds.
@@ -27,11 +27,10 @@ const SIDESTEP_MPS: f32 = 0.15;
 const LEAST_SECS: f64 = 0.2;
 
 /// The behaviour of every frame of a clip.
-pub fn detect_behaviours(clip: &Clip, contacts: &Contacts) -> Vec<Behaviour> {
-    let track = Track::of(clip, contacts);
-    let frames_of = |secs: f64| (secs * clip.frame_rate_hz).round() as usize;
+pub(super) fn behaviours_of(track: &Track, contacts: &Contacts) -> Vec<Behaviour> {
+    let frames_of = |secs: f64| (secs * contacts.frame_rate_hz).round() as usize;
     let mut behaviours: Vec<Behaviour> = (0..contacts.frames)
-        .map(|frame| on_the_ground(&track, contacts, frame, &frames_of))
+        .map(|frame| on_the_ground(track, contacts, frame, &frames_of))
         .collect();
     let flights = flights(contacts);
     for (n, flight) in flights.iter().enumerate() {
@@ -64,18 +63,13 @@ fn in_the_air(contacts: &Contacts, flight: FrameSpan, together: usize) -> Behavi
         begins.any(|begin| begin > flight.last && begin <= flight.last + together)
     };
     let [left, right] = Side::BOTH.map(|side| (leaves(side), lands(side)));
-    // Who leaves alone and who lands alone; a recording that begins or ends in the air shows one of the two.
-    let alone = |a: bool, b: bool| a != b;
     match (left, right) {
         ((true, true), (false, false)) | ((false, false), (true, true)) => Behaviour::Hop,
-        ((left_leaves, left_lands), (right_leaves, right_lands))
-            if (alone(left_leaves, right_leaves) || !(left_leaves || right_leaves))
-                && (alone(left_lands, right_lands) || !(left_lands || right_lands))
-                && (left_leaves || right_leaves || left_lands || right_lands) =>
-        {
-            Behaviour::Run
+        ((true, _), (true, _)) | ((_, true), (_, true)) | ((false, false), (false, false)) => {
+            Behaviour::Jump
         }
-        _ => Behaviour::Jump,
+        // A recording that begins or ends in the air shows but a take-off or a landing of one foot.
+        _ => Behaviour::Run,
     }
 }
 

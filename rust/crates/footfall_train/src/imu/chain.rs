@@ -52,8 +52,6 @@ pub struct Chain {
     pub skeleton: Skeleton,
     /// Phases without gaps.
     pub segments: Vec<ChainSegment>,
-    /// Time of the first frame in the clip, seconds.
-    pub start_secs: f64,
     /// [`SENSOR_COUNT`] numbers a sensor for each frame.
     pub sensor: Vec<f32>,
     /// [`BODY_COUNT`] numbers for each frame.
@@ -120,7 +118,7 @@ fn observe_one(clip: &ImuClip<'_>, config: &ImuTrainConfig, mirrored: bool) -> O
                 clip.recordings.get(n).cloned().unwrap_or_else(|| {
                     simulate(clip.clip, clip.first_frame, *site, &virtual_config)
                 });
-            frames_of(&recording, config.frame_rate_hz)
+            FeatureStream::frames_of(&recording, config.frame_rate_hz)
         })
         .collect();
     let contacts = detect_contacts(clip.clip, &ContactConfig::from_frame(clip.first_frame));
@@ -134,7 +132,6 @@ fn observe_one(clip: &ImuClip<'_>, config: &ImuTrainConfig, mirrored: bool) -> O
         mirrored,
         skeleton: clip.clip.skeleton.clone(),
         segments: segments_at(clip.clip, &contacts, &times),
-        start_secs,
         sensor: Vec::with_capacity(count * SENSOR_COUNT * sensors.len()),
         body: Vec::with_capacity(count * BODY_COUNT),
     };
@@ -150,16 +147,6 @@ fn observe_one(clip: &ImuClip<'_>, config: &ImuTrainConfig, mirrored: bool) -> O
         }
     }
     Some(chain)
-}
-
-/// The frames of a whole recording.
-fn frames_of(recording: &ImuRecording, frame_rate_hz: f64) -> Vec<FeatureFrame> {
-    let mut stream = FeatureStream::new(frame_rate_hz);
-    let mut frames = Vec::new();
-    for sample in &recording.samples {
-        stream.push(*sample, |frame| frames.push(frame));
-    }
-    frames
 }
 
 /// Phases of a clip at the model's times.

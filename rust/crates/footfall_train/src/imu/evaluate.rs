@@ -36,6 +36,7 @@ use footfall_recon::body::pose_of;
 use footfall_recon::{Prepared, ReconConfig, reconstruct_recording};
 use glam::Vec3;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Samples a second of the sensors.
@@ -95,32 +96,38 @@ pub fn evaluate_imu(
 ) -> Result<Vec<ImuTrial>, TrainError> {
     config.check()?;
     let chains: Vec<Vec<Chain>> = clips.par_iter().map(|clip| observe(clip, config)).collect();
-    let trials: Vec<Option<ImuTrial>> = (0..clips.len())
-        .into_par_iter()
-        .map(|own| {
-            let seen = |other: usize| match held_out {
-                HeldOut::Recording => other != own,
-                HeldOut::Subject => clips[other].subject != clips[own].subject,
+    // What is held out together shares a model.
+    let held: BTreeSet<(&str, usize)> = (0..clips.len())
+        .map(|clip| match held_out {
+            HeldOut::Recording => (clips[clip].subject, clip),
+            HeldOut::Subject => (clips[clip].subject, clips.len()),
+        })
+        .collect();
+    let held: Vec<(&str, usize)> = held.into_iter().collect();
+    let trials: Vec<Vec<ImuTrial>> = held
+        .par_iter()
+        .map(|(subject, only)| {
+            let is_held = |clip: &usize| {
+                clips[*clip].subject == *subject && (*only == clips.len() || only == clip)
             };
             let training: Vec<&Chain> = (0..clips.len())
-                .filter(|other| seen(*other))
-                .flat_map(|other| &chains[other])
+                .filter(|clip| !is_held(clip))
+                .flat_map(|clip| &chains[clip])
                 .collect();
-            let Some(truth) = chains[own].first() else {
-                return Ok(None);
-            };
             let model = train_imu(&training, config, Provenance::default())?;
             let prepared = Arc::new(Prepared::new(Arc::new(model))?);
-            Ok(Some(try_clip(
-                own,
-                &clips[own],
-                truth,
-                &prepared,
-                &training,
-            )))
+            let constant = pose_of_row(&mean_row(&training));
+            let trials = (0..clips.len()).into_par_iter().filter(is_held);
+            let trials = trials.filter_map(|clip| {
+                let truth = chains[clip].first()?;
+                Some(try_clip(clip, &clips[clip], truth, &prepared, &constant))
+            });
+            Ok(trials.collect())
         })
         .collect::<Result<_, TrainError>>()?;
-    Ok(trials.into_iter().flatten().collect())
+    let mut trials: Vec<ImuTrial> = trials.into_iter().flatten().collect();
+    trials.sort_by_key(|trial| trial.clip);
+    Ok(trials)
 }
 
 fn try_clip(
@@ -128,7 +135,7 @@ fn try_clip(
     clip: &ImuClip<'_>,
     truth: &Chain,
     prepared: &Arc<Prepared>,
-    training: &[&Chain],
+    constant: &Pose,
 ) -> ImuTrial {
     let sites = &prepared.model().sites;
     let recordings: Vec<_> = sites
@@ -166,7 +173,7 @@ fn try_clip(
         judge(&made.clip, found, &bodies, &behaviours)
     });
     let moving = |frame: &usize| behaviours[*frame] != Behaviour::Stand;
-    let constant = joints(&pose_of_row(&mean_row(training)), skeleton);
+    let constant = joints(constant, skeleton);
     let errors = (0..bodies.len()).filter(moving);
     let errors: Vec<f64> = errors
         .map(|frame| distance_cm(&constant, &bodies[frame]))

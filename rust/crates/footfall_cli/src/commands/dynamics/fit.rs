@@ -1,10 +1,10 @@
 //! `footfall dynamics fit`: a corpus becomes two systems that switch.
 
 use crate::commands::train::provenance::{describe, name_of};
-use crate::commands::train::{skipped, training_clip};
+use crate::commands::train::{read_corpus, skipped, training_clip};
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
-use footfall_motion::corpus::{Corpus, Where};
+use footfall_motion::corpus::Where;
 use footfall_train::TrainingClip;
 use footfall_train::dynamics::{DynamicsConfig, FittedDynamics, fit_dynamics};
 use serde::Serialize;
@@ -89,10 +89,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
     let begun = Instant::now();
     output::refuse_overwrite(&[&args.corpus], &args.output)?;
     let config = args.size.config()?;
-    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
-    for clip in &corpus.clips {
-        output::refuse_overwrite(&[&clip.row.path], &args.output)?;
-    }
+    let corpus = read_corpus(&args.corpus, &args.conditions, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(training_clip).collect();
     let conditions: Vec<String> = args
         .conditions

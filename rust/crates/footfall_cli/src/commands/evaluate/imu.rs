@@ -2,7 +2,7 @@
 
 use crate::commands::imu::{imu_clip, parse_site};
 use crate::output;
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Context as _, Result};
 use footfall_core::Site;
 use footfall_motion::corpus::{Corpus, Where};
 use footfall_train::imu::evaluate::{HeldOut, ImuTrial, evaluate_imu};
@@ -82,11 +82,14 @@ struct Figures {
 }
 
 pub(crate) fn run(args: &ImuArgs) -> Result<()> {
-    ensure!(
-        args.sites.len() <= 2,
-        "{} sensors cannot be used at once; give --site once or twice",
-        args.sites.len()
-    );
+    let asked: Vec<ImuTrainConfig> = if args.sites.is_empty() {
+        SENSORS.map(ImuTrainConfig::new).to_vec()
+    } else {
+        vec![ImuTrainConfig::new(&args.sites)]
+    };
+    for config in &asked {
+        config.check()?;
+    }
     let corpus = Corpus::read(&args.corpus, &args.conditions)?;
     let clips: Vec<ImuClip<'_>> = corpus.clips.iter().map(imu_clip).collect();
     let categories: Vec<&str> = corpus
@@ -95,18 +98,12 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
         .map(|clip| clip.row.category())
         .collect();
     let several = clips.iter().any(|clip| clip.subject != clips[0].subject);
-    let asked: Vec<&[Site]> = if args.sites.is_empty() {
-        SENSORS.to_vec()
-    } else {
-        vec![&args.sites]
-    };
     let mut sensors = Vec::new();
-    for sites in asked {
-        let names: Vec<&str> = sites.iter().map(|site| site.name()).collect();
+    for config in &asked {
+        let names: Vec<&str> = config.sites.iter().map(|site| site.name()).collect();
         output::note(&format!("reconstructing from {}", names.join(" and ")));
-        let config = ImuTrainConfig::new(sites);
         let figures = |held_out: HeldOut| -> Result<BTreeMap<String, Figures>> {
-            let trials = evaluate_imu(&clips, &config, held_out)
+            let trials = evaluate_imu(&clips, config, held_out)
                 .with_context(|| args.corpus.display().to_string())?;
             Ok(summarise(&trials, &categories))
         };

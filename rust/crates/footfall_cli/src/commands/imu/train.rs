@@ -2,10 +2,11 @@
 
 use super::parse_site;
 use crate::commands::train::provenance::{describe, name_of};
+use crate::commands::train::{read_corpus, skipped};
 use crate::output::{self, write_atomic};
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Context as _, Result};
 use footfall_core::Site;
-use footfall_motion::corpus::{Corpus, CorpusClip, Where};
+use footfall_motion::corpus::{CorpusClip, Where};
 use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -55,21 +56,13 @@ pub(in crate::commands) struct ModelArgs {
 
 impl ModelArgs {
     pub(in crate::commands) fn config(&self) -> Result<ImuTrainConfig> {
-        ensure!(
-            (20.0..=240.0).contains(&self.fps),
-            "a model of {} frames a second cannot be trained; give --fps a number from 20 to 240",
-            self.fps
-        );
-        ensure!(
-            self.sites.len() <= 2,
-            "{} sensors cannot be used at once; give --site once or twice",
-            self.sites.len()
-        );
-        Ok(ImuTrainConfig {
+        let config = ImuTrainConfig {
             frame_rate_hz: self.fps,
             mirror: !self.no_mirror,
             ..ImuTrainConfig::new(&self.sites)
-        })
+        };
+        config.check()?;
+        Ok(config)
     }
 }
 
@@ -102,10 +95,7 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
     let begun = Instant::now();
     output::refuse_overwrite(&[&args.corpus], &args.output)?;
     let config = args.model.config()?;
-    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
-    for clip in &corpus.clips {
-        output::refuse_overwrite(&[&clip.row.path], &args.output)?;
-    }
+    let corpus = read_corpus(&args.corpus, &args.conditions, &args.output)?;
     let clips: Vec<ImuClip<'_>> = corpus.clips.iter().map(imu_clip).collect();
     let provenance = describe(
         &corpus,
@@ -127,12 +117,7 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
         segments: model.segments.len(),
         phases: model.phases.len(),
         bytes: bytes.len(),
-        skipped: corpus
-            .report
-            .skipped
-            .iter()
-            .map(|s| s.reason.clone())
-            .collect(),
+        skipped: skipped(&corpus).into_iter().map(|s| s.reason).collect(),
         seconds: begun.elapsed().as_secs_f64(),
     };
     for reason in &report.skipped {
@@ -167,6 +152,9 @@ fn command(args: &ImuTrainArgs) -> String {
             .iter()
             .map(|site| format!("--site {}", site.name())),
     );
+    if args.model.no_mirror {
+        words.push("--no-mirror".to_owned());
+    }
     words.push(format!(
         "--fps {} -o {}",
         args.model.fps,

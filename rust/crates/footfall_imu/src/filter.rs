@@ -1,9 +1,9 @@
-//! Smoothing without delay, and the axis of most rotation.
+//! Smoothing without delay, means over windows, and the axis of most rotation.
 
 use glam::{Mat3, Vec3};
 
 /// A second-order Butterworth low-pass, run forwards and backwards: no delay, and the ends held.
-pub(super) fn low_pass(values: &[Vec3], rate_hz: f64, cut_off_hz: f64) -> Vec<Vec3> {
+pub(crate) fn low_pass(values: &[Vec3], rate_hz: f64, cut_off_hz: f64) -> Vec<Vec3> {
     if values.len() < 2 || cut_off_hz >= 0.45 * rate_hz {
         return values.to_vec();
     }
@@ -32,8 +32,17 @@ pub(super) fn low_pass(values: &[Vec3], rate_hz: f64, cut_off_hz: f64) -> Vec<Ve
     smooth
 }
 
+/// Of each value the mean with as many before and after it; at the ends with those that there are.
+pub(crate) fn means_around(values: &[f32], reach: usize) -> Vec<f32> {
+    let around = |n: usize| {
+        let window = &values[n.saturating_sub(reach)..(n + reach + 1).min(values.len())];
+        window.iter().sum::<f32>() / window.len() as f32
+    };
+    (0..values.len()).map(around).collect()
+}
+
 /// The axis along which vectors are longest, sum of squares: the first eigenvector of their second moments, by powers.
-pub(super) fn principal_axis<'a>(vectors: impl Iterator<Item = &'a Vec3>) -> Vec3 {
+pub(crate) fn principal_axis<'a>(vectors: impl Iterator<Item = &'a Vec3>) -> Vec3 {
     let mut moments = Mat3::ZERO;
     for vector in vectors {
         moments += Mat3::from_cols(*vector * vector.x, *vector * vector.y, *vector * vector.z);

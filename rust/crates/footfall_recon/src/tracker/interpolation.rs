@@ -1,0 +1,93 @@
+//! The most probable segments, and the body that they make together (Mousas 2017, section 5.3).
+
+use super::{Measurement, Tracker};
+use crate::body::BodyFrame;
+use crate::kernels::add;
+use footfall_core::Behaviour;
+use footfall_model::imu_model::{BODY_COUNT, MAX_WIDTH};
+
+impl Tracker {
+    /// Sums up behaviours, and chooses the segments to interpolate.
+    pub(super) fn weigh_segments(&mut self) {
+        let prepared = &*self.prepared;
+        self.behaviours = [0.0; Behaviour::ALL.len()];
+        self.chosen.clear();
+        let most = self.config.interpolated.max(1);
+        for &n in &self.active {
+            let mass: f32 = self.probability[prepared.frames_of(n as usize)]
+                .iter()
+                .sum();
+            let segment = &prepared.model.segments[n as usize];
+            let behaviour = prepared.model.phases[usize::from(segment.phase)].behaviour;
+            self.behaviours[behaviour.index()] += mass;
+            let full = self.chosen.len() == most;
+            if full && self.chosen.last().is_some_and(|(_, least)| *least >= mass) {
+                continue;
+            }
+            if full {
+                self.chosen.pop();
+            }
+            let place = self.chosen.partition_point(|(_, other)| *other >= mass);
+            self.chosen.insert(place, (n, mass));
+        }
+    }
+
+    /// The body of the most probable segments, interpolated (equations 11 and 13), and how it changes to the next frame.
+    ///
+    /// `sensor` as given to the last [`step`](Self::step).
+    pub fn body(&self, sensor: Option<&Measurement>) -> (BodyFrame, BodyFrame) {
+        let prepared = &*self.prepared;
+        let model = &*prepared.model;
+        let (mut body, mut velocity) = ([0.0; BODY_COUNT], [0.0; BODY_COUNT]);
+        let sum: f32 = self.chosen.iter().map(|(_, mass)| mass).sum();
+        let norm = 1.0 / sum.max(1e-30);
+        let width = model.sensor_width();
+        for &(n, mass) in &self.chosen {
+            let segment = n as usize;
+            let frames = prepared.frames_of(segment);
+            let mut expected = [0.0_f32; MAX_WIDTH];
+            for frame in frames {
+                let weight = self.probability[frame] * norm;
+                if weight < 1e-6 {
+                    continue;
+                }
+                let row = prepared.body_row(frame);
+                add(weight, row, &mut body);
+                if !prepared.ends_chain(frame) {
+                    add(weight, prepared.body_row(frame + 1), &mut velocity);
+                    add(-weight, row, &mut velocity);
+                }
+                add(
+                    weight,
+                    &model.sensor[frame * width..][..width],
+                    &mut expected,
+                );
+            }
+            let regression = &model.regressions[usize::from(model.segments[segment].phase)];
+            if let Some(sensor) = sensor
+                && !regression.is_empty()
+                && self.config.regression > 0.0
+            {
+                let weight = mass * norm;
+                for (body, row) in body.iter_mut().zip(regression.chunks_exact(width)) {
+                    let terms = row.iter().zip(&sensor.values).zip(&expected);
+                    let change: f32 = terms.map(|((r, y), e)| r * (weight * y - e)).sum();
+                    *body += self.config.regression * change;
+                }
+            }
+        }
+        (body, velocity)
+    }
+
+    /// What was measured in the probable frames, in the mean: what the sensor should have told.
+    pub(crate) fn expected_sensor(&self, out: &mut [f32]) {
+        let width = self.prepared.model.sensor_width();
+        out.fill(0.0);
+        for &n in &self.active {
+            for frame in self.prepared.frames_of(n as usize) {
+                let row = &self.prepared.model.sensor[frame * width..][..width];
+                add(self.probability[frame], row, out);
+            }
+        }
+    }
+}
