@@ -122,16 +122,23 @@ fn parse(
     Ok(ImuRecording { samples })
 }
 
-/// The text of a recording's file.
+/// The first line of a recording's file.
+pub(crate) fn header() -> String {
+    HEADER.join(",")
+}
+
+/// A sample's line. Numbers are as short as they can be and still read back exactly.
+pub(crate) fn line(sample: &ImuSample) -> String {
+    let (force, rate) = (sample.force, sample.rate);
+    let values = [force.x, force.y, force.z, rate.x, rate.y, rate.z];
+    let values = values.map(|value| value.to_string());
+    format!("{},{}", sample.time_secs, values.join(","))
+}
+
+/// The text of a recording's file, which reads back exactly.
 pub fn write(recording: &ImuRecording) -> String {
-    let row = |sample: &ImuSample| {
-        let (force, rate) = (sample.force, sample.rate);
-        let values = [force.x, force.y, force.z, rate.x, rate.y, rate.z];
-        let values = values.map(|value| format!("{value:.6}"));
-        format!("{:.6},{}", sample.time_secs, values.join(","))
-    };
-    let rows = recording.samples.iter().map(row);
-    let lines: Vec<String> = core::iter::once(HEADER.join(",")).chain(rows).collect();
+    let rows = recording.samples.iter().map(line);
+    let lines: Vec<String> = core::iter::once(header()).chain(rows).collect();
     lines.join("\n") + "\n"
 }
 

@@ -1,7 +1,8 @@
 //! Runtime: what one inertial sensor tells.
 //!
 //! Modules in the order in which data flows: [`sample`]s, [`csv`] recordings and their [`checks`], [`orientation`] of the sensor, the
-//! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`].
+//! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`]. With the feature
+//! `live`, [`live`] hears sensors over serial ports and networks; without, nothing here opens a port.
 //!
 //! Everywhere specific force is in m/s² and holds gravity (a sensor at rest reads +9.81 along up), angular rate is in rad/s, and axes are
 //! right-handed.
@@ -11,6 +12,8 @@ pub mod csv;
 pub mod events;
 pub mod features;
 mod filter;
+#[cfg(feature = "live")]
+pub mod live;
 pub mod orientation;
 pub mod sample;
 pub mod strides;

@@ -10,6 +10,7 @@
 pub mod assembly;
 pub mod clock;
 pub mod device;
+pub mod json;
 pub mod link;
 pub mod network;
 pub mod phone;

@@ -12,7 +12,9 @@ mod threespace;
 mod witmotion;
 mod ximu3;
 
-pub use text::{TextFormat, ForceUnit, RateUnit, TimeUnit};
+pub use text::{ForceUnit, RateUnit, TextFormat, TimeUnit};
+
+pub(super) use text::Text;
 
 use super::reading::Reading;
 

@@ -20,11 +20,18 @@ impl Format for Bno085 {
         let Some(message) = bytes_at::<LENGTH>(bytes, 0) else {
             return Taken::More;
         };
-        let sum = message[2..LENGTH - 1].iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
+        let sum = message[2..LENGTH - 1]
+            .iter()
+            .fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
         if sum != message[LENGTH - 1] {
             return garbage_until(bytes, BEGINS);
         }
-        let number = |n: usize| f32::from(i16::from_le_bytes([message[9 + 2 * n], message[10 + 2 * n]])) * 1e-3;
+        let number = |n: usize| {
+            f32::from(i16::from_le_bytes([
+                message[9 + 2 * n],
+                message[10 + 2 * n],
+            ])) * 1e-3
+        };
         give(Reading {
             time_secs: None,
             quantity: Quantity::Force(Vec3::new(number(0), number(1), number(2)) * GRAVITY_MPS2),

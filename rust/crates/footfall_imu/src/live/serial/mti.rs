@@ -16,7 +16,6 @@ const LONGEST: usize = 2000;
 const ACCELERATION: u16 = 0x4020;
 const RATE_OF_TURN: u16 = 0x8020;
 const SAMPLE_TIME_FINE: u16 = 0x1060;
-const PACKET_COUNTER: u16 = 0x1020;
 
 /// Ticks of the fine time in a second.
 const TICKS: f64 = 10_000.0;
@@ -50,7 +49,9 @@ impl Format for Mti {
         let Some(message) = bytes.get(..whole) else {
             return Taken::More;
         };
-        let sum = message[1..].iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
+        let sum = message[1..]
+            .iter()
+            .fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
         if sum != 0 {
             return garbage_until(bytes, BEGINS);
         }
@@ -78,7 +79,7 @@ impl Mti {
                     time_secs = Some(self.ticks.unwrapped(u64::from(ticks), 32) as f64 / TICKS);
                 }
                 // A counter alone tells no time: its rate is not known.
-                PACKET_COUNTER | _ => {}
+                _ => {}
             }
         }
         Some(Reading {
@@ -105,5 +106,9 @@ fn vector(data: &[u8], identifier: u16) -> Option<Vec3> {
             _ => f64::from_be_bytes(bytes_at(data, 8 * n)?),
         })
     };
-    Some(Vec3::new(number(0)? as f32, number(1)? as f32, number(2)? as f32))
+    Some(Vec3::new(
+        number(0)? as f32,
+        number(1)? as f32,
+        number(2)? as f32,
+    ))
 }

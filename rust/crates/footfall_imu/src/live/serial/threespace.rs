@@ -16,8 +16,12 @@ const STREAMED: u8 = 0xFF;
 /// Commands that make a device stream at 100 Hz: head with success, time, echo, sum and length; slots for rates and forces; interval; start.
 pub(super) const SETUP: [&[u8]; 4] = [
     &[0xF7, 0xDD, 0, 0, 0, 0x4F, 0x2C],
-    &[0xF7, 0x50, 0x26, 0x27, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x97],
-    &[0xF7, 0x52, 0, 0, 0x27, 0x10, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 0x85],
+    &[
+        0xF7, 0x50, 0x26, 0x27, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x97,
+    ],
+    &[
+        0xF7, 0x52, 0, 0, 0x27, 0x10, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 0x85,
+    ],
     &[0xF9, 0x55, 0x55],
 ];
 
@@ -30,7 +34,12 @@ pub(super) struct ThreeSpace {
 impl Format for ThreeSpace {
     fn take(&mut self, bytes: &[u8], give: &mut dyn FnMut(Reading)) -> Taken {
         if bytes[0] != 0 {
-            return Taken::Garbage(bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len()));
+            return Taken::Garbage(
+                bytes
+                    .iter()
+                    .position(|byte| *byte == 0)
+                    .unwrap_or(bytes.len()),
+            );
         }
         let Some([_, t0, t1, t2, t3, echo, sum, length]) = bytes_at::<HEAD>(bytes, 0) else {
             return Taken::More;
@@ -48,7 +57,9 @@ impl Format for ThreeSpace {
             let at = 4 * n;
             f32::from_be_bytes([data[at], data[at + 1], data[at + 2], data[at + 3]])
         };
-        let micros = self.micros.unwrapped(u64::from(u32::from_be_bytes([t0, t1, t2, t3])), 32);
+        let micros = self
+            .micros
+            .unwrapped(u64::from(u32::from_be_bytes([t0, t1, t2, t3])), 32);
         give(Reading {
             time_secs: Some(micros as f64 * 1e-6),
             quantity: Quantity::Both {
@@ -68,7 +79,9 @@ mod tests {
     fn every_command_carries_its_sum() {
         for command in SETUP {
             let (sum, rest) = command.split_last().unwrap();
-            let own = rest[1..].iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
+            let own = rest[1..]
+                .iter()
+                .fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
             assert_eq!(own, *sum, "{command:x?}");
         }
     }

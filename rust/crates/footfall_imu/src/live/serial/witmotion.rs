@@ -30,11 +30,15 @@ impl Format for WitMotion {
         let Some(message) = bytes_at::<LENGTH>(bytes, 0) else {
             return Taken::More;
         };
-        let sum = message[..LENGTH - 1].iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
+        let sum = message[..LENGTH - 1]
+            .iter()
+            .fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
         if sum != message[LENGTH - 1] || !KINDS.contains(&message[1]) {
             return garbage_until(bytes, BEGINS);
         }
-        let number = |n: usize| f32::from(i16::from_le_bytes([message[2 + 2 * n], message[3 + 2 * n]])) / 32768.0;
+        let number = |n: usize| {
+            f32::from(i16::from_le_bytes([message[2 + 2 * n], message[3 + 2 * n]])) / 32768.0
+        };
         let vector = Vec3::new(number(0), number(1), number(2));
         match message[1] {
             FORCE => self.force = Some(vector * MOST_G),

@@ -37,8 +37,7 @@ impl Format for XImu3 {
             (b'I', true) => inertial_of_binary(&bytes[1..length]),
             (b'I', false) => inertial_of_text(&bytes[1..length]),
             // Of other messages only their form is known.
-            (_, true) => return Taken::Message(length + 1),
-            (b'{', false) => return Taken::Message(length + 1),
+            (_, true) | (b'{', false) => return Taken::Message(length + 1),
             (_, false) if bytes.get(1) == Some(&b',') => return Taken::Message(length + 1),
             _ => None,
         };

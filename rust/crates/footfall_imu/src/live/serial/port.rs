@@ -1,0 +1,250 @@
+//! A serial port: opened, listened to, opened again after it was unplugged.
+
+use super::detect::Detection;
+use super::{SerialFormat, StreamParser, TextFormat, threespace};
+use crate::live::device::{DeviceWriter, now_secs};
+use crate::live::link::{Link, LinkState, LinkWriter};
+use serialport::{ErrorKind, SerialPort, SerialPortType};
+use std::io::{self, Read as _, Write as _};
+use std::time::Duration;
+
+/// Rates that devices use, most common first.
+pub const BAUD_RATES: [u32; 6] = [115_200, 921_600, 460_800, 230_400, 57_600, 9600];
+
+/// A read waits so long for bytes.
+const READ_TIMEOUT: Duration = Duration::from_millis(20);
+
+/// How long each rate is listened to, to find out what speaks.
+const LISTEN_SECS: f64 = 0.8;
+
+/// A port that cannot be opened is tried again after so long.
+const RETRY: Duration = Duration::from_secs(1);
+
+/// After so long without a message, seconds, what speaks is found out anew.
+const LOST_SECS: f64 = 3.0;
+
+/// Which port, and what is known of the device there.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SerialConfig {
+    /// Path or name of the port; empty for the first one on USB.
+    pub port: String,
+    /// Bits a second; `None` to find out.
+    pub baud_rate: Option<u32>,
+    /// What the device speaks; `None` to find out.
+    pub format: Option<SerialFormat>,
+    /// What lines of numbers mean.
+    pub text: TextFormat,
+}
+
+/// A port that there is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PortInfo {
+    /// What it is opened by.
+    pub name: String,
+    /// What is plugged in there, when it tells.
+    pub description: String,
+    /// Whether it is on USB.
+    pub is_usb: bool,
+}
+
+/// The ports of this machine, those on USB first.
+pub fn ports() -> Vec<PortInfo> {
+    let found = serialport::available_ports().unwrap_or_default();
+    let mut ports: Vec<PortInfo> = found
+        .into_iter()
+        .map(|port| {
+            let (is_usb, description) = match port.port_type {
+                SerialPortType::UsbPort(usb) => {
+                    let parts = [usb.manufacturer, usb.product];
+                    (
+                        true,
+                        parts.into_iter().flatten().collect::<Vec<_>>().join(" "),
+                    )
+                }
+                _ => (false, String::new()),
+            };
+            PortInfo {
+                name: port.port_name,
+                description,
+                is_usb,
+            }
+        })
+        .collect();
+    ports.sort_by(|a, b| (!a.is_usb, &a.name).cmp(&(!b.is_usb, &b.name)));
+    ports
+}
+
+/// Listens at a port until the link is dropped.
+pub fn listen(config: SerialConfig) -> Link {
+    Link::run("serial", move |link| {
+        let mut device = None;
+        while !link.stopped() {
+            let problem = match open(&config) {
+                Ok((name, port)) => {
+                    let mut session = Session {
+                        link: &link,
+                        config: &config,
+                        name,
+                        port,
+                    };
+                    session.run(&mut device)
+                }
+                Err(problem) => problem,
+            };
+            if !link.stopped() {
+                link.set_state(LinkState::Failed(problem));
+                link.wait(RETRY);
+            }
+        }
+    })
+}
+
+/// Opens the port; what a person is told when that fails.
+fn open(config: &SerialConfig) -> Result<(String, Box<dyn SerialPort>), String> {
+    let name = if config.port.is_empty() {
+        let usb = ports().into_iter().find(|port| port.is_usb);
+        usb.ok_or("no sensor is plugged in: there is no serial port on USB")?
+            .name
+    } else {
+        config.port.clone()
+    };
+    let baud_rate = config.baud_rate.unwrap_or(BAUD_RATES[0]);
+    let port = serialport::new(name.as_str(), baud_rate)
+        .timeout(READ_TIMEOUT)
+        .open();
+    port.map(|port| (name.clone(), port)).map_err(|error| match error.kind() {
+        ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => {
+            format!("{name}: there is no such port; plug the sensor in, or choose another")
+        }
+        ErrorKind::Io(io::ErrorKind::PermissionDenied) => {
+            format!("{name}: this user may not open it; on Linux add the user to the group 'dialout' and log in again")
+        }
+        _ => format!("{name}: {error}; another program may hold it"),
+    })
+}
+
+/// An open port.
+struct Session<'a> {
+    link: &'a LinkWriter,
+    config: &'a SerialConfig,
+    name: String,
+    port: Box<dyn SerialPort>,
+}
+
+impl Session<'_> {
+    /// Listens until the port is gone, what speaks has changed, or it is time to stop; tells why.
+    fn run(&mut self, device: &mut Option<DeviceWriter>) -> String {
+        let format = match self.find_out() {
+            Ok(format) => format,
+            Err(problem) => return problem,
+        };
+        if format == SerialFormat::ThreeSpace {
+            // A device that streams already ignores it.
+            for command in threespace::SETUP {
+                drop(self.port.write_all(command));
+            }
+        }
+        let known = device
+            .as_ref()
+            .is_some_and(|device| device.device().status().format == format.name());
+        if known {
+            self.link.set_state(LinkState::Receiving);
+        } else {
+            *device = self.link.add(&self.name, format.name());
+        }
+        let Some(device) = device else {
+            return format!("{}: too many kinds of devices were heard here", self.name);
+        };
+        if let Some(caveat) = format.caveat() {
+            device.set_fault(caveat);
+        }
+        let mut parser = StreamParser::new(format, &self.config.text);
+        let mut heard_secs = now_secs();
+        let mut buffer = [0; 1024];
+        while !self.link.stopped() {
+            let count = match self.read(&mut buffer) {
+                Ok(count) => count,
+                Err(problem) => return problem,
+            };
+            let now = now_secs();
+            let before = (parser.messages(), parser.garbage_bytes());
+            parser.push(&buffer[..count], |reading| device.push(reading, now));
+            self.link.count_garbage(parser.garbage_bytes() - before.1);
+            if parser.messages() > before.0 {
+                heard_secs = now;
+                device.heard(now);
+            } else if now - heard_secs > LOST_SECS {
+                return format!(
+                    "{}: nothing more is heard that can be understood",
+                    self.name
+                );
+            }
+        }
+        String::new()
+    }
+
+    /// What speaks, at which rate.
+    fn find_out(&mut self) -> Result<SerialFormat, String> {
+        if let (Some(format), Some(_)) = (self.config.format, self.config.baud_rate) {
+            return Ok(format);
+        }
+        let rates = self
+            .config
+            .baud_rate
+            .map_or(BAUD_RATES.to_vec(), |rate| vec![rate]);
+        let mut bytes = 0;
+        for rate in rates {
+            let state = format!("{}: listening at {rate} baud", self.name);
+            self.link.set_state(LinkState::Opening(state));
+            self.port
+                .set_baud_rate(rate)
+                .map_err(|error| format!("{}: {error}", self.name))?;
+            if self.config.format == Some(SerialFormat::ThreeSpace) {
+                for command in threespace::SETUP {
+                    drop(self.port.write_all(command));
+                }
+            }
+            let mut detection = Detection::new(&self.config.text);
+            let begin = now_secs();
+            let mut buffer = [0; 1024];
+            while now_secs() - begin < LISTEN_SECS && !self.link.stopped() {
+                let count = self.read(&mut buffer)?;
+                detection.push(&buffer[..count]);
+            }
+            bytes += detection.bytes();
+            if let Some(found) = detection.found()
+                && self.config.format.is_none_or(|format| format == found)
+            {
+                return Ok(found);
+            }
+        }
+        Err(if bytes == 0 {
+            format!(
+                "{}: nothing comes; check that the sensor is on and streams",
+                self.name
+            )
+        } else {
+            format!(
+                "{}: {bytes} bytes came, in no known form at any rate; set the format and the baud rate",
+                self.name
+            )
+        })
+    }
+
+    /// What came; none after the timeout.
+    fn read(&mut self, buffer: &mut [u8]) -> Result<usize, String> {
+        match self.port.read(buffer) {
+            Ok(0) => Err(format!("{}: the sensor was unplugged", self.name)),
+            Ok(count) => Ok(count),
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+                ) =>
+            {
+                Ok(0)
+            }
+            Err(error) => Err(format!("{}: the sensor was unplugged ({error})", self.name)),
+        }
+    }
+}
