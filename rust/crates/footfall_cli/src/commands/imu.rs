@@ -1,6 +1,7 @@
 //! `footfall imu`: inertial sensors on a body.
 
 mod events;
+mod monitor;
 mod reconstruct;
 mod simulate;
 mod train;
@@ -26,6 +27,7 @@ enum What {
     Train(train::ImuTrainArgs),
     Reconstruct(reconstruct::ReconstructArgs),
     Events(events::EventsArgs),
+    Monitor(monitor::MonitorArgs),
 }
 
 pub(crate) fn run(args: &ImuArgs) -> Result<()> {
@@ -34,6 +36,7 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
         What::Train(args) => train::run(args),
         What::Reconstruct(args) => reconstruct::run(args),
         What::Events(args) => events::run(args),
+        What::Monitor(args) => monitor::run(args),
     }
 }
 

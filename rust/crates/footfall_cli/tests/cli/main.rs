@@ -6,6 +6,7 @@ mod designs;
 mod dynamics;
 mod evaluate;
 mod imu;
+mod monitor;
 mod pipeline;
 mod recordings;
 mod sensors;

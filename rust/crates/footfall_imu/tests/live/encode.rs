@@ -19,7 +19,7 @@ fn sum(bytes: &[u8]) -> u8 {
     (bytes.iter().map(|byte| u32::from(*byte)).sum::<u32>() % 256) as u8
 }
 
-pub fn witmotion(sample: &ImuSample) -> Vec<u8> {
+pub(crate) fn witmotion(sample: &ImuSample) -> Vec<u8> {
     let message = |kind: u8, values: [f32; 3], scale: f32| {
         let mut bytes = vec![0x55, kind];
         for value in values {
@@ -38,14 +38,14 @@ pub fn witmotion(sample: &ImuSample) -> Vec<u8> {
     .concat()
 }
 
-pub fn ximu3_text(sample: &ImuSample) -> Vec<u8> {
+pub(crate) fn ximu3_text(sample: &ImuSample) -> Vec<u8> {
     let ([ax, ay, az], [gx, gy, gz]) = (in_g(sample), in_dps(sample));
     let time = micros(sample);
     format!("I,{time},{gx:.4},{gy:.4},{gz:.4},{ax:.4},{ay:.4},{az:.4}\nQ,{time},1.0,0.0,0.0,0.0\n")
         .into_bytes()
 }
 
-pub fn ximu3_binary(sample: &ImuSample) -> Vec<u8> {
+pub(crate) fn ximu3_binary(sample: &ImuSample) -> Vec<u8> {
     let mut plain = micros(sample).to_le_bytes().to_vec();
     for value in in_dps(sample).into_iter().chain(in_g(sample)) {
         plain.extend(value.to_le_bytes());
@@ -64,21 +64,21 @@ pub fn ximu3_binary(sample: &ImuSample) -> Vec<u8> {
 
 /// Number formats of `MTData2`.
 #[derive(Clone, Copy, Debug)]
-pub enum MtiNumbers {
+pub(crate) enum MtiNumbers {
     Float = 0,
     Fixed12 = 1,
     Fixed16 = 2,
     Double = 3,
 }
 
-pub fn mti(sample: &ImuSample, numbers: MtiNumbers) -> Vec<u8> {
+pub(crate) fn mti(sample: &ImuSample, numbers: MtiNumbers) -> Vec<u8> {
     let item = |identifier: u16, values: [f32; 3]| {
         let mut data = Vec::new();
         for value in values {
             match numbers {
                 MtiNumbers::Float => data.extend(value.to_be_bytes()),
                 MtiNumbers::Fixed12 => {
-                    data.extend(((f64::from(value) * 1_048_576.0).round() as i32).to_be_bytes())
+                    data.extend(((f64::from(value) * 1_048_576.0).round() as i32).to_be_bytes());
                 }
                 MtiNumbers::Fixed16 => {
                     let fixed = (f64::from(value) * 4_294_967_296.0).round() as i64;
@@ -105,7 +105,7 @@ pub fn mti(sample: &ImuSample, numbers: MtiNumbers) -> Vec<u8> {
     bytes
 }
 
-pub fn threespace(sample: &ImuSample) -> Vec<u8> {
+pub(crate) fn threespace(sample: &ImuSample) -> Vec<u8> {
     let values = sample.rate.to_array().into_iter().chain(in_g(sample));
     let data: Vec<u8> = values.flat_map(f32::to_be_bytes).collect();
     let mut bytes = vec![0];
@@ -115,7 +115,7 @@ pub fn threespace(sample: &ImuSample) -> Vec<u8> {
     bytes
 }
 
-pub fn bno085(sample: &ImuSample) -> Vec<u8> {
+pub(crate) fn bno085(sample: &ImuSample) -> Vec<u8> {
     let mut bytes = vec![0xAA, 0xAA, 7];
     for angle in [100_i16, -200, 300] {
         bytes.extend(angle.to_le_bytes());
@@ -129,14 +129,14 @@ pub fn bno085(sample: &ImuSample) -> Vec<u8> {
 }
 
 /// One line of numbers in our units, time in milliseconds.
-pub fn line(sample: &ImuSample) -> Vec<u8> {
+pub(crate) fn line(sample: &ImuSample) -> Vec<u8> {
     let ([ax, ay, az], [gx, gy, gz]) = (sample.force.to_array(), sample.rate.to_array());
     let time = sample.time_secs * 1e3;
     format!("{time:.3},{ax:.5},{ay:.5},{az:.5},{gx:.5},{gy:.5},{gz:.5}\r\n").into_bytes()
 }
 
 /// A line of JSON with members of its own names, in g and °/s.
-pub fn flat_json(sample: &ImuSample) -> Vec<u8> {
+pub(crate) fn flat_json(sample: &ImuSample) -> Vec<u8> {
     let ([ax, ay, az], [gx, gy, gz]) = (in_g(sample), in_dps(sample));
     let time = micros(sample);
     format!("{{\"t_us\":{time},\"accX_g\":{ax},\"accY_g\":{ay},\"accZ_g\":{az},\"gyroX_dps\":{gx},\"gyroY_dps\":{gy},\"gyroZ_dps\":{gz}}}\n")
@@ -144,7 +144,7 @@ pub fn flat_json(sample: &ImuSample) -> Vec<u8> {
 }
 
 /// A packet of owoTrack or of a SlimeVR tracker.
-pub fn slimevr(kind: u32, number: u64, content: &[u8]) -> Vec<u8> {
+pub(crate) fn slimevr(kind: u32, number: u64, content: &[u8]) -> Vec<u8> {
     [
         &kind.to_be_bytes(),
         number.to_be_bytes().as_slice(),
@@ -153,7 +153,7 @@ pub fn slimevr(kind: u32, number: u64, content: &[u8]) -> Vec<u8> {
     .concat()
 }
 
-pub fn floats(values: &[f32]) -> Vec<u8> {
+pub(crate) fn floats(values: &[f32]) -> Vec<u8> {
     values
         .iter()
         .flat_map(|value| value.to_be_bytes())
@@ -161,14 +161,14 @@ pub fn floats(values: &[f32]) -> Vec<u8> {
 }
 
 /// One of Android's sensors as SensorServer and SensaGram tell it.
-pub fn android(kind: &str, time_secs: f64, values: [f32; 3]) -> Vec<u8> {
+pub(crate) fn android(kind: &str, time_secs: f64, values: [f32; 3]) -> Vec<u8> {
     let [x, y, z] = values;
     let nanos = (time_secs * 1e9).round() as u64;
     format!("{{\"accuracy\":2,\"timestamp\":{nanos},\"type\":\"android.sensor.{kind}\",\"values\":[{x},{y},{z}]}}").into_bytes()
 }
 
 /// A batch of Sensor Logger: each sensor in turn.
-pub fn sensor_logger(samples: &[ImuSample]) -> Vec<u8> {
+pub(crate) fn sensor_logger(samples: &[ImuSample]) -> Vec<u8> {
     let entry = |name: &str, sample: &ImuSample, [x, y, z]: [f32; 3]| {
         let nanos = 1_700_000_000_000_000_000 + (sample.time_secs * 1e9).round() as u64;
         format!(
@@ -196,7 +196,7 @@ pub fn sensor_logger(samples: &[ImuSample]) -> Vec<u8> {
 }
 
 /// ZIG SIM in JSON: iOS's signs, g.
-pub fn zig_sim_json(sample: &ImuSample) -> Vec<u8> {
+pub(crate) fn zig_sim_json(sample: &ImuSample) -> Vec<u8> {
     let [ax, ay, az] = (-(sample.force - glam::Vec3::Y * GRAVITY_MPS2) / GRAVITY_MPS2).to_array();
     let [gx, gy, gz] = sample.rate.to_array();
     format!(
@@ -207,7 +207,7 @@ pub fn zig_sim_json(sample: &ImuSample) -> Vec<u8> {
 }
 
 /// A message of the browser's page.
-pub fn browser(samples: &[ImuSample]) -> Vec<u8> {
+pub(crate) fn browser(samples: &[ImuSample]) -> Vec<u8> {
     let mut bytes = vec![1];
     for sample in samples {
         bytes.extend(sample.time_secs.to_le_bytes());

@@ -1,5 +1,15 @@
 //! Sensors that are heard live: every form byte by byte, every way over a real port of this machine.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
+#![expect(
+    clippy::disallowed_methods,
+    reason = "what comes over ports takes time: in vain is told by the clock"
+)]
+#![expect(
+    clippy::result_large_err,
+    reason = "the form of tungstenite's callback"
+)]
+
 mod encode;
 mod formats;
 mod network;

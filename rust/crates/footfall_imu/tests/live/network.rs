@@ -48,8 +48,11 @@ fn bundle(packets: Vec<OscPacket>) -> Vec<u8> {
     rosc::encoder::encode(&OscPacket::Bundle(bundle)).unwrap()
 }
 
+/// The datagrams of a sample.
+type Packets = Box<dyn Fn(&ImuSample) -> Vec<Vec<u8>>>;
+
 /// Every form of a datagram: its name, and what is sent for a sample.
-fn forms() -> Vec<(&'static str, Box<dyn Fn(&ImuSample) -> Vec<Vec<u8>>>)> {
+fn forms() -> Vec<(&'static str, Packets)> {
     let up = Vec3::Y * GRAVITY_MPS2;
     // iOS: what pushes the other way, in g.
     let apple = move |force: Vec3| -force / GRAVITY_MPS2;

@@ -6,7 +6,7 @@ use glam::Vec3;
 use std::time::{Duration, Instant};
 
 /// A sensor that swings and is shaken, at a time in seconds. Values are exact in every form's steps to about a thousandth.
-pub fn sample(time_secs: f64) -> ImuSample {
+pub(crate) fn sample(time_secs: f64) -> ImuSample {
     let wave = |rate: f64, shift: f64| (time_secs * rate + shift).sin() as f32;
     ImuSample {
         time_secs,
@@ -24,12 +24,12 @@ pub fn sample(time_secs: f64) -> ImuSample {
 }
 
 /// Samples at 100 Hz.
-pub fn samples(count: u32) -> Vec<ImuSample> {
+pub(crate) fn samples(count: u32) -> Vec<ImuSample> {
     (0..count).map(|n| sample(f64::from(n) * 0.01)).collect()
 }
 
 /// Checks that a sample came through as it was, its time apart.
-pub fn check_same(found: &ImuSample, sent: &ImuSample, tolerance: f32) {
+pub(crate) fn check_same(found: &ImuSample, sent: &ImuSample, tolerance: f32) {
     assert!(
         (found.force - sent.force).abs().max_element() < tolerance * 10.0,
         "{found:?} for {sent:?}"
@@ -41,7 +41,7 @@ pub fn check_same(found: &ImuSample, sent: &ImuSample, tolerance: f32) {
 }
 
 /// Waits until something holds; `what` names it when it never does.
-pub fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
+pub(crate) fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
     let begin = Instant::now();
     loop {
         if let Some(found) = look() {
@@ -52,7 +52,7 @@ pub fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-pub fn wait_for_address(link: &Link) -> std::net::SocketAddr {
+pub(crate) fn wait_for_address(link: &Link) -> std::net::SocketAddr {
     let address = wait_for("the link listens", || {
         assert!(
             !matches!(link.state(), LinkState::Failed(_)),
@@ -65,7 +65,7 @@ pub fn wait_for_address(link: &Link) -> std::net::SocketAddr {
 }
 
 /// Takes samples until there are so many.
-pub fn wait_for_samples(device: &Device, count: usize) -> Vec<ImuSample> {
+pub(crate) fn wait_for_samples(device: &Device, count: usize) -> Vec<ImuSample> {
     let mut samples = Vec::new();
     let what = format!("{count} samples");
     wait_for(&what, || {
