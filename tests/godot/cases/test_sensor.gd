@@ -3,26 +3,6 @@ extends TestCase
 
 const MODEL := "res://addons/footfall/models/right_foot.footimu"
 const DELTA := 1.0 / 60.0
-const GRAVITY_MPS2 := 9.80665
-
-
-## What a sensor on the right foot of a walker measures, frame by frame: [time, force, rate].
-func _measured(walker: Walker, frames: int) -> Array[Array]:
-	var places: Array[Vector3] = []
-	var turns: Array[Quaternion] = []
-	walker.walk(frames, func() -> void:
-		var foot: Transform3D = walker.bones["RightFoot"] * walker.rest("RightFoot").affine_inverse()
-		turns.append(foot.basis.get_rotation_quaternion())
-		places.append(foot * (walker.rest("RightFoot").origin + Vector3(0.0, -0.01, 0.07))))
-	var samples: Array[Array] = []
-	for n: int in range(1, places.size() - 1):
-		var acceleration := (places[n + 1] - 2.0 * places[n] + places[n - 1]) / (DELTA * DELTA)
-		var turned := turns[n - 1].inverse() * turns[n + 1]
-		if turned.w < 0.0:
-			turned = -turned
-		var rate := turned.get_axis() * turned.get_angle() / (2.0 * DELTA) if turned.get_angle() > 1e-6 else Vector3.ZERO
-		samples.append([n * DELTA, turns[n].inverse() * (acceleration + Vector3.UP * GRAVITY_MPS2), rate])
-	return samples
 
 
 func _walker() -> Walker:
@@ -32,20 +12,8 @@ func _walker() -> Walker:
 	return walker
 
 
-## A body that no generator walks, with a reconstructor.
 func _driven(model := MODEL) -> Walker:
-	var body := Walker.new()
-	body.build(false)
-	var node := ImuReconstructor3D.new()
-	node.name = "Reconstructor"
-	node.mounting = ImuReconstructor3D.ALIGNED
-	if model:
-		node.model = load(model)
-	node.modification_processed.connect(body._read_bones)
-	body.skeleton.add_child(node)
-	body.gait.free()
-	add_child(body)
-	return body
+	return WornSensor.driven(self, model)
 
 
 func _reconstructor(body: Walker) -> ImuReconstructor3D:
@@ -76,7 +44,7 @@ func test_shipped_models_are_imported_and_tell_their_site() -> void:
 
 func test_a_sensor_on_a_walkers_foot_drives_another_body() -> void:
 	var walker := _walker()
-	var samples := _measured(walker, 600)
+	var samples := WornSensor.measure(walker, 600)
 	var body := _driven()
 	var steps: Array[Array] = []
 	var node := _reconstructor(body)
@@ -111,7 +79,7 @@ func test_a_sensor_on_a_walkers_foot_drives_another_body() -> void:
 
 func test_a_replay_in_any_mounting_is_found_out() -> void:
 	var walker := _walker()
-	var path := _write(_measured(walker, 900), Quaternion(Vector3(0.6, 0.48, 0.64), 2.0))
+	var path := _write(WornSensor.measure(walker, 900), Quaternion(Vector3(0.6, 0.48, 0.64), 2.0))
 	var source := ReplayImuSource.new()
 	source.file = path
 	check_equal(source.get_error(), "", "the recording is whole")

@@ -5,7 +5,7 @@ mod worn;
 use crate::character;
 use crate::convert;
 use crate::imu_model::{ImuModel, NO_MODEL};
-use crate::replay_imu_source::ReplayImuSource;
+use crate::imu_source::{self, Heard};
 use crate::report;
 use crate::skeleton_binding::SkeletonBinding;
 use crate::travel::Traveller;
@@ -14,8 +14,10 @@ use footfall_imu::ImuSample;
 use footfall_model::imu_model::MAX_SENSORS;
 use footfall_recon::{Prepared, ReconConfig, Reconstructor, SensorState};
 use footfall_synth::GroundTransform;
-use glam::Vec3;
-use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
+use glam::{Quat, Vec3};
+use godot::classes::{
+    BoneMap, Engine, ISkeletonModifier3D, ProjectSettings, Resource, Skeleton3D, SkeletonModifier3D,
+};
 use godot::prelude::*;
 use std::sync::Arc;
 use worn::Worn;
@@ -34,13 +36,16 @@ pub(crate) struct ImuReconstructor3D {
     #[var(set = set_model)]
     model: Option<Gd<ImuModel>>,
 
-    /// Where the samples come from, for example a `ReplayImuSource`. May be empty when a script pushes them.
+    /// Where the samples come from: a `PhoneImuSource`, `SerialImuSource`, `NetworkImuSource`, `DeviceImuSource` or `ReplayImuSource`. Live ones are opened in the game, not in the
+    /// editor, and drive one node each. May be empty when a script pushes samples.
     #[export]
-    source: Option<Gd<ReplayImuSource>>,
+    #[var(hint = RESOURCE_TYPE, hint_string = imu_source::CLASSES)]
+    source: Option<Gd<Resource>>,
 
     /// Where the samples of the second sensor come from, for a model of two.
     #[export]
-    second_source: Option<Gd<ReplayImuSource>>,
+    #[var(hint = RESOURCE_TYPE, hint_string = imu_source::CLASSES)]
+    second_source: Option<Gd<Resource>>,
 
     /// How the sensors are worn.
     #[export]
@@ -113,12 +118,12 @@ impl ISkeletonModifier3D for ImuReconstructor3D {
 
     fn get_configuration_warnings(&self) -> PackedStringArray {
         let mut problems = PackedStringArray::new();
-        let found = [
-            self.prepared().err(),
-            source_problem(self.source.as_ref()),
-            source_problem(self.second_source.as_ref()),
-        ];
-        for problem in found.into_iter().flatten() {
+        for problem in self
+            .prepared()
+            .err()
+            .into_iter()
+            .chain(self.source_problems())
+        {
             problems.push(&GString::from(&problem));
         }
         match self.base().get_skeleton() {
@@ -184,6 +189,45 @@ impl ImuReconstructor3D {
         }
     }
 
+    /// Turns the body by an angle, in radians, to the left: for steering by stick where the player cannot turn.
+    #[func]
+    fn turn(&mut self, angle: f64) {
+        if let Some(session) = &mut self.session {
+            let heading = session.reconstructor.heading() + angle as f32;
+            session.reconstructor.reset_heading(heading);
+        }
+    }
+
+    /// Forgets how the sensors are worn, and finds it out anew: when they have moved. The character stands until samples come.
+    #[func]
+    fn forget_mounting(&mut self) {
+        if let Some(session) = &mut self.session {
+            session.forget_mountings();
+        }
+    }
+
+    /// How old the newest sample of the live sensors is when the pose is made, in seconds; 0 for others.
+    #[func]
+    fn get_latency(&self) -> f64 {
+        let sensors = self.session.iter().flat_map(|session| &session.sensors);
+        sensors.map(Worn::latency_secs).fold(0.0, f64::max)
+    }
+
+    /// Records what a sensor gives from now on, into a file that a `ReplayImuSource` plays; tells whether the file can be made.
+    #[func]
+    fn start_recording(&mut self, path: GString, #[opt(default = 0)] sensor: i64) -> bool {
+        let path = String::from(path);
+        let path = ProjectSettings::singleton().globalize_path(path.as_str());
+        let worn = self.worn_mut(sensor);
+        worn.is_some_and(|worn| worn.start_recording(&path.to_string()))
+    }
+
+    /// Ends a recording and gives its file its name; tells whether all of it was written.
+    #[func]
+    fn stop_recording(&mut self, #[opt(default = 0)] sensor: i64) -> bool {
+        self.worn_mut(sensor).is_some_and(Worn::stop_recording)
+    }
+
     /// What the body does: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
     #[func]
     fn get_behaviour(&self) -> StringName {
@@ -238,6 +282,18 @@ impl ImuReconstructor3D {
 }
 
 impl ImuReconstructor3D {
+    fn worn_mut(&mut self, sensor: i64) -> Option<&mut Worn> {
+        let sensor = usize::try_from(sensor).ok()?;
+        self.session.as_mut()?.sensors.get_mut(sensor)
+    }
+
+    /// What is wrong with the sources' settings.
+    fn source_problems(&self) -> Vec<String> {
+        let sources = [&self.source, &self.second_source];
+        let sources = sources.into_iter().flatten();
+        sources.filter_map(imu_source::problem).collect()
+    }
+
     fn restart(&mut self) {
         self.session = None;
         self.reported = None;
@@ -269,6 +325,9 @@ impl ImuReconstructor3D {
             return Ok(session);
         }
         let (character, binding) = self.bind(skeleton)?;
+        for problem in self.source_problems() {
+            report::tell(&self.base_mut(), &problem);
+        }
         let reconstructor = Reconstructor::new(&prepared, &binding.body, &ReconConfig::default())
             .map_err(|error| error.to_string())?;
         let origin = GroundTransform {
@@ -292,9 +351,9 @@ impl ImuReconstructor3D {
         let in_editor = Engine::singleton().is_editor_hint();
         let delta = if in_editor { 0.0 } else { delta.max(0.0) };
         let sources = [self.source.clone(), self.second_source.clone()];
-        for (sensor, source) in sources.into_iter().enumerate() {
-            if let Some(source) = source.filter(|_| !in_editor) {
-                session.replay(sensor, &source.bind(), delta);
+        for (sensor, source) in sources.iter().enumerate() {
+            if let Some(source) = source.as_ref().filter(|_| !in_editor) {
+                session.hear(sensor, imu_source::hear(source), delta);
             }
         }
         if self.mounting == ImuMounting::Auto {
@@ -329,6 +388,7 @@ impl ImuReconstructor3D {
         for (side, landing) in Side::BOTH.into_iter().zip(landings) {
             if let Some(landing) = landing {
                 let place = convert::vector3(world_from_start.transform_point3(landing));
+                sources.iter().flatten().for_each(imu_source::footstep);
                 self.signals()
                     .footstep()
                     .emit(&StringName::from(side.name()), place);
@@ -347,10 +407,6 @@ impl ImuReconstructor3D {
     }
 }
 
-fn source_problem(source: Option<&Gd<ReplayImuSource>>) -> Option<String> {
-    source?.bind().recording().err()
-}
-
 impl Session {
     fn push(&mut self, sensor: usize, sample: ImuSample) {
         self.reconstructor.push(sensor, sample);
@@ -361,16 +417,19 @@ impl Session {
         }
     }
 
-    fn replay(&mut self, sensor: usize, source: &ReplayImuSource, delta: f64) {
-        let Ok(recording) = source.recording() else {
-            return;
-        };
+    /// Takes what a source gives in a frame.
+    fn hear(&mut self, sensor: usize, heard: Heard, delta: f64) {
         let reconstructor = &mut self.reconstructor;
         let worn = &mut self.sensors[sensor];
-        worn.play(&recording);
-        worn.replay(delta, source.repeats(), |sample| {
-            reconstructor.push(sensor, sample);
-        });
+        worn.hear(heard, delta, |sample| reconstructor.push(sensor, sample));
+    }
+
+    fn forget_mountings(&mut self) {
+        for (sensor, worn) in self.sensors.iter_mut().enumerate() {
+            worn.forget_mounting();
+            self.reconstructor.set_mounting(sensor, Quat::IDENTITY);
+        }
+        self.reconstructor.reset();
     }
 
     fn find_mountings(&mut self) {

@@ -2,7 +2,8 @@
 //!
 //! `gait_model` is the resource that holds a trained walk, `gait_style` one that holds a style of it, `gait_generator_3d` the
 //! node that walks a character with them, `foot_placement_3d` the one that puts feet on uneven ground, `gait_crowd_3d` the one that walks thousands;
-//! `imu_model` is the resource that knows what sensors mean, `replay_imu_source` one that plays their recordings, `imu_reconstructor_3d` the node that they drive; `loaded` is what a resource made of a file.
+//! `imu_model` is the resource that knows what sensors mean, `replay_imu_source` one that plays their recordings,
+//! `serial_`, `network_`, `phone_` and `device_imu_source` those that hear them live, `imu_source` what all of these are to `imu_reconstructor_3d`, the node that they drive; `loaded` is what a resource made of a file.
 //! Between the engine and the runtime stand `rest_body` (proportions of any character from its rest pose),
 //! `skeleton_binding` (joints to bones and back), `character` and `travel` (which node travels, and how), `physics_ground` (what feet stand on) and `convert` (vectors).
 //!
@@ -20,6 +21,7 @@
 
 mod character;
 mod convert;
+mod device_imu_source;
 #[cfg(feature = "editor")]
 mod editor_plugin;
 mod foot_placement_3d;
@@ -31,11 +33,15 @@ mod gait_style;
 mod import_plugin;
 mod imu_model;
 mod imu_reconstructor_3d;
+mod imu_source;
 mod loaded;
+mod network_imu_source;
+mod phone_imu_source;
 mod physics_ground;
 mod replay_imu_source;
 mod report;
 mod rest_body;
+mod serial_imu_source;
 mod skeleton_binding;
 mod travel;
 mod walk_source;

@@ -1,8 +1,13 @@
-//! One sensor as it is worn: what plays it, and how its axes lie.
+//! One sensor as it is worn: what is heard of it, and how its axes lie.
 
+use crate::imu_source::Heard;
+use footfall_imu::live::Device;
+use footfall_imu::live::device::now_secs;
+use footfall_imu::live::recorder::Recorder;
 use footfall_imu::{ImuRecording, ImuSample};
 use footfall_recon::{Mounting, Prepared, TrackerConfig, find_mounting};
 use glam::Quat;
+use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
@@ -20,6 +25,10 @@ const MOST_SAMPLES: usize = 4096;
 #[derive(Debug, Default)]
 pub(super) struct Worn {
     replay: Option<Replay>,
+    device: Option<Device>,
+    /// When the newest sample of a live sensor was measured, by our clock.
+    live_secs: Option<f64>,
+    recorder: Option<Recorder>,
     kept: Kept,
     looked_at_secs: Option<f64>,
     worker: Option<JoinHandle<Option<Mounting>>>,
@@ -66,9 +75,83 @@ struct Replay {
     next: usize,
 }
 
+impl Replay {
+    /// The next sample, when its time has come.
+    fn next_sample(&mut self, repeats: bool) -> Option<ImuSample> {
+        let samples = &self.recording.samples;
+        let length = self.recording.duration_secs();
+        if self.next == samples.len() && repeats {
+            // One sample's time lies between the last and the first again.
+            self.round_secs += length + length / (samples.len() - 1) as f64;
+            self.next = 0;
+        }
+        let sample = samples.get(self.next)?;
+        let time_secs = self.round_secs + sample.time_secs - self.recording.start_secs();
+        if time_secs > self.played_secs {
+            return None;
+        }
+        self.next += 1;
+        Some(ImuSample {
+            time_secs,
+            ..*sample
+        })
+    }
+}
+
 impl Worn {
+    /// Gives the samples of the time that passes, and keeps them.
+    pub(super) fn hear(&mut self, heard: Heard, dt_secs: f64, mut give: impl FnMut(ImuSample)) {
+        let mut taken = |worn: &mut Self, sample: ImuSample| {
+            worn.keep(sample);
+            give(sample);
+        };
+        match heard {
+            Heard::Recording(recording, repeats) => {
+                self.play(&recording);
+                self.replay(dt_secs, repeats, taken);
+            }
+            Heard::Device(device) => {
+                if !self.device.as_ref().is_some_and(|known| known.is(&device)) {
+                    // What came while nobody listened is past.
+                    device.take(|_| {});
+                    self.device = Some(device.clone());
+                }
+                device.take(|sample| {
+                    self.live_secs = Some(sample.time_secs);
+                    taken(self, sample);
+                });
+            }
+            Heard::Now(sample) => {
+                self.live_secs = Some(sample.time_secs);
+                taken(self, sample);
+            }
+            Heard::Nothing => {}
+        }
+    }
+
+    /// How old the newest sample of a live sensor is, seconds.
+    pub(super) fn latency_secs(&self) -> f64 {
+        self.live_secs.map_or(0.0, |at| (now_secs() - at).max(0.0))
+    }
+
+    pub(super) fn start_recording(&mut self, path: &str) -> bool {
+        self.recorder = Recorder::new(Path::new(path)).ok();
+        self.recorder.is_some()
+    }
+
+    pub(super) fn stop_recording(&mut self) -> bool {
+        self.recorder
+            .take()
+            .is_some_and(|recorder| recorder.finish().is_ok())
+    }
+
+    pub(super) fn forget_mounting(&mut self) {
+        (self.mounting, self.worker, self.looked_at_secs) = (None, None, None);
+        self.kept = Kept::default();
+    }
+
     /// Plays a recording from its beginning, unless it plays already.
-    pub(super) fn play(&mut self, recording: &Arc<ImuRecording>) {
+    fn play(&mut self, recording: &Arc<ImuRecording>) {
         let plays = |replay: &Replay| Arc::ptr_eq(&replay.recording, recording);
         if !self.replay.as_ref().is_some_and(plays) {
             self.replay = Some(Replay {
@@ -80,42 +163,27 @@ impl Worn {
         }
     }
 
-    /// Gives the samples of the time that passes, and keeps them.
-    pub(super) fn replay(&mut self, dt_secs: f64, repeats: bool, mut give: impl FnMut(ImuSample)) {
-        let Some(replay) = &mut self.replay else {
+    /// Gives the recording's samples of the time that passes.
+    fn replay(&mut self, dt_secs: f64, repeats: bool, mut give: impl FnMut(&mut Self, ImuSample)) {
+        let Some(mut replay) = self.replay.take() else {
             return;
         };
         replay.played_secs += dt_secs;
-        let samples = &replay.recording.samples;
-        let start = replay.recording.start_secs();
-        let length = replay.recording.duration_secs();
-        loop {
-            let Some(sample) = samples.get(replay.next) else {
-                if !repeats {
-                    return;
-                }
-                // One sample's time lies between the last and the first again.
-                replay.round_secs += length + length / (samples.len() - 1) as f64;
-                replay.next = 0;
-                continue;
-            };
-            let time_secs = replay.round_secs + sample.time_secs - start;
-            if time_secs > replay.played_secs {
-                return;
-            }
-            replay.next += 1;
-            let sample = ImuSample {
-                time_secs,
-                ..*sample
-            };
-            self.kept.push(sample);
-            give(sample);
+        while let Some(sample) = replay.next_sample(repeats) {
+            give(self, sample);
         }
+        self.replay = Some(replay);
     }
 
-    /// Keeps a sample for finding the mounting.
+    /// Keeps a sample for finding the mounting, and for the recording.
     pub(super) fn keep(&mut self, sample: ImuSample) {
         self.kept.push(sample);
+        if let Some(recorder) = &mut self.recorder
+            && recorder.push(sample).is_err()
+        {
+            // The disk is full: what was written stays, and `stop_recording` tells.
+            self.recorder = None;
+        }
     }
 
     /// Looks for the mounting on another thread, now and then; gives what was found, once.

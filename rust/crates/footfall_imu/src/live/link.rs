@@ -122,9 +122,14 @@ impl Link {
 impl Drop for Link {
     fn drop(&mut self) {
         self.shared.stop.store(true, Ordering::Relaxed);
-        if let Some(thread) = self.thread.take() {
-            // A thread that died has told so already.
-            drop(thread.join());
+        let Some(thread) = self.thread.take() else {
+            return;
+        };
+        // A port is free again when this returns; one that the system holds up must not hold up a game.
+        let mut waited = Duration::ZERO;
+        while !thread.is_finished() && waited < 3 * LOOK_EVERY {
+            std::thread::sleep(LOOK_EVERY / 10);
+            waited += LOOK_EVERY / 10;
         }
     }
 }

@@ -1,0 +1,237 @@
+//! `SerialImuSource`: a sensor on a serial port.
+
+use crate::imu_source::{Live, LiveSource, Opened, SharedPorts, live_source_api};
+use footfall_imu::live::Link;
+use footfall_imu::live::serial::port::{self, SerialConfig};
+use footfall_imu::live::serial::{ForceUnit, RateUnit, SerialFormat, TextFormat, TimeUnit};
+use godot::classes::{IResource, Resource};
+use godot::prelude::*;
+use godot::register::info::PropertyHint;
+use godot::register::info::PropertyInfo;
+
+static PORTS: SharedPorts<SerialConfig, Link> = SharedPorts::new();
+
+/// Hears an inertial sensor on a serial port: USB or Bluetooth.
+///
+/// WitMotion, x-IMU3, Xsens MTi and boards that print lines of text are recognised, and so is their baud rate; a Yost 3-Space has to be chosen as `format`.
+/// A port that is unplugged is opened again. On Linux the user has to be in the group `dialout`.
+#[derive(GodotClass)]
+#[class(tool, init, base = Resource)]
+pub(crate) struct SerialImuSource {
+    /// The port, such as `/dev/ttyUSB0` or `COM3`; empty for the first one on USB.
+    #[export]
+    #[var(set = set_port)]
+    port: GString,
+
+    /// Bits a second; 0 to find out.
+    #[export(range = (0.0, 4_000_000.0, 1.0))]
+    #[var(set = set_baud_rate)]
+    baud_rate: i64,
+
+    /// What the device speaks.
+    #[export]
+    #[var(set = set_format)]
+    format: SerialImuFormat,
+
+    /// Names of the columns of lines of text, such as `t,ax,ay,az,gx,gy,gz`; empty when the device prints a header or this order.
+    ///
+    /// A name may tell its unit, as in `ax_g`, `gx_dps`, `time_ms`. Units that are not told are guessed.
+    #[export]
+    #[var(set = set_columns)]
+    columns: GString,
+
+    /// Unit of the acceleration in lines of text that do not tell it.
+    #[export]
+    #[var(set = set_force_unit)]
+    force_unit: ImuForceUnit,
+
+    /// Unit of the angular rate in lines of text that do not tell it.
+    #[export]
+    #[var(set = set_rate_unit)]
+    rate_unit: ImuRateUnit,
+
+    /// Unit of time in lines of text that do not tell it.
+    #[export]
+    #[var(set = set_time_unit)]
+    time_unit: ImuTimeUnit,
+
+    live: Live,
+    base: Base<Resource>,
+}
+
+/// What a serial device speaks.
+#[derive(GodotConvert, Var, Export, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[godot(via = i64)]
+#[repr(i32)]
+pub(crate) enum SerialImuFormat {
+    #[default]
+    Auto = 0,
+    WitMotion = 1,
+    XImu3 = 2,
+    XsensMTi = 3,
+    Yost3Space = 4,
+    Text = 5,
+}
+
+/// A unit of acceleration.
+#[derive(GodotConvert, Var, Export, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[godot(via = i64)]
+#[repr(i32)]
+pub(crate) enum ImuForceUnit {
+    #[default]
+    Auto = 0,
+    MetresPerSecondSquared = 1,
+    G = 2,
+    MilliG = 3,
+    Mpu6050Counts = 4,
+}
+
+/// A unit of angular rate.
+#[derive(GodotConvert, Var, Export, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[godot(via = i64)]
+#[repr(i32)]
+pub(crate) enum ImuRateUnit {
+    #[default]
+    Auto = 0,
+    RadiansPerSecond = 1,
+    DegreesPerSecond = 2,
+    Mpu6050Counts = 3,
+}
+
+/// A unit of time.
+#[derive(GodotConvert, Var, Export, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[godot(via = i64)]
+#[repr(i32)]
+pub(crate) enum ImuTimeUnit {
+    #[default]
+    Auto = 0,
+    Seconds = 1,
+    Milliseconds = 2,
+    Microseconds = 3,
+}
+
+#[godot_api]
+impl IResource for SerialImuSource {
+    fn on_validate_property(&self, property: &mut PropertyInfo) {
+        if property.property_name == "port" {
+            let names: Vec<String> = port::ports().into_iter().map(|port| port.name).collect();
+            property.hint_info.hint = PropertyHint::ENUM_SUGGESTION;
+            property.hint_info.hint_string = GString::from(&names.join(","));
+        }
+    }
+}
+
+#[godot_api]
+impl SerialImuSource {
+    /// The serial ports of this machine, those on USB first.
+    #[func]
+    fn list_ports() -> PackedStringArray {
+        port::ports()
+            .iter()
+            .map(|port| GString::from(&port.name))
+            .collect()
+    }
+
+    #[func]
+    fn set_port(&mut self, port: GString) {
+        self.port = port;
+        self.restart();
+    }
+
+    #[func]
+    fn set_baud_rate(&mut self, baud_rate: i64) {
+        self.baud_rate = baud_rate;
+        self.restart();
+    }
+
+    #[func]
+    fn set_format(&mut self, format: SerialImuFormat) {
+        self.format = format;
+        self.restart();
+    }
+
+    #[func]
+    fn set_columns(&mut self, columns: GString) {
+        self.columns = columns;
+        self.restart();
+    }
+
+    #[func]
+    fn set_force_unit(&mut self, force_unit: ImuForceUnit) {
+        self.force_unit = force_unit;
+        self.restart();
+    }
+
+    #[func]
+    fn set_rate_unit(&mut self, rate_unit: ImuRateUnit) {
+        self.rate_unit = rate_unit;
+        self.restart();
+    }
+
+    #[func]
+    fn set_time_unit(&mut self, time_unit: ImuTimeUnit) {
+        self.time_unit = time_unit;
+        self.restart();
+    }
+}
+
+live_source_api!(SerialImuSource);
+
+impl SerialImuSource {
+    fn restart(&mut self) {
+        self.live.close();
+        self.base_mut().emit_changed();
+    }
+}
+
+impl LiveSource for SerialImuSource {
+    fn live(&self) -> &Live {
+        &self.live
+    }
+
+    /// Another kind of device at the same port comes after the first.
+    fn place(&self) -> usize {
+        let last = self.live.with(|opened| opened.link().devices().len());
+        last.unwrap_or_default().saturating_sub(1)
+    }
+
+    fn opened(&self) -> Result<Opened, String> {
+        let columns = self.columns.to_string();
+        let config = SerialConfig {
+            port: self.port.to_string(),
+            baud_rate: u32::try_from(self.baud_rate).ok().filter(|rate| *rate > 0),
+            format: match self.format {
+                SerialImuFormat::Auto => None,
+                SerialImuFormat::WitMotion => Some(SerialFormat::WitMotion),
+                SerialImuFormat::XImu3 => Some(SerialFormat::XImu3),
+                SerialImuFormat::XsensMTi => Some(SerialFormat::Mti),
+                SerialImuFormat::Yost3Space => Some(SerialFormat::ThreeSpace),
+                SerialImuFormat::Text => Some(SerialFormat::Text),
+            },
+            text: TextFormat {
+                columns: (!columns.is_empty()).then_some(columns),
+                time: match self.time_unit {
+                    ImuTimeUnit::Auto => None,
+                    ImuTimeUnit::Seconds => Some(TimeUnit::Second),
+                    ImuTimeUnit::Milliseconds => Some(TimeUnit::Millisecond),
+                    ImuTimeUnit::Microseconds => Some(TimeUnit::Microsecond),
+                },
+                force: match self.force_unit {
+                    ImuForceUnit::Auto => None,
+                    ImuForceUnit::MetresPerSecondSquared => Some(ForceUnit::MetrePerSecondSquared),
+                    ImuForceUnit::G => Some(ForceUnit::G),
+                    ImuForceUnit::MilliG => Some(ForceUnit::MilliG),
+                    ImuForceUnit::Mpu6050Counts => Some(ForceUnit::Counts),
+                },
+                rate: match self.rate_unit {
+                    ImuRateUnit::Auto => None,
+                    ImuRateUnit::RadiansPerSecond => Some(RateUnit::RadianPerSecond),
+                    ImuRateUnit::DegreesPerSecond => Some(RateUnit::DegreePerSecond),
+                    ImuRateUnit::Mpu6050Counts => Some(RateUnit::Counts),
+                },
+            },
+        };
+        let link = PORTS.get(config.clone(), || Ok::<_, String>(port::listen(config)))?;
+        Ok(Opened::Link(link))
+    }
+}
