@@ -10,6 +10,7 @@ const SCENES: Array[Array] = [
 	["res://scenes/third_person/third_person.tscn", "Third person", "Walk the course with keyboard or gamepad"],
 	["res://scenes/own_character/own_character.tscn", "Your own character", "Any humanoid from a .glb file walks"],
 	["res://scenes/sensor/sensor.tscn", "One sensor", "A whole body from a sensor on one foot"],
+	["res://scenes/live_sensor/live_sensor.tscn", "You", "A phone or a sensor that you wear drives the character"],
 	["res://scenes/switching/switching.tscn", "Two linear systems", "Walkers of a model of ten kilobytes"],
 ]
 

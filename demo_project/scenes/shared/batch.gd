@@ -5,7 +5,7 @@ extends Node
 ## `--frames N` runs N frames, checks what the scene promises, prints `DEMO OK` and quits; the exit code is 1 when it did not keep it.
 ##
 ## The scene tells what is to be seen and checked: `close_ups()`, name → [place, heading and height in degrees, distance in metres] of
-## the camera; `begin_check()`; and `problems(frames)`, what is wrong after so many of them.
+## the camera; `FRAMES_BEFORE_PICTURES`, when half a second is too early; `begin_check()`; and `problems(frames)`, what is wrong after so many of them.
 ##
 ## Start Godot with `--fixed-fps 60` for both, so that time runs by frames.
 
@@ -27,7 +27,7 @@ func _take_pictures(folder: String) -> void:
 	DirAccess.make_dir_recursive_absolute(folder)
 	# Drawn in software a frame takes a second: only what is saved is drawn.
 	RenderingServer.render_loop_enabled = false
-	await _frames(30)
+	await _frames(_scene.FRAMES_BEFORE_PICTURES if &"FRAMES_BEFORE_PICTURES" in _scene else 30)
 	for picture: int in PICTURES:
 		await _save(folder.path_join("frame_%04d.png" % picture))
 		await _frames(FRAMES_BETWEEN)

@@ -5,7 +5,7 @@ use anyhow::{Context as _, Result, bail};
 use std::fs;
 
 /// The demo's scenes by topic.
-pub(crate) const SCENES: [(&str, &str); 8] = [
+pub(crate) const SCENES: [(&str, &str); 9] = [
     ("walk", "res://scenes/walk/walk.tscn"),
     ("styles", "res://scenes/styles/styles.tscn"),
     ("uneven", "res://scenes/uneven/uneven.tscn"),
@@ -19,6 +19,7 @@ pub(crate) const SCENES: [(&str, &str); 8] = [
         "res://scenes/own_character/own_character.tscn",
     ),
     ("sensor", "res://scenes/sensor/sensor.tscn"),
+    ("live_sensor", "res://scenes/live_sensor/live_sensor.tscn"),
     ("switching", "res://scenes/switching/switching.tscn"),
 ];
 

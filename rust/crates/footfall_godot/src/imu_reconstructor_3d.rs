@@ -10,7 +10,7 @@ use crate::report;
 use crate::skeleton_binding::SkeletonBinding;
 use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose, Side};
-use footfall_imu::ImuSample;
+use footfall_imu::{GRAVITY_MPS2, ImuSample};
 use footfall_model::imu_model::MAX_SENSORS;
 use footfall_recon::{Prepared, ReconConfig, Reconstructor, SensorState};
 use footfall_synth::GroundTransform;
@@ -80,7 +80,7 @@ pub(crate) struct ImuReconstructor3D {
 #[godot(via = i64)]
 #[repr(i32)]
 pub(crate) enum ImuMounting {
-    /// Anyhow: its axes are found from how it moves, after about four seconds of motion.
+    /// Anyhow: its axes are found from how it moves, after about four seconds of motion. Until then the character stands.
     #[default]
     Auto = 0,
     /// With its axes parallel to the body's in the T-pose: x to the left, y up, z forward.
@@ -93,6 +93,8 @@ struct Session {
     prepared: Arc<Prepared>,
     traveller: Traveller,
     sensors: [Worn; MAX_SENSORS],
+    /// Whether it is found out how sensors are worn.
+    finds_mountings: bool,
     pose: Pose,
     behaviour: Behaviour,
     state: SensorState,
@@ -340,6 +342,7 @@ impl ImuReconstructor3D {
             reconstructor,
             prepared,
             sensors: Default::default(),
+            finds_mountings: self.mounting == ImuMounting::Auto,
             behaviour: Behaviour::Stand,
             state: SensorState::Waiting,
         })
@@ -356,7 +359,7 @@ impl ImuReconstructor3D {
                 session.hear(sensor, imu_source::hear(source), delta);
             }
         }
-        if self.mounting == ImuMounting::Auto {
+        if session.finds_mountings {
             session.find_mountings();
         }
         session.reconstructor.step(delta as f32, &mut session.pose);
@@ -407,21 +410,38 @@ impl ImuReconstructor3D {
     }
 }
 
+/// A sample as the reconstructor takes it: as long as nobody knows how the sensor is worn, the person is taken to stand.
+fn understood(sample: ImuSample, unknown_mounting: bool) -> ImuSample {
+    if !unknown_mounting || !sample.is_finite() {
+        return sample;
+    }
+    ImuSample {
+        force: Vec3::Y * GRAVITY_MPS2,
+        rate: Vec3::ZERO,
+        ..sample
+    }
+}
+
 impl Session {
     fn push(&mut self, sensor: usize, sample: ImuSample) {
-        self.reconstructor.push(sensor, sample);
-        if let Some(worn) = self.sensors.get_mut(sensor)
-            && sample.is_finite()
-        {
+        let Some(worn) = self.sensors.get_mut(sensor) else {
+            return;
+        };
+        if sample.is_finite() {
             worn.keep(sample);
         }
+        let understood = understood(sample, self.finds_mountings && worn.mounting.is_none());
+        self.reconstructor.push(sensor, understood);
     }
 
     /// Takes what a source gives in a frame.
     fn hear(&mut self, sensor: usize, heard: Heard, delta: f64) {
         let reconstructor = &mut self.reconstructor;
         let worn = &mut self.sensors[sensor];
-        worn.hear(heard, delta, |sample| reconstructor.push(sensor, sample));
+        let unknown = self.finds_mountings && worn.mounting.is_none();
+        worn.hear(heard, delta, |sample| {
+            reconstructor.push(sensor, understood(sample, unknown));
+        });
     }
 
     fn forget_mountings(&mut self) {

@@ -1,0 +1,132 @@
+class_name ConnectPanel
+extends PanelContainer
+## Where the player connects a sensor: what kind, where it is worn, what arrives, and what to do next.
+
+signal source_chosen(source: Resource, kind: Kind)
+signal place_chosen(place: int)
+signal calibrate_pressed
+signal ahead_pressed
+signal menu_pressed
+
+enum Kind { PHONE, SERIAL, APPS, SENSOR_LOGGER, SENSOR_SERVER, THIS_DEVICE, STAND_IN }
+
+const NAMES: Dictionary[Kind, String] = {
+	Kind.PHONE: "A phone's browser: scan the code",
+	Kind.SERIAL: "A sensor on a serial port (USB, Bluetooth)",
+	Kind.APPS: "owoTrack, SlimeVR, ZIG SIM, GyrOSC … over UDP",
+	Kind.SENSOR_LOGGER: "The app Sensor Logger over HTTP",
+	Kind.SENSOR_SERVER: "The app SensorServer at an address",
+	Kind.THIS_DEVICE: "This device's own sensors",
+	Kind.STAND_IN: "None: a walker out of sight wears one",
+}
+const STAND_IN_PORT := 47100
+
+var _source: Resource
+var _kind := Kind.PHONE
+var _url := ""
+
+
+func _ready() -> void:
+	for kind: Kind in NAMES:
+		%Kind.add_item(NAMES[kind], kind)
+	%Kind.item_selected.connect(func(index: int) -> void: choose(%Kind.get_item_id(index) as Kind))
+	%Worn.item_selected.connect(func(index: int) -> void: place_chosen.emit(index))
+	%Ports.item_selected.connect(func(index: int) -> void: _source.port = %Ports.get_item_text(index))
+	%Address.text_submitted.connect(func(address: String) -> void:
+		_source.address = address
+		_source.start())
+	%Calibrate.pressed.connect(func() -> void: calibrate_pressed.emit())
+	%Ahead.pressed.connect(func() -> void: ahead_pressed.emit())
+	%Menu.pressed.connect(func() -> void: menu_pressed.emit())
+
+
+## Connects to another kind of sensor.
+func choose(kind: Kind) -> void:
+	_kind = kind
+	%Kind.select(%Kind.get_item_index(kind))
+	if _source != null and _source.has_method(&"stop"):
+		_source.stop()
+	_source = _make(kind)
+	_url = ""
+	%Signal.clear()
+	%Code.texture = null
+	%Code.visible = kind == Kind.PHONE
+	%Ports.visible = kind == Kind.SERIAL
+	%Address.visible = kind == Kind.SENSOR_SERVER
+	if kind == Kind.SERIAL:
+		%Ports.clear()
+		for port: String in SerialImuSource.list_ports():
+			%Ports.add_item(port)
+	if _source.has_method(&"start") and kind != Kind.SENSOR_SERVER:
+		_source.start()
+	source_chosen.emit(_source, kind)
+
+
+func _make(kind: Kind) -> Resource:
+	match kind:
+		Kind.PHONE:
+			return PhoneImuSource.new()
+		Kind.SERIAL:
+			return SerialImuSource.new()
+		Kind.THIS_DEVICE:
+			return DeviceImuSource.new()
+	var source := NetworkImuSource.new()
+	match kind:
+		Kind.SENSOR_LOGGER:
+			source.transport = NetworkImuSource.HTTP
+			source.port = 8080
+		Kind.SENSOR_SERVER:
+			source.transport = NetworkImuSource.WEB_SOCKET
+		Kind.STAND_IN:
+			source.port = STAND_IN_PORT
+	return source
+
+
+## What is known of the sensor; empty before it is heard.
+func sensor() -> Dictionary:
+	if _source is DeviceImuSource:
+		var force := -Input.get_accelerometer()
+		var heard := int(DeviceImuSource.is_available())
+		return {"samples": heard, "silent": 0.0, "rate": Engine.get_frames_per_second(), "lost": 0, "force": force, "rotation": Input.get_gyroscope(), "name": "this device"}
+	return _source.get_sensor_status()
+
+
+## What is told of the connection.
+func told() -> String:
+	if _source is DeviceImuSource:
+		return "" if DeviceImuSource.is_available() else "This device gives no motion: it has no sensors, or the project settings leave them off."
+	var message: String = _source.get_message()
+	return message.left(1).to_upper() + message.substr(1)
+
+
+func show_state(calibration: Calibration, driven: ImuReconstructor3D) -> void:
+	var known := sensor()
+	var heard: bool = not known.is_empty() and known.samples > 0
+	if heard:
+		%Signal.push(known.force, known.rotation)
+		%Figures.text = "%s: %.0f samples a second, %d lost" % [known.name, known.rate, known.lost]
+	else:
+		%Figures.text = "nothing is heard yet"
+	%Message.text = told()
+	%Message.visible = %Message.text != ""
+	%Step.text = Calibration.TOLD[calibration.now]
+	%Progress.value = calibration.progress
+	%Behaviour.text = "you %s" % driven.get_behaviour() if calibration.now == Calibration.Step.DONE else ""
+	if _kind == Kind.PHONE and not heard:
+		_show_code()
+	elif heard:
+		%Code.hide()
+
+
+func _show_code() -> void:
+	var url: String = _source.get_url()
+	if url == _url:
+		return
+	_url = url
+	%Code.texture = ImageTexture.create_from_image(_source.get_qr_code()) if url != "" else null
+	%Code.tooltip_text = url
+
+
+func _unhandled_key_input(event: InputEvent) -> void:
+	if event.is_pressed() and event.is_action(&"ui_cancel"):
+		visible = not visible
