@@ -22,6 +22,10 @@ use godot::prelude::*;
 use std::sync::Arc;
 use worn::Worn;
 
+/// Somebody has stood for so long before anything is heard: a second.
+const STANDING_SAMPLES: u32 = 50;
+const STANDING_RATE_HZ: f64 = 50.0;
+
 /// Drives a whole character from one or two inertial sensors on a person: walking, running, jumping, hopping, sidestepping.
 ///
 /// Add it under a `Skeleton3D` with humanoid bones, give it a `model` for the place at which the sensor is worn, and a `source`; or push samples of
@@ -95,6 +99,8 @@ struct Session {
     sensors: [Worn; MAX_SENSORS],
     /// Whether it is found out how sensors are worn.
     finds_mountings: bool,
+    /// How the body stands before anything is heard.
+    standing: Pose,
     pose: Pose,
     behaviour: Behaviour,
     state: SensorState,
@@ -339,6 +345,7 @@ impl ImuReconstructor3D {
         Ok(Session {
             pose: Pose::rest(&binding.body),
             traveller: Traveller::new(character, binding, origin),
+            standing: standing(&reconstructor),
             reconstructor,
             prepared,
             sensors: Default::default(),
@@ -365,6 +372,9 @@ impl ImuReconstructor3D {
         session.reconstructor.step(delta as f32, &mut session.pose);
         let landings = session.reconstructor.landings();
         let (position, heading) = session.reconstructor.split(&mut session.pose);
+        if session.reconstructor.sensor_state() == SensorState::Waiting {
+            session.pose.clone_from(&session.standing);
+        }
         let travel = session
             .traveller
             .go_to(GroundTransform { position, heading });
@@ -410,16 +420,35 @@ impl ImuReconstructor3D {
     }
 }
 
+/// What every sensor of a person measures who stands.
+fn standing_sample(time_secs: f64) -> ImuSample {
+    ImuSample {
+        time_secs,
+        force: Vec3::Y * GRAVITY_MPS2,
+        rate: Vec3::ZERO,
+    }
+}
+
+/// The pose, above the body's place, of somebody who stands.
+fn standing(reconstructor: &Reconstructor) -> Pose {
+    let mut own = reconstructor.clone();
+    let mut pose = Pose::default();
+    for n in 0..STANDING_SAMPLES {
+        for sensor in 0..MAX_SENSORS {
+            own.push(sensor, standing_sample(f64::from(n) / STANDING_RATE_HZ));
+        }
+        own.step((1.0 / STANDING_RATE_HZ) as f32, &mut pose);
+    }
+    own.split(&mut pose);
+    pose
+}
+
 /// A sample as the reconstructor takes it: as long as nobody knows how the sensor is worn, the person is taken to stand.
 fn understood(sample: ImuSample, unknown_mounting: bool) -> ImuSample {
     if !unknown_mounting || !sample.is_finite() {
         return sample;
     }
-    ImuSample {
-        force: Vec3::Y * GRAVITY_MPS2,
-        rate: Vec3::ZERO,
-        ..sample
-    }
+    standing_sample(sample.time_secs)
 }
 
 impl Session {
