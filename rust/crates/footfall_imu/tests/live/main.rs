@@ -10,6 +10,7 @@
     reason = "the form of tungstenite's callback"
 )]
 
+mod browser;
 mod encode;
 mod formats;
 mod network;
