@@ -4,6 +4,7 @@ use crate::encode;
 use crate::signal::{check_same, sample, samples, wait_for, wait_for_samples};
 use footfall_imu::ImuSample;
 use footfall_imu::live::LinkState;
+use footfall_imu::live::device::now_secs;
 use footfall_imu::live::serial::SerialFormat;
 use footfall_imu::live::serial::port::{SerialConfig, listen};
 use serialport::{SerialPort as _, TTYPort};
@@ -11,7 +12,7 @@ use std::io::{Read as _, Write as _};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The device's end, and the name of the other.
 fn terminal() -> (TTYPort, String) {
@@ -180,4 +181,75 @@ fn a_port_that_is_not_there_is_named_and_tried_again() {
     assert_eq!(link.devices().len(), 1);
     drop(link);
     sender.stop();
+}
+
+/// Memory of this process, bytes; `None` where the system does not tell.
+fn memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    let pages: u64 = text.split_whitespace().nth(1)?.parse().ok()?;
+    Some(pages * 4096)
+}
+
+/// Five seconds, or as many as `FOOTFALL_SOAK_SECS` says: an hour shows what grows or drifts.
+#[test]
+fn a_long_session_neither_loses_drifts_nor_grows() {
+    const RATE_HZ: f64 = 200.0;
+    let secs = std::env::var("FOOTFALL_SOAK_SECS")
+        .ok()
+        .and_then(|secs| secs.parse().ok());
+    let secs: f64 = secs.unwrap_or(5.0);
+    let (mut terminal, name) = terminal();
+    let link = listen(SerialConfig {
+        port: name,
+        baud_rate: Some(921_600),
+        format: Some(SerialFormat::XImu3),
+        ..SerialConfig::default()
+    });
+    let heard = wait_for("the port is open", || link.device(0));
+    let begin = Instant::now();
+    let count = (secs * RATE_HZ) as u32;
+    let (mut taken, mut late, mut before) = (0_u32, 0.0_f64, None);
+    for n in 0..count {
+        let time_secs = f64::from(n) / RATE_HZ;
+        // The device's clock is fast by 50 parts in a million.
+        terminal
+            .write_all(&encode::ximu3_binary(&sample(time_secs * (1.0 + 50e-6))))
+            .unwrap();
+        let due = Duration::from_secs_f64(time_secs);
+        if let Some(wait) = due.checked_sub(begin.elapsed()) {
+            std::thread::sleep(wait);
+        }
+        let now = now_secs();
+        heard.take(|sample| {
+            taken += 1;
+            if taken > 400 {
+                late = late.max((now - sample.time_secs).abs());
+            }
+        });
+        if n == count / 2 {
+            before = memory();
+        }
+    }
+    wait_for("the last sample", || {
+        heard.take(|_| taken += 1);
+        (taken == count).then_some(())
+    });
+    let status = heard.status();
+    assert_eq!(
+        (
+            status.lost,
+            status.rejected,
+            status.overflowed,
+            link.garbage()
+        ),
+        (0, 0, 0, 0)
+    );
+    // Times stay those of our clock, give or take what the system makes a thread wait.
+    assert!(late < 0.25, "a sample was {late} s off");
+    if let (Some(before), Some(after)) = (before, memory()) {
+        assert!(
+            after < before + 4_000_000,
+            "memory grew from {before} to {after} bytes"
+        );
+    }
 }

@@ -58,10 +58,12 @@ pub(super) async fn serve(link: LinkWriter, config: PhoneConfig, slots: Arc<Slot
     };
     if let Ok(address) = listener.local_addr() {
         link.set_address(address);
-        link.set_state(LinkState::Listening(format!(
-            "waiting for a phone on TCP port {}",
-            address.port()
-        )));
+        let waiting = if own_address().is_loopback() {
+            "this machine is in no local network, so no phone can reach it".to_owned()
+        } else {
+            format!("waiting for a phone on TCP port {}", address.port())
+        };
+        link.set_state(LinkState::Listening(waiting));
     }
     let router = Router::new()
         .route("/p/{code}", get(page))

@@ -38,6 +38,7 @@ pub(in crate::live) struct Text {
     setting: TextFormat,
     columns: Option<Columns>,
     scale: Option<Scale>,
+    /// Rows whose units are not known yet.
     waiting: Vec<Row>,
     /// The first line of a stream may be the end of one.
     begun: bool,
@@ -90,9 +91,10 @@ impl Text {
             return true;
         }
         self.waiting.push(row);
-        if self.waiting.len() >= GUESS_AFTER {
-            let units = self.columns.as_ref().map(Columns::units);
-            let scale = Scale::new(&self.setting, units.unwrap_or_default(), &self.waiting);
+        let units = self.columns.as_ref().map(Columns::units);
+        let units = units.unwrap_or_default();
+        if self.waiting.len() >= GUESS_AFTER || units.are_told(&self.setting, &row) {
+            let scale = Scale::new(&self.setting, units, &self.waiting);
             for row in self.waiting.drain(..) {
                 give(scale.reading(&row));
             }

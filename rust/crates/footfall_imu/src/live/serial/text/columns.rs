@@ -1,5 +1,6 @@
 //! Columns of lines of numbers, and JSON objects whose members are such columns.
 
+use super::TextFormat;
 use super::units::{ForceUnit, RateUnit, TimeUnit};
 
 /// What a line holds, in its own units.
@@ -16,6 +17,16 @@ pub(super) struct Units {
     pub(super) time: Option<TimeUnit>,
     pub(super) force: Option<ForceUnit>,
     pub(super) rate: Option<RateUnit>,
+}
+
+impl Units {
+    /// Whether header and setting tell everything, so that nothing has to be guessed.
+    pub(super) fn are_told(&self, setting: &TextFormat, row: &Row) -> bool {
+        let force = self.force.is_some() || setting.force.is_some();
+        let rate = self.rate.is_some() || setting.rate.is_some();
+        let time = self.time.is_some() || setting.time.is_some() || row.time.is_none();
+        force && rate && time
+    }
 }
 
 /// Where each quantity stands in a line.
