@@ -85,6 +85,9 @@ struct Report {
     /// A body that one sensor at 100 Hz drives: samples, tracking, pose and feet, by a model of 10,000 frames; tracking is linear in them.
     imu_us_per_frame_10k: f64,
     imu_us_per_frame_100k: f64,
+    /// From a sample sent over UDP to its pose, by a game that looks every millisecond: median, and the longest of 99 in a hundred.
+    imu_sample_to_pose_ms: f64,
+    imu_sample_to_pose_p99_ms: f64,
     repetitions: u16,
 }
 
@@ -139,6 +142,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         }
     }
     progress.finish();
+    let live = bodies[0].live()?;
 
     let mlpg_frames = ours.frames() as f64;
     let report = Report {
@@ -169,6 +173,8 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         switching_walker_us_per_frame: best.switching_walker.0,
         imu_us_per_frame_10k: best.bodies[0].0,
         imu_us_per_frame_100k: best.bodies[1].0,
+        imu_sample_to_pose_ms: live.0,
+        imu_sample_to_pose_p99_ms: live.1,
         repetitions: args.repetitions,
     };
     if args.json {
@@ -247,6 +253,10 @@ impl Report {
             format!(
                 "a body from one sensor, 10,000 frames      {:9.4} µs a frame, {:.1} µs with 100,000",
                 self.imu_us_per_frame_10k, self.imu_us_per_frame_100k
+            ),
+            format!(
+                "  from a sample over UDP to its pose       {:9.4} ms, {:.1} ms for one in a hundred",
+                self.imu_sample_to_pose_ms, self.imu_sample_to_pose_p99_ms
             ),
         ]
     }

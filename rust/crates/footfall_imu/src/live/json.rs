@@ -16,19 +16,28 @@ const NANOSECOND: f64 = 1e-9;
 struct Message<'a> {
     #[serde(borrow, rename = "type")]
     kind: Option<Cow<'a, str>>,
-    timestamp: Option<Stamp>,
+    timestamp: Option<Number>,
     values: Option<Vec<f64>>,
     #[serde(borrow)]
     payload: Option<Vec<Entry<'a>>>,
     sensordata: Option<SensorData>,
 }
 
-/// ZIG SIM's times are dates, which are too coarse to be of use.
+/// A number, or something else: ZIG SIM's times are dates, which are too coarse to be of use.
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum Stamp {
+pub(super) enum Number {
     Number(f64),
     Other(serde::de::IgnoredAny),
+}
+
+impl Number {
+    pub(super) const fn or_nan(&self) -> f64 {
+        match self {
+            Self::Number(value) => *value,
+            Self::Other(_) => f64::NAN,
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -77,7 +86,7 @@ pub fn parse(text: &[u8], kind: Option<&str>, mut give: impl FnMut(Reading)) -> 
         && let Some(kind) = message.kind.as_deref().or(kind)
     {
         let time_secs = match message.timestamp {
-            Some(Stamp::Number(nanos)) => Some(nanos * NANOSECOND),
+            Some(Number::Number(nanos)) => Some(nanos * NANOSECOND),
             _ => None,
         };
         if let Some(quantity) = android(kind, values) {

@@ -1,19 +1,27 @@
 //! What a game pays for each frame of a body that sensors drive.
 
 use super::{microseconds, now};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use footfall_core::{Pose, Site};
 use footfall_imu::ImuRecording;
+use footfall_imu::live::network::udp::{self, UdpConfig};
 use footfall_model::{GaitModel, Provenance};
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
 use footfall_recon::{Prepared, ReconConfig, Reconstructor};
 use footfall_synth::{WalkConfig, synthesize};
 use footfall_train::imu::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
 use std::hint::black_box;
+use std::net::{Ipv4Addr, UdpSocket};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Samples a second of the sensor.
 const RATE_HZ: f64 = 100.0;
+
+/// Samples that are sent live, how often the game looks for them, and how long it waits at most.
+const LIVE_SAMPLES: usize = 300;
+const LOOK_EVERY: Duration = Duration::from_millis(1);
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Steps of each walker.
 const STEPS: usize = 60;
@@ -85,5 +93,58 @@ impl ReconstructorBench {
         }
         black_box(&pose);
         microseconds(begun.elapsed()) / self.frames
+    }
+
+    /// From a sample that is sent over this machine's own network to the pose that it makes, with the game looking every millisecond: the median and the longest of 99 in a
+    /// hundred, milliseconds.
+    pub(super) fn live(&mut self) -> Result<(f64, f64)> {
+        let link = udp::listen(UdpConfig {
+            port: 0,
+            ..UdpConfig::default()
+        });
+        let begun = now();
+        let address = loop {
+            ensure!(begun.elapsed() < PATIENCE, "{}", link.state().message());
+            if let Some(address) = link.address() {
+                break address;
+            }
+            std::thread::sleep(LOOK_EVERY);
+        };
+        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
+        socket.connect((Ipv4Addr::LOCALHOST, address.port()))?;
+        socket.send(b"time_s,ax_mps2,ay_mps2,az_mps2,gx_rad,gy_rad,gz_rad")?;
+        self.reconstructor.reset();
+        let mut pose = Pose::default();
+        let mut waits = Vec::new();
+        for sample in self.recording.samples.iter().take(LIVE_SAMPLES) {
+            let (force, rate) = (sample.force, sample.rate);
+            let line = format!(
+                "{},{},{},{},{},{},{}",
+                sample.time_secs, force.x, force.y, force.z, rate.x, rate.y, rate.z
+            );
+            let sent = now();
+            socket.send(line.as_bytes())?;
+            let mut come = false;
+            while !come {
+                ensure!(
+                    sent.elapsed() < PATIENCE,
+                    "a sample got lost on this machine's own network"
+                );
+                std::thread::sleep(LOOK_EVERY);
+                if let Some(device) = link.device(0) {
+                    device.take(|sample| {
+                        self.reconstructor.push(0, sample);
+                        come = true;
+                    });
+                }
+            }
+            self.reconstructor.step((1.0 / RATE_HZ) as f32, &mut pose);
+            black_box(&pose);
+            waits.push(1e-3 * microseconds(sent.elapsed()));
+            let left = Duration::from_secs_f64(1.0 / RATE_HZ).saturating_sub(sent.elapsed());
+            std::thread::sleep(left);
+        }
+        waits.sort_by(f64::total_cmp);
+        Ok((waits[waits.len() / 2], waits[waits.len() * 99 / 100]))
     }
 }

@@ -2,6 +2,10 @@
 
 use super::TextFormat;
 use super::units::{ForceUnit, RateUnit, TimeUnit};
+use crate::live::json::Number;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::borrow::Cow;
 
 /// What a line holds, in its own units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +25,7 @@ pub(super) struct Units {
 
 impl Units {
     /// Whether header and setting tell everything, so that nothing has to be guessed.
-    pub(super) fn are_told(&self, setting: &TextFormat, row: &Row) -> bool {
+    pub(super) const fn are_told(self, setting: &TextFormat, row: &Row) -> bool {
         let force = self.force.is_some() || setting.force.is_some();
         let rate = self.rate.is_some() || setting.rate.is_some();
         let time = self.time.is_some() || setting.time.is_some() || row.time.is_none();
@@ -32,6 +36,8 @@ impl Units {
 /// Where each quantity stands in a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Columns {
+    /// The names of a stream whose every line has them.
+    labels: Vec<String>,
     time: Option<usize>,
     values: [usize; 6],
     units: Units,
@@ -48,8 +54,9 @@ enum Channel {
 impl Columns {
     /// What a header of names tells; `None` when it does not name all six axes.
     pub(super) fn of_header(line: &str) -> Option<Self> {
-        let named = line.contains(|c: char| c.is_ascii_alphabetic());
-        if !named || line.starts_with('{') || line.contains(':') {
+        // Numbers begin otherwise, and labelled lines are no header.
+        let named = line.starts_with(|c: char| c.is_ascii_alphabetic() || c == '"');
+        if !named || line.contains(':') {
             return None;
         }
         Self::of_names(fields(line))
@@ -71,6 +78,7 @@ impl Columns {
             *found = place?;
         }
         Some(Self {
+            labels: Vec::new(),
             time,
             values: found,
             units,
@@ -85,6 +93,7 @@ impl Columns {
             _ => 1,
         };
         Some(Self {
+            labels: Vec::new(),
             time: (first == 1).then_some(0),
             values: core::array::from_fn(|n| first + n),
             units: Units::default(),
@@ -99,29 +108,26 @@ impl Columns {
 /// Most columns that are looked at.
 const MOST: usize = 32;
 
-/// The numbers of a line; its columns become those of the stream when that has none yet.
+/// The numbers of a line; its columns become those of the stream when that has none yet, or when the line has labels of its own.
 pub(super) fn row(text: &str, columns: &mut Option<Columns>) -> Option<Row> {
     let mut numbers = [0.0; MOST];
     let mut count = 0;
     if text.starts_with('{') {
-        // A flat object: its members are labelled columns.
-        let object: serde_json::Map<String, serde_json::Value> = serde_json::from_str(text).ok()?;
-        for (place, value) in numbers.iter_mut().zip(object.values()) {
-            *place = value.as_f64().unwrap_or(f64::NAN);
+        let members: Members<'_> = serde_json::from_str(text).ok()?;
+        label(columns, members.0.iter().map(|(name, _)| &**name))?;
+        for (place, (_, value)) in numbers.iter_mut().zip(&members.0) {
+            *place = *value;
             count += 1;
         }
-        // Members may come and go.
-        *columns = Some(Columns::of_names(object.keys().map(String::as_str))?);
     } else {
-        let labelled = text.contains(':');
         for (place, field) in numbers.iter_mut().zip(fields(text)) {
             let number = field.rsplit_once(':').map_or(field, |(_, number)| number);
             *place = number.trim().parse().ok()?;
             count += 1;
         }
-        if labelled {
+        if text.contains(':') {
             let name = |field| str::split_once(field, ':').map_or(field, |(name, _)| name);
-            *columns = Some(Columns::of_names(fields(text).map(name))?);
+            label(columns, fields(text).map(name))?;
         } else if columns.is_none() {
             *columns = Some(Columns::of_count(count)?);
         }
@@ -143,7 +149,60 @@ pub(super) fn row(text: &str, columns: &mut Option<Columns>) -> Option<Row> {
     Some(Row { time, values })
 }
 
-fn fields(line: &str) -> impl Iterator<Item = &str> {
+/// Makes the columns those of a line that has labels; mostly they are the ones before.
+fn label<'a>(
+    columns: &mut Option<Columns>,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> Option<()> {
+    let known = columns
+        .as_ref()
+        .is_some_and(|columns| columns.labels.iter().map(String::as_str).eq(names.clone()));
+    if !known {
+        let labels = names.clone().map(str::to_owned).collect();
+        *columns = Some(Columns {
+            labels,
+            ..Columns::of_names(names)?
+        });
+    }
+    Some(())
+}
+
+/// The members of a flat object, in their order; what is no number is none.
+struct Members<'a>(Vec<(Cow<'a, str>, f64)>);
+
+impl<'de> Deserialize<'de> for Members<'de> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(MembersVisitor)
+    }
+}
+
+struct MembersVisitor;
+
+impl<'de> Visitor<'de> for MembersVisitor {
+    type Value = Members<'de>;
+
+    fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut members = Vec::with_capacity(8);
+        while let Some(name) = map.next_key::<Name<'de>>()? {
+            let value: Number = map.next_value()?;
+            if members.len() < MOST {
+                members.push((name.0, value.or_nan()));
+            }
+        }
+        Ok(Members(members))
+    }
+}
+
+/// A name that is taken from the text where it can be.
+#[derive(Deserialize)]
+#[serde(transparent)]
+struct Name<'a>(#[serde(borrow)] Cow<'a, str>);
+
+fn fields(line: &str) -> impl Iterator<Item = &str> + Clone {
     let separator = [',', ';', '\t'].into_iter().find(|c| line.contains(*c));
     let mut comma = separator.map(|c| line.split(c));
     let mut blank = line.split_whitespace();
