@@ -1,6 +1,7 @@
 //! Helpers that the integration tests share: where the recordings are, a walk's quality judged from its BVH file alone,
-//! text goldens, and ground from formulas.
+//! text goldens, ground from formulas, and a browser.
 
+pub mod browser;
 pub mod data;
 pub mod evaluator;
 pub mod golden;

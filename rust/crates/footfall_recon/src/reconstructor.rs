@@ -15,6 +15,9 @@ use std::sync::Arc;
 /// Frames of one sensor that wait for the other's; more mean that the other has stopped.
 const MOST_WAITING: usize = 6;
 
+/// Sensors whose times are further apart are on clocks of their own, seconds.
+const ONE_CLOCK_SECS: f64 = 2.0;
+
 /// Settings of a reconstructor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReconConfig {
@@ -221,9 +224,11 @@ impl Reconstructor {
         self.catch_up();
     }
 
-    /// Goes on by a frame of the model as often as every sensor has one, or one of them has too many.
+    /// Goes on by a frame of the model as often as every sensor has one, or one of them has too many. Sensors on one clock are taken together when
+    /// their frames end together: one that was heard earlier, or that lost more, goes on alone until the other has caught up.
     fn catch_up(&mut self) {
         let used = self.prepared.model.sites.len();
+        let period_secs = 1.0 / self.prepared.model.frame_rate_hz;
         loop {
             let sensors = &mut self.sensors[..used];
             let all = sensors.iter().all(|sensor| sensor.count > 0);
@@ -231,9 +236,17 @@ impl Reconstructor {
             if !all && !full {
                 return;
             }
+            let next = |sensor: &Sensor| sensor.waiting[0].map(|frame| frame.time_secs);
+            let oldest = sensors
+                .iter()
+                .filter_map(next)
+                .fold(f64::INFINITY, f64::min);
             let mut frames = [None; MAX_SENSORS];
             for (frame, sensor) in frames.iter_mut().zip(sensors) {
-                *frame = sensor.take();
+                let ahead_secs = next(sensor).map_or(0.0, |time_secs| time_secs - oldest);
+                if !(0.5 * period_secs..ONE_CLOCK_SECS).contains(&ahead_secs) {
+                    *frame = sensor.take();
+                }
             }
             self.frame(&frames);
         }

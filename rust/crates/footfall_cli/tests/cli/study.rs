@@ -2,6 +2,7 @@
 
 use crate::common::footfall;
 use crate::evaluate::write_pair;
+use footfall_tests::browser::chromium;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,20 +11,6 @@ use std::process::Command;
 
 /// Takes part in the study as a person does: plays, answers by key or by click, goes back once, downloads.
 const PARTICIPANT: &str = include_str!("study_participant.js");
-
-#[expect(clippy::print_stderr, reason = "a skipped test has to say so")]
-fn chromium() -> Option<PathBuf> {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let found = std::env::split_paths(&path)
-        .flat_map(|folder| {
-            ["chromium", "chromium-browser", "google-chrome"].map(|name| folder.join(name))
-        })
-        .find(|program| program.is_file());
-    if found.is_none() {
-        eprintln!("study: skipped, no Chromium on the path; install Debian's package chromium");
-    }
-    found
-}
 
 /// The document after the page's scripts have run.
 fn visit(chromium: &Path, profile: &Path, page: &Path) -> String {
@@ -109,7 +96,7 @@ fn the_page_stands_alone_and_carries_no_folder_of_this_machine() {
 
 #[test]
 fn every_test_can_be_answered_and_the_answers_come_out() {
-    let Some(chromium) = chromium() else {
+    let Some(chromium) = chromium("study") else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();

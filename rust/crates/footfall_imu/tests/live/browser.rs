@@ -3,27 +3,13 @@
 use crate::signal::{wait_for, wait_for_address, wait_for_samples};
 use footfall_imu::ImuSample;
 use footfall_imu::live::phone::{PhoneConfig, PhoneServer};
+use footfall_tests::browser::chromium;
 use serde_json::{Value, json};
 use std::io::{BufRead as _, BufReader};
 use std::net::TcpStream;
-use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use tungstenite::{Message, WebSocket};
-
-#[expect(clippy::print_stderr, reason = "a skipped test has to say so")]
-fn chromium() -> Option<PathBuf> {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let found = std::env::split_paths(&path)
-        .flat_map(|folder| {
-            ["chromium", "chromium-browser", "google-chrome"].map(|name| folder.join(name))
-        })
-        .find(|program| program.is_file());
-    if found.is_none() {
-        eprintln!("browser: skipped, no Chromium on the path; install Debian's package chromium");
-    }
-    found
-}
 
 /// A browser that is told what to do over its debugging protocol.
 struct Browser {
@@ -37,7 +23,7 @@ struct Browser {
 impl Browser {
     fn start() -> Option<Self> {
         let profile = tempfile::tempdir().unwrap();
-        let mut child = Command::new(chromium()?)
+        let mut child = Command::new(chromium("browser")?)
             .args([
                 "--headless",
                 "--no-sandbox",

@@ -1,0 +1,18 @@
+//! A browser for tests of pages.
+
+use std::path::PathBuf;
+
+/// Where Chromium is on this machine; says which test is skipped when it is not there.
+#[expect(clippy::print_stderr, reason = "a skipped test has to say so")]
+pub fn chromium(test: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let found = std::env::split_paths(&path)
+        .flat_map(|folder| {
+            ["chromium", "chromium-browser", "google-chrome"].map(|name| folder.join(name))
+        })
+        .find(|program| program.is_file());
+    if found.is_none() {
+        eprintln!("{test}: skipped, no Chromium on the path; install Debian's package chromium");
+    }
+    found
+}
