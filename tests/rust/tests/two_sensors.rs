@@ -1,10 +1,12 @@
 //! Two sensors drive one body, and need not begin together.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
+
 use footfall_core::{ModelPose, Pose, Site, forward_kinematics};
 use footfall_imu::{ImuRecording, ImuSample};
 use footfall_model::{GaitModel, Provenance};
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
-use footfall_recon::{Prepared, ReconConfig, Reconstructor};
+use footfall_recon::{Prepared, ReconConfig, Reconstructor, reconstruct_recording};
 use footfall_synth::{WalkConfig, synthesize};
 use footfall_tests::data::repository;
 use footfall_train::imu::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
@@ -58,8 +60,8 @@ fn driven(
     joints
 }
 
-#[test]
-fn a_sensor_that_begins_later_catches_up_with_the_other() {
+/// A model of both sites, and what sensors measure of a walk that it has not seen.
+fn prepare() -> (Arc<Prepared>, [ImuRecording; 2]) {
     let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall")).unwrap();
     let gait = Arc::new(GaitModel::from_bytes(&bytes).unwrap());
     let config = ImuTrainConfig::new(&SITES);
@@ -82,26 +84,63 @@ fn a_sensor_that_begins_later_catches_up_with_the_other() {
     let unseen = clip(&gait, 99, 1.17);
     let recordings =
         SITES.map(|site| simulate(&unseen, 0, site, &VirtualImuConfig::ideal(RATE_HZ)));
+    (prepared, recordings)
+}
 
+/// Mean and longest distance between joints, metres.
+fn apart_m(a: &[ModelPose], b: &[ModelPose]) -> (f32, f32) {
+    let (mut sum, mut worst, mut count) = (0.0, 0.0_f32, 0);
+    for (a, b) in a.iter().zip(b) {
+        for (a, b) in a.positions.iter().zip(&b.positions) {
+            sum += a.distance(*b);
+            worst = worst.max(a.distance(*b));
+            count += 1;
+        }
+    }
+    (sum / count as f32, worst)
+}
+
+#[test]
+fn a_sensor_that_begins_later_catches_up_with_the_other() {
+    let (prepared, recordings) = prepare();
     let together = driven(&prepared, &recordings, 0, 0.0);
     // 3.47 s later, not in the middle of frames; and again on a clock that is an hour ahead.
-    for clock_secs in [0.0, 3600.0] {
+    for (clock_secs, most) in [(0.0, 0.01), (3600.0, 0.05)] {
         let apart = driven(&prepared, &recordings, 347, clock_secs);
-        let from = 347 + 200;
-        let mut worst = 0.0_f32;
-        let mut sum = 0.0;
-        for (together, apart) in together[from..].iter().zip(&apart[from..]) {
-            for (a, b) in together.positions.iter().zip(&apart.positions) {
-                worst = worst.max(a.distance(*b));
-                sum += a.distance(*b);
-            }
-        }
-        let count = (together.len() - from) * together[0].positions.len();
-        let mean = sum / count as f32;
-        let most = if clock_secs == 0.0 { 0.01 } else { 0.05 };
+        let (mean, worst) = apart_m(&together[547..], &apart[547..]);
         assert!(
             mean < most,
             "{mean} m apart on average, {worst} m at worst, clock {clock_secs}"
         );
     }
+}
+
+#[test]
+fn recordings_on_one_clock_are_laid_side_by_side() {
+    let (prepared, recordings) = prepare();
+    let joints = |recordings: &[ImuRecording; 2]| -> Vec<ModelPose> {
+        let skeleton = &prepared.model().skeleton;
+        let config = ReconConfig::default();
+        let made = reconstruct_recording(&prepared, recordings, skeleton, &config, true).unwrap();
+        assert!((made.start_secs - recordings[0].start_secs()).abs() < 1e-9);
+        let above_hips = |pose: &Pose| {
+            let mut pose = pose.clone();
+            pose.root_position = glam::Vec3::ZERO;
+            pose.rotations[0] = glam::Quat::IDENTITY;
+            let mut model = ModelPose::default();
+            forward_kinematics(skeleton, &pose, &mut model);
+            model
+        };
+        made.clip.poses.iter().map(above_hips).collect()
+    };
+    let together = joints(&recordings);
+    let [foot, hand] = &recordings;
+    let later = ImuRecording {
+        samples: hand.samples[347..].to_vec(),
+    };
+    let apart = joints(&[foot.clone(), later]);
+    assert_eq!(together.len(), apart.len());
+    let from = 547 * 30 / 100;
+    let (mean, worst) = apart_m(&together[from..], &apart[from..]);
+    assert!(mean < 0.01, "{mean} m apart on average, {worst} m at worst");
 }

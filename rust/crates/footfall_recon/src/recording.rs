@@ -50,7 +50,8 @@ pub fn reconstruct_recording(
                 frame_rate_hz: rate,
                 poses: Vec::with_capacity(frames.len()),
             },
-            start_secs: recordings.first().map_or(0.0, ImuRecording::start_secs),
+            start_secs: shared_start_secs(recordings)
+                .unwrap_or_else(|| recordings.first().map_or(0.0, ImuRecording::start_secs)),
             behaviours: Vec::with_capacity(frames.len()),
         },
         // What later frames tell is smooth already.
@@ -112,19 +113,40 @@ fn weigh(probabilities: &mut [f32], later: &[f32]) {
     }
 }
 
-/// Frames of all sensors, side by side from their first ones on.
+/// When the first of some recordings begins, on the clock that they share; `None` when they do not overlap, so that each must have its own.
+fn shared_start_secs(recordings: &[ImuRecording]) -> Option<f64> {
+    let starts = recordings.iter().map(ImuRecording::start_secs);
+    let ends = recordings
+        .iter()
+        .map(|recording| recording.start_secs() + recording.duration_secs());
+    let overlap = starts.clone().fold(f64::MIN, f64::max) < ends.fold(f64::MAX, f64::min);
+    overlap.then(|| starts.fold(f64::MAX, f64::min))
+}
+
+/// Frames of all sensors, side by side: by their times on a clock that they share, else from their first ones on.
 fn frames_of(
     prepared: &Prepared,
     recordings: &[ImuRecording],
 ) -> Vec<[Option<FeatureFrame>; MAX_SENSORS]> {
     let rate_hz = prepared.model.frame_rate_hz;
-    let sensors = recordings.iter().take(MAX_SENSORS);
-    let sensors: Vec<Vec<FeatureFrame>> = sensors
-        .map(|recording| FeatureStream::frames_of(recording, rate_hz))
+    let start_secs = shared_start_secs(recordings);
+    let sensors: Vec<(usize, Vec<FeatureFrame>)> = recordings
+        .iter()
+        .take(MAX_SENSORS)
+        .map(|recording| {
+            let later_secs = start_secs.map_or(0.0, |start| recording.start_secs() - start);
+            let later = (later_secs * rate_hz).round() as usize;
+            (later, FeatureStream::frames_of(recording, rate_hz))
+        })
         .collect();
-    let count = sensors.iter().map(Vec::len).max().unwrap_or(0);
-    (0..count)
-        .map(|frame| core::array::from_fn(|n| sensors.get(n)?.get(frame).copied()))
+    let ends = sensors.iter().map(|(later, frames)| later + frames.len());
+    (0..ends.max().unwrap_or(0))
+        .map(|frame| {
+            core::array::from_fn(|n| {
+                let (later, frames) = sensors.get(n)?;
+                frames.get(frame.checked_sub(*later)?).copied()
+            })
+        })
         .collect()
 }
 
