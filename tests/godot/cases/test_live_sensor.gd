@@ -5,6 +5,15 @@ const MODEL := "res://addons/footfall/models/right_foot.footimu"
 const DELTA := 1.0 / 60.0
 const UDP_PORT := 47116
 const PHONE_PORT := 47117
+## Makes a pseudo-terminal, tells the name of its port, and passes on what it is told.
+const TERMINAL := """
+import os, pty, sys, tty
+device, port = pty.openpty()
+tty.setraw(port)
+print(os.ttyname(port), flush=True)
+for line in sys.stdin.buffer:
+    os.write(device, line)
+"""
 
 
 ## What a sensor on a walker's foot measures: [time, force, rate].
@@ -142,6 +151,104 @@ func test_a_phones_page_drives_a_body_and_vibrates() -> void:
 	check_equal(String(other.get_state()), "listening", "the other player's phone is awaited")
 	page.close()
 	body.free()
+
+
+func test_a_board_on_a_serial_port_drives_a_body() -> void:
+	if OS.get_name() != "Linux" or OS.execute("python3", ["--version"]) != 0:
+		print("skipped: a pseudo-terminal is made with Python on Linux")
+		return
+	var samples := _measured(500)
+	var terminal := OS.execute_with_pipe("python3", ["-c", TERMINAL])
+	var pipe: FileAccess = terminal.stdio
+	var source := SerialImuSource.new()
+	source.port = pipe.get_line()
+	source.baud_rate = 115200
+	source.columns = "time,ax,ay,az,gx,gy,gz"
+	source.force_unit = SerialImuSource.METRES_PER_SECOND_SQUARED
+	source.rate_unit = SerialImuSource.RADIANS_PER_SECOND
+	source.time_unit = SerialImuSource.MILLISECONDS
+	var body := _driven(source)
+	body.step(DELTA)
+	# What speaks is found out by listening: somebody has to speak.
+	var before := 0.0
+	for n: int in 2000:
+		before += DELTA
+		pipe.store_buffer(_line([before - 1000.0, Vector3.UP * 9.81, Vector3.ZERO]))
+		pipe.store_line("")
+		pipe.flush()
+		if source.get_state() == &"receiving":
+			break
+		OS.delay_msec(5)
+	check_equal(source.get_message(), "", "the board is heard")
+	body.step(DELTA)
+	_check_walks(body, samples, func(sample: Array) -> void:
+		pipe.store_buffer(_line(sample))
+		pipe.store_line("")
+		pipe.flush())
+	var status := source.get_sensor_status()
+	check_equal(status.format, "text", "its form")
+	check_equal(status.name, source.port, "its name")
+	# It is pulled out.
+	OS.kill(terminal.pid)
+	_wait(func() -> bool: return source.get_state() == &"failed", "the loss is told")
+	source.stop()
+	body.free()
+
+
+func test_sensor_loggers_posts_drive_a_body() -> void:
+	var samples := _measured(500)
+	var source := NetworkImuSource.new()
+	source.transport = NetworkImuSource.HTTP
+	source.port = UDP_PORT + 1
+	source.start()
+	_wait(func() -> bool: return source.get_state() == &"listening", "the port is open")
+	var stream := StreamPeerTCP.new()
+	stream.connect_to_host("127.0.0.1", UDP_PORT + 1)
+	_wait(func() -> bool:
+		stream.poll()
+		return stream.get_status() == StreamPeerTCP.STATUS_CONNECTED, "the app is connected")
+	var entries := PackedStringArray()
+	var body := _driven(source)
+	_check_walks(body, samples, func(sample: Array) -> void:
+		for reading: Array in [["totalacceleration", sample[1]], ["gyroscope", sample[2]]]:
+			var nanos := 1_700_000_000_000_000_000 + int(sample[0] * 1e9)
+			entries.append('{"name":"%s","time":%d,"values":{"x":%f,"y":%f,"z":%f}}' % [reading[0], nanos, reading[1].x, reading[1].y, reading[1].z])
+		if entries.size() < 12:
+			return
+		# A tenth of a second in a batch.
+		var text := '{"deviceId":"test","payload":[%s]}' % ",".join(entries)
+		entries.clear()
+		stream.put_data(("POST /data HTTP/1.1\r\nHost: game\r\nContent-Length: %d\r\n\r\n%s" % [text.length(), text]).to_utf8_buffer())
+		stream.poll()
+		stream.get_data(stream.get_available_bytes()))
+	check_equal(source.get_sensor_status().format, "sensor_logger", "its form")
+	check_equal(source.get_sensor_status().lost, 0, "lost")
+	body.free()
+
+
+func test_a_sensorserver_on_a_phone_drives_a_body() -> void:
+	var samples := _measured(400)
+	var server := TCPServer.new()
+	server.listen(UDP_PORT + 2, "127.0.0.1")
+	var source := NetworkImuSource.new()
+	source.transport = NetworkImuSource.WEB_SOCKET
+	source.address = "127.0.0.1:%d" % (UDP_PORT + 2)
+	source.start()
+	_wait(func() -> bool: return server.is_connection_available(), "the game asks")
+	var phone := WebSocketPeer.new()
+	phone.accept_stream(server.take_connection())
+	_wait(func() -> bool:
+		phone.poll()
+		return phone.get_ready_state() == WebSocketPeer.STATE_OPEN, "it is answered")
+	var body := _driven(source)
+	_check_walks(body, samples, func(sample: Array) -> void:
+		for reading: Array in [["accelerometer", sample[1]], ["gyroscope", sample[2]]]:
+			phone.send_text('{"timestamp":%d,"type":"android.sensor.%s","values":[%f,%f,%f]}' % [int(sample[0] * 1e9), reading[0], reading[1].x, reading[1].y, reading[1].z])
+		phone.poll())
+	check_equal(source.get_sensor_status().format, "sensorserver", "its form")
+	body.free()
+	phone.close()
+	server.stop()
 
 
 func test_the_devices_own_sensors_are_made_alike() -> void:

@@ -123,6 +123,49 @@ impl IResource for SerialImuSource {
 
 #[godot_api]
 impl SerialImuSource {
+    /// `format`, and every unit: found out.
+    #[constant]
+    const AUTO: i32 = 0;
+    /// `format`: WitMotion's standard protocol.
+    #[constant]
+    const WIT_MOTION: i32 = SerialImuFormat::WitMotion as i32;
+    /// `format`: x-IMU3, text or binary.
+    #[constant]
+    const X_IMU3: i32 = SerialImuFormat::XImu3 as i32;
+    /// `format`: Xsens MTi, `MTData2`.
+    #[constant]
+    const XSENS_MTI: i32 = SerialImuFormat::XsensMTi as i32;
+    /// `format`: Yost 3-Space.
+    #[constant]
+    const YOST_3_SPACE: i32 = SerialImuFormat::Yost3Space as i32;
+    /// `format`: lines of numbers or JSON.
+    #[constant]
+    const TEXT: i32 = SerialImuFormat::Text as i32;
+    /// `force_unit`: m/s².
+    #[constant]
+    const METRES_PER_SECOND_SQUARED: i32 = ImuForceUnit::MetresPerSecondSquared as i32;
+    /// `force_unit`: standard gravity.
+    #[constant]
+    const G: i32 = ImuForceUnit::G as i32;
+    /// `force_unit`: thousandths of standard gravity.
+    #[constant]
+    const MILLI_G: i32 = ImuForceUnit::MilliG as i32;
+    /// `rate_unit`: rad/s.
+    #[constant]
+    const RADIANS_PER_SECOND: i32 = ImuRateUnit::RadiansPerSecond as i32;
+    /// `rate_unit`: degrees a second.
+    #[constant]
+    const DEGREES_PER_SECOND: i32 = ImuRateUnit::DegreesPerSecond as i32;
+    /// `time_unit`: seconds.
+    #[constant]
+    const SECONDS: i32 = ImuTimeUnit::Seconds as i32;
+    /// `time_unit`: milliseconds.
+    #[constant]
+    const MILLISECONDS: i32 = ImuTimeUnit::Milliseconds as i32;
+    /// `time_unit`: microseconds.
+    #[constant]
+    const MICROSECONDS: i32 = ImuTimeUnit::Microseconds as i32;
+
     /// The serial ports of this machine, those on USB first.
     #[func]
     fn list_ports() -> PackedStringArray {
