@@ -274,6 +274,7 @@ impl LiveSource for SerialImuSource {
                 },
             },
         };
+        config.text.check()?;
         let link = PORTS.get(config.clone(), || Ok::<_, String>(port::listen(config)))?;
         Ok(Opened::Link(link))
     }

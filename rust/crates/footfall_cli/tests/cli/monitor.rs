@@ -124,6 +124,8 @@ fn a_serial_port_is_found_out() {
 fn wrong_arguments_and_silence_say_what_to_do() {
     let folder = tempfile::tempdir().expect("a folder");
     footfall(folder.path(), &["imu", "monitor"]).fails_with(&["--serial", "--ports"]);
+    let arguments = ["imu", "monitor", "--udp", "47999", "--columns", "t,ax,ay"];
+    footfall(folder.path(), &arguments).fails_with(&["t,ax,ay", "all six axes"]);
     let wrong = footfall(
         folder.path(),
         &["imu", "monitor", "--serial", "x", "--format", "morse"],

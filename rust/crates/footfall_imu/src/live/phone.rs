@@ -1,6 +1,6 @@
 //! A phone's browser as a sensor: the game serves a page, the page sends what the phone measures.
 //!
-//! Browsers give motion to pages over HTTPS alone, so the server has a [certificate](certificate) that it signed itself; the person accepts it
+//! Browsers give motion to pages over HTTPS alone, so the server has a certificate that it signed itself; the person accepts it
 //! once. Each player has a code in the address of the page, and one phone at a time. Samples come over a secure WebSocket, or, where a browser
 //! refuses that for such a certificate, in posts.
 //!

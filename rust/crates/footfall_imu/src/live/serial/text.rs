@@ -33,6 +33,22 @@ pub struct TextFormat {
     pub rate: Option<RateUnit>,
 }
 
+impl TextFormat {
+    /// Checks the names of the columns.
+    ///
+    /// # Errors
+    /// What is wrong with them, and what to give.
+    pub fn check(&self) -> Result<(), String> {
+        let named = |columns: &String| Columns::of_header(columns).is_some();
+        match &self.columns {
+            Some(columns) if !named(columns) => Err(format!(
+                "the columns '{columns}' do not name all six axes; give them as in t,ax,ay,az,gx,gy,gz"
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
 /// Lines of a stream or a datagram.
 pub(in crate::live) struct Text {
     setting: TextFormat,

@@ -83,6 +83,9 @@ impl Source {
             force: args.force_unit,
             rate: args.rate_unit,
         };
+        if let Err(problem) = text.check() {
+            bail!(problem);
+        }
         if let Some(port) = &args.serial {
             return Ok(Self::Link(port::listen(SerialConfig {
                 port: if port == "auto" {
