@@ -145,6 +145,89 @@ fn a_sensor_on_a_foot_becomes_the_walk_it_was_worn_in() {
     );
 }
 
+/// Small steps with high knees, as on the spot in a room.
+const ON_THE_SPOT: &str = r#"
+name = "on_the_spot"
+summary = "Small steps with high knees."
+
+[walk]
+stride = 30
+
+[feet]
+landing = -25
+lift = 10
+"#;
+
+#[test]
+fn a_player_who_steps_on_the_spot_walks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let shipped = |name: &str| {
+        let path = footfall_tests::data::repository()
+            .join("addons/footfall/models")
+            .join(name);
+        path.to_str().expect("a path in UTF-8").to_owned()
+    };
+    let (walk, pocket) = (shipped("walk.footfall"), shipped("right_thigh.footimu"));
+    fs::write(folder.join("spot.toml"), ON_THE_SPOT).expect("a sheet");
+    let run = |arguments: &[&str]| {
+        let run = footfall(folder, arguments);
+        assert_eq!(run.code, 0, "{arguments:?}: {}", run.stderr);
+    };
+    run(&[
+        "synth", "--model", &walk, "--steps", "24", "--seed", "3", "--fps", "60", "-o", "walk.bvh",
+    ]);
+    run(&[
+        "design",
+        "--sheet",
+        "spot.toml",
+        "walk.bvh",
+        "-o",
+        "spot.bvh",
+    ]);
+    run(&[
+        "imu",
+        "simulate",
+        "spot.bvh",
+        "--site",
+        "right_thigh",
+        "-o",
+        "imu.csv",
+    ]);
+    let report = footfall(
+        folder,
+        &[
+            "imu",
+            "reconstruct",
+            "--model",
+            &pocket,
+            "--imu",
+            "imu.csv",
+            "--mounting",
+            "aligned",
+            "--live",
+            "-o",
+            "body.bvh",
+            "--json",
+        ],
+    )
+    .json();
+    let secs = |wanted: &str| -> f64 {
+        let spans = report["behaviours"].as_array().expect("behaviours").iter();
+        spans
+            .filter(|span| wanted.is_empty() || span[0] == wanted)
+            .map(|span| span[1].as_f64().expect("seconds"))
+            .sum()
+    };
+    assert!(secs("walk") > 0.85 * secs(""), "{report}");
+    // The player's own way is a third of a metre a second.
+    let clip = canonical(&folder.join("body.bvh"));
+    let way = clip.poses[clip.poses.len() - 1]
+        .root_position
+        .distance(clip.poses[0].root_position);
+    assert!(way > 0.5 * secs("") as f32, "{way} m in {} s", secs(""));
+}
+
 #[test]
 fn two_sensors_go_in_the_order_of_the_models_sites() {
     let folder = tempfile::tempdir().unwrap();

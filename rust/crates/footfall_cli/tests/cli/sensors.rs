@@ -227,3 +227,80 @@ fn sensors_without_events_are_named() {
     .unwrap();
     evaluate().fails_with(&["sensors.csv", "line 2", "events"]);
 }
+
+/// A recording of x-io as the product reads it: °/s and g become rad/s and m/s²; a time that comes twice is left out.
+fn xio(data: &Path, name: &str) -> String {
+    let path = data.join(format!("imu/xio_gait_tracking/{name}.csv"));
+    let text = fs::read_to_string(path).expect("a file");
+    let mut out = "time_s,ax,ay,az,gx,gy,gz\n".to_owned();
+    let mut last = f64::NEG_INFINITY;
+    for row in text.lines().skip(1).map(|line| numbers(line, ',')) {
+        if row[0] > last {
+            last = row[0];
+            let [gx, gy, gz] = [row[1], row[2], row[3]].map(f64::to_radians);
+            let [ax, ay, az] = [row[4], row[5], row[6]].map(|force| force * 9.80665);
+            writeln!(out, "{last},{ax},{ay},{az},{gx},{gy},{gz}").expect("a string");
+        }
+    }
+    out
+}
+
+#[test]
+fn a_real_sensor_worn_anyhow_walks_its_loop() {
+    let Some(data) = recordings("sensors") else {
+        return;
+    };
+    let model =
+        footfall_tests::data::repository().join("addons/footfall/models/right_foot.footimu");
+    let model = model.to_str().expect("a path in UTF-8");
+    // Who wore it walked about 25 m and 60 m and ended where it began. The body's steps are those of the recorded people, a quarter shorter.
+    for (name, least_m, most_m) in [("short_walk", 15.0, 30.0), ("long_walk", 38.0, 70.0)] {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        fs::write(folder.join("imu.csv"), xio(&data, name)).unwrap();
+        let arguments = [
+            "imu",
+            "reconstruct",
+            "--model",
+            model,
+            "--imu",
+            "imu.csv",
+            "--live",
+            "-o",
+            "body.bvh",
+            "--json",
+        ];
+        let report = footfall(folder, &arguments).json();
+        assert!(
+            report["mountings"][0]["certainty"].as_f64().unwrap() > 0.9,
+            "{report}"
+        );
+        let walked = report["behaviours"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|span| span[0] == "walk");
+        assert!(
+            walked.expect("a walk")[1].as_f64().unwrap() > 15.0,
+            "{report}"
+        );
+        let file = footfall_motion::bvh::read(&folder.join("body.bvh")).unwrap();
+        let clip = footfall_motion::retarget::retarget(&file, &Default::default())
+            .unwrap()
+            .clip;
+        let places: Vec<_> = clip.poses.iter().map(|pose| pose.root_position).collect();
+        let way: f32 = places
+            .iter()
+            .step_by(15)
+            .zip(places.iter().skip(15).step_by(15))
+            .map(|(a, b)| a.distance(*b))
+            .sum();
+        let open = places[0].distance(places[places.len() - 1]);
+        eprintln!("{name}: {way:.1} m, {open:.2} m from where it began");
+        assert!((least_m..most_m).contains(&way), "{name}: {way} m");
+        assert!(
+            open < 0.05 * way,
+            "{name}: ends {open} m from where it began, after {way} m"
+        );
+    }
+}
