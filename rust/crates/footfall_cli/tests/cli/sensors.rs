@@ -1,6 +1,7 @@
 //! `footfall evaluate contacts --sensors`, on foot sensors with reference events.
 
 use crate::common::footfall;
+use footfall_motion::retarget::RetargetOptions;
 use footfall_tests::data::recordings;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -284,8 +285,8 @@ fn a_real_sensor_worn_anyhow_walks_its_loop() {
             walked.expect("a walk")[1].as_f64().unwrap() > 15.0,
             "{report}"
         );
-        let file = footfall_motion::bvh::read(&folder.join("body.bvh")).unwrap();
-        let clip = footfall_motion::retarget::retarget(&file, &Default::default())
+        let file = footfall_motion::bvh::read(folder.join("body.bvh")).unwrap();
+        let clip = footfall_motion::retarget::retarget(&file, &RetargetOptions::default())
             .unwrap()
             .clip;
         let places: Vec<_> = clip.poses.iter().map(|pose| pose.root_position).collect();
