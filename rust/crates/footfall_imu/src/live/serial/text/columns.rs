@@ -100,6 +100,11 @@ impl Columns {
         })
     }
 
+    /// Whether every line has the names of its columns.
+    pub(super) const fn has_labels(&self) -> bool {
+        !self.labels.is_empty()
+    }
+
     pub(super) const fn units(&self) -> Units {
         self.units
     }
