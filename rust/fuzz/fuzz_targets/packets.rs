@@ -16,7 +16,7 @@ fuzz_target!(|bytes: &[u8]| {
     };
     let _packet = slimevr::parse(bytes, |_, reading| push(reading));
     let _known = osc::parse(bytes, &mut push);
-    let _known = json::parse(bytes, None, &mut push);
+    let _known = json::parse(bytes, &mut push);
     let _known = phone::parse(bytes, &mut push);
     let mut last = f64::NEG_INFINITY;
     device.device().take(|sample| {

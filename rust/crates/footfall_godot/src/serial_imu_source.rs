@@ -234,7 +234,7 @@ impl LiveSource for SerialImuSource {
 
     /// Another kind of device at the same port comes after the first.
     fn place(&self) -> usize {
-        let last = self.live.with(|opened| opened.link().devices().len());
+        let last = self.live.with(|opened| opened.link().device_count());
         last.unwrap_or_default().saturating_sub(1)
     }
 

@@ -73,7 +73,7 @@ fn packets(c: &mut Criterion) {
     let batch = encode::sensor_logger(&samples[..64]);
     group.bench_function("sensor_logger", |b| {
         b.iter(|| {
-            json::parse(black_box(&batch), None, |reading| {
+            json::parse(black_box(&batch), |reading| {
                 black_box(reading);
             })
         });
@@ -90,7 +90,7 @@ fn packets(c: &mut Criterion) {
     let android = encode::android("gyroscope", 1.0, [0.1, 0.2, 0.3]);
     group.bench_function("android", |b| {
         b.iter(|| {
-            json::parse(black_box(&android), None, |reading| {
+            json::parse(black_box(&android), |reading| {
                 black_box(reading);
             })
         });

@@ -207,17 +207,12 @@ impl DeviceWriter {
             Some(device_secs) => self.device_clock.ours(device_secs, arrival_secs),
             None => self.arrival_clocks[kind].smoothed(arrival_secs),
         };
-        let mut samples = [None; 8];
-        let mut count = 0;
-        self.assembly.push(time_secs, reading.quantity, |sample| {
-            if let Some(place) = samples.get_mut(count) {
-                *place = Some(sample);
-                count += 1;
-            }
-        });
-        for sample in samples.into_iter().flatten() {
+        // Lent out, since what it gives goes on through this device.
+        let mut assembly = core::mem::take(&mut self.assembly);
+        assembly.push(time_secs, reading.quantity, |sample| {
             self.sample(sample, arrival_secs);
-        }
+        });
+        self.assembly = assembly;
     }
 
     fn sample(&mut self, sample: ImuSample, arrival_secs: f64) {

@@ -77,13 +77,13 @@ impl Axes {
     }
 }
 
-/// Parses one message and gives its readings; `kind` names the sensor where the message does not. False when it is none of these forms.
-pub fn parse(text: &[u8], kind: Option<&str>, mut give: impl FnMut(Reading)) -> bool {
+/// Parses one message and gives its readings; false when it is none of these forms.
+pub fn parse(text: &[u8], mut give: impl FnMut(Reading)) -> bool {
     let Ok(message) = serde_json::from_slice::<Message<'_>>(text) else {
         return false;
     };
     if let Some(values) = &message.values
-        && let Some(kind) = message.kind.as_deref().or(kind)
+        && let Some(kind) = message.kind.as_deref()
     {
         let time_secs = match message.timestamp {
             Some(Number::Number(nanos)) => Some(nanos * NANOSECOND),

@@ -68,7 +68,7 @@ pub struct Link {
 
 impl Link {
     /// Runs `listen` on a thread until it returns; it has to, soon after [`LinkWriter::stopped`].
-    pub(super) fn run(name: &str, listen: impl FnOnce(LinkWriter) + Send + 'static) -> Self {
+    fn run(name: &str, listen: impl FnOnce(LinkWriter) + Send + 'static) -> Self {
         let shared = Arc::new(Shared {
             devices: Mutex::default(),
             state: Mutex::new(LinkState::Opening("opening".to_owned())),
@@ -93,6 +93,23 @@ impl Link {
         Self { shared, thread }
     }
 
+    /// Runs `listen` on a thread, and again some time after it told a problem, until it is time to stop.
+    pub(super) fn keep(
+        name: &str,
+        retry: Duration,
+        mut listen: impl FnMut(&LinkWriter) -> String + Send + 'static,
+    ) -> Self {
+        Self::run(name, move |link| {
+            while !link.stopped() {
+                let problem = listen(&link);
+                if !link.stopped() {
+                    link.set_state(LinkState::Failed(problem));
+                    link.wait(retry);
+                }
+            }
+        })
+    }
+
     /// How it does.
     pub fn state(&self) -> LinkState {
         lock(&self.shared.state).clone()
@@ -101,6 +118,11 @@ impl Link {
     /// Every device that was heard, in the order in which they came.
     pub fn devices(&self) -> Vec<Device> {
         lock(&self.shared.devices).clone()
+    }
+
+    /// How many devices were heard.
+    pub fn device_count(&self) -> usize {
+        lock(&self.shared.devices).len()
     }
 
     /// The device that came first, second, …
@@ -145,15 +167,14 @@ impl LinkWriter {
         self.shared.stop.load(Ordering::Relaxed)
     }
 
-    /// Waits; true when it is time to stop.
-    pub(super) fn wait(&self, time: Duration) -> bool {
+    /// Waits, but no longer than until it is time to stop.
+    fn wait(&self, time: Duration) {
         let mut left = time;
         while !self.stopped() && !left.is_zero() {
             let part = left.min(LOOK_EVERY);
             std::thread::sleep(part);
             left -= part;
         }
-        self.stopped()
     }
 
     pub(super) fn set_state(&self, state: LinkState) {

@@ -11,7 +11,7 @@ mod certificate;
 mod server;
 mod slots;
 
-use super::link::{LOOK_EVERY, Link, LinkState, LinkWriter, MOST_DEVICES};
+use super::link::{LOOK_EVERY, Link, LinkWriter, MOST_DEVICES};
 use super::reading::{Quantity, Reading};
 use glam::Vec3;
 use slots::Slots;
@@ -50,6 +50,7 @@ pub struct PhoneConfig {
 pub struct PhoneServer {
     link: Link,
     slots: Arc<Slots>,
+    own: IpAddr,
     port: u16,
 }
 
@@ -62,20 +63,23 @@ impl PhoneServer {
         let codes = (0..config.players.clamp(1, MOST_DEVICES)).map(|_| code());
         let codes: Vec<String> = codes.collect::<Result<_, _>>()?;
         let slots = Arc::new(Slots::new(codes));
-        let port = config.port;
+        let (own, port) = (own_address(), config.port);
         let shared = Arc::clone(&slots);
-        let link = Link::run("phone", move |link| {
-            shared.open(&link);
-            while !link.stopped() {
-                let problem = until_stopped(
-                    &link,
-                    server::serve(link.clone(), config.clone(), Arc::clone(&shared)),
-                );
-                link.set_state(LinkState::Failed(problem));
-                link.wait(RETRY);
+        let mut opened = false;
+        let link = Link::keep("phone", RETRY, move |link| {
+            if !opened {
+                shared.open(link);
+                opened = true;
             }
+            let server = server::serve(link.clone(), config.clone(), own, Arc::clone(&shared));
+            until_stopped(link, server)
         });
-        Ok(Self { link, slots, port })
+        Ok(Self {
+            link,
+            slots,
+            own,
+            port,
+        })
     }
 
     /// Its state and the players' phones.
@@ -90,7 +94,7 @@ impl PhoneServer {
             .address()
             .map_or(self.port, |address| address.port());
         let code = self.slots.code(player)?;
-        Some(format!("https://{}:{port}/p/{code}", own_address()))
+        Some(format!("https://{}:{port}/p/{code}", self.own))
     }
 
     /// Lets a player's phone vibrate shortly, as for a footstep.

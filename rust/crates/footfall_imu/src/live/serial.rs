@@ -185,6 +185,11 @@ fn bytes_at<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at + N)?.try_into().ok()
 }
 
+/// Sum of bytes in eight bits, by which most devices close a message.
+fn sum(bytes: &[u8]) -> u8 {
+    bytes.iter().fold(0, |sum, byte| sum.wrapping_add(*byte))
+}
+
 /// Bytes before the next one that may begin a message, at least one.
 fn garbage_until(bytes: &[u8], begins: u8) -> Taken {
     let next = bytes.iter().skip(1).position(|byte| *byte == begins);

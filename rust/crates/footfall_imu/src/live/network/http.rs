@@ -29,12 +29,8 @@ type Batches = Arc<Mutex<Senders<(IpAddr, String)>>>;
 
 /// Listens at a port (0 for any that is free) until the link is dropped. Batches are posted to `/data`.
 pub fn listen(port: u16) -> Link {
-    Link::run("http", move |link| {
-        while !link.stopped() {
-            let problem = until_stopped(&link, serve(link.clone(), port));
-            link.set_state(LinkState::Failed(problem));
-            link.wait(RETRY);
-        }
+    Link::keep("http", RETRY, move |link| {
+        until_stopped(link, serve(link.clone(), port))
     })
 }
 
@@ -82,7 +78,7 @@ async fn batch(
         .and_then(|head| head.device_id);
     let id = id.unwrap_or_default().into_owned();
     let mut readings = Vec::new();
-    if !json::parse(&body, None, |reading| readings.push(reading)) {
+    if !json::parse(&body, |reading| readings.push(reading)) {
         link.count_garbage(1);
         return StatusCode::BAD_REQUEST;
     }

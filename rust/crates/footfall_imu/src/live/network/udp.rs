@@ -50,18 +50,10 @@ type Sender = (SocketAddr, u8);
 
 /// Listens until the link is dropped.
 pub fn listen(config: UdpConfig) -> Link {
-    Link::run("udp", move |link| {
-        while !link.stopped() {
-            match UdpSocket::bind((Ipv4Addr::UNSPECIFIED, config.port)) {
-                Ok(socket) => {
-                    let problem = receive(&link, &socket, &config);
-                    link.set_state(LinkState::Failed(problem));
-                }
-                Err(error) => {
-                    link.set_state(LinkState::Failed(bind_problem("UDP", config.port, &error)));
-                }
-            }
-            link.wait(RETRY);
+    Link::keep("udp", RETRY, move |link| {
+        match UdpSocket::bind((Ipv4Addr::UNSPECIFIED, config.port)) {
+            Ok(socket) => receive(link, &socket, &config),
+            Err(error) => bind_problem("UDP", config.port, &error),
         }
     })
 }
@@ -142,7 +134,7 @@ impl Receiver {
         } else if osc::is_packet(bytes) {
             osc::parse(bytes, |reading| readings.push((0, reading))).then_some("osc")
         } else if bytes.starts_with(b"{")
-            && json::parse(bytes, None, |reading| readings.push((0, reading)))
+            && json::parse(bytes, |reading| readings.push((0, reading)))
         {
             Some("json")
         } else {

@@ -25,18 +25,12 @@ const SENSORS: &str =
 pub fn follow(server: &str) -> Link {
     let server = server.trim().trim_start_matches("ws://");
     let server = server.split('/').next().unwrap_or_default().to_owned();
-    Link::run("websocket", move |link| {
-        let mut device = None;
-        while !link.stopped() {
-            link.set_state(LinkState::Opening(format!("asking {server}")));
-            let problem = match connect(&server) {
-                Ok(mut socket) => receive(&link, &mut socket, &server, &mut device),
-                Err(problem) => problem,
-            };
-            if !link.stopped() {
-                link.set_state(LinkState::Failed(problem));
-                link.wait(RETRY);
-            }
+    let mut device = None;
+    Link::keep("websocket", RETRY, move |link| {
+        link.set_state(LinkState::Opening(format!("asking {server}")));
+        match connect(&server) {
+            Ok(mut socket) => receive(link, &mut socket, &server, &mut device),
+            Err(problem) => problem,
         }
     })
 }
@@ -95,7 +89,7 @@ fn receive(
             *device = link.add(server, "sensorserver");
             continue;
         };
-        if !json::parse(text.as_bytes(), None, |reading| device.push(reading, now)) {
+        if !json::parse(text.as_bytes(), |reading| device.push(reading, now)) {
             link.count_garbage(1);
         }
     }

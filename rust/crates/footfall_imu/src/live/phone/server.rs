@@ -1,7 +1,7 @@
 //! The server: the page, and the two ways in which it sends samples.
 
 use super::slots::Slots;
-use super::{LONGEST, PhoneConfig, certificate, own_address};
+use super::{LONGEST, PhoneConfig, certificate};
 use crate::live::device::DeviceStatus;
 use crate::live::link::{LinkState, LinkWriter, bind_problem};
 use crate::live::network::is_local;
@@ -16,7 +16,7 @@ use axum::{Router, extract::Extension};
 use rustls::ServerConfig;
 use rustls::pki_types::pem::PemObject as _;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -45,8 +45,13 @@ struct Shared {
 }
 
 /// Serves until there is a problem; tells it.
-pub(super) async fn serve(link: LinkWriter, config: PhoneConfig, slots: Arc<Slots>) -> String {
-    let tls = match tls_config(&config) {
+pub(super) async fn serve(
+    link: LinkWriter,
+    config: PhoneConfig,
+    own: IpAddr,
+    slots: Arc<Slots>,
+) -> String {
+    let tls = match tls_config(&config, own) {
         Ok(tls) => tls,
         Err(problem) => return problem,
     };
@@ -58,7 +63,7 @@ pub(super) async fn serve(link: LinkWriter, config: PhoneConfig, slots: Arc<Slot
     };
     if let Ok(address) = listener.local_addr() {
         link.set_address(address);
-        let waiting = if own_address().is_loopback() {
+        let waiting = if own.is_loopback() {
             "this machine is in no local network, so no phone can reach it".to_owned()
         } else {
             format!("waiting for a phone on TCP port {}", address.port())
@@ -84,19 +89,22 @@ pub(super) async fn serve(link: LinkWriter, config: PhoneConfig, slots: Arc<Slot
     }
 }
 
-fn tls_config(config: &PhoneConfig) -> Result<axum_server::tls_rustls::RustlsConfig, String> {
-    let own = certificate::load_or_make(&config.folder, own_address())?;
+fn tls_config(
+    config: &PhoneConfig,
+    own: IpAddr,
+) -> Result<axum_server::tls_rustls::RustlsConfig, String> {
+    let kept = certificate::load_or_make(&config.folder, own)?;
     let broken = |error: &dyn core::fmt::Display| {
         format!(
             "{}: the certificate is broken ({error}); delete the folder",
             config.folder.display()
         )
     };
-    let chain = CertificateDer::pem_slice_iter(own.certificate.as_bytes());
+    let chain = CertificateDer::pem_slice_iter(kept.certificate.as_bytes());
     let chain: Vec<_> = chain
         .collect::<Result<_, _>>()
         .map_err(|error| broken(&error))?;
-    let key = PrivateKeyDer::from_pem_slice(own.key.as_bytes()).map_err(|error| broken(&error))?;
+    let key = PrivateKeyDer::from_pem_slice(kept.key.as_bytes()).map_err(|error| broken(&error))?;
     let provider = Arc::new(rustls::crypto::ring::default_provider());
     let tls = ServerConfig::builder_with_provider(provider)
         .with_safe_default_protocol_versions()

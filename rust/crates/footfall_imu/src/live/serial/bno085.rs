@@ -2,7 +2,7 @@
 //!
 //! It is recognised so that a person learns why nothing moves: without angular rates no gait can be told.
 
-use super::{Format, Taken, bytes_at, garbage_until};
+use super::{Format, Taken, bytes_at, garbage_until, sum};
 use crate::live::reading::{Quantity, Reading};
 use crate::sample::GRAVITY_MPS2;
 use glam::Vec3;
@@ -20,10 +20,7 @@ impl Format for Bno085 {
         let Some(message) = bytes_at::<LENGTH>(bytes, 0) else {
             return Taken::More;
         };
-        let sum = message[2..LENGTH - 1]
-            .iter()
-            .fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
-        if sum != message[LENGTH - 1] {
+        if sum(&message[2..LENGTH - 1]) != message[LENGTH - 1] {
             return garbage_until(bytes, BEGINS);
         }
         let number = |n: usize| {

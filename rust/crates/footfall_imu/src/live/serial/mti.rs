@@ -1,6 +1,6 @@
 //! Xsens MTi: `FA FF 36 length … sum`, where the content is a list of items, each `identifier (2) size (1) data`, big-endian.
 
-use super::{Format, Taken, bytes_at, garbage_until};
+use super::{Format, Taken, bytes_at, garbage_until, sum};
 use crate::live::clock::Counter;
 use crate::live::reading::{Quantity, Reading};
 use glam::Vec3;
@@ -49,10 +49,7 @@ impl Format for Mti {
         let Some(message) = bytes.get(..whole) else {
             return Taken::More;
         };
-        let sum = message[1..]
-            .iter()
-            .fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
-        if sum != 0 {
+        if sum(&message[1..]) != 0 {
             return garbage_until(bytes, BEGINS);
         }
         if kind == MT_DATA2

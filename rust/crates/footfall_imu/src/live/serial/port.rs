@@ -76,26 +76,18 @@ pub fn ports() -> Vec<PortInfo> {
 
 /// Listens at a port until the link is dropped.
 pub fn listen(config: SerialConfig) -> Link {
-    Link::run("serial", move |link| {
-        let mut device = None;
-        while !link.stopped() {
-            let problem = match open(&config) {
-                Ok((name, port)) => {
-                    let mut session = Session {
-                        link: &link,
-                        config: &config,
-                        name,
-                        port,
-                    };
-                    session.run(&mut device)
-                }
-                Err(problem) => problem,
+    let mut device = None;
+    Link::keep("serial", RETRY, move |link| match open(&config) {
+        Ok((name, port)) => {
+            let mut session = Session {
+                link,
+                config: &config,
+                name,
+                port,
             };
-            if !link.stopped() {
-                link.set_state(LinkState::Failed(problem));
-                link.wait(RETRY);
-            }
+            session.run(&mut device)
         }
+        Err(problem) => problem,
     })
 }
 

@@ -91,7 +91,7 @@ impl Text {
         // A stream whose objects are columns is not taken for an app's first.
         let is_object = text.starts_with('{');
         let flat = self.columns.as_ref().is_some_and(Columns::has_labels);
-        if is_object && !flat && json::parse(line, None, &mut *give) {
+        if is_object && !flat && json::parse(line, &mut *give) {
             return true;
         }
         if let Some(columns) = Columns::of_header(text) {
@@ -103,7 +103,7 @@ impl Text {
             return true;
         }
         let Some(row) = columns::row(text, &mut self.columns) else {
-            return is_object && flat && json::parse(line, None, give);
+            return is_object && flat && json::parse(line, give);
         };
         if let Some(scale) = &self.scale {
             give(scale.reading(&row));

@@ -1,6 +1,6 @@
 //! Yost 3-Space: big-endian answers behind the head that [`SETUP`] asks for: success, time, echo, sum, length.
 
-use super::{Format, Taken, bytes_at};
+use super::{Format, Taken, bytes_at, sum};
 use crate::live::clock::Counter;
 use crate::live::reading::{Quantity, Reading};
 use crate::sample::GRAVITY_MPS2;
@@ -41,7 +41,7 @@ impl Format for ThreeSpace {
                     .unwrap_or(bytes.len()),
             );
         }
-        let Some([_, t0, t1, t2, t3, echo, sum, length]) = bytes_at::<HEAD>(bytes, 0) else {
+        let Some([_, t0, t1, t2, t3, echo, told, length]) = bytes_at::<HEAD>(bytes, 0) else {
             return Taken::More;
         };
         if echo != STREAMED || usize::from(length) != DATA {
@@ -50,7 +50,7 @@ impl Format for ThreeSpace {
         let Some(data) = bytes_at::<DATA>(bytes, HEAD) else {
             return Taken::More;
         };
-        if data.iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte)) != sum {
+        if sum(&data) != told {
             return Taken::Garbage(1);
         }
         let number = |n: usize| {

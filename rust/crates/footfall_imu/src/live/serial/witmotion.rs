@@ -1,6 +1,6 @@
 //! WitMotion: messages of 11 bytes, `55 kind d0 … d7 sum`, four little-endian numbers each.
 
-use super::{Format, Taken, bytes_at, garbage_until};
+use super::{Format, Taken, bytes_at, garbage_until, sum};
 use crate::live::reading::{Quantity, Reading};
 use glam::Vec3;
 
@@ -30,10 +30,7 @@ impl Format for WitMotion {
         let Some(message) = bytes_at::<LENGTH>(bytes, 0) else {
             return Taken::More;
         };
-        let sum = message[..LENGTH - 1]
-            .iter()
-            .fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
-        if sum != message[LENGTH - 1] || !KINDS.contains(&message[1]) {
+        if sum(&message[..LENGTH - 1]) != message[LENGTH - 1] || !KINDS.contains(&message[1]) {
             return garbage_until(bytes, BEGINS);
         }
         let number = |n: usize| {
