@@ -2,8 +2,6 @@ class_name StandIn
 extends Node3D
 ## A walker out of sight, with a virtual sensor on the right foot that sends lines of numbers to this machine's own UDP port: for those who have no sensor.
 
-## Where the sensor sits on the foot, metres ahead of and below the ankle.
-const ON_THE_FOOT := Vector3(0.0, -0.01, 0.07)
 ## Worn anyhow: nobody ties a sensor on straight.
 const WORN := Quaternion(0.2, 0.6, 0.3, 0.714143)
 
@@ -34,9 +32,7 @@ func _process(delta: float) -> void:
 
 
 func _measure() -> void:
-	var bone := _skeleton.global_transform * _skeleton.get_bone_global_pose(_foot)
-	var turn := (bone.basis * _skeleton.get_bone_global_rest(_foot).basis.inverse()).get_rotation_quaternion()
-	var sample := _imu.move(bone.origin + turn * ON_THE_FOOT, turn * WORN.normalized(), _delta)
+	var sample := _imu.move_with_foot(_skeleton, _foot, _delta, WORN.normalized())
 	if sample.is_empty():
 		return
 	var force: Vector3 = sample[1]

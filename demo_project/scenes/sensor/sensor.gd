@@ -2,8 +2,6 @@ extends WalkingScene
 ## A walker wears a sensor on the right foot; all that the second one knows is what this sensor measures.
 
 const MODEL: ImuModel = preload("res://addons/footfall/models/right_foot.footimu")
-## Where the sensor sits on the foot, metres ahead of and below the ankle.
-const ON_THE_FOOT := Vector3(0.0, -0.01, 0.07)
 
 var _leader: GaitGenerator3D
 var _skeleton: Skeleton3D
@@ -53,11 +51,7 @@ func _add_driven() -> void:
 
 
 func _measure() -> void:
-	var world := _skeleton.global_transform
-	var bone := world * _skeleton.get_bone_global_pose(_foot)
-	# Turned as in the T-pose, the sensor's axes are the body's.
-	var turn := (bone.basis * _skeleton.get_bone_global_rest(_foot).basis.inverse()).get_rotation_quaternion()
-	var sample := _imu.move(bone.origin + turn * ON_THE_FOOT, turn, _delta)
+	var sample := _imu.move_with_foot(_skeleton, _foot, _delta)
 	if not sample.is_empty():
 		_driven.push_sample(0, sample[0], sample[1], sample[2])
 
