@@ -2,20 +2,20 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
 
-use footfall_core::{ModelPose, Pose, Site, forward_kinematics};
+use footfall_core::{Clip, ModelPose, Pose, Site, forward_kinematics};
 use footfall_imu::{ImuRecording, ImuSample};
 use footfall_model::{GaitModel, Provenance};
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
 use footfall_recon::{Prepared, ReconConfig, Reconstructor, reconstruct_recording};
 use footfall_synth::{WalkConfig, synthesize};
 use footfall_tests::data::repository;
-use footfall_train::imu::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
+use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
 use std::sync::Arc;
 
 const SITES: [Site; 2] = [Site::RightFoot, Site::RightHand];
 const RATE_HZ: f64 = 100.0;
 
-fn clip(gait: &Arc<GaitModel>, seed: u64, speed: f32) -> footfall_core::Clip {
+fn clip(gait: &Arc<GaitModel>, seed: u64, speed: f32) -> Clip {
     let config = WalkConfig {
         steps: 24,
         seed,
@@ -65,21 +65,24 @@ fn prepare() -> (Arc<Prepared>, [ImuRecording; 2]) {
     let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall")).unwrap();
     let gait = Arc::new(GaitModel::from_bytes(&bytes).unwrap());
     let config = ImuTrainConfig::new(&SITES);
-    let mut chains: Vec<Chain> = Vec::new();
-    for seed in 0..8 {
-        let clip = clip(&gait, seed, 0.9 + 0.08 * seed as f32);
-        chains.extend(observe(
-            &ImuClip {
-                subject: &seed.to_string(),
-                clip: &clip,
-                first_frame: 0,
-                recordings: &[],
-            },
-            &config,
-        ));
-    }
-    let all: Vec<&Chain> = chains.iter().collect();
-    let model = train_imu(&all, &config, Provenance::default()).unwrap();
+    let walks: Vec<(String, Clip)> = (0..8)
+        .map(|seed| {
+            (
+                seed.to_string(),
+                clip(&gait, seed, 0.9 + 0.08 * seed as f32),
+            )
+        })
+        .collect();
+    let clips: Vec<ImuClip<'_>> = walks
+        .iter()
+        .map(|(subject, clip)| ImuClip {
+            subject,
+            clip,
+            first_frame: 0,
+            recordings: &[],
+        })
+        .collect();
+    let model = train_imu_clips(&clips, &config, Provenance::default()).unwrap();
     let prepared = Arc::new(Prepared::new(Arc::new(model)).unwrap());
     let unseen = clip(&gait, 99, 1.17);
     let recordings =
