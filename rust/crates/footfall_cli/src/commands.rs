@@ -2,14 +2,18 @@
 
 mod adapt;
 mod bench;
+mod completions;
 mod contacts;
 mod design;
+mod doctor;
 mod dynamics;
 mod evaluate;
 mod imu;
 mod inspect;
+mod manual;
 mod retarget;
 mod sheet;
+mod studio;
 mod study;
 mod synth;
 mod train;
@@ -48,7 +52,11 @@ enum Command {
     Sheet(sheet::SheetArgs),
     Evaluate(evaluate::EvaluateArgs),
     Study(study::StudyArgs),
+    Studio(studio::StudioArgs),
     Bench(bench::BenchArgs),
+    Doctor(doctor::DoctorArgs),
+    Completions(completions::CompletionsArgs),
+    Manual(manual::ManualArgs),
 }
 
 impl Cli {
@@ -67,7 +75,11 @@ impl Cli {
             Command::Sheet(args) => sheet::run(args),
             Command::Evaluate(args) => evaluate::run(args),
             Command::Study(args) => study::run(args),
+            Command::Studio(args) => studio::run(args),
             Command::Bench(args) => bench::run(args),
+            Command::Doctor(args) => doctor::run(args),
+            Command::Completions(args) => completions::run(args),
+            Command::Manual(args) => manual::run(args),
         }
     }
 }

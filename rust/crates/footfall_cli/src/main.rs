@@ -1,7 +1,6 @@
 //! The footfall command line.
 
 mod commands;
-mod contact_report;
 mod corpus_pair;
 mod model_file;
 mod motion_input;

@@ -1,47 +1,21 @@
 //! What leaves the program: files that appear whole or not at all, JSON on stdout, progress on stderr.
 
 use anyhow::{Context as _, Result, bail};
+use footfall_motion::files;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use std::fs::{self, File};
 use std::io::{self, IsTerminal as _, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
-/// Writes a file under a temporary name beside it and renames it, so that a reader never sees half of it and a failure
-/// leaves what was there.
+/// Writes a file whole or not at all; errors name it.
 pub(crate) fn write_atomic(path: &Path, bytes: &[u8]) -> Result<()> {
-    let temporary = temporary_beside(path)?;
-    let written = (|| -> io::Result<()> {
-        let mut file = File::create_new(&temporary)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        drop(file);
-        fs::rename(&temporary, path)
-    })();
-    if written.is_err() {
-        // The first error is the one to report; a leftover is harmless.
-        drop(fs::remove_file(&temporary));
-    }
-    written.with_context(|| {
+    files::write_atomic(path, bytes).with_context(|| {
         format!(
             "cannot write {}; check that its folder exists and that you may write there",
             path.display()
         )
     })
-}
-
-fn temporary_beside(path: &Path) -> Result<PathBuf> {
-    let Some(name) = path.file_name() else {
-        bail!(
-            "{} names no file; give the output a file name",
-            path.display()
-        );
-    };
-    let mut hidden = std::ffi::OsString::from(".");
-    hidden.push(name);
-    hidden.push(format!(".{}.part", std::process::id()));
-    Ok(path.with_file_name(hidden))
 }
 
 /// Refuses an output that is one of the inputs.
@@ -76,10 +50,47 @@ pub(crate) fn print_text(text: &str) -> Result<()> {
     }
 }
 
-/// A line on stderr: what was done, or a warning.
+/// A line on stderr: what was done, or a warning, whose first word is coloured on a terminal.
 pub(crate) fn note(text: &str) {
+    let text = match (text.strip_prefix("error:"), text.strip_prefix("warning:")) {
+        (Some(rest), _) => format!("{}{rest}", painted("error:", Colour::Red, &io::stderr())),
+        (_, Some(rest)) => {
+            format!(
+                "{}{rest}",
+                painted("warning:", Colour::Yellow, &io::stderr())
+            )
+        }
+        _ => text.to_owned(),
+    };
     // Nobody is left to tell when stderr is gone.
     drop(writeln!(io::stderr().lock(), "{text}"));
+}
+
+/// A colour of a terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Colour {
+    Red,
+    Green,
+    Yellow,
+}
+
+/// Text for stdout, in colour where that is a terminal.
+pub(crate) fn coloured(text: &str, colour: Colour) -> String {
+    painted(text, colour, &io::stdout())
+}
+
+/// Bold and coloured on a terminal that may have colours (<https://no-color.org>).
+fn painted(text: &str, colour: Colour, stream: &impl io::IsTerminal) -> String {
+    let is_refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    if !stream.is_terminal() || is_refused {
+        return text.to_owned();
+    }
+    let code = match colour {
+        Colour::Red => 31,
+        Colour::Green => 32,
+        Colour::Yellow => 33,
+    };
+    format!("\u{1b}[1;{code}m{text}\u{1b}[0m")
 }
 
 /// Progress on stderr: a bar on a terminal, a line for each stage elsewhere.
@@ -134,6 +145,7 @@ impl Progress {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_file_is_replaced_whole_and_nothing_is_left_beside_it() {

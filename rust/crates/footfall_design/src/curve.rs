@@ -15,6 +15,11 @@ impl PeriodicCurve {
         Self { points }
     }
 
+    /// The points: phase in cycles, and value.
+    pub(crate) fn points(&self) -> &[(f32, f32)] {
+        &self.points
+    }
+
     /// The same curve with all values times `factor`.
     #[must_use]
     pub(crate) fn scaled(&self, factor: f32) -> Self {

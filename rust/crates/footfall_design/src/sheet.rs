@@ -4,6 +4,7 @@
 //! `footfall design --keys` prints all come from it.
 
 mod parse;
+mod write;
 
 use crate::curve::PeriodicCurve;
 use core::ops::RangeInclusive;
@@ -24,6 +25,17 @@ pub struct KeySpec {
     pub range: RangeInclusive<f32>,
     /// What it does.
     pub text: &'static str,
+}
+
+impl KeySpec {
+    /// Whether a value changes nothing.
+    #[expect(
+        clippy::float_cmp,
+        reason = "the least change is a change, and the neutral value is written as it is here"
+    )]
+    pub fn is_neutral(&self, value: f32) -> bool {
+        value == self.neutral
+    }
 }
 
 /// A table of numbers.

@@ -100,6 +100,27 @@ impl Contacts {
         &self.feet[side.index()]
     }
 
+    /// The same clip with these stances of the left and of the right foot instead, in order and apart. Which part of the foot
+    /// bears stays as it was where a stance was; where there is a new one, the whole foot does.
+    #[must_use]
+    pub fn with_stances(&self, stances: [Vec<FrameSpan>; 2]) -> Self {
+        let mut corrected = self.clone();
+        for (foot, stances) in corrected.feet.iter_mut().zip(stances) {
+            let mut stands = vec![false; self.frames];
+            for span in &stances {
+                let last = span.last.min(self.frames.saturating_sub(1));
+                stands[span.first.min(last)..=last].fill(true);
+            }
+            for (frame, bears) in stands.into_iter().enumerate() {
+                let known = foot.heel[frame] || foot.toe[frame];
+                foot.heel[frame] = bears && (foot.heel[frame] || !known);
+                foot.toe[frame] = bears && (foot.toe[frame] || !known);
+            }
+            foot.stances = stances;
+        }
+        corrected
+    }
+
     /// Whether any part of a foot bears on the ground in a frame.
     pub fn bears(&self, side: Side, frame: usize) -> bool {
         let foot = self.foot(side);

@@ -4,10 +4,10 @@ mod selection;
 
 pub use selection::{IndexRow, Where, read_index};
 
-use crate::bvh;
-use crate::contacts::{ContactConfig, Contacts, detect_contacts};
-use crate::retarget::{RetargetOptions, Retargeted, retarget};
-use crate::steps::{Walk, segment_walks};
+use crate::contacts::Contacts;
+use crate::recording::Recording;
+use crate::retarget::{RetargetOptions, Retargeted};
+use crate::steps::Walk;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ pub struct CorpusClip {
     pub row: IndexRow,
     /// The motion on the canonical body.
     pub retargeted: Retargeted,
-    /// Contacts of its feet.
+    /// Contacts of its feet, corrected by hand or detected.
     pub contacts: Contacts,
     /// Its walks.
     pub walks: Vec<Walk>,
@@ -175,16 +175,12 @@ fn read_clip(row: IndexRow, options: &RetargetOptions) -> Result<CorpusClip, Ski
         line: row.line,
         reason,
     };
-    let file = bvh::read(&row.path).map_err(|error| skipped(error.to_string()))?;
-    let retargeted = retarget(&file, options)
-        .map_err(|error| skipped(format!("{}: {error}", row.path.display())))?;
-    let config = ContactConfig::from_frame(retargeted.first_frame);
-    let contacts = detect_contacts(&retargeted.clip, &config);
-    let walks = segment_walks(&retargeted.clip, &contacts);
+    let recording =
+        Recording::read(&row.path, options).map_err(|error| skipped(error.to_string()))?;
     Ok(CorpusClip {
         row,
-        retargeted,
-        contacts,
-        walks,
+        retargeted: recording.retargeted,
+        contacts: recording.contacts,
+        walks: recording.walks,
     })
 }

@@ -1,14 +1,21 @@
 //! Offline: BVH files, retargeting, contacts, steps and corpora.
 //!
 //! Modules in the order in which data flows: [`bvh`] text to joints and channels, [`retarget`] to a clip on the canonical
-//! body, [`contacts`] of its feet with the ground, [`steps`] of its walks, and [`corpus`], many files at once.
+//! body, [`contacts`] of its feet with the ground, [`steps`] of its walks; [`recording`], all of these for one file, with
+//! the [corrections](contact_file) that a person made; and [`corpus`], many files at once.
 //! [`switches`] are contacts from joint angles alone, [`sensor_switches`] from a sensor on a foot. [`virtual_imu`]
 //! measures what a sensor on the body would have, and [`phases`] cuts any locomotion at its contacts and extremes.
+//! [`figure`] is a body as capsules, for whoever draws it; [`gltf`] takes a clip to other programs.
 
 pub mod bvh;
+pub mod contact_file;
 pub mod contacts;
 pub mod corpus;
+pub mod figure;
+pub mod files;
+pub mod gltf;
 pub mod phases;
+pub mod recording;
 pub mod retarget;
 pub mod sensor_switches;
 pub mod steps;

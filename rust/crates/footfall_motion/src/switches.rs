@@ -79,22 +79,7 @@ pub struct Switch {
 /// # Errors
 /// [`ProbError::NotFinite`] when a pose is not finite.
 pub fn detect_switches(clip: &Clip, first_frame: usize) -> Result<Vec<Switch>, ProbError> {
-    let legs = Side::BOTH.map(|side| [side.upper_leg(), side.lower_leg()]);
-    for (frame, pose) in clip.poses.iter().enumerate().skip(first_frame) {
-        for rotation in legs
-            .as_flattened()
-            .iter()
-            .map(|joint| pose.rotation(*joint))
-        {
-            if !rotation.is_finite() {
-                return Err(ProbError::NotFinite {
-                    what: "leg rotations, by frame",
-                    index: frame,
-                    value: f64::NAN,
-                });
-            }
-        }
-    }
+    check_finite_legs(clip, first_frame)?;
     let angles = LegAngles::of(clip, first_frame);
     let Some(residual) = Residual::of(&angles)? else {
         return Ok(Vec::new());
@@ -118,6 +103,54 @@ pub fn detect_switches(clip: &Clip, first_frame: usize) -> Result<Vec<Switch>, P
         .collect();
     switches.sort_by_key(|switch| switch.frame);
     Ok(switches)
+}
+
+fn check_finite_legs(clip: &Clip, first_frame: usize) -> Result<(), ProbError> {
+    let legs = Side::BOTH.map(|side| [side.upper_leg(), side.lower_leg()]);
+    for (frame, pose) in clip.poses.iter().enumerate().skip(first_frame) {
+        for rotation in legs
+            .as_flattened()
+            .iter()
+            .map(|joint| pose.rotation(*joint))
+        {
+            if !rotation.is_finite() {
+                return Err(ProbError::NotFinite {
+                    what: "leg rotations, by frame",
+                    index: frame,
+                    value: f64::NAN,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The projection residual, which peaks where one system hands over to the next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SwitchResidual {
+    /// Time in the clip of the first value, seconds.
+    pub first_secs: f64,
+    /// Values a second.
+    pub rate_hz: f64,
+    /// For the left and the right leg, over the clip's median.
+    pub legs: [Vec<f64>; 2],
+}
+
+/// What [`detect_switches`] looks at, to be shown beside it; `None` for a clip that is too short.
+///
+/// # Errors
+/// As [`detect_switches`].
+pub fn switch_residual(
+    clip: &Clip,
+    first_frame: usize,
+) -> Result<Option<SwitchResidual>, ProbError> {
+    check_finite_legs(clip, first_frame)?;
+    let residual = Residual::of(&LegAngles::of(clip, first_frame))?;
+    Ok(residual.map(|residual| SwitchResidual {
+        first_secs: first_frame as f64 / clip.frame_rate_hz + residual.first as f64 / ANGLE_RATE_HZ,
+        rate_hz: ANGLE_RATE_HZ,
+        legs: residual.legs,
+    }))
 }
 
 /// The frames in which each foot certainly bears on the ground: from its switch until the other foot's. When it leaves the

@@ -70,8 +70,8 @@ pub struct Adapted {
     pub objectives: Vec<f64>,
     /// Log-likelihood of the same frames under the base model, under the transforms, and after the states' own re-estimation.
     pub log_likelihoods: [f64; 3],
-    /// How many classes of states have transforms of their own.
-    pub classes: usize,
+    /// Classes of states with transforms of their own: numbers of the states, the left step's first.
+    pub classes: Vec<Vec<usize>>,
     /// Frames that were adapted to, at the model's rate.
     pub frames: usize,
 }

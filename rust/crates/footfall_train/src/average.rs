@@ -4,7 +4,7 @@
 //! re-estimated by explicit-duration forward-backward (Tilmanne et al. 2012, sections 5.1.1 and 5.1.2).
 
 use crate::error::TrainError;
-use crate::progress::Progress;
+use crate::progress::{Progress, advance};
 use crate::sequence::{LabelledStep, Sequence};
 use footfall_core::Side;
 use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP, StateModel};
@@ -82,12 +82,13 @@ impl AverageWalk {
             ..self
         };
         for iteration in 0..config.max_iterations {
-            progress.advance("training", iteration, config.max_iterations);
+            advance(progress, "training", iteration, config.max_iterations)?;
             let stats = walk.expect(corpus, corpus)?;
             let gain = walk
                 .log_likelihoods
                 .last()
                 .map(|previous| (stats.log_likelihood - previous) / stats.n_frames as f64);
+            progress.fit(stats.log_likelihood);
             let mut likelihoods = core::mem::take(&mut walk.log_likelihoods);
             likelihoods.push(stats.log_likelihood);
             walk = Self {
@@ -98,7 +99,12 @@ impl AverageWalk {
                 break;
             }
         }
-        progress.advance("training", config.max_iterations, config.max_iterations);
+        advance(
+            progress,
+            "training",
+            config.max_iterations,
+            config.max_iterations,
+        )?;
         Ok(walk)
     }
 

@@ -42,6 +42,28 @@ pub struct ContextReport {
     pub models: usize,
     /// The questions that the trees ask, each once, those asked most often first.
     pub questions: Vec<String>,
+    /// The trees themselves: one for the output of each state, then the durations'.
+    pub trees: Vec<TreeReport>,
+}
+
+/// A tree, written down.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TreeReport {
+    /// What it ties: `output of state 1`, `durations`.
+    pub name: String,
+    /// Parents before children.
+    pub lines: Vec<TreeLine>,
+}
+
+/// A line of a tree.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TreeLine {
+    /// How many questions lead here.
+    pub depth: usize,
+    /// The answer that led here from the question above; `None` at the root.
+    pub answer: Option<bool>,
+    /// A question and what it saves, or the steps that share a model.
+    pub text: String,
 }
 
 /// Estimates how steps at the ends of walks differ. `corpus` holds whole walks as those of the average walker.

@@ -51,6 +51,9 @@ pub enum TrainError {
         /// How many there are.
         found: usize,
     },
+    /// Whoever asked for the work asked it to stop.
+    #[error("stopped before the end; nothing was written")]
+    Cancelled,
     /// Inference failed.
     #[error("the walk cannot be explained by the model: {0}")]
     Inference(#[from] ProbError),

@@ -10,6 +10,7 @@ use crate::sequence::Sequence;
 use crate::walker_adaptive::{self, WalkerAdaptive, WalkerTransform};
 use footfall_core::{Clip, Side, Skeleton, StepPosition};
 use footfall_model::{FEATURE_COUNT, GaitModel, GlobalVarianceModel, Provenance, StepModel};
+use footfall_motion::corpus::CorpusClip;
 use footfall_motion::steps::Walk;
 use footfall_prob::windows::Windows;
 
@@ -30,6 +31,17 @@ pub struct TrainingClip {
     pub skip_frames: usize,
     /// The walks in the clip, in its own frames.
     pub walks: Vec<Walk>,
+}
+
+impl From<&CorpusClip> for TrainingClip {
+    fn from(clip: &CorpusClip) -> Self {
+        Self {
+            subject: clip.row.subject().to_owned(),
+            clip: clip.retargeted.clip.clone(),
+            skip_frames: clip.retargeted.first_frame,
+            walks: clip.walks.clone(),
+        }
+    }
 }
 
 /// How to train.

@@ -98,7 +98,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     let mut progress = train::TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
     let corpus = train::read_corpus(&args.corpus, &args.conditions, &args.output)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(train::training_clip).collect();
+    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let config = AdaptConfig {
         method: match args.method {
             MethodArg::Cmllr => AdaptMethod::Cmllr,
@@ -179,7 +179,7 @@ fn report(
         frames: adapted.frames,
         objectives: &adapted.objectives,
         log_likelihoods: adapted.log_likelihoods,
-        classes: adapted.classes,
+        classes: adapted.classes.len(),
         speed_mps: style.speed_mps,
         cadence_per_minute: 60.0 * style.cadence_hz,
         bytes,

@@ -1,11 +1,11 @@
 //! `footfall contacts`: when each foot stands, and the steps.
 
-use crate::contact_report::ContactReport;
 use crate::motion_input::{MapArgs, MotionInput, Walking};
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
 use footfall_core::{EventKind, GaitEvent};
+use footfall_motion::contact_file::ContactFile;
 use footfall_motion::retarget::Retargeted;
 use footfall_motion::switches::{detect_switches, stances, walks};
 use std::path::PathBuf;
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
     let report = match args.method {
         Method::Kinematic => {
             let walking = Walking::of(&motion);
-            ContactReport::new(&walking.contacts, &walking.walks)
+            ContactFile::new(&walking.contacts, &walking.walks)
         }
         Method::Switching => {
             switching(&motion).with_context(|| args.input.display().to_string())?
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
     output::print_text(&lines.join("\n"))
 }
 
-fn switching(motion: &Retargeted) -> Result<ContactReport> {
+fn switching(motion: &Retargeted) -> Result<ContactFile> {
     let frames = motion.clip.poses.len();
     let switches = detect_switches(&motion.clip, motion.first_frame)?;
     let events: Vec<GaitEvent> = switches
@@ -95,6 +95,6 @@ fn switching(motion: &Retargeted) -> Result<ContactReport> {
     let stances = stances(&switches, frames);
     let [left, right] = stances.each_ref().map(Vec::as_slice);
     let rate = motion.clip.frame_rate_hz;
-    let report = ContactReport::from_spans(rate, frames, [left, right], &events);
+    let report = ContactFile::from_spans(rate, frames, [left, right], &events);
     Ok(report.with_steps(&walks(&switches, rate)))
 }

@@ -7,8 +7,12 @@ mod style;
 mod style_report;
 mod training;
 
-use anyhow::Result;
-use clap::Subcommand;
+use anyhow::{Context as _, Result};
+use clap::{Parser, Subcommand};
+use footfall_studio::{EvaluateKind, EvaluateRequest};
+use serde::Serialize;
+use serde_json::Value;
+use std::ffi::OsString;
 
 /// Judge walks by measures: the papers' tables on your own data
 #[derive(Debug, clap::Args)]
@@ -34,4 +38,40 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<()> {
         What::Style(args) => style::run(args),
         What::Training(args) => training::run(args),
     }
+}
+
+/// The arguments of `footfall evaluate` alone.
+#[derive(Parser)]
+struct Alone {
+    #[command(subcommand)]
+    what: What,
+}
+
+/// The report of a command that the studio asks for, as `--json` prints it.
+pub(crate) fn report(request: &EvaluateRequest) -> Result<Value> {
+    let mut words: Vec<OsString> = vec!["evaluate".into(), request.kind.command().into()];
+    let index = match request.kind {
+        EvaluateKind::Style => "--real",
+        _ => "--corpus",
+    };
+    words.extend([index.into(), request.index.clone().into()]);
+    let conditions = || {
+        let conditions = request.conditions.iter();
+        conditions.flat_map(|condition| [OsString::from("--where"), condition.into()])
+    };
+    words.extend(conditions());
+    if let (EvaluateKind::Style, Some(made)) = (request.kind, &request.synthesised) {
+        words.extend(["--synthesised".into(), made.clone().into()]);
+    }
+    match Alone::try_parse_from(words)?.what {
+        What::Contacts(args) => value(&contacts::evaluate(&args)?),
+        What::Dynamics(args) => value(&dynamics::evaluate(&args)?),
+        What::Imu(args) => value(&imu::evaluate(&args)?),
+        What::Style(args) => value(&style::evaluate(&args)?),
+        What::Training(args) => value(&training::evaluate(&args)?),
+    }
+}
+
+fn value(report: &impl Serialize) -> Result<Value> {
+    serde_json::to_value(report).context("the result does not fit JSON")
 }

@@ -1,11 +1,11 @@
 //! `footfall sheet`: motion on one page.
 
-use crate::contact_report::ContactReport;
 use crate::motion_input::{MapArgs, MotionInput, Walking};
 use crate::output;
 use crate::sheet::{SheetOptions, Subject, draw_sheet};
 use anyhow::{Context as _, Result, ensure};
 use footfall_core::Side;
+use footfall_motion::contact_file::ContactFile;
 use footfall_motion::retarget::Retargeted;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder as _};
@@ -80,7 +80,7 @@ pub(crate) fn run(args: &SheetArgs) -> Result<()> {
         let motion = MotionInput::read(input, map.clone(), None)?.retargeted;
         let walking = Walking::of(&motion);
         let stances = match args.contacts.get(index) {
-            Some(path) => ContactReport::read(path, &motion.clip)?.stances(),
+            Some(path) => ContactFile::read(path, &motion.clip)?.stances(),
             None => Side::BOTH.map(|side| walking.contacts.foot(side).stances.clone()),
         };
         if args.start.is_none() {

@@ -6,11 +6,12 @@ use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
 use footfall_core::StepPosition;
-use footfall_motion::corpus::{Corpus, CorpusClip, Where};
+use footfall_motion::corpus::{Corpus, Where};
 use footfall_prob::windows::Windows;
 use footfall_train::{ContextReport, EmConfig, TrainConfig, Trained, TrainingClip, train_average};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -127,7 +128,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
     let corpus = read_corpus(&args.corpus, &args.conditions, &args.output)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(training_clip).collect();
+    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let trained = train_average(
         &clips,
         &config(args),
@@ -163,16 +164,6 @@ pub(super) fn read_corpus(index: &Path, conditions: &[Where], model: &Path) -> R
         output::refuse_overwrite(&[&clip.row.path], model)?;
     }
     Ok(corpus)
-}
-
-/// A recording as the trainer takes it.
-pub(super) fn training_clip(clip: &CorpusClip) -> TrainingClip {
-    TrainingClip {
-        subject: clip.row.subject().to_owned(),
-        clip: clip.retargeted.clip.clone(),
-        skip_frames: clip.retargeted.first_frame,
-        walks: clip.walks.clone(),
-    }
 }
 
 /// What a corpus left out.
@@ -241,10 +232,11 @@ fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) ->
 pub(super) struct TrainingProgress(pub(super) output::Progress);
 
 impl footfall_train::Progress for TrainingProgress {
-    fn advance(&mut self, task: &str, done: usize, total: usize) {
+    fn advance(&mut self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
         if done == 0 {
             self.0.stage(task, total as u64);
         }
         self.0.reach(done as u64);
+        ControlFlow::Continue(())
     }
 }

@@ -1,10 +1,10 @@
 //! What `synth` and `dynamics synth` have in common: how to walk, and the files that a walk becomes.
 
-use crate::contact_report::{ContactReport, StepEntry};
 use crate::output;
 use anyhow::{Context as _, Result, ensure};
 use footfall_core::{FrameSpan, Side};
 use footfall_motion::bvh::{self, clip_to_bvh};
+use footfall_motion::contact_file::{ContactFile, StepEntry};
 use footfall_synth::SynthesizedWalk;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -108,10 +108,10 @@ impl WalkArgs {
 }
 
 /// Contacts and steps of a generated walk. It begins and ends in full stride, so every step is inside.
-fn contact_report(walk: &SynthesizedWalk) -> ContactReport {
+fn contact_report(walk: &SynthesizedWalk) -> ContactFile {
     let clip = &walk.clip;
     let stances = Side::BOTH.map(|side| walk.contacts[side.index()].as_slice());
-    let mut report = ContactReport::from_spans(
+    let mut report = ContactFile::from_spans(
         clip.frame_rate_hz,
         clip.poses.len(),
         stances,

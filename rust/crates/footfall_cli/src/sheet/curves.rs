@@ -3,10 +3,10 @@
 use super::Subject;
 use super::draw::palette::{GREY, GRID, INK, LEFT, RIGHT, Rgb, SHADE};
 use super::draw::{Align, Canvas, lighter};
-use super::figure::sole_points;
 use super::measure::Measured;
 use footfall_core::rotation::log_map;
 use footfall_core::{Joint, ModelPose, Side};
+use footfall_motion::figure::sole_points;
 use glam::{Vec2, Vec3};
 
 /// One line of a plot: a value for every frame.

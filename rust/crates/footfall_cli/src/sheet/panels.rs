@@ -4,10 +4,11 @@ use super::Subject;
 use super::curves::{PlotArea, draw_plot, draw_time_grid, draw_time_labels, plots, side_color};
 use super::draw::palette::{FLOOR, GREY, GRID, INK, SHADE};
 use super::draw::{Align, Canvas, lighter};
-use super::figure::{View, draw_figure, sole_points};
+use super::figure::{View, draw_figure};
 use super::layout::{Block, MARGIN, Strip};
 use super::measure::Measured;
 use footfall_core::{Joint, Side};
+use footfall_motion::figure::sole_points;
 use glam::{Vec2, Vec3};
 
 /// Draws one clip with its corner at `corner`.

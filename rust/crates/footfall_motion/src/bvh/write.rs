@@ -1,8 +1,8 @@
 //! [`BvhFile`] to text.
 
 use super::{BvhError, BvhFile};
+use crate::files;
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::Path;
 
 /// The text of a file. [`super::parse`] gives the same file back, bit for bit.
@@ -69,23 +69,9 @@ pub fn write(file: &BvhFile) -> String {
 /// [`BvhError::Io`] names the file.
 pub fn write_file(file: &BvhFile, path: impl AsRef<Path>) -> Result<(), BvhError> {
     let path = path.as_ref();
-    let io_error = |source| BvhError::Io {
+    files::write_atomic(path, write(file).as_bytes()).map_err(|source| BvhError::Io {
         path: path.to_owned(),
         source,
-    };
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.partial", std::process::id()));
-    let partial = path.with_file_name(name);
-    let result = std::fs::File::create(&partial)
-        .and_then(|mut out| {
-            out.write_all(write(file).as_bytes())?;
-            out.sync_all()
-        })
-        .and_then(|()| std::fs::rename(&partial, path));
-    result.map_err(|source| {
-        // The first error is the one to tell; a partial file may not even exist.
-        drop(std::fs::remove_file(&partial));
-        io_error(source)
     })
 }
 

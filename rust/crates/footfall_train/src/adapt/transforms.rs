@@ -3,7 +3,7 @@
 use super::AdaptMethod;
 use crate::average::{DURATION_VARIANCE_FLOOR, STATES, chain};
 use crate::error::TrainError;
-use crate::progress::Progress;
+use crate::progress::{Progress, advance};
 use crate::sequence::Sequence;
 use footfall_model::{FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::ProbError;
@@ -197,8 +197,12 @@ impl Adapting {
         self.max_duration
     }
 
-    pub(super) fn classes(&self) -> usize {
-        self.classes.len()
+    /// The states of every class, in the order of both steps' states.
+    pub(super) fn classes(&self) -> Vec<Vec<usize>> {
+        self.classes
+            .iter()
+            .map(|class| class.members.clone())
+            .collect()
     }
 
     /// Estimates all transforms, level by level of the tree. Returns the log-likelihood in the end, and at every alignment
@@ -223,13 +227,15 @@ impl Adapting {
                 LEVEL_ITERATIONS
             };
             for _ in 0..iterations {
-                progress.advance("adapting", done, rounds);
+                advance(progress, "adapting", done, rounds)?;
                 let alignment = if done == 0 {
                     // The base knows neither the style's posture nor its tempo: the first alignment is by the steps.
                     self.even_alignment(corpus, &frames)
                 } else {
                     let alignment = self.align(corpus, &frames)?;
-                    objectives.push(alignment.log_likelihood + self.log_prior());
+                    let objective = alignment.log_likelihood + self.log_prior();
+                    progress.fit(objective);
+                    objectives.push(objective);
                     alignment
                 };
                 self.maximise(&alignment)?;
@@ -238,7 +244,7 @@ impl Adapting {
         }
         let last = self.align(corpus, &frames)?;
         objectives.push(last.log_likelihood + self.log_prior());
-        progress.advance("adapting", rounds, rounds);
+        advance(progress, "adapting", rounds, rounds)?;
         Ok((last.log_likelihood, objectives))
     }
 

@@ -1,12 +1,12 @@
 //! Which contexts share their parameters, and what the leaves of the ends differ in from the inside.
 
 use super::moments::Moments;
-use super::{CONTEXTS, ContextReport, LEAST_STEPS, context};
+use super::{CONTEXTS, ContextReport, LEAST_STEPS, TreeLine, TreeReport, context};
 use crate::average::DURATION_VARIANCE_FLOOR;
 use crate::error::TrainError;
 use footfall_core::{Side, StepPosition};
 use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP, SpeedResponse, StepModel, StepOffset};
-use footfall_prob::clustering::{ClusterConfig, ContextTree, Question};
+use footfall_prob::clustering::{ClusterConfig, ContextTree, OutlineNode, Question};
 use footfall_prob::gaussian::GaussianStats;
 
 /// Factor on the description length of a further leaf. Below 1 because a walk's ends are short beside its inside, and
@@ -161,8 +161,52 @@ impl Trees {
                 .into_iter()
                 .map(|question| self.questions[question].name.clone())
                 .collect(),
+            trees: self.written_down(),
         }
     }
+
+    fn written_down(&self) -> Vec<TreeReport> {
+        let names = (1..=self.outputs.len()).map(|state| format!("output of state {state}"));
+        let outputs = names.zip(&self.outputs);
+        outputs
+            .chain([("durations".to_owned(), &self.durations)])
+            .map(|(name, tree)| TreeReport {
+                name,
+                lines: self.lines(tree),
+            })
+            .collect()
+    }
+
+    fn lines(&self, tree: &ContextTree) -> Vec<TreeLine> {
+        let lines = tree.outline().into_iter();
+        lines
+            .map(|line| TreeLine {
+                depth: line.depth,
+                answer: line.answer,
+                text: match line.node {
+                    OutlineNode::Question { question, gain } => {
+                        format!("{} (saves {gain:.0} nats)", self.questions[question].name)
+                    }
+                    OutlineNode::Leaf(contexts) => contexts_in_words(&contexts),
+                },
+            })
+            .collect()
+    }
+}
+
+/// Contexts by place and foot, both feet of a place together.
+fn contexts_in_words(contexts: &[usize]) -> String {
+    let places = StepPosition::ALL.into_iter().filter_map(|position| {
+        let feet = Side::BOTH.map(|side| contexts.contains(&context(position, side)));
+        let name = position.name().replace('_', " ");
+        match feet {
+            [true, true] => Some(name),
+            [true, false] => Some(format!("{name} (left)")),
+            [false, true] => Some(format!("{name} (right)")),
+            [false, false] => None,
+        }
+    });
+    places.collect::<Vec<_>>().join(", ")
 }
 
 /// The moments of all contexts of a leaf together.

@@ -1,7 +1,7 @@
 //! `footfall dynamics fit`: a corpus becomes two systems that switch.
 
 use crate::commands::train::provenance::{describe, name_of};
-use crate::commands::train::{read_corpus, skipped, training_clip};
+use crate::commands::train::{read_corpus, skipped};
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
 use footfall_motion::corpus::Where;
@@ -90,7 +90,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
     output::refuse_overwrite(&[&args.corpus], &args.output)?;
     let config = args.size.config()?;
     let corpus = read_corpus(&args.corpus, &args.conditions, &args.output)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(training_clip).collect();
+    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let conditions: Vec<String> = args
         .conditions
         .iter()

@@ -62,7 +62,7 @@ pub(super) struct Agreement {
 }
 
 #[derive(Serialize)]
-struct Report {
+pub(super) struct Report {
     tolerance_ms: f64,
     /// Of motion, by category.
     categories: BTreeMap<String, Agreement>,
@@ -70,7 +70,8 @@ struct Report {
     sensors: BTreeMap<String, Agreement>,
 }
 
-pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
+/// What is printed as JSON.
+pub(super) fn evaluate(args: &ContactsArgs) -> Result<Report> {
     let mut report = Report {
         tolerance_ms: args.tolerance,
         categories: BTreeMap::new(),
@@ -92,6 +93,11 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
     for agreement in agreements.chain(report.sensors.values_mut()) {
         agreement.summarise();
     }
+    Ok(report)
+}
+
+pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
+    let report = evaluate(args)?;
     if args.json {
         return output::print_json(&report);
     }

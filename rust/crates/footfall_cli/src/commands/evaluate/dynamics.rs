@@ -1,7 +1,6 @@
 //! `footfall evaluate dynamics`: systems that switch against one that does not.
 
 use crate::commands::dynamics::SizeArgs;
-use crate::commands::train::training_clip;
 use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_motion::corpus::{Corpus, Where};
@@ -49,20 +48,21 @@ struct Errors {
 }
 
 #[derive(Serialize)]
-struct Report {
+pub(super) struct Report {
     categories: BTreeMap<String, Errors>,
     /// Recordings with too few steps.
     too_short: Vec<String>,
 }
 
-pub(crate) fn run(args: &DynamicsArgs) -> Result<()> {
+/// What is printed as JSON; draws the errors of the first recording if that was asked for.
+pub(super) fn evaluate(args: &DynamicsArgs) -> Result<Report> {
     let config = args.size.config()?;
     let corpus = Corpus::read(&args.corpus, &args.conditions)?;
     let compared: Vec<Option<DynamicsComparison>> = corpus
         .clips
         .par_iter()
         .map(|clip| {
-            compare_dynamics(&training_clip(clip), &config)
+            compare_dynamics(&clip.into(), &config)
                 .with_context(|| clip.row.path.display().to_string())
         })
         .collect::<Result<_>>()?;
@@ -93,6 +93,11 @@ pub(crate) fn run(args: &DynamicsArgs) -> Result<()> {
             .context("no recording has enough steps to be drawn")?;
         output::write_atomic(path, plot(first)?.as_bytes())?;
     }
+    Ok(report)
+}
+
+pub(crate) fn run(args: &DynamicsArgs) -> Result<()> {
+    let report = evaluate(args)?;
     if args.json {
         return output::print_json(&report);
     }

@@ -46,7 +46,7 @@ pub(crate) struct ImuArgs {
 }
 
 #[derive(Serialize)]
-struct Report {
+pub(super) struct Report {
     sensors: Vec<SensorReport>,
 }
 
@@ -81,7 +81,8 @@ struct Figures {
     median_delay_s: Option<f64>,
 }
 
-pub(crate) fn run(args: &ImuArgs) -> Result<()> {
+/// What is printed as JSON.
+pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
     let asked: Vec<ImuTrainConfig> = if args.sites.is_empty() {
         SENSORS.map(ImuTrainConfig::new).to_vec()
     } else {
@@ -117,7 +118,11 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
             },
         });
     }
-    let report = Report { sensors };
+    Ok(Report { sensors })
+}
+
+pub(crate) fn run(args: &ImuArgs) -> Result<()> {
+    let report = evaluate(args)?;
     if args.json {
         return output::print_json(&report);
     }

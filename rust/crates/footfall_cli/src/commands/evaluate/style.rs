@@ -5,7 +5,7 @@ use crate::corpus_pair::{CorpusPair, styled_clips};
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
-use footfall_train::evaluate::{Split, evaluate_styles};
+use footfall_train::evaluate::{Split, StyleEvaluation, evaluate_styles};
 
 /// Recognition, resemblance and naturalness of styles
 ///
@@ -36,6 +36,24 @@ enum SplitArg {
 }
 
 pub(crate) fn run(args: &StyleArgs) -> Result<()> {
+    let (evaluation, skipped) = judge(args)?;
+    for reason in &skipped {
+        output::note(&format!("warning: left out {reason}"));
+    }
+    if args.json {
+        return output::print_json(&Report::new(&evaluation, skipped));
+    }
+    output::print_text(&tables(&evaluation))
+}
+
+/// What is printed as JSON.
+pub(super) fn evaluate(args: &StyleArgs) -> Result<Report> {
+    let (evaluation, skipped) = judge(args)?;
+    Ok(Report::new(&evaluation, skipped))
+}
+
+/// The evaluation, and what was left out of it.
+fn judge(args: &StyleArgs) -> Result<(StyleEvaluation, Vec<String>)> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
     let corpora = args.corpora.read()?;
@@ -50,11 +68,5 @@ pub(crate) fn run(args: &StyleArgs) -> Result<()> {
         .with_context(|| args.corpora.real.index.display().to_string())?;
     progress.finish();
     let skipped = corpora.skipped();
-    for reason in &skipped {
-        output::note(&format!("warning: left out {reason}"));
-    }
-    if args.json {
-        return output::print_json(&Report::new(&evaluation, skipped));
-    }
-    output::print_text(&tables(&evaluation))
+    Ok((evaluation, skipped))
 }

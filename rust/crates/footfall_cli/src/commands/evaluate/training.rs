@@ -1,6 +1,6 @@
 //! `footfall evaluate training`: what taking walkers out of the average walk gains.
 
-use crate::commands::train::{TrainingProgress, skipped, training_clip};
+use crate::commands::train::{TrainingProgress, skipped};
 use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_motion::corpus::{Corpus, Where};
@@ -33,7 +33,7 @@ pub(crate) struct TrainingArgs {
 }
 
 #[derive(Serialize)]
-struct Report {
+pub(super) struct Report {
     /// Mean ln variance of the states' Gaussians.
     plain_log_variance: f64,
     adaptive_log_variance: f64,
@@ -55,10 +55,22 @@ struct Walker {
 }
 
 pub(crate) fn run(args: &TrainingArgs) -> Result<()> {
+    let report = evaluate(args)?;
+    for reason in &report.skipped {
+        output::note(&format!("warning: left out {reason}"));
+    }
+    if args.json {
+        return output::print_json(&report);
+    }
+    output::print_text(&report.table())
+}
+
+/// What is printed as JSON.
+pub(super) fn evaluate(args: &TrainingArgs) -> Result<Report> {
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
     let corpus = Corpus::read(&args.corpus, &args.conditions)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(training_clip).collect();
+    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let config = TrainConfig {
         frame_rate_hz: args.fps,
         windows: Windows::Compact,
@@ -72,14 +84,7 @@ pub(crate) fn run(args: &TrainingArgs) -> Result<()> {
         .with_context(|| args.corpus.display().to_string())?;
     progress.0.finish();
     let left_out = skipped(&corpus).into_iter().map(|s| s.reason).collect();
-    let report = Report::new(comparison, left_out);
-    for reason in &report.skipped {
-        output::note(&format!("warning: left out {reason}"));
-    }
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::print_text(&report.table())
+    Ok(Report::new(comparison, left_out))
 }
 
 impl Report {

@@ -1,0 +1,83 @@
+//! A recording as everyone needs it: read, on the canonical body, with its contacts and walks.
+
+use crate::bvh::{self, BvhError};
+use crate::contact_file::{ContactFile, ContactFileError};
+use crate::contacts::{ContactConfig, Contacts, detect_contacts};
+use crate::retarget::{RetargetError, RetargetOptions, Retargeted, retarget};
+use crate::steps::{Walk, segment_walks};
+use std::path::{Path, PathBuf};
+
+/// A recording, ready for training and to be looked at.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// The motion on the canonical body.
+    pub retargeted: Retargeted,
+    /// Contacts of its feet: as a person corrected them where there is a [file of corrections](ContactFile::beside), else as
+    /// detected.
+    pub contacts: Contacts,
+    /// Its walks, by these contacts.
+    pub walks: Vec<Walk>,
+    /// Whether the contacts are a person's.
+    pub is_corrected: bool,
+}
+
+/// Why a recording cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The file is no BVH file.
+    #[error(transparent)]
+    Bvh(#[from] BvhError),
+    /// The motion cannot be put on the canonical body.
+    #[error("{}: {source}", path.display())]
+    Retarget {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: RetargetError,
+    },
+    /// The corrections beside it do not fit.
+    #[error(transparent)]
+    Corrections(#[from] ContactFileError),
+}
+
+impl Recording {
+    /// Reads a file and what was corrected about it.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the file.
+    pub fn read(path: &Path, options: &RetargetOptions) -> Result<Self, RecordingError> {
+        let file = bvh::read(path)?;
+        let retargeted = retarget(&file, options).map_err(|source| RecordingError::Retarget {
+            path: path.to_owned(),
+            source,
+        })?;
+        drop(file);
+        let mut recording = Self::detected(retargeted);
+        // Frame numbers of the corrections are the file's.
+        let labels = ContactFile::beside(path);
+        if options.frame_rate_hz.is_none() && labels.is_file() {
+            let stances = ContactFile::read(&labels, &recording.retargeted.clip)?.stances();
+            recording.correct(stances);
+        }
+        Ok(recording)
+    }
+
+    /// A motion with what the detector finds.
+    pub fn detected(retargeted: Retargeted) -> Self {
+        let config = ContactConfig::from_frame(retargeted.first_frame);
+        let contacts = detect_contacts(&retargeted.clip, &config);
+        Self {
+            walks: segment_walks(&retargeted.clip, &contacts),
+            retargeted,
+            contacts,
+            is_corrected: false,
+        }
+    }
+
+    /// Takes stances of the left and of the right foot for true.
+    pub fn correct(&mut self, stances: [Vec<footfall_core::FrameSpan>; 2]) {
+        self.contacts = self.contacts.with_stances(stances);
+        self.walks = segment_walks(&self.retargeted.clip, &self.contacts);
+        self.is_corrected = true;
+    }
+}

@@ -1,0 +1,63 @@
+//! Tool: see the motion, make the style.
+//!
+//! Data flows: `library` finds recordings, `motion` is one that is looked at, `shell` holds what all `views` share, and `app` is
+//! the window. `scene` draws bodies, `playback` is the playhead, `curves` the joint angles over time, `labels` the contacts that
+//! may be corrected. Whatever takes longer than a frame is a `job` on a thread of its own.
+
+mod app;
+mod curves;
+mod evaluator;
+mod job;
+mod labels;
+mod library;
+mod model_file;
+mod motion;
+mod palette;
+mod playback;
+mod recovery;
+mod scene;
+mod shell;
+mod table;
+mod views;
+
+pub use app::{Studio, Tab};
+pub use evaluator::{EvaluateKind, EvaluateRequest, Evaluator};
+
+use std::path::PathBuf;
+
+/// How the studio begins.
+#[derive(Clone, Default)]
+pub struct StudioOptions {
+    /// Files and folders to open.
+    pub paths: Vec<PathBuf>,
+    /// Where what must outlive a crash is kept; the user's data folder when absent.
+    pub data_folder: Option<PathBuf>,
+    /// What judges recordings; without it the view says so.
+    pub evaluator: Option<Evaluator>,
+}
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// Why there is no window, and what to do.
+pub fn run(options: StudioOptions) -> Result<(), String> {
+    let native = eframe::NativeOptions {
+        viewport: eframe::egui::ViewportBuilder::default()
+            .with_app_id("footfall_studio")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([900.0, 600.0])
+            .with_drag_and_drop(true),
+        multisampling: 4,
+        ..eframe::NativeOptions::default()
+    };
+    eframe::run_native(
+        "Footfall Studio",
+        native,
+        Box::new(move |creation| Ok(Box::new(Studio::new(&creation.egui_ctx, options)))),
+    )
+    .map_err(|error| {
+        format!(
+            "no window can be opened: {error}; on a machine without a screen run it under `xvfb-run`, and see `footfall doctor`"
+        )
+    })
+}

@@ -1,0 +1,115 @@
+//! The main views as pictures. After a change that is wanted, `UPDATE_SNAPSHOTS=1` writes them anew: look at them then.
+
+use crate::world::{Window, World, click, settle, shipped};
+use eframe::egui::accesskit::Role;
+use egui_kittest::SnapshotOptions;
+use egui_kittest::kittest::Queryable as _;
+use footfall_studio::EvaluateRequest;
+use serde_json::json;
+use std::sync::Arc;
+
+/// Compares with the picture of this name. Poses may differ by roundings from machine to machine, which moves edges.
+fn look(window: &mut Window, name: &str) {
+    let options = SnapshotOptions::new()
+        .output_path(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/snapshots"))
+        .threshold(2.0)
+        .failed_pixel_count_threshold(1500);
+    window.snapshot_options(name, &options);
+}
+
+fn opened(world: &World) -> Window {
+    let paths = [world.clips(), world.clip("anna/anna_2.bvh")];
+    let mut window = world.window(&paths);
+    window.state_mut().seek(1.0);
+    window.run_steps(2);
+    window
+}
+
+#[test]
+fn nothing_is_open() {
+    let world = World::new();
+    look(&mut world.window(&[]), "empty");
+}
+
+#[test]
+fn a_clip_in_space_and_as_curves() {
+    let world = World::new();
+    look(&mut opened(&world), "clips");
+}
+
+#[test]
+fn contacts_on_a_timeline() {
+    let world = World::new();
+    let mut window = opened(&world);
+    click(&mut window, "Labels");
+    look(&mut window, "labels");
+}
+
+#[test]
+fn a_style_as_curves_with_bands() {
+    let world = World::new();
+    let mut window = opened(&world);
+    click(&mut window, "Train");
+    click(&mut window, "Make the style");
+    settle(&mut window);
+    click(&mut window, "Curves");
+    look(&mut window, "train_curves");
+    click(&mut window, "Regression classes");
+    look(&mut window, "train_classes");
+}
+
+#[test]
+fn a_sheet_on_a_walk() {
+    let world = World::new();
+    let mut window = opened(&world);
+    click(&mut window, "Design");
+    settle(&mut window);
+    click(&mut window, "⏸");
+    window.get_by_value("Begin with…").click();
+    window.run_steps(3);
+    click(&mut window, "sad");
+    settle(&mut window);
+    look(&mut window, "design_sheet");
+}
+
+#[test]
+fn styles_on_the_mixing_pad() {
+    let world = World::new();
+    let styles = ["proud", "sad", "drunk"].map(|style| shipped(&format!("{style}.footstyle")));
+    let mut window = world.window(&styles);
+    window.run_steps(60);
+    look(&mut window, "design_mix");
+}
+
+#[test]
+fn tables_and_charts_of_an_evaluation() {
+    let world = World::new();
+    let evaluator = |request: &EvaluateRequest| {
+        assert_eq!(request.conditions, ["category=styled_walk"]);
+        Ok(json!({
+            "styles": ["old", "proud", "sad"],
+            "ratio": 0.98,
+            "real": {"rate": 0.95, "confusion": [[18, 1, 1], [0, 20, 0], [2, 0, 18]]},
+            "measures": {
+                "old": {"slip_mps": 0.003, "rate": 0.9},
+                "proud": {"slip_mps": 0.002, "rate": 1.0},
+                "sad": {"slip_mps": 0.001, "rate": 0.9}
+            }
+        }))
+    };
+    let mut window = world.window_with(&[], Some(Arc::new(evaluator)));
+    click(&mut window, "Evaluate");
+    click(&mut window, "Index…");
+    let index = world.folder.path().join("index.csv");
+    assert!(window.state_mut().answer_dialog(index));
+    window.run_steps(2);
+    let conditions = window.get_by_role(Role::TextInput);
+    conditions.focus();
+    conditions.type_text("category=styled_walk");
+    window.run_steps(2);
+    click(&mut window, "Run the evaluation");
+    settle(&mut window);
+    look(&mut window, "evaluate_chart");
+    click(&mut window, "real, confusion");
+    look(&mut window, "evaluate_confusion");
+}

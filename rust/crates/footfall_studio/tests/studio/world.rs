@@ -1,0 +1,114 @@
+//! Recordings that the project's own model walks, and a studio that shows them.
+
+use eframe::egui::{Context, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use footfall_model::GaitModel;
+use footfall_motion::bvh::{self, clip_to_bvh};
+use footfall_studio::{Evaluator, Studio, StudioOptions};
+use footfall_synth::{WalkConfig, synthesize};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::raster::Raster;
+
+/// A folder with walks, and a data folder of its own.
+pub(crate) struct World {
+    pub(crate) folder: tempfile::TempDir,
+}
+
+pub(crate) type Window = Harness<'static, Studio>;
+
+/// The walk that comes with the add-on.
+pub(crate) fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../addons/footfall/models")
+        .join(name)
+}
+
+pub(crate) fn base() -> Arc<GaitModel> {
+    let bytes = std::fs::read(shipped("walk.footfall")).unwrap();
+    Arc::new(GaitModel::from_bytes(&bytes).unwrap())
+}
+
+impl World {
+    /// Walks of two walkers and a broken file.
+    pub(crate) fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let model = base();
+        for (walker, speed) in [("anna", 1.1), ("ben", 1.4)] {
+            let inner = folder.path().join("clips").join(walker);
+            std::fs::create_dir_all(&inner).unwrap();
+            for take in 1..=2_u64 {
+                let config = WalkConfig {
+                    steps: 12,
+                    seed: take + walker.len() as u64,
+                    variation: 1.0,
+                    speed_mps: Some(speed),
+                    turn_rate_radps: 0.0,
+                    frame_rate_hz: Some(60.0),
+                    from_standing: take == 1,
+                };
+                let walk = synthesize(&model, &model.skeleton, &config).unwrap();
+                let text = bvh::write(&clip_to_bvh(&walk.clip));
+                std::fs::write(inner.join(format!("{walker}_{take}.bvh")), text).unwrap();
+            }
+        }
+        std::fs::write(folder.path().join("clips/broken.bvh"), "HIERARCHY\nROOT").unwrap();
+        Self { folder }
+    }
+
+    pub(crate) fn clips(&self) -> PathBuf {
+        self.folder.path().join("clips")
+    }
+
+    pub(crate) fn clip(&self, name: &str) -> PathBuf {
+        self.clips().join(name)
+    }
+
+    /// A window that shows these files; waits until all of them are read.
+    pub(crate) fn window(&self, paths: &[PathBuf]) -> Window {
+        self.window_with(paths, None)
+    }
+
+    /// The same with something that evaluates.
+    pub(crate) fn window_with(&self, paths: &[PathBuf], evaluator: Option<Evaluator>) -> Window {
+        let options = StudioOptions {
+            paths: paths.to_vec(),
+            data_folder: Some(self.folder.path().join("data")),
+            evaluator,
+        };
+        let blank = Studio::new(&Context::default(), StudioOptions::default());
+        let mut window = Harness::builder()
+            .with_size(Vec2::new(1280.0, 800.0))
+            .with_step_dt(1.0 / 60.0)
+            .with_max_steps(400)
+            .renderer(Raster::default())
+            .build_ui_state(|ui, studio: &mut Studio| studio.frame(ui), blank);
+        // Work in the background wakes the window's own context, which there was not before.
+        let context = window.ctx.clone();
+        *window.state_mut() = Studio::new(&context, options);
+        settle(&mut window);
+        window
+    }
+}
+
+/// Frames until no work goes on.
+pub(crate) fn settle(window: &mut Window) {
+    for _ in 0..6000 {
+        window.step();
+        if !window.state().is_busy() {
+            window.run_steps(3);
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    panic!("work goes on for ever");
+}
+
+/// Clicks what has this label.
+pub(crate) fn click(window: &mut Window, label: &str) {
+    window.get_by_label(label).click();
+    window.run_steps(3);
+}
