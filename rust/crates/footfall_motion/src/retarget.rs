@@ -13,8 +13,6 @@ mod source;
 
 pub use joint_map::{JointMap, Placement};
 
-pub(crate) use floor::sole_points;
-
 use crate::bvh::BvhFile;
 use feet::FlatFoot;
 use footfall_core::rotation::{from_heading, heading, shortest_arc};

@@ -79,10 +79,21 @@ pub struct Switch {
 /// # Errors
 /// [`ProbError::NotFinite`] when a pose is not finite.
 pub fn detect_switches(clip: &Clip, first_frame: usize) -> Result<Vec<Switch>, ProbError> {
+    Ok(analyse_switches(clip, first_frame)?.0)
+}
+
+/// The switches, and what they were found by, to be shown beside them; nothing of it for a clip that is too short.
+///
+/// # Errors
+/// As [`detect_switches`].
+pub fn analyse_switches(
+    clip: &Clip,
+    first_frame: usize,
+) -> Result<(Vec<Switch>, Option<SwitchResidual>), ProbError> {
     check_finite_legs(clip, first_frame)?;
     let angles = LegAngles::of(clip, first_frame);
     let Some(residual) = Residual::of(&angles)? else {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), None));
     };
     let mut steps = angles.half_cycles();
     angles.align(&mut steps);
@@ -102,7 +113,12 @@ pub fn detect_switches(clip: &Clip, first_frame: usize) -> Result<Vec<Switch>, P
         })
         .collect();
     switches.sort_by_key(|switch| switch.frame);
-    Ok(switches)
+    let shown = SwitchResidual {
+        first_secs: first_frame as f64 / clip.frame_rate_hz + residual.first as f64 / ANGLE_RATE_HZ,
+        rate_hz: ANGLE_RATE_HZ,
+        legs: residual.legs,
+    };
+    Ok((switches, Some(shown)))
 }
 
 fn check_finite_legs(clip: &Clip, first_frame: usize) -> Result<(), ProbError> {
@@ -134,23 +150,6 @@ pub struct SwitchResidual {
     pub rate_hz: f64,
     /// For the left and the right leg, over the clip's median.
     pub legs: [Vec<f64>; 2],
-}
-
-/// What [`detect_switches`] looks at, to be shown beside it; `None` for a clip that is too short.
-///
-/// # Errors
-/// As [`detect_switches`].
-pub fn switch_residual(
-    clip: &Clip,
-    first_frame: usize,
-) -> Result<Option<SwitchResidual>, ProbError> {
-    check_finite_legs(clip, first_frame)?;
-    let residual = Residual::of(&LegAngles::of(clip, first_frame))?;
-    Ok(residual.map(|residual| SwitchResidual {
-        first_secs: first_frame as f64 / clip.frame_rate_hz + residual.first as f64 / ANGLE_RATE_HZ,
-        rate_hz: ANGLE_RATE_HZ,
-        legs: residual.legs,
-    }))
 }
 
 /// The frames in which each foot certainly bears on the ground: from its switch until the other foot's. When it leaves the

@@ -6,7 +6,8 @@ mod common;
 
 use common::walker::walker;
 use footfall_motion::bvh::{clip_to_bvh, write_file};
-use footfall_motion::corpus::{Corpus, CorpusError, Where};
+use footfall_motion::contact_file::ContactFile;
+use footfall_motion::corpus::{Corpus, CorpusClip, CorpusError, Where};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -126,4 +127,57 @@ fn the_recordings_are_a_corpus() {
         .sum();
     println!("{steps} steps");
     assert!(steps > 150);
+}
+
+#[test]
+fn contacts_that_a_person_corrected_are_taken_instead_of_the_detected_ones() {
+    let (folder, index) = corpus_folder(INDEX);
+    let clip = folder.path().join("walks/a.bvh");
+    let before = read(&index, &["subject=one"]).unwrap().clips.remove(0);
+    let mut stances = before.contacts.feet.clone().map(|foot| foot.stances);
+    stances[0].remove(2);
+    let corrected = before.contacts.with_stances(stances.clone());
+    ContactFile::new(&corrected, &before.walks)
+        .write(&ContactFile::beside(&clip))
+        .unwrap();
+    let after = read(&index, &["subject=one"]).unwrap().clips.remove(0);
+    assert_eq!(
+        after.contacts.feet.clone().map(|foot| foot.stances),
+        stances
+    );
+    let steps = |clip: &CorpusClip| clip.walks.iter().map(|w| w.steps.len()).sum::<usize>();
+    assert!(
+        steps(&after) < steps(&before),
+        "a step without its contact is none"
+    );
+    // The other recording has none and is as it was.
+    assert!(!ContactFile::beside(&folder.path().join("walks/b.bvh")).exists());
+}
+
+#[test]
+fn corrections_that_do_not_fit_leave_the_recording_out_and_say_why() {
+    let (folder, index) = corpus_folder(INDEX);
+    let clip = folder.path().join("walks/a.bvh");
+    for (text, said) in [
+        ("{", "not what"),
+        (
+            r#"{"fps":60,"frames":5,"left":[],"right":[],"events":[]}"#,
+            "5 frames",
+        ),
+        (
+            r#"{"fps":60,"frames":300,"left":[[9,4]],"right":[],"events":[]}"#,
+            "[9, 4]",
+        ),
+        (
+            r#"{"fps":60,"frames":300,"left":[],"right":[[4,9],[9,12]],"events":[]}"#,
+            "[9, 12]",
+        ),
+    ] {
+        fs::write(ContactFile::beside(&clip), text).unwrap();
+        let error = read(&index, &["subject=one"]).unwrap_err().to_string();
+        assert!(
+            error.contains("a.bvh.labels.json") && error.contains(said),
+            "{error}"
+        );
+    }
 }

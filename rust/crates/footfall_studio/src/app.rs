@@ -5,9 +5,10 @@ use crate::shell::{Purpose, Shell};
 use crate::views::Views;
 use crate::{StudioOptions, palette};
 use eframe::egui::{
-    self, Align, CentralPanel, Context, Key, Layout, Modal, Panel, RichText, Theme, Ui,
+    self, Align, CentralPanel, Color32, Context, Key, Layout, Modal, Panel, RichText, Theme, Ui,
     ViewportCommand,
 };
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
 /// What is shown beside the list.
@@ -52,6 +53,9 @@ impl Tab {
     }
 }
 
+/// Frames over which the frame timer looks.
+const TIMED_FRAMES: usize = 120;
+
 /// The application.
 pub struct Studio {
     tab: Tab,
@@ -62,6 +66,8 @@ pub struct Studio {
     may_close: bool,
     /// The longest time that a frame took on the processor, seconds.
     longest_frame_secs: f32,
+    /// What the last frames took, seconds.
+    frame_secs: VecDeque<f32>,
 }
 
 impl Studio {
@@ -71,6 +77,8 @@ impl Studio {
         context.all_styles_mut(|style| {
             style.spacing.item_spacing = egui::vec2(6.0, 5.0);
             style.interaction.selectable_labels = false;
+            // The window is cleared to the panels' colour: painting it again costs a software renderer as much as all the rest.
+            style.visuals.panel_fill = Color32::TRANSPARENT;
         });
         let data_folder = options.data_folder.unwrap_or_else(|| {
             let base = dirs::data_local_dir().unwrap_or_else(std::env::temp_dir);
@@ -83,6 +91,7 @@ impl Studio {
             asks_to_close: false,
             may_close: false,
             longest_frame_secs: 0.0,
+            frame_secs: VecDeque::new(),
         };
         studio.views.evaluate.evaluator = options.evaluator;
         for path in options.paths {
@@ -97,6 +106,7 @@ impl Studio {
 
     /// Opens a file or a folder: recordings go to the list, recordings of a sensor to the sensor's view.
     pub fn open(&mut self, context: &Context, path: &Path) {
+        self.shell.remember_folder(path);
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         let is_index = path.file_name().is_some_and(|name| name == "index.csv");
         match extension.as_deref() {
@@ -113,7 +123,7 @@ impl Studio {
                 self.shell.set_base(path);
             }
             Some("bvh") => {
-                self.shell.library.open(context, path);
+                self.shell.library.add(path);
                 self.shell.act(
                     context,
                     crate::library::ListAction::Open(path.to_owned()),
@@ -171,16 +181,15 @@ impl Studio {
         self.views.sensor.behaviours()
     }
 
-    /// The longest time that a frame took on the processor, seconds.
-    pub const fn longest_frame_secs(&self) -> f32 {
-        self.longest_frame_secs
-    }
-
     /// One frame.
     pub fn frame(&mut self, ui: &mut Ui) {
         self.take_dropped(ui);
         self.shell.poll();
         self.views.poll(ui.ctx(), &mut self.shell);
+        if let Some(style) = self.views.train.take_for_mixing() {
+            self.tab = Tab::Design;
+            self.views.design.mix_style(&mut self.shell, style);
+        }
         for purpose in [Purpose::OpenFile, Purpose::OpenFolder] {
             if let Some(path) = self.shell.picked(purpose) {
                 self.open(ui.ctx(), &path);
@@ -236,9 +245,25 @@ impl Studio {
                 if self.views.labels.is_dirty() {
                     ui.colored_label(palette::PLAYHEAD, "• unsaved labels");
                 }
+                self.frame_timer(ui);
             });
         });
         ui.add_space(2.0);
+    }
+
+    /// How long frames take, so that a studio that stutters says so.
+    fn frame_timer(&self, ui: &mut Ui) {
+        if self.frame_secs.is_empty() {
+            return;
+        }
+        let longest = self.frame_secs.iter().copied().fold(0.0, f32::max);
+        let mean = self.frame_secs.iter().sum::<f32>() / self.frame_secs.len() as f32;
+        ui.weak(format!("{:.1} ms", 1e3 * mean)).on_hover_text(format!(
+            "What a frame costs the processor, of the last {} frames; the longest {:.1} ms, the longest ever {:.1} ms",
+            self.frame_secs.len(),
+            1e3 * longest,
+            1e3 * self.longest_frame_secs
+        ));
     }
 
     fn list(&mut self, ui: &mut Ui) {
@@ -337,9 +362,18 @@ impl Studio {
 }
 
 impl eframe::App for Studio {
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        palette::backdrop(visuals.dark_mode).to_normalized_gamma_f32()
+    }
+
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         if let Some(secs) = frame.info().cpu_usage {
             self.longest_frame_secs = self.longest_frame_secs.max(secs);
+            self.frame_secs.push_back(secs);
+
+            if self.frame_secs.len() > TIMED_FRAMES {
+                self.frame_secs.pop_front();
+            }
         }
         self.frame(ui);
     }

@@ -3,13 +3,19 @@
 use crate::motion::{Curve, Motion};
 use crate::palette;
 use crate::playback::Playback;
-use eframe::egui::{Color32, Stroke, Ui, Vec2b};
-use egui_plot::{Line, LineStyle, Plot, PlotPoints, VLine};
+use eframe::egui::{Stroke, Ui, Vec2b};
+use egui_plot::{FilledArea, Line, LineStyle, Plot, PlotPoints, VLine};
 use footfall_core::{Clip, Joint};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
-/// Points that a curve is drawn with at most: two for each pixel column of a wide window.
-const MOST_POINTS: usize = 3000;
+/// More frames than this in view are drawn as the band between their lowest and highest values, for a line would be a solid block
+/// of many thousand strokes.
+const MOST_POINTS: usize = 1500;
+
+/// Columns of a band.
+const COLUMNS: usize = 360;
 
 /// Values of curves, worked out once for a motion.
 #[derive(Default)]
@@ -19,15 +25,29 @@ pub(crate) struct CurveCache {
 }
 
 impl CurveCache {
-    fn values(&mut self, opened: u64, clip: &Clip, curve: Curve) -> &[f32] {
+    /// Values of a curve; `None` where `is_late`, that is when another was worked out for this frame of the window: a long clip's
+    /// take some milliseconds each, and come one by one.
+    fn values(
+        &mut self,
+        opened: u64,
+        clip: &Clip,
+        curve: Curve,
+        is_late: &mut bool,
+    ) -> Option<&[f32]> {
         if self.opened != opened {
             self.opened = opened;
             self.values.clear();
         }
-        self.values.entry(curve).or_insert_with(|| {
-            let frames = 0..clip.poses.len();
-            frames.map(|frame| curve.degrees(clip, frame)).collect()
-        })
+        let values = match self.values.entry(curve) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(_) if *is_late => return None,
+            Entry::Vacant(place) => {
+                *is_late = clip.poses.len() > MOST_POINTS;
+                let frames = (0..clip.poses.len()).into_par_iter();
+                place.insert(frames.map(|frame| curve.degrees(clip, frame)).collect())
+            }
+        };
+        Some(values)
     }
 }
 
@@ -37,6 +57,8 @@ pub(crate) struct CurvePanel {
     own: CurveCache,
     ghost: CurveCache,
     next: Curve,
+    /// The seconds in view, as of the last frame of the window.
+    in_view: Option<[f64; 2]>,
 }
 
 impl Default for CurvePanel {
@@ -46,6 +68,7 @@ impl Default for CurvePanel {
             own: CurveCache::default(),
             ghost: CurveCache::default(),
             next: Curve::new(Joint::LeftFoot, 0),
+            in_view: None,
         }
     }
 }
@@ -81,22 +104,32 @@ impl CurvePanel {
         ghost: Option<&Motion>,
         playback: &mut Playback,
     ) {
-        let mut lines = Vec::new();
+        if self.own.opened != opened {
+            self.in_view = None;
+        }
+        let (mut shapes, mut is_late) = (Vec::new(), false);
         for (place, curve) in self.chosen.iter().enumerate() {
             let color = palette::SERIES[place % palette::SERIES.len()];
-            let values = self.own.values(opened, motion.clip(), *curve);
-            let rate = motion.clip().frame_rate_hz;
-            lines.push(line(&curve.name(), thinned(values, rate, 0.0), color));
-            if let Some(ghost) = ghost {
-                let rate = ghost.clip().frame_rate_hz;
-                // A ghost has no number of its own: its length and name tell it from another.
-                let key = ghost.clip().poses.len() as u64 ^ ((ghost.name.len() as u64) << 32);
-                let values = self.ghost.values(key, ghost.clip(), *curve);
-                let offset = motion.start_secs() - ghost.start_secs();
-                let pale = color.gamma_multiply(0.5);
-                let line = line("", thinned(values, rate, offset), pale);
-                lines.push(line.style(LineStyle::dashed_dense()));
+            let clip = motion.clip();
+            if let Some(values) = self.own.values(opened, clip, *curve, &mut is_late) {
+                let look = (color, LineStyle::Solid);
+                let drawn = drawn(values, clip.frame_rate_hz, 0.0, self.in_view);
+                shapes.push((look, drawn));
             }
+            if let Some(ghost) = ghost {
+                let clip = ghost.clip();
+                // A ghost has no number of its own: its length and name tell it from another.
+                let key = clip.poses.len() as u64 ^ ((ghost.name.len() as u64) << 32);
+                let offset = motion.start_secs() - ghost.start_secs();
+                if let Some(values) = self.ghost.values(key, clip, *curve, &mut is_late) {
+                    let look = (color.gamma_multiply(0.5), LineStyle::dashed_dense());
+                    let drawn = drawn(values, clip.frame_rate_hz, offset, self.in_view);
+                    shapes.push((look, drawn));
+                }
+            }
+        }
+        if is_late {
+            ui.ctx().request_repaint();
         }
         let duration = motion.duration_secs();
         let response = Plot::new("joint curves")
@@ -109,57 +142,78 @@ impl CurvePanel {
             .include_x(0.0)
             .include_x(duration)
             .show(ui, |plot| {
-                for line in lines {
-                    plot.line(line);
+                for ((color, style), drawn) in shapes {
+                    match drawn {
+                        Drawn::Line(points) => plot.line(
+                            Line::new("", PlotPoints::from(points))
+                                .color(color)
+                                .style(style)
+                                .width(1.6),
+                        ),
+                        Drawn::Band { secs, low, high } => plot.add(
+                            FilledArea::new("", &secs, &low, &high)
+                                .fill_color(color.gamma_multiply(0.7)),
+                        ),
+                    }
                 }
                 plot.vline(
                     VLine::new("playhead", playback.secs)
                         .stroke(Stroke::new(1.5, palette::PLAYHEAD))
                         .allow_hover(false),
                 );
-                plot.pointer_coordinate()
+                let bounds = plot.plot_bounds();
+                (
+                    plot.pointer_coordinate(),
+                    [bounds.min()[0], bounds.max()[0]],
+                )
             });
+        let (pointer, in_view) = response.inner;
+        self.in_view = Some(in_view);
         let is_held = response.response.is_pointer_button_down_on()
             && ui.input(|input| input.pointer.primary_down());
-        if let Some(point) = response.inner.filter(|_| is_held) {
+        if let Some(point) = pointer.filter(|_| is_held) {
             playback.secs = point.x.clamp(0.0, duration);
             playback.playing = false;
         }
     }
 }
 
-fn line(name: &str, points: Vec<[f64; 2]>, color: Color32) -> Line<'static> {
-    Line::new(name, PlotPoints::from(points))
-        .color(color)
-        .width(1.6)
+/// A curve on its way to the plot.
+#[derive(Clone, Debug, PartialEq)]
+enum Drawn {
+    Line(Vec<[f64; 2]>),
+    Band {
+        secs: Vec<f64>,
+        low: Vec<f64>,
+        high: Vec<f64>,
+    },
 }
 
-/// A curve in few points: of every run of frames its lowest and its highest value, in their order.
-pub(crate) fn thinned(values: &[f32], rate_hz: f64, offset_secs: f64) -> Vec<[f64; 2]> {
-    let at = |frame: usize| {
-        [
-            frame as f64 / rate_hz + offset_secs,
-            f64::from(values[frame]),
-        ]
-    };
-    if values.len() <= MOST_POINTS {
-        return (0..values.len()).map(at).collect();
+/// The frames in view: all when nobody knows yet.
+fn drawn(values: &[f32], rate_hz: f64, offset_secs: f64, in_view: Option<[f64; 2]>) -> Drawn {
+    let [from, to] = in_view.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let frame = |secs: f64| ((secs - offset_secs) * rate_hz).clamp(0.0, values.len() as f64);
+    let first = frame(from).floor() as usize;
+    let end = ((frame(to).ceil() as usize) + 1).min(values.len());
+    let frames = first..end.max(first);
+    let secs = |frame: usize| frame as f64 / rate_hz + offset_secs;
+    if frames.len() <= MOST_POINTS {
+        let points = frames.map(|frame| [secs(frame), f64::from(values[frame])]);
+        return Drawn::Line(points.collect());
     }
-    let run = values.len().div_ceil(MOST_POINTS / 2);
-    let mut points = Vec::with_capacity(MOST_POINTS);
-    for first in (0..values.len()).step_by(run) {
-        let frames = first..(first + run).min(values.len());
-        let by = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-        let ends = [frames.clone().min_by(by), frames.max_by(by)];
-        let [Some(low), Some(high)] = ends else {
-            continue;
-        };
-        points.push(at(low.min(high)));
-        if low != high {
-            points.push(at(low.max(high)));
-        }
+    let run = frames.len().div_ceil(COLUMNS);
+    let (mut middles, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
+    for begin in frames.clone().step_by(run) {
+        let column = &values[begin..(begin + run).min(end)];
+        middles.push(secs(begin) + 0.5 * column.len() as f64 / rate_hz);
+        low.push(f64::from(column.iter().copied().fold(f32::MAX, f32::min)));
+        high.push(f64::from(column.iter().copied().fold(f32::MIN, f32::max)));
     }
-    points
+    Drawn::Band {
+        secs: middles,
+        low,
+        high,
+    }
 }
 
 /// A joint and an axis to choose.
@@ -187,21 +241,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_curve_keeps_its_extremes() {
+    fn a_long_curve_is_a_band_that_keeps_its_extremes() {
         let mut values = vec![0.0_f32; 72_000];
         values[31_111] = 50.0;
         values[31_112] = -40.0;
-        let points = thinned(&values, 120.0, 0.0);
-        assert!(points.len() <= MOST_POINTS + 2, "{}", points.len());
-        let highest = points.iter().map(|p| p[1]).fold(f64::MIN, f64::max);
-        let lowest = points.iter().map(|p| p[1]).fold(f64::MAX, f64::min);
+        let Drawn::Band { secs, low, high } = drawn(&values, 120.0, 0.0, None) else {
+            panic!("a line of 72000 points");
+        };
+        assert!(secs.len() <= COLUMNS, "{}", secs.len());
+        let highest = high.iter().copied().fold(f64::MIN, f64::max);
+        let lowest = low.iter().copied().fold(f64::MAX, f64::min);
         assert!((highest - 50.0).abs() < 1e-9 && (lowest + 40.0).abs() < 1e-9);
-        assert!(points.windows(2).all(|pair| pair[0][0] < pair[1][0]));
+        assert!(secs.windows(2).all(|pair| pair[0] < pair[1]));
     }
 
     #[test]
-    fn a_short_curve_is_drawn_as_it_is() {
-        let points = thinned(&[1.0, 2.0, 3.0], 10.0, 1.0);
-        assert_eq!(points, [[1.0, 1.0], [1.1, 2.0], [1.2, 3.0]]);
+    fn what_is_in_view_is_drawn_frame_by_frame() {
+        let values: Vec<f32> = (0..72_000).map(|frame| frame as f32).collect();
+        let Drawn::Line(points) = drawn(&values, 100.0, 1.0, Some([11.0, 13.0])) else {
+            panic!("two seconds are no band");
+        };
+        let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-9;
+        assert!(near(points[0], [11.0, 1000.0]));
+        assert!(
+            near(points[points.len() - 1], [13.0, 1200.0]),
+            "{:?}",
+            points.last()
+        );
+        assert_eq!(
+            drawn(&values, 100.0, 0.0, Some([800.0, 900.0])),
+            Drawn::Line(Vec::new())
+        );
     }
 }

@@ -42,6 +42,14 @@ impl Reporter {
         ControlFlow::Continue(())
     }
 
+    /// What was made, unless it was cancelled meanwhile: whoever cancels gets nothing.
+    pub(crate) fn unless_cancelled<T>(&self, made: T) -> Result<T, String> {
+        if self.0.cancelled.load(Ordering::Relaxed) {
+            return Err("stopped before the end; nothing was written".to_owned());
+        }
+        Ok(made)
+    }
+
     fn update(&self, change: impl FnOnce(&mut JobProgress)) {
         change(
             &mut self

@@ -71,6 +71,12 @@ impl Library {
         self.scans.push(Scan::start(context, path.to_owned()));
     }
 
+    /// Adds a file that is read elsewhere, by whoever [tells](Self::update) what it holds.
+    pub(crate) fn add(&mut self, path: &Path) {
+        let entry = scan::entry(path);
+        self.entries.entry(path.to_owned()).or_insert(entry);
+    }
+
     /// Takes what the scans found.
     pub(crate) fn poll(&mut self) {
         for scan in &mut self.scans {

@@ -5,7 +5,7 @@ use footfall_core::{Clip, JOINT_COUNT, Joint};
 use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
 use footfall_motion::recording::{Recording, RecordingError};
 use footfall_motion::retarget::RetargetOptions;
-use footfall_motion::switches::{Switch, SwitchResidual, detect_switches, switch_residual};
+use footfall_motion::switches::{Switch, SwitchResidual, analyse_switches};
 use std::path::{Path, PathBuf};
 
 /// A motion, whole.
@@ -41,19 +41,20 @@ impl Motion {
     pub(crate) fn of(path: Option<PathBuf>, name: String, recording: Recording) -> Self {
         let first = recording.retargeted.first_frame;
         let clip = &recording.retargeted.clip;
+        // A pose that is not finite has no switches; the reader lets none through.
+        let (switches, residual) = analyse_switches(clip, first).unwrap_or_default();
         let detected = if recording.is_corrected {
             detect_contacts(clip, &ContactConfig::from_frame(first))
         } else {
             recording.contacts.clone()
         };
         Self {
-            detected,
-            // A pose that is not finite has no switches; the reader lets none through.
-            switches: detect_switches(clip, first).unwrap_or_default(),
-            residual: switch_residual(clip, first).ok().flatten(),
             path,
             name,
             recording,
+            detected,
+            switches,
+            residual,
         }
     }
 

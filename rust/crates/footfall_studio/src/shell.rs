@@ -82,6 +82,8 @@ pub(crate) struct Shell {
     reading: Option<Reading>,
     dialog: Option<(Purpose, FileDialog)>,
     picked: Option<(Purpose, PathBuf)>,
+    /// Where the next dialog begins: the folder that was used last.
+    folder: Option<PathBuf>,
 }
 
 impl Shell {
@@ -98,6 +100,7 @@ impl Shell {
             reading: None,
             dialog: None,
             picked: None,
+            folder: None,
         }
     }
 
@@ -188,6 +191,9 @@ impl Shell {
     /// Opens a dialog; the answer comes by [`picked`](Self::picked).
     pub(crate) fn ask(&mut self, purpose: Purpose, suggestion: &str) {
         let mut dialog = FileDialog::new().default_file_name(suggestion);
+        if let Some(folder) = &self.folder {
+            dialog = dialog.initial_directory(folder.clone());
+        }
         for (name, extensions) in filters(purpose) {
             dialog = dialog
                 .add_file_filter_extensions(name, extensions.to_vec())
@@ -217,11 +223,25 @@ impl Shell {
         };
         dialog.update(context);
         if let Some(path) = dialog.take_picked() {
-            self.picked = Some((*purpose, path));
+            let purpose = *purpose;
+            self.remember_folder(&path);
+            self.picked = Some((purpose, path));
             self.dialog = None;
         } else if !matches!(dialog.state(), egui_file_dialog::DialogState::Open) {
             self.dialog = None;
         }
+    }
+
+    /// The next dialog begins where this file is.
+    pub(crate) fn remember_folder(&mut self, path: &Path) {
+        let folder = if path.is_dir() {
+            Some(path)
+        } else {
+            path.parent()
+        };
+        self.folder = folder
+            .filter(|folder| !folder.as_os_str().is_empty())
+            .and_then(|folder| folder.canonicalize().ok());
     }
 
     /// Answers the dialog that is open. Whether one was.

@@ -193,6 +193,65 @@ mod tests {
         (steps, contexts, report)
     }
 
+    /// Asks to stop after so many iterations, and keeps how well each explained the walks.
+    struct StopsAfter {
+        iterations: usize,
+        fits: Vec<f64>,
+    }
+
+    impl crate::Progress for StopsAfter {
+        fn advance(&mut self, _: &str, done: usize, _: usize) -> core::ops::ControlFlow<()> {
+            if done >= self.iterations {
+                return core::ops::ControlFlow::Break(());
+            }
+            core::ops::ControlFlow::Continue(())
+        }
+
+        fn fit(&mut self, log_likelihood: f64) {
+            self.fits.push(log_likelihood);
+        }
+    }
+
+    #[test]
+    fn training_that_is_asked_to_stop_stops() {
+        let steady: Vec<Sequence> = (0..4).map(|number| walk(number, |_| false)).collect();
+        let em = EmConfig {
+            max_iterations: 10,
+            min_gain_per_frame: 0.0,
+        };
+        let mut progress = StopsAfter {
+            iterations: 1,
+            fits: Vec::new(),
+        };
+        let stopped = AverageWalk::train(&steady, &em, &mut progress);
+        assert!(matches!(stopped, Err(TrainError::Cancelled)));
+        assert_eq!(progress.fits.len(), 1);
+    }
+
+    #[test]
+    fn trees_are_written_down_question_by_question() {
+        let (_, _, report) = estimated(12);
+        assert_eq!(report.trees.len(), STATES_PER_STEP + 1);
+        let durations = &report.trees[STATES_PER_STEP];
+        assert_eq!(durations.name, "durations");
+        let leaves = durations
+            .lines
+            .iter()
+            .filter(|line| !line.text.starts_with("is it"));
+        assert_eq!(leaves.count(), report.duration_leaves);
+        let root = &durations.lines[0];
+        assert!(root.depth == 0 && root.answer.is_none() && root.text.starts_with("is it"));
+        // Every context stands in one leaf of every tree, by its name.
+        for tree in &report.trees {
+            let words: Vec<&str> = tree.lines.iter().map(|line| line.text.as_str()).collect();
+            let said = words.join(", ");
+            assert!(
+                said.contains("inside") && said.contains("last but one"),
+                "{said}"
+            );
+        }
+    }
+
     #[test]
     fn first_steps_that_differ_get_a_model_of_their_own() {
         let (steps, contexts, report) = estimated(12);

@@ -5,7 +5,7 @@ use crate::contexts::{self, ContextReport};
 use crate::dataset::{EncodeConfig, encode_clip};
 use crate::differences;
 use crate::error::TrainError;
-use crate::progress::Progress;
+use crate::progress::{Progress, advance};
 use crate::sequence::Sequence;
 use crate::walker_adaptive::{self, WalkerAdaptive, WalkerTransform};
 use footfall_core::{Clip, Side, Skeleton, StepPosition};
@@ -99,11 +99,13 @@ pub fn train_average(
         })
     };
     let steps = [step(Side::Left)?, step(Side::Right)?];
+    advance(progress, "differences between walkers", 0, 0)?;
     let (speed, variation) =
         differences::estimate(&walk, &steps, &corpus, &aligned, config.frame_rate_hz)?;
     let (whole, counts) = encode_all(clips, config, Clone::clone)?;
     let (middles, _) = encode_all(clips, config, steady_part)?;
     let whole = as_average_walkers(&walk, &transforms, &corpus, &middles, &whole)?;
+    advance(progress, "ends of walks", 0, 0)?;
     let (contexts, context_report) = contexts::estimate(&walk, &steps, &speed, &whole)?;
     let model = GaitModel {
         frame_rate_hz: config.frame_rate_hz,

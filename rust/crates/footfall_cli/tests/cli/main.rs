@@ -3,6 +3,7 @@
 mod bad_input;
 mod common;
 mod designs;
+mod desk;
 mod dynamics;
 mod evaluate;
 mod imu;

@@ -1,6 +1,6 @@
 //! Height and speed of the points on which a foot can stand.
 
-use crate::retarget::sole_points;
+use crate::figure::sole_points;
 use footfall_core::{Clip, ModelPose, Side, forward_kinematics};
 use glam::Vec3;
 
@@ -34,7 +34,10 @@ impl FootSignals {
         let mut points: [Vec<Vec3>; 3] = Default::default();
         for pose in clip.poses.iter().skip(first_frame) {
             forward_kinematics(&clip.skeleton, pose, &mut model);
-            for (track, point) in points.iter_mut().zip(sole_points(clip, &model, side)) {
+            for (track, point) in points
+                .iter_mut()
+                .zip(sole_points(&clip.skeleton, &model, side))
+            {
                 track.push(point);
             }
         }

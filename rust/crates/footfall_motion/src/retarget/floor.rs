@@ -1,5 +1,6 @@
 //! Where the ground of a clip is: under the feet that stand.
 
+use crate::figure::sole_points;
 use footfall_core::{Clip, ModelPose, Side, forward_kinematics};
 use glam::{Mat3, Quat, Vec2, Vec3};
 
@@ -7,19 +8,9 @@ use glam::{Mat3, Quat, Vec2, Vec3};
 fn lowest_point(clip: &Clip, model: &ModelPose) -> Vec3 {
     Side::BOTH
         .into_iter()
-        .flat_map(|side| sole_points(clip, model, side))
+        .flat_map(|side| sole_points(&clip.skeleton, model, side))
         .min_by(|a, b| a.y.total_cmp(&b.y))
         .unwrap_or_default()
-}
-
-/// Heel, ball and toe tip of one foot in the space of the clip, metres.
-pub(crate) fn sole_points(clip: &Clip, model: &ModelPose, side: Side) -> [Vec3; 3] {
-    let shape = clip.skeleton.foot(side);
-    [
-        model.point(side.foot(), shape.heel),
-        model.point(side.toes(), shape.ball),
-        model.point(side.toes(), shape.toe_tip),
-    ]
 }
 
 /// A plane under the feet: `height + slope · (x, z)`.

@@ -31,7 +31,7 @@ impl Library {
         let shown: Vec<PathBuf> = self
             .entries
             .iter()
-            .filter(|(path, entry)| self.matches(path, entry))
+            .filter(|(_, entry)| self.matches(entry))
             .map(|(path, _)| path.clone())
             .collect();
         self.show_counts(ui, &shown);
@@ -123,13 +123,13 @@ impl Library {
         });
     }
 
-    fn matches(&self, path: &Path, entry: &Entry) -> bool {
+    fn matches(&self, entry: &Entry) -> bool {
         let is_category = self
             .category
             .as_ref()
             .is_none_or(|category| *category == entry.category);
         let wanted = self.search.to_lowercase();
-        let text = format!("{} {} {}", path.display(), entry.category, entry.subject);
+        let text = format!("{} {} {}", entry.name, entry.category, entry.subject);
         let text = text.to_lowercase();
         is_category && wanted.split_whitespace().all(|word| text.contains(word))
     }

@@ -114,7 +114,7 @@ fn walk(folder: &Path, depth: usize, found: &mut BTreeMap<PathBuf, Entry>) {
     }
 }
 
-fn entry(path: &Path) -> Entry {
+pub(super) fn entry(path: &Path) -> Entry {
     let name = |path: &Path| {
         path.file_name()
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned())

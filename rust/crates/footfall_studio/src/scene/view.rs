@@ -89,7 +89,6 @@ impl SceneView {
         }
         let rect = response.rect;
         let dark = ui.visuals().dark_mode;
-        painter.rect_filled(rect, 4.0, palette::backdrop(dark));
         let projection = self.orbit.projection(rect);
         floor::grid(
             &painter,

@@ -5,6 +5,7 @@ mod sheet;
 
 use crate::shell::Shell;
 use eframe::egui::Ui;
+use footfall_model::GaitStyle;
 use mix::MixPage;
 use sheet::SheetPage;
 use std::path::Path;
@@ -38,9 +39,14 @@ impl DesignView {
         self.sheet.poll(shell);
         self.mix.poll(shell);
         if let Some(style) = self.sheet.take_for_mixing() {
-            self.page = Page::Mix;
-            self.mix.add(shell, style);
+            self.mix_style(shell, style);
         }
+    }
+
+    /// Puts a style on the mixing pad that was made here.
+    pub(crate) fn mix_style(&mut self, shell: &mut Shell, style: GaitStyle) {
+        self.page = Page::Mix;
+        self.mix.add(shell, style);
     }
 
     pub(crate) fn show(&mut self, ui: &mut Ui, shell: &mut Shell) {

@@ -43,6 +43,7 @@ pub(crate) struct TrainView {
     page: Page,
     compare: Compare,
     tree: usize,
+    for_mixing: Option<GaitStyle>,
 }
 
 impl Default for TrainView {
@@ -58,6 +59,7 @@ impl Default for TrainView {
             page: Page::Fit,
             compare: Compare::default(),
             tree: 0,
+            for_mixing: None,
         }
     }
 }
@@ -65,6 +67,11 @@ impl Default for TrainView {
 impl TrainView {
     pub(crate) const fn is_busy(&self) -> bool {
         self.job.is_some()
+    }
+
+    /// The style that is to go on the mixing pad.
+    pub(crate) fn take_for_mixing(&mut self) -> Option<GaitStyle> {
+        self.for_mixing.take()
     }
 
     fn style(&self) -> Option<&GaitStyle> {
@@ -167,9 +174,9 @@ impl TrainView {
         let chosen = shell.library.chosen().len();
         let ticked = shell.library.ticked();
         ui.label(if ticked == 0 {
-            format!("All {chosen} recordings of the list (tick some to choose)")
+            format!("Recordings: all of the list that can be used, {chosen} (tick some to choose)")
         } else {
-            format!("{chosen} ticked recordings")
+            format!("Recordings: those that are ticked, {chosen}")
         });
         ui.separator();
         ui.strong("A style from a dozen steps");
@@ -194,9 +201,15 @@ impl TrainView {
                 self.adapt(ui, shell, base);
             }
         });
-        if self.style().is_some() && ui.button("Save the style…").clicked() {
-            let name = format!("{}.footstyle", self.name.trim());
-            shell.ask(Purpose::SaveStyle, &name);
+        if let Some(style) = self.style().cloned() {
+            ui.horizontal(|ui| {
+                if ui.button("Save the style…").clicked() {
+                    shell.ask(Purpose::SaveStyle, &format!("{}.footstyle", style.name));
+                }
+                if ui.button("On the mixing pad").clicked() {
+                    self.for_mixing = Some(style);
+                }
+            });
         }
         ui.separator();
         ui.strong("An average walk");
@@ -246,8 +259,8 @@ impl TrainView {
         self.page = Page::Fit;
         self.job = Some(Job::start(ui.ctx(), "making the style", move |reporter| {
             let recorded = Recorded::read(&chosen, reporter)?;
-            adapt_to(&base, &recorded, &name, steps, reporter)
-                .map(|made| Made::Style(Box::new(made)))
+            let made = adapt_to(&base, &recorded, &name, steps, reporter)?;
+            reporter.unless_cancelled(Made::Style(Box::new(made)))
         }));
     }
 
@@ -258,8 +271,8 @@ impl TrainView {
         self.page = Page::Fit;
         self.job = Some(Job::start(ui.ctx(), "training", move |reporter| {
             let recorded = Recorded::read(&chosen, reporter)?;
-            work::train(&recorded, rate_hz, iterations, reporter)
-                .map(|made| Made::Average(Box::new(made)))
+            let made = work::train(&recorded, rate_hz, iterations, reporter)?;
+            reporter.unless_cancelled(Made::Average(Box::new(made)))
         }));
     }
 

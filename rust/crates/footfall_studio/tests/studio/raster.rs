@@ -6,6 +6,9 @@ use egui_kittest::TestRenderer;
 use image::{Rgba, RgbaImage};
 use std::collections::HashMap;
 
+/// What the window is cleared to when it is dark.
+const CLEAR: Rgba<u8> = Rgba([24, 26, 31, 255]);
+
 #[derive(Default)]
 pub(crate) struct Raster {
     textures: HashMap<TextureId, Texture>,
@@ -49,8 +52,7 @@ impl TestRenderer for Raster {
 
     fn render(&mut self, ctx: &Context, output: &FullOutput) -> Result<RgbaImage, String> {
         let size = ctx.content_rect().size() * ctx.pixels_per_point();
-        let mut image =
-            RgbaImage::from_pixel(size.x as u32, size.y as u32, Rgba([12, 12, 12, 255]));
+        let mut image = RgbaImage::from_pixel(size.x as u32, size.y as u32, CLEAR);
         for clipped in ctx.tessellate(output.shapes.clone(), ctx.pixels_per_point()) {
             if let Primitive::Mesh(mesh) = &clipped.primitive {
                 let texture = self

@@ -65,6 +65,7 @@ fn a_sheet_on_a_walk() {
     click(&mut window, "Design");
     settle(&mut window);
     click(&mut window, "⏸");
+    click(&mut window, "⏮");
     window.get_by_value("Begin with…").click();
     window.run_steps(3);
     click(&mut window, "sad");

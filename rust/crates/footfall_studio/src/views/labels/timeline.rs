@@ -16,7 +16,7 @@ const ROW: f32 = 26.0;
 const GAP: f32 = 6.0;
 
 /// An end of a stance is taken hold of so near, points.
-const GRIP: f32 = 6.0;
+const GRIP: f32 = 8.0;
 
 /// The shortest stretch that can be zoomed to, seconds.
 const LEAST_SPAN_SECS: f64 = 0.2;
