@@ -16,6 +16,10 @@ pub(crate) fn shown(command: &Command) -> String {
 pub(crate) fn cargo() -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(crate::paths::workspace());
+    if std::env::var_os("CI").is_some() {
+        // What is built once is never built again: what the next build would save, this one would pay for.
+        cargo.env("CARGO_INCREMENTAL", "0");
+    }
     cargo
 }
 

@@ -2,6 +2,7 @@
 
 use crate::behaviour::Behaviour;
 use crate::joint::Side;
+use core::fmt;
 
 /// The event that begins a phase. Where events coincide, the one that is listed first counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -37,6 +38,25 @@ impl PhaseStart {
         Self::Fastest,
         Self::Interval,
     ];
+
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Landing => "landing",
+            Self::TakeOff => "take-off",
+            Self::Crossing => "crossing",
+            Self::HeelOff => "heel off",
+            Self::Lowest => "lowest",
+            Self::Apex => "apex",
+            Self::Fastest => "fastest",
+            Self::Interval => "interval",
+        }
+    }
+
+    /// Whether it is an event of one foot.
+    pub const fn has_side(self) -> bool {
+        !matches!(self, Self::Lowest | Self::Apex | Self::Interval)
+    }
 }
 
 /// What a phase is.
@@ -48,4 +68,32 @@ pub struct PhaseKind {
     pub start: PhaseStart,
     /// The foot that the event is of; left where it is of none.
     pub side: Side,
+}
+
+impl fmt::Display for PhaseKind {
+    /// For example `walk, left landing`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (behaviour, start) = (self.behaviour.name(), self.start.name());
+        if self.start.has_side() {
+            return write!(f, "{behaviour}, {} {start}", self.side.name());
+        }
+        write!(f, "{behaviour}, {start}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_phase_is_told_by_what_begins_it() {
+        let mut kind = PhaseKind {
+            behaviour: Behaviour::Walk,
+            start: PhaseStart::TakeOff,
+            side: Side::Right,
+        };
+        assert_eq!(kind.to_string(), "walk, right take-off");
+        kind.start = PhaseStart::Apex;
+        assert_eq!(kind.to_string(), "walk, apex");
+    }
 }

@@ -193,6 +193,19 @@ impl Reconstructor {
         self.tracker.behaviours()
     }
 
+    /// Writes how probable each phase of the model is, in the order of [`ImuModel::phases`](footfall_model::ImuModel::phases).
+    pub fn phase_probabilities(&self, out: &mut Vec<f32>) {
+        let model = &self.prepared.model;
+        out.clear();
+        out.resize(model.phases.len(), 0.0);
+        for (frame, probability) in self.tracker.probabilities().iter().enumerate() {
+            // Frames are filled up to whole blocks.
+            if let Some(segment) = self.prepared.segment_of.get(frame) {
+                out[usize::from(model.segments[*segment as usize].phase)] += probability;
+            }
+        }
+    }
+
     /// Samples that were not finite, repeated or late.
     pub fn rejected_samples(&self) -> u64 {
         self.sensors

@@ -42,14 +42,6 @@ impl Reporter {
         ControlFlow::Continue(())
     }
 
-    /// What was made, unless it was cancelled meanwhile: whoever cancels gets nothing.
-    pub(crate) fn unless_cancelled<T>(&self, made: T) -> Result<T, String> {
-        if self.0.cancelled.load(Ordering::Relaxed) {
-            return Err("stopped before the end; nothing was written".to_owned());
-        }
-        Ok(made)
-    }
-
     fn update(&self, change: impl FnOnce(&mut JobProgress)) {
         change(
             &mut self
@@ -110,9 +102,13 @@ impl<T: Send + 'static> Job<T> {
         Self { shared, receiver }
     }
 
-    /// What came of it: `None` while it goes on, an error when it broke off.
+    /// What came of it: `None` while it goes on, an error when it broke off. Whoever cancels gets nothing, even where it was
+    /// done by then.
     pub(crate) fn poll(&self) -> Option<Result<T, String>> {
         match self.receiver.try_recv() {
+            Ok(_) if self.shared.cancelled.load(Ordering::Relaxed) => {
+                Some(Err("stopped before the end; nothing was written".to_owned()))
+            }
             Ok(made) => Some(Ok(made)),
             Err(TryRecvError::Empty) => None,
             Err(TryRecvError::Disconnected) => Some(Err(format!(

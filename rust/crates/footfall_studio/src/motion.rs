@@ -3,6 +3,7 @@
 use footfall_core::rotation::log_map;
 use footfall_core::{Clip, JOINT_COUNT, Joint};
 use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
+use footfall_motion::phases::{Phase, segment_phases};
 use footfall_motion::recording::{Recording, RecordingError};
 use footfall_motion::retarget::RetargetOptions;
 use footfall_motion::switches::{Switch, SwitchResidual, analyse_switches};
@@ -21,6 +22,8 @@ pub(crate) struct Motion {
     pub(crate) detected: Contacts,
     /// When the legs change roles, from joint angles alone.
     pub(crate) switches: Vec<Switch>,
+    /// What the body does from event to event.
+    pub(crate) phases: Vec<Phase>,
     /// What that detector looks at.
     pub(crate) residual: Option<SwitchResidual>,
 }
@@ -42,7 +45,10 @@ impl Motion {
         let first = recording.retargeted.first_frame;
         let clip = &recording.retargeted.clip;
         // A pose that is not finite has no switches; the reader lets none through.
-        let (switches, residual) = analyse_switches(clip, first).unwrap_or_default();
+        let ((switches, residual), phases) = rayon::join(
+            || analyse_switches(clip, first).unwrap_or_default(),
+            || segment_phases(clip, &recording.contacts),
+        );
         let detected = if recording.is_corrected {
             detect_contacts(clip, &ContactConfig::from_frame(first))
         } else {
@@ -54,6 +60,7 @@ impl Motion {
             recording,
             detected,
             switches,
+            phases,
             residual,
         }
     }

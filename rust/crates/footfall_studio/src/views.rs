@@ -25,7 +25,7 @@ impl Views {
     /// Takes what came of work in the background, whichever view is shown.
     pub(crate) fn poll(&mut self, context: &Context, shell: &mut Shell) {
         self.clips.poll(shell);
-        self.labels.poll(shell);
+        self.labels.poll(context, shell);
         self.train.poll(shell);
         self.design.poll(shell);
         self.sensor.poll(context, shell);
@@ -33,7 +33,8 @@ impl Views {
     }
 
     pub(crate) fn is_busy(&self) -> bool {
-        self.train.is_busy()
+        self.labels.is_busy()
+            || self.train.is_busy()
             || self.design.is_busy()
             || self.sensor.is_busy()
             || self.evaluate.is_busy()

@@ -85,11 +85,16 @@ struct Report {
     /// A body that one sensor at 100 Hz drives: samples, tracking, pose and feet, by a model of 10,000 frames; tracking is linear in them.
     imu_us_per_frame_10k: f64,
     imu_us_per_frame_100k: f64,
+    /// The same for models of many sizes, beside the paper's latency.
+    imu_sizes: Vec<imu::SizeReport>,
     /// From a sample sent over UDP to its pose, by a game that looks every millisecond: median, and the longest of 99 in a hundred.
     imu_sample_to_pose_ms: f64,
     imu_sample_to_pose_p99_ms: f64,
     repetitions: u16,
 }
+
+/// Place of the model of 10,000 frames among [`imu::SIZES`]; that of 100,000 follows.
+const TEN_THOUSAND: usize = 5;
 
 pub(crate) fn run(args: &BenchArgs) -> Result<()> {
     let model = match &args.model {
@@ -101,10 +106,10 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
     let peer_solve = peer.solver();
     let mut hsmm = inference::ForwardBackward::new()?;
     let gait = Arc::new(model.clone());
-    let mut bodies = [
-        imu::ReconstructorBench::new(&gait, 10_000)?,
-        imu::ReconstructorBench::new(&gait, 100_000)?,
-    ];
+    let bodies = imu::SIZES.iter();
+    let mut bodies: Vec<imu::ReconstructorBench> = bodies
+        .map(|(frames, _)| imu::ReconstructorBench::new(&gait, *frames))
+        .collect::<Result<_>>()?;
     let mut walker = runtime::WalkerBench::new(model)?;
     let dynamics = dynamics::DynamicsBench::new()?;
     let mut switching = dynamics.switching()?;
@@ -142,7 +147,16 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         }
     }
     progress.finish();
-    let live = bodies[0].live()?;
+    let sizes = bodies.iter().zip(&best.bodies).zip(imu::SIZES);
+    let imu_sizes: Vec<imu::SizeReport> = sizes
+        .map(|((body, best), (_, paper_ms))| imu::SizeReport {
+            frames: body.size().0,
+            segments: body.size().1,
+            us_per_frame: best.0,
+            paper_ms,
+        })
+        .collect();
+    let live = bodies[TEN_THOUSAND].live()?;
 
     let mlpg_frames = ours.frames() as f64;
     let report = Report {
@@ -171,8 +185,9 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         switching_us_per_frame: best.switching.0,
         switching_dense_us_per_frame: best.dense_switching.0,
         switching_walker_us_per_frame: best.switching_walker.0,
-        imu_us_per_frame_10k: best.bodies[0].0,
-        imu_us_per_frame_100k: best.bodies[1].0,
+        imu_us_per_frame_10k: best.bodies[TEN_THOUSAND].0,
+        imu_us_per_frame_100k: best.bodies[TEN_THOUSAND + 1].0,
+        imu_sizes,
         imu_sample_to_pose_ms: live.0,
         imu_sample_to_pose_p99_ms: live.1,
         repetitions: args.repetitions,
@@ -185,7 +200,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
 
 impl Report {
     fn lines(&self) -> Vec<String> {
-        vec![
+        let mut lines = vec![
             format!(
                 "MLPG, {} frames x {} dimensions, f64       {:9.4} µs a frame",
                 self.mlpg_frames, self.mlpg_dimensions, self.mlpg_f64_us_per_frame
@@ -258,7 +273,17 @@ impl Report {
                 "  from a sample over UDP to its pose       {:9.4} ms, {:.1} ms for one in a hundred",
                 self.imu_sample_to_pose_ms, self.imu_sample_to_pose_p99_ms
             ),
-        ]
+        ];
+        lines.extend(self.imu_sizes.iter().map(|size| {
+            let paper = size
+                .paper_ms
+                .map_or_else(String::new, |ms| format!("; the paper's {ms:.0} ms"));
+            format!(
+                "  by a model of {:6} frames, {:5} segments  {:9.4} µs a frame{paper}",
+                size.frames, size.segments, size.us_per_frame
+            )
+        }));
+        lines
     }
 }
 
@@ -296,7 +321,7 @@ struct Best {
     switching: Least,
     dense_switching: Least,
     switching_walker: Least,
-    bodies: [Least; 2],
+    bodies: [Least; imu::SIZES.len()],
 }
 
 /// How long one run takes, microseconds.

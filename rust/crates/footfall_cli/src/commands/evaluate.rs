@@ -75,3 +75,38 @@ pub(crate) fn report(request: &EvaluateRequest) -> Result<Value> {
 fn value(report: &impl Serialize) -> Result<Value> {
     serde_json::to_value(report).context("the result does not fit JSON")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn request(kind: EvaluateKind, conditions: &[&str]) -> EvaluateRequest {
+        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/data");
+        EvaluateRequest {
+            kind,
+            index: data.join("index.csv"),
+            conditions: conditions.iter().map(ToString::to_string).collect(),
+            synthesised: None,
+        }
+    }
+
+    #[test]
+    fn the_studio_gets_what_the_command_prints() {
+        let value = report(&request(EvaluateKind::Contacts, &["subject=walker_1"])).unwrap();
+        let categories = value["categories"].as_object().unwrap();
+        let (_, agreement) = categories.iter().next().unwrap();
+        assert_eq!(agreement["recordings"], 2, "{value}");
+        assert!(agreement["f1"].as_f64().unwrap() > 0.9, "{value}");
+    }
+
+    #[test]
+    fn a_condition_that_nothing_meets_is_one_line_with_what_there_is() {
+        let error = report(&request(EvaluateKind::Dynamics, &["subject=nobody"])).unwrap_err();
+        let said = format!("{error:#}");
+        assert!(
+            said.contains("nobody") && said.contains("walker_1"),
+            "{said}"
+        );
+    }
+}

@@ -2,6 +2,7 @@
 
 mod timeline;
 
+use crate::job::{Job, finished};
 use crate::labels::Labels;
 use crate::library::Facts;
 use crate::palette;
@@ -10,9 +11,10 @@ use crate::recovery::{self, Kept};
 use crate::scene::SceneView;
 use crate::shell::Shell;
 use crate::views::clips::scene_at;
-use eframe::egui::{Key, Modifiers, Panel, Ui, vec2};
+use eframe::egui::{Context, Key, Modifiers, Panel, Ui, vec2};
 use footfall_core::Side;
 use footfall_motion::contact_file::ContactFile;
+use footfall_motion::phases::{Phase, segment_phases};
 use timeline::Timeline;
 
 /// How long a stance is that is added by hand, seconds.
@@ -28,6 +30,9 @@ pub(crate) struct LabelsView {
     recovered: Vec<Kept>,
     /// What is kept already, so that it is not written in every frame.
     kept: Option<Kept>,
+    /// Whether the phases are those of other contacts than the ones that are shown.
+    phases_are_old: bool,
+    phases: Option<Job<Vec<Phase>>>,
 }
 
 impl LabelsView {
@@ -41,16 +46,40 @@ impl LabelsView {
     }
 
     /// Follows the motion that is shown; keeps what is unsaved.
-    pub(crate) fn poll(&mut self, shell: &mut Shell) {
+    pub(crate) fn poll(&mut self, context: &Context, shell: &mut Shell) {
         if self.opened != shell.opened {
             self.opened = shell.opened;
             self.kept = None;
+            self.phases = None;
+            self.phases_are_old = false;
             self.timeline = Timeline::default();
             self.labels = shell.current.as_ref().map(Labels::of);
         }
         if !self.timeline.is_dragging() {
             self.keep(shell);
         }
+        if let (Some(Ok(phases)), Some(motion)) = (finished(&mut self.phases), &mut shell.current) {
+            motion.phases = phases;
+        }
+        self.renew_phases(context, shell);
+    }
+
+    /// Phases look at every pose, which takes longer than a frame of the window where there are many.
+    fn renew_phases(&mut self, context: &Context, shell: &Shell) {
+        let Some(motion) = &shell.current else { return };
+        if !self.phases_are_old || self.phases.is_some() {
+            return;
+        }
+        self.phases_are_old = false;
+        let clip = motion.clip().clone();
+        let contacts = motion.recording.contacts.clone();
+        self.phases = Some(Job::start(context, "finding phases", move |_| {
+            segment_phases(&clip, &contacts)
+        }));
+    }
+
+    pub(crate) const fn is_busy(&self) -> bool {
+        self.phases.is_some()
     }
 
     /// Keeps unsaved labels where a crash does not reach them.
@@ -138,7 +167,7 @@ impl LabelsView {
             playback.keys(ui, start, 1.0 / motion.clip().frame_rate_hz);
             Panel::bottom("timeline")
                 .resizable(true)
-                .default_size(340.0)
+                .default_size(380.0)
                 .show(ui, |ui| {
                     ui.add_space(4.0);
                     playback.controls(ui, start, end, motion.clip().frame_rate_hz);
@@ -156,6 +185,7 @@ impl LabelsView {
             // Steps and footprints follow the corrections.
             motion.recording.contacts = motion.detected.clone();
             motion.recording.correct(labels.all().clone());
+            self.phases_are_old = true;
         }
     }
 

@@ -21,6 +21,9 @@ use std::time::Duration;
 /// While a sensor is heard the window is painted this often.
 const REPAINT: Duration = Duration::from_millis(16);
 
+/// How many of the most probable phases are shown.
+const SHOWN_PHASES: usize = 5;
+
 #[derive(Default)]
 pub(crate) struct SensorView {
     choice: SourceChoice,
@@ -183,6 +186,11 @@ impl SensorView {
         let behaviours = self.body.behaviours();
         for (behaviour, probability) in Behaviour::ALL.into_iter().zip(behaviours) {
             probability_bar(ui, behaviour.name(), probability);
+        }
+        ui.add_space(4.0);
+        ui.strong("Phases");
+        for (phase, probability) in self.body.phases(SHOWN_PHASES) {
+            probability_bar(ui, &phase.to_string(), probability);
         }
     }
 

@@ -260,7 +260,7 @@ impl TrainView {
         self.job = Some(Job::start(ui.ctx(), "making the style", move |reporter| {
             let recorded = Recorded::read(&chosen, reporter)?;
             let made = adapt_to(&base, &recorded, &name, steps, reporter)?;
-            reporter.unless_cancelled(Made::Style(Box::new(made)))
+            Ok(Made::Style(Box::new(made)))
         }));
     }
 
@@ -272,7 +272,7 @@ impl TrainView {
         self.job = Some(Job::start(ui.ctx(), "training", move |reporter| {
             let recorded = Recorded::read(&chosen, reporter)?;
             let made = work::train(&recorded, rate_hz, iterations, reporter)?;
-            reporter.unless_cancelled(Made::Average(Box::new(made)))
+            Ok(Made::Average(Box::new(made)))
         }));
     }
 

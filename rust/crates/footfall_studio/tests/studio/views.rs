@@ -59,6 +59,32 @@ fn a_style_as_curves_with_bands() {
 }
 
 #[test]
+fn a_tree_of_contexts() {
+    let world = World::new();
+    let mut window = opened(&world);
+    click(&mut window, "Train");
+    click(&mut window, "Train a model");
+    settle(&mut window);
+    click(&mut window, "Decision trees");
+    click(&mut window, "durations");
+    look(&mut window, "train_trees");
+}
+
+#[test]
+fn a_sensor_and_the_body_that_it_moves() {
+    let world = World::new();
+    let path = world.sensor();
+    let mut window = world.window(&[]);
+    let context = window.ctx.clone();
+    window.state_mut().open(&context, &path);
+    window.run_steps(2);
+    click(&mut window, "Aligned");
+    click(&mut window, "Again");
+    window.run_steps(200);
+    look(&mut window, "sensor");
+}
+
+#[test]
 fn a_sheet_on_a_walk() {
     let world = World::new();
     let mut window = opened(&world);
@@ -113,4 +139,16 @@ fn tables_and_charts_of_an_evaluation() {
     look(&mut window, "evaluate_chart");
     click(&mut window, "real, confusion");
     look(&mut window, "evaluate_confusion");
+    click(&mut window, "measures");
+    for (label, name, said) in [
+        ("Export CSV…", "table.csv", "proud,1,0.002"),
+        ("Export SVG…", "chart.svg", "<svg"),
+    ] {
+        click(&mut window, label);
+        let path = world.folder.path().join(name);
+        assert!(window.state_mut().answer_dialog(path.clone()));
+        window.run_steps(2);
+        let text = std::fs::read_to_string(path).unwrap();
+        assert!(text.contains(said), "{text}");
+    }
 }

@@ -1,17 +1,17 @@
 //! What the studio does: from recordings to files that the other tools read.
 
-use crate::world::{World, base, click, settle, shipped};
+use crate::world::{Window, World, base, click, settle, shipped};
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportEvent};
 use egui_kittest::kittest::Queryable as _;
-use footfall_core::Site;
-use footfall_imu::csv;
 use footfall_model::GaitStyle;
 use footfall_motion::bvh;
 use footfall_motion::contact_file::ContactFile;
 use footfall_motion::recording::Recording;
-use footfall_motion::retarget::{RetargetOptions, retarget};
-use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
+use footfall_motion::retarget::RetargetOptions;
+use footfall_studio::EvaluateRequest;
+use serde_json::json;
+use std::sync::{Arc, Mutex, mpsc};
 
 #[test]
 fn a_broken_file_is_listed_with_its_error_and_does_not_stop_the_rest() {
@@ -66,7 +66,7 @@ fn corrected_contacts_are_saved_beside_the_clip_and_taken_by_training() {
     let mut window = world.window(std::slice::from_ref(&path));
     click(&mut window, "Labels");
     // Drags the end of the first stance of the left foot to the right.
-    let (from, to) = (Pos2::new(450.5, 506.0), Pos2::new(470.0, 506.0));
+    let (from, to) = (Pos2::new(450.5, 466.0), Pos2::new(470.0, 466.0));
     window.hover_at(from);
     window.run_steps(2);
     window.drag_at(from);
@@ -92,14 +92,19 @@ fn corrected_contacts_are_saved_beside_the_clip_and_taken_by_training() {
     );
 }
 
+/// Adds a stance where the right foot swings.
+fn correct(window: &mut Window) {
+    click(window, "Labels");
+    window.state_mut().seek(0.55);
+    window.run_steps(2);
+    click(window, "Add right stance");
+}
+
 #[test]
 fn an_edit_is_taken_back_and_made_again() {
     let world = World::new();
     let mut window = world.window(&[world.clip("anna/anna_2.bvh")]);
-    click(&mut window, "Labels");
-    window.state_mut().seek(0.55);
-    window.run_steps(2);
-    click(&mut window, "Add right stance");
+    correct(&mut window);
     assert!(window.query_by_label("• unsaved labels").is_some());
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     window.run_steps(3);
@@ -116,10 +121,7 @@ fn unsaved_labels_survive_a_crash() {
     let paths = [world.clip("anna/anna_2.bvh")];
     {
         let mut window = world.window(&paths);
-        click(&mut window, "Labels");
-        window.state_mut().seek(0.55);
-        window.run_steps(2);
-        click(&mut window, "Add right stance");
+        correct(&mut window);
         // The window goes away without a word.
     }
     let mut window = world.window(&paths);
@@ -140,11 +142,8 @@ fn unsaved_labels_survive_a_crash() {
 fn closing_with_unsaved_labels_asks() {
     let world = World::new();
     let mut window = world.window(&[world.clip("anna/anna_2.bvh")]);
-    click(&mut window, "Labels");
-    window.state_mut().seek(0.55);
-    window.run_steps(2);
-    click(&mut window, "Add right stance");
-    let ask_to_close = |window: &mut crate::world::Window| {
+    correct(&mut window);
+    let ask_to_close = |window: &mut Window| {
         let input = window.input_mut();
         let id = input.viewport_id;
         let viewport = input.viewports.entry(id).or_default();
@@ -185,16 +184,27 @@ fn a_style_is_made_from_recordings_and_saved() {
 }
 
 #[test]
-fn work_that_is_cancelled_says_so_and_leaves_nothing() {
+fn work_that_is_cancelled_says_so_and_shows_nothing() {
     let world = World::new();
-    let mut window = world.window(&[world.clips()]);
-    click(&mut window, "Train");
-    click(&mut window, "Train a model");
+    let (release, wait) = mpsc::channel::<()>();
+    let wait = Mutex::new(wait);
+    let evaluator = move |_: &EvaluateRequest| {
+        // Goes on until the test has cancelled it.
+        wait.lock().unwrap().recv().unwrap_err();
+        Ok(json!({"categories": {"walk": {"f1": 1.0}, "run": {"f1": 1.0}}}))
+    };
+    let mut window = world.window_with(&[], Some(Arc::new(evaluator)));
+    click(&mut window, "Evaluate");
+    click(&mut window, "Index…");
+    assert!(window.state_mut().answer_dialog(world.clip("index.csv")));
+    window.run_steps(2);
+    click(&mut window, "Run the evaluation");
     click(&mut window, "Cancel");
+    drop(release);
     settle(&mut window);
     let message = window.state().message().unwrap();
     assert!(message.contains("stopped"), "{message}");
-    assert!(window.query_by_label("Save the model…").is_none());
+    assert!(window.query_by_label("Export CSV…").is_none());
 }
 
 #[test]
@@ -228,16 +238,7 @@ fn a_style_is_designed_without_a_recording_of_it() {
 #[test]
 fn a_recorded_sensor_moves_a_body() {
     let world = World::new();
-    let file = bvh::read(world.clip("anna/anna_1.bvh")).unwrap();
-    let motion = retarget(&file, &RetargetOptions::default()).unwrap();
-    let recording = simulate(
-        &motion.clip,
-        motion.first_frame,
-        Site::RightThigh,
-        &VirtualImuConfig::ideal(100.0),
-    );
-    let path = world.clip("imu.csv");
-    std::fs::write(&path, csv::write(&recording)).unwrap();
+    let path = world.sensor();
     let mut window = world.window(&[]);
     let context = window.ctx.clone();
     window.state_mut().open(&context, &path);
@@ -270,7 +271,7 @@ fn a_style_for_another_model_is_refused_with_its_reason() {
 }
 
 /// What a mouse does with its main button.
-fn press(window: &crate::world::Window, pos: Pos2, pressed: bool) {
+fn press(window: &Window, pos: Pos2, pressed: bool) {
     window.event(Event::PointerButton {
         pos,
         button: PointerButton::Primary,

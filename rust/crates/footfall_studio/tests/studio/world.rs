@@ -3,8 +3,12 @@
 use eframe::egui::{Context, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use footfall_core::Site;
+use footfall_imu::csv;
 use footfall_model::GaitModel;
 use footfall_motion::bvh::{self, clip_to_bvh};
+use footfall_motion::retarget::{RetargetOptions, retarget};
+use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
 use footfall_studio::{Evaluator, Studio, StudioOptions};
 use footfall_synth::{WalkConfig, synthesize};
 use std::path::{Path, PathBuf};
@@ -65,6 +69,21 @@ impl World {
 
     pub(crate) fn clip(&self, name: &str) -> PathBuf {
         self.clips().join(name)
+    }
+
+    /// What a phone in the right pocket measures while somebody walks off.
+    pub(crate) fn sensor(&self) -> PathBuf {
+        let file = bvh::read(self.clip("anna/anna_1.bvh")).unwrap();
+        let motion = retarget(&file, &RetargetOptions::default()).unwrap();
+        let recording = simulate(
+            &motion.clip,
+            motion.first_frame,
+            Site::RightThigh,
+            &VirtualImuConfig::ideal(100.0),
+        );
+        let path = self.clip("imu.csv");
+        std::fs::write(&path, csv::write(&recording)).unwrap();
+        path
     }
 
     /// A window that shows these files; waits until all of them are read.

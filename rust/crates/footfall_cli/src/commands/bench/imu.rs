@@ -10,6 +10,7 @@ use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
 use footfall_recon::{Prepared, ReconConfig, Reconstructor};
 use footfall_synth::{WalkConfig, synthesize};
 use footfall_train::imu::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
+use serde::Serialize;
 use std::hint::black_box;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::sync::Arc;
@@ -23,14 +24,38 @@ const LIVE_SAMPLES: usize = 300;
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Steps of each walker.
+/// Steps of each walker, at most; and about how many frames a step has.
 const STEPS: usize = 60;
+const FRAMES_A_STEP: usize = 17;
+
+/// Frames of the models that are timed: those of the paper (Mousas 2017, table 2) with the latency that it reports, milliseconds, and ten
+/// times as many.
+pub(super) const SIZES: [(usize, Option<f64>); 7] = [
+    (500, Some(25.0)),
+    (1_000, Some(39.0)),
+    (2_000, Some(73.0)),
+    (4_000, Some(124.0)),
+    (5_000, Some(292.0)),
+    (10_000, Some(758.0)),
+    (100_000, None),
+];
+
+/// A line of that table.
+#[derive(Serialize)]
+pub(super) struct SizeReport {
+    pub(super) frames: usize,
+    pub(super) segments: usize,
+    pub(super) us_per_frame: f64,
+    pub(super) paper_ms: Option<f64>,
+}
 
 /// A body, its sensor's recording, and how many frames the model has.
 pub(super) struct ReconstructorBench {
     reconstructor: Reconstructor,
     recording: ImuRecording,
     frames: f64,
+    /// Frames and segments of the model.
+    size: (usize, usize),
 }
 
 impl ReconstructorBench {
@@ -38,7 +63,7 @@ impl ReconstructorBench {
     pub(super) fn new(gait: &Arc<GaitModel>, frames: usize) -> Result<Self> {
         let walk = |seed: u64| {
             let config = WalkConfig {
-                steps: STEPS,
+                steps: STEPS.min(frames / FRAMES_A_STEP),
                 seed,
                 variation: 1.0,
                 speed_mps: Some(0.9 + 0.05 * (seed % 13) as f32),
@@ -75,11 +100,19 @@ impl ReconstructorBench {
         );
         let prepared = Arc::new(Prepared::new(Arc::new(model))?);
         let skeleton = &prepared.model().skeleton;
+        let own = prepared.model();
+        let size = (own.frame_count(), own.segments.len());
         Ok(Self {
             reconstructor: Reconstructor::new(&prepared, skeleton, &ReconConfig::default())?,
             frames: recording.duration_secs() * prepared.model().frame_rate_hz,
+            size,
             recording,
         })
+    }
+
+    /// Frames and segments of the model.
+    pub(super) fn size(&self) -> (usize, usize) {
+        self.size
     }
 
     /// The whole recording; microseconds a frame of the model, samples, tracking, pose and feet.

@@ -5,7 +5,7 @@ use crate::model_file::{read_imu_model, shipped_model};
 use crate::palette;
 use crate::shell::{Purpose, Shell};
 use eframe::egui::{Context, Ui};
-use footfall_core::{Behaviour, Pose, Skeleton};
+use footfall_core::{Behaviour, PhaseKind, Pose, Skeleton};
 use footfall_imu::{ImuRecording, ImuSample};
 use footfall_recon::{
     Mounting, Prepared, ReconConfig, Reconstructor, TrackerConfig, find_mounting,
@@ -35,6 +35,8 @@ pub(super) struct LiveBody {
     /// When it was looked for last, on the sensor's clock.
     looked_secs: f64,
     problem: Option<String>,
+    /// How probable each phase of the model is.
+    phases: Vec<f32>,
 }
 
 impl LiveBody {
@@ -164,6 +166,19 @@ impl LiveBody {
         self.reconstructor
             .as_ref()
             .map_or([0.0; Behaviour::ALL.len()], |made| *made.behaviours())
+    }
+
+    /// The most probable phases, the most probable first.
+    pub(super) fn phases(&mut self, most: usize) -> Vec<(PhaseKind, f32)> {
+        let (Some(prepared), Some(reconstructor)) = (&self.prepared, &self.reconstructor) else {
+            return Vec::new();
+        };
+        reconstructor.phase_probabilities(&mut self.phases);
+        let kinds = prepared.model().phases.iter().copied();
+        let mut phases: Vec<(PhaseKind, f32)> = kinds.zip(self.phases.iter().copied()).collect();
+        phases.sort_by(|a, b| b.1.total_cmp(&a.1));
+        phases.truncate(most);
+        phases
     }
 
     pub(super) fn settings(&mut self, ui: &mut Ui, shell: &mut Shell) {

@@ -60,7 +60,9 @@ impl Signals {
     }
 
     pub(super) fn show(&self, ui: &mut Ui) {
-        let height = 0.5 * (ui.available_height() - 8.0);
+        // The panel keeps its height: plots a little lower than it would let it shrink from frame to frame.
+        ui.take_available_height();
+        let height = 0.5 * (ui.available_height() - ui.spacing().item_spacing.y);
         let force: Measured = |sample| sample.force;
         let rate: Measured = |sample| sample.rate;
         let kinds = [
