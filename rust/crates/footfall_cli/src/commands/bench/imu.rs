@@ -24,9 +24,9 @@ const LIVE_SAMPLES: usize = 300;
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Steps of each walker, at most; and about how many frames a step has.
+/// Steps of each walker, at most; and about how many frames a step makes, its mirror image included.
 const STEPS: usize = 60;
-const FRAMES_A_STEP: usize = 17;
+const FRAMES_A_STEP: usize = 36;
 
 /// Frames of the models that are timed: those of the paper (Mousas 2017, table 2) with the latency that it reports, milliseconds, and ten
 /// times as many.
