@@ -71,6 +71,7 @@ impl MixPage {
         self.styles.push(Arc::new(style));
         self.weights
             .push(if self.styles.len() == 1 { 1.0 } else { 0.0 });
+        self.puck = puck_of(&self.weights);
         match StyleSpace::new(&base, &self.styles) {
             Ok(_) => self.rebuild(&base),
             Err(error) => {
