@@ -15,7 +15,9 @@ pub struct Recording {
     /// Contacts of its feet: as a person corrected them where there is a [file of corrections](ContactFile::beside), else as
     /// detected.
     pub contacts: Contacts,
-    /// Its walks, by these contacts.
+    /// What the detector finds, whatever was corrected.
+    pub detected: Contacts,
+    /// Its walks, by its contacts.
     pub walks: Vec<Walk>,
     /// Whether the contacts are a person's.
     pub is_corrected: bool,
@@ -69,14 +71,20 @@ impl Recording {
         Self {
             walks: segment_walks(&retargeted.clip, &contacts),
             retargeted,
+            detected: contacts.clone(),
             contacts,
             is_corrected: false,
         }
     }
 
-    /// Takes stances of the left and of the right foot for true.
+    /// How many steps all its walks have.
+    pub fn step_count(&self) -> usize {
+        self.walks.iter().map(|walk| walk.steps.len()).sum()
+    }
+
+    /// Takes stances of the left and of the right foot for true, instead of whatever was corrected before.
     pub fn correct(&mut self, stances: [Vec<footfall_core::FrameSpan>; 2]) {
-        self.contacts = self.contacts.with_stances(stances);
+        self.contacts = self.detected.with_stances(stances);
         self.walks = segment_walks(&self.retargeted.clip, &self.contacts);
         self.is_corrected = true;
     }

@@ -184,9 +184,8 @@ impl Labels {
 
     /// As a file beside the recording holds it.
     pub(crate) fn to_file(&self, motion: &Motion) -> ContactFile {
-        let mut recording = motion.recording.contacts.clone();
-        recording = recording.with_stances(self.stances.clone());
-        ContactFile::new(&recording, &motion.recording.walks)
+        let contacts = motion.recording.detected.with_stances(self.stances.clone());
+        ContactFile::new(&contacts, &motion.recording.walks)
     }
 }
 

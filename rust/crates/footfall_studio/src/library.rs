@@ -27,7 +27,7 @@ impl Facts {
         Self {
             frames: motion.clip().poses.len(),
             rate_hz: motion.clip().frame_rate_hz,
-            steps: motion.step_count(),
+            steps: motion.recording.step_count(),
             skeleton: motion.recording.retargeted.report.map.clone(),
             is_corrected: motion.recording.is_corrected,
         }

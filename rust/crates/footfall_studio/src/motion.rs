@@ -2,7 +2,6 @@
 
 use footfall_core::rotation::log_map;
 use footfall_core::{Clip, JOINT_COUNT, Joint};
-use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
 use footfall_motion::phases::{Phase, segment_phases};
 use footfall_motion::recording::{Recording, RecordingError};
 use footfall_motion::retarget::RetargetOptions;
@@ -18,8 +17,6 @@ pub(crate) struct Motion {
     pub(crate) name: String,
     /// The motion, its contacts and walks.
     pub(crate) recording: Recording,
-    /// What the detector finds, whatever was corrected.
-    pub(crate) detected: Contacts,
     /// When the legs change roles, from joint angles alone.
     pub(crate) switches: Vec<Switch>,
     /// What the body does from event to event.
@@ -49,16 +46,10 @@ impl Motion {
             || analyse_switches(clip, first).unwrap_or_default(),
             || segment_phases(clip, &recording.contacts),
         );
-        let detected = if recording.is_corrected {
-            detect_contacts(clip, &ContactConfig::from_frame(first))
-        } else {
-            recording.contacts.clone()
-        };
         Self {
             path,
             name,
             recording,
-            detected,
             switches,
             phases,
             residual,
@@ -84,12 +75,6 @@ impl Motion {
     pub(crate) fn frame_at(&self, secs: f64) -> usize {
         let frame = (secs * self.clip().frame_rate_hz).round().max(0.0) as usize;
         frame.min(self.clip().poses.len().saturating_sub(1))
-    }
-
-    /// How many steps its walks have.
-    pub(crate) fn step_count(&self) -> usize {
-        let walks = self.recording.walks.iter();
-        walks.map(|walk| walk.steps.len()).sum()
     }
 }
 

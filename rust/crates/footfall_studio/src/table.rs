@@ -48,17 +48,16 @@ impl Cell {
 }
 
 impl Table {
-    /// The values of a column that are numbers, with the names of their rows.
-    pub(crate) fn numbers(&self, column: usize) -> Vec<(&str, f64)> {
-        let rows = self.rows.iter();
-        rows.filter_map(|(name, cells)| Some((name.as_str(), cells.get(column)?.number()?)))
-            .collect()
+    /// The values of a column that are numbers, with the places of their rows.
+    pub(crate) fn numbers(&self, column: usize) -> impl Iterator<Item = (usize, f64)> {
+        let rows = self.rows.iter().enumerate();
+        rows.filter_map(move |(row, (_, cells))| Some((row, cells.get(column)?.number()?)))
     }
 
     /// Columns with a number in them.
     pub(crate) fn numeric_columns(&self) -> Vec<usize> {
         (0..self.columns.len())
-            .filter(|column| !self.numbers(*column).is_empty())
+            .filter(|column| self.numbers(*column).next().is_some())
             .collect()
     }
 

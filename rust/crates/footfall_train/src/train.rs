@@ -11,6 +11,7 @@ use crate::walker_adaptive::{self, WalkerAdaptive, WalkerTransform};
 use footfall_core::{Clip, Side, Skeleton, StepPosition};
 use footfall_model::{FEATURE_COUNT, GaitModel, GlobalVarianceModel, Provenance, StepModel};
 use footfall_motion::corpus::CorpusClip;
+use footfall_motion::retarget::Retargeted;
 use footfall_motion::steps::Walk;
 use footfall_prob::windows::Windows;
 
@@ -33,14 +34,21 @@ pub struct TrainingClip {
     pub walks: Vec<Walk>,
 }
 
+impl TrainingClip {
+    /// What is read of a recording.
+    pub fn new(subject: &str, motion: &Retargeted, walks: &[Walk]) -> Self {
+        Self {
+            subject: subject.to_owned(),
+            clip: motion.clip.clone(),
+            skip_frames: motion.first_frame,
+            walks: walks.to_vec(),
+        }
+    }
+}
+
 impl From<&CorpusClip> for TrainingClip {
     fn from(clip: &CorpusClip) -> Self {
-        Self {
-            subject: clip.row.subject().to_owned(),
-            clip: clip.retargeted.clip.clone(),
-            skip_frames: clip.retargeted.first_frame,
-            walks: clip.walks.clone(),
-        }
+        Self::new(clip.row.subject(), &clip.retargeted, &clip.walks)
     }
 }
 

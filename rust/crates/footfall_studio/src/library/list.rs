@@ -28,10 +28,12 @@ impl Library {
                 .desired_width(f32::INFINITY),
         );
         self.show_categories(ui);
+        let wanted = self.search.to_lowercase();
+        let wanted: Vec<String> = wanted.split_whitespace().map(ToOwned::to_owned).collect();
         let shown: Vec<PathBuf> = self
             .entries
             .iter()
-            .filter(|(_, entry)| self.matches(entry))
+            .filter(|(_, entry)| self.matches(entry, &wanted))
             .map(|(path, _)| path.clone())
             .collect();
         self.show_counts(ui, &shown);
@@ -123,15 +125,18 @@ impl Library {
         });
     }
 
-    fn matches(&self, entry: &Entry) -> bool {
-        let is_category = self
-            .category
-            .as_ref()
-            .is_none_or(|category| *category == entry.category);
-        let wanted = self.search.to_lowercase();
+    fn matches(&self, entry: &Entry, wanted: &[String]) -> bool {
+        let category = self.category.as_ref();
+        if category.is_some_and(|category| *category != entry.category) {
+            return false;
+        }
+        // Made in every frame of the window for every recording: not where nothing is looked for.
+        if wanted.is_empty() {
+            return true;
+        }
         let text = format!("{} {} {}", entry.name, entry.category, entry.subject);
         let text = text.to_lowercase();
-        is_category && wanted.split_whitespace().all(|word| text.contains(word))
+        wanted.iter().all(|word| text.contains(word))
     }
 
     fn row(&mut self, ui: &mut Ui, path: &Path, mark: Mark) -> Option<ListAction> {

@@ -54,13 +54,8 @@ impl Table {
             .map(|(place, column)| {
                 let offset = (place as f64 - 0.5 * (columns.len() as f64 - 1.0)) * width;
                 let bars = self
-                    .rows
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(row, (_, cells))| {
-                        let value = cells.get(*column)?.number()?;
-                        Some(Bar::new(row as f64 + offset, value).width(0.95 * width))
-                    });
+                    .numbers(*column)
+                    .map(|(row, value)| Bar::new(row as f64 + offset, value).width(0.95 * width));
                 let color = palette::SERIES[place % palette::SERIES.len()];
                 BarChart::new(self.columns[*column].clone(), bars.collect()).color(color)
             })

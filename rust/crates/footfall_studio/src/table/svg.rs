@@ -57,18 +57,11 @@ impl Table {
                 crate::palette::SERIES[place % crate::palette::SERIES.len()].to_array();
             let color = RGBColor(r, g, b);
             let left = -0.4 + place as f64 * width;
-            let bars = self
-                .rows
-                .iter()
-                .enumerate()
-                .filter_map(|(row, (_, cells))| {
-                    let value = cells.get(*column)?.number()?;
-                    let from = row as f64 + left;
-                    Some(Rectangle::new(
-                        [(from, 0.0), (from + 0.95 * width, value)],
-                        color.filled(),
-                    ))
-                });
+            let bars = self.numbers(*column).map(|(row, value)| {
+                let from = row as f64 + left;
+                let corners = [(from, 0.0), (from + 0.95 * width, value)];
+                Rectangle::new(corners, color.filled())
+            });
             chart
                 .draw_series(bars)?
                 .label(&self.columns[*column])

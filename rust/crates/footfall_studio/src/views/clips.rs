@@ -52,7 +52,7 @@ impl ClipsView {
                 "{:.1} s, {} fps, {} steps, {}",
                 end,
                 clip.frame_rate_hz,
-                motion.step_count(),
+                motion.recording.step_count(),
                 motion.recording.retargeted.report.map
             ));
             if ui

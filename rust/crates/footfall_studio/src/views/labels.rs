@@ -183,7 +183,6 @@ impl LabelsView {
         };
         if changed && let (Some(motion), Some(labels)) = (&mut shell.current, &self.labels) {
             // Steps and footprints follow the corrections.
-            motion.recording.contacts = motion.detected.clone();
             motion.recording.correct(labels.all().clone());
             self.phases_are_old = true;
         }
@@ -271,7 +270,9 @@ impl LabelsView {
             }
             let detected = ui.button("As detected");
             if detected.on_hover_text("Forget all corrections").clicked() {
-                labels.replace(Side::BOTH.map(|side| motion.detected.foot(side).stances.clone()));
+                labels.replace(
+                    Side::BOTH.map(|side| motion.recording.detected.foot(side).stances.clone()),
+                );
             }
             let save = ui.add_enabled(labels.is_dirty(), eframe::egui::Button::new("Save"));
             saves |= save

@@ -1,10 +1,9 @@
 //! What the studio does: from recordings to files that the other tools read.
 
-use crate::world::{Window, World, base, click, settle, shipped};
+use crate::world::{Window, World, base, click, saved_style, settle, shipped};
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportEvent};
 use egui_kittest::kittest::Queryable as _;
-use footfall_model::GaitStyle;
 use footfall_motion::bvh;
 use footfall_motion::contact_file::ContactFile;
 use footfall_motion::recording::Recording;
@@ -174,11 +173,7 @@ fn a_style_is_made_from_recordings_and_saved() {
     click(&mut window, "Train");
     click(&mut window, "Make the style");
     settle(&mut window);
-    click(&mut window, "Save the style…");
-    let path = world.clip("mine.footstyle");
-    assert!(window.state_mut().answer_dialog(path.clone()));
-    window.run_steps(2);
-    let style = GaitStyle::from_bytes(&std::fs::read(path).unwrap()).unwrap();
+    let style = saved_style(&mut window, "Save the style…", world.clip("mine.footstyle"));
     assert_eq!((style.name.as_str(), style.provenance.steps), ("mine", 12));
     base().styled(&[(&style, 1.0)]).unwrap();
 }
@@ -218,11 +213,7 @@ fn a_style_is_designed_without_a_recording_of_it() {
     settle(&mut window);
     click(&mut window, "Make the style");
     settle(&mut window);
-    click(&mut window, "Save style…");
-    let path = world.clip("proud.footstyle");
-    assert!(window.state_mut().answer_dialog(path.clone()));
-    window.run_steps(2);
-    let style = GaitStyle::from_bytes(&std::fs::read(path).unwrap()).unwrap();
+    let style = saved_style(&mut window, "Save style…", world.clip("proud.footstyle"));
     assert_eq!(style.name, "proud");
     click(&mut window, "On the mixing pad");
     window.run_steps(30);

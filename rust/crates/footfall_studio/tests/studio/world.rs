@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use footfall_core::Site;
 use footfall_imu::csv;
-use footfall_model::GaitModel;
+use footfall_model::{GaitModel, GaitStyle};
 use footfall_motion::bvh::{self, clip_to_bvh};
 use footfall_motion::retarget::{RetargetOptions, retarget};
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
@@ -130,4 +130,12 @@ pub(crate) fn settle(window: &mut Window) {
 pub(crate) fn click(window: &mut Window, label: &str) {
     window.get_by_label(label).click();
     window.run_steps(3);
+}
+
+/// What is in the style that a button saves.
+pub(crate) fn saved_style(window: &mut Window, label: &str, path: PathBuf) -> GaitStyle {
+    click(window, label);
+    assert!(window.state_mut().answer_dialog(path.clone()));
+    window.run_steps(2);
+    GaitStyle::from_bytes(&std::fs::read(path).unwrap()).unwrap()
 }

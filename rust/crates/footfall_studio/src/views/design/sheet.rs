@@ -15,7 +15,6 @@ use footfall_design::{KeySpec, StyleSheet, design, shipped};
 use footfall_model::{GaitModel, GaitStyle};
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::Retargeted;
-use footfall_train::TrainingClip;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -359,33 +358,20 @@ fn style_of(
     reporter: &mut Reporter,
 ) -> Result<GaitStyle, String> {
     let read = Recorded::read(chosen, reporter)?;
-    let mut styled = Recorded {
-        clips: Vec::new(),
-        recordings: Vec::new(),
-    };
-    let (mut steps, mut problem) = (0, None);
-    for (number, (recording, clip)) in read.recordings.iter().zip(&read.clips).enumerate() {
+    let (mut styled, mut steps, mut problem) = (Recorded(Vec::new()), 0, None);
+    for (number, (subject, recording)) in read.0.into_iter().enumerate() {
         if steps >= STEPS {
             break;
         }
-        match designed(recording, sheet, seed.wrapping_add(number as u64)) {
+        match designed(&recording, sheet, seed.wrapping_add(number as u64)) {
             Ok(recording) => {
-                steps += recording
-                    .walks
-                    .iter()
-                    .map(|walk| walk.steps.len())
-                    .sum::<usize>();
-                styled.clips.push(TrainingClip {
-                    subject: clip.subject.clone(),
-                    clip: recording.retargeted.clip.clone(),
-                    skip_frames: 0,
-                    walks: recording.walks.clone(),
-                });
+                steps += recording.step_count();
+                styled.0.push((subject, recording));
             }
             Err(error) => problem = Some(error),
         }
     }
-    if styled.clips.is_empty() {
+    if styled.0.is_empty() {
         return Err(problem.unwrap_or_else(|| "no recording of a walk is chosen".to_owned()));
     }
     adapt_to(base, &styled, sheet.name.trim(), STEPS, reporter).map(|adapted| adapted.style)

@@ -28,36 +28,32 @@ pub(crate) fn chosen_of(library: &Library) -> Vec<(PathBuf, String)> {
         .collect()
 }
 
-/// Recordings, read.
-pub(crate) struct Recorded {
-    pub(crate) clips: Vec<TrainingClip>,
-    pub(crate) recordings: Vec<Recording>,
-}
+/// Recordings, read, and who walks in them.
+pub(crate) struct Recorded(pub(crate) Vec<(String, Recording)>);
 
 impl Recorded {
     pub(crate) fn read(chosen: &[(PathBuf, String)], reporter: &Reporter) -> Result<Self, String> {
         if chosen.is_empty() {
             return Err("no recordings; open some, or tick those to use".to_owned());
         }
-        let mut read = Self {
-            clips: Vec::new(),
-            recordings: Vec::new(),
-        };
+        let mut read = Vec::with_capacity(chosen.len());
         for (done, (path, subject)) in chosen.iter().enumerate() {
             if reporter.tell("reading", done, chosen.len()).is_break() {
                 return Err("stopped".to_owned());
             }
             let recording = Recording::read(path, &RetargetOptions::default())
                 .map_err(|error| error.to_string())?;
-            read.clips.push(TrainingClip {
-                subject: subject.clone(),
-                clip: recording.retargeted.clip.clone(),
-                skip_frames: recording.retargeted.first_frame,
-                walks: recording.walks.clone(),
-            });
-            read.recordings.push(recording);
+            read.push((subject.clone(), recording));
         }
-        Ok(read)
+        Ok(Self(read))
+    }
+
+    fn clips(&self) -> Vec<TrainingClip> {
+        let read = self.0.iter();
+        read.map(|(subject, recording)| {
+            TrainingClip::new(subject, &recording.retargeted, &recording.walks)
+        })
+        .collect()
     }
 }
 
@@ -86,7 +82,7 @@ pub(super) fn train(
         },
     };
     train_average(
-        &recorded.clips,
+        &recorded.clips(),
         &config,
         provenance("recordings chosen in Footfall Studio"),
         reporter,
@@ -107,6 +103,6 @@ pub(crate) fn adapt_to(
         steps: Some(steps),
     };
     let made_from = provenance("recordings chosen in Footfall Studio");
-    adapt_style(base, &recorded.clips, name, &config, made_from, reporter)
+    adapt_style(base, &recorded.clips(), name, &config, made_from, reporter)
         .map_err(|error| error.to_string())
 }

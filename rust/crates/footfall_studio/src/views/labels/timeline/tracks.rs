@@ -74,7 +74,7 @@ pub(super) fn draw_detected(painter: &Painter, scale: &Scale, row: Rect, motion:
     let clip = motion.clip();
     let angles = switches::stances(&motion.switches, clip.poses.len());
     for side in Side::BOTH {
-        let foot = motion.detected.foot(side);
+        let foot = motion.recording.detected.foot(side);
         let color = palette::side(side);
         let height = row.height() / 4.0;
         let lane = |lane: f32| {
