@@ -7,6 +7,7 @@ const KEYS: Dictionary[StringName, Array] = {
 	&"walk_left": [KEY_A, KEY_LEFT],
 	&"walk_right": [KEY_D, KEY_RIGHT],
 	&"hurry": [KEY_SHIFT],
+	&"aim": [KEY_CTRL],
 }
 ## Action → axis and direction.
 const AXES: Dictionary[StringName, Array] = {
@@ -19,6 +20,7 @@ const AXES: Dictionary[StringName, Array] = {
 	&"look_left": [JOY_AXIS_RIGHT_X, -1.0],
 	&"look_right": [JOY_AXIS_RIGHT_X, 1.0],
 	&"hurry": [JOY_AXIS_TRIGGER_RIGHT, 1.0],
+	&"aim": [JOY_AXIS_TRIGGER_LEFT, 1.0],
 }
 
 

@@ -18,6 +18,8 @@ extends CharacterBody3D
 var view_heading := PI
 ## Set to walk without a player: a direction on the ground, of length 0 to 1.
 var autopilot := Vector3.ZERO
+## Whether it faces where the camera looks, whatever way it goes; the player's `aim` does the same.
+var aims := false
 
 @onready var gait: GaitGenerator3D = $Body.get_node(^"%GaitGenerator3D")
 @onready var placement: FootPlacement3D = $Body.get_node(^"%FootPlacement3D")
@@ -36,15 +38,27 @@ func _ready() -> void:
 
 func _physics_process(_delta: float) -> void:
 	var wish := _wish()
-	if wish.length() < 0.1:
-		gait.speed = 0.0
-		gait.turn_rate = 0.0
-		return
-	var off := wrapf(atan2(wish.x, wish.z) - rotation.y, -PI, PI)
-	gait.turn_rate = clampf(turn_gain * off, -max_turn_rate, max_turn_rate)
+	var way := wrapf(atan2(wish.x, wish.z) - rotation.y, -PI, PI)
+	var walks := wish.length() >= 0.1
 	var top := hurry_speed if Input.is_action_pressed(&"hurry") else walk_speed
-	# Who has to turn far slows down, or turns on the spot.
-	gait.speed = minf(wish.length(), 1.0) * top * clampf(1.3 - absf(off), 0.0, 1.0)
+	gait.speed = minf(wish.length(), 1.0) * top if walks else 0.0
+	gait.direction = 0.0
+	if aims or Input.is_action_pressed(&"aim"):
+		# It faces where the camera looks, and goes sideways and backwards.
+		gait.direction = way if walks else 0.0
+		_turn_by(wrapf(view_heading + PI - rotation.y, -PI, PI))
+	elif walks:
+		_turn_by(way)
+		# Who has to turn far slows down, or turns on the spot.
+		gait.speed *= clampf(1.3 - absf(way), 0.0, 1.0)
+	else:
+		gait.turn_rate = 0.0
+
+
+func _turn_by(angle: float) -> void:
+	# Too little to take a step for.
+	var asked := 0.0 if gait.speed == 0.0 and absf(angle) < 0.15 else turn_gain * angle
+	gait.turn_rate = clampf(asked, -max_turn_rate, max_turn_rate)
 
 
 func _wish() -> Vector3:

@@ -50,6 +50,7 @@ func test_properties_survive_saving() -> void:
 	var walker := Walker.new().build()
 	walker.gait.speed = 0.75
 	walker.gait.turn_rate = 0.25
+	walker.gait.direction = -1.5
 	walker.gait.seed = 77
 	walker.gait.phase = 0.3
 	walker.gait.variation = 0.5
@@ -59,7 +60,7 @@ func test_properties_survive_saving() -> void:
 	var packed := PackedScene.new()
 	packed.pack(walker.skeleton)
 	var copy: GaitGenerator3D = packed.instantiate().get_child(0)
-	for property: String in ["speed", "turn_rate", "seed", "phase", "variation", "root_motion", "playing", "model"]:
+	for property: String in ["speed", "turn_rate", "direction", "seed", "phase", "variation", "root_motion", "playing", "model"]:
 		check_equal(copy.get(property), walker.gait.get(property), property)
 	copy.get_parent().free()
 	walker.free()

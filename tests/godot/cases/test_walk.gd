@@ -245,6 +245,20 @@ func test_turning_is_realised_and_positive_is_left() -> void:
 		check_near(turned[0] / 10.0, turn_rate, 0.2 * absf(turn_rate), "turn rate")
 
 
+func test_it_goes_one_way_and_faces_another() -> void:
+	for direction: float in [PI / 2.0, -PI / 2.0, PI]:
+		var walker := _walker()
+		walker.gait.speed = 0.6
+		walker.gait.direction = direction
+		walker.walk(240)
+		var start := walker.global_position
+		walker.walk(600)
+		var travel := walker.global_position - start
+		check_near(wrapf(atan2(travel.x, travel.z) - direction, -PI, PI), 0.0, 0.12, "way")
+		check_near(travel.length() / 10.0, 0.6, 0.12, "speed")
+		check_near(walker.rotation.y, 0.0, 0.05, "it does not turn")
+
+
 func test_a_long_turning_walk_keeps_the_scale() -> void:
 	var walker := _walker()
 	walker.scale = Vector3.ONE * 1.5
@@ -259,6 +273,7 @@ func test_bad_settings_are_harmless() -> void:
 	for value: float in [NAN, INF, -INF]:
 		walker.gait.speed = value
 		walker.gait.turn_rate = value
+		walker.gait.direction = value
 		walker.gait.phase = value
 		walker.gait.variation = value
 	walker.gait.speed = -3.0

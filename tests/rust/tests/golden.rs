@@ -52,6 +52,7 @@ fn a_synthesised_walk() {
         variation: 1.0,
         speed_mps: Some(1.3),
         turn_rate_radps: 0.2,
+        direction_rad: 0.0,
         frame_rate_hz: None,
         from_standing: false,
     };
@@ -80,6 +81,7 @@ fn a_generated_walk() {
     let controls = Controls {
         speed_mps: 1.3,
         turn_rate_radps: 0.2,
+        ..Controls::STAND
     };
     let mut pose = Pose::default();
     let mut rows = Vec::new();

@@ -104,6 +104,7 @@ fn assert_no_allocation(mut generator: GaitGenerator, seed: u64) {
                 1.2 + 1.5 * wave
             },
             turn_rate_radps: 2.0 * wave,
+            direction_rad: 4.0 * wave,
         };
         let dt_secs = if frame % 1000 == 999 { 3.0 } else { 1.0 / 60.0 };
         let before = allocations();
@@ -121,6 +122,7 @@ fn assert_placing_allocates_nothing(generator: GaitGenerator) {
     let controls = Controls {
         speed_mps: 0.9,
         turn_rate_radps: 0.0,
+        ..Controls::STAND
     };
     for frame in 0..900 {
         let before = allocations();
@@ -139,6 +141,7 @@ fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Worksh
         let controls = Controls {
             speed_mps: if frame < 600 { 0.4 } else { 1.3 },
             turn_rate_radps: 0.2,
+            ..Controls::STAND
         };
         let before = allocations();
         walker.step(1.0 / 60.0, controls, workshop);

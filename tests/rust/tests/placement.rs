@@ -1,6 +1,7 @@
 //! Feet on slopes, stairs, rough ground and things that move: where soles stand, how still, and how smoothly legs go.
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 
+use core::f32::consts::{FRAC_PI_2, PI};
 use footfall_core::{Side, Skeleton};
 use footfall_ik::placement::{Frame, PlacementConfig};
 use footfall_model::GaitModel;
@@ -67,6 +68,7 @@ impl Test {
             controls: Controls {
                 speed_mps,
                 turn_rate_radps: 0.0,
+                ..Controls::STAND
             },
             told: true,
             carried: |_| Frame::IDENTITY,
@@ -175,6 +177,17 @@ fn a_turning_walker_keeps_its_feet_on_a_slope() {
     let mut test = Test::walk(1.0);
     test.controls.turn_rate_radps = 0.7;
     test.on(|_, z| SLOPE * z).expect("turning", KNEE_ON_SLOPES);
+}
+
+#[test]
+fn sidesteps_and_steps_backwards_keep_their_feet_on_a_slope() {
+    let mut test = Test::walk(0.6);
+    for direction in [FRAC_PI_2, PI, -0.75 * PI] {
+        test.controls.direction_rad = direction;
+        let what = format!("{direction} rad");
+        test.on(|x, z| 0.2 * z - 0.1 * x)
+            .expect(&what, KNEE_ON_SLOPES);
+    }
 }
 
 #[test]

@@ -68,6 +68,7 @@ fn steps_of_generated_walks_are_found_at_any_rate() {
             variation: 1.0,
             speed_mps: None,
             turn_rate_radps: 0.0,
+            direction_rad: 0.0,
             frame_rate_hz: Some(rate),
             from_standing: false,
         };

@@ -22,6 +22,7 @@ fn clip(gait: &Arc<GaitModel>, seed: u64, speed: f32) -> Clip {
         variation: 1.0,
         speed_mps: Some(speed),
         turn_rate_radps: 0.0,
+        direction_rad: 0.0,
         frame_rate_hz: Some(60.0),
         from_standing: false,
     };

@@ -58,11 +58,7 @@ impl RockerFoot {
 
     /// The plant that has the ankle above this point of the ground at this pitch.
     pub fn plant_under(&self, ankle: Vec3, heading: f32, pitch: f32) -> Plant {
-        let origin = Plant {
-            flat_ankle: Vec3::new(0.0, self.ankle_height(), 0.0),
-            heading,
-        };
-        let offset = self.stand(&origin, pitch).ankle;
+        let offset = from_heading(heading) * self.roll(pitch);
         Plant {
             flat_ankle: Vec3::new(ankle.x - offset.x, self.ankle_height(), ankle.z - offset.z),
             heading,
@@ -97,6 +93,15 @@ impl RockerFoot {
         }
     }
 
+    /// How far the ankle is at this pitch from where it is when the foot is flat, for a foot that points to +Z.
+    pub fn roll(&self, pitch: f32) -> Vec3 {
+        let flat = Plant {
+            flat_ankle: Vec3::ZERO,
+            heading: 0.0,
+        };
+        self.stand_level(&flat, Quat::IDENTITY, pitch).ankle
+    }
+
     /// Height of the sole's lowest point, metres.
     pub fn lowest_point(&self, target: &FootTarget) -> f32 {
         let [heel, ball, tip] = self.points(target);
@@ -113,7 +118,20 @@ impl RockerFoot {
         ]
     }
 
-    /// The same three points of a foot that does not lie flat.
+    /// The middle of a flat sole, ahead of the ankle.
+    pub fn sole_middle(&self) -> Vec3 {
+        let [heel, _, tip] = self.sole_points();
+        Vec3::Z * (0.5 * (heel.z + tip.z))
+    }
+
+    /// How far the ankle is at this pitch from where it is when the foot is flat, for a foot in the air that points to +Z and keeps the
+    /// middle of its sole where it is.
+    pub fn tilt(&self, pitch: f32) -> Vec3 {
+        let middle = self.sole_middle() - Vec3::Y * self.ankle_height();
+        middle - Quat::from_rotation_x(pitch) * middle
+    }
+
+    /// [Those points](Self::sole_points) of a foot that does not lie flat.
     pub fn points(&self, target: &FootTarget) -> [Vec3; 3] {
         let toe_joint = target.ankle + target.foot * self.toe_joint;
         [

@@ -21,6 +21,7 @@ use footfall_core::rotation::from_heading;
 use footfall_core::{ModelPose, Pose, Skeleton};
 use frames::CrowdFrames;
 pub use frames::CrowdPose;
+use glam::Vec2;
 use std::sync::Arc;
 
 /// A mixture of styles on a body, measured once for all walkers of a crowd that share it.
@@ -123,7 +124,7 @@ pub struct CrowdWalker {
     shape: StepShape,
     /// Headings under which the walk goes along +Z, before the current step and after it.
     facing: [f32; 2],
-    speed_mps: f32,
+    velocity_mps: Vec2,
     detail: Detail,
     /// Frames since the step began.
     position: f32,
@@ -177,11 +178,7 @@ impl CrowdWalker {
             next: Box::new(walker.next_origin(request)),
             shape,
             facing: [worn.paces.facing; 2],
-            speed_mps: if standing {
-                0.0
-            } else {
-                styled.usual_speed_mps()
-            },
+            velocity_mps: request.velocity_mps,
             detail: Detail::Full,
             position: 0.0,
             frame_rate_hz: styled.0.space.model().frame_rate_hz as f32,
@@ -324,7 +321,7 @@ impl CrowdWalker {
         let leading = self.shape.timing.leading;
         let before = self.next.request.manner.position;
         let model = styled.space.model();
-        let request = worn.request(&ask, model, before, leading.other(), &mut self.speed_mps);
+        let request = worn.request(&ask, model, before, leading.other(), &mut self.velocity_mps);
         let mut origin = Origin {
             request,
             ..(*self.next).clone()

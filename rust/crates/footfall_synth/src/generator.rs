@@ -14,7 +14,7 @@ use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::placement::{Frame, Landing};
 use footfall_ik::{Plant, RockerFoot};
 use footfall_model::DynamicsModel;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
 /// Initial contacts that one call of [`GaitGenerator::step`] reports at most.
@@ -55,9 +55,28 @@ pub struct Controls {
     pub speed_mps: f32,
     /// Turning, rad/s, positive to the left.
     pub turn_rate_radps: f32,
+    /// Where the travel goes, seen from where the walker faces: 0 forwards, π/2 to the left, ±π backwards. Steps to the side and backwards
+    /// are shorter than those forwards, so such a walk is slower than it is asked to be from about 0.7 m/s on.
+    pub direction_rad: f32,
 }
 
 impl Controls {
+    /// Standing still.
+    pub const STAND: Self = Self {
+        speed_mps: 0.0,
+        turn_rate_radps: 0.0,
+        direction_rad: 0.0,
+    };
+
+    /// The velocity that is walked, to the left and forwards from where the walker faces.
+    pub(crate) fn velocity(self) -> Vec2 {
+        let direction = wrap_angle(finite_or(self.direction_rad, 0.0));
+        if direction == 0.0 {
+            return self.speed() * Vec2::Y;
+        }
+        self.speed() * Vec2::new(direction.sin(), direction.cos())
+    }
+
     /// The turning that is walked: within bounds, and none where it is not finite.
     pub(crate) fn turn_rate(self) -> f32 {
         finite_or(self.turn_rate_radps, 0.0).clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS)

@@ -19,6 +19,7 @@ mod stage;
 mod standing;
 mod state;
 mod steps;
+mod strafe;
 mod styled;
 mod switching;
 mod trajectory;

@@ -4,9 +4,10 @@ use crate::error::SynthError;
 use crate::plan::{Manner, Pace, Planner};
 use crate::space::Blend;
 use crate::standing::Amplitude;
+use crate::strafe::{leg_length, overstep};
 use crate::walker::{Request, Walker};
 use footfall_core::{Side, Skeleton};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
 /// How many paces are measured.
@@ -21,11 +22,15 @@ const MAX_RESIDUAL: f64 = 1.6;
 /// Least factor on the tempo: slower walks take shorter strides instead.
 const MIN_TEMPO: f64 = 0.8;
 
+/// How closely the walk is found whose steps are quick enough, m/s.
+const BRISKER_MPS: f64 = 0.05;
+
 /// Which speed each pace of the model gives one walker.
 #[derive(Clone, Debug)]
 pub(crate) struct PaceTable {
-    /// Covariate and realised speed, both rising, m/s.
-    samples: [[f64; 2]; SAMPLES],
+    /// Covariate and realised speed, both rising, m/s, and how long a step lasts, seconds.
+    samples: [[f64; 3]; SAMPLES],
+    leg_length: f32,
     /// Heading under which the walk goes along +Z, radians.
     pub(crate) facing: f32,
 }
@@ -50,39 +55,62 @@ impl PaceTable {
         let [slowest, fastest] = model.speed_range();
         let margin = EXTRAPOLATION * (fastest - slowest);
         let (low, high) = ((slowest - margin).max(0.3 * slowest), fastest + margin);
-        let mut samples = [[0.0; 2]; SAMPLES];
+        let mut samples = [[0.0; 3]; SAMPLES];
         for (index, sample) in samples.iter_mut().enumerate() {
             let covariate = low + (high - low) * index as f64 / (SAMPLES - 1) as f64;
             let (travel, frames) = trial.travel(covariate, facing)?;
             let secs = frames as f64 / model.frame_rate_hz;
-            *sample = [covariate, f64::from(travel.length()) / secs];
+            *sample = [covariate, f64::from(travel.length()) / secs, 0.5 * secs];
         }
         for index in 1..SAMPLES {
             // A corpus of one speed has a flat response: the order must still be strict.
             samples[index][1] = samples[index][1].max(samples[index - 1][1] + 1e-4);
         }
-        Ok(Self { samples, facing })
+        Ok(Self {
+            samples,
+            leg_length: leg_length(skeleton),
+            facing,
+        })
     }
 
-    /// The pace that gives a speed. Beyond the measured range tempo and stride share what is missing.
+    /// The pace that gives a speed forwards. Beyond the measured range tempo and stride share what is missing.
     pub(crate) fn pace(&self, speed_mps: f64) -> Pace {
+        self.pace_and_secs(speed_mps).0
+    }
+
+    /// The pace that gives a velocity to the left and forwards. Where its steps would be too long, they are shorter ones of a brisker walk.
+    pub(crate) fn pace_towards(&self, velocity_mps: Vec2) -> Pace {
+        let speed = f64::from(velocity_mps.length());
+        let fastest = self.samples[SAMPLES - 1][1];
+        let mut brisk = speed;
+        loop {
+            let (mut pace, secs) = self.pace_and_secs(brisk);
+            let fits = overstep(velocity_mps, secs as f32, self.leg_length) <= 1.0;
+            if fits || brisk >= fastest {
+                pace.stride *= if brisk > speed { speed / brisk } else { 1.0 };
+                return pace;
+            }
+            brisk = (brisk + BRISKER_MPS).min(fastest);
+        }
+    }
+
+    /// The pace that gives a speed forwards, and how long its steps last.
+    fn pace_and_secs(&self, speed_mps: f64) -> (Pace, f64) {
         let (first, last) = (self.samples[0], self.samples[SAMPLES - 1]);
         let within = speed_mps.clamp(first[1], last[1]);
-        let covariate_mps = self
-            .samples
-            .windows(2)
-            .find(|pair| within <= pair[1][1])
-            .map_or(last[0], |pair| {
-                let share = (within - pair[0][1]) / (pair[1][1] - pair[0][1]);
-                pair[0][0] + share * (pair[1][0] - pair[0][0])
-            });
+        let above = self.samples.iter().position(|sample| within <= sample[1]);
+        let above = above.unwrap_or(SAMPLES - 1).max(1);
+        let pair = &self.samples[above - 1..=above];
+        let share = (within - pair[0][1]) / (pair[1][1] - pair[0][1]);
+        let between = |column: usize| pair[0][column] + share * (pair[1][column] - pair[0][column]);
         let residual = (speed_mps / within.max(1e-3)).clamp(0.0, MAX_RESIDUAL);
         let (tempo, stride) = tempo_and_stride(residual);
-        Pace {
-            covariate_mps,
+        let pace = Pace {
+            covariate_mps: between(0),
             tempo,
             stride,
-        }
+        };
+        (pace, between(2) / tempo)
     }
 }
 
@@ -110,6 +138,7 @@ impl Trial<'_> {
             }),
             amplitude: Amplitude::WALK,
             turn_rate: 0.0,
+            velocity_mps: Vec2::ZERO,
             facing,
         };
         let draws = [Side::Right, Side::Left, Side::Right].map(Planner::mean_draw);

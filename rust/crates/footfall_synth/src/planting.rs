@@ -10,6 +10,7 @@ mod swing;
 
 use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
+use crate::strafe::{Strafe, turn_step};
 use footfall_core::ease::{hermite, smooth_step};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Pose, Side, Skeleton};
@@ -82,6 +83,10 @@ pub(crate) struct PlanterState {
     pub(crate) turn_rate: f32,
     pub(crate) ground_position: Vec3,
     pub(crate) ground_velocity: Option<Vec3>,
+    /// Factor on the legs' reach at the end of the last step.
+    pub(crate) stride: f32,
+    /// How the last step was turned under the body.
+    pub(crate) strafe: Strafe,
 }
 
 impl PlanterState {
@@ -101,6 +106,8 @@ impl PlanterState {
             turn_rate: self.turn_rate,
             ground_position: point(self.ground_position),
             ground_velocity: self.ground_velocity.map(|velocity| rotation * velocity),
+            stride: self.stride,
+            strafe: self.strafe,
         }
     }
 }
@@ -138,6 +145,8 @@ impl Planter {
             turn_rate: 0.0,
             ground_position: Vec3::ZERO,
             ground_velocity: None,
+            stride: 1.0,
+            strafe: Strafe::NONE,
         };
         let mut planter = Self::resume(skeleton, frame_secs, state);
         let standing = leading.other();
@@ -164,9 +173,40 @@ impl Planter {
         self.frame_secs = frame_secs;
     }
 
+    /// At the end of the next step the legs' reach has this factor on it.
+    pub(crate) fn set_stride(&mut self, stride: f32) {
+        self.state.stride = stride;
+    }
+
     /// What the next step begins with.
     pub(crate) fn state(&self) -> PlanterState {
         self.state
+    }
+
+    /// Turns a step that goes forwards to where it is to go; forwards it goes along +Z under the heading `own_facing`.
+    pub(crate) fn turn_step(
+        &mut self,
+        raw: &mut [RawFrame],
+        timing: &StepTiming,
+        strafe: Strafe,
+        own_facing: f32,
+        out: &mut [PlantedFrame],
+    ) {
+        let before = self.state.strafe;
+        if [before, strafe] != [Strafe::NONE; 2] {
+            let leg_length = self.leg_lengths[timing.leading.index()];
+            // A step that ends a walk brings the feet together.
+            let strafe = if timing.rests {
+                strafe
+            } else {
+                strafe.spread(raw, leg_length)
+            };
+            self.state.strafe = strafe;
+            let strafes = [&before, &strafe];
+            turn_step(
+                raw, out, timing, &self.feet, leg_length, own_facing, strafes,
+            );
+        }
     }
 
     /// Where this foot was put last.

@@ -23,7 +23,9 @@ pub(crate) struct RawLeg {
     pub(crate) ankle: Vec3,
     /// Rotation of the foot.
     pub(crate) foot: Quat,
-    /// Pitch of the foot (positive: heel up), settled.
+    /// Its pitch (positive: heel up).
+    pub(crate) free_pitch: f32,
+    /// The same on the ground: settled, and less of it in short strides.
     pub(crate) pitch: f32,
     /// Where the foot is if it stands on its plant at this pitch; the planter fills it.
     pub(crate) stance: FootTarget,
@@ -34,6 +36,13 @@ impl RawLeg {
     pub(crate) fn heading(&self) -> f32 {
         foot_heading(self.foot)
     }
+
+    /// Puts the ankle elsewhere, with the foot at another pitch: at `free` in the air and at `standing` on the ground.
+    pub(crate) fn put(&mut self, ankle: Vec3, free: f32, standing: f32) {
+        self.ankle = ankle;
+        self.foot = (self.foot * Quat::from_rotation_x(free - self.free_pitch)).normalize();
+        self.pitch = standing;
+    }
 }
 
 impl Default for RawLeg {
@@ -42,6 +51,7 @@ impl Default for RawLeg {
             hip: Vec3::ZERO,
             ankle: Vec3::ZERO,
             foot: Quat::IDENTITY,
+            free_pitch: 0.0,
             pitch: 0.0,
             stance: FootTarget {
                 ankle: Vec3::ZERO,
@@ -79,8 +89,9 @@ impl RawFrame {
             leg.hip = hip;
             leg.ankle = ankle + Vec3::Z * reach;
             leg.foot = foot;
+            leg.free_pitch = foot_pitch(foot);
             // A shorter stride lands flatter and pushes off less.
-            leg.pitch = settled_pitch(foot_pitch(foot) * stride_scale.min(1.0));
+            leg.pitch = settled_pitch(leg.free_pitch * stride_scale.min(1.0));
         }
     }
 }

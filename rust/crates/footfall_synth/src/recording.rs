@@ -15,11 +15,6 @@ const STANDING_SECS: f64 = 0.6;
 /// No walk takes longer than this a step, seconds.
 const LONGEST_STEP_SECS: f64 = 4.0;
 
-const STAND: Controls = Controls {
-    speed_mps: 0.0,
-    turn_rate_radps: 0.0,
-};
-
 /// A walk out of standing and back into it.
 pub(crate) fn from_standing(
     model: &Arc<GaitModel>,
@@ -41,9 +36,10 @@ pub(crate) fn from_standing(
     let walking = Controls {
         speed_mps: config.speed_mps.unwrap_or(model.speed.reference_mps as f32),
         turn_rate_radps: config.turn_rate_radps,
+        direction_rad: config.direction_rad,
     };
     for _ in 0..=rest {
-        recording.step(STAND);
+        recording.step(Controls::STAND);
     }
     // The last step is the one that stops: it is asked for while the one before is walked.
     let mut taken = 0;
@@ -58,10 +54,10 @@ pub(crate) fn from_standing(
         if taken >= steps && recording.generator.is_standing() {
             break;
         }
-        taken += recording.step(STAND);
+        taken += recording.step(Controls::STAND);
     }
     for _ in 0..rest {
-        recording.step(STAND);
+        recording.step(Controls::STAND);
     }
     Ok(recording.into_walk(skeleton))
 }
@@ -79,6 +75,8 @@ pub struct SwitchingWalkConfig {
     pub speed_mps: Option<f32>,
     /// Turning, rad/s, positive to the left.
     pub turn_rate_radps: f32,
+    /// Where the travel goes, seen from where the walker faces, as of [`Controls::direction_rad`].
+    pub direction_rad: f32,
     /// Frames per second of the clip; the model's when absent.
     pub frame_rate_hz: Option<f64>,
 }
@@ -99,6 +97,7 @@ pub fn synthesize_switching(
         ("frame rate", rate as f32),
         ("speed", config.speed_mps.unwrap_or(0.0)),
         ("turn rate", config.turn_rate_radps),
+        ("direction", config.direction_rad),
     ];
     for (setting, value) in settings {
         if !value.is_finite() {
@@ -114,6 +113,7 @@ pub fn synthesize_switching(
     let controls = Controls {
         speed_mps: config.speed_mps.unwrap_or(generator.usual_speed_mps()),
         turn_rate_radps: config.turn_rate_radps,
+        direction_rad: config.direction_rad,
     };
     let mut recording = Recording::new(generator, rate);
     for _ in 0..=(config.seconds.max(0.0) * rate).round() as usize {

@@ -4,11 +4,12 @@ use crate::plan::StepShape;
 use crate::planting::{Course, PlantedFrame, Planter, PlanterState};
 use crate::raw::RawFrame;
 use crate::standing::Amplitude;
+use crate::strafe::{Strafe, sway};
 use footfall_core::ease::smooth_step;
 use footfall_core::{Side, Skeleton};
 use footfall_ik::Plant;
 use footfall_model::FEATURE_COUNT;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Static features of one posture.
 pub(crate) type Posture = [f32; FEATURE_COUNT];
@@ -23,6 +24,8 @@ pub(crate) struct Placing<'a> {
     pub(crate) turn_rate: f32,
     /// Headings under which the walk goes along +Z, before the step and after it, radians.
     pub(crate) facing: [f32; 2],
+    /// Travel to the left and forwards from where the walker faces, m/s.
+    pub(crate) velocity_mps: Vec2,
 }
 
 /// Puts one step after another on the ground; allocates nothing after it was made.
@@ -81,31 +84,31 @@ impl Stage {
         let shape = placing.shape;
         let timing = shape.ground_timing();
         let detail = shape.detail.stride();
+        let frame_secs = self.frame_secs * detail as f32;
+        let stride = 1.0 + shape.amplitude.to * (shape.stride as f32 - 1.0);
+        let before = self.planter.as_ref().map(Planter::state);
+        let (before, stride_before) =
+            before.map_or((Strafe::NONE, stride), |state| (state.strafe, state.stride));
+        let step_secs = frame_secs * timing.frames as f32;
+        let strafe = Strafe::of(placing.velocity_mps, step_secs, &self.skeleton);
+        let as_it_is = shape.amplitude == Amplitude::WALK && [before, strafe] == [Strafe::NONE; 2];
         let raw = &mut self.raw[..=timing.frames];
         let frames = &mut self.frames[..=timing.frames];
-        let stride = shape.stride as f32;
         let rows = rows.step_by(detail).enumerate();
         for ((raw, frame), (index, features)) in raw.iter_mut().zip(&mut *frames).zip(rows) {
             let rotations = &mut frame.pose.rotations;
-            if shape.amplitude == Amplitude::WALK {
+            let s = index as f32 / timing.frames as f32;
+            // A foot that stands must not notice that another step has begun.
+            let stride = stride_before + smooth_step(s) * (stride - stride_before);
+            if as_it_is {
                 raw.decode(features, &self.skeleton, stride, rotations);
                 continue;
             }
-            let s = index as f32 / timing.frames as f32;
-            let amplitude = shape.amplitude.at(s);
-            let change = smooth_step(s);
-            let mut blended = [0.0; FEATURE_COUNT];
-            let [before, after] = placing.standing;
-            let pairs = before.iter().zip(after).zip(features);
-            for (value, ((before, standing), walking)) in blended.iter_mut().zip(pairs) {
-                let standing = before + change * (standing - before);
-                *value = standing + amplitude * (walking - standing);
-            }
-            let stride = 1.0 + amplitude * (stride - 1.0);
+            let (standing, mut blended) = placing.grown(features, s);
+            sway(&mut blended, &standing, before.between(&strafe, s));
             raw.decode(&blended, &self.skeleton, stride, rotations);
         }
         let [facing_before, facing] = placing.facing;
-        let frame_secs = self.frame_secs * detail as f32;
         let planter = self.planter.get_or_insert_with(|| {
             Planter::new(&self.skeleton, frame_secs, &raw[0], timing.leading, facing)
         });
@@ -114,6 +117,25 @@ impl Stage {
             shift: facing - facing_before,
         };
         planter.set_frame_secs(frame_secs);
+        planter.set_stride(stride);
+        planter.turn_step(raw, &timing, strafe, facing - strafe.turn, frames);
         planter.plant_step(raw, &timing, course, frames);
+    }
+}
+
+impl Placing<'_> {
+    /// The standing posture at part `s` of the step, and what there is of the walk on top of it.
+    fn grown(&self, walking: &[f32], s: f32) -> (Posture, Posture) {
+        let amplitude = self.shape.amplitude.at(s);
+        let change = smooth_step(s);
+        let mut standing = *self.standing[0];
+        let mut grown = [0.0; FEATURE_COUNT];
+        let pairs = self.standing[1].iter().zip(walking);
+        for ((value, standing), (after, walking)) in grown.iter_mut().zip(&mut standing).zip(pairs)
+        {
+            *standing += change * (after - *standing);
+            *value = *standing + amplitude * (walking - *standing);
+        }
+        (standing, grown)
     }
 }

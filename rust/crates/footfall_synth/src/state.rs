@@ -12,13 +12,14 @@ use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
 use crate::planting::PlanterState;
 use crate::standing::Amplitude;
 use crate::steps::Steps;
+use crate::strafe::Strafe;
 use footfall_core::StepPosition;
 use footfall_ik::Plant;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// The version of the layout that this build writes and reads.
-const VERSION: u8 = 3;
+const VERSION: u8 = 4;
 
 /// Nothing that a state holds is larger than this: metres, radians, frames and factors are not.
 const MAX_VALUE: f64 = 1e7;
@@ -67,7 +68,7 @@ struct State {
     variation: f32,
     chance_position: u64,
     position: f32,
-    speed_mps: f32,
+    velocity_mps: [f32; 2],
     plan_from_start: [f32; 4],
     amplitude: [f32; 2],
     turn_rate: f32,
@@ -115,6 +116,8 @@ struct Feet {
     turn_rate: f32,
     ground_position: [f32; 3],
     ground_velocity: Option<[f32; 3]>,
+    stride: f32,
+    strafe: Strafe,
 }
 
 impl GaitGenerator {
@@ -123,31 +126,32 @@ impl GaitGenerator {
     pub fn state(&self) -> Vec<u8> {
         let place = &self.plan_from_start;
         let [facing_before, facing] = self.steps.source().facing();
-        let (model, chance_position, speed_mps, amplitude, turn_rate, planter) = match &self.steps {
-            Steps::Styled(steps) => {
-                let origin = steps.walker.origin();
-                let request = &origin.request;
-                (
-                    steps.space.fingerprint(),
-                    steps.planner.chance_position(),
-                    steps.speed_mps,
-                    request.amplitude,
-                    request.turn_rate,
-                    origin.planter,
-                )
-            }
-            Steps::Switching(steps) => {
-                let origin = &steps.origin;
-                (
-                    steps.fingerprint,
-                    origin.chance_position,
-                    steps.speed_mps,
-                    origin.amplitude,
-                    origin.turn_rate,
-                    origin.planter,
-                )
-            }
-        };
+        let (model, chance_position, velocity_mps, amplitude, turn_rate, planter) =
+            match &self.steps {
+                Steps::Styled(steps) => {
+                    let origin = steps.walker.origin();
+                    let request = &origin.request;
+                    (
+                        steps.space.fingerprint(),
+                        steps.planner.chance_position(),
+                        steps.velocity_mps,
+                        request.amplitude,
+                        request.turn_rate,
+                        origin.planter,
+                    )
+                }
+                Steps::Switching(steps) => {
+                    let origin = &steps.origin;
+                    (
+                        steps.fingerprint,
+                        origin.chance_position,
+                        steps.velocity_mps,
+                        origin.amplitude,
+                        origin.turn_rate,
+                        origin.planter,
+                    )
+                }
+            };
         let state = State {
             version: VERSION,
             model,
@@ -156,7 +160,7 @@ impl GaitGenerator {
             variation: self.config.variation,
             chance_position,
             position: self.position,
-            speed_mps,
+            velocity_mps: velocity_mps.to_array(),
             plan_from_start: [
                 place.position.x,
                 place.position.y,
@@ -222,19 +226,14 @@ impl State {
 
     /// Whether no number is beyond reason.
     fn is_sensible(&self) -> bool {
-        let singles = [
-            self.phase,
-            self.variation,
-            self.position,
-            self.speed_mps,
-            self.turn_rate,
-        ];
+        let singles = [self.phase, self.variation, self.position, self.turn_rate];
         let feet = self.feet.iter().flat_map(Feet::numbers);
         let narrow = singles
             .into_iter()
             .chain(self.plan_from_start)
             .chain(self.amplitude)
             .chain(self.facing)
+            .chain(self.velocity_mps)
             .chain(feet);
         narrow.map(f64::from).all(is_reasonable) && self.steps.is_sensible()
     }
@@ -288,6 +287,8 @@ impl Feet {
             turn_rate: planter.turn_rate,
             ground_position: planter.ground_position.to_array(),
             ground_velocity: planter.ground_velocity.map(|v| v.to_array()),
+            stride: planter.stride,
+            strafe: planter.strafe,
         }
     }
 
@@ -303,6 +304,8 @@ impl Feet {
             turn_rate: self.turn_rate,
             ground_position: self.ground_position.into(),
             ground_velocity: self.ground_velocity.map(Vec3::from),
+            stride: self.stride,
+            strafe: self.strafe,
         }
     }
 
@@ -313,7 +316,8 @@ impl Feet {
             .flatten()
             .chain(self.hips)
             .chain(self.ground_position)
-            .chain([self.heading, self.turn_rate])
+            .chain([self.heading, self.turn_rate, self.stride])
+            .chain(self.strafe.numbers())
             .chain(velocities.into_iter().flatten().flatten())
     }
 }

@@ -7,14 +7,16 @@ use crate::stage::Stage;
 use crate::standing::Amplitude;
 use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
+use glam::Vec2;
 
-/// A step's speed differs by at most this much from the speed of the step before, m/s: nobody brakes faster.
-const MAX_SPEED_CHANGE_MPS: f32 = 0.5;
+/// A step's velocity differs by at most this much from that of the step before, m/s: nobody brakes faster.
+const MAX_VELOCITY_CHANGE_MPS: f32 = 0.5;
 
 /// What the next step is asked to be.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ask {
-    pub(crate) speed_mps: f32,
+    /// Travel to the left and forwards from where the walker faces.
+    pub(crate) velocity_mps: Vec2,
     pub(crate) turn_rate: f32,
     pub(crate) amplitude: Amplitude,
     pub(crate) detail: Detail,
@@ -24,7 +26,7 @@ impl Ask {
     /// What the controls make of the step after one like this.
     pub(crate) fn after(shape: &StepShape, controls: Controls, detail: Detail) -> Self {
         Self {
-            speed_mps: controls.speed(),
+            velocity_mps: controls.velocity(),
             turn_rate: controls.turn_rate(),
             amplitude: Amplitude {
                 from: shape.amplitude.to,
@@ -34,10 +36,10 @@ impl Ask {
         }
     }
 
-    /// The speed of the next step, after one of this speed.
-    pub(crate) fn speed_after(&self, speed_mps: f32) -> f32 {
-        let change = self.speed_mps - speed_mps;
-        speed_mps + change.clamp(-MAX_SPEED_CHANGE_MPS, MAX_SPEED_CHANGE_MPS)
+    /// The velocity of the next step, after one of this velocity.
+    pub(crate) fn velocity_after(&self, velocity_mps: Vec2) -> Vec2 {
+        let change = self.velocity_mps - velocity_mps;
+        velocity_mps + change.clamp_length_max(MAX_VELOCITY_CHANGE_MPS)
     }
 }
 

@@ -9,9 +9,11 @@ use crate::space::{Blend, StyleSpace};
 use crate::stage::Stage;
 use crate::standing::Amplitude;
 use crate::steps::{Ask, StepSource};
+use crate::strafe::pelvis_turn;
 use crate::walker::{Request, Walker};
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::GaitModel;
+use glam::Vec2;
 use std::sync::Arc;
 
 /// A planner and a walker in a mixture of styles.
@@ -24,8 +26,8 @@ pub(crate) struct StyledSteps {
     pub(crate) worn: Worn,
     /// A mixture that the next step lets go of, kept so that it is not freed there.
     retired: Option<Arc<Blend>>,
-    /// Speed of the current step.
-    pub(crate) speed_mps: f32,
+    /// Velocity of the current step, as its request has it.
+    pub(crate) velocity_mps: Vec2,
 }
 
 /// A mixture of styles and how fast it walks on this body.
@@ -36,15 +38,15 @@ pub(crate) struct Worn {
 }
 
 impl Worn {
-    /// What the next step has to be, which `side` begins, after one at this place in the walk. `speed_mps` is the walk's and
-    /// follows.
+    /// What the next step has to be, which `side` begins, after one at this place in the walk. `velocity_mps` is the walk's
+    /// and follows.
     pub(crate) fn request(
         &self,
         ask: &Ask,
         model: &GaitModel,
         before: StepPosition,
         side: Side,
-        speed_mps: &mut f32,
+        velocity_mps: &mut Vec2,
     ) -> Request {
         let amplitude = ask.amplitude;
         let stops = amplitude.to < 1.0;
@@ -52,32 +54,35 @@ impl Worn {
         if model.context(position, side).is_some() {
             // The model knows how this step gets to the speed of the walk or away from it.
             if !stops {
-                *speed_mps = ask.speed_mps;
+                *velocity_mps = ask.velocity_mps;
             }
         } else {
-            *speed_mps = ask.speed_after(*speed_mps);
+            *velocity_mps = ask.velocity_after(*velocity_mps);
         }
         Request {
             manner: Manner {
-                pace: self.paces.pace(f64::from(*speed_mps)),
+                pace: self.paces.pace_towards(*velocity_mps),
                 position,
                 detail: ask.detail,
             },
             amplitude,
             turn_rate: ask.turn_rate,
-            facing: self.paces.facing,
+            velocity_mps: *velocity_mps,
+            facing: self.paces.facing + pelvis_turn(*velocity_mps),
         }
     }
 
     /// A walk under way at the speed that suits it.
     pub(crate) fn first_request(&self, detail: Detail) -> Request {
+        let speed = self.blend.model.speed.reference_mps;
         Request {
             manner: Manner {
                 detail,
-                ..Manner::inside(self.paces.pace(self.blend.model.speed.reference_mps))
+                ..Manner::inside(self.paces.pace(speed))
             },
             amplitude: Amplitude::WALK,
             turn_rate: 0.0,
+            velocity_mps: speed as f32 * Vec2::Y,
             facing: self.paces.facing,
         }
     }
@@ -90,6 +95,7 @@ impl Worn {
                 ..Manner::inside(self.paces.pace(f64::from(STANDING_SPEED_MPS)))
             },
             amplitude: Amplitude::STAND,
+            velocity_mps: Vec2::ZERO,
             ..self.first_request(detail)
         }
     }
@@ -112,7 +118,6 @@ impl StyledSteps {
         planner.wear(&blend.model);
         let paces = PaceTable::measure(&planner, skeleton, &blend)?;
         let mut walker = Walker::new(skeleton, &blend);
-        let speed = blend.model.speed.reference_mps;
         let worn = Worn { blend, paces };
         let request = worn.first_request(Detail::Full);
         let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
@@ -123,7 +128,7 @@ impl StyledSteps {
             walker,
             worn,
             retired: None,
-            speed_mps: speed as f32,
+            velocity_mps: request.velocity_mps,
         })
     }
 
@@ -133,7 +138,7 @@ impl StyledSteps {
         planner: Planner,
         walker: Walker,
         worn: Worn,
-        speed_mps: f32,
+        velocity_mps: Vec2,
     ) -> Self {
         Self {
             space: Arc::clone(space),
@@ -141,7 +146,7 @@ impl StyledSteps {
             walker,
             worn,
             retired: None,
-            speed_mps,
+            velocity_mps,
         }
     }
 
@@ -187,7 +192,7 @@ impl StepSource for StyledSteps {
         // The model gave a trajectory when the generator was made, so it gives one now.
         let started = self.walker.start(planner, blend, draws, request).is_ok();
         if started {
-            self.speed_mps = 0.0;
+            self.velocity_mps = Vec2::ZERO;
         }
         started
     }
@@ -198,7 +203,7 @@ impl StepSource for StyledSteps {
         let model = self.space.model();
         let request = self
             .worn
-            .request(ask, model, before, side, &mut self.speed_mps);
+            .request(ask, model, before, side, &mut self.velocity_mps);
         let draw = self.planner.draw(self.walker.step().timing.leading);
         self.planner.wear(&self.worn.blend.model);
         self.walker

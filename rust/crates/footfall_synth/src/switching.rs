@@ -12,9 +12,10 @@ use crate::planting::PlanterState;
 use crate::stage::{Placing, Posture, Stage};
 use crate::standing::{Amplitude, standing_posture};
 use crate::steps::{Ask, StepSource};
+use crate::strafe::{leg_length, overstep, pelvis_turn};
 use footfall_core::{Side, Skeleton};
 use footfall_model::{DynamicsModel, FEATURE_COUNT, SEGMENT_SLACK};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
@@ -41,6 +42,9 @@ const MEASURED_STEPS: usize = 80;
 /// Speeds up to this many times the recorded one are walked.
 const MAX_SPEED_RATIO: f64 = 1.4;
 
+/// Most by which steps to the side and backwards are quicker than those forwards of the same speed.
+const MAX_HASTE: f64 = 1.6;
+
 /// Two systems that take turns.
 #[derive(Debug)]
 pub(crate) struct SwitchingSteps {
@@ -60,10 +64,13 @@ pub(crate) struct SwitchingSteps {
     features: Vec<FeatureLanes>,
     /// Speed of the recorded walk on this body, m/s.
     pub(crate) own_speed_mps: f64,
+    /// How long its steps last, seconds.
+    own_step_secs: f32,
+    leg_length: f32,
     /// Headings under which the walk goes along +Z at each of [`FACING_RATIOS`], radians.
     facings: [f32; 2],
-    /// Speed of the current step.
-    pub(crate) speed_mps: f32,
+    /// Velocity of the current step, to the left and forwards from where the walker faces.
+    pub(crate) velocity_mps: Vec2,
 }
 
 /// Where the current step came from: with the model all that it takes to make it again.
@@ -131,8 +138,10 @@ impl SwitchingSteps {
             weights: Vec::with_capacity((longest + SWITCH_REACH + 2) * channels),
             features: Vec::with_capacity(longest + 1),
             own_speed_mps: 1.0,
+            own_step_secs: 0.5,
+            leg_length: leg_length(skeleton),
             facings: [0.0; 2],
-            speed_mps: 0.0,
+            velocity_mps: Vec2::ZERO,
             model: Arc::clone(model),
             fingerprint,
         }
@@ -151,7 +160,9 @@ impl SwitchingSteps {
             for (index, ratio) in FACING_RATIOS.into_iter().enumerate() {
                 let (travel, frames) = self.travel(ratio);
                 self.facings[index] -= travel.x.atan2(travel.z);
-                own = f64::from(travel.length()) * self.model.frame_rate_hz / frames as f64;
+                let secs = frames as f64 / self.model.frame_rate_hz;
+                own = f64::from(travel.length()) / secs;
+                self.own_step_secs = secs as f32 / MEASURED_STEPS as f32;
             }
         }
         self.own_speed_mps = own.max(0.05);
@@ -161,7 +172,7 @@ impl SwitchingSteps {
     fn travel(&mut self, ratio: f64) -> (Vec3, usize) {
         let speed = ratio * self.own_speed_mps;
         let ask = Ask {
-            speed_mps: speed as f32,
+            velocity_mps: speed as f32 * Vec2::Y,
             turn_rate: 0.0,
             amplitude: Amplitude::WALK,
             detail: Detail::Full,
@@ -192,7 +203,7 @@ impl SwitchingSteps {
         self.origin.turn_rate = 0.0;
         self.origin.amplitude = amplitude;
         self.origin.detail = detail;
-        self.speed_mps = speed_mps as f32;
+        self.velocity_mps = speed_mps as f32 * Vec2::Y;
         self.set_pace();
         self.origin.facing = [self.facing(); 2];
         for side in [first.other(), first] {
@@ -206,7 +217,7 @@ impl SwitchingSteps {
         &mut self,
         config: &GeneratorConfig,
         origin: SwitchingOrigin,
-        speed_mps: f32,
+        velocity_mps: Vec2,
     ) {
         self.draw_by(config);
         self.rng.set_word_pos(u128::from(origin.chance_position));
@@ -219,14 +230,18 @@ impl SwitchingSteps {
         self.origin
             .expected
             .reserve(2 * self.model.components.len());
-        self.speed_mps = speed_mps;
+        self.velocity_mps = velocity_mps;
         self.realise();
     }
 
     /// The tempo and the stride that give a speed, shared between both.
     fn set_pace(&mut self) {
-        let ratio = f64::from(self.speed_mps) / self.own_speed_mps;
-        (self.origin.tempo, self.origin.stride) = pace_of(ratio);
+        let ratio = f64::from(self.velocity_mps.length()) / self.own_speed_mps;
+        let (tempo, stride) = pace_of(ratio);
+        let secs = self.own_step_secs / tempo as f32;
+        let over = overstep(self.velocity_mps, secs, self.leg_length);
+        let haste = f64::from(over).clamp(1.0, MAX_HASTE);
+        (self.origin.tempo, self.origin.stride) = (tempo * haste, stride / haste);
     }
 
     /// Makes what the current step left behind the origin of the next.
@@ -252,6 +267,7 @@ impl SwitchingSteps {
                 standing: [&self.standing; 2],
                 turn_rate: self.origin.turn_rate,
                 facing: self.origin.facing,
+                velocity_mps: self.velocity_mps,
             },
         );
     }
@@ -352,18 +368,19 @@ impl StepSource for SwitchingSteps {
         let first = self.origin.leading;
         let speed = f64::from(STANDING_SPEED_MPS);
         self.begin(first, Amplitude::STAND, speed, detail);
-        self.speed_mps = 0.0;
+        self.velocity_mps = Vec2::ZERO;
         true
     }
 
     fn advance(&mut self, ask: &Ask) {
-        self.speed_mps = ask.speed_after(self.speed_mps);
+        self.velocity_mps = ask.velocity_after(self.velocity_mps);
         self.take_over(self.origin.leading.other());
         self.set_pace();
         self.origin.turn_rate = ask.turn_rate;
         self.origin.amplitude = ask.amplitude;
         self.origin.detail = ask.detail;
-        self.origin.facing = [self.origin.facing[1], self.facing()];
+        let facing = self.facing() + pelvis_turn(self.velocity_mps);
+        self.origin.facing = [self.origin.facing[1], facing];
         self.realise();
     }
 }

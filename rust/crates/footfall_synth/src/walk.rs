@@ -38,7 +38,10 @@ pub struct WalkConfig {
     pub turn_rate_radps: f32,
     /// Frames per second of the clip; the model's when absent.
     pub frame_rate_hz: Option<f64>,
-    /// Whether the walk begins and ends standing; otherwise it is cut out of a longer one.
+    /// Where the travel goes, seen from where the walker faces, as of [`Controls::direction_rad`](crate::Controls::direction_rad).
+    pub direction_rad: f32,
+    /// Whether the walk begins and ends standing, as one that does not go forwards does in any case; otherwise it is cut out of a longer
+    /// one.
     pub from_standing: bool,
 }
 
@@ -75,7 +78,7 @@ impl SynthesizedWalk {
 }
 
 /// Generates a walk; the trajectory is solved over the whole sentence of steps (equations 9 to 15 of the paper), but for a
-/// walk [`from_standing`](WalkConfig::from_standing), which is streamed.
+/// walk [`from_standing`](WalkConfig::from_standing) or in another direction than forwards, which is streamed.
 ///
 /// # Errors
 /// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
@@ -89,7 +92,8 @@ pub fn synthesize(
     check_finite("speed", config.speed_mps.unwrap_or(0.0))?;
     check_finite("turn rate", config.turn_rate_radps)?;
     check_finite("variation", config.variation)?;
-    if config.from_standing {
+    check_finite("direction", config.direction_rad)?;
+    if config.from_standing || config.direction_rad != 0.0 {
         return recording::from_standing(model, skeleton, config);
     }
     let mut planner = Planner::new(
@@ -153,6 +157,7 @@ pub(crate) fn put_on_ground(
     for (index, plan) in plans[..shown.end].iter().enumerate() {
         let timing = &plan.shape.timing;
         let mut raw = vec![RawFrame::default(); timing.frames + 1];
+        let stride = plan.shape.stride as f32;
         let rows = trajectory[begin * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let mut frames = vec![PlantedFrame::default(); timing.frames + 1];
         for ((raw, frame), features) in raw.iter_mut().zip(&mut frames).zip(rows) {
@@ -161,7 +166,7 @@ pub(crate) fn put_on_ground(
                 *narrow = *feature as f32;
             }
             let rotations = &mut frame.pose.rotations;
-            raw.decode(&narrow, skeleton, plan.shape.stride as f32, rotations);
+            raw.decode(&narrow, skeleton, stride, rotations);
         }
         begin += timing.frames;
         let terminal = planter

@@ -9,6 +9,7 @@ use crate::standing::Amplitude;
 use crate::trajectory::TrajectorySolver;
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::{FEATURE_COUNT, STATES_PER_STEP};
+use glam::Vec2;
 use std::sync::Arc;
 
 /// Steps in a window: the one before, the one to be put on the ground, and one ahead, which shapes its end. What lies
@@ -31,6 +32,8 @@ pub(crate) struct Request {
     pub(crate) amplitude: Amplitude,
     /// Turning at its end, rad/s.
     pub(crate) turn_rate: f32,
+    /// Travel to the left and forwards from where the walker faces.
+    pub(crate) velocity_mps: Vec2,
     /// Heading under which the walk goes along +Z, radians: people hold their hips a little askew.
     pub(crate) facing: f32,
 }
@@ -77,6 +80,7 @@ impl Walker {
             }),
             amplitude: Amplitude::STAND,
             turn_rate: 0.0,
+            velocity_mps: Vec2::ZERO,
             facing: 0.0,
         };
         Self {
@@ -273,6 +277,7 @@ impl Walker {
                 standing: [&self.blend_before.standing, &self.blend.standing],
                 turn_rate: self.origin.request.turn_rate,
                 facing: [self.origin.facing_before, self.origin.request.facing],
+                velocity_mps: self.origin.request.velocity_mps,
             },
         );
     }

@@ -50,6 +50,7 @@ fn asked(frame: usize) -> Controls {
     Controls {
         speed_mps,
         turn_rate_radps,
+        ..Controls::STAND
     }
 }
 
@@ -166,6 +167,7 @@ fn repeated_steps_go_on_where_the_last_one_ended_and_so_do_new_ones() {
         let controls = Controls {
             speed_mps: 1.25,
             turn_rate_radps: if frame < 900 { 0.0 } else { 0.3 },
+            ..Controls::STAND
         };
         walker.step(DT, controls, &mut workshop);
         walker.pose(&mut joints);

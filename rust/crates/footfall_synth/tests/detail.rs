@@ -13,6 +13,7 @@ const DT: f32 = 1.0 / 60.0;
 const WALKING: Controls = Controls {
     speed_mps: 1.3,
     turn_rate_radps: 0.2,
+    ..Controls::STAND
 };
 
 fn space() -> Arc<StyleSpace> {

@@ -79,6 +79,7 @@ fn walking(speed_mps: f32) -> Controls {
     Controls {
         speed_mps,
         turn_rate_radps: 0.0,
+        ..Controls::STAND
     }
 }
 
@@ -207,6 +208,7 @@ fn play(walker: &mut GaitGenerator, frame: u32) -> Pose {
         Controls {
             speed_mps: 1.2 + 0.6 * wave,
             turn_rate_radps: 0.5 * wave,
+            ..Controls::STAND
         }
     };
     let mut pose = Pose::default();

@@ -107,6 +107,7 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
         variation: args.walk.variation,
         speed_mps: args.walk.speed,
         turn_rate_radps: args.walk.turn.to_radians(),
+        direction_rad: args.walk.direction.to_radians(),
         frame_rate_hz: args.walk.fps,
         from_standing: args.standing,
     };

@@ -29,6 +29,15 @@ pub(super) struct WalkArgs {
         value_name = "DEG_PER_S"
     )]
     pub(super) turn: f32,
+    /// Where it goes, seen from where it faces: 0 forwards, 90 to the left, 180 backwards. A trained walk that does not go forwards begins and
+    /// ends standing
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        value_name = "DEGREES"
+    )]
+    pub(super) direction: f32,
     /// How far the walker strays from the average: 0 not at all, 1 as in the recordings
     #[arg(long, default_value_t = 1.0)]
     pub(super) variation: f32,

@@ -110,6 +110,7 @@ impl Agent {
             controls: Controls {
                 speed_mps: 0.0,
                 turn_rate_radps: 0.0,
+                ..Controls::STAND
             },
         }
     }
@@ -142,6 +143,7 @@ impl Agent {
         self.controls = Controls {
             speed_mps: speed / froude,
             turn_rate_radps: turn * froude,
+            ..Controls::STAND
         };
     }
 

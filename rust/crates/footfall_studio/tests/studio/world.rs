@@ -51,6 +51,7 @@ impl World {
                     variation: 1.0,
                     speed_mps: Some(speed),
                     turn_rate_radps: 0.0,
+                    direction_rad: 0.0,
                     frame_rate_hz: Some(60.0),
                     from_standing: take == 1,
                 };

@@ -31,7 +31,7 @@ pub(super) struct Swing {
     frames: f32,
     position: Correction,
     rotation: Correction,
-    /// The toes' own rotation; straight at its end.
+    /// The toes' own rotation.
     toes: Correction,
     /// By how much the foot would land too fast, metres a frame, and over how many frames it is braked.
     excess: Vec3,
@@ -75,7 +75,7 @@ impl Swing {
             }
         };
         // Captured toes are too noisy to follow, as most marker sets guess them: from their bend at the end of the stance
-        // they straighten.
+        // they go to that of the landing, which is none where the heel lands first.
         let toes = correction(&|planted, _| log_map(planted.foot.inverse() * planted.toes));
         // The corrections have come to rest by then.
         let landing = ends[2].1.ankle - arrival;
@@ -86,10 +86,7 @@ impl Swing {
             braking: (BRAKING_SECS / frame_secs).min(frames),
             position: correction(&|planted, free| planted.ankle - free.ankle),
             rotation: correction(&|planted, free| log_map(planted.foot * free.foot.inverse())),
-            toes: Correction {
-                end: Vec3::ZERO,
-                ..toes
-            },
+            toes,
         }
     }
 

@@ -108,6 +108,7 @@ impl State {
                 manner: manner(1),
                 amplitude: self.amplitude(),
                 turn_rate: self.turn_rate,
+                velocity_mps: self.velocity_mps.into(),
                 facing: self.facing[1],
             },
             manner_before: manner(0),
@@ -136,7 +137,7 @@ impl State {
             planner,
             walker,
             worn,
-            self.speed_mps,
+            self.velocity_mps.into(),
         ))
     }
 
@@ -173,7 +174,7 @@ impl State {
             expected: expected.clone(),
             planter: self.feet.as_ref().map(Feet::planter),
         };
-        steps.resume(config, origin, self.speed_mps);
+        steps.resume(config, origin, self.velocity_mps.into());
         Ok(())
     }
 }

@@ -70,6 +70,7 @@ impl DynamicsBench {
             variation: 1.0,
             speed_mps: None,
             turn_rate_radps: 0.0,
+            direction_rad: 0.0,
             frame_rate_hz: None,
         };
         let walk = synthesize_switching(&model, &model.skeleton, &config)?;

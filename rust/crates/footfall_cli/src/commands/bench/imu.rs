@@ -68,6 +68,7 @@ impl ReconstructorBench {
                 variation: 1.0,
                 speed_mps: Some(0.9 + 0.05 * (seed % 13) as f32),
                 turn_rate_radps: 0.0,
+                direction_rad: 0.0,
                 frame_rate_hz: Some(60.0),
                 from_standing: false,
             };

@@ -39,6 +39,7 @@ impl WalkerBench {
         let controls = Controls {
             speed_mps: model.speed.reference_mps as f32,
             turn_rate_radps: 0.1,
+            ..Controls::STAND
         };
         let dt_secs = (1.0 / model.frame_rate_hz) as f32;
         let space = StyleSpace::new(&Arc::new(model), &[]).context("the model does not walk")?;
@@ -62,6 +63,7 @@ impl WalkerBench {
             controls: Controls {
                 speed_mps: generator.usual_speed_mps(),
                 turn_rate_radps: 0.1,
+                ..Controls::STAND
             },
             generator,
             skeleton,

@@ -43,6 +43,7 @@ pub(crate) fn run(args: &DynamicsSynthArgs) -> Result<()> {
         variation: args.walk.variation,
         speed_mps: args.walk.speed,
         turn_rate_radps: args.walk.turn.to_radians(),
+        direction_rad: args.walk.direction.to_radians(),
         frame_rate_hz: args.walk.fps,
     };
     let walk = synthesize_switching(&model, &model.skeleton, &config)

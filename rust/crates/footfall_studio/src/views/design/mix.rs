@@ -140,6 +140,7 @@ impl MixPage {
         let controls = Controls {
             speed_mps: self.speed_mps,
             turn_rate_radps: self.turn_degps.to_radians(),
+            ..Controls::STAND
         };
         walker.set_style_weights(&self.weights);
         let dt = ui.input(|input| input.stable_dt).min(0.1);
@@ -288,6 +289,7 @@ impl MixPage {
             variation: 1.0,
             speed_mps: Some(self.speed_mps.max(0.2)),
             turn_rate_radps: self.turn_degps.to_radians(),
+            direction_rad: 0.0,
             frame_rate_hz: None,
             from_standing: false,
         };

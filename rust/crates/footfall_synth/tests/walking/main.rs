@@ -6,164 +6,19 @@
     reason = "tests may fail, and they pass controls on as the generator takes them"
 )]
 
+mod strafing;
+mod world;
+
 use footfall_core::rotation::heading;
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
-use footfall_model::{DynamicsModel, GaitModel};
 use footfall_synth::{
-    Controls, Footstep, GaitGenerator, GeneratorConfig, StyleSpace, SynthError, WalkConfig,
-    synthesize,
+    Controls, GaitGenerator, GeneratorConfig, SynthError, WalkConfig, synthesize,
 };
-use glam::{Quat, Vec3};
-use std::sync::{Arc, OnceLock};
-
-const DT: f32 = 1.0 / 60.0;
-
-fn model() -> Arc<GaitModel> {
-    static MODEL: OnceLock<Arc<GaitModel>> = OnceLock::new();
-    let load = || {
-        let path = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../../addons/footfall/models/walk.footfall"
-        );
-        Arc::new(GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap())
-    };
-    Arc::clone(MODEL.get_or_init(load))
-}
-
-fn space() -> Arc<StyleSpace> {
-    static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
-    Arc::clone(SPACE.get_or_init(|| Arc::new(StyleSpace::new(&model(), &[]).unwrap())))
-}
-
-fn config(seed: u64) -> GeneratorConfig {
-    GeneratorConfig {
-        seed,
-        phase: 0.0,
-        variation: 1.0,
-    }
-}
-
-fn switching_model() -> Arc<DynamicsModel> {
-    static MODEL: OnceLock<Arc<DynamicsModel>> = OnceLock::new();
-    let load = || {
-        let path = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../../addons/footfall/models/walk.footdyn"
-        );
-        Arc::new(DynamicsModel::from_bytes(&std::fs::read(path).unwrap()).unwrap())
-    };
-    Arc::clone(MODEL.get_or_init(load))
-}
-
-/// What a walker's steps come from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    Styled,
-    Switching,
-}
-
-const KINDS: [Kind; 2] = [Kind::Styled, Kind::Switching];
-
-fn walker(
-    kind: Kind,
-    skeleton: &Skeleton,
-    config: &GeneratorConfig,
-) -> Result<GaitGenerator, SynthError> {
-    match kind {
-        Kind::Styled => GaitGenerator::new(&space(), &[], skeleton, config),
-        Kind::Switching => GaitGenerator::switching(&switching_model(), skeleton, config),
-    }
-}
-
-fn generator(kind: Kind, seed: u64) -> GaitGenerator {
-    walker(kind, &Skeleton::standard(), &config(seed)).unwrap()
-}
-
-fn walking(speed_mps: f32) -> Controls {
-    Controls {
-        speed_mps,
-        turn_rate_radps: 0.0,
-    }
-}
-
-/// A frame in the space where the walk began.
-struct Frame {
-    model: ModelPose,
-    contact: [bool; 2],
-    heading: f32,
-    place: Vec3,
-}
-
-fn run(
-    generator: &mut GaitGenerator,
-    skeleton: &Skeleton,
-    controls: &Controls,
-    frames: usize,
-) -> (Vec<Frame>, Vec<Footstep>) {
-    let mut pose = Pose::default();
-    let mut footsteps = Vec::new();
-    let frames = (0..frames)
-        .map(|_| {
-            generator.step(DT, controls, &mut pose);
-            footsteps.extend_from_slice(generator.footsteps());
-            let place = generator.start_from_character();
-            let level = Quat::from_rotation_y(place.heading);
-            pose.root_position = place.position + level * pose.root_position;
-            pose.rotations[0] = level * pose.rotations[0];
-            let mut model = ModelPose::default();
-            forward_kinematics(skeleton, &pose, &mut model);
-            Frame {
-                model,
-                contact: generator.feet_in_contact(),
-                heading: place.heading,
-                place: place.position,
-            }
-        })
-        .collect();
-    (frames, footsteps)
-}
-
-/// Heel, ball and toe tip of a foot.
-fn sole(skeleton: &Skeleton, frame: &Frame, side: Side) -> [Vec3; 3] {
-    let foot = skeleton.foot(side);
-    [
-        frame.model.point(side.foot(), foot.heel),
-        frame.model.point(side.toes(), foot.ball),
-        frame.model.point(side.toes(), foot.toe_tip),
-    ]
-}
-
-/// A standing foot keeps one of heel, ball and toe tip where it is; nothing sinks.
-fn assert_planted(skeleton: &Skeleton, frames: &[Frame]) {
-    let mut standing = 0;
-    for (index, pair) in frames.windows(2).enumerate() {
-        for side in Side::BOTH {
-            let (then, now) = (
-                sole(skeleton, &pair[0], side),
-                sole(skeleton, &pair[1], side),
-            );
-            let lowest = now
-                .iter()
-                .map(|point| point.y)
-                .fold(f32::INFINITY, f32::min);
-            assert!(lowest > -0.002, "sole {lowest} m below the ground");
-            if pair[0].contact[side.index()] && pair[1].contact[side.index()] {
-                standing += 1;
-                let moved = then.iter().zip(&now).map(|(then, now)| then.distance(*now));
-                let slip = moved.fold(f32::INFINITY, f32::min) / DT;
-                assert!(
-                    slip < 0.02,
-                    "standing {side:?} foot slips at {slip} m/s in frame {index}: {then:?} {now:?}"
-                );
-                assert!(lowest < 0.004, "standing foot {lowest} m above the ground");
-            }
-        }
-    }
-    assert!(
-        standing > frames.len() / 2,
-        "feet stood in only {standing} frames"
-    );
-}
+use glam::Vec3;
+use world::{
+    Frame, KINDS, Kind, assert_continuous, assert_planted, config, generator, model, run, sole,
+    walker, walking,
+};
 
 #[test]
 fn standing_feet_do_not_move() {
@@ -175,6 +30,7 @@ fn standing_feet_do_not_move() {
             let controls = Controls {
                 speed_mps: speed,
                 turn_rate_radps,
+                ..Controls::STAND
             };
             let (frames, _) = run(&mut generator(kind, seed), &skeleton, &controls, 900);
             assert_planted(&skeleton, &frames);
@@ -228,6 +84,7 @@ fn turning_turns_by_the_wanted_angle() {
         let controls = Controls {
             speed_mps: 1.1,
             turn_rate_radps: 0.3,
+            ..Controls::STAND
         };
         let mut generator = generator(kind, 3);
         let skeleton = Skeleton::standard();
@@ -301,32 +158,13 @@ fn motion_is_continuous_through_changes_of_control() {
             let controls = Controls {
                 speed_mps: speed,
                 turn_rate_radps: turn,
+                ..Controls::STAND
             };
             all.extend(run(&mut generator, &skeleton, &controls, 180).0);
         }
         assert_continuous(kind, &all);
     }
 }
-
-fn assert_continuous(kind: Kind, frames: &[Frame]) {
-    // 120 m/s² at 60 fps: an impact of the toes is below it, a pop is not. Two systems straighten a knee harder.
-    let most = match kind {
-        Kind::Styled => 0.034,
-        Kind::Switching => 0.04,
-    };
-    for (index, triple) in frames.windows(3).enumerate() {
-        for joint in Joint::ALL {
-            let [a, b, c] = [&triple[0], &triple[1], &triple[2]].map(|f| f.model.position(joint));
-            let jump = (a - 2.0 * b + c).length();
-            assert!(jump < most, "{joint:?} jumps by {jump} m in frame {index}");
-        }
-    }
-}
-
-const STILL: Controls = Controls {
-    speed_mps: 0.0,
-    turn_rate_radps: 0.0,
-};
 
 /// How far apart two frames are at their most distant joint.
 fn distance(a: &Frame, b: &Frame) -> f32 {
@@ -341,7 +179,7 @@ fn a_walker_stops_within_two_steps_stands_and_walks_on() {
         for seed in 1..5 {
             let mut generator = generator(kind, seed);
             run(&mut generator, &skeleton, &walking(1.3), 200);
-            let (mut frames, footsteps) = run(&mut generator, &skeleton, &STILL, 240);
+            let (mut frames, footsteps) = run(&mut generator, &skeleton, &Controls::STAND, 240);
             assert!(footsteps.len() <= 2, "{} steps to stop", footsteps.len());
             let (first, last) = (&frames[150], &frames[239]);
             assert!(distance(first, last) < 1e-6, "it does not stand still");
@@ -369,7 +207,7 @@ fn it_can_begin_standing() {
         let skeleton = Skeleton::standard();
         let mut generator = generator(kind, 2);
         generator.stand();
-        let (mut frames, footsteps) = run(&mut generator, &skeleton, &STILL, 30);
+        let (mut frames, footsteps) = run(&mut generator, &skeleton, &Controls::STAND, 30);
         assert!(footsteps.is_empty());
         assert!(distance(&frames[0], &frames[29]) < 1e-6);
         assert!(frames[0].place.length() < 1e-6);
@@ -394,6 +232,7 @@ fn turning_without_speed_turns_in_place() {
         let controls = Controls {
             speed_mps: 0.0,
             turn_rate_radps: 1.0,
+            ..Controls::STAND
         };
         let (frames, footsteps) = run(&mut generator, &skeleton, &controls, 300);
         let last = frames.last().unwrap();
@@ -430,6 +269,7 @@ fn senseless_controls_still_give_a_human_pose() {
                 let controls = Controls {
                     speed_mps: speed,
                     turn_rate_radps,
+                    ..Controls::STAND
                 };
                 let mut generator = generator(kind, 1);
                 let (frames, _) = run(&mut generator, &skeleton, &controls, 200);
@@ -518,6 +358,7 @@ fn a_whole_walk_has_its_steps_its_speed_and_its_contacts() {
             variation: 1.0,
             speed_mps,
             turn_rate_radps: 0.0,
+            direction_rad: 0.0,
             frame_rate_hz,
             from_standing: false,
         };

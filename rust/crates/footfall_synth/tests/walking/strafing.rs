@@ -1,0 +1,154 @@
+//! Facing one way and going another.
+
+use crate::world::{
+    DT, KINDS, Kind, assert_planted, assert_smooth, config, generator, run, walker,
+};
+use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use footfall_core::rotation::{heading, wrap_angle};
+use footfall_core::{Joint, Side, Skeleton};
+use footfall_synth::Controls;
+use glam::Vec3;
+
+fn going(direction_rad: f32, speed_mps: f32) -> Controls {
+    Controls {
+        speed_mps,
+        direction_rad,
+        ..Controls::STAND
+    }
+}
+
+/// Every direction but straight ahead.
+fn directions() -> impl Iterator<Item = f32> {
+    (1..8).map(|eighth| eighth as f32 * FRAC_PI_4)
+}
+
+#[test]
+fn the_body_goes_one_way_and_faces_another() {
+    for kind in KINDS {
+        let skeleton = Skeleton::standard();
+        for direction in directions() {
+            let controls = going(direction, 0.6);
+            let mut generator = generator(kind, 3);
+            run(&mut generator, &skeleton, &controls, 240);
+            let from = generator.start_from_character();
+            let (frames, _) = run(&mut generator, &skeleton, &controls, 1800);
+            let last = frames.last().unwrap();
+            let travel = last.place - from.position;
+            let speed = travel.length() / (1800.0 * DT);
+            let astray = wrap_angle(travel.x.atan2(travel.z) - from.heading - direction);
+            assert!(
+                astray.abs() < 0.1,
+                "{kind:?} {direction}: {astray} rad astray"
+            );
+            assert!(
+                (speed / 0.6 - 1.0).abs() < 0.125,
+                "{kind:?} {direction}: {speed} m/s"
+            );
+            assert!((last.heading - from.heading).abs() < 0.01, "it turns");
+            for frame in &frames {
+                let chest = heading(frame.model.rotation(Joint::UpperChest));
+                let off = wrap_angle(chest - frame.heading);
+                assert!(
+                    off.abs() < 0.35,
+                    "{kind:?} {direction}: the chest faces {off} rad aside"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn feet_stand_and_nothing_pops_in_any_direction() {
+    for (kind, seed) in KINDS
+        .into_iter()
+        .flat_map(|kind| [8, 9, 10, 11].map(|seed| (kind, seed)))
+    {
+        let skeleton = Skeleton::standard();
+        let mut all = Vec::new();
+        let mut generator = generator(kind, seed);
+        for controls in [
+            going(FRAC_PI_2, 0.6),
+            going(-FRAC_PI_2, 0.6),
+            going(PI, 0.8),
+            going(0.0, 1.3),
+            going(FRAC_PI_4, 1.0),
+            going(-3.0 * FRAC_PI_4, 0.7),
+            Controls::STAND,
+        ] {
+            all.extend(run(&mut generator, &skeleton, &controls, 240).0);
+        }
+        assert!(generator.is_standing());
+        assert_planted(&skeleton, &all);
+        // A walk that becomes a sidestep takes a knee along a little harder than one that goes on.
+        assert_smooth(&all, 0.04);
+    }
+}
+
+#[test]
+fn legs_do_not_cross_in_steps_to_the_side() {
+    for direction in [FRAC_PI_2, -FRAC_PI_2] {
+        let skeleton = Skeleton::standard();
+        let mut generator = generator(Kind::Styled, 5);
+        let controls = going(direction, 1.2);
+        run(&mut generator, &skeleton, &controls, 300);
+        let (frames, _) = run(&mut generator, &skeleton, &controls, 900);
+        for frame in frames {
+            let [left, right] = Side::BOTH.map(|side| frame.model.position(side.foot()));
+            let apart = (left - right).dot(Vec3::X);
+            assert!(apart > 0.08, "{direction}: ankles {apart} m apart");
+        }
+    }
+}
+
+#[test]
+fn a_walk_backwards_lands_on_its_toes() {
+    let skeleton = Skeleton::standard();
+    let controls = going(PI, 0.7);
+    let mut generator = walker(Kind::Styled, &skeleton, &config(2)).unwrap();
+    run(&mut generator, &skeleton, &controls, 300);
+    let (frames, footsteps) = run(&mut generator, &skeleton, &controls, 900);
+    assert!(footsteps.len() > 15);
+    let landings = frames.windows(2).flat_map(|pair| {
+        let lands = |side: &Side| !pair[0].contact[side.index()] && pair[1].contact[side.index()];
+        Side::BOTH.into_iter().filter(lands).map(|side| {
+            let foot = skeleton.foot(side);
+            let heel = pair[1].model.point(side.foot(), foot.heel);
+            let toes = pair[1].model.point(side.toes(), foot.toe_tip);
+            heel.y - toes.y
+        })
+    });
+    for rise in landings {
+        assert!(rise > 0.01, "the heel lands {rise} m above the toes");
+    }
+}
+
+#[test]
+fn directions_that_are_none_go_forwards() {
+    let skeleton = Skeleton::standard();
+    for direction in [f32::NAN, f32::INFINITY] {
+        let mut odd = generator(Kind::Styled, 4);
+        let mut plain = generator(Kind::Styled, 4);
+        let (odd, _) = run(&mut odd, &skeleton, &going(direction, 1.0), 120);
+        let (plain, _) = run(&mut plain, &skeleton, &going(0.0, 1.0), 120);
+        assert_eq!(odd.last().unwrap().place, plain.last().unwrap().place);
+    }
+}
+
+#[test]
+fn a_saved_sidestep_goes_on_as_it_would_have() {
+    for kind in KINDS {
+        let skeleton = Skeleton::standard();
+        let controls = going(2.0, 0.6);
+        let mut first = generator(kind, 6);
+        run(&mut first, &skeleton, &controls, 200);
+        let mut second = generator(kind, 7);
+        second.restore(&first.state()).unwrap();
+        let (a, _) = run(&mut first, &skeleton, &controls, 120);
+        let (b, _) = run(&mut second, &skeleton, &controls, 120);
+        for (a, b) in a.iter().zip(&b) {
+            for joint in Joint::ALL {
+                assert_eq!(a.model.position(joint), b.model.position(joint));
+            }
+        }
+    }
+}
