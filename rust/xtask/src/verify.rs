@@ -14,7 +14,7 @@ struct Step {
     check: fn() -> Result<()>,
 }
 
-const STEPS: [Step; 10] = [
+const STEPS: [Step; 11] = [
     Step {
         name: "format",
         check: format,
@@ -46,6 +46,10 @@ const STEPS: [Step; 10] = [
     Step {
         name: "godot-tests",
         check: tests_in_godot,
+    },
+    Step {
+        name: "godot-editor",
+        check: tests_in_the_editor,
     },
     Step {
         name: "godot-demo",
@@ -165,6 +169,14 @@ fn tests_in_godot() -> Result<()> {
     let said = in_godot("tests/godot", "tests", &[])?;
     // The tests' own report is worth seeing.
     eprintln!("{}", process::tail(&said, 12));
+    Ok(())
+}
+
+/// What the add-on brings to the editor: dock, gizmo, preview.
+fn tests_in_the_editor() -> Result<()> {
+    let arguments = ["--editor", "--", "--editor-tests"];
+    let said = in_godot("tests/godot", "editor_tests", &arguments)?;
+    eprintln!("{}", process::tail(&said, 1));
     Ok(())
 }
 

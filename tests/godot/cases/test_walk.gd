@@ -259,6 +259,24 @@ func test_it_goes_one_way_and_faces_another() -> void:
 		check_near(walker.rotation.y, 0.0, 0.05, "it does not turn")
 
 
+func test_seeking_goes_where_walking_gets() -> void:
+	var walked := _walker()
+	walked.walk(180)
+	var sought := _walker()
+	var place := sought.global_position
+	sought.gait.seek(3.0)
+	check_equal(sought.gait.get_time(), 0.0, "it is gone to in the next frame")
+	sought.walk(1, Callable(), 0.0)
+	check_near(sought.gait.get_time(), 3.0, 1e-3, "time")
+	check_equal(sought.global_position, place, "nobody travels by it")
+	for bone: String in walked.bones:
+		var off := walked.global_transform.affine_inverse() * walked.joint(bone) - sought.global_transform.affine_inverse() * sought.joint(bone)
+		check_near(off.length(), 0.0, 0.005, bone)
+	for nonsense: float in [NAN, -5.0, 1e30]:
+		sought.gait.seek(nonsense)
+		sought.walk(1)
+
+
 func test_a_long_turning_walk_keeps_the_scale() -> void:
 	var walker := _walker()
 	walker.scale = Vector3.ONE * 1.5

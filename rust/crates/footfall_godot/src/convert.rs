@@ -43,6 +43,21 @@ pub(crate) fn transform(rotation: Quat, translation: Vec3) -> Transform3D {
     )
 }
 
+/// A transform with its scale, glam to Godot.
+#[cfg(feature = "editor")]
+pub(crate) fn scaled(transform: &Affine3A) -> Transform3D {
+    let [x, y, z] = [
+        transform.matrix3.x_axis,
+        transform.matrix3.y_axis,
+        transform.matrix3.z_axis,
+    ]
+    .map(|axis| vector3(axis.into()));
+    Transform3D::new(
+        Basis::from_cols(x, y, z),
+        vector3(transform.translation.into()),
+    )
+}
+
 /// The rotation of a transform, its scale removed.
 pub(crate) fn rotation(transform: &Affine3A) -> Quat {
     let columns = glam::Mat3::from(transform.matrix3);

@@ -1,5 +1,7 @@
 //! `GaitGenerator3D`: walks a character.
 
+#[cfg(feature = "editor")]
+mod foresight;
 mod session;
 
 use crate::character;
@@ -131,6 +133,10 @@ pub(crate) struct GaitGenerator3D {
 
     /// The model and its styles; `None` until they are needed.
     source: Option<WalkSource>,
+    /// The time of the walk to go to in the next frame, seconds.
+    pending_seek: Option<f64>,
+    /// Whether the editor holds the walk; `None` while `playing` says.
+    preview_paused: Option<bool>,
     /// A state that the next walk goes on from.
     pending_state: Option<PackedByteArray>,
     /// The walk under way; `None` until the next frame that can start it.
@@ -246,6 +252,23 @@ impl GaitGenerator3D {
         self.base_mut().update_configuration_warnings();
     }
 
+    /// Goes to a time of the walk, in seconds from where it began: it is walked there from its beginning with the speed, turning and styles that
+    /// are set now. The character does not travel by it. At most an hour; takes about a millisecond for a minute.
+    #[func]
+    pub(crate) fn seek(&mut self, seconds: f64) {
+        if seconds.is_finite() {
+            self.session = None;
+            self.pending_seek = Some(seconds.clamp(0.0, 3600.0));
+        }
+    }
+
+    /// How long the walk has gone on, in seconds from where it began.
+    #[func]
+    pub(crate) fn get_time(&self) -> f64 {
+        let session = self.session.as_ref();
+        session.map_or(0.0, |session| session.elapsed_secs)
+    }
+
     /// What keeps the character from walking, each with what to do next; empty when nothing does.
     ///
     /// The editor shows the same as configuration warnings.
@@ -297,12 +320,14 @@ impl GaitGenerator3D {
         if sizes_differ {
             self.base_mut().update_configuration_warnings();
         }
+        self.base_mut().update_gizmos();
     }
 
     #[func]
     fn set_speed(&mut self, speed: f64) {
         if speed.is_finite() {
             self.speed = speed.max(0.0);
+            self.base_mut().update_gizmos();
         }
     }
 
@@ -310,6 +335,7 @@ impl GaitGenerator3D {
     fn set_turn_rate(&mut self, turn_rate: f64) {
         if turn_rate.is_finite() {
             self.turn_rate = turn_rate;
+            self.base_mut().update_gizmos();
         }
     }
 
@@ -317,6 +343,7 @@ impl GaitGenerator3D {
     fn set_direction(&mut self, direction: f64) {
         if direction.is_finite() {
             self.direction = direction;
+            self.base_mut().update_gizmos();
         }
     }
 
@@ -389,11 +416,9 @@ impl GaitGenerator3D {
             return Ok(session);
         }
         let (character, binding) = self.bind(skeleton)?;
-        let config = GeneratorConfig {
-            seed: self.seed.cast_unsigned(),
-            phase: self.phase.rem_euclid(1.0) as f32,
-            variation: self.variation as f32,
-        };
+        let config = self.config();
+        // The way ahead is drawn anew from here.
+        self.base_mut().update_gizmos();
         let weights = self.style_weights.as_slice();
         Session::new(
             &source,
@@ -403,6 +428,15 @@ impl GaitGenerator3D {
             &config,
             self.controls(),
         )
+    }
+
+    /// Which walk of the model's it is.
+    fn config(&self) -> GeneratorConfig {
+        GeneratorConfig {
+            seed: self.seed.cast_unsigned(),
+            phase: self.phase.rem_euclid(1.0) as f32,
+            variation: self.variation as f32,
+        }
     }
 
     fn controls(&self) -> Controls {
@@ -473,6 +507,17 @@ impl GaitGenerator3D {
         self.bone_map.clone()
     }
 
+    /// Whether the editor holds the walk.
+    pub(crate) fn is_preview_paused(&self) -> bool {
+        self.preview_paused.unwrap_or(!self.playing)
+    }
+
+    /// Holds the walk in the editor, or lets it go on; nothing of it is saved.
+    #[cfg(feature = "editor")]
+    pub(crate) fn pause_preview(&mut self, paused: bool) {
+        self.preview_paused = Some(paused);
+    }
+
     /// Which feet stand and where they land next, on the floor of the walk; `None` while nobody walks.
     pub(crate) fn feet(&self) -> Option<([bool; 2], [Option<Landing>; 2])> {
         let session = self.session.as_ref()?;
@@ -496,11 +541,12 @@ impl GaitGenerator3D {
     fn walk(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
         self.reported = None;
         let in_editor = Engine::singleton().is_editor_hint();
-        let dt_secs = if self.playing {
-            delta.max(0.0) as f32
+        let holds = if in_editor {
+            self.is_preview_paused()
         } else {
-            0.0
+            !self.playing
         };
+        let dt_secs = if holds { 0.0 } else { delta.max(0.0) };
         let travels = self.root_motion && !in_editor;
         session
             .generator
@@ -511,6 +557,9 @@ impl GaitGenerator3D {
         {
             let node = self.base().get_path();
             godot_warn!("{node}: the state is refused: {problem}");
+        }
+        if let Some(secs) = self.pending_seek.take() {
+            session.skip(secs, self.controls());
         }
         let travel = session.advance(dt_secs, self.controls());
         self.root_motion_delta = session.traveller.local_delta(&travel);

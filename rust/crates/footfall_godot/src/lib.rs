@@ -7,8 +7,8 @@
 //! Between the engine and the runtime stand `rest_body` (proportions of any character from its rest pose),
 //! `skeleton_binding` (joints to bones and back), `character` and `travel` (which node travels, and how), `physics_ground` (what feet stand on) and `convert` (vectors).
 //!
-//! Two flavours are built. With the feature `editor` the library also holds the import plugin for `.footfall` and `.footstyle` files and the
-//! class reference that the editor shows; exported games get the library without. Both register the same runtime classes.
+//! Two flavours are built. With the feature `editor` the library also holds `editor` (importers, a dock, gizmos, a preview bar) and the
+//! class reference that Godot shows; exported games get the library without. Both register the same runtime classes.
 
 #![expect(
     unsafe_code,
@@ -23,14 +23,12 @@ mod character;
 mod convert;
 mod device_imu_source;
 #[cfg(feature = "editor")]
-mod editor_plugin;
+mod editor;
 mod foot_placement_3d;
 mod gait_crowd_3d;
 mod gait_generator_3d;
 mod gait_model;
 mod gait_style;
-#[cfg(feature = "editor")]
-mod import_plugin;
 mod imu_model;
 mod imu_reconstructor_3d;
 mod imu_source;

@@ -1,6 +1,6 @@
 //! What all views share: the list, the motion that is looked at, dialogs and messages.
 
-use crate::job::{Job, finished};
+use crate::job::{self, Job, finished};
 use crate::library::{Facts, Library, ListAction};
 use crate::model_file::{read_model, shipped_model};
 use crate::motion::Motion;
@@ -146,7 +146,7 @@ impl Shell {
             ListAction::Compare(path) => (Place::Ghost, path),
         };
         let file = path.clone();
-        let job = Job::start(context, "reading", move |_| {
+        let job = job::start(context, "reading", move |_| {
             Motion::read(&file).map_err(|error| error.to_string())
         });
         self.reading = Some((place, path, job));

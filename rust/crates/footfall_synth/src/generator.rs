@@ -174,10 +174,6 @@ pub struct GaitGenerator {
     contact: [bool; 2],
 }
 
-#[expect(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "controls will hold more than speed and turning"
-)]
 impl GaitGenerator {
     /// A walker with the proportions of `skeleton`, at the origin and facing +Z, in a mixture of the space's styles:
     /// weights as of [`set_style_weights`](Self::set_style_weights), none for the plain walk.

@@ -4,7 +4,7 @@ use crate::error::SynthError;
 use crate::plan::{Manner, Pace, Planner};
 use crate::space::Blend;
 use crate::standing::Amplitude;
-use crate::strafe::{leg_length, overstep};
+use crate::strafe::overstep;
 use crate::walker::{Request, Walker};
 use footfall_core::{Side, Skeleton};
 use glam::{Vec2, Vec3};
@@ -68,7 +68,7 @@ impl PaceTable {
         }
         Ok(Self {
             samples,
-            leg_length: leg_length(skeleton),
+            leg_length: skeleton.mean_leg_length(),
             facing,
         })
     }

@@ -10,7 +10,7 @@ mod swing;
 
 use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
-use crate::strafe::{Strafe, turn_step};
+use crate::strafe::{Strafe, Turner};
 use footfall_core::ease::{hermite, smooth_step};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Pose, Side, Skeleton};
@@ -202,10 +202,12 @@ impl Planter {
                 strafe.spread(raw, leg_length)
             };
             self.state.strafe = strafe;
-            let strafes = [&before, &strafe];
-            turn_step(
-                raw, out, timing, &self.feet, leg_length, own_facing, strafes,
-            );
+            let turner = Turner {
+                feet: &self.feet,
+                leg_length,
+                own_facing,
+            };
+            turner.turn_step(raw, out, timing, [&before, &strafe]);
         }
     }
 

@@ -12,7 +12,7 @@ use crate::planting::PlanterState;
 use crate::stage::{Placing, Posture, Stage};
 use crate::standing::{Amplitude, standing_posture};
 use crate::steps::{Ask, StepSource};
-use crate::strafe::{leg_length, overstep, pelvis_turn};
+use crate::strafe::{overstep, pelvis_turn};
 use footfall_core::{Side, Skeleton};
 use footfall_model::{DynamicsModel, FEATURE_COUNT, SEGMENT_SLACK};
 use glam::{Vec2, Vec3};
@@ -139,7 +139,7 @@ impl SwitchingSteps {
             features: Vec::with_capacity(longest + 1),
             own_speed_mps: 1.0,
             own_step_secs: 0.5,
-            leg_length: leg_length(skeleton),
+            leg_length: skeleton.mean_leg_length(),
             facings: [0.0; 2],
             velocity_mps: Vec2::ZERO,
             model: Arc::clone(model),

@@ -2,6 +2,7 @@
 
 use footfall_core::Side;
 use footfall_model::ModelError;
+use footfall_motion::recording::RecordingError;
 use footfall_prob::ProbError;
 
 /// Why training cannot go on.
@@ -10,6 +11,12 @@ pub enum TrainError {
     /// No clip has a usable step.
     #[error("no clip holds two steps in a row; choose walks with `--where category=…`")]
     NoSteps,
+    /// Nothing was chosen to learn from.
+    #[error("no recordings; open some, or tick those to use")]
+    NoRecordings,
+    /// A recording cannot be used.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
     /// Fewer steps in a row than show both feet.
     #[error(
         "{found} steps are too few for a style, which needs two in a row and is better with six to twelve; choose longer walks"

@@ -2,7 +2,7 @@
 //!
 //! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
 //! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps), [`contexts`] (the ends of a walk);
-//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); and [`evaluate`], which judges what comes out.
+//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); [`recordings`] and [`job`] (for tools with windows); and [`evaluate`], which judges what comes out.
 
 pub mod adapt;
 pub mod average;
@@ -13,8 +13,10 @@ pub mod dynamics;
 pub mod error;
 pub mod evaluate;
 pub mod imu;
+pub mod job;
 pub mod normalise;
 pub mod progress;
+pub mod recordings;
 pub mod sequence;
 pub mod train;
 pub mod training_comparison;
@@ -25,5 +27,6 @@ pub use average::EmConfig;
 pub use contexts::ContextReport;
 pub use error::TrainError;
 pub use progress::Progress;
+pub use recordings::Recordings;
 pub use train::{TrainConfig, Trained, TrainingClip, train_average};
 pub use training_comparison::{HeldOutWalker, TrainingComparison, compare_training};

@@ -13,6 +13,8 @@ use godot::prelude::*;
 pub(super) struct Session {
     pub(super) generator: GaitGenerator,
     pub(super) traveller: Traveller,
+    /// Since the walk began.
+    pub(super) elapsed_secs: f64,
     source: WalkSource,
     pose: Pose,
 }
@@ -40,6 +42,7 @@ impl Session {
         Ok(Self {
             pose: Pose::rest(&binding.body),
             generator,
+            elapsed_secs: 0.0,
             source: source.clone(),
             traveller: Traveller::new(character, binding, start_from_ground),
         })
@@ -63,9 +66,26 @@ impl Session {
     }
 
     /// Lets time pass. With `dt_secs` 0 the pose stays and nothing travels.
-    pub(super) fn advance(&mut self, dt_secs: f32, controls: Controls) -> Travel {
-        self.generator.step(dt_secs, &controls, &mut self.pose);
+    pub(super) fn advance(&mut self, dt_secs: f64, controls: Controls) -> Travel {
+        self.elapsed_secs += dt_secs;
+        self.generator
+            .step(dt_secs as f32, &controls, &mut self.pose);
         self.traveller.go_to(self.generator.start_from_character())
+    }
+
+    /// Lets time pass without travelling.
+    pub(super) fn skip(&mut self, secs: f64, controls: Controls) {
+        // The generator takes no more of it at once.
+        const MOST_SECS: f64 = 5.0;
+        let mut left = secs;
+        while left > 0.0 {
+            let passes = left.min(MOST_SECS);
+            self.generator
+                .step(passes as f32, &controls, &mut self.pose);
+            left -= passes;
+        }
+        self.elapsed_secs += secs;
+        self.traveller.place(self.generator.start_from_character());
     }
 
     /// Poses the skeleton.

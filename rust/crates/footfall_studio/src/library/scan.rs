@@ -1,7 +1,7 @@
 //! Finding and checking recordings.
 
 use super::{Entry, Facts};
-use crate::job::Job;
+use crate::job::{self, Job};
 use crate::motion::Motion;
 use eframe::egui::Context;
 use footfall_motion::corpus::read_index;
@@ -32,7 +32,7 @@ impl Scan {
     pub(super) fn start(context: &Context, path: PathBuf) -> Self {
         let (sender, receiver) = mpsc::channel();
         let waker = context.clone();
-        let job = Job::start(context, "looking for recordings", move |reporter| {
+        let job = job::start(context, "looking for recordings", move |reporter| {
             let found = find(&path);
             for (path, entry) in &found {
                 drop(sender.send(ScanEvent::Found(path.clone(), entry.clone())));

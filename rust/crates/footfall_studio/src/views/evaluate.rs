@@ -1,6 +1,6 @@
 //! The papers' tables as tables and charts.
 
-use crate::job::{Job, finished};
+use crate::job::{self, Job, finished};
 use crate::shell::{Purpose, Shell};
 use crate::table::{Table, tables};
 use crate::{EvaluateKind, EvaluateRequest, Evaluator};
@@ -119,7 +119,7 @@ impl EvaluateView {
                     .desired_width(360.0),
             );
             if let Some(job) = &self.job {
-                job.show(ui);
+                job::show(job, ui);
             } else if ui.button("Run the evaluation").clicked() {
                 self.start(ui, shell);
             }
@@ -187,7 +187,7 @@ impl EvaluateView {
             .map(ToOwned::to_owned)
             .collect();
         let (evaluator, request) = (Arc::clone(evaluator), self.request.clone());
-        self.job = Some(Job::start(ui.ctx(), "evaluating", move |_| {
+        self.job = Some(job::start(ui.ctx(), "evaluating", move |_| {
             evaluator(&request)
         }));
     }

@@ -2,7 +2,7 @@
 
 mod timeline;
 
-use crate::job::{Job, finished};
+use crate::job::{self, Job, finished};
 use crate::labels::Labels;
 use crate::library::Facts;
 use crate::palette;
@@ -73,7 +73,7 @@ impl LabelsView {
         self.phases_are_old = false;
         let clip = motion.clip().clone();
         let contacts = motion.recording.contacts.clone();
-        self.phases = Some(Job::start(context, "finding phases", move |_| {
+        self.phases = Some(job::start(context, "finding phases", move |_| {
             segment_phases(&clip, &contacts)
         }));
     }

@@ -3,7 +3,7 @@
 mod compare;
 mod work;
 
-use crate::job::{Job, finished};
+use crate::job::{self, Job, finished};
 use crate::library::Library;
 use crate::palette;
 use crate::shell::{Purpose, Shell};
@@ -11,9 +11,9 @@ use compare::Compare;
 use eframe::egui::{DragValue, Panel, RichText, ScrollArea, TextEdit, Ui};
 use egui_plot::{Line, Plot, PlotPoints, Points};
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_train::{Adapted, ContextReport, Trained};
+use footfall_train::{Adapted, ContextReport, Recordings, Trained};
 use std::sync::Arc;
-pub(crate) use work::{Recorded, adapt_to, chosen_of};
+pub(crate) use work::{adapt_to, chosen_of};
 
 /// What was made last.
 enum Made {
@@ -231,7 +231,7 @@ impl TrainView {
         }
         ui.separator();
         if let Some(job) = &self.job {
-            job.show(ui);
+            job::show(job, ui);
         }
         if let Some(made) = &self.made {
             ui.label(describe(made));
@@ -257,8 +257,9 @@ impl TrainView {
         let steps = self.steps as usize;
         self.fits.clear();
         self.page = Page::Fit;
-        self.job = Some(Job::start(ui.ctx(), "making the style", move |reporter| {
-            let recorded = Recorded::read(&chosen, reporter)?;
+        self.job = Some(job::start(ui.ctx(), "making the style", move |reporter| {
+            let recorded =
+                Recordings::read(&chosen, reporter).map_err(|error| error.to_string())?;
             let made = adapt_to(&base, &recorded, &name, steps, reporter)?;
             Ok(Made::Style(Box::new(made)))
         }));
@@ -269,8 +270,9 @@ impl TrainView {
         let (rate_hz, iterations) = (self.rate_hz, usize::from(self.iterations));
         self.fits.clear();
         self.page = Page::Fit;
-        self.job = Some(Job::start(ui.ctx(), "training", move |reporter| {
-            let recorded = Recorded::read(&chosen, reporter)?;
+        self.job = Some(job::start(ui.ctx(), "training", move |reporter| {
+            let recorded =
+                Recordings::read(&chosen, reporter).map_err(|error| error.to_string())?;
             let made = work::train(&recorded, rate_hz, iterations, reporter)?;
             Ok(Made::Average(Box::new(made)))
         }));

@@ -1,10 +1,6 @@
 //! What the generator promises, on the model that the add-on ships.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::trivially_copy_pass_by_ref,
-    reason = "tests may fail, and they pass controls on as the generator takes them"
-)]
+#![expect(clippy::unwrap_used, reason = "tests may fail")]
 
 mod strafing;
 mod world;

@@ -1,13 +1,13 @@
 //! A style sheet with sliders, shown on a captured walk at once.
 
-use crate::job::{Job, Reporter, finished};
+use crate::job::{self, Job, Reporter, finished};
 use crate::motion::Motion;
 use crate::palette;
 use crate::playback::Playback;
 use crate::scene::SceneView;
 use crate::shell::{Purpose, Shell};
 use crate::views::clips::scene_at;
-use crate::views::train::{Recorded, adapt_to, chosen_of};
+use crate::views::train::{adapt_to, chosen_of};
 use eframe::egui::{
     CollapsingHeader, ComboBox, Context, DragValue, Panel, ScrollArea, Slider, TextEdit, Ui, vec2,
 };
@@ -15,6 +15,7 @@ use footfall_design::{KeySpec, StyleSheet, design, shipped};
 use footfall_model::{GaitModel, GaitStyle};
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::Retargeted;
+use footfall_train::Recordings;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -201,7 +202,7 @@ impl SheetPage {
         }
         let (sheet, seed) = (self.sheet.clone(), self.seed);
         let recording = motion.recording.clone();
-        let job = Job::start(context, "designing", move |_| {
+        let job = job::start(context, "designing", move |_| {
             let name = sheet.name.clone();
             designed(&recording, &sheet, seed).map(|recording| Motion::of(None, name, recording))
         });
@@ -252,7 +253,7 @@ impl SheetPage {
             }
         });
         if let Some(job) = &self.style_job {
-            job.show(ui);
+            job::show(job, ui);
         }
         if let Some(style) = &self.style {
             ui.horizontal(|ui| {
@@ -312,7 +313,7 @@ impl SheetPage {
         }
         let chosen = chosen_of(&shell.library);
         let (sheet, seed) = (self.sheet.clone(), self.seed);
-        self.style_job = Some(Job::start(context, "making the style", move |reporter| {
+        self.style_job = Some(job::start(context, "making the style", move |reporter| {
             style_of(&base, &chosen, &sheet, seed, reporter)
         }));
     }
@@ -357,8 +358,8 @@ fn style_of(
     seed: u64,
     reporter: &mut Reporter,
 ) -> Result<GaitStyle, String> {
-    let read = Recorded::read(chosen, reporter)?;
-    let (mut styled, mut steps, mut problem) = (Recorded(Vec::new()), 0, None);
+    let read = Recordings::read(chosen, reporter).map_err(|error| error.to_string())?;
+    let (mut styled, mut steps, mut problem) = (Recordings::default(), 0, None);
     for (number, (subject, recording)) in read.0.into_iter().enumerate() {
         if steps >= STEPS {
             break;

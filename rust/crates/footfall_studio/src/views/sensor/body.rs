@@ -1,6 +1,6 @@
 //! The body that a sensor moves.
 
-use crate::job::{Job, finished};
+use crate::job::{self, Job, finished};
 use crate::model_file::{read_imu_model, shipped_model};
 use crate::palette;
 use crate::shell::{Purpose, Shell};
@@ -208,7 +208,7 @@ impl LiveBody {
         };
         let now = self.heard.last().map_or(0.0, |last| last.time_secs);
         match (self.mounting, &self.finding) {
-            (_, Some(job)) => job.show(ui),
+            (_, Some(job)) => job::show(job, ui),
             (Some(mounting), None) => {
                 ui.colored_label(
                     if mounting.certainty < CERTAIN {
@@ -277,7 +277,7 @@ impl LiveBody {
         let recording = ImuRecording {
             samples: self.heard.clone(),
         };
-        self.finding = Some(Job::start(context, "finding the mounting", move |_| {
+        self.finding = Some(job::start(context, "finding the mounting", move |_| {
             find_mounting(&prepared, 0, &recording, &TrackerConfig::default())
                 .map_err(|error| error.to_string())
         }));

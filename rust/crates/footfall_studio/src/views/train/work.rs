@@ -3,11 +3,9 @@
 use crate::job::Reporter;
 use crate::library::Library;
 use footfall_model::{GaitModel, Provenance};
-use footfall_motion::recording::Recording;
-use footfall_motion::retarget::RetargetOptions;
 use footfall_prob::windows::Windows;
 use footfall_train::{
-    AdaptConfig, AdaptMethod, Adapted, EmConfig, TrainConfig, Trained, TrainingClip, adapt_style,
+    AdaptConfig, AdaptMethod, Adapted, EmConfig, Recordings, TrainConfig, Trained, adapt_style,
     train_average,
 };
 use std::path::PathBuf;
@@ -28,35 +26,6 @@ pub(crate) fn chosen_of(library: &Library) -> Vec<(PathBuf, String)> {
         .collect()
 }
 
-/// Recordings, read, and who walks in them.
-pub(crate) struct Recorded(pub(crate) Vec<(String, Recording)>);
-
-impl Recorded {
-    pub(crate) fn read(chosen: &[(PathBuf, String)], reporter: &Reporter) -> Result<Self, String> {
-        if chosen.is_empty() {
-            return Err("no recordings; open some, or tick those to use".to_owned());
-        }
-        let mut read = Vec::with_capacity(chosen.len());
-        for (done, (path, subject)) in chosen.iter().enumerate() {
-            if reporter.tell("reading", done, chosen.len()).is_break() {
-                return Err("stopped".to_owned());
-            }
-            let recording = Recording::read(path, &RetargetOptions::default())
-                .map_err(|error| error.to_string())?;
-            read.push((subject.clone(), recording));
-        }
-        Ok(Self(read))
-    }
-
-    fn clips(&self) -> Vec<TrainingClip> {
-        let read = self.0.iter();
-        read.map(|(subject, recording)| {
-            TrainingClip::new(subject, &recording.retargeted, &recording.walks)
-        })
-        .collect()
-    }
-}
-
 fn provenance(what: &str) -> Provenance {
     Provenance {
         corpus: what.to_owned(),
@@ -67,7 +36,7 @@ fn provenance(what: &str) -> Provenance {
 }
 
 pub(super) fn train(
-    recorded: &Recorded,
+    recorded: &Recordings,
     rate_hz: f64,
     iterations: usize,
     reporter: &mut Reporter,
@@ -93,7 +62,7 @@ pub(super) fn train(
 /// Adapts a base model to recordings.
 pub(crate) fn adapt_to(
     base: &GaitModel,
-    recorded: &Recorded,
+    recorded: &Recordings,
     name: &str,
     steps: usize,
     reporter: &mut Reporter,

@@ -1,0 +1,328 @@
+//! The dock that makes a style of walking from recordings.
+
+mod form;
+
+use super::style_maker::{Made, Order};
+use crate::gait_generator_3d::GaitGenerator3D;
+use crate::gait_model::GaitModel;
+use crate::gait_style::GaitStyle;
+use footfall_model::WalkModel;
+use footfall_synth::StyleSpace;
+use footfall_train::job::{Job, finished};
+use form::{Form, State};
+use godot::classes::{
+    EditorDock, EditorInterface, IEditorDock, ProjectSettings, ResourceLoader, editor_dock,
+};
+use godot::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What adapted best in the add-on's own models is what most people want to start from.
+const USUAL_BASE: &str = "res://addons/footfall/models/walk.footfall";
+
+/// Makes a `.footstyle` of `.bvh` recordings, shows it, and gives it to a walker.
+#[derive(GodotClass)]
+#[class(tool, init, internal, base = EditorDock)]
+pub(super) struct FootfallStyleDock {
+    form: Option<Form>,
+    recordings: Vec<PathBuf>,
+    job: Option<Job<Result<Made, String>>>,
+    /// The file of the style that was made last.
+    made: Option<GString>,
+    base: Base<EditorDock>,
+}
+
+#[godot_api]
+impl IEditorDock for FootfallStyleDock {
+    fn enter_tree(&mut self) {
+        self.build();
+    }
+
+    fn process(&mut self, _delta: f64) {
+        // A hot reload of the library forgets the form.
+        self.build();
+        let Some(job) = &self.job else { return };
+        let told = job.progress();
+        if let Some(form) = &mut self.form {
+            form.show_progress(&told);
+        }
+        let Some(ended) = finished(&mut self.job).map(Result::flatten) else {
+            return;
+        };
+        match ended {
+            Ok(made) => self.take(&made),
+            Err(problem) => self.tell(&problem),
+        }
+        self.refresh();
+    }
+}
+
+#[godot_api]
+impl FootfallStyleDock {
+    /// Adds recordings to learn from.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn add_recordings(&mut self, files: PackedStringArray) {
+        for file in files.as_slice() {
+            let path = PathBuf::from(globalized(file).to_string());
+            if !self.recordings.contains(&path) {
+                self.recordings.push(path);
+            }
+        }
+        self.refresh();
+    }
+
+    /// Asks for recordings to learn from.
+    #[func]
+    fn choose_recordings(&mut self) {
+        if let Some(form) = &mut self.form {
+            form.choose_recordings();
+        }
+    }
+
+    /// Forgets the recording that is selected, or all when none is.
+    #[func]
+    fn remove_selected(&mut self) {
+        match self.form.as_ref().and_then(Form::selected) {
+            Some(index) if index < self.recordings.len() => {
+                self.recordings.remove(index);
+            }
+            _ => self.recordings.clear(),
+        }
+        self.refresh();
+    }
+
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn follow_name(&mut self, name: GString) {
+        if let Some(form) = &mut self.form {
+            form.follow_name(&name);
+        }
+    }
+
+    /// What the style is to be called; the file follows.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_style_name(&mut self, name: GString) {
+        if let Some(form) = &mut self.form {
+            form.set_name(&name);
+        }
+    }
+
+    /// Starts to make the style, unless one is being made.
+    #[func]
+    fn make(&mut self) {
+        if self.job.is_some() {
+            return;
+        }
+        match self.order() {
+            Ok(order) => {
+                self.tell("");
+                self.made = None;
+                self.job = Some(order.start());
+            }
+            Err(problem) => self.tell(&problem),
+        }
+        self.refresh();
+    }
+
+    /// Asks the work to stop; nothing is written then.
+    #[func]
+    fn cancel(&mut self) {
+        if let Some(job) = &self.job {
+            job.cancel();
+        }
+    }
+
+    /// Whether a style is being made.
+    #[func]
+    fn is_working(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// What was told last.
+    #[func]
+    fn get_message(&self) -> GString {
+        let form = self.form.as_ref();
+        form.map_or_else(GString::new, Form::message)
+    }
+
+    /// Gives the style that was made to the walkers among the selected nodes, as an action that can be undone.
+    #[func]
+    fn give_to_selected(&mut self) {
+        let selected = EditorInterface::singleton().get_selection();
+        let nodes = selected.map(|selection| selection.get_selected_nodes());
+        let walkers: Vec<Gd<GaitGenerator3D>> = nodes
+            .iter()
+            .flat_map(Array::iter_shared)
+            .filter_map(|node| node.try_cast().ok())
+            .collect();
+        let problem = if walkers.is_empty() {
+            "Select a GaitGenerator3D first.".to_owned()
+        } else {
+            match self.made_style() {
+                Ok(style) => {
+                    for walker in walkers {
+                        wear(&walker, &style);
+                    }
+                    return;
+                }
+                Err(problem) => problem,
+            }
+        };
+        self.tell(&problem);
+    }
+}
+
+impl FootfallStyleDock {
+    /// The dock, as the editor's layout has to know it before it is shown.
+    pub(super) fn titled() -> Gd<Self> {
+        let mut dock = Self::new_alloc();
+        dock.set_title("Gait Style");
+        dock.set_layout_key("footfall_gait_style");
+        dock.set_default_slot(editor_dock::DockSlot::RIGHT_BL);
+        dock
+    }
+
+    fn build(&mut self) {
+        if self.form.is_some() {
+            return;
+        }
+        let dock = self.to_gd();
+        for mut old in dock.get_children().iter_shared() {
+            old.queue_free();
+        }
+        self.form = Some(Form::build(&dock));
+        self.refresh();
+    }
+
+    /// What to make, as the form says.
+    fn order(&self) -> Result<Order, String> {
+        let form = self.form.as_ref().ok_or("The dock is not open.")?;
+        if self.recordings.is_empty() {
+            return Err(
+                "Add recordings of the style first: BVH files of someone who walks in it."
+                    .to_owned(),
+            );
+        }
+        let name = form.name();
+        if name.is_empty() {
+            return Err("Give the style a name.".to_owned());
+        }
+        let file = form.file();
+        if !file.starts_with("res://") || !file.ends_with(".footstyle") {
+            return Err(format!(
+                "{file}: give a file of this project, such as res://styles/{name}.footstyle."
+            ));
+        }
+        let model = form
+            .base_model()
+            .ok_or("Choose a base: an imported .footfall file.")?;
+        let trained = model.bind().trained()?;
+        let WalkModel::Gait(base) = &*trained else {
+            return Err(
+                "A switching model (.footdyn) wears no styles. Choose an imported .footfall file."
+                    .to_owned(),
+            );
+        };
+        Ok(Order {
+            base: Arc::clone(base),
+            recordings: self.recordings.clone(),
+            name,
+            steps: form.steps(),
+            file: PathBuf::from(globalized(&GString::from(&file)).to_string()),
+        })
+    }
+
+    /// A style has been made: the project imports it, and it walks on the stage.
+    fn take(&mut self, made: &Made) {
+        let style = &made.style;
+        let Some(form) = &mut self.form else { return };
+        let file = GString::from(&form.file());
+        self.made = Some(file.clone());
+        if let Ok(space) = StyleSpace::new(&made.base, &[Arc::clone(style)]) {
+            form.show_walker(&Arc::new(space));
+        }
+        let steps = style.provenance.steps;
+        let few = if steps < 6 {
+            " Six to twelve are better."
+        } else {
+            ""
+        };
+        let text = format!(
+            "{file}: {steps} steps at {:.2} m/s, {:.0} steps a minute.{few}",
+            style.speed_mps,
+            60.0 * style.cadence_hz
+        );
+        self.tell(&text);
+        if let Some(mut files) = EditorInterface::singleton().get_resource_filesystem() {
+            files.scan();
+        }
+    }
+
+    /// The style that was made, as the project has imported it.
+    fn made_style(&self) -> Result<Gd<GaitStyle>, String> {
+        let file = self.made.as_ref().ok_or("Make a style first.")?;
+        let found = ResourceLoader::singleton().load(file);
+        found
+            .and_then(|resource| resource.try_cast().ok())
+            .ok_or_else(|| format!("{file} is not imported yet. Try again in a moment."))
+    }
+
+    fn tell(&mut self, message: &str) {
+        if let Some(form) = &mut self.form {
+            form.tell(message);
+        }
+    }
+
+    fn refresh(&mut self) {
+        let names = self.recordings.iter().map(|path| name_of(path));
+        if let Some(form) = &mut self.form {
+            let state = match (&self.job, &self.made) {
+                (Some(_), _) => State::Working,
+                (None, Some(_)) => State::Made,
+                (None, None) => State::Empty,
+            };
+            form.refresh(names, state);
+        }
+    }
+}
+
+/// Adds a style to what a walker wears, or gives it full weight if it is worn already.
+fn wear(walker: &Gd<GaitGenerator3D>, style: &Gd<GaitStyle>) {
+    let Some(mut undo) = EditorInterface::singleton().get_editor_undo_redo() else {
+        return;
+    };
+    let old: Array<Option<Gd<GaitStyle>>> = walker.get("styles").to();
+    let old_weights: PackedFloat32Array = walker.get("style_weights").to();
+    let mut styles = old.duplicate_shallow();
+    let mut weights = old_weights.clone();
+    weights.resize(styles.len());
+    let path = style.get_path();
+    let place = styles.iter_shared().position(|worn| {
+        worn.is_some_and(|worn| &worn == style || (!path.is_empty() && worn.get_path() == path))
+    });
+    if let Some(place) = place {
+        weights.as_mut_slice()[place] = 1.0;
+    } else {
+        styles.push(style);
+        weights.push(1.0);
+    }
+    undo.create_action("Wear Gait Style");
+    undo.add_do_property(walker, "styles", &styles.to_variant());
+    undo.add_do_property(walker, "style_weights", &weights.to_variant());
+    undo.add_undo_property(walker, "styles", &old.to_variant());
+    undo.add_undo_property(walker, "style_weights", &old_weights.to_variant());
+    undo.commit_action();
+}
+
+/// A path of the project as one of the machine.
+fn globalized(path: &GString) -> GString {
+    ProjectSettings::singleton().globalize_path(path)
+}
+
+fn name_of(path: &Path) -> String {
+    let name = path.file_name();
+    name.map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default()
+}

@@ -1,0 +1,59 @@
+//! Where the walk will go, for the editor to draw.
+
+use super::GaitGenerator3D;
+use crate::convert;
+use footfall_core::Pose;
+use footfall_synth::Footstep;
+use glam::{Affine3A, Vec3};
+use godot::obj::WithBaseField as _;
+
+/// How many steps ahead are shown, and how long is waited for them at most, in frames.
+const STEPS_AHEAD: usize = 12;
+const MOST_FRAMES: usize = 600;
+const FRAME_SECS: f32 = 1.0 / 30.0;
+
+/// Steps to come.
+pub(crate) struct Way {
+    /// Places of the walker on the ground, from where it stands now.
+    pub(crate) path: Vec<Vec3>,
+    /// Places of its feet.
+    pub(crate) footsteps: Vec<Footstep>,
+    /// Global transform of the ground that it stands on now.
+    pub(crate) world_from_ground: Affine3A,
+}
+
+impl GaitGenerator3D {
+    /// The way of the walk from its beginning, under the controls as they are; `None` where nobody can walk.
+    pub(crate) fn foresee(&self) -> Option<Way> {
+        let skeleton = self.base().get_skeleton()?;
+        if !skeleton.is_inside_tree() {
+            return None;
+        }
+        let (character, binding) = self.bind(&skeleton).ok()?;
+        let source = self.find_source().ok()?;
+        let config = self.config();
+        let weights = self.style_weights.as_slice();
+        let mut generator = source.generator(weights, &binding.body, &config).ok()?;
+        let controls = self.controls();
+        if controls.is_standing() {
+            return None;
+        }
+        let mut pose = Pose::rest(&binding.body);
+        let (mut path, mut footsteps) = (vec![Vec3::ZERO], Vec::new());
+        for _ in 0..MOST_FRAMES {
+            generator.step(FRAME_SECS, &controls, &mut pose);
+            path.push(generator.start_from_character().position);
+            footsteps.extend_from_slice(generator.footsteps());
+            if footsteps.len() >= STEPS_AHEAD {
+                break;
+            }
+        }
+        let world_from_character = character.get_global_transform().orthonormalized();
+        Some(Way {
+            path,
+            footsteps,
+            world_from_ground: convert::affine(world_from_character)
+                * binding.character_from_ground,
+        })
+    }
+}

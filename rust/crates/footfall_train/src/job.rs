@@ -1,0 +1,162 @@
+//! Work on a thread of its own: how far it is, whether it is to stop, and what comes of it.
+
+use crate::progress::Progress;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, TryRecvError};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What the worker tells while it works.
+#[derive(Clone, Debug, Default)]
+pub struct JobProgress {
+    /// What is being done.
+    pub task: String,
+    /// Parts of it that are finished.
+    pub done: usize,
+    /// All of its parts; 0 when nobody knows.
+    pub total: usize,
+    /// Log-likelihoods so far.
+    pub fits: Vec<f64>,
+}
+
+struct Shared {
+    cancelled: AtomicBool,
+    progress: Mutex<JobProgress>,
+    wake: Box<dyn Fn() + Send + Sync>,
+}
+
+/// The worker's end.
+pub struct Reporter(Arc<Shared>);
+
+impl core::fmt::Debug for Reporter {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Reporter").finish_non_exhaustive()
+    }
+}
+
+impl Reporter {
+    /// Tells what is being done; whether to go on with it.
+    pub fn tell(&self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
+        self.update(|progress| {
+            task.clone_into(&mut progress.task);
+            progress.done = done;
+            progress.total = total;
+        });
+        if self.0.cancelled.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn update(&self, change: impl FnOnce(&mut JobProgress)) {
+        change(
+            &mut self
+                .0
+                .progress
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner),
+        );
+        (self.0.wake)();
+    }
+}
+
+impl Progress for Reporter {
+    fn advance(&mut self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
+        self.tell(task, done, total)
+    }
+
+    fn fit(&mut self, log_likelihood: f64) {
+        self.update(|progress| progress.fits.push(log_likelihood));
+    }
+}
+
+/// Work that goes on. Dropping it asks it to stop, and forgets what it makes.
+pub struct Job<T> {
+    shared: Arc<Shared>,
+    receiver: Receiver<T>,
+}
+
+impl<T> core::fmt::Debug for Job<T> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Job")
+            .field("progress", &self.progress())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<T> Job<T> {
+    /// What it told last.
+    pub fn progress(&self) -> JobProgress {
+        self.shared
+            .progress
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+
+    /// Asks it to stop soon.
+    pub fn cancel(&self) {
+        self.shared.cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+impl<T: Send + 'static> Job<T> {
+    /// Starts work on a thread; `wake` is called there whenever there is something new.
+    pub fn start(
+        name: &str,
+        wake: impl Fn() + Send + Sync + 'static,
+        work: impl FnOnce(&mut Reporter) -> T + Send + 'static,
+    ) -> Self {
+        let shared = Arc::new(Shared {
+            cancelled: AtomicBool::new(false),
+            progress: Mutex::new(JobProgress {
+                task: name.to_owned(),
+                ..JobProgress::default()
+            }),
+            wake: Box::new(wake),
+        });
+        let (sender, receiver) = mpsc::channel();
+        let worker = Arc::clone(&shared);
+        // Where no thread can be had the sender is dropped, which shows as work that broke off.
+        drop(
+            std::thread::Builder::new()
+                .name(name.to_owned())
+                .spawn(move || {
+                    let made = work(&mut Reporter(Arc::clone(&worker)));
+                    // Nobody waits any more when the receiver is gone.
+                    drop(sender.send(made));
+                    (worker.wake)();
+                }),
+        );
+        Self { shared, receiver }
+    }
+
+    /// What came of it: `None` while it goes on, an error when it broke off. Whoever cancels gets nothing, even where it was
+    /// done by then.
+    pub fn poll(&self) -> Option<Result<T, String>> {
+        match self.receiver.try_recv() {
+            Ok(_) if self.shared.cancelled.load(Ordering::Relaxed) => {
+                Some(Err("stopped before the end; nothing was written".to_owned()))
+            }
+            Ok(made) => Some(Ok(made)),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Err(format!(
+                "{}: the work broke off; please report this, with what was being done",
+                self.progress().task
+            ))),
+        }
+    }
+}
+
+impl<T> Drop for Job<T> {
+    fn drop(&mut self) {
+        self.shared.cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+/// A job that there may be: polls it and forgets it when it has ended.
+pub fn finished<T: Send + 'static>(job: &mut Option<Job<T>>) -> Option<Result<T, String>> {
+    let ended = job.as_ref()?.poll()?;
+    *job = None;
+    Some(ended)
+}

@@ -1,0 +1,43 @@
+//! Recordings from files of their own, for tools in which a person picks them one by one.
+
+use crate::error::TrainError;
+use crate::progress::{Progress, advance};
+use crate::train::TrainingClip;
+use footfall_motion::recording::Recording;
+use footfall_motion::retarget::RetargetOptions;
+use std::path::PathBuf;
+
+/// Recordings, and who walks in each.
+#[derive(Clone, Debug, Default)]
+pub struct Recordings(pub Vec<(String, Recording)>);
+
+impl Recordings {
+    /// Reads files; each comes with the name of who walks in it.
+    ///
+    /// # Errors
+    /// [`TrainError::Recording`] names the file; [`TrainError::NoRecordings`] where there is none.
+    pub fn read(
+        chosen: &[(PathBuf, String)],
+        progress: &mut dyn Progress,
+    ) -> Result<Self, TrainError> {
+        if chosen.is_empty() {
+            return Err(TrainError::NoRecordings);
+        }
+        let mut read = Vec::with_capacity(chosen.len());
+        for (done, (path, subject)) in chosen.iter().enumerate() {
+            advance(progress, "reading", done, chosen.len())?;
+            let recording = Recording::read(path, &RetargetOptions::default())?;
+            read.push((subject.clone(), recording));
+        }
+        Ok(Self(read))
+    }
+
+    /// As training takes them.
+    pub fn clips(&self) -> Vec<TrainingClip> {
+        let read = self.0.iter();
+        read.map(|(subject, recording)| {
+            TrainingClip::new(subject, &recording.retargeted, &recording.walks)
+        })
+        .collect()
+    }
+}

@@ -1,0 +1,145 @@
+@tool
+extends EditorPlugin
+## Tests of the add-on's half in the editor: `cargo xtask open tests/godot -- --headless --editor -- --editor-tests`.
+
+const SCRATCH := "res://scratch"
+const SCENE := SCRATCH + "/walker.tscn"
+const RECORDING := "res://../data/walker_1_fast.bvh"
+const STYLE := "res://styles/dock_test.footstyle"
+const PATIENCE_SECS := 60.0
+
+var _failed := 0
+var _passed := 0
+
+
+func _enter_tree() -> void:
+	if "--editor-tests" in OS.get_cmdline_user_args():
+		_run.call_deferred()
+
+
+func _run() -> void:
+	# The first scan imports what there is.
+	await _until(func() -> bool: return not EditorInterface.get_resource_filesystem().is_scanning(), "the first scan")
+	await get_tree().create_timer(0.5).timeout
+	var dock := _only("FootfallStyleDock", EditorInterface.get_base_control())
+	if dock:
+		await _test_dock(dock)
+		await _test_scene(dock)
+	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE))
+	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE + ".import"))
+	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE.get_base_dir()))
+	DirAccess.remove_absolute(ProjectSettings.globalize_path(SCENE))
+	DirAccess.remove_absolute(ProjectSettings.globalize_path(SCRATCH))
+	print("%d passed, %d failed" % [_passed, _failed])
+	get_tree().quit(1 if _failed > 0 or _passed == 0 else 0)
+
+
+func _test_dock(dock: Node) -> void:
+	dock.call(&"make")
+	_check(dock.call(&"get_message").contains("Add recordings"), "nothing is made of nothing")
+	dock.call(&"add_recordings", PackedStringArray([RECORDING, RECORDING]))
+	dock.call(&"make")
+	_check(dock.call(&"get_message").contains("name"), "a style has a name")
+	dock.call(&"set_style_name", "Dock Test")
+
+	dock.call(&"make")
+	_check(dock.call(&"is_working"), "it works in the background")
+	dock.call(&"cancel")
+	await _until(func() -> bool: return not dock.call(&"is_working"), "cancelling")
+	_check(dock.call(&"get_message").contains("stopped"), "it says that it was stopped: " + dock.call(&"get_message"))
+	_check(not FileAccess.file_exists(STYLE), "nothing was written")
+
+	dock.call(&"make")
+	await _until(func() -> bool: return not dock.call(&"is_working"), "making a style")
+	_check(dock.call(&"get_message").contains("steps at"), "the style is told of: " + dock.call(&"get_message"))
+	_check(FileAccess.file_exists(STYLE), "the style was written")
+	await _until(func() -> bool: return ResourceLoader.exists(STYLE), "the style's import")
+	_check(load(STYLE) is GaitStyle, "the project has it")
+	var stage := _only("FootfallWalkerView", dock)
+	_check(stage and stage.is_visible_in_tree() == dock.is_visible_in_tree(), "someone walks in it")
+	dock.call(&"remove_selected")
+	dock.call(&"make")
+	_check(dock.call(&"get_message").contains("Add recordings"), "a recording can be removed")
+
+
+func _test_scene(dock: Node) -> void:
+	_save_scene()
+	EditorInterface.open_scene_from_path(SCENE)
+	await _until(func() -> bool: return EditorInterface.get_edited_scene_root() != null, "the scene")
+	var character: Node3D = EditorInterface.get_edited_scene_root()
+	var gait: GaitGenerator3D = character.find_children("*", "GaitGenerator3D")[0]
+
+	EditorInterface.get_selection().clear()
+	dock.call(&"give_to_selected")
+	_check(dock.call(&"get_message").contains("Select"), "it says what to select")
+	EditorInterface.get_selection().add_node(gait)
+	dock.call(&"give_to_selected")
+	_check(gait.styles.size() == 1 and gait.style_weights == PackedFloat32Array([1.0]), "the walker wears the style")
+	var undo := EditorInterface.get_editor_undo_redo()
+	undo.get_history_undo_redo(undo.get_object_history_id(gait)).undo()
+	_check(gait.styles.is_empty() and gait.style_weights.is_empty(), "and takes it off again")
+
+	EditorInterface.edit_node(gait)
+	await get_tree().create_timer(0.5).timeout
+	var bar := _only("FootfallPreviewBar", EditorInterface.get_base_control())
+	if bar:
+		var slider: HSlider = bar.find_children("*", "HSlider", true, false)[0]
+		var play: Button = bar.find_children("*", "Button", true, false)[0]
+		slider.value = 5.0
+		await get_tree().create_timer(0.3).timeout
+		_check(absf(gait.call(&"get_time") - 5.0) < 1e-3, "the slider goes to a time: %f" % gait.call(&"get_time"))
+		_check(character.position == Vector3.ZERO, "nobody travels in the editor")
+		_check(gait.playing, "the preview leaves the property alone")
+		play.pressed.emit()
+		await get_tree().create_timer(0.5).timeout
+		_check(gait.call(&"get_time") > 5.05, "it plays on")
+	_check(not gait.get_gizmos().is_empty(), "there is a gizmo")
+	var packed := PackedScene.new()
+	packed.pack(character)
+	ResourceSaver.save(packed, SCENE)
+	_check(not FileAccess.get_file_as_string(SCENE).contains("preview"), "nothing of the preview is saved")
+
+
+## A character built as the tests build theirs, as a scene.
+func _save_scene() -> void:
+	DirAccess.make_dir_recursive_absolute(ProjectSettings.globalize_path(SCRATCH))
+	var walker := Walker.new().build()
+	var root := Node3D.new()
+	root.name = "Character"
+	walker.skeleton.reparent(root, false)
+	walker.skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_IDLE
+	for signal_name: StringName in [&"footstep", &"modification_processed"]:
+		for connection: Dictionary in walker.gait.get_signal_connection_list(signal_name):
+			walker.gait.disconnect(signal_name, connection["callable"])
+	walker.skeleton.owner = root
+	walker.gait.owner = root
+	var packed := PackedScene.new()
+	packed.pack(root)
+	ResourceSaver.save(packed, SCENE)
+	root.free()
+	walker.free()
+
+
+func _only(type: String, under: Node) -> Node:
+	var found := under.find_children("*", type, true, false)
+	_check(found.size() == 1, "there is one %s" % type)
+	return found[0] if found else null
+
+
+func _until(done: Callable, what: String) -> void:
+	var waited := 0.0
+	while not done.call():
+		await get_tree().process_frame
+		waited += get_process_delta_time()
+		if waited > PATIENCE_SECS:
+			_check(false, "in vain: " + what)
+			return
+
+
+func _check(holds: bool, what: String) -> void:
+	if holds:
+		_passed += 1
+		print("ok     ", what)
+	else:
+		_failed += 1
+		print("FAILED ", what)
