@@ -242,6 +242,17 @@ impl Agent {
         }
     }
 
+    /// Has memory bring what [`advance`](Self::advance) reads.
+    pub(super) fn fetch(&self) {
+        core::hint::black_box((self.seed, self.clock_secs, self.controls));
+        self.walker.fetch_place();
+    }
+
+    /// Has memory bring what [`pose`](Self::pose) reads.
+    pub(super) fn fetch_pose(&self) {
+        self.walker.fetch_pose();
+    }
+
     pub(super) fn pose(&self, out: &mut CrowdPose) {
         self.walker.pose(out);
     }

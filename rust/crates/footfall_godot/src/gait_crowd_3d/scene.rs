@@ -3,7 +3,7 @@
 use super::actors::Actors;
 use super::flock::{Flock, INSTANCE_NUMBERS, POSE_BYTES, write_instance, write_pose};
 use super::tiers::{Chooser, Limits, Tier};
-use super::walkers::{GROUPS, Walkers};
+use super::walkers::{FETCHED, GROUPS, Walkers};
 use crate::convert;
 use crate::physics_ground::PhysicsGround;
 use footfall_ik::placement::Terrain as _;
@@ -172,13 +172,18 @@ impl CrowdScene {
         let turned_by = &mesh.turned_by;
         self.near
             .poses()
-            .par_chunks_mut(POSE_BYTES)
-            .zip(shown)
-            .with_min_len(64)
-            .for_each(|(out, index)| {
+            .par_chunks_mut(FETCHED * POSE_BYTES)
+            .zip(shown.par_chunks(FETCHED))
+            .with_min_len(8)
+            .for_each(|(out, shown)| {
+                for index in shown {
+                    agents[*index as usize].fetch_pose();
+                }
                 let mut pose = CrowdPose::default();
-                agents[*index as usize].pose(&mut pose);
-                write_pose(&pose, turned_by, out);
+                for (out, index) in out.chunks_exact_mut(POSE_BYTES).zip(shown) {
+                    agents[*index as usize].pose(&mut pose);
+                    write_pose(&pose, turned_by, out);
+                }
             });
         if !shown.is_empty() {
             self.near.upload_poses();

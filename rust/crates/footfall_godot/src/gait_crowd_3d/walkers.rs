@@ -15,6 +15,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Walkers that one thread takes at a time.
 const CHUNK: usize = 128;
+/// Walkers whose memory is fetched together.
+pub(super) const FETCHED: usize = 16;
 /// Walkers far away are in so many groups, of which one moves in each frame.
 pub(super) const GROUPS: usize = 4;
 /// Who is near whom is looked at in every so many frames.
@@ -258,11 +260,19 @@ impl Walkers {
             let thread = rayon::current_thread_index().map_or(0, |index| index + 1);
             let workshop = &workshops[thread.min(workshops.len() - 1)];
             let mut workshop = workshop.lock().unwrap_or_else(PoisonError::into_inner);
-            let everybody = agents.iter_mut().zip(tiers).zip(drawn);
-            for (index, ((agent, tier), drawn)) in everybody.enumerate() {
+            let moves = |index: usize, tier: Tier| {
                 // Those far away move in their group's frame, for all frames since the last one.
                 let group = (chunk * CHUNK + index) % GROUPS;
-                if *tier == Tier::Far && frame % GROUPS as u64 != group as u64 {
+                tier != Tier::Far || frame % GROUPS as u64 == group as u64
+            };
+            for index in 0..agents.len() {
+                if index.is_multiple_of(FETCHED) {
+                    let together = index..agents.len().min(index + FETCHED);
+                    let moving = together.filter(|index| moves(*index, tiers[*index]));
+                    moving.for_each(|index| agents[index].fetch());
+                }
+                let (agent, tier, drawn) = (&mut agents[index], &tiers[index], &mut drawn[index]);
+                if !moves(index, *tier) {
                     continue;
                 }
                 let secs = (now_secs - agent.clock_secs) as f32;

@@ -14,6 +14,9 @@ const POSE_NUMBERS: usize = JOINT_COUNT * JOINT_NUMBERS;
 const ROTATION_STEPS: f32 = 32_767.0;
 const POSITION_STEPS: f32 = 10_000.0;
 
+/// Bytes that memory comes in.
+const CACHE_LINE: usize = 64;
+
 /// Where every joint is and how it is turned against the T-pose, in the character's own space, in the order of [`Joint::ALL`].
 #[derive(Clone, Debug)]
 #[repr(align(32))]
@@ -112,6 +115,23 @@ impl CrowdFrames {
     /// How many frames there are.
     pub(super) fn len(&self) -> usize {
         self.places.len()
+    }
+
+    /// The same for the places of a frame and of the one that follows.
+    pub(super) fn fetch_place(&self, frame: usize) {
+        for place in &self.places[frame..=frame + 1] {
+            core::hint::black_box(place.place.heading);
+        }
+    }
+
+    /// Reads a little of every cache line that [`blend`](Self::blend) will read: who does so for several steps before any is blended
+    /// waits for memory once, not for each.
+    pub(super) fn fetch(&self, frame: usize) {
+        for pose in &self.poses[frame..=frame + 1] {
+            for number in pose.iter().step_by(CACHE_LINE / size_of::<i16>()) {
+                core::hint::black_box(*number);
+            }
+        }
     }
 
     /// Writes the blend of a frame towards the one that follows.
