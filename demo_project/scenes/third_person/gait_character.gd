@@ -16,6 +16,8 @@ extends CharacterBody3D
 
 ## Where the camera looks, radians about +Y; what "forwards" on the stick means.
 var view_heading := PI
+## Walks where this agent is sent, around what is in the way, while nobody steers.
+@export var navigation: NavigationAgent3D
 ## Set to walk without a player: a direction on the ground, of length 0 to 1.
 var autopilot := Vector3.ZERO
 ## Whether it faces where the camera looks, whatever way it goes; the player's `aim` does the same.
@@ -65,6 +67,9 @@ func _wish() -> Vector3:
 	if autopilot != Vector3.ZERO:
 		return autopilot
 	var stick := Input.get_vector(&"walk_left", &"walk_right", &"walk_forward", &"walk_back")
+	if stick == Vector2.ZERO and navigation and not navigation.is_navigation_finished():
+		var way := navigation.get_next_path_position() - global_position
+		return Vector3(way.x, 0.0, way.z).limit_length(1.0)
 	return Vector3(stick.x, 0.0, stick.y).rotated(Vector3.UP, view_heading)
 
 

@@ -103,6 +103,53 @@ func test_walkers_go_where_they_are_sent_and_keep_apart() -> void:
 	check(nearest[0] > 0.3, "nobody walks through anybody: %.2f m" % nearest[0])
 
 
+## Two rooms of 10 × 10 m, and a door of 2 m between them at x = 0.
+func _rooms() -> NavigationRegion3D:
+	var mesh := NavigationMesh.new()
+	mesh.vertices = PackedVector3Array([
+		Vector3(-10, 0, -5), Vector3(-1, 0, -5), Vector3(-1, 0, -1), Vector3(-1, 0, 1), Vector3(-1, 0, 5), Vector3(-10, 0, 5),
+		Vector3(1, 0, -5), Vector3(10, 0, -5), Vector3(10, 0, 5), Vector3(1, 0, 5), Vector3(1, 0, 1), Vector3(1, 0, -1),
+	])
+	mesh.add_polygon([0, 1, 2, 3, 4, 5])
+	mesh.add_polygon([2, 11, 10, 3])
+	mesh.add_polygon([6, 7, 8, 9, 10, 11])
+	var region := NavigationRegion3D.new()
+	region.navigation_mesh = mesh
+	return region
+
+
+func test_walkers_find_their_way_over_the_navigation_map() -> void:
+	var region := _rooms()
+	add_child(region)
+	var crowd := _crowd(0, func(made: GaitCrowd3D) -> void: made.behaviour = GaitCrowd3D.SCRIPTED)
+	crowd.add_agents([Vector3(-6, 0, -4), Vector3(7, 0, 4)], [0.0, 0.0])
+	check(not crowd.set_destinations([Vector3(6, 0, -4), Vector3(NAN, 0, 0)]), "there is no map yet")
+	for frame: int in 60:
+		await get_tree().physics_frame
+		if crowd.set_destinations([Vector3(6, 0, -4), Vector3(NAN, 0, 0)]):
+			break
+	var widest := [0.0]
+	_advance(crowd, 1800, func() -> void:
+		var place := crowd.get_positions()[0]
+		if absf(place.x) < 0.8:
+			widest[0] = maxf(widest[0], absf(place.z)))
+	check_below(crowd.get_positions()[0].distance_to(Vector3(6, 0, -4)), 1.5, "it arrives")
+	check_below(widest[0], 1.6, "it goes through the door")
+
+	var wanderers := _crowd(20, func(made: GaitCrowd3D) -> void:
+		made.behaviour = GaitCrowd3D.NAVIGATE
+		made.area = Vector2(4, 4))
+	var left := {}
+	_advance(wanderers, 1500, func() -> void:
+		for index: int in 20:
+			var place := wanderers.get_positions()[index]
+			check(absf(place.x) < 11.5 and absf(place.z) < 6.5, "nobody leaves the map: %s" % place)
+			if absf(place.x) > 4.0:
+				left[index] = true)
+	check(left.size() > 12, "they go about: %d of 20" % left.size())
+	region.free()
+
+
 func test_a_path_is_followed() -> void:
 	var path := Path3D.new()
 	path.curve = Curve3D.new()

@@ -25,6 +25,7 @@ func _run() -> void:
 	if dock:
 		await _test_dock(dock)
 		await _test_scene(dock)
+		await _test_hot_reload()
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE + ".import"))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE.get_base_dir()))
@@ -98,6 +99,24 @@ func _test_scene(dock: Node) -> void:
 	packed.pack(character)
 	ResourceSaver.save(packed, SCENE)
 	_check(not FileAccess.get_file_as_string(SCENE).contains("preview"), "nothing of the preview is saved")
+
+
+## What a developer of the add-on does: the library is built anew while the editor is open.
+func _test_hot_reload() -> void:
+	var character: Node3D = EditorInterface.get_edited_scene_root()
+	var gait: GaitGenerator3D = character.find_children("*", "GaitGenerator3D")[0]
+	var model := gait.model
+	var speed := gait.speed
+	GDExtensionManager.reload_extension("res://addons/footfall/footfall.gdextension")
+	await get_tree().create_timer(1.0).timeout
+	_check(is_instance_valid(gait) and gait.speed == speed and gait.model == model, "properties outlive a hot reload")
+	var before: float = gait.call(&"get_time")
+	await get_tree().create_timer(0.5).timeout
+	_check(gait.call(&"get_time") > before, "it walks on after a hot reload")
+	var dock := _only("FootfallStyleDock", EditorInterface.get_base_control())
+	if dock:
+		dock.call(&"make")
+		_check(dock.call(&"get_message").contains("Add recordings"), "the dock works after a hot reload")
 
 
 ## A character built as the tests build theirs, as a scene.

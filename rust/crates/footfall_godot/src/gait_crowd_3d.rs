@@ -5,6 +5,7 @@ mod agent;
 mod crowd_mesh;
 mod flock;
 mod making;
+mod navigation;
 mod neighbours;
 mod save;
 mod scene;
@@ -16,10 +17,10 @@ use crate::convert;
 use crate::gait_model::{GaitModel, NO_MODEL};
 use crate::gait_style::GaitStyle;
 use agent::Goal;
-use footfall_core::Side;
 use glam::{Vec2, Vec3};
 use godot::classes::{Engine, INode3D, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
+use navigation::Navigation;
 use scene::{CrowdScene, Look};
 use tiers::Limits;
 use walkers::Walkers;
@@ -38,6 +39,7 @@ pub(crate) enum CrowdBehaviour {
     Wander = 0,
     Path = 1,
     Scripted = 2,
+    Navigate = 3,
 }
 
 /// Walks thousands of characters: each in its own style, speed, size and phase, from steps of its own.
@@ -85,7 +87,8 @@ pub(crate) struct GaitCrowd3D {
     #[init(val = 200)]
     count: i64,
 
-    /// What walkers do by themselves: wander over `area`, follow `path`, or only what a script tells them.
+    /// What walkers do by themselves: wander over `area`, follow `path`, only what a script tells them, or go from place to place of the
+    /// world's navigation map.
     #[export]
     #[var(set = set_behaviour)]
     behaviour: CrowdBehaviour,
@@ -106,6 +109,11 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_path_width)]
     #[init(val = 4.0)]
     path_width: f64,
+
+    /// The navigation layers that walkers keep to, for `behaviour` navigate and `set_destinations()`.
+    #[export(flags_3d_navigation)]
+    #[init(val = 1)]
+    navigation_layers: u32,
 
     /// The slowest and the fastest walker.
     #[export(range = (0.4, 2.2, 0.01, or_greater, or_less, suffix = "m/s"))]
@@ -222,9 +230,14 @@ impl GaitCrowd3D {
     /// `behaviour`: walkers follow `path`.
     #[constant]
     const PATH: i32 = CrowdBehaviour::Path as i32;
-    /// `behaviour`: walkers do what `set_targets()` or `set_turn_rates()` tell them.
+    /// `behaviour`: walkers do what `set_targets()`, `set_destinations()` or `set_turn_rates()` tell them.
     #[constant]
     const SCRIPTED: i32 = CrowdBehaviour::Scripted as i32;
+
+    /// `behaviour`: walkers go from place to place of the world's navigation map, around what is between them. A few hundred find their
+    /// first way within a second.
+    #[constant]
+    const NAVIGATE: i32 = CrowdBehaviour::Navigate as i32;
 
     /// Feet touched down in the last frame: whose, which (0 left, 1 right), and where in global space. One signal for all of them.
     #[signal]
@@ -336,20 +349,41 @@ impl GaitCrowd3D {
         self.set_each(turn_rates.as_slice(), |agent, rate| {
             if rate.is_finite() {
                 agent.goal = Goal::Turn(*rate);
+                agent.route.clear();
             }
         });
     }
 
-    /// Where each walker goes, in this node's space, for example the next point of a navigation path. It stops there. For `behaviour`
-    /// scripted. Not finite: its goal stays.
+    /// Where each walker goes straight, in this node's space. It stops there. For `behaviour` scripted. Not finite: its goal stays.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_targets(&mut self, targets: PackedVector3Array) {
         self.set_each(targets.as_slice(), |agent, target| {
             if target.is_finite() {
                 agent.goal = Goal::Place(Vec2::new(target.x, target.z));
+                agent.route.clear();
             }
         });
+    }
+
+    /// Where each walker goes over the navigation map of the world, around what is between, in this node's space. It stops there. For
+    /// `behaviour` scripted. Not finite: its goal stays. Each way takes some tens of microseconds to find, once.
+    ///
+    /// Returns whether there was a way for everybody; whoever has none keeps its goal. In the first frames of a scene there is no map yet.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_destinations(&mut self, destinations: PackedVector3Array) -> bool {
+        let host = self.to_gd().upcast::<Node3D>();
+        let Some(mut navigation) = Navigation::of(&host, self.navigation_layers) else {
+            return false;
+        };
+        let mut all = true;
+        self.set_each(destinations.as_slice(), |agent, place| {
+            if place.is_finite() {
+                all &= navigation.send(agent, *place);
+            }
+        });
+        all
     }
 
     /// The tint of each walker.
@@ -542,7 +576,7 @@ impl GaitCrowd3D {
         agents.map(of).collect()
     }
 
-    fn set_each<T>(&mut self, values: &[T], set: impl Fn(&mut agent::Agent, &T)) {
+    fn set_each<T>(&mut self, values: &[T], mut set: impl FnMut(&mut agent::Agent, &T)) {
         self.make();
         if let Some(walkers) = &mut self.walkers {
             for (agent, value) in walkers.agents.iter_mut().zip(values) {
@@ -589,6 +623,11 @@ impl GaitCrowd3D {
             return;
         };
         walkers.repeat_far(repeat_far);
+        if walkers.navigate()
+            && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)
+        {
+            navigation.wander(&mut walkers);
+        }
         walkers.advance(dt_secs, avoidance);
         scene::find_ground(&mut walkers, &host, mask);
         let scene = scene.or_else(|| {
@@ -600,7 +639,7 @@ impl GaitCrowd3D {
             scene.draw(&mut walkers, &host, &limits, &look);
             scene
         });
-        let landed = walkers.landed();
+        let landed = self.landed(&walkers);
         // A script that was called in between may have made everything anew.
         if self.walkers.is_none() && self.base().is_inside_tree() {
             self.walkers = Some(walkers);
@@ -608,8 +647,8 @@ impl GaitCrowd3D {
         } else if let Some(scene) = drawn {
             scene.free();
         }
-        if !landed.is_empty() && !Engine::singleton().is_editor_hint() {
-            self.tell(&landed);
+        if let Some((agents, feet, positions)) = landed {
+            self.signals().footsteps().emit(&agents, &feet, &positions);
         }
     }
 
@@ -628,21 +667,22 @@ impl GaitCrowd3D {
         }
     }
 
-    fn tell(&mut self, landed: &[(u32, Side, Vec3)]) {
+    /// What `footsteps` has to tell, if anything; nothing in the editor.
+    fn landed(
+        &self,
+        walkers: &Walkers,
+    ) -> Option<(PackedInt32Array, PackedByteArray, PackedVector3Array)> {
+        walkers.landed().next()?;
+        if Engine::singleton().is_editor_hint() {
+            return None;
+        }
         let world = self.base().get_global_transform();
-        let agents: PackedInt32Array = landed
-            .iter()
-            .map(|(agent, ..)| agent.cast_signed())
-            .collect();
-        let feet: PackedByteArray = landed
-            .iter()
-            .map(|(_, side, _)| side.index() as u8)
-            .collect();
-        let positions: PackedVector3Array = landed
-            .iter()
-            .map(|(.., place)| world * convert::vector3(*place))
-            .collect();
-        self.signals().footsteps().emit(&agents, &feet, &positions);
+        let agents = walkers.landed().map(|(agent, ..)| convert::count(agent));
+        let feet = walkers.landed().map(|(_, side, _)| side.index() as u8);
+        let places = walkers
+            .landed()
+            .map(|(.., place)| world * convert::vector3(place));
+        Some((agents.collect(), feet.collect(), places.collect()))
     }
 }
 

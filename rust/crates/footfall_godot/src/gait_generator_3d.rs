@@ -253,7 +253,7 @@ impl GaitGenerator3D {
     }
 
     /// Goes to a time of the walk, in seconds from where it began: it is walked there from its beginning with the speed, turning and styles that
-    /// are set now. The character does not travel by it. At most an hour; takes about a millisecond for a minute.
+    /// are set now. The character does not travel by it. At most an hour; a minute takes some milliseconds.
     #[func]
     pub(crate) fn seek(&mut self, seconds: f64) {
         if seconds.is_finite() {

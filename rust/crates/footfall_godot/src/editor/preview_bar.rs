@@ -48,7 +48,7 @@ impl FootfallPreviewBar {
         let mut bar = Self::new_alloc();
         let mut play = Button::new_alloc();
         play.set_tooltip_text("Play or pause this walk in the editor");
-        // By name: these connections outlive a hot reload of the library.
+        // By name: typed connections are cut, with a warning, when the library is reloaded.
         play.connect("pressed", &bar.callable("toggle"));
         let mut time = HSlider::new_alloc();
         time.set_max(SHOWN_SECS);

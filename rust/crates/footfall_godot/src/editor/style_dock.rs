@@ -35,12 +35,13 @@ pub(super) struct FootfallStyleDock {
 #[godot_api]
 impl IEditorDock for FootfallStyleDock {
     fn enter_tree(&mut self) {
-        self.build();
+        if self.form.is_none() {
+            self.form = Some(Form::build(&self.to_gd()));
+            self.refresh();
+        }
     }
 
     fn process(&mut self, _delta: f64) {
-        // A hot reload of the library forgets the form.
-        self.build();
         let Some(job) = &self.job else { return };
         let told = job.progress();
         if let Some(form) = &mut self.form {
@@ -182,18 +183,6 @@ impl FootfallStyleDock {
         dock.set_layout_key("footfall_gait_style");
         dock.set_default_slot(editor_dock::DockSlot::RIGHT_BL);
         dock
-    }
-
-    fn build(&mut self) {
-        if self.form.is_some() {
-            return;
-        }
-        let dock = self.to_gd();
-        for mut old in dock.get_children().iter_shared() {
-            old.queue_free();
-        }
-        self.form = Some(Form::build(&dock));
-        self.refresh();
     }
 
     /// What to make, as the form says.

@@ -5,7 +5,7 @@ use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop
 use glam::{Vec2, Vec3};
 
 /// Who is this close to a place has arrived there, metres.
-pub(super) const ARRIVED_M: f32 = 1.0;
+const ARRIVED_M: f32 = 1.0;
 /// How fast somebody turns towards where it wants to go: rad/s for each radian that is missing, and at most.
 const TURN_GAIN: f32 = 1.6;
 const MAX_TURN_RADPS: f32 = 1.3;
@@ -75,6 +75,8 @@ pub(super) struct Agent {
     pub(super) velocity: Vec2,
     /// Weights of the styles that it wears.
     pub(super) weights: Vec<f32>,
+    /// Places to go to after its goal, the next one last.
+    pub(super) route: Vec<Vec2>,
     /// How far along a path it is, metres, and how far beside its middle.
     pub(super) progress_m: f32,
     pub(super) aside_m: f32,
@@ -102,6 +104,7 @@ impl Agent {
             ground_m: place.y,
             velocity: Vec2::ZERO,
             weights: Vec::new(),
+            route: Vec::new(),
             progress_m: 0.0,
             aside_m: 0.0,
             landed: None,
@@ -240,6 +243,28 @@ impl Agent {
             place: self.level(),
             velocity: self.velocity,
         }
+    }
+
+    /// Whether it goes somewhere and has not arrived.
+    pub(super) fn is_on_its_way(&self) -> bool {
+        match self.goal {
+            Goal::Place(place) => !self.route.is_empty() || !self.is_at(place),
+            Goal::Turn(_) => false,
+        }
+    }
+
+    /// Goes on to the next place of its route once it has come to its goal.
+    pub(super) fn follow_route(&mut self) {
+        if let Goal::Place(place) = self.goal
+            && self.is_at(place)
+            && let Some(next) = self.route.pop()
+        {
+            self.goal = Goal::Place(next);
+        }
+    }
+
+    fn is_at(&self, place: Vec2) -> bool {
+        place.distance(self.level()) < ARRIVED_M
     }
 
     /// Has memory bring what [`advance`](Self::advance) reads.

@@ -28,6 +28,7 @@ impl GaitCrowd3D {
     pub(super) fn way(&self) -> Result<Way, String> {
         match self.behaviour {
             CrowdBehaviour::Scripted => Ok(Way::Told),
+            CrowdBehaviour::Navigate => Ok(Way::Navigate),
             CrowdBehaviour::Wander => Ok(Way::Wander {
                 half: 0.5 * Vec2::new(self.area.x, self.area.y),
             }),

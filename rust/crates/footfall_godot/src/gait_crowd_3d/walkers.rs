@@ -105,7 +105,7 @@ impl Walkers {
                     let (place, direction) = path.beside(progress, aside);
                     (place, direction.x.atan2(direction.y), progress, aside)
                 }
-                Way::Told | Way::Wander { .. } => {
+                Way::Told | Way::Wander { .. } | Way::Navigate => {
                     let across = Vec2::new(share(0), share(1)) * 2.0 - Vec2::ONE;
                     let heading = core::f32::consts::TAU * (index as f32 * GOLDEN * GOLDEN).fract();
                     (across * self.settings.half_area, heading, 0.0, 0.0)
@@ -113,6 +113,9 @@ impl Walkers {
             };
             self.add(Vec3::new(place.x, 0.0, place.y), heading, None);
             if let Some(agent) = self.agents.last_mut() {
+                if self.way.is_looked_for() {
+                    agent.goal = Goal::Place(place);
+                }
                 agent.progress_m = progress;
                 agent.aside_m = aside;
             }
@@ -217,6 +220,11 @@ impl Walkers {
         }
     }
 
+    /// Whether walkers go from place to place of the navigation map.
+    pub(super) fn navigate(&self) -> bool {
+        self.way.is_looked_for()
+    }
+
     /// Whether walkers far away repeat their steps.
     pub(super) fn repeat_far(&mut self, repeats: bool) {
         self.repeats = repeats;
@@ -305,13 +313,11 @@ impl Walkers {
     }
 
     /// Whose feet landed in the last frame, which, and where.
-    pub(super) fn landed(&self) -> Vec<(u32, Side, Vec3)> {
+    pub(super) fn landed(&self) -> impl Iterator<Item = (usize, Side, Vec3)> {
         let agents = self.agents.iter().enumerate();
-        agents
-            .filter_map(|(index, agent)| {
-                let (side, place) = agent.landed.filter(|_| self.moved(index))?;
-                Some((index as u32, side, place))
-            })
-            .collect()
+        agents.filter_map(|(index, agent)| {
+            let (side, place) = agent.landed.filter(|_| self.moved(index))?;
+            Some((index, side, place))
+        })
     }
 }

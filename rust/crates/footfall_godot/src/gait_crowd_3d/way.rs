@@ -1,6 +1,6 @@
 //! Where walkers of a crowd go by themselves.
 
-use super::agent::{ARRIVED_M, Agent, Goal};
+use super::agent::{Agent, Goal};
 use glam::Vec2;
 
 /// Who follows a path looks so far ahead on it, metres.
@@ -19,6 +19,8 @@ pub(super) enum Way {
     },
     /// Along a path, beside each other.
     Path(Path),
+    /// From one place of the navigation map to another, around what is between them.
+    Navigate,
 }
 
 /// A line through points of the plane.
@@ -88,16 +90,17 @@ impl Path {
 }
 
 impl Way {
+    /// Whether walkers wait for a way to be found.
+    pub(super) const fn is_looked_for(&self) -> bool {
+        matches!(self, Self::Navigate)
+    }
+
     /// Sets a walker's goal, if the crowd goes anywhere by itself.
     pub(super) fn lead(&self, agent: &mut Agent) {
         match self {
-            Self::Told => {}
+            Self::Told | Self::Navigate => agent.follow_route(),
             Self::Wander { half } => {
-                let arrived = match agent.goal {
-                    Goal::Place(place) => place.distance(agent.level()) < ARRIVED_M,
-                    Goal::Turn(_) => true,
-                };
-                if arrived {
+                if !agent.is_on_its_way() {
                     let next = [agent.chance(), agent.chance()].map(|share| 2.0 * share - 1.0);
                     agent.goal = Goal::Place(Vec2::from(next) * *half);
                 }

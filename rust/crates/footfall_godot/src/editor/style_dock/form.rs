@@ -112,7 +112,7 @@ impl Form {
         host.add_child(&scroll);
         host.add_child(&dialog);
 
-        // By name: these connections outlive a hot reload of the library.
+        // By name: typed connections are cut, with a warning, when the library is reloaded.
         let connect = |from: Gd<Control>, signal: &str, function: &str| {
             from.clone().connect(signal, &dock.callable(function));
         };
