@@ -35,6 +35,8 @@ pub(super) struct CrowdScene {
     chooser: Chooser,
     /// Frames that were drawn.
     drawn: u64,
+    /// The sides of what the camera sees, kept for its memory.
+    planes: Vec<Vec4>,
     /// The walkers in each instance of the near flock, and in each of a far one.
     shown: Vec<u32>,
     /// When each walker's pose among those far away was written last, counted in frames.
@@ -93,6 +95,7 @@ impl CrowdScene {
             actors: Actors::default(),
             chooser: Chooser::default(),
             drawn: 0,
+            planes: Vec::new(),
             shown: Vec::with_capacity(count),
             ticks: vec![0; count],
         })
@@ -120,12 +123,14 @@ impl CrowdScene {
                 .choose(place, limits, places, &mut walkers.tiers);
             self.lend(walkers, host, look);
         }
-        let planes = match camera.filter(|_| look.culls) {
-            Some(camera) => planes_of(&camera, host),
-            None => Vec::new(),
-        };
+        let mut planes = core::mem::take(&mut self.planes);
+        planes.clear();
+        if let Some(camera) = camera.filter(|_| look.culls) {
+            add_planes(&camera, host, &mut planes);
+        }
         self.draw_near(walkers, &planes);
         self.draw_far(walkers, &planes);
+        self.planes = planes;
         self.actors.pose(&walkers.agents);
     }
 
@@ -322,17 +327,14 @@ impl Bounds {
 }
 
 /// The planes around what a camera sees, in the crowd's space: normals outwards, and distances.
-fn planes_of(camera: &Gd<godot::classes::Camera3D>, host: &Gd<Node3D>) -> Vec<Vec4> {
+fn add_planes(camera: &Gd<godot::classes::Camera3D>, host: &Gd<Node3D>, planes: &mut Vec<Vec4>) {
     let world = convert::frame(host.get_global_transform());
-    let planes = camera.get_frustum();
-    planes
-        .iter_shared()
-        .map(|plane| {
-            let normal = convert::vec3(plane.normal);
-            let local = world.rotation.conjugate() * normal;
-            local.extend(plane.d - normal.dot(world.position))
-        })
-        .collect()
+    let sides = camera.get_frustum();
+    planes.extend(sides.iter_shared().map(|plane| {
+        let normal = convert::vec3(plane.normal);
+        let local = world.rotation.conjugate() * normal;
+        local.extend(plane.d - normal.dot(world.position))
+    }));
 }
 
 fn is_seen(place: Vec3, planes: &[Vec4]) -> bool {
