@@ -121,7 +121,6 @@ fn assert_placing_allocates_nothing(generator: GaitGenerator) {
     let mut walker = PlacedWalker::new(generator, &PlacementConfig::default());
     let controls = Controls {
         speed_mps: 0.9,
-        turn_rate_radps: 0.0,
         ..Controls::STAND
     };
     for frame in 0..900 {

@@ -67,7 +67,6 @@ impl Test {
             secs: 12.0,
             controls: Controls {
                 speed_mps,
-                turn_rate_radps: 0.0,
                 ..Controls::STAND
             },
             told: true,

@@ -623,7 +623,7 @@ impl GaitCrowd3D {
             return;
         };
         walkers.repeat_far(repeat_far);
-        if walkers.navigate()
+        if walkers.is_navigated()
             && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)
         {
             navigation.wander(&mut walkers);

@@ -320,14 +320,14 @@ impl GaitGenerator3D {
         if sizes_differ {
             self.base_mut().update_configuration_warnings();
         }
-        self.base_mut().update_gizmos();
+        self.redraw_way();
     }
 
     #[func]
     fn set_speed(&mut self, speed: f64) {
         if speed.is_finite() {
             self.speed = speed.max(0.0);
-            self.base_mut().update_gizmos();
+            self.redraw_way();
         }
     }
 
@@ -335,7 +335,7 @@ impl GaitGenerator3D {
     fn set_turn_rate(&mut self, turn_rate: f64) {
         if turn_rate.is_finite() {
             self.turn_rate = turn_rate;
-            self.base_mut().update_gizmos();
+            self.redraw_way();
         }
     }
 
@@ -343,7 +343,7 @@ impl GaitGenerator3D {
     fn set_direction(&mut self, direction: f64) {
         if direction.is_finite() {
             self.direction = direction;
-            self.base_mut().update_gizmos();
+            self.redraw_way();
         }
     }
 
@@ -417,8 +417,7 @@ impl GaitGenerator3D {
         }
         let (character, binding) = self.bind(skeleton)?;
         let config = self.config();
-        // The way ahead is drawn anew from here.
-        self.base_mut().update_gizmos();
+        self.redraw_way();
         let weights = self.style_weights.as_slice();
         Session::new(
             &source,
@@ -505,6 +504,13 @@ impl GaitGenerator3D {
     /// What tells bones from joints.
     pub(crate) fn bones(&self) -> Option<Gd<BoneMap>> {
         self.bone_map.clone()
+    }
+
+    /// Has the editor draw the way ahead anew. Games without the editor's half have nobody who draws it.
+    fn redraw_way(&mut self) {
+        if cfg!(feature = "editor") {
+            self.base_mut().update_gizmos();
+        }
     }
 
     /// Whether the editor holds the walk.

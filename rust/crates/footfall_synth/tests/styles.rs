@@ -78,7 +78,6 @@ fn generator(seed: u64) -> GaitGenerator {
 fn walking(speed_mps: f32) -> Controls {
     Controls {
         speed_mps,
-        turn_rate_radps: 0.0,
         ..Controls::STAND
     }
 }

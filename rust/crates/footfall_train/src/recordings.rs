@@ -1,8 +1,10 @@
 //! Recordings from files of their own, for tools in which a person picks them one by one.
 
+use crate::adapt::{AdaptConfig, AdaptMethod, Adapted, adapt_style};
 use crate::error::TrainError;
 use crate::progress::{Progress, advance};
 use crate::train::TrainingClip;
+use footfall_model::{GaitModel, Provenance};
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::RetargetOptions;
 use std::path::PathBuf;
@@ -39,5 +41,24 @@ impl Recordings {
             TrainingClip::new(subject, &recording.retargeted, &recording.walks)
         })
         .collect()
+    }
+
+    /// Adapts a walk to the first so many of their steps, in the way that suits a dozen best, and calls the result `name`.
+    ///
+    /// # Errors
+    /// As [`adapt_style`].
+    pub fn adapt(
+        &self,
+        base: &GaitModel,
+        name: &str,
+        steps: usize,
+        made_from: Provenance,
+        progress: &mut dyn Progress,
+    ) -> Result<Adapted, TrainError> {
+        let config = AdaptConfig {
+            method: AdaptMethod::Csmaplr,
+            steps: Some(steps),
+        };
+        adapt_style(base, &self.clips(), name, &config, made_from, progress)
     }
 }

@@ -17,7 +17,7 @@ use godot::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What adapted best in the add-on's own models is what most people want to start from.
+/// The walk that is adapted where none was chosen.
 const USUAL_BASE: &str = "res://addons/footfall/models/walk.footfall";
 
 /// Makes a `.footstyle` of `.bvh` recordings, shows it, and gives it to a walker.

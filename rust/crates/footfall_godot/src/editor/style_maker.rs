@@ -2,8 +2,8 @@
 
 use footfall_model::{GaitModel, GaitStyle, Provenance};
 use footfall_motion::files::write_atomic;
+use footfall_train::Recordings;
 use footfall_train::job::{Job, Reporter};
-use footfall_train::{AdaptConfig, AdaptMethod, Recordings, adapt_style};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -40,25 +40,15 @@ impl Order {
         let walker = |path: PathBuf| (path, self.name.clone());
         let chosen: Vec<_> = self.recordings.into_iter().map(walker).collect();
         let read = Recordings::read(&chosen, reporter).map_err(message)?;
-        let config = AdaptConfig {
-            method: AdaptMethod::Csmaplr,
-            steps: Some(self.steps),
-        };
         let made_from = Provenance {
             corpus: "recordings chosen in the Godot editor".to_owned(),
             terms: "not stated".to_owned(),
             command: "the style dock of the Footfall add-on".to_owned(),
             ..Provenance::default()
         };
-        let adapted = adapt_style(
-            &self.base,
-            &read.clips(),
-            &self.name,
-            &config,
-            made_from,
-            reporter,
-        )
-        .map_err(message)?;
+        let adapted = read
+            .adapt(&self.base, &self.name, self.steps, made_from, reporter)
+            .map_err(message)?;
         // Whoever cancelled by now wants no file.
         if reporter.tell("writing", 0, 1).is_break() {
             return Err(footfall_train::TrainError::Cancelled.to_string());

@@ -110,11 +110,7 @@ impl Agent {
             landed: None,
             clock_secs: 0.0,
             chance: seed,
-            controls: Controls {
-                speed_mps: 0.0,
-                turn_rate_radps: 0.0,
-                ..Controls::STAND
-            },
+            controls: Controls::STAND,
         }
     }
 

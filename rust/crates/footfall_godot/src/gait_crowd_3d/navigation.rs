@@ -65,7 +65,7 @@ impl Navigation {
     /// Sends those who have arrived somewhere else on the map, a few in every frame.
     pub(super) fn wander(&mut self, walkers: &mut Walkers) {
         let mut left = MOST_A_FRAME;
-        let bounds = self.bounds();
+        let mut bounds = None;
         for agent in &mut walkers.agents {
             if left == 0 {
                 break;
@@ -75,6 +75,7 @@ impl Navigation {
             }
             left -= 1;
             let shares = Vec3::from_array([(); 3].map(|()| agent.chance()));
+            let bounds = *bounds.get_or_insert_with(|| self.bounds());
             let place = self.place_at(bounds, shares);
             self.send(agent, place);
         }

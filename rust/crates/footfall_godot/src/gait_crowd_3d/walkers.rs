@@ -113,7 +113,7 @@ impl Walkers {
             };
             self.add(Vec3::new(place.x, 0.0, place.y), heading, None);
             if let Some(agent) = self.agents.last_mut() {
-                if self.way.is_looked_for() {
+                if self.way.is_navigated() {
                     agent.goal = Goal::Place(place);
                 }
                 agent.progress_m = progress;
@@ -221,8 +221,8 @@ impl Walkers {
     }
 
     /// Whether walkers go from place to place of the navigation map.
-    pub(super) fn navigate(&self) -> bool {
-        self.way.is_looked_for()
+    pub(super) fn is_navigated(&self) -> bool {
+        self.way.is_navigated()
     }
 
     /// Whether walkers far away repeat their steps.

@@ -90,8 +90,8 @@ impl Path {
 }
 
 impl Way {
-    /// Whether walkers wait for a way to be found.
-    pub(super) const fn is_looked_for(&self) -> bool {
+    /// Whether it goes over the navigation map: walkers wait until a way is found.
+    pub(super) const fn is_navigated(&self) -> bool {
         matches!(self, Self::Navigate)
     }
 

@@ -25,8 +25,9 @@ pub(crate) struct Way {
 impl GaitGenerator3D {
     /// The way of the walk from its beginning, under the controls as they are; `None` where nobody can walk.
     pub(crate) fn foresee(&self) -> Option<Way> {
+        let controls = self.controls();
         let skeleton = self.base().get_skeleton()?;
-        if !skeleton.is_inside_tree() {
+        if controls.is_standing() || !skeleton.is_inside_tree() {
             return None;
         }
         let (character, binding) = self.bind(&skeleton).ok()?;
@@ -34,10 +35,6 @@ impl GaitGenerator3D {
         let config = self.config();
         let weights = self.style_weights.as_slice();
         let mut generator = source.generator(weights, &binding.body, &config).ok()?;
-        let controls = self.controls();
-        if controls.is_standing() {
-            return None;
-        }
         let mut pose = Pose::rest(&binding.body);
         let (mut path, mut footsteps) = (vec![Vec3::ZERO], Vec::new());
         for _ in 0..MOST_FRAMES {

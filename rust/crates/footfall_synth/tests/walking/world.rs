@@ -72,7 +72,6 @@ pub(crate) fn generator(kind: Kind, seed: u64) -> GaitGenerator {
 pub(crate) fn walking(speed_mps: f32) -> Controls {
     Controls {
         speed_mps,
-        turn_rate_radps: 0.0,
         ..Controls::STAND
     }
 }

@@ -4,10 +4,7 @@ use crate::job::Reporter;
 use crate::library::Library;
 use footfall_model::{GaitModel, Provenance};
 use footfall_prob::windows::Windows;
-use footfall_train::{
-    AdaptConfig, AdaptMethod, Adapted, EmConfig, Recordings, TrainConfig, Trained, adapt_style,
-    train_average,
-};
+use footfall_train::{Adapted, EmConfig, Recordings, TrainConfig, Trained, train_average};
 use std::path::PathBuf;
 
 /// Recordings to learn from: the file and who walks.
@@ -67,11 +64,8 @@ pub(crate) fn adapt_to(
     steps: usize,
     reporter: &mut Reporter,
 ) -> Result<Adapted, String> {
-    let config = AdaptConfig {
-        method: AdaptMethod::Csmaplr,
-        steps: Some(steps),
-    };
     let made_from = provenance("recordings chosen in Footfall Studio");
-    adapt_style(base, &recorded.clips(), name, &config, made_from, reporter)
+    recorded
+        .adapt(base, name, steps, made_from, reporter)
         .map_err(|error| error.to_string())
 }
