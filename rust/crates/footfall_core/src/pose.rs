@@ -1,6 +1,7 @@
 //! Poses in local space, and forward kinematics to model space.
 
 use crate::joint::{JOINT_COUNT, Joint};
+use crate::rotation::blend_near;
 use crate::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 
@@ -64,18 +65,23 @@ impl Pose {
     pub fn interpolate_near(&self, other: &Self, weight: f32, out: &mut Self) {
         out.root_position = self.root_position.lerp(other.root_position, weight);
         let pairs = self.rotations.iter().zip(&other.rotations);
-        for (blend, (rotation, target)) in out.rotations.iter_mut().zip(pairs) {
-            let sign = if rotation.dot(*target) < 0.0 {
-                -1.0
-            } else {
-                1.0
-            };
-            let sum = *rotation * (1.0 - weight) + *target * (sign * weight);
-            // One step of Newton's method towards unit length, which a blend of neighbours nearly has.
-            *blend = sum * (1.5 - 0.5 * sum.length_squared());
+        let mut shortest = f32::INFINITY;
+        for (blend, (rotation, target)) in out.rotations.iter_mut().zip(pairs.clone()) {
+            let squared;
+            (*blend, squared) = blend_near(*rotation, *target, weight);
+            shortest = shortest.min(squared);
+        }
+        if shortest < LEAST_SQUARED_LENGTH {
+            // Seldom: the same rotation can be written with either sign.
+            for (blend, (rotation, target)) in out.rotations.iter_mut().zip(pairs) {
+                *blend = rotation.lerp(*target, weight);
+            }
         }
     }
 }
+
+/// Blends of neighbouring rotations are longer than this, unless they are written with opposite signs.
+const LEAST_SQUARED_LENGTH: f32 = 0.9;
 
 /// A pose in model space: where every joint is and how it is turned there.
 #[derive(Clone, Debug, PartialEq)]

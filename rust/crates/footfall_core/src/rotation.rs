@@ -3,13 +3,15 @@
 //! The exponential map writes a rotation as axis times angle (Tilmanne et al. 2012, equation 1). It is locally linear
 //! and has no singularity below a full turn, so statistics over it mean something.
 
+use crate::joint::JOINT_COUNT;
 use core::f32::consts::{PI, TAU};
+use core::ops::{Add, Mul};
 use glam::{Quat, Vec3};
 use multiversion::multiversion;
 
 /// Largest square of half an angle for which the polynomials below are exact to the last digit of f32: a little more than
 /// half a turn.
-const MAX_SQUARED_HALF_ANGLE: f32 = 2.6;
+pub(crate) const MAX_SQUARED_HALF_ANGLE: f32 = 2.6;
 
 /// The rotation about `axis_angle`'s direction by its length in radians.
 pub fn exp_map(axis_angle: Vec3) -> Quat {
@@ -25,61 +27,56 @@ pub fn exp_map(axis_angle: Vec3) -> Quat {
 ///
 /// Writes as many rotations as both slices have room for.
 pub fn exp_maps(axis_angles: &[f32], out: &mut [Quat]) {
-    let blocks = axis_angles.chunks(3 * LANES).zip(out.chunks_mut(LANES));
-    for (vectors, rotations) in blocks {
-        let mut padded = [0.0; 3 * LANES];
-        padded[..vectors.len()].copy_from_slice(vectors);
-        for (rotation, exact) in rotations.iter_mut().zip(exp_block(&padded)) {
-            *rotation = exact;
+    let vectors = axis_angles.as_chunks::<3>().0;
+    for (vectors, rotations) in vectors.chunks(LANES).zip(out.chunks_mut(LANES)) {
+        if exp_block(vectors, rotations) {
+            continue;
         }
-        for (rotation, vector) in rotations.iter_mut().zip(padded.chunks_exact(3)) {
-            let vector = Vec3::from_slice(vector);
-            if 0.25 * vector.length_squared() > MAX_SQUARED_HALF_ANGLE {
-                *rotation = exp_map(vector);
-            }
+        for (rotation, vector) in rotations.iter_mut().zip(vectors) {
+            *rotation = exp_map(Vec3::from_array(*vector));
         }
     }
 }
 
-/// Vectors that are turned into rotations side by side.
-const LANES: usize = 8;
+/// Vectors that are turned into rotations side by side: all joints of a body.
+const LANES: usize = JOINT_COUNT.next_multiple_of(8);
 
-/// The polynomials for a block of vectors, in a form that compilers turn into vector instructions.
+/// The polynomials for a block of vectors, in a form that compilers turn into vector instructions; returns whether they are exact for all.
 #[multiversion(targets("x86_64+avx2+fma", "aarch64+neon"))]
-fn exp_block(vectors: &[f32; 3 * LANES]) -> [Quat; LANES] {
-    let mut half_sines = [0.0; LANES];
-    let mut cosines = [0.0; LANES];
-    let [mut x, mut y, mut z] = [[0.0; LANES]; 3];
-    for lane in 0..LANES {
-        x[lane] = vectors[3 * lane];
-        y[lane] = vectors[3 * lane + 1];
-        z[lane] = vectors[3 * lane + 2];
+fn exp_block(vectors: &[[f32; 3]], out: &mut [Quat]) -> bool {
+    let [mut half_sines, mut cosines, mut squares] = [[0.0_f32; LANES]; 3];
+    for (square, [x, y, z]) in squares.iter_mut().zip(vectors) {
+        *square = 0.25 * (x * x + y * y + z * z);
     }
+    let mut exact = true;
     for lane in 0..LANES {
-        let squared = 0.25 * (x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane]);
-        (half_sines[lane], cosines[lane]) = half_angle(squared);
+        exact &= squares[lane] <= MAX_SQUARED_HALF_ANGLE;
+        (half_sines[lane], cosines[lane]) = half_angle(squares[lane]);
     }
-    core::array::from_fn(|lane| {
-        let scale = half_sines[lane];
-        Quat::from_xyzw(
-            x[lane] * scale,
-            y[lane] * scale,
-            z[lane] * scale,
-            cosines[lane],
-        )
-    })
+    let scales = half_sines.iter().zip(&cosines);
+    for ((rotation, [x, y, z]), (scale, cosine)) in out.iter_mut().zip(vectors).zip(scales) {
+        *rotation = Quat::from_xyzw(x * scale, y * scale, z * scale, *cosine);
+    }
+    exact
 }
 
-/// Half of sine over angle, and cosine, of half an angle whose square is given: short polynomials in that square.
+/// Half of sine over angle, and cosine, of half an angle whose square is given: short polynomials in that square, for one number or for the
+/// [eight](crate::lanes) of a vector register.
 #[inline(always)]
 #[expect(
     clippy::inline_always,
     reason = "only what is inlined into the dispatched function is compiled for its instruction set"
 )]
-fn half_angle(squared: f32) -> (f32, f32) {
+pub(crate) fn half_angle<T>(squared: T) -> (T, T)
+where
+    T: Copy + From<f32> + Add<Output = T> + Mul<Output = T>,
+{
     let horner = |coefficients: [f32; 7]| {
-        let terms = coefficients.iter().rev();
-        terms.fold(0.0, |sum, coefficient| sum * squared + coefficient)
+        let [lower @ .., last] = coefficients;
+        let terms = lower.into_iter().rev().map(T::from);
+        terms.fold(T::from(last), |sum, coefficient| {
+            sum * squared + coefficient
+        })
     };
     let cosine = horner([
         1.0,
@@ -99,7 +96,7 @@ fn half_angle(squared: f32) -> (f32, f32) {
         -1.0 / 39_916_800.0,
         1.605_904_4e-10, // 1 / 13!
     ]);
-    (0.5 * sine_over_angle, cosine)
+    (T::from(0.5) * sine_over_angle, cosine)
 }
 
 /// Axis times angle of a rotation, with the angle in [0, π].
@@ -150,6 +147,16 @@ pub fn wrap_angle(angle: f32) -> f32 {
     } else {
         wrapped
     }
+}
+
+/// The blend of a rotation towards one that is near and written with the same sign, and its squared length before it was made a unit
+/// quaternion.
+#[inline]
+pub fn blend_near(from: Quat, to: Quat, weight: f32) -> (Quat, f32) {
+    let sum = from * (1.0 - weight) + to * weight;
+    let squared = sum.length_squared();
+    // One step of Newton's method towards unit length, which a blend of neighbours nearly has.
+    (sum * (1.5 - 0.5 * squared), squared)
 }
 
 /// The shortest rotation that turns the direction `from` into the direction `to`; neither need be a unit vector.

@@ -1,19 +1,13 @@
 //! Two-bone leg: hip joint, knee, ankle.
 
-use footfall_core::rotation::shortest_arc;
-use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
-use glam::{Quat, Vec2, Vec3, Vec3A};
+mod knee;
+mod target;
 
-/// Where a foot has to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FootTarget {
-    /// Position of the ankle (the `Foot` joint) in model space, metres.
-    pub ankle: Vec3,
-    /// `model_from_foot` rotation.
-    pub foot: Quat,
-    /// `model_from_toes` rotation.
-    pub toes: Quat,
-}
+use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
+use glam::{Quat, Vec3};
+use knee::{Angle, knee_hinge};
+pub use target::{FootTarget, FootTargetx8};
 
 /// Share of the straight leg that the solver uses at most: a leg that is quite straight makes the knee snap.
 const MAX_EXTENSION: f32 = 0.9995;
@@ -22,9 +16,9 @@ const MAX_EXTENSION: f32 = 0.9995;
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
     side: Side,
-    hip_from_hips: Vec3A,
-    thigh_axis: Vec3A,
-    shank_axis: Vec3A,
+    hip_from_hips: Vec3,
+    thigh_axis: Vec3,
+    shank_axis: Vec3,
     thigh: f32,
     shank: f32,
 }
@@ -49,9 +43,9 @@ impl Leg {
         let shank_axis = skeleton.offset(side.foot());
         Self {
             side,
-            hip_from_hips: skeleton.offset(side.upper_leg()).into(),
-            thigh_axis: thigh_axis.into(),
-            shank_axis: shank_axis.into(),
+            hip_from_hips: skeleton.offset(side.upper_leg()),
+            thigh_axis,
+            shank_axis,
             thigh: thigh_axis.length(),
             shank: shank_axis.length(),
         }
@@ -59,7 +53,7 @@ impl Leg {
 
     /// The way from the hip joint to the ankle of a leg that is turned so in model space, metres.
     pub fn ankle_from_hip(&self, thigh: Quat, shank: Quat) -> Vec3 {
-        (thigh * self.thigh_axis + shank * self.shank_axis).into()
+        thigh * self.thigh_axis + shank * self.shank_axis
     }
 
     /// Turns thigh, shank, foot and toes of a pose so that the foot meets its target. `hips_rotation` is the hips' in
@@ -74,45 +68,137 @@ impl Leg {
         target: &FootTarget,
         pose: &mut Pose,
     ) -> LegSolution {
+        let of_pose = |joint: Joint| Quatx8::splat(pose.rotation(joint));
+        let solved = self.solve_lanes(&Task {
+            hips: Vec3x8::splat(hips),
+            hips_rotation: Quatx8::splat(hips_rotation),
+            thigh: of_pose(self.side.upper_leg()),
+            shank: of_pose(self.side.lower_leg()),
+            target: FootTargetx8::splat(target),
+        });
+        for (joint, rotations) in self.joints().into_iter().zip(&solved.local) {
+            pose.rotations[joint.index()] = rotations.lane(0);
+        }
+        let (hip, thigh, shank) = (
+            solved.hip.lane(0),
+            solved.thigh.lane(0),
+            solved.shank.lane(0),
+        );
+        LegSolution {
+            hip,
+            thigh,
+            shank,
+            ankle: hip + self.ankle_from_hip(thigh, shank),
+        }
+    }
+
+    /// As [`solve`](Self::solve) for the poses of many frames, whose hips stay as they are; `target` of a frame's index is where the foot
+    /// has to be. Works on eight frames at a time.
+    pub fn solve_many<'a, F: AsRef<Pose> + AsMut<Pose>>(
+        &self,
+        frames: &mut [F],
+        target: impl Fn(usize) -> &'a FootTarget,
+    ) {
+        for (block, frames) in frames.chunks_mut(LANES).enumerate() {
+            // What is short of eight frames is filled with the last.
+            let within = |lane: usize| lane.min(frames.len() - 1);
+            let target = |lane: usize| target(block * LANES + within(lane));
+            let of_poses =
+                |joint: Joint| Quatx8::gather(|lane| frames[within(lane)].as_ref().rotation(joint));
+            let solved = self.solve_lanes(&Task {
+                hips: Vec3x8::gather(|lane| frames[within(lane)].as_ref().root_position),
+                hips_rotation: of_poses(Joint::Hips),
+                thigh: of_poses(self.side.upper_leg()),
+                shank: of_poses(self.side.lower_leg()),
+                target: FootTargetx8 {
+                    ankle: Vec3x8::gather(|lane| target(lane).ankle),
+                    foot: Quatx8::gather(|lane| target(lane).foot),
+                    toes: Quatx8::gather(|lane| target(lane).toes),
+                },
+            });
+            for (joint, rotations) in self.joints().into_iter().zip(&solved.local) {
+                for (lane, frame) in frames.iter_mut().enumerate() {
+                    frame.as_mut().rotations[joint.index()] = rotations.lane(lane);
+                }
+            }
+        }
+    }
+
+    /// The joints that are turned, from the hip down.
+    const fn joints(&self) -> [Joint; 4] {
         let side = self.side;
-        let (hip_joint, knee_joint) = (side.upper_leg().index(), side.lower_leg().index());
-        let hip = Vec3A::from(hips) + hips_rotation * self.hip_from_hips;
-        let to_ankle = Vec3A::from(target.ankle) - hip;
-        let reach = to_ankle.length().clamp(
+        [side.upper_leg(), side.lower_leg(), side.foot(), side.toes()]
+    }
+
+    /// Turns legs so that their feet are where they have to be.
+    fn solve_lanes(&self, task: &Task) -> Turned {
+        let hip = task.hips + task.hips_rotation * Vec3x8::splat(self.hip_from_hips);
+        let to_ankle = task.target.ankle - hip;
+        let (least, most) = (
             (self.thigh - self.shank).abs() + 1e-4,
             MAX_EXTENSION * (self.thigh + self.shank),
         );
+        let reach = to_ankle.length();
+        let reach = reach
+            .fast_max(f32x8::splat(least))
+            .fast_min(f32x8::splat(most));
 
         // Bend the knee to the right length about the axis that it bends about in the pose.
-        let thigh = hips_rotation * pose.rotations[hip_joint];
-        let shank = thigh * pose.rotations[knee_joint];
-        let bent_thigh = thigh * self.thigh_axis;
-        let bent_shank = shank * self.shank_axis;
-        let lengths = self.thigh * self.shank;
+        let thigh = task.hips_rotation * task.thigh;
+        let shank = thigh * task.shank;
+        let [thigh_axis, shank_axis] = [self.thigh_axis, self.shank_axis].map(Vec3x8::splat);
+        let bent_thigh = thigh * thigh_axis;
+        let bent_shank = shank * shank_axis;
         let across = bent_thigh.cross(bent_shank);
-        let hinge = knee_hinge(bent_thigh / self.thigh, across / lengths, thigh);
-        let current = Vec2::new(bent_thigh.dot(bent_shank), across.dot(hinge));
-        let bend = bend_between(self.thigh, self.shank, reach);
-        let change = bend.rotate(Vec2::new(current.x, -current.y).normalize_or(Vec2::X));
-        let shank = turn(hinge, change) * shank;
+        let hinge = knee_hinge(
+            bent_thigh * f32x8::splat(self.thigh.recip()),
+            across * f32x8::splat((self.thigh * self.shank).recip()),
+            thigh,
+        );
+        let current = Angle {
+            cosine: bent_thigh.dot(bent_shank),
+            sine: across.dot(hinge),
+        };
+        let bend = Angle::between(self.thigh, self.shank, reach);
+        let shank = bend.less(current.normalize()).about(hinge) * shank;
 
         // Then aim hip-to-ankle at the target.
-        let reached = bent_thigh + shank * self.shank_axis;
-        let aim = shortest_arc(reached.into(), to_ankle.into());
-        let (thigh, shank) = (aim * thigh, aim * shank);
-
+        let aim = Quatx8::shortest_arc(bent_thigh + shank * shank_axis, to_ankle);
         // Products of unit quaternions are unit quaternions, to within what a pose is rounded to anyway.
-        pose.rotations[hip_joint] = hips_rotation.conjugate() * thigh;
-        pose.rotations[knee_joint] = thigh.conjugate() * shank;
-        pose.rotations[side.foot().index()] = shank.conjugate() * target.foot;
-        pose.rotations[side.toes().index()] = target.foot.conjugate() * target.toes;
-        LegSolution {
-            hip: hip.into(),
+        let (thigh, shank) = (aim * thigh, aim * shank);
+        let FootTargetx8 { foot, toes, .. } = task.target;
+        Turned {
+            hip,
             thigh,
             shank,
-            ankle: (hip + thigh * self.thigh_axis + shank * self.shank_axis).into(),
+            local: [
+                task.hips_rotation.conjugate() * thigh,
+                thigh.conjugate() * shank,
+                shank.conjugate() * foot,
+                foot.conjugate() * toes,
+            ],
         }
     }
+}
+
+/// Eight legs of which the ankle has to be elsewhere.
+struct Task {
+    hips: Vec3x8,
+    hips_rotation: Quatx8,
+    /// Local rotations of the pose.
+    thigh: Quatx8,
+    shank: Quatx8,
+    target: FootTargetx8,
+}
+
+/// The same legs in the end.
+struct Turned {
+    /// In model space.
+    hip: Vec3x8,
+    thigh: Quatx8,
+    shank: Quatx8,
+    /// Local rotations from thigh to toes.
+    local: [Quatx8; 4],
 }
 
 /// [`Leg::solve`] that also updates `model` for the leg's joints. `model` must hold the pose's forward kinematics at least
@@ -158,39 +244,6 @@ pub fn reach_height(
     let level = Vec3::new(ankle.x - hip.x, 0.0, ankle.z - hip.z).length_squared();
     let height_squared = (extension * leg_length).powi(2) - level;
     (height_squared > 0.0).then(|| ankle.y + height_squared.sqrt() - hip_from_hips.y)
-}
-
-/// The axis about which the shank turns backwards from the thigh, a unit vector.
-///
-/// `thigh` is the thigh's direction and `bent` its cross product with the shank's. A nearly straight leg has no plane of
-/// its own; the thigh's own x axis (the left of a leg in the T-pose) takes over smoothly.
-fn knee_hinge(thigh: Vec3A, bent: Vec3A, thigh_rotation: Quat) -> Vec3A {
-    let anatomical = thigh_rotation * Vec3A::X;
-    // A hyperextended knee must not be taken for one that bends forwards.
-    let bent = bent - anatomical * bent.dot(anatomical).min(0.0);
-    // Below about 6 degrees of bend the plane is mostly noise.
-    let blended = bent + anatomical * 0.1 * (1.0 - bent.length() / 0.1).max(0.0);
-    let across = blended - thigh * blended.dot(thigh);
-    across.try_normalize().unwrap_or(anatomical)
-}
-
-/// Cosine and sine of the knee's bend (0 when straight) in a triangle with these two sides and the opposite third.
-fn bend_between(thigh: f32, shank: f32, opposite: f32) -> Vec2 {
-    let cosine = (opposite * opposite - thigh * thigh - shank * shank) / (2.0 * thigh * shank);
-    let cosine = cosine.clamp(-1.0, 1.0);
-    Vec2::new(cosine, (1.0 - cosine * cosine).sqrt())
-}
-
-/// The rotation about a unit axis by an angle of which cosine and sine are given.
-fn turn(axis: Vec3A, angle: Vec2) -> Quat {
-    let cosine = (0.5 + 0.5 * angle.x).max(0.0).sqrt();
-    // The sine of half an angle from its own side of the formula that keeps its digits.
-    let sine = if cosine > 0.5 {
-        0.5 * angle.y / cosine
-    } else {
-        (0.5 - 0.5 * angle.x).max(0.0).sqrt().copysign(angle.y)
-    };
-    Quat::from_vec4(Vec3::from(axis * sine).extend(cosine))
 }
 
 #[cfg(test)]
@@ -241,6 +294,46 @@ mod tests {
                     * (check.position(side.foot()) - check.position(side.lower_leg()));
                 prop_assert!(knee_local.z < 1e-3, "{knee_local}");
             }
+        }
+    }
+
+    #[test]
+    fn legs_of_many_frames_are_those_of_each() {
+        struct Frame(Pose);
+        impl AsRef<Pose> for Frame {
+            fn as_ref(&self) -> &Pose {
+                &self.0
+            }
+        }
+        impl AsMut<Pose> for Frame {
+            fn as_mut(&mut self) -> &mut Pose {
+                &mut self.0
+            }
+        }
+        let leg = Leg::new(&Skeleton::standard(), Side::Right);
+        // A block of eight and one that is not full.
+        let mut frames: Vec<Frame> = (0..11)
+            .map(|frame| {
+                let mut pose = crouched(0.1 * frame as f32, 0.02 * frame as f32);
+                pose.root_position.x = 0.03 * frame as f32;
+                pose.rotations[0] = exp_map(Vec3::new(0.1, 0.3 * frame as f32, -0.1));
+                Frame(pose)
+            })
+            .collect();
+        let targets: Vec<FootTarget> = (0..11)
+            .map(|frame| FootTarget {
+                ankle: Vec3::new(0.02 * frame as f32, 0.2, 0.05 * frame as f32 - 0.3),
+                foot: Quat::from_rotation_x(0.1 * frame as f32),
+                toes: Quat::from_rotation_x(0.05 * frame as f32),
+            })
+            .collect();
+        let mut each: Vec<Pose> = frames.iter().map(|frame| frame.0.clone()).collect();
+        for (pose, target) in each.iter_mut().zip(&targets) {
+            leg.solve(pose.root_position, pose.rotations[0], target, pose);
+        }
+        leg.solve_many(&mut frames, |frame| &targets[frame]);
+        for (many, each) in frames.iter().zip(&each) {
+            assert_eq!(many.0, *each);
         }
     }
 

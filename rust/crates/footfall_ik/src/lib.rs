@@ -7,5 +7,5 @@ pub mod leg;
 pub mod placement;
 pub mod rocker;
 
-pub use leg::{FootTarget, Leg, LegSolution, reach_height, solve_leg};
-pub use rocker::{Plant, RockerFoot, foot_heading, foot_pitch, settled_pitch};
+pub use leg::{FootTarget, FootTargetx8, Leg, LegSolution, reach_height, solve_leg};
+pub use rocker::{Plant, RockerFoot, foot_heading, foot_pitch, foot_pitches, settled_pitch};

@@ -5,8 +5,10 @@
 //! toes' range it turns about their tip. Every pivot is a point of the ground, so a foot driven by pitch alone cannot
 //! slide or sink.
 
-use crate::leg::FootTarget;
+use crate::leg::{FootTarget, FootTargetx8};
 use core::f32::consts::FRAC_PI_3;
+use core::ops::{Add, Div, Mul};
+use footfall_core::lanes::{Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;
 use footfall_core::{FootShape, Side, Skeleton};
 use glam::{Quat, Vec3};
@@ -72,24 +74,23 @@ impl RockerFoot {
 
     /// As [`stand`](Self::stand), with the rotation of the plant's heading at hand.
     pub fn stand_level(&self, plant: &Plant, level: Quat, pitch: f32) -> FootTarget {
-        let foot = level * Quat::from_rotation_x(pitch);
-        if pitch <= 0.0 {
-            let heel = plant.flat_ankle + level * self.heel;
-            return FootTarget {
-                ankle: heel - foot * self.heel,
-                foot,
-                toes: foot,
-            };
-        }
-        let toe_joint = plant.flat_ankle + level * self.toe_joint;
-        let excess = (pitch - MAX_TOE_FLEXION).max(0.0);
-        let toes = level * Quat::from_rotation_x(excess);
-        let tip = toe_joint + level * self.toe_tip;
-        let toe_joint = tip - toes * self.toe_tip;
-        FootTarget {
-            ankle: toe_joint - foot * self.toe_joint,
-            foot,
-            toes,
+        self.stand_many(plant, level, f32x8::splat(pitch)).lane(0)
+    }
+
+    /// As [`stand_level`](Self::stand_level) at eight pitches of at most half a turn.
+    pub fn stand_many(&self, plant: &Plant, level: Quat, pitch: f32x8) -> FootTargetx8 {
+        let foot = Quatx8::from_rotation_x(pitch);
+        let excess = pitch - f32x8::splat(MAX_TOE_FLEXION);
+        let toes = Quatx8::from_rotation_x(excess.fast_max(f32x8::ZERO));
+        let heel_up = pitch.simd_gt(f32x8::ZERO);
+        let about_heel = Vec3x8::splat(self.heel) - pitched(foot, self.heel);
+        let tip = Vec3x8::splat(self.toe_joint + self.toe_tip);
+        let about_toes = tip - pitched(toes, self.toe_tip) - pitched(foot, self.toe_joint);
+        let level = Quatx8::splat(level);
+        FootTargetx8 {
+            ankle: Vec3x8::splat(plant.flat_ankle) + level * about_toes.or(about_heel, heel_up),
+            foot: level * foot,
+            toes: level * toes.or(foot, heel_up),
         }
     }
 
@@ -104,8 +105,17 @@ impl RockerFoot {
 
     /// Height of the sole's lowest point, metres.
     pub fn lowest_point(&self, target: &FootTarget) -> f32 {
-        let [heel, ball, tip] = self.points(target);
-        heel.y.min(ball.y).min(tip.y)
+        self.lowest_points(&FootTargetx8::splat(target)).as_array()[0]
+    }
+
+    /// As [`lowest_point`](Self::lowest_point) of eight feet.
+    pub fn lowest_points(&self, targets: &FootTargetx8) -> f32x8 {
+        let height = |rotations: Quatx8, point: Vec3| (rotations * Vec3x8::splat(point)).y;
+        let toe_joint = height(targets.foot, self.toe_joint);
+        let heel = height(targets.foot, self.heel);
+        let ball = toe_joint + height(targets.toes, self.ball);
+        let tip = toe_joint + height(targets.toes, self.toe_tip);
+        targets.ankle.y + heel.fast_min(ball).fast_min(tip)
     }
 
     /// Back edge of the heel, ball and toe tip of a flat sole, from the ground under the ankle and in the axes of the foot.
@@ -147,16 +157,39 @@ impl RockerFoot {
     }
 }
 
-/// A captured or generated foot pitch with small angles pulled to zero, so that a foot that means to be flat is flat.
-pub fn settled_pitch(pitch: f32) -> f32 {
+/// A point of the foot, turned about +X.
+fn pitched(rotation_x: Quatx8, point: Vec3) -> Vec3x8 {
+    let Quatx8 { x, w, .. } = rotation_x;
+    let (sine, cosine) = (x * w * 2.0, w * w - x * x);
+    Vec3x8 {
+        x: f32x8::splat(point.x),
+        y: cosine * point.y - sine * point.z,
+        z: sine * point.y + cosine * point.z,
+    }
+}
+
+/// A captured or generated foot pitch, or eight, with small angles pulled to zero, so that a foot that means to be flat is flat.
+pub fn settled_pitch<T>(pitch: T) -> T
+where
+    T: Copy + From<f32> + Add<Output = T> + Mul<Output = T> + Div<Output = T>,
+{
     let squared = pitch * pitch;
-    pitch * squared / (squared + FLAT_PITCH * FLAT_PITCH)
+    pitch * squared / (squared + T::from(FLAT_PITCH * FLAT_PITCH))
 }
 
 /// Pitch (positive: heel up) of a foot from its rotation.
 pub fn foot_pitch(rotation: Quat) -> f32 {
     let forward = rotation * Vec3::Z;
     (-forward.y).clamp(-1.0, 1.0).asin()
+}
+
+/// As [`foot_pitch`] of eight feet.
+pub fn foot_pitches(rotations: Quatx8) -> f32x8 {
+    let forward = rotations * Vec3x8::splat(Vec3::Z);
+    (-forward.y)
+        .fast_max(-f32x8::ONE)
+        .fast_min(f32x8::ONE)
+        .asin()
 }
 
 /// Heading of a foot from its rotation.
@@ -238,8 +271,8 @@ mod tests {
 
     #[test]
     fn small_pitches_settle_and_large_ones_stay() {
-        assert!(settled_pitch(0.03).abs() < 0.004);
-        assert!((settled_pitch(-0.5) + 0.5).abs() < 0.02);
+        assert!(settled_pitch(0.03_f32).abs() < 0.004);
+        assert!((settled_pitch(-0.5_f32) + 0.5).abs() < 0.02);
         let foot = from_heading(0.4) * Quat::from_rotation_x(0.2);
         assert!((foot_pitch(foot) - 0.2).abs() < 1e-5 && (foot_heading(foot) - 0.4).abs() < 1e-5);
     }

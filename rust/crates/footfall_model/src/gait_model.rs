@@ -196,11 +196,10 @@ impl GaitModel {
         &self.steps[side.index()]
     }
 
-    /// What to add to the step at a place of the walk; `None` where it is as inside.
-    pub fn context(&self, position: StepPosition, side: Side) -> Option<&StepOffset> {
+    /// Which of the contexts says what to add to the step at a place of the walk; `None` where it is as inside.
+    pub fn context(&self, position: StepPosition, side: Side) -> Option<usize> {
         let mut contexts = self.contexts.iter();
-        let found = contexts.find(|context| context.position == position && context.side == side);
-        found.map(|context| &context.offset)
+        contexts.position(|context| context.position == position && context.side == side)
     }
 
     /// Slowest and fastest walk of the corpus, m/s on the model's body.

@@ -114,7 +114,6 @@ pub struct Job<'a, R: Real> {
     pull_strength: R::Block,
     pull_towards: R::Block,
     first_dim: usize,
-    n_dims: usize,
     rows: &'a mut [[R::Block; 6]],
     factors: &'a mut [[R::Block; 3]],
     trajectory: &'a mut [R],
@@ -221,13 +220,27 @@ pub fn mlpg<R: Real>(
     workspace: &mut MlpgWorkspace<R>,
     trajectory: &mut [R],
 ) -> Result<(), ProbError> {
-    mlpg_with(R::solve, problem, workspace, trajectory)
+    mlpg_part(problem, problem.dim, workspace, trajectory)
 }
 
-/// [`mlpg`] with a given kernel.
+/// As [`mlpg`] for the first `wanted` dimensions at least, which cost less than all; others may stay as they are.
+///
+/// # Errors
+/// As [`mlpg`].
+pub fn mlpg_part<R: Real>(
+    problem: &MlpgProblem<'_, R>,
+    wanted: usize,
+    workspace: &mut MlpgWorkspace<R>,
+    trajectory: &mut [R],
+) -> Result<(), ProbError> {
+    mlpg_with(R::solve, problem, wanted, workspace, trajectory)
+}
+
+/// [`mlpg_part`] with a given kernel.
 fn mlpg_with<R: Real>(
     solve: fn(&Plan, &mut Job<'_, R>),
     problem: &MlpgProblem<'_, R>,
+    wanted: usize,
     workspace: &mut MlpgWorkspace<R>,
     trajectory: &mut [R],
 ) -> Result<(), ProbError> {
@@ -243,20 +256,17 @@ fn mlpg_with<R: Real>(
     workspace.rows.resize(workspace.plan.rows.len(), [zero; 6]);
     workspace.factors.resize(n_frames, [zero; 3]);
     let lanes = R::Block::LANES;
-    for block in 0..dim.div_ceil(lanes) {
+    for block in 0..wanted.min(dim).div_ceil(lanes) {
         // The last block starts early rather than run half empty, so some dimensions are solved twice.
         let first_dim = (block * lanes).min(dim.saturating_sub(lanes));
         let n_dims = lanes.min(dim - first_dim);
-        let pull = |values: Option<&[R]>| {
-            values.map_or(zero, |v| R::Block::load(&v[first_dim..][..n_dims]))
-        };
+        let pull = |values: Option<&[R]>| values.map_or(zero, |v| R::Block::load(&v[first_dim..]));
         let mut job = Job {
             means: problem.means,
             precisions: problem.precisions,
             pull_strength: pull(problem.pull.map(|p| p.strength)),
             pull_towards: pull(problem.pull.map(|p| p.towards)),
             first_dim,
-            n_dims,
             rows: &mut workspace.rows,
             factors: &mut workspace.factors,
             trajectory: &mut *trajectory,
@@ -313,6 +323,7 @@ mod tests {
             mlpg_with(
                 kernel::solve::<f64, false>,
                 &problem,
+                problem.dim,
                 &mut workspace,
                 &mut plain,
             )

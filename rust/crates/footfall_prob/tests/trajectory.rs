@@ -4,7 +4,7 @@ use footfall_prob::ProbError;
 use footfall_prob::global_variance::{
     GlobalVarianceTarget, global_variance, hts_weight, temporal_moments,
 };
-use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, mlpg};
+use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, mlpg, mlpg_part};
 use footfall_prob::windows::Windows;
 use footfall_prob::workload::MlpgWorkload;
 use jbonsai::mlpg_adjust::MlpgAdjust;
@@ -642,6 +642,22 @@ fn a_high_weight_reaches_the_target_and_its_pull_reproduces_it() {
                 .fold(f64::INFINITY, f64::min)
         };
         assert!((0..dim).all(|d| fit.strength[d] >= -0.5 * least(d)));
+    }
+}
+
+#[test]
+fn the_first_dimensions_can_be_had_alone() {
+    let case = Case::new(40, 6, 66);
+    for windows in [Windows::Paper, Windows::Compact] {
+        let problem = case.problem(windows);
+        let whole = case.solve(windows);
+        let mut part = vec![9.0; whole.len()];
+        mlpg_part(&problem, 61, &mut MlpgWorkspace::new(), &mut part).expect("solvable");
+        for (part, whole) in part.chunks(66).zip(whole.chunks(66)) {
+            assert_eq!(part[..61], whole[..61]);
+            // Eight at a time are solved; the last two need not be.
+            assert_eq!(part[64..], [9.0; 2]);
+        }
     }
 }
 

@@ -16,7 +16,6 @@ use crate::standing::Amplitude;
 use crate::steps::Ask;
 use crate::styled::Worn;
 use crate::walker::{Origin, WINDOW, Walker};
-use footfall_core::ease::smooth_step;
 use footfall_core::rotation::from_heading;
 use footfall_core::{ModelPose, Pose, Skeleton};
 use frames::CrowdFrames;
@@ -122,8 +121,6 @@ pub struct CrowdWalker {
     /// Where the next step comes from, all but its request. Boxed like the draws: most frames need neither.
     next: Box<Origin>,
     shape: StepShape,
-    /// Headings under which the walk goes along +Z, before the current step and after it.
-    facing: [f32; 2],
     velocity_mps: Vec2,
     detail: Detail,
     /// Frames since the step began.
@@ -177,7 +174,6 @@ impl CrowdWalker {
             draws: Box::new(walker.draws().clone()),
             next: Box::new(walker.next_origin(request)),
             shape,
-            facing: [worn.paces.facing; 2],
             velocity_mps: request.velocity_mps,
             detail: Detail::Full,
             position: 0.0,
@@ -370,7 +366,6 @@ impl CrowdWalker {
             shape: self.shape,
         });
         self.base = Base::default();
-        self.facing = [self.next.facing_before, request.facing];
         self.blend = Arc::clone(&worn.blend);
         (*self.draws).clone_from(walker.draws());
         *self.next = walker.next_origin(request);
@@ -387,11 +382,9 @@ impl CrowdWalker {
         self.chance_position = workshop.planner.chance_position();
         let timing = self.shape.ground_timing();
         let stage = &workshop.walker.stage().frames[..=timing.frames];
-        let [before, now] = self.facing;
-        let facing = |share| before + smooth_step(share) * (now - before);
         let (pose, model_pose) = (&mut workshop.pose, &mut workshop.model_pose);
         self.frames
-            .set(stage, facing, &self.styled.0.skeleton, pose, model_pose);
+            .set(stage, &self.styled.0.skeleton, pose, model_pose);
     }
 
     /// The frame before a time of the step, and the weight of the one after it.

@@ -8,8 +8,7 @@ use crate::space::StyleSpace;
 use crate::steps::{Ask, Steps};
 use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
-use footfall_core::ease::smooth_step;
-use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_core::rotation::{blend_near, from_heading, wrap_angle};
 use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::placement::{Frame, Landing};
 use footfall_ik::{Plant, RockerFoot};
@@ -300,8 +299,9 @@ impl GaitGenerator {
             self.next_step(controls);
         }
         let plan_from_character = self.plan_from_character();
-        let character_from_plan = from_heading(-plan_from_character.heading);
         let (frame, next, weight) = self.frames();
+        let (facing, _) = blend_near(frame.plan_from_ground, next.plan_from_ground, weight);
+        let character_from_plan = facing.conjugate();
         // Between two frames a foot stands only if it does in both.
         let contact = core::array::from_fn(|side| {
             (frame.contact[side] || weight > 1.0 - SAME_FRAME)
@@ -311,7 +311,7 @@ impl GaitGenerator {
         out.root_position =
             character_from_plan * (out.root_position - plan_from_character.position);
         let root = Joint::Hips.index();
-        out.rotations[root] = (character_from_plan * out.rotations[root]).normalize();
+        out.rotations[root] = character_from_plan * out.rotations[root];
         self.contact = contact;
         self.start_from_character = self.plan_from_start.local(&plan_from_character);
     }
@@ -386,12 +386,9 @@ impl GaitGenerator {
 
     pub(crate) fn plan_from_character(&self) -> GroundTransform {
         let (frame, next, weight) = self.frames();
-        let share = self.position / self.shape().timing.frames as f32;
-        let [before, now] = self.steps.source().facing();
-        let facing = before + smooth_step(share) * (now - before);
         GroundTransform {
             position: frame.ground_position.lerp(next.ground_position, weight),
-            heading: frame.heading + weight * (next.heading - frame.heading) - facing,
+            heading: frame.ground_heading + weight * (next.ground_heading - frame.ground_heading),
         }
     }
 }

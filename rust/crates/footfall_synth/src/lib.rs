@@ -1,6 +1,6 @@
 //! Runtime: a gait model becomes poses.
 //!
-//! A step of a gait model is planned (`plan`: durations and means, with chance and speed) and turned into a smooth trajectory of
+//! A step of a gait model is planned (`plan`: durations and means, with chance and speed, from the model's `statistics`) and turned into a smooth trajectory of
 //! joint rotations (`trajectory`); a step of a switching model is run by one of its two systems (`switching`). Either is put on
 //! the ground (`stage` and `planting`, on `rocker` feet). [`GaitGenerator`] does so in real time; [`synthesize`] solves a whole walk
 //! at once.
@@ -18,6 +18,7 @@ mod space;
 mod stage;
 mod standing;
 mod state;
+mod statistics;
 mod steps;
 mod strafe;
 mod styled;

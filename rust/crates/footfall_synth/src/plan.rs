@@ -1,12 +1,16 @@
 //! What the coming steps are: how long their states last and what their means are.
 
+mod offsets;
+
 use crate::detail::Detail;
 use crate::planting::StepTiming;
 use crate::standing::{Amplitude, START_TERMINAL};
-use core::ops::Range;
+use crate::statistics::{Part, STEP_MEANS, Statistics};
 use footfall_core::{Side, StepPosition};
-use footfall_model::{GaitModel, OBSERVATION_COUNT, STATES_PER_STEP, StepOffset};
-use multiversion::multiversion;
+use footfall_model::{GaitModel, OBSERVATION_COUNT, STATES_PER_STEP};
+use footfall_prob::mlpg::Real;
+use offsets::Offsets;
+pub(crate) use offsets::Sum;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
@@ -14,9 +18,6 @@ use std::sync::Arc;
 
 /// Components of the variation that a step can hold; a model has no more.
 pub(crate) const MAX_COMPONENTS: usize = 16;
-
-/// Offsets that a step is the sum of: the speed's, the place's, the walker's and its own.
-const MAX_OFFSETS: usize = 2 + 2 * MAX_COMPONENTS;
 
 /// Weights of components stay within this many standard deviations, so that every walker is a plausible one.
 const MAX_WALKER_WEIGHT: f64 = 2.0;
@@ -78,12 +79,12 @@ pub(crate) struct StepShape {
 
 /// A step ready to be generated.
 #[derive(Clone, Debug)]
-pub(crate) struct StepPlan {
+pub(crate) struct StepPlan<R> {
     pub(crate) shape: StepShape,
     /// Frames of each state.
     pub(crate) state_frames: [usize; STATES_PER_STEP],
     /// The means of every state, state by state.
-    pub(crate) means: Vec<f64>,
+    pub(crate) means: Vec<R>,
 }
 
 impl StepShape {
@@ -134,73 +135,14 @@ impl StepShape {
     }
 }
 
-impl StepPlan {
+impl<R: Real> StepPlan<R> {
     /// A plan that [`Planner::realise`] can fill without allocating.
     pub(crate) fn empty() -> Self {
         Self {
             shape: StepShape::of_walk(Side::Left, 1, 0.0, 1.0, Detail::Full),
             state_frames: [0; STATES_PER_STEP],
-            means: vec![0.0; STATES_PER_STEP * OBSERVATION_COUNT],
+            means: vec![R::default(); STEP_MEANS],
         }
-    }
-}
-
-/// A weighted sum of offsets that is never written down: what is wanted of it is summed when it is wanted.
-struct Offsets<'a> {
-    parts: [(&'a StepOffset, f64); MAX_OFFSETS],
-    len: usize,
-}
-
-impl<'a> Offsets<'a> {
-    /// A sum that begins with this offset.
-    fn of(offset: &'a StepOffset, weight: f64) -> Self {
-        Self {
-            parts: [(offset, weight); MAX_OFFSETS],
-            len: 1,
-        }
-    }
-
-    fn add(&mut self, offset: &'a StepOffset, weight: f64) {
-        self.parts[self.len] = (offset, weight);
-        self.len += 1;
-    }
-
-    fn parts(&self) -> &[(&'a StepOffset, f64)] {
-        &self.parts[..self.len]
-    }
-
-    /// Writes these means of a state with their offsets.
-    fn add_means(&self, base: &[f64], block: Range<usize>, means: &mut [f64]) {
-        let means = &mut means[block.clone()];
-        means.copy_from_slice(base);
-        // Four offsets at a time: each pass over the means costs as much as the sums themselves.
-        for parts in self.parts().chunks(4) {
-            let part = |index: usize| {
-                let (offset, weight) = parts.get(index).unwrap_or(&parts[0]);
-                let weight = if index < parts.len() { *weight } else { 0.0 };
-                (&offset.means[block.clone()], weight)
-            };
-            add_rows(means, [0, 1, 2, 3].map(part));
-        }
-    }
-
-    fn log_duration(&self, state: usize) -> f64 {
-        let of = |(offset, weight): &(&StepOffset, f64)| weight * offset.log_durations[state];
-        self.parts().iter().map(of).sum()
-    }
-
-    fn other_terminal(&self) -> f64 {
-        let of = |(offset, weight): &(&StepOffset, f64)| weight * offset.other_terminal;
-        self.parts().iter().map(of).sum()
-    }
-}
-
-/// Adds four weighted rows.
-#[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
-fn add_rows(sums: &mut [f64], rows: [(&[f64], f64); 4]) {
-    let [(a, wa), (b, wb), (c, wc), (d, wd)] = rows;
-    for (sum, (((a, b), c), d)) in sums.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
-        *sum += (wa * a + wb * b) + (wc * c + wd * d);
     }
 }
 
@@ -304,18 +246,25 @@ impl Planner {
         }
     }
 
-    /// Works out a drawn step.
-    pub(crate) fn realise(&self, draw: &StepDraw, manner: Manner, plan: &mut StepPlan) {
-        self.realise_from(draw, manner, 0, plan);
+    /// Works out a drawn step; the statistics are those of the mixture that is worn.
+    pub(crate) fn realise<R: Sum>(
+        &self,
+        draw: &StepDraw,
+        manner: Manner,
+        statistics: &Statistics<R>,
+        plan: &mut StepPlan<R>,
+    ) {
+        self.realise_from(draw, manner, 0, statistics, plan);
     }
 
     /// Works out how a drawn step ends: its frames, but the means of the states from this one on only.
-    pub(crate) fn realise_from(
+    pub(crate) fn realise_from<R: Sum>(
         &self,
         draw: &StepDraw,
         manner: Manner,
         from_state: usize,
-        plan: &mut StepPlan,
+        statistics: &Statistics<R>,
+        plan: &mut StepPlan<R>,
     ) {
         let Manner {
             pace,
@@ -325,29 +274,29 @@ impl Planner {
         let side = draw.side.index();
         let model = &self.model;
         let deviation = pace.covariate_mps - model.speed.reference_mps;
-        let mut offsets = Offsets::of(&model.speed.slopes[side], deviation);
-        if let Some(context) = model.context(position, draw.side) {
+        let mut offsets = Offsets::of(Part::Speed, &model.speed.slopes[side], deviation);
+        if let Some(index) = model.context(position, draw.side) {
             // Who turns on the spot hardly sets out.
-            offsets.add(context, pace.stride.min(1.0));
+            let context = &model.contexts[index].offset;
+            offsets.add(Part::Context(index), context, pace.stride.min(1.0));
         }
-        let drawn = [
-            (&model.variation.walker, &self.walker),
-            (&model.variation.step, &draw.weights),
-        ];
-        for (components, weights) in drawn {
-            for (component, weight) in components.iter().zip(weights) {
-                offsets.add(&component[side], self.variation * weight);
-            }
+        let walkers = model.variation.walker.iter().zip(&self.walker);
+        for (index, (component, weight)) in walkers.enumerate() {
+            let weight = self.variation * weight;
+            offsets.add(Part::Walker(index), &component[side], weight);
+        }
+        let steps = model.variation.step.iter().zip(&draw.weights);
+        for (index, (component, weight)) in steps.enumerate() {
+            let weight = self.variation * weight;
+            offsets.add(Part::Step(index), &component[side], weight);
         }
 
+        let within = from_state * OBSERVATION_COUNT..STEP_MEANS;
+        offsets.add_means(statistics, draw.side, within, &mut plan.means);
         let step = &model.steps[side];
         let mut elapsed = 0.0;
         let mut passed = 0;
         for (state, parameters) in step.states.iter().enumerate() {
-            let block = state * OBSERVATION_COUNT..(state + 1) * OBSERVATION_COUNT;
-            if state >= from_state {
-                offsets.add_means(&parameters.mean, block, &mut plan.means);
-            }
             let longest = MAX_STEP_SECS * model.frame_rate_hz / STATES_PER_STEP as f64;
             let stretch = offsets.log_duration(state).clamp(-1.5, 1.5).exp();
             let frames = parameters.duration_mean * stretch / pace.tempo;

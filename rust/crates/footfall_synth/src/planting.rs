@@ -7,27 +7,17 @@
 
 mod support;
 mod swing;
+mod travel;
 
 use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
 use crate::strafe::{Strafe, Turner};
-use footfall_core::ease::{hermite, smooth_step};
+use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;
-use footfall_core::{Joint, Pose, Side, Skeleton};
-use footfall_ik::{FootTarget, Leg, Plant, RockerFoot};
+use footfall_core::{Pose, Side, Skeleton};
+use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
 use glam::{Quat, Vec3};
 use swing::Swing;
-
-/// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
-const SETTLE_SECS: f32 = 0.07;
-
-/// Part of a step over which a new turn rate sets in.
-const TURN_ONSET: f32 = 0.6;
-
-/// Generated legs disagree by a few centimetres about the hips' height when a foot lands. This share of the gap is closed
-/// before the landing, from this part of the step on, and the rest after it.
-const MEETING_SHARE: f32 = 0.5;
-const MEETING_FROM: f32 = 0.4;
 
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
 const MAX_LANDING_EXTENSION: f32 = 0.985;
@@ -42,6 +32,9 @@ pub(crate) struct PlantedFrame {
     pub(crate) pose: Pose,
     /// Place of the walker on the ground: its travel without sway.
     pub(crate) ground_position: Vec3,
+    /// Where the walker faces, radians, and the rotation by it; continuous within a step.
+    pub(crate) ground_heading: f32,
+    pub(crate) plan_from_ground: Quat,
     /// Heading under which the generated features are put, radians, and the rotation by it.
     pub(crate) heading: f32,
     pub(crate) level: Quat,
@@ -89,6 +82,18 @@ pub(crate) struct PlanterState {
     pub(crate) strafe: Strafe,
 }
 
+impl AsRef<Pose> for PlantedFrame {
+    fn as_ref(&self) -> &Pose {
+        &self.pose
+    }
+}
+
+impl AsMut<Pose> for PlantedFrame {
+    fn as_mut(&mut self) -> &mut Pose {
+        &mut self.pose
+    }
+}
+
 impl PlanterState {
     /// The same feet and hips for a walker who is at `to` instead of at `from`.
     pub(crate) fn moved(&self, from: &GroundTransform, to: &GroundTransform) -> Self {
@@ -117,8 +122,8 @@ impl PlanterState {
 pub(crate) struct Course {
     /// Turning at its end, rad/s.
     pub(crate) turn_rate: f32,
-    /// By how much its features turn under the walker, radians.
-    pub(crate) shift: f32,
+    /// Headings of the features from where the walker faces, before the step and after it, radians.
+    pub(crate) facing: [f32; 2],
 }
 
 impl Planter {
@@ -229,7 +234,6 @@ impl Planter {
         out: &mut [PlantedFrame],
     ) -> usize {
         self.fill_stances(raw, timing);
-        let raw = &*raw;
         self.travel(raw, timing, course, out);
         let timing = &StepTiming {
             terminal: self.release(raw, timing, out),
@@ -253,121 +257,60 @@ impl Planter {
         let (hips, level) = (out[before].pose.root_position, out[before].level);
         let arrival = free_foot(&raw[before], trailing, hips, level).ankle;
         let swing = Swing::new(&ends, arrival, timing, self.frame_secs);
-        for (index, (frame, raw)) in out.iter_mut().zip(raw).enumerate() {
-            let level = frame.level;
-            let hips = frame.pose.root_position;
-            let hips_rotation = frame.pose.rotations[Joint::Hips.index()];
-            for side in Side::BOTH {
-                let foot = &self.feet[side.index()];
-                let leg = &raw.legs[side.index()];
-                let target = if side == timing.leading || index <= timing.terminal {
-                    leg.stance
-                } else if index == timing.frames {
-                    foot.stand(&next_plant, leg.pitch)
-                } else {
-                    let free = free_foot(raw, side, hips, level);
-                    let mut target = swing.guide(index, &free, foot);
-                    let hip = hips + level * raw.legs[side.index()].hip;
-                    let length = self.leg_lengths[side.index()];
-                    let yielded = hip + yielding(target.ankle - hip, length);
-                    target.ankle = target.ankle.lerp(yielded, swing.freed(index));
-                    target
-                };
-                let leg = &self.legs[side.index()];
-                leg.solve(hips, hips_rotation, &target, &mut frame.pose);
-            }
+        self.fill_swing(raw, timing, &swing, out);
+        raw[timing.frames].legs[trailing.index()].target = ends[2].0;
+        for side in Side::BOTH {
+            let target = |index: usize| &raw[index].legs[side.index()].target;
+            self.legs[side.index()].solve_many(out, target);
         }
         self.state.plants[trailing.index()] = next_plant;
         timing.terminal
     }
 
-    /// Fills hips, heading and ground position of every frame, and carries the latter two to the next step.
-    fn travel(
-        &mut self,
-        raw: &[RawFrame],
-        timing: &StepTiming,
-        course: Course,
-        out: &mut [PlantedFrame],
-    ) {
-        let start = hips_above(&raw[0], timing.leading, from_heading(self.state.heading));
-        let next_level = from_heading(self.state.heading + self.state.turn_rate * self.frame_secs);
-        let follow = hips_above(&raw[1], timing.leading, next_level);
-        let offset = self.state.hips - start;
-        let velocity = self.state.hips_velocity.map_or(Vec3::ZERO, |velocity| {
-            velocity * self.frame_secs - (follow - start)
-        });
-        let decay = self.frame_secs / SETTLE_SECS;
-        let meeting = MEETING_SHARE * self.landing_height_gap(raw, timing);
-        let mut settled = self.state.hips;
-        let from_rate = self.state.turn_rate;
-        for (index, (raw, frame)) in raw.iter().zip(&mut *out).enumerate() {
-            let time = index as f32;
-            let heading = self.state.heading;
-            let level = from_heading(heading);
-            // A critically damped return from where the hips were to where the landed foot has them.
-            let remains = (offset + (velocity + offset * decay) * time) * (-decay * time).exp();
-            let approach =
-                smooth_step((time / timing.frames as f32 - MEETING_FROM) / (1.0 - MEETING_FROM));
-            let hips =
-                hips_above(raw, timing.leading, level) + remains + Vec3::Y * (meeting * approach);
-            settled = hips;
-            if index < timing.frames {
-                let onset = smooth_step(time / (TURN_ONSET * timing.frames as f32));
-                self.state.turn_rate = from_rate + onset * (course.turn_rate - from_rate);
-                let share = |index: f32| smooth_step(index / timing.frames as f32);
-                self.state.heading += self.state.turn_rate * self.frame_secs
-                    + course.shift * (share(time + 1.0) - share(time));
-            }
-            frame.heading = heading;
-            frame.level = level;
-            frame.pose.root_position = hips;
-            frame.pose.rotations[Joint::Hips.index()] = (level * raw.hips).normalize();
-        }
-        self.glide(timing, settled, out);
-    }
-
-    /// How much higher the landing foot's leg would have the hips at the end of the step than the standing foot's has them.
-    fn landing_height_gap(&self, raw: &[RawFrame], timing: &StepTiming) -> f32 {
-        let last = &raw[timing.frames];
-        let landing = timing.leading.other();
-        let leg = &last.legs[landing.index()];
-        let foot = &self.feet[landing.index()];
-        let plant = foot.plant_under(Vec3::ZERO, 0.0, leg.pitch);
-        let above_landing = foot.stand(&plant, leg.pitch).ankle.y - leg.ankle.y;
-        above_landing - hips_above(last, timing.leading, Quat::IDENTITY).y
-    }
-
-    /// The walker's place on the ground: a cubic path through the hips' places at initial contacts.
-    fn glide(&mut self, timing: &StepTiming, hips: Vec3, out: &mut [PlantedFrame]) {
-        let from = self.state.ground_position;
-        let to = Vec3::new(hips.x, 0.0, hips.z);
-        let arrival = to - from;
-        let secs = timing.frames as f32 * self.frame_secs;
-        let departure = self
-            .state
-            .ground_velocity
-            .map_or(arrival, |velocity| velocity * secs);
-        for (index, frame) in out.iter_mut().enumerate() {
-            let s = index as f32 / timing.frames as f32;
-            frame.ground_position = hermite(from, departure, to, arrival, s);
-        }
-        self.state.ground_position = to;
-        self.state.ground_velocity = Some(arrival / secs);
-    }
-
-    /// Where this foot stands on its plant, under the plant's heading, at the generated pitch.
-    fn stand(&self, side: Side, level: Quat, raw: &RawFrame) -> FootTarget {
-        let pitch = raw.legs[side.index()].pitch;
-        self.feet[side.index()].stand_level(self.plant(side), level, pitch)
-    }
-
-    /// Fills where each foot stands while it may.
+    /// Fills where each foot stands while it may: on its plant, under the plant's heading, at the generated pitch.
     fn fill_stances(&self, raw: &mut [RawFrame], timing: &StepTiming) {
         let trailing = timing.leading.other();
         for (side, last) in [(timing.leading, timing.frames), (trailing, timing.terminal)] {
-            let level = from_heading(self.plant(side).heading);
-            for raw in &mut raw[..=last] {
-                raw.legs[side.index()].stance = self.stand(side, level, raw);
+            let plant = self.plant(side);
+            let level = from_heading(plant.heading);
+            for frames in raw[..=last].chunks_mut(LANES) {
+                let leg = |lane: usize| &frames[lane.min(frames.len() - 1)].legs[side.index()];
+                let pitch = f32x8::new(core::array::from_fn(|lane| leg(lane).pitch));
+                let stances = self.feet[side.index()].stand_many(plant, level, pitch);
+                for (lane, frame) in frames.iter_mut().enumerate() {
+                    frame.legs[side.index()].target = stances.lane(lane);
+                }
+            }
+        }
+    }
+
+    /// Fills where the trailing foot is on its way, eight frames at a time.
+    fn fill_swing(
+        &self,
+        raw: &mut [RawFrame],
+        timing: &StepTiming,
+        swing: &Swing,
+        frames: &[PlantedFrame],
+    ) {
+        let side = timing.leading.other().index();
+        for index in (timing.terminal + 1..timing.frames).step_by(LANES) {
+            let at = |lane: usize| (index + lane).min(timing.frames - 1);
+            let level = Quatx8::gather(|lane| frames[at(lane)].level);
+            let hips = Vec3x8::gather(|lane| frames[at(lane)].pose.root_position);
+            let leg = |lane: usize| &raw[at(lane)].legs[side];
+            let foot = level * Quatx8::gather(|lane| leg(lane).foot);
+            let free = FootTargetx8 {
+                ankle: hips + level * Vec3x8::gather(|lane| leg(lane).ankle),
+                foot,
+                toes: foot,
+            };
+            let hip = hips + level * Vec3x8::gather(|lane| leg(lane).hip);
+            let mut target = swing.guide(index, &free, &self.feet[side]);
+            let ankle = target.ankle - hip;
+            let yielded = ankle * yielding(ankle.length(), self.leg_lengths[side]);
+            target.ankle = hip + ankle + (yielded - ankle) * swing.freed(index);
+            for lane in 0..LANES.min(timing.frames - index) {
+                raw[index + lane].legs[side].target = target.lane(lane);
             }
         }
     }
@@ -407,22 +350,16 @@ impl Planter {
         let before = timing.terminal.saturating_sub(1);
         [before, timing.terminal, timing.frames].map(|index| {
             let frame = &frames[index];
-            let plant = if index == timing.frames {
-                next_plant
+            let leg = &raw[index].legs[side.index()];
+            let planted = if index == timing.frames {
+                foot.stand(next_plant, leg.pitch)
             } else {
-                self.plant(side)
+                leg.target
             };
             let free = free_foot(&raw[index], side, frame.pose.root_position, frame.level);
-            let pitch = raw[index].legs[side.index()].pitch;
-            (foot.stand(plant, pitch), free)
+            (planted, free)
         })
     }
-}
-
-/// Where the hips are when this foot stands on its plant and the leg is as generated.
-fn hips_above(raw: &RawFrame, side: Side, level: Quat) -> Vec3 {
-    let leg = &raw.legs[side.index()];
-    leg.stance.ankle - level * leg.ankle
 }
 
 /// Where a foot is when the leg is as generated.
@@ -436,15 +373,13 @@ fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget 
     }
 }
 
-/// A swinging leg that gets ever harder to stretch: one that is straightened all at once snaps its knee.
-fn yielding(ankle_from_hip: Vec3, length: f32) -> Vec3 {
-    let (from, room) = (MAX_LANDING_EXTENSION * length, SWING_ROOM * length);
-    let reach = ankle_from_hip.length();
-    if reach <= from {
-        return ankle_from_hip;
-    }
-    let yielded = from + room * (1.0 - (-(reach - from) / room).exp());
-    ankle_from_hip * (yielded / reach)
+/// A swinging leg that gets ever harder to stretch: one that is straightened all at once snaps its knee. The factors on its reach.
+fn yielding(reach: f32x8, length: f32) -> f32x8 {
+    let [from, room] =
+        [MAX_LANDING_EXTENSION, SWING_ROOM].map(|share| f32x8::splat(share * length));
+    let beyond = (reach - from).fast_max(f32x8::ZERO);
+    let yielded = from + room * (f32x8::ONE - (-beyond / room).exp());
+    reach.simd_gt(from).bitselect(yielded / reach, f32x8::ONE)
 }
 
 /// The shift over the ground that brings the end of a leg within reach of the hip.

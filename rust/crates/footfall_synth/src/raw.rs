@@ -1,8 +1,8 @@
 //! What a frame of generated features says about the body before it is put on the ground.
 
-use footfall_core::{JOINT_COUNT, Joint, Side, Skeleton};
-use footfall_ik::{FootTarget, foot_heading, foot_pitch, settled_pitch};
-use footfall_model::layout;
+use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
+use footfall_core::{Joint, Pose, Side, Skeleton};
+use footfall_ik::{FootTarget, foot_heading, foot_pitches, settled_pitch};
 use glam::{Quat, Vec3};
 
 /// One generated frame, hips at the origin and heading removed.
@@ -27,8 +27,8 @@ pub(crate) struct RawLeg {
     pub(crate) free_pitch: f32,
     /// The same on the ground: settled, and less of it in short strides.
     pub(crate) pitch: f32,
-    /// Where the foot is if it stands on its plant at this pitch; the planter fills it.
-    pub(crate) stance: FootTarget,
+    /// Where the foot belongs, on its plant or in the air; the planter fills it.
+    pub(crate) target: FootTarget,
 }
 
 impl RawLeg {
@@ -53,7 +53,7 @@ impl Default for RawLeg {
             foot: Quat::IDENTITY,
             free_pitch: 0.0,
             pitch: 0.0,
-            stance: FootTarget {
+            target: FootTarget {
                 ankle: Vec3::ZERO,
                 foot: Quat::IDENTITY,
                 toes: Quat::IDENTITY,
@@ -63,35 +63,90 @@ impl Default for RawLeg {
 }
 
 impl RawFrame {
-    /// Fills the frame and a pose's local rotations (the hips' relative to the heading) from static features.
-    /// `stride_scale` stretches the legs' reach forwards and backwards.
-    pub(crate) fn decode(
-        &mut self,
-        features: &[f32],
+    /// Fills frames, eight at a time, from poses that hold generated local rotations (the hips' relative to the heading).
+    /// `stride_scale` tells by how much eight frames from an index on stretch the legs' reach forwards and backwards.
+    pub(crate) fn fill(
+        frames: &mut [Self],
+        poses: &[impl AsRef<Pose>],
         skeleton: &Skeleton,
-        stride_scale: f32,
-        rotations: &mut [Quat; JOINT_COUNT],
+        stride_scale: impl Fn(usize) -> f32x8,
     ) {
-        layout::decode(features, rotations);
-        let hips = rotations[Joint::Hips.index()];
-        self.hips = hips;
-        for side in Side::BOTH {
-            let local = |joint: Joint| rotations[joint.index()];
-            let thigh = hips * local(side.upper_leg());
-            let shank = thigh * local(side.lower_leg());
-            let foot = shank * local(side.foot());
-            let hip = hips * skeleton.offset(side.upper_leg());
-            let ankle = hip
-                + thigh * skeleton.offset(side.lower_leg())
-                + shank * skeleton.offset(side.foot());
-            let reach = (ankle.z - hip.z) * (stride_scale - 1.0);
-            let leg = &mut self.legs[side.index()];
-            leg.hip = hip;
-            leg.ankle = ankle + Vec3::Z * reach;
-            leg.foot = foot;
-            leg.free_pitch = foot_pitch(foot);
-            // A shorter stride lands flatter and pushes off less.
-            leg.pitch = settled_pitch(leg.free_pitch * stride_scale.min(1.0));
+        let blocks = frames.chunks_mut(LANES).zip(poses.chunks(LANES));
+        for (block, (frames, poses)) in blocks.enumerate() {
+            let stride_scale = stride_scale(block * LANES);
+            let of_poses = |joint: Joint| {
+                Quatx8::gather(|lane| poses[lane.min(poses.len() - 1)].as_ref().rotation(joint))
+            };
+            let offset = |joint: Joint| Vec3x8::splat(skeleton.offset(joint));
+            let hips = of_poses(Joint::Hips);
+            for side in Side::BOTH {
+                let thigh = hips * of_poses(side.upper_leg());
+                let shank = thigh * of_poses(side.lower_leg());
+                let foot = shank * of_poses(side.foot());
+                let hip = hips * offset(side.upper_leg());
+                let mut ankle = thigh * offset(side.lower_leg()) + shank * offset(side.foot());
+                ankle.z *= stride_scale;
+                let ankle = hip + ankle;
+                let free_pitch = foot_pitches(foot);
+                // A shorter stride lands flatter and pushes off less.
+                let pitch = settled_pitch(free_pitch * stride_scale.fast_min(f32x8::ONE));
+                for (lane, frame) in frames.iter_mut().enumerate() {
+                    let leg = &mut frame.legs[side.index()];
+                    leg.hip = hip.lane(lane);
+                    leg.ankle = ankle.lane(lane);
+                    leg.foot = foot.lane(lane);
+                    leg.free_pitch = free_pitch.as_array()[lane];
+                    leg.pitch = pitch.as_array()[lane];
+                }
+            }
+            for (frame, pose) in frames.iter_mut().zip(poses) {
+                frame.hips = pose.as_ref().rotation(Joint::Hips);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use footfall_core::rotation::exp_map;
+    use footfall_core::{ModelPose, forward_kinematics};
+
+    struct Frame(Pose);
+
+    impl AsRef<Pose> for Frame {
+        fn as_ref(&self) -> &Pose {
+            &self.0
+        }
+    }
+
+    #[test]
+    fn legs_are_where_forward_kinematics_has_them() {
+        let skeleton = Skeleton::standard();
+        let poses: Vec<Frame> = (0..13)
+            .map(|frame| {
+                let mut pose = Pose::default();
+                for (joint, rotation) in pose.rotations.iter_mut().enumerate() {
+                    let turn = |axis: usize| ((frame * 7 + joint * 3 + axis) as f32).sin();
+                    *rotation = exp_map(0.5 * Vec3::new(turn(0), turn(1), turn(2)));
+                }
+                Frame(pose)
+            })
+            .collect();
+        let mut frames = vec![RawFrame::default(); poses.len()];
+        RawFrame::fill(&mut frames, &poses, &skeleton, |_| f32x8::splat(1.25));
+        for (frame, pose) in frames.iter().zip(&poses) {
+            let mut model = ModelPose::default();
+            forward_kinematics(&skeleton, &pose.0, &mut model);
+            for side in Side::BOTH {
+                let leg = &frame.legs[side.index()];
+                let hip = model.position(side.upper_leg());
+                let reach = (model.position(side.foot()) - hip) * Vec3::new(1.0, 1.0, 1.25);
+                assert!(leg.hip.distance(hip) < 1e-6);
+                assert!(leg.ankle.distance(hip + reach) < 1e-6);
+                let forward = model.rotation(side.foot()) * Vec3::Z;
+                assert!((leg.free_pitch + forward.y.asin()).abs() < 1e-5);
+            }
         }
     }
 }

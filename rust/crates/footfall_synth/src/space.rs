@@ -2,7 +2,7 @@
 
 use crate::error::SynthError;
 use crate::standing::standing_features;
-use crate::trajectory::Statistics;
+use crate::statistics::Statistics;
 use crate::variance;
 use footfall_model::{FEATURE_COUNT, GaitModel, GaitStyle};
 use std::sync::Arc;

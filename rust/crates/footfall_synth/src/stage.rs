@@ -6,9 +6,10 @@ use crate::raw::RawFrame;
 use crate::standing::Amplitude;
 use crate::strafe::{Strafe, sway};
 use footfall_core::ease::smooth_step;
+use footfall_core::lanes::{self, COUNTING, f32x8};
 use footfall_core::{Side, Skeleton};
 use footfall_ik::Plant;
-use footfall_model::FEATURE_COUNT;
+use footfall_model::{FEATURE_COUNT, layout};
 use glam::{Vec2, Vec3};
 
 /// Static features of one posture.
@@ -95,26 +96,29 @@ impl Stage {
         let raw = &mut self.raw[..=timing.frames];
         let frames = &mut self.frames[..=timing.frames];
         let rows = rows.step_by(detail).enumerate();
-        for ((raw, frame), (index, features)) in raw.iter_mut().zip(&mut *frames).zip(rows) {
+        for (frame, (index, features)) in frames.iter_mut().zip(rows) {
             let rotations = &mut frame.pose.rotations;
-            let s = index as f32 / timing.frames as f32;
-            // A foot that stands must not notice that another step has begun.
-            let stride = stride_before + smooth_step(s) * (stride - stride_before);
             if as_it_is {
-                raw.decode(features, &self.skeleton, stride, rotations);
+                layout::decode(features, rotations);
                 continue;
             }
+            let s = index as f32 / timing.frames as f32;
             let (standing, mut blended) = placing.grown(features, s);
             sway(&mut blended, &standing, before.between(&strafe, s));
-            raw.decode(&blended, &self.skeleton, stride, rotations);
+            layout::decode(&blended, rotations);
         }
-        let [facing_before, facing] = placing.facing;
+        RawFrame::fill(raw, frames, &self.skeleton, |index| {
+            // A foot that stands must not notice that another step has begun.
+            let s = (COUNTING + f32x8::splat(index as f32)) * (timing.frames as f32).recip();
+            lanes::smooth_step(s) * (stride - stride_before) + f32x8::splat(stride_before)
+        });
+        let [_, facing] = placing.facing;
         let planter = self.planter.get_or_insert_with(|| {
             Planter::new(&self.skeleton, frame_secs, &raw[0], timing.leading, facing)
         });
         let course = Course {
             turn_rate: placing.turn_rate,
-            shift: facing - facing_before,
+            facing: placing.facing,
         };
         planter.set_frame_secs(frame_secs);
         planter.set_stride(stride);

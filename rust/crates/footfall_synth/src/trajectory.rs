@@ -2,55 +2,9 @@
 
 use crate::error::SynthError;
 use crate::plan::StepPlan;
-use footfall_core::Side;
-use footfall_model::{FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, STATES_PER_STEP};
-use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, Real, mlpg};
-use footfall_prob::windows::Windows;
-
-/// How far below zero the pull that restores variance may go, as a fraction of the least static precision: beyond 1
-/// a trajectory need not be determined.
-const MAX_PUSH: f64 = 0.9;
-
-/// What all trajectories of one model share.
-#[derive(Clone, Debug)]
-pub(crate) struct Statistics<R> {
-    windows: Windows,
-    /// Per side, the precisions of the five states.
-    precisions: [Vec<R>; 2],
-    pull_strength: Vec<R>,
-}
-
-impl<R: Real> Statistics<R> {
-    /// Those of a model, without any pull.
-    pub(crate) fn new(model: &GaitModel) -> Self {
-        let precisions = Side::BOTH.map(|side| {
-            let states = &model.step(side).states;
-            let variances = states.iter().flat_map(|state| &state.variance);
-            variances
-                .map(|variance| R::narrow(variance.recip()))
-                .collect()
-        });
-        Self {
-            windows: model.windows,
-            precisions,
-            pull_strength: vec![R::default(); FEATURE_COUNT],
-        }
-    }
-
-    /// Sets the strength of the pull that keeps variance. It acts about the mean of what is loaded.
-    pub(crate) fn set_pull(&mut self, strength: &[f64]) {
-        let mut least = vec![f64::INFINITY; FEATURE_COUNT];
-        let states = self.precisions.iter();
-        for state in states.flat_map(|side| side.chunks_exact(OBSERVATION_COUNT)) {
-            for (least, precision) in least.iter_mut().zip(state) {
-                *least = least.min(precision.widen());
-            }
-        }
-        for (dim, pull) in self.pull_strength.iter_mut().enumerate() {
-            *pull = R::narrow(strength[dim].max(-MAX_PUSH * least[dim]));
-        }
-    }
-}
+use crate::statistics::Statistics;
+use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT, STATES_PER_STEP};
+use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, Real, mlpg_part};
 
 /// Solves trajectories; owns every buffer that this takes.
 #[derive(Debug)]
@@ -79,15 +33,14 @@ impl<R: Real> TrajectorySolver<R> {
     pub(crate) fn load(
         &mut self,
         statistics: &Statistics<R>,
-        plans: &[StepPlan],
+        plans: &[StepPlan<R>],
         skip: usize,
     ) -> usize {
         self.window_means.clear();
         self.window_precisions.clear();
         self.state_of_frame.clear();
         for (step, plan) in plans.iter().enumerate() {
-            self.window_means
-                .extend(plan.means.iter().map(|mean| R::narrow(*mean)));
+            self.window_means.extend_from_slice(&plan.means);
             self.window_precisions
                 .extend_from_slice(&statistics.precisions[plan.shape.timing.leading.index()]);
             for (state, frames) in plan.state_frames.iter().enumerate() {
@@ -102,7 +55,7 @@ impl<R: Real> TrajectorySolver<R> {
     }
 
     /// Moves the centre of the pull to the mean of a stride: a left and a right step.
-    fn centre(&mut self, stride: Option<&[StepPlan; 2]>) {
+    fn centre(&mut self, stride: Option<&[StepPlan<R>; 2]>) {
         let mut centre = [0.0; FEATURE_COUNT];
         if let Some(stride) = stride {
             let frames: usize = stride.iter().map(|plan| plan.shape.timing.frames).sum();
@@ -111,7 +64,7 @@ impl<R: Real> TrajectorySolver<R> {
                 for (mean, duration) in means.zip(plan.state_frames) {
                     let share = duration as f64 / frames as f64;
                     for (centre, value) in centre.iter_mut().zip(mean) {
-                        *centre += share * value;
+                        *centre += share * value.widen();
                     }
                 }
             }
@@ -134,12 +87,13 @@ impl<R: Real> TrajectorySolver<R> {
         }
     }
 
-    /// Solves what is loaded. `trajectory` (T × [`FEATURE_COUNT`]) holds the given frames already.
+    /// Solves the first `wanted` features at least of what is loaded. `trajectory` (T × [`FEATURE_COUNT`]) holds the given frames already.
     pub(crate) fn solve(
         &mut self,
         statistics: &Statistics<R>,
         trajectory: &mut [R],
         n_fixed: usize,
+        wanted: usize,
     ) -> Result<(), SynthError> {
         let mut workspace = core::mem::take(&mut self.workspace);
         let problem = MlpgProblem {
@@ -149,7 +103,7 @@ impl<R: Real> TrajectorySolver<R> {
             }),
             ..self.problem(statistics, n_fixed)
         };
-        let solved = mlpg(&problem, &mut workspace, trajectory);
+        let solved = mlpg_part(&problem, wanted, &mut workspace, trajectory);
         self.workspace = workspace;
         Ok(solved?)
     }

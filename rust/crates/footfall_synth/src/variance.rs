@@ -7,7 +7,8 @@
 
 use crate::error::SynthError;
 use crate::plan::{Manner, Pace, Planner, StepPlan};
-use crate::trajectory::{Statistics, TrajectorySolver};
+use crate::statistics::Statistics;
+use crate::trajectory::TrajectorySolver;
 use footfall_core::Side;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use footfall_prob::global_variance::{
@@ -25,7 +26,7 @@ const VARIANCE_RATIO: [f64; 2] = [0.25, 4.0];
 pub(crate) fn pull(model: &Arc<GaitModel>) -> Result<Vec<f64>, SynthError> {
     let statistics = Statistics::new(model);
     let mut solver = TrajectorySolver::new(SAMPLE_STEPS, 0);
-    let frames = solver.load(&statistics, &sample_walk(model), 0);
+    let frames = solver.load(&statistics, &sample_walk(model, &statistics), 0);
     let mut trajectory = vec![0.0; frames * FEATURE_COUNT];
     let target = GlobalVarianceTarget {
         mean: &model.global_variance.mean,
@@ -42,27 +43,27 @@ pub(crate) fn pull(model: &Arc<GaitModel>) -> Result<Vec<f64>, SynthError> {
 /// is faster or slower or another walker's, is given as much more or less variance.
 pub(crate) fn solve_walk(
     model: &Arc<GaitModel>,
-    plans: &[StepPlan],
+    statistics: &Statistics<f64>,
+    plans: &[StepPlan<f64>],
 ) -> Result<Vec<f64>, SynthError> {
-    let statistics = Statistics::new(model);
     let mut solver = TrajectorySolver::new(plans.len(), 0);
-    let sample = sample_walk(model);
-    let sample_variance = plain_variance(&statistics, &mut solver, &sample)?;
-    let variance = plain_variance(&statistics, &mut solver, plans)?;
+    let sample = sample_walk(model, statistics);
+    let sample_variance = plain_variance(statistics, &mut solver, &sample)?;
+    let variance = plain_variance(statistics, &mut solver, plans)?;
     let mean: Vec<f64> = (0..FEATURE_COUNT)
         .map(|dim| {
             let ratio = variance[dim] / sample_variance[dim].max(f64::MIN_POSITIVE);
             model.global_variance.mean[dim] * ratio.clamp(VARIANCE_RATIO[0], VARIANCE_RATIO[1])
         })
         .collect();
-    let frames = solver.load(&statistics, plans, 0);
+    let frames = solver.load(statistics, plans, 0);
     let mut trajectory = vec![0.0; frames * FEATURE_COUNT];
     let target = GlobalVarianceTarget {
         mean: &mean,
         variance: &model.global_variance.variance,
         trajectory_weight: hts_weight(frames),
     };
-    global_variance(&solver.problem(&statistics, 0), &target, &mut trajectory)?;
+    global_variance(&solver.problem(statistics, 0), &target, &mut trajectory)?;
     Ok(trajectory)
 }
 
@@ -70,16 +71,16 @@ pub(crate) fn solve_walk(
 fn plain_variance(
     statistics: &Statistics<f64>,
     solver: &mut TrajectorySolver<f64>,
-    plans: &[StepPlan],
+    plans: &[StepPlan<f64>],
 ) -> Result<Vec<f64>, SynthError> {
     let frames = solver.load(statistics, plans, 0);
     let mut trajectory = vec![0.0; frames * FEATURE_COUNT];
-    solver.solve(statistics, &mut trajectory, 0)?;
+    solver.solve(statistics, &mut trajectory, 0, FEATURE_COUNT)?;
     Ok(temporal_moments(&trajectory, FEATURE_COUNT).1)
 }
 
 /// The average walk without chance.
-fn sample_walk(model: &Arc<GaitModel>) -> Vec<StepPlan> {
+fn sample_walk(model: &Arc<GaitModel>, statistics: &Statistics<f64>) -> Vec<StepPlan<f64>> {
     let planner = Planner::new(model, 0, 0.0);
     let pace = Pace {
         covariate_mps: model.speed.reference_mps,
@@ -90,7 +91,8 @@ fn sample_walk(model: &Arc<GaitModel>) -> Vec<StepPlan> {
     (0..SAMPLE_STEPS)
         .map(|_| {
             let mut plan = StepPlan::empty();
-            planner.realise(&Planner::mean_draw(side), Manner::inside(pace), &mut plan);
+            let draw = Planner::mean_draw(side);
+            planner.realise(&draw, Manner::inside(pace), statistics, &mut plan);
             side = side.other();
             plan
         })

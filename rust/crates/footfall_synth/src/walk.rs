@@ -7,10 +7,12 @@ use crate::planting::{Course, PlantedFrame, Planter};
 use crate::raw::RawFrame;
 use crate::recording;
 use crate::space::StyleSpace;
+use crate::statistics::Statistics;
 use crate::variance;
+use footfall_core::lanes::f32x8;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton};
-use footfall_model::{FEATURE_COUNT, GaitModel};
+use footfall_model::{FEATURE_COUNT, GaitModel, layout};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -113,16 +115,17 @@ pub fn synthesize(
     } else {
         Side::Right
     };
-    let plans: Vec<StepPlan> = (0..config.steps.max(1) + 2 * LEAD_STEPS)
+    let statistics = Statistics::new(model);
+    let plans: Vec<StepPlan<f64>> = (0..config.steps.max(1) + 2 * LEAD_STEPS)
         .map(|_| {
             let draw: StepDraw = planner.draw(side);
             side = side.other();
             let mut plan = StepPlan::empty();
-            planner.realise(&draw, Manner::inside(pace), &mut plan);
+            planner.realise(&draw, Manner::inside(pace), &statistics, &mut plan);
             plan
         })
         .collect();
-    let trajectory = variance::solve_walk(model, &plans)?;
+    let trajectory = variance::solve_walk(model, &statistics, &plans)?;
     Ok(put_on_ground(
         model.frame_rate_hz,
         skeleton,
@@ -138,7 +141,7 @@ pub(crate) fn put_on_ground(
     model_rate_hz: f64,
     skeleton: &Skeleton,
     config: &WalkConfig,
-    plans: &[StepPlan],
+    plans: &[StepPlan<f64>],
     trajectory: &[f64],
     facing: f32,
 ) -> SynthesizedWalk {
@@ -146,7 +149,7 @@ pub(crate) fn put_on_ground(
     let mut planter: Option<Planter> = None;
     let course = Course {
         turn_rate: config.turn_rate_radps,
-        shift: 0.0,
+        facing: [facing; 2],
     };
     let mut poses: Vec<Pose> = Vec::new();
     let mut stances: [Vec<[f64; 2]>; 2] = [vec![], vec![]];
@@ -160,14 +163,14 @@ pub(crate) fn put_on_ground(
         let stride = plan.shape.stride as f32;
         let rows = trajectory[begin * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let mut frames = vec![PlantedFrame::default(); timing.frames + 1];
-        for ((raw, frame), features) in raw.iter_mut().zip(&mut frames).zip(rows) {
+        for (frame, features) in frames.iter_mut().zip(rows) {
             let mut narrow = [0.0; FEATURE_COUNT];
             for (narrow, feature) in narrow.iter_mut().zip(features) {
                 *narrow = *feature as f32;
             }
-            let rotations = &mut frame.pose.rotations;
-            raw.decode(&narrow, skeleton, stride, rotations);
+            layout::decode(&narrow, &mut frame.pose.rotations);
         }
+        RawFrame::fill(&mut raw, &frames, skeleton, |_| f32x8::splat(stride));
         begin += timing.frames;
         let terminal = planter
             .get_or_insert_with(|| {
@@ -178,7 +181,7 @@ pub(crate) fn put_on_ground(
             continue;
         }
         if index == shown.start {
-            start_heading = frames[0].heading - facing;
+            start_heading = frames[0].ground_heading;
         }
         poses.truncate(poses.len().saturating_sub(1));
         poses.extend(frames.iter().map(|frame| frame.pose.clone()));

@@ -7,7 +7,8 @@ use crate::space::Blend;
 use crate::stage::{Placing, Stage};
 use crate::standing::Amplitude;
 use crate::trajectory::TrajectorySolver;
-use footfall_core::{Side, Skeleton, StepPosition};
+use footfall_core::{Joint, Side, Skeleton, StepPosition};
+use footfall_model::layout::feature_offset;
 use footfall_model::{FEATURE_COUNT, STATES_PER_STEP};
 use glam::Vec2;
 use std::sync::Arc;
@@ -24,6 +25,9 @@ const TIE_FROM_STATE: usize = STATES_PER_STEP - TIE;
 
 /// Numbers that tie a window to the one before.
 pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;
+
+/// Features that are generated: all but those of the right toes, which come last. The planter turns toes.
+const WALKED: usize = feature_offset(Joint::RightToes);
 
 /// What a step is asked to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +62,7 @@ pub(crate) struct Walker {
     /// The mixture of the step before.
     blend_before: Arc<Blend>,
     draws: [StepDraw; WINDOW],
-    plans: [StepPlan; WINDOW],
+    plans: [StepPlan<f32>; WINDOW],
     /// Whether the steps ahead are not those of the last request.
     stale: bool,
     /// Features of the window, and where the current step begins in it.
@@ -123,13 +127,13 @@ impl Walker {
         self.origin.facing_before = request.facing;
         self.origin.planter = None;
         for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
-            planner.realise(draw, request.manner, plan);
+            planner.realise(draw, request.manner, &blend.statistics, plan);
             plan.shape.set_amplitude(request.amplitude);
         }
         let frames = self.solver.load(&blend.statistics, &self.plans, 0);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
         self.solver
-            .solve(&blend.statistics, &mut self.trajectory, 0)?;
+            .solve(&blend.statistics, &mut self.trajectory, 0, WALKED)?;
         self.stage.clear();
         self.current = 0;
         self.put_on_ground(0);
@@ -167,6 +171,9 @@ impl Walker {
         let tie_at = (self.current + frames + 1 - TIE) * FEATURE_COUNT;
         let mut tie = [0.0; TIE_LEN];
         tie.copy_from_slice(&self.trajectory[tie_at..][..TIE_LEN]);
+        for frame in tie.chunks_exact_mut(FEATURE_COUNT) {
+            frame[WALKED..].fill(0.0);
+        }
         Origin {
             request,
             manner_before: self.origin.request.manner,
@@ -194,8 +201,13 @@ impl Walker {
         self.draws = draws;
         planner.wear(&blend_before.model);
         // Of the step before only the last frames count.
-        let plan = &mut self.plans[0];
-        planner.realise_from(&self.draws[0], origin.manner_before, TIE_FROM_STATE, plan);
+        planner.realise_from(
+            &self.draws[0],
+            origin.manner_before,
+            TIE_FROM_STATE,
+            &blend_before.statistics,
+            &mut self.plans[0],
+        );
         planner.wear(&blend.model);
         self.blend_before = Arc::clone(blend_before);
         self.blend = Arc::clone(blend);
@@ -221,7 +233,7 @@ impl Walker {
                 position,
                 ..request.manner
             };
-            planner.realise(draw, manner, plan);
+            planner.realise(draw, manner, &self.blend.statistics, plan);
         }
         self.plans[1].shape.set_amplitude(request.amplitude);
     }
@@ -233,7 +245,9 @@ impl Walker {
         let frames = self.solver.load(statistics, &self.plans, skip);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
         self.trajectory[..TIE_LEN].copy_from_slice(&self.origin.tie);
-        let solved = self.solver.solve(statistics, &mut self.trajectory, TIE);
+        let solved = self
+            .solver
+            .solve(statistics, &mut self.trajectory, TIE, WALKED);
         if solved.is_err() {
             // A checked model does not get here; were it to, a rough pose beats none.
             self.solver.fill_with_means(&mut self.trajectory, TIE);

@@ -74,7 +74,8 @@ fn fill_rows<R: Real, const FUSED: bool>(
         *out = [zero; 6];
         let Some(state) = row.state else { continue };
         let at = |window: usize| state as usize * 3 * dim + window * dim + job.first_dim;
-        let load = |table: &[R], window| R::Block::load(&table[at(window)..][..job.n_dims]);
+        let load =
+            |table: &[R], window| R::Block::load(&table[at(window)..][..dim - job.first_dim]);
         let precision = load(job.precisions, 0);
         out[0] = precision.add(job.pull_strength);
         out[3] = precision
@@ -235,7 +236,8 @@ fn factorise<R: Real, const FUSED: bool, const PAPER: bool>(plan: &Plan, job: &m
     let (mut this, mut other) = (nothing, nothing);
     // Beyond four frames back nothing is coupled to the first free frame.
     for t in n_fixed.saturating_sub(4)..n_fixed {
-        let value = R::Block::load(&job.trajectory[t * plan.dim + job.first_dim..][..job.n_dims]);
+        let frame = &job.trajectory[t * plan.dim..][..plan.dim];
+        let value = R::Block::load(&frame[job.first_dim..]);
         let around = [row(t), row(t + 1), row(t + 2), row(t + 3), row(t + 4)];
         let next = fix::<R, FUSED>(this, line::<R, PAPER>(around), value);
         (this, other) = if PAPER { (other, next) } else { (next, other) };
@@ -308,7 +310,7 @@ fn substitute_back<R: Real, const FUSED: bool, const STRIDE: usize>(
         let value = rhs
             .sub_mul::<FUSED>(*far, after[2 * STRIDE - 1])
             .sub_mul::<FUSED>(*near, after[STRIDE - 1]);
-        value.store(&mut frame[job.first_dim..][..job.n_dims]);
+        value.store(&mut frame[job.first_dim..]);
         after = [value, after[0], after[1], after[2]];
     }
 }

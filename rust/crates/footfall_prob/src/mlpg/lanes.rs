@@ -32,7 +32,9 @@ pub(super) mod sealed {
     pub trait Block<R>: Copy + std::fmt::Debug + Send + Sync + 'static {
         const LANES: usize;
         fn splat(value: R) -> Self;
+        /// The first values of a slice, and zeros where it has too few.
         fn load(from: &[R]) -> Self;
+        /// Writes as many values as there is room for.
         fn store(self, to: &mut [R]);
         fn lanes(&self) -> &[R];
         fn add(self, other: Self) -> Self;
@@ -82,6 +84,21 @@ macro_rules! real {
                 }
                 Self(out)
             }
+
+            // Were these inlined, the compiler would copy whole blocks by a call, too, of as many bytes as there are.
+            #[cold]
+            #[inline(never)]
+            fn load_part(from: &[$real]) -> Self {
+                let mut out = [0.0; $lanes];
+                out[..from.len()].copy_from_slice(from);
+                Self(out)
+            }
+
+            #[cold]
+            #[inline(never)]
+            fn store_part(&self, to: &mut [$real]) {
+                to.copy_from_slice(&self.0[..to.len()]);
+            }
         }
 
         impl sealed::Block<$real> for Lanes<$real, $lanes> {
@@ -94,13 +111,10 @@ macro_rules! real {
 
             #[inline(always)]
             fn load(from: &[$real]) -> Self {
-                let mut out = [0.0; $lanes];
-                if let Some(whole) = from.first_chunk::<$lanes>() {
-                    out = *whole;
-                } else {
-                    out[..from.len()].copy_from_slice(from);
+                match from.first_chunk::<$lanes>() {
+                    Some(whole) => Self(*whole),
+                    None => Self::load_part(from),
                 }
-                Self(out)
             }
 
             #[inline(always)]
@@ -108,7 +122,7 @@ macro_rules! real {
                 if let Some(whole) = to.first_chunk_mut::<$lanes>() {
                     *whole = self.0;
                 } else {
-                    to.copy_from_slice(&self.0[..to.len()]);
+                    self.store_part(to);
                 }
             }
 

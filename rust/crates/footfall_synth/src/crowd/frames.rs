@@ -2,7 +2,6 @@
 
 use crate::generator::GroundTransform;
 use crate::planting::PlantedFrame;
-use footfall_core::rotation::from_heading;
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics};
 use glam::{Quat, Vec3};
 use multiversion::multiversion;
@@ -66,28 +65,25 @@ pub(super) struct CrowdFrames {
 }
 
 impl CrowdFrames {
-    /// Takes over a step on the ground. `facing` tells by how much the character faces off its heading for a share of the step;
-    /// `pose` and `model` are room to work in.
+    /// Takes over a step on the ground; `pose` and `model` are room to work in.
     pub(super) fn set(
         &mut self,
         frames: &[PlantedFrame],
-        facing: impl Fn(f32) -> f32,
         skeleton: &Skeleton,
         pose: &mut Pose,
         model: &mut ModelPose,
     ) {
         self.places.resize(frames.len(), CrowdPlace::default());
         self.poses.resize(frames.len(), [0; POSE_NUMBERS]);
-        let last = (frames.len() - 1) as f32;
         let mut before = [Quat::IDENTITY; JOINT_COUNT];
         let kept = self.places.iter_mut().zip(&mut self.poses);
-        for (index, (frame, (place, numbers))) in frames.iter().zip(kept).enumerate() {
+        for (frame, (place, numbers)) in frames.iter().zip(kept) {
             place.place = GroundTransform {
                 position: frame.ground_position,
-                heading: frame.heading - facing(index as f32 / last),
+                heading: frame.ground_heading,
             };
             place.contact = frame.contact;
-            let character_from_plan = from_heading(-place.place.heading);
+            let character_from_plan = frame.plan_from_ground.conjugate();
             let on_plan = frame.pose.root_position - place.place.position;
             pose.rotations = frame.pose.rotations;
             pose.root_position = character_from_plan * on_plan;

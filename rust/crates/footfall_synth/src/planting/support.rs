@@ -44,7 +44,7 @@ impl Planter {
                     frame.pose.root_position,
                     frame.level,
                 );
-                let ankle = raw[*index].legs[trailing.index()].stance.ankle;
+                let ankle = raw[*index].legs[trailing.index()].target.ankle;
                 free.ankle.distance(ankle) > allowance
             })
             .map_or(timing.terminal, |beyond| beyond - 1)
@@ -99,7 +99,7 @@ impl Planter {
         let leg = &raw.legs[side.index()];
         let length = self.leg_lengths[side.index()];
         let hip = frame.level * leg.hip;
-        reach_height(hips, hip, leg.stance.ankle, length, MAX_STANCE_EXTENSION)
+        reach_height(hips, hip, leg.target.ankle, length, MAX_STANCE_EXTENSION)
     }
 
     /// Lowers the hips to where the landing leg will have them once it bears with the other.
@@ -134,7 +134,7 @@ impl Planter {
             let frame = &frames[*index];
             let leg = &raw[*index].legs[trailing.index()];
             let hip = frame.level * leg.hip;
-            let ankle = leg.stance.ankle;
+            let ankle = leg.target.ankle;
             (frame.pose.root_position + hip).distance(ankle) > reach
         });
         let Some(beyond) = beyond else {
@@ -170,6 +170,10 @@ impl Landing {
 }
 
 /// The smaller of two numbers, rounded off where they meet.
+#[expect(
+    clippy::imprecise_flops,
+    reason = "a nanometre is exact enough, and ln_1p takes three times as long"
+)]
 fn soft_min(value: f32, limit: f32) -> f32 {
     let excess = (value - limit) / REACH_SOFTNESS_M;
     if excess > 10.0 {
@@ -178,5 +182,5 @@ fn soft_min(value: f32, limit: f32) -> f32 {
     if excess < -10.0 {
         return value;
     }
-    value - REACH_SOFTNESS_M * excess.exp().ln_1p()
+    value - REACH_SOFTNESS_M * (1.0 + excess.exp()).ln()
 }

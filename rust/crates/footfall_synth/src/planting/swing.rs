@@ -2,9 +2,9 @@
 
 use super::StepTiming;
 use core::f32::consts::PI;
-use footfall_core::ease::smooth_step;
-use footfall_core::rotation::{exp_map, log_map};
-use footfall_ik::{FootTarget, RockerFoot};
+use footfall_core::lanes::{COUNTING, Quatx8, Vec3x8, f32x8, smooth_step};
+use footfall_core::rotation::log_map;
+use footfall_ik::{FootTarget, FootTargetx8, RockerFoot};
 use glam::Vec3;
 
 /// Least clearance of the sole in the middle of the swing, metres.
@@ -47,9 +47,10 @@ struct Correction {
 
 impl Correction {
     /// A critically damped farewell to the start, and a smooth approach to the end.
-    fn at(&self, s: f32) -> Vec3 {
-        let farewell = self.start + (self.departure + self.start * SETTLE_RATE) * s;
-        farewell * (-SETTLE_RATE * s).exp() + self.end * smooth_step(s)
+    fn at(&self, share: &Share) -> Vec3x8 {
+        let going = Vec3x8::splat(self.departure + self.start * SETTLE_RATE) * share.s;
+        let farewell = (Vec3x8::splat(self.start) + going) * share.left;
+        farewell + Vec3x8::splat(self.end) * share.smooth
     }
 }
 
@@ -90,34 +91,73 @@ impl Swing {
         }
     }
 
-    /// How far the foot has come away from how it stood, from 0 to 1.
-    pub(super) fn freed(&self, index: usize) -> f32 {
-        smooth_step((index - self.first) as f32 / (FREED_BY * self.frames))
-    }
-
-    /// The foot at a frame of the step, from where it would be free.
-    pub(super) fn guide(&self, index: usize, free: &FootTarget, foot: &RockerFoot) -> FootTarget {
-        let s = (index - self.first) as f32 / self.frames;
-        let rotation = (exp_map(self.rotation.at(s)) * free.foot).normalize();
-        let mut target = FootTarget {
-            ankle: free.ankle + self.position.at(s),
+    /// Eight frames of the step from `index` on: the feet from where they would be free.
+    pub(super) fn guide(
+        &self,
+        index: usize,
+        free: &FootTargetx8,
+        foot: &RockerFoot,
+    ) -> FootTargetx8 {
+        let passed = self.passed(index);
+        let share = Share::of(passed * self.frames.recip());
+        let rotation = (Quatx8::exp_map(self.rotation.at(&share)) * free.foot).normalize();
+        let mut target = FootTargetx8 {
+            ankle: free.ankle + self.position.at(&share),
             foot: rotation,
-            toes: rotation * exp_map(self.toes.at(s)),
+            toes: rotation * Quatx8::exp_map(self.toes.at(&share)),
         };
         // Ahead at first, so as to arrive slower.
-        let left = self.frames - (index - self.first) as f32;
-        let b = (1.0 - left / self.braking).max(0.0);
-        target.ankle += self.excess * (self.braking * b * b * (1.0 - b));
-        let clearance = CLEARANCE_M * (PI * s).sin().powi(2);
-        let softness = CLEARANCE_SOFTNESS_M * (PI * s).sin() + 1e-6;
-        let short = (clearance - foot.lowest_point(&target)) / softness;
-        // Beyond these the soft maximum is the hard one to the last digit that shows.
-        target.ankle.y += softness
-            * match short {
-                short if short > 10.0 => short,
-                short if short < -10.0 => 0.0,
-                short => short.exp().ln_1p(),
-            };
+        let left = f32x8::splat(self.frames) - passed;
+        let b = (f32x8::ONE - left * self.braking.recip()).fast_max(f32x8::ZERO);
+        let ahead = b * b * (f32x8::ONE - b) * self.braking;
+        target.ankle = target.ankle + Vec3x8::splat(self.excess) * ahead;
+        let clearance = share.hump * share.hump * CLEARANCE_M;
+        let softness = share.hump * CLEARANCE_SOFTNESS_M + f32x8::splat(1e-6);
+        let short = (clearance - foot.lowest_points(&target)) / softness;
+        target.ankle.y += softness * soft_positive(short);
         target
     }
+
+    /// How far the feet have come away from how they stood in eight frames from `index` on, from 0 to 1.
+    pub(super) fn freed(&self, index: usize) -> f32x8 {
+        smooth_step(self.passed(index) * (FREED_BY * self.frames).recip())
+    }
+
+    /// Frames of the swing that have passed in eight frames of the step from `index` on.
+    fn passed(&self, index: usize) -> f32x8 {
+        (COUNTING + f32x8::splat((index - self.first) as f32)).fast_min(f32x8::splat(self.frames))
+    }
+}
+
+/// Parts of the swing in eight frames, and what depends on them alone.
+struct Share {
+    s: f32x8,
+    smooth: f32x8,
+    /// What is left of a farewell.
+    left: f32x8,
+    /// From 0 at the ends to 1 in the middle.
+    hump: f32x8,
+}
+
+impl Share {
+    fn of(s: f32x8) -> Self {
+        // Sine and cosine of half the angle that the hump is the sine of.
+        let half = Quatx8::from_rotation_x(s * PI);
+        Self {
+            s,
+            smooth: smooth_step(s),
+            left: (s * -SETTLE_RATE).exp(),
+            hump: half.x * half.w * 2.0,
+        }
+    }
+}
+
+/// The larger of a number and 0, rounded off where they meet.
+fn soft_positive(value: f32x8) -> f32x8 {
+    // Beyond these it is the plain maximum to the last digit that shows.
+    let most = f32x8::splat(10.0);
+    let near = value.fast_max(-most).fast_min(most);
+    let soft = (f32x8::ONE + near.exp()).ln();
+    let soft = value.simd_gt(most).bitselect(value, soft);
+    value.simd_lt(-most).bitselect(f32x8::ZERO, soft)
 }

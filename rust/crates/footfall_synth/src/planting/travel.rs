@@ -1,0 +1,154 @@
+//! The way of the body over a step: hips above the foot that stands, heading, and the walker's place on the ground.
+
+use super::{Course, PlantedFrame, Planter, StepTiming};
+use crate::raw::RawFrame;
+use footfall_core::ease::{hermite, smooth_step};
+use footfall_core::lanes::{self, COUNTING, LANES, Quatx8, Vec3x8, f32x8};
+use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_core::{Joint, Side};
+use glam::{Quat, Vec3};
+
+/// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
+const SETTLE_SECS: f32 = 0.07;
+
+/// Part of a step over which a new turn rate sets in.
+const TURN_ONSET: f32 = 0.6;
+
+/// Generated legs disagree by a few centimetres about the hips' height when a foot lands. This share of the gap is closed
+/// before the landing, from this part of the step on, and the rest after it.
+const MEETING_SHARE: f32 = 0.5;
+const MEETING_FROM: f32 = 0.4;
+
+impl Planter {
+    /// Fills hips, headings and ground position of every frame, and carries the latter two to the next step.
+    pub(super) fn travel(
+        &mut self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        course: Course,
+        out: &mut [PlantedFrame],
+    ) {
+        let settling = self.settling(raw, timing);
+        let from = self.turn(timing, course, out);
+        let level_from = Quatx8::splat(from_heading(from));
+        let [facing_before, facing] = course.facing;
+        let side = timing.leading.index();
+        let blocks = raw.chunks(LANES).zip(out.chunks_mut(LANES));
+        for (block, (raw, frames)) in blocks.enumerate() {
+            let at = |lane: usize| lane.min(raw.len() - 1);
+            let leg = |lane: usize| &raw[at(lane)].legs[side];
+            let turned = core::array::from_fn(|lane| wrap_angle(frames[at(lane)].heading - from));
+            let level = level_from * Quatx8::from_rotation_y(f32x8::new(turned));
+            let above = Vec3x8::gather(|lane| leg(lane).target.ankle)
+                - level * Vec3x8::gather(|lane| leg(lane).ankle);
+            let time = COUNTING + f32x8::splat((block * LANES) as f32);
+            let hips = above + settling.at(time);
+            let part = lanes::smooth_step(time * (timing.frames as f32).recip());
+            let facing = f32x8::splat(facing_before) + part * (facing - facing_before);
+            let plan_from_ground = level * Quatx8::from_rotation_y(-facing);
+            let hips_rotation = (level * Quatx8::gather(|lane| raw[at(lane)].hips)).normalize();
+            for (lane, frame) in frames.iter_mut().enumerate() {
+                frame.level = level.lane(lane);
+                frame.ground_heading = frame.heading - facing.as_array()[lane];
+                frame.plan_from_ground = plan_from_ground.lane(lane);
+                frame.pose.root_position = hips.lane(lane);
+                frame.pose.rotations[Joint::Hips.index()] = hips_rotation.lane(lane);
+            }
+        }
+        self.glide(timing, out);
+    }
+
+    /// How the hips leave the way that they were on for that above the foot that has landed.
+    fn settling(&self, raw: &[RawFrame], timing: &StepTiming) -> Settling {
+        let start = hips_above(&raw[0], timing.leading, from_heading(self.state.heading));
+        let next_level = from_heading(self.state.heading + self.state.turn_rate * self.frame_secs);
+        let follow = hips_above(&raw[1], timing.leading, next_level);
+        Settling {
+            offset: self.state.hips - start,
+            velocity: self.state.hips_velocity.map_or(Vec3::ZERO, |velocity| {
+                velocity * self.frame_secs - (follow - start)
+            }),
+            decay: self.frame_secs / SETTLE_SECS,
+            meeting: MEETING_SHARE * self.landing_height_gap(raw, timing),
+            frames: timing.frames as f32,
+        }
+    }
+
+    /// Fills the heading of every frame; returns that of the first.
+    fn turn(&mut self, timing: &StepTiming, course: Course, out: &mut [PlantedFrame]) -> f32 {
+        let from = self.state.heading;
+        let from_rate = self.state.turn_rate;
+        let [facing_before, facing] = course.facing;
+        let share = |index: f32| smooth_step(index / timing.frames as f32);
+        for (index, frame) in out.iter_mut().enumerate() {
+            frame.heading = self.state.heading;
+            if index < timing.frames {
+                let time = index as f32;
+                let onset = smooth_step(time / (TURN_ONSET * timing.frames as f32));
+                self.state.turn_rate = from_rate + onset * (course.turn_rate - from_rate);
+                self.state.heading += self.state.turn_rate * self.frame_secs
+                    + (facing - facing_before) * (share(time + 1.0) - share(time));
+            }
+        }
+        from
+    }
+
+    /// How much higher the landing foot's leg would have the hips at the end of the step than the standing foot's has them.
+    fn landing_height_gap(&self, raw: &[RawFrame], timing: &StepTiming) -> f32 {
+        let last = &raw[timing.frames];
+        let landing = timing.leading.other();
+        let leg = &last.legs[landing.index()];
+        let foot = &self.feet[landing.index()];
+        let above_landing = foot.ankle_height() + foot.roll(leg.pitch).y - leg.ankle.y;
+        above_landing - hips_above(last, timing.leading, Quat::IDENTITY).y
+    }
+
+    /// The walker's place on the ground: a cubic path through the hips' places at initial contacts.
+    fn glide(&mut self, timing: &StepTiming, out: &mut [PlantedFrame]) {
+        let from = self.state.ground_position;
+        let hips = out[timing.frames].pose.root_position;
+        let to = Vec3::new(hips.x, 0.0, hips.z);
+        let arrival = to - from;
+        let secs = timing.frames as f32 * self.frame_secs;
+        let departure = self
+            .state
+            .ground_velocity
+            .map_or(arrival, |velocity| velocity * secs);
+        for (index, frame) in out.iter_mut().enumerate() {
+            let s = index as f32 / timing.frames as f32;
+            frame.ground_position = hermite(from, departure, to, arrival, s);
+        }
+        self.state.ground_position = to;
+        self.state.ground_velocity = Some(arrival / secs);
+    }
+}
+
+/// How the hips settle onto another way, in frames of a step.
+struct Settling {
+    /// Where they are and how fast they move in the first frame, from the new way.
+    offset: Vec3,
+    velocity: Vec3,
+    decay: f32,
+    /// How much higher the landing foot is to have them in the end.
+    meeting: f32,
+    frames: f32,
+}
+
+impl Settling {
+    /// How far they are from the new way at eight times.
+    fn at(&self, time: f32x8) -> Vec3x8 {
+        // A critically damped return from where the hips were to where the landed foot has them.
+        let pace = Vec3x8::splat(self.velocity + self.offset * self.decay);
+        let left = (time * -self.decay).exp();
+        let mut remains = (Vec3x8::splat(self.offset) + pace * time) * left;
+        let part = time * self.frames.recip() - f32x8::splat(MEETING_FROM);
+        remains.y += lanes::smooth_step(part * (1.0 - MEETING_FROM).recip()) * self.meeting;
+        remains
+    }
+}
+
+/// Where the hips are when this foot stands on its plant and the leg is as generated.
+fn hips_above(raw: &RawFrame, side: Side, level: Quat) -> Vec3 {
+    let leg = &raw.legs[side.index()];
+    leg.target.ankle - level * leg.ankle
+}
