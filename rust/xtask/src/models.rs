@@ -18,6 +18,9 @@ const DYNAMICS: &str = "addons/footfall/models/walk.footdyn";
 /// Sensor models: a sensor on a foot, and a phone in the pocket of the trousers.
 const SENSORS: [&str; 2] = ["right_foot", "right_thigh"];
 
+/// A third of what there is serves other people as well as all of it.
+const SENSOR_FRAMES: &str = "3000";
+
 /// Walks of one person, who has the most of them: two linear systems hold one way of walking.
 const WALKS_OF_ONE: [&str; 4] = [
     "--where",
@@ -86,7 +89,7 @@ fn train_sensor(data: &Data, site: &str) -> Result<()> {
         .args(["train", "--corpus"])
         .arg(&data.index)
         .args(["--where", "path=cmu/*", "--where", "subject!=cmu131"])
-        .args(["--site", site, "--no-mirror"])
+        .args(["--site", site, "--no-mirror", "--frames", SENSOR_FRAMES])
         .args([
             "--describe",
             "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu): walks, runs, jumps, hops, turns, a sidestep",

@@ -1,12 +1,13 @@
 //! From recordings of bodies to a model of what a sensor on them means (Mousas 2017, sections 4 and 5).
 //!
-//! [`observe`] turns a clip into a chain of phases with what sensors measure in each frame; [`train_imu`] puts chains together; [`evaluate`] tells how
+//! [`observe`] turns a clip into a chain of phases with what sensors measure in each frame; [`train_imu`] puts chains together, all that they hold or what represents it; [`evaluate`] tells how
 //! close the bodies come that a model makes.
 
 mod align;
 mod chain;
 pub mod evaluate;
 mod statistics;
+mod templates;
 
 pub use chain::{Chain, ImuClip, observe};
 
@@ -25,6 +26,8 @@ pub struct ImuTrainConfig {
     pub sites: Vec<Site>,
     /// Whether every recording is used mirrored, too.
     pub mirror: bool,
+    /// Most frames that are kept: then the cycles of movement that stand best for all others. All are kept when `None`.
+    pub most_frames: Option<usize>,
 }
 
 impl ImuTrainConfig {
@@ -34,6 +37,7 @@ impl ImuTrainConfig {
             frame_rate_hz: 30.0,
             sites: sites.to_vec(),
             mirror: true,
+            most_frames: None,
         }
     }
 
@@ -117,13 +121,13 @@ pub fn train_imu(
         phases,
         provenance,
     };
-    for chain in chains {
+    let mut before: Option<templates::Cycle> = None;
+    for cycle in templates::choose(chains, &model.deviations, config.most_frames) {
+        let chain = chains[cycle.chain];
         let subject = subjects.binary_search(&chain.subject.as_str()).unwrap_or(0);
-        model
-            .segments
-            .extend(chain.model_segments(&model.phases, subject as u16));
-        model.sensor.extend_from_slice(&chain.sensor);
-        model.body.extend_from_slice(&chain.body);
+        let follows = before.is_some_and(|before| before.is_followed_by(&cycle));
+        chain.append_to(&mut model, cycle.segments.clone(), subject as u16, follows);
+        before = Some(cycle);
     }
     Ok(model)
 }

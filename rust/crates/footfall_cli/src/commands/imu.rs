@@ -6,7 +6,7 @@ mod reconstruct;
 mod simulate;
 mod train;
 
-pub(in crate::commands) use train::imu_clip;
+pub(in crate::commands) use train::{KeptArgs, imu_clip};
 
 use anyhow::{Context as _, Result};
 use clap::Subcommand;

@@ -100,12 +100,12 @@ fn a_sensor_on_a_foot_becomes_the_walk_it_was_worn_in() {
     assert!(facts.stdout.contains("right_foot"), "{}", facts.stdout);
 
     let truth = canonical(Path::new(&walk));
-    let reconstruct = |imu: &str, more: &[&str]| {
+    let reconstruct = |model: &str, imu: &str, more: &[&str]| {
         let arguments = [
             "imu",
             "reconstruct",
             "--model",
-            "body.footimu",
+            model,
             "--imu",
             imu,
             "-o",
@@ -118,19 +118,49 @@ fn a_sensor_on_a_foot_becomes_the_walk_it_was_worn_in() {
         );
         canonical(&folder.join("out.bvh"))
     };
-    for (imu, more, most_cm) in [
-        ("imu.csv", &["--mounting", "aligned"][..], 2.5),
-        ("imu.csv", &["--mounting", "aligned", "--live"], 3.5),
-        ("anyhow.csv", &[], 2.8),
+    let train_small = [
+        "imu",
+        "train",
+        "--corpus",
+        "index.csv",
+        "--site",
+        "right_foot",
+        "--frames",
+        "300",
+        "-o",
+        "small.footimu",
+        "--json",
+    ];
+    let kept = footfall(folder, &train_small).json()["frames"].as_u64();
+    assert!(kept.is_some_and(|frames| (200..=300).contains(&frames)));
+    let aligned = ["--mounting", "aligned"];
+    for (model, imu, more, most_cm) in [
+        ("body.footimu", "imu.csv", &aligned[..], 2.5),
+        (
+            "body.footimu",
+            "imu.csv",
+            &["--mounting", "aligned", "--live"],
+            3.5,
+        ),
+        ("body.footimu", "anyhow.csv", &[], 2.8),
+        ("small.footimu", "imu.csv", &aligned, 3.0),
     ] {
-        let made = reconstruct(imu, more);
+        let made = reconstruct(model, imu, more);
         let error = apart_cm(&truth, &made, start_secs);
-        assert!(error < most_cm, "{imu} {more:?}: {error:.2} cm");
+        assert!(error < most_cm, "{model} {imu} {more:?}: {error:.2} cm");
     }
     // The same input gives the same bytes, and feet stay where they are.
-    reconstruct("imu.csv", &["--mounting", "aligned", "--fps", "60"]);
+    reconstruct(
+        "body.footimu",
+        "imu.csv",
+        &["--mounting", "aligned", "--fps", "60"],
+    );
     let bytes = fs::read(folder.join("out.bvh")).unwrap();
-    reconstruct("imu.csv", &["--mounting", "aligned", "--fps", "60"]);
+    reconstruct(
+        "body.footimu",
+        "imu.csv",
+        &["--mounting", "aligned", "--fps", "60"],
+    );
     assert_eq!(bytes, fs::read(folder.join("out.bvh")).unwrap());
     let walked = evaluate(&bvh::read(folder.join("out.bvh")).unwrap());
     assert!(

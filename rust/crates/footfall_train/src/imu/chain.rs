@@ -1,13 +1,14 @@
 //! One recording: what sensors measure and what the body does, frame by frame, in phases.
 
 use super::ImuTrainConfig;
+use core::ops::Range;
 use footfall_core::rotation::{from_heading, heading, wrap_angle};
 use footfall_core::{
     Clip, Joint, ModelPose, PhaseKind, Pose, Side, Site, Skeleton, forward_kinematics,
 };
 use footfall_imu::{FeatureFrame, FeatureStream, ImuRecording};
 use footfall_model::imu_model::{
-    BODY_COUNT, CONTACT, HEIGHT, SENSOR_COUNT, SENSOR_HEADING, Segment, TURN, WAY,
+    BODY_COUNT, CONTACT, HEIGHT, ImuModel, SENSOR_COUNT, SENSOR_HEADING, Segment, TURN, WAY,
 };
 use footfall_model::{FEATURE_COUNT, layout};
 use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
@@ -75,15 +76,27 @@ impl Chain {
         &self.sensor[frame * width..(frame + 1) * width]
     }
 
-    pub(super) fn model_segments(&self, phases: &[PhaseKind], subject: u16) -> Vec<Segment> {
-        let segments = self.segments.iter().enumerate();
-        let segments = segments.map(|(n, segment)| Segment {
-            phase: phases.binary_search(&segment.kind).unwrap_or(0) as u16,
-            subject,
-            frames: (segment.end - segment.first) as u16,
-            follows: n > 0,
-        });
-        segments.collect()
+    /// Adds some segments to a model; `follows` tells whether they go on from the last that was added.
+    pub(super) fn append_to(
+        &self,
+        model: &mut ImuModel,
+        segments: Range<usize>,
+        subject: u16,
+        follows: bool,
+    ) {
+        let first = segments.start;
+        for (n, segment) in segments.clone().zip(&self.segments[segments]) {
+            model.segments.push(Segment {
+                phase: model.phases.binary_search(&segment.kind).unwrap_or(0) as u16,
+                subject,
+                frames: (segment.end - segment.first) as u16,
+                follows: follows || n > first,
+            });
+            for frame in segment.first..segment.end {
+                model.sensor.extend_from_slice(self.sensor_row(frame));
+                model.body.extend_from_slice(self.body_row(frame));
+            }
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! `footfall evaluate imu`: bodies from sensors against the recorded ones.
 
-use crate::commands::imu::{imu_clip, parse_site};
+use crate::commands::imu::{KeptArgs, imu_clip, parse_site};
 use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_core::Site;
@@ -40,6 +40,8 @@ pub(crate) struct ImuArgs {
     /// Where the sensor sits, twice for two sensors; the foot, foot and hand, and the sites of the paper's figure 10 one by one when absent
     #[arg(long = "site", value_parser = parse_site)]
     sites: Vec<Site>,
+    #[command(flatten)]
+    kept: KeptArgs,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -83,11 +85,14 @@ struct Figures {
 
 /// What is printed as JSON.
 pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
-    let asked: Vec<ImuTrainConfig> = if args.sites.is_empty() {
-        SENSORS.map(ImuTrainConfig::new).to_vec()
-    } else {
-        vec![ImuTrainConfig::new(&args.sites)]
+    let asked = match &args.sites[..] {
+        [] => SENSORS.to_vec(),
+        sites => vec![sites],
     };
+    let asked: Vec<ImuTrainConfig> = asked
+        .into_iter()
+        .map(|sites| args.kept.config(sites))
+        .collect();
     for config in &asked {
         config.check()?;
     }

@@ -49,17 +49,36 @@ pub(in crate::commands) struct ModelArgs {
     /// Frames per second of the model
     #[arg(long, default_value_t = 30.0)]
     fps: f64,
+    #[command(flatten)]
+    kept: KeptArgs,
+}
+
+/// What of the recordings a model keeps.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(in crate::commands) struct KeptArgs {
     /// Leave out the recordings' mirror images
     #[arg(long)]
     no_mirror: bool,
+    /// Keep this many frames at most: the cycles of movement that stand best for all others
+    #[arg(long, value_name = "N")]
+    frames: Option<usize>,
+}
+
+impl KeptArgs {
+    pub(in crate::commands) fn config(self, sites: &[Site]) -> ImuTrainConfig {
+        ImuTrainConfig {
+            mirror: !self.no_mirror,
+            most_frames: self.frames,
+            ..ImuTrainConfig::new(sites)
+        }
+    }
 }
 
 impl ModelArgs {
     pub(in crate::commands) fn config(&self) -> Result<ImuTrainConfig> {
         let config = ImuTrainConfig {
             frame_rate_hz: self.fps,
-            mirror: !self.no_mirror,
-            ..ImuTrainConfig::new(&self.sites)
+            ..self.kept.config(&self.sites)
         };
         config.check()?;
         Ok(config)
@@ -152,9 +171,15 @@ fn command(args: &ImuTrainArgs) -> String {
             .iter()
             .map(|site| format!("--site {}", site.name())),
     );
-    if args.model.no_mirror {
+    if args.model.kept.no_mirror {
         words.push("--no-mirror".to_owned());
     }
+    words.extend(
+        args.model
+            .kept
+            .frames
+            .map(|frames| format!("--frames {frames}")),
+    );
     words.push(format!(
         "--fps {} -o {}",
         args.model.fps,
