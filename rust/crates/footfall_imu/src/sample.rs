@@ -68,6 +68,27 @@ impl ImuRecording {
         last - self.start_secs()
     }
 
+    /// What was measured at a time, on the line between the samples about it; the nearest sample beyond the ends, and zeros where there is none.
+    #[must_use]
+    pub fn at(&self, time_secs: f64) -> ImuSample {
+        let after = self
+            .samples
+            .partition_point(|sample| sample.time_secs <= time_secs);
+        let before = after.checked_sub(1).and_then(|n| self.samples.get(n));
+        match (before, self.samples.get(after)) {
+            (Some(before), Some(after)) => before.towards(after, time_secs),
+            (Some(nearest), None) | (None, Some(nearest)) => ImuSample {
+                time_secs,
+                ..*nearest
+            },
+            (None, None) => ImuSample {
+                time_secs,
+                force: Vec3::ZERO,
+                rate: Vec3::ZERO,
+            },
+        }
+    }
+
     /// As many samples at even intervals, by lines between those that there are: lost samples leave no gap.
     #[must_use]
     pub fn evenly_spaced(&self) -> Self {

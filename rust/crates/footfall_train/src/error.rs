@@ -1,6 +1,6 @@
 //! Why training cannot go on.
 
-use footfall_core::Side;
+use footfall_core::{Side, Site};
 use footfall_model::ModelError;
 use footfall_motion::recording::RecordingError;
 use footfall_prob::ProbError;
@@ -57,6 +57,17 @@ pub enum TrainError {
     ImuFrames {
         /// How many there are.
         found: usize,
+    },
+    /// A sensor's recording that is not of the clip it was given for.
+    #[error(
+        "no part of the recording moves as the {} of the clip does (correlation {correlation:.2} at best): it must be worn there, and hold the whole clip of a second or more",
+        site.name()
+    )]
+    Unsynchronised {
+        /// Where the sensor should have been.
+        site: Site,
+        /// The best that was found.
+        correlation: f64,
     },
     /// Whoever asked for the work asked it to stop.
     #[error("stopped before the end; nothing was written")]

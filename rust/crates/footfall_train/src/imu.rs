@@ -1,15 +1,17 @@
 //! From recordings of bodies to a model of what a sensor on them means (Mousas 2017, sections 4 and 5).
 //!
-//! [`observe`] turns a clip into a chain of phases with what sensors measure in each frame; [`train_imu`] puts chains together, all that they hold or what represents it; [`evaluate`] tells how
+//! [`synchronise`] brings a real sensor's recording onto the time of a clip; [`observe`] turns a clip into a chain of phases with what sensors measure in each frame; [`train_imu`] puts chains together, all that they hold or what represents it; [`evaluate`] tells how
 //! close the bodies come that a model makes.
 
 mod align;
 mod chain;
 pub mod evaluate;
 mod statistics;
+mod synchronise;
 mod templates;
 
 pub use chain::{Chain, ImuClip, observe};
+pub use synchronise::{Synchronised, synchronise};
 
 use crate::error::TrainError;
 use footfall_core::{PhaseKind, PhaseStart, Site, Skeleton};

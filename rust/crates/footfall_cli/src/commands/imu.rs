@@ -4,6 +4,7 @@ mod events;
 mod monitor;
 mod reconstruct;
 mod simulate;
+mod synchronous;
 mod train;
 
 pub(in crate::commands) use train::{KeptArgs, imu_clip};

@@ -175,6 +175,50 @@ fn a_sensor_on_a_foot_becomes_the_walk_it_was_worn_in() {
     );
 }
 
+#[test]
+fn real_sensors_take_the_place_of_simulated_ones() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    write_index(folder, "index.csv", &SEEN);
+    let clips = SEEN.map(|(clip, _)| footfall_tests::data::own_file(clip));
+    let clip = clips[0].to_str().expect("a path in UTF-8");
+    let worn = ["--noise", "1", "--mounting", "70,-40,120", "-o", "worn.csv"];
+    let simulate = ["imu", "simulate", clip, "--site", "right_foot"];
+    assert_eq!(footfall(folder, &[&simulate[..], &worn].concat()).code, 0);
+    let recorded = fs::read(folder.join("worn.csv")).expect("was written");
+    // The second row names nothing, the third what was worn in another walk.
+    let index = fs::read_to_string(folder.join("index.csv")).expect("was written");
+    let added = [",imu_right_foot", ",worn.csv", ",", ",worn.csv"];
+    let rows = index.lines().zip(added);
+    let rows: Vec<String> = rows.map(|(row, added)| format!("{row}{added}\n")).collect();
+    fs::write(folder.join("index.csv"), rows.concat()).expect("the folder can be written");
+    let train = [
+        "imu",
+        "train",
+        "--corpus",
+        "index.csv",
+        "--site",
+        "right_foot",
+        "--json",
+        "-o",
+    ];
+    let trained = footfall(folder, &[&train[..], &["body.footimu"]].concat());
+    assert_eq!(trained.json()["real"], 1, "{}", trained.stderr);
+    assert!(
+        trained.stderr.contains("correlation 0.9"),
+        "{}",
+        trained.stderr
+    );
+    assert!(
+        trained.stderr.contains("simulates the sensor"),
+        "{}",
+        trained.stderr
+    );
+    let refused = footfall(folder, &[&train[..], &["worn.csv"]].concat());
+    assert_eq!(refused.code, 1, "{}", refused.stderr);
+    assert_eq!(fs::read(folder.join("worn.csv")).ok(), Some(recorded));
+}
+
 /// Small steps with high knees, as on the spot in a room.
 const ON_THE_SPOT: &str = r#"
 name = "on_the_spot"

@@ -1,11 +1,12 @@
 //! `footfall imu train`: a corpus becomes a model of what sensors on a body mean.
 
-use super::parse_site;
+use super::{parse_site, synchronous};
 use crate::commands::train::provenance::{describe, name_of};
 use crate::commands::train::{read_corpus, skipped};
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result};
 use footfall_core::Site;
+use footfall_imu::ImuRecording;
 use footfall_motion::corpus::{CorpusClip, Where};
 use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
 use serde::Serialize;
@@ -15,7 +16,8 @@ use std::time::Instant;
 /// Learn what a sensor on a body means for the whole body
 ///
 /// Every recording is cut into phases, with what a sensor at the site would have measured in each frame. Give --site twice for
-/// two sensors.
+/// two sensors. What real sensors measured at the same time takes the place of what they would have where the table names it in
+/// columns like `imu_right_foot`; it may begin earlier and end later, on any clock, worn anyhow.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall imu train --corpus index.csv --where 'path=cmu/*' --site right_foot -o body.footimu\n  \
@@ -90,6 +92,8 @@ struct Report<'a> {
     output: &'a Path,
     sites: Vec<&'static str>,
     clips: usize,
+    /// Clips with recordings of real sensors.
+    real: usize,
     subjects: usize,
     frames: usize,
     segments: usize,
@@ -99,7 +103,7 @@ struct Report<'a> {
     seconds: f64,
 }
 
-/// A recording as the trainer takes it.
+/// A recording as the trainer takes it, with simulated sensors.
 pub(in crate::commands) fn imu_clip(clip: &CorpusClip) -> ImuClip<'_> {
     ImuClip {
         subject: clip.row.subject(),
@@ -115,7 +119,20 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
     output::refuse_overwrite(&[&args.corpus], &args.output)?;
     let config = args.model.config()?;
     let corpus = read_corpus(&args.corpus, &args.conditions, &args.output)?;
-    let clips: Vec<ImuClip<'_>> = corpus.clips.iter().map(imu_clip).collect();
+    let real: Vec<Vec<ImuRecording>> = corpus
+        .clips
+        .iter()
+        .map(|clip| synchronous::recordings(&args.corpus, clip, &config.sites, &args.output))
+        .collect::<Result<_>>()?;
+    let clips: Vec<ImuClip<'_>> = corpus
+        .clips
+        .iter()
+        .zip(&real)
+        .map(|(clip, recordings)| ImuClip {
+            recordings,
+            ..imu_clip(clip)
+        })
+        .collect();
     let provenance = describe(
         &corpus,
         &args.corpus,
@@ -131,6 +148,10 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
         output: &args.output,
         sites: model.sites.iter().map(|site| site.name()).collect(),
         clips: clips.len(),
+        real: real
+            .iter()
+            .filter(|recordings| !recordings.is_empty())
+            .count(),
         subjects: model.subjects,
         frames: model.frame_count(),
         segments: model.segments.len(),
