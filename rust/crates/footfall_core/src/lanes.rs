@@ -37,14 +37,7 @@ mod tests {
 
     /// Whether every lane is what `glam` makes of it.
     fn agree(found: Quatx8, expected: impl Fn(usize) -> Quat) -> bool {
-        let apart = |(lane, found): (usize, Quat)| (found - expected(lane)).length();
-        found
-            .scatter()
-            .into_iter()
-            .enumerate()
-            .map(apart)
-            .fold(0.0, f32::max)
-            < 2e-6
+        (0..LANES).all(|lane| (found.lane(lane) - expected(lane)).length() < 2e-6)
     }
 
     proptest! {
@@ -61,10 +54,9 @@ mod tests {
             prop_assert!(agree(Quatx8::from_rotation_y(ax.y), |lane| Quat::from_rotation_y(a[lane].y)));
             let arcs = Quatx8::shortest_arc(ax, bx);
             prop_assert!(agree(arcs, |lane| rotation::shortest_arc(a[lane], b[lane])));
-            for (lane, turned) in (px * bx).scatter().into_iter().enumerate() {
+            for lane in 0..LANES {
+                let (turned, across) = ((px * bx).lane(lane), ax.cross(bx).lane(lane));
                 prop_assert!(turned.distance(p[lane] * b[lane]) < 2e-6);
-            }
-            for (lane, across) in ax.cross(bx).scatter().into_iter().enumerate() {
                 prop_assert!(across.distance(a[lane].cross(b[lane])) < 2e-6);
             }
         }
@@ -73,8 +65,9 @@ mod tests {
     #[test]
     fn rotations_by_up_to_a_whole_turn_are_continuous() {
         let angles = COUNTING * (core::f32::consts::TAU / 7.0);
-        let turned = Quatx8::from_rotation_y(angles).scatter();
-        for (lane, turned) in turned.into_iter().enumerate() {
+        let all = Quatx8::from_rotation_y(angles);
+        for lane in 0..LANES {
+            let turned = all.lane(lane);
             let exact = Quat::from_rotation_y(angles.as_array()[lane]);
             assert!((turned - exact).length() < 3e-4, "{turned} is not {exact}");
         }
@@ -98,10 +91,10 @@ mod tests {
             to[lane % 4]
         )));
         let flat = Vec3x8::gather(|lane| if lane == 5 { Vec3::ZERO } else { Vec3::Z * 2.0 });
-        let units = flat.normalize_or(Vec3x8::splat(Vec3::Y)).scatter();
-        assert_eq!(
-            units,
-            core::array::from_fn(|lane| if lane == 5 { Vec3::Y } else { Vec3::Z })
-        );
+        let units = flat.normalize_or(Vec3x8::splat(Vec3::Y));
+        for lane in 0..LANES {
+            let expected = if lane == 5 { Vec3::Y } else { Vec3::Z };
+            assert_eq!(units.lane(lane), expected);
+        }
     }
 }

@@ -23,6 +23,18 @@ impl Default for Pose {
     }
 }
 
+impl AsRef<Self> for Pose {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
+impl AsMut<Self> for Pose {
+    fn as_mut(&mut self) -> &mut Self {
+        self
+    }
+}
+
 impl Pose {
     /// The T-pose of a body that stands at the origin.
     pub fn rest(skeleton: &Skeleton) -> Self {

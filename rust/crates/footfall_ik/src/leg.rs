@@ -299,25 +299,14 @@ mod tests {
 
     #[test]
     fn legs_of_many_frames_are_those_of_each() {
-        struct Frame(Pose);
-        impl AsRef<Pose> for Frame {
-            fn as_ref(&self) -> &Pose {
-                &self.0
-            }
-        }
-        impl AsMut<Pose> for Frame {
-            fn as_mut(&mut self) -> &mut Pose {
-                &mut self.0
-            }
-        }
         let leg = Leg::new(&Skeleton::standard(), Side::Right);
         // A block of eight and one that is not full.
-        let mut frames: Vec<Frame> = (0..11)
+        let mut frames: Vec<Pose> = (0..11)
             .map(|frame| {
                 let mut pose = crouched(0.1 * frame as f32, 0.02 * frame as f32);
                 pose.root_position.x = 0.03 * frame as f32;
                 pose.rotations[0] = exp_map(Vec3::new(0.1, 0.3 * frame as f32, -0.1));
-                Frame(pose)
+                pose
             })
             .collect();
         let targets: Vec<FootTarget> = (0..11)
@@ -327,14 +316,12 @@ mod tests {
                 toes: Quat::from_rotation_x(0.05 * frame as f32),
             })
             .collect();
-        let mut each: Vec<Pose> = frames.iter().map(|frame| frame.0.clone()).collect();
+        let mut each = frames.clone();
         for (pose, target) in each.iter_mut().zip(&targets) {
             leg.solve(pose.root_position, pose.rotations[0], target, pose);
         }
         leg.solve_many(&mut frames, |frame| &targets[frame]);
-        for (many, each) in frames.iter().zip(&each) {
-            assert_eq!(many.0, *each);
-        }
+        assert_eq!(frames, each);
     }
 
     #[test]

@@ -93,17 +93,10 @@ impl ImuRecording {
     #[must_use]
     pub fn evenly_spaced(&self) -> Self {
         let (rate_hz, start) = (self.rate_hz(), self.start_secs());
-        let mut next = 0;
         if self.samples.len() < 2 {
             return self.clone();
         }
-        let even = (0..self.samples.len()).map(|n| {
-            let time_secs = start + n as f64 / rate_hz;
-            while next + 2 < self.samples.len() && self.samples[next + 1].time_secs < time_secs {
-                next += 1;
-            }
-            self.samples[next].towards(&self.samples[next + 1], time_secs)
-        });
+        let even = (0..self.samples.len()).map(|n| self.at(start + n as f64 / rate_hz));
         Self {
             samples: even.collect(),
         }

@@ -112,32 +112,24 @@ mod tests {
     use footfall_core::rotation::exp_map;
     use footfall_core::{ModelPose, forward_kinematics};
 
-    struct Frame(Pose);
-
-    impl AsRef<Pose> for Frame {
-        fn as_ref(&self) -> &Pose {
-            &self.0
-        }
-    }
-
     #[test]
     fn legs_are_where_forward_kinematics_has_them() {
         let skeleton = Skeleton::standard();
-        let poses: Vec<Frame> = (0..13)
+        let poses: Vec<Pose> = (0..13)
             .map(|frame| {
                 let mut pose = Pose::default();
                 for (joint, rotation) in pose.rotations.iter_mut().enumerate() {
                     let turn = |axis: usize| ((frame * 7 + joint * 3 + axis) as f32).sin();
                     *rotation = exp_map(0.5 * Vec3::new(turn(0), turn(1), turn(2)));
                 }
-                Frame(pose)
+                pose
             })
             .collect();
         let mut frames = vec![RawFrame::default(); poses.len()];
         RawFrame::fill(&mut frames, &poses, &skeleton, |_| f32x8::splat(1.25));
         for (frame, pose) in frames.iter().zip(&poses) {
             let mut model = ModelPose::default();
-            forward_kinematics(&skeleton, &pose.0, &mut model);
+            forward_kinematics(&skeleton, pose, &mut model);
             for side in Side::BOTH {
                 let leg = &frame.legs[side.index()];
                 let hip = model.position(side.upper_leg());

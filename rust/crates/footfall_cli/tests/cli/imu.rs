@@ -1,6 +1,6 @@
 //! `footfall imu` and `footfall evaluate imu` from the outside.
 
-use crate::common::footfall;
+use crate::common::{Run, footfall};
 use crate::evaluate::write_index;
 use footfall_core::rotation::{from_heading, heading};
 use footfall_core::{Clip, Joint, ModelPose, forward_kinematics};
@@ -20,20 +20,16 @@ const SEEN: [(&str, &str); 3] = [
 ];
 const UNSEEN: &str = "walker_1_fast.bvh";
 
+/// Trains a model on `index.csv`.
+fn train(folder: &Path, what: &[&str], model: &str) -> Run {
+    let train = ["imu", "train", "--corpus", "index.csv", "--json"];
+    footfall(folder, &[&train[..], what, &["-o", model]].concat())
+}
+
 fn prepare(folder: &Path, site: &str) -> String {
     write_index(folder, "index.csv", &SEEN);
     write_index(folder, "unseen.csv", &[(UNSEEN, "fast")]);
-    let train = [
-        "imu",
-        "train",
-        "--corpus",
-        "index.csv",
-        "--site",
-        site,
-        "-o",
-        "body.footimu",
-    ];
-    let report = footfall(folder, &[&train[..], &["--json"]].concat()).json();
+    let report = train(folder, &["--site", site], "body.footimu").json();
     assert_eq!(report["sites"][0], site);
     assert!(
         report["frames"].as_u64().expect("a trained model") > 500,
@@ -118,20 +114,8 @@ fn a_sensor_on_a_foot_becomes_the_walk_it_was_worn_in() {
         );
         canonical(&folder.join("out.bvh"))
     };
-    let train_small = [
-        "imu",
-        "train",
-        "--corpus",
-        "index.csv",
-        "--site",
-        "right_foot",
-        "--frames",
-        "300",
-        "-o",
-        "small.footimu",
-        "--json",
-    ];
-    let kept = footfall(folder, &train_small).json()["frames"].as_u64();
+    let few = ["--site", "right_foot", "--frames", "300"];
+    let kept = train(folder, &few, "small.footimu").json()["frames"].as_u64();
     assert!(kept.is_some_and(|frames| (200..=300).contains(&frames)));
     let aligned = ["--mounting", "aligned"];
     for (model, imu, more, most_cm) in [
@@ -192,17 +176,8 @@ fn real_sensors_take_the_place_of_simulated_ones() {
     let rows = index.lines().zip(added);
     let rows: Vec<String> = rows.map(|(row, added)| format!("{row}{added}\n")).collect();
     fs::write(folder.join("index.csv"), rows.concat()).expect("the folder can be written");
-    let train = [
-        "imu",
-        "train",
-        "--corpus",
-        "index.csv",
-        "--site",
-        "right_foot",
-        "--json",
-        "-o",
-    ];
-    let trained = footfall(folder, &[&train[..], &["body.footimu"]].concat());
+    let foot = ["--site", "right_foot"];
+    let trained = train(folder, &foot, "body.footimu");
     assert_eq!(trained.json()["real"], 1, "{}", trained.stderr);
     assert!(
         trained.stderr.contains("correlation 0.9"),
@@ -214,7 +189,7 @@ fn real_sensors_take_the_place_of_simulated_ones() {
         "{}",
         trained.stderr
     );
-    let refused = footfall(folder, &[&train[..], &["worn.csv"]].concat());
+    let refused = train(folder, &foot, "worn.csv");
     assert_eq!(refused.code, 1, "{}", refused.stderr);
     assert_eq!(fs::read(folder.join("worn.csv")).ok(), Some(recorded));
 }
@@ -307,19 +282,8 @@ fn two_sensors_go_in_the_order_of_the_models_sites() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     write_index(folder, "index.csv", &SEEN);
-    let train = [
-        "imu",
-        "train",
-        "--corpus",
-        "index.csv",
-        "--site",
-        "right_foot",
-        "--site",
-        "left_hand",
-        "-o",
-        "two.footimu",
-    ];
-    assert_eq!(footfall(folder, &train).code, 0);
+    let sites = ["--site", "right_foot", "--site", "left_hand"];
+    assert_eq!(train(folder, &sites, "two.footimu").code, 0);
     let walk = footfall_tests::data::own_file(UNSEEN);
     let walk = walk.to_str().unwrap();
     for site in ["right_foot", "left_hand"] {

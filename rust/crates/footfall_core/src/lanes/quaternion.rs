@@ -2,7 +2,6 @@
 
 use super::{LANES, Vec3x8, f32x8};
 use crate::rotation::{self, MAX_SQUARED_HALF_ANGLE, half_angle};
-use core::array::from_fn;
 use core::ops::Mul;
 use glam::Quat;
 
@@ -57,12 +56,6 @@ impl Quatx8 {
             z: f32x8::new(z),
             w: f32x8::new(w),
         }
-    }
-
-    /// The rotations one by one.
-    #[inline]
-    pub fn scatter(self) -> [Quat; LANES] {
-        from_fn(|lane| self.lane(lane))
     }
 
     /// A quaternion of a vector part and a real part.

@@ -1,7 +1,6 @@
 //! Eight vectors side by side.
 
 use super::{LANES, f32x8};
-use core::array::from_fn;
 use core::ops::{Add, Mul, Sub};
 use glam::Vec3;
 
@@ -47,12 +46,6 @@ impl Vec3x8 {
             y: f32x8::new(y),
             z: f32x8::new(z),
         }
-    }
-
-    /// The vectors one by one.
-    #[inline]
-    pub fn scatter(self) -> [Vec3; LANES] {
-        from_fn(|lane| self.lane(lane))
     }
 
     /// Scalar product.
