@@ -1,23 +1,23 @@
 //! `GaitGenerator3D`: walks a character.
 
+mod beside;
+mod detail;
 #[cfg(feature = "editor")]
 mod foresight;
+mod methods;
+mod problems;
 mod session;
+mod source;
+mod walk;
 
-use crate::character;
-use crate::gait_model::{GaitModel, NO_MODEL};
-use crate::gait_style::{self, GaitStyle};
-use crate::report;
-use crate::skeleton_binding::SkeletonBinding;
+use crate::gait_model::GaitModel;
+use crate::gait_style::GaitStyle;
 use crate::walk_source::WalkSource;
+use detail::GaitDetail;
 use footfall_core::Side;
-use footfall_ik::placement::Landing;
-use footfall_model::WalkModel;
-use footfall_synth::{Controls, Detail, Footstep, GeneratorConfig};
-use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
+use godot::classes::{BoneMap, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
 use session::Session;
-use std::sync::Arc;
 
 /// Walks a character: every frame it poses the parent `Skeleton3D` with steps generated from a trained model.
 ///
@@ -152,26 +152,6 @@ pub(crate) struct GaitGenerator3D {
     base: Base<SkeletonModifier3D>,
 }
 
-/// How finely a walk is worked out.
-#[derive(GodotConvert, Var, Export, Default, Clone, Copy, Debug)]
-#[godot(via = i64)]
-pub(crate) enum GaitDetail {
-    #[default]
-    Full = 0,
-    Half = 1,
-    Quarter = 2,
-}
-
-impl From<GaitDetail> for Detail {
-    fn from(detail: GaitDetail) -> Self {
-        match detail {
-            GaitDetail::Full => Self::Full,
-            GaitDetail::Half => Self::Half,
-            GaitDetail::Quarter => Self::Quarter,
-        }
-    }
-}
-
 #[godot_api]
 impl ISkeletonModifier3D for GaitGenerator3D {
     fn enter_tree(&mut self) {
@@ -219,85 +199,6 @@ impl GaitGenerator3D {
     /// `position` is in global space, on the flat floor of the walk. Emitted once for every step, not in the editor.
     #[signal]
     fn foothold_planned(foot: StringName, position: Vector3, seconds: f64);
-
-    /// How far and about what the character travelled in the last frame, in its own space: axes and scale are those of its node.
-    ///
-    /// With `root_motion` off, move the character by it in a function connected to `modification_processed`, so that body and feet
-    /// move in the same frame: `character.global_transform *= gait.get_root_motion_delta()`, or with collisions
-    /// `character.move_and_collide(character.global_basis * gait.get_root_motion_delta().origin)`.
-    #[func]
-    fn get_root_motion_delta(&self) -> Transform3D {
-        self.root_motion_delta
-    }
-
-    /// Whether any part of a foot, `left` or `right`, stands on the ground.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn is_foot_on_ground(&self, foot: StringName) -> bool {
-        let contacts = self
-            .session
-            .as_ref()
-            .map_or([true; 2], |session| session.generator.feet_in_contact());
-        Side::BOTH
-            .into_iter()
-            .find(|side| foot == side.name())
-            .is_some_and(|side| contacts[side.index()])
-    }
-
-    /// Starts the walk anew from `seed` and `phase`, where the character stands now. Also measures the skeleton anew.
-    #[func]
-    fn restart(&mut self) {
-        self.session = None;
-        self.reported = None;
-        self.base_mut().update_configuration_warnings();
-    }
-
-    /// Goes to a time of the walk, in seconds from where it began: it is walked there from its beginning with the speed, turning and styles that
-    /// are set now. The character does not travel by it. At most an hour; a minute takes some milliseconds.
-    #[func]
-    pub(crate) fn seek(&mut self, seconds: f64) {
-        if seconds.is_finite() {
-            self.session = None;
-            self.pending_seek = Some(seconds.clamp(0.0, 3600.0));
-        }
-    }
-
-    /// How long the walk has gone on, in seconds from where it began.
-    #[func]
-    pub(crate) fn get_time(&self) -> f64 {
-        let session = self.session.as_ref();
-        session.map_or(0.0, |session| session.elapsed_secs)
-    }
-
-    /// What keeps the character from walking, each with what to do next; empty when nothing does.
-    ///
-    /// The editor shows the same as configuration warnings.
-    #[func]
-    fn get_problems(&self) -> PackedStringArray {
-        self.problems()
-    }
-
-    /// The walk as it is now, to be saved or sent: `set_state()` of a node with the same model, styles and body goes on from it
-    /// with the same poses. About 1.5 kB; empty while the character does not walk.
-    ///
-    /// It holds the walk and not the place of the character: save that beside it.
-    #[func]
-    fn get_state(&self) -> PackedByteArray {
-        match (&self.session, &self.pending_state) {
-            (Some(session), None) => PackedByteArray::from(session.generator.state()),
-            (_, Some(pending)) => pending.clone(),
-            (None, None) => PackedByteArray::new(),
-        }
-    }
-
-    /// Goes on from a state that `get_state()` told, at the next frame. A state of another model, other styles or from a damaged
-    /// file is refused: the log says why, and the walk goes on as it was.
-    ///
-    /// `seed`, `phase` and `variation` keep their values, for the next walk that starts anew.
-    #[func]
-    fn set_state(&mut self, state: PackedByteArray) {
-        self.pending_state = Some(state);
-    }
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
@@ -379,233 +280,5 @@ impl GaitGenerator3D {
     fn set_bone_map(&mut self, bone_map: Option<Gd<BoneMap>>) {
         self.bone_map = bone_map;
         self.restart();
-    }
-}
-
-impl GaitGenerator3D {
-    fn problems(&self) -> PackedStringArray {
-        let mut problems = PackedStringArray::new();
-        if let Err(problem) = self.find_source() {
-            problems.push(&GString::from(&problem));
-        }
-        let (styles, weights) = (self.styles.len(), self.style_weights.len());
-        if styles != weights {
-            let problem = format!(
-                "There are {styles} styles and {weights} style weights. Give Style Weights one number for every style."
-            );
-            problems.push(&GString::from(&problem));
-        }
-        let Some(skeleton) = self.base().get_skeleton() else {
-            problems.push("Put this node under a Skeleton3D.");
-            return problems;
-        };
-        if skeleton.is_inside_tree()
-            && let Err(problem) = self.bind(&skeleton)
-        {
-            problems.push(&GString::from(&problem));
-        }
-        problems
-    }
-
-    /// The walk under way, or a new one where there is none, the model was replaced or the body changed.
-    fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
-        let source = self.take_source()?;
-        if let Some(session) = self.session.take()
-            && session.is_for(&source, skeleton)
-        {
-            return Ok(session);
-        }
-        let (character, binding) = self.bind(skeleton)?;
-        let config = self.config();
-        self.redraw_way();
-        let weights = self.style_weights.as_slice();
-        Session::new(
-            &source,
-            weights,
-            character,
-            binding,
-            &config,
-            self.controls(),
-        )
-    }
-
-    /// Which walk of the model's it is.
-    fn config(&self) -> GeneratorConfig {
-        GeneratorConfig {
-            seed: self.seed.cast_unsigned(),
-            phase: self.phase.rem_euclid(1.0) as f32,
-            variation: self.variation as f32,
-        }
-    }
-
-    fn controls(&self) -> Controls {
-        Controls {
-            speed_mps: self.speed as f32 * self.slowed,
-            turn_rate_radps: self.turn_rate as f32,
-            direction_rad: self.direction as f32,
-        }
-    }
-
-    fn trained(&self) -> Result<Arc<WalkModel>, String> {
-        let Some(model) = &self.model else {
-            return Err(NO_MODEL.to_owned());
-        };
-        model.bind().trained().map_err(|error| {
-            let path = model.get_path();
-            let name = if path.is_empty() { "it".into() } else { path };
-            format!("The gait model cannot be used ({name}): {error}")
-        })
-    }
-
-    /// The model with its styles, prepared if it is not yet or if a resource has changed.
-    fn take_source(&mut self) -> Result<WalkSource, String> {
-        if let Some(source) = &self.source
-            && self.is_current(source)
-        {
-            return Ok(source.clone());
-        }
-        let source = self.find_source()?;
-        self.source = Some(source.clone());
-        Ok(source)
-    }
-
-    /// Whether a source is that of the resources as they are now.
-    fn is_current(&self, source: &WalkSource) -> bool {
-        let model = self.model.as_ref().map(|model| model.bind().trained());
-        let known = source.styles();
-        matches!(model, Some(Ok(model)) if source.is_of(&model))
-            && known.len() == self.styles.len()
-            && self.styles.iter_shared().zip(known).all(|(style, known)| {
-                let style = style.map(|style| style.bind().trained());
-                matches!(style, Some(Ok(style)) if Arc::ptr_eq(&style, known))
-            })
-    }
-
-    fn find_source(&self) -> Result<WalkSource, String> {
-        self.trained()?;
-        let styles = gait_style::trained_all(&self.styles)?;
-        let Some(model) = &self.model else {
-            return Err(NO_MODEL.to_owned());
-        };
-        let mut model = model.clone();
-        let source = model.bind_mut().source(&styles);
-        source.map_err(|error| format!("The styles cannot be worn: {error}"))
-    }
-
-    /// The node that travels.
-    ///
-    /// # Errors
-    /// What to set, when there is none.
-    pub(crate) fn find_character(&self, skeleton: &Gd<Skeleton3D>) -> Result<Gd<Node3D>, String> {
-        let node = self.base().clone().upcast::<Node>();
-        character::find(&node, skeleton, &self.character)
-    }
-
-    /// What tells bones from joints.
-    pub(crate) fn bones(&self) -> Option<Gd<BoneMap>> {
-        self.bone_map.clone()
-    }
-
-    /// Has the editor draw the way ahead anew. Games without the editor's half have nobody who draws it.
-    fn redraw_way(&mut self) {
-        if cfg!(feature = "editor") {
-            self.base_mut().update_gizmos();
-        }
-    }
-
-    /// Whether the editor holds the walk.
-    pub(crate) fn is_preview_paused(&self) -> bool {
-        self.preview_paused.unwrap_or(!self.playing)
-    }
-
-    /// Holds the walk in the editor, or lets it go on; nothing of it is saved.
-    #[cfg(feature = "editor")]
-    pub(crate) fn pause_preview(&mut self, paused: bool) {
-        self.preview_paused = Some(paused);
-    }
-
-    /// Which feet stand and where they land next, on the floor of the walk; `None` while nobody walks.
-    pub(crate) fn feet(&self) -> Option<([bool; 2], [Option<Landing>; 2])> {
-        let session = self.session.as_ref()?;
-        let landings = Footstep::landings(session.generator.next_footstep());
-        Some((session.generator.feet_in_contact(), landings))
-    }
-
-    /// Walks at this share of the speed from the next step on.
-    pub(crate) fn slow_down(&mut self, share: f32) {
-        self.slowed = share;
-    }
-
-    fn bind(&self, skeleton: &Gd<Skeleton3D>) -> Result<(Gd<Node3D>, SkeletonBinding), String> {
-        let character = self.find_character(skeleton)?;
-        let binding = SkeletonBinding::new(skeleton, &character, self.bone_map.as_ref())
-            .map_err(|error| error.to_string())?;
-        Ok((character, binding))
-    }
-
-    /// One frame: time passes, the character travels, bones are posed, footsteps are told.
-    fn walk(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
-        self.reported = None;
-        let in_editor = Engine::singleton().is_editor_hint();
-        let holds = if in_editor {
-            self.is_preview_paused()
-        } else {
-            !self.playing
-        };
-        let dt_secs = if holds { 0.0 } else { delta.max(0.0) };
-        let travels = self.root_motion && !in_editor;
-        session
-            .generator
-            .set_style_weights(self.style_weights.as_slice());
-        session.generator.set_detail(self.detail.into());
-        if let Some(state) = self.pending_state.take()
-            && let Err(problem) = session.restore(state.as_slice())
-        {
-            let node = self.base().get_path();
-            godot_warn!("{node}: the state is refused: {problem}");
-        }
-        if let Some(secs) = self.pending_seek.take() {
-            session.skip(secs, self.controls());
-        }
-        let travel = session.advance(dt_secs, self.controls());
-        self.root_motion_delta = session.traveller.local_delta(&travel);
-        {
-            // Scripts may answer to what happens here and come back to this node: no borrow may be held.
-            let _released = self.base_mut();
-            if travels {
-                session.traveller.move_character(&travel);
-            }
-            session.write(&mut skeleton);
-        }
-        let footsteps = if in_editor {
-            Vec::new()
-        } else {
-            session.footsteps(&travel)
-        };
-        let foothold = session.next_foothold(&travel).filter(|_| !in_editor);
-        self.session = Some(session);
-        for (side, position) in footsteps {
-            let foot = StringName::from(side.name());
-            self.signals().footstep().emit(&foot, position);
-        }
-        let side = foothold.map(|(side, ..)| side);
-        if side != self.announced {
-            self.announced = side;
-            if let Some((side, position, secs)) = foothold {
-                let foot = StringName::from(side.name());
-                self.signals()
-                    .foothold_planned()
-                    .emit(&foot, position, f64::from(secs));
-            }
-        }
-    }
-
-    /// Tells the log what keeps the character from walking, once.
-    fn report(&mut self, problem: String) {
-        if self.reported.as_ref() == Some(&problem) {
-            return;
-        }
-        report::tell(&self.base_mut(), &problem);
-        self.reported = Some(problem);
     }
 }

@@ -1,0 +1,54 @@
+//! What the nodes beside the generator and the editor ask of it.
+
+use super::GaitGenerator3D;
+use crate::character;
+use footfall_ik::placement::Landing;
+use footfall_synth::Footstep;
+use godot::classes::{BoneMap, Skeleton3D};
+use godot::prelude::*;
+
+impl GaitGenerator3D {
+    /// The node that travels.
+    ///
+    /// # Errors
+    /// What to set, when there is none.
+    pub(crate) fn find_character(&self, skeleton: &Gd<Skeleton3D>) -> Result<Gd<Node3D>, String> {
+        let node = self.base().clone().upcast::<Node>();
+        character::find(&node, skeleton, &self.character)
+    }
+
+    /// What tells bones from joints.
+    pub(crate) fn bones(&self) -> Option<Gd<BoneMap>> {
+        self.bone_map.clone()
+    }
+
+    /// Whether the editor holds the walk.
+    pub(crate) fn is_preview_paused(&self) -> bool {
+        self.preview_paused.unwrap_or(!self.playing)
+    }
+
+    /// Holds the walk in the editor, or lets it go on; nothing of it is saved.
+    #[cfg(feature = "editor")]
+    pub(crate) fn pause_preview(&mut self, paused: bool) {
+        self.preview_paused = Some(paused);
+    }
+
+    /// Which feet stand and where they land next, on the floor of the walk; `None` while nobody walks.
+    pub(crate) fn feet(&self) -> Option<([bool; 2], [Option<Landing>; 2])> {
+        let session = self.session.as_ref()?;
+        let landings = Footstep::landings(session.generator.next_footstep());
+        Some((session.generator.feet_in_contact(), landings))
+    }
+
+    /// Walks at this share of the speed from the next step on.
+    pub(crate) fn slow_down(&mut self, share: f32) {
+        self.slowed = share;
+    }
+
+    /// Has the editor draw the way ahead anew. Games without the editor's half have nobody who draws it.
+    pub(super) fn redraw_way(&mut self) {
+        if cfg!(feature = "editor") {
+            self.base_mut().update_gizmos();
+        }
+    }
+}

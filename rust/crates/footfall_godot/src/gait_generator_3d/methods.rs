@@ -1,0 +1,87 @@
+//! What scripts ask of the node.
+
+use super::GaitGenerator3D;
+use footfall_core::Side;
+use godot::prelude::*;
+
+#[godot_api(secondary)]
+impl GaitGenerator3D {
+    /// How far and about what the character travelled in the last frame, in its own space: axes and scale are those of its node.
+    ///
+    /// With `root_motion` off, move the character by it in a function connected to `modification_processed`, so that body and feet
+    /// move in the same frame: `character.global_transform *= gait.get_root_motion_delta()`, or with collisions
+    /// `character.move_and_collide(character.global_basis * gait.get_root_motion_delta().origin)`.
+    #[func]
+    fn get_root_motion_delta(&self) -> Transform3D {
+        self.root_motion_delta
+    }
+
+    /// Whether any part of a foot, `left` or `right`, stands on the ground.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn is_foot_on_ground(&self, foot: StringName) -> bool {
+        let contacts = self
+            .session
+            .as_ref()
+            .map_or([true; 2], |session| session.generator.feet_in_contact());
+        Side::BOTH
+            .into_iter()
+            .find(|side| foot == side.name())
+            .is_some_and(|side| contacts[side.index()])
+    }
+
+    /// Starts the walk anew from `seed` and `phase`, where the character stands now. Also measures the skeleton anew.
+    #[func]
+    pub(super) fn restart(&mut self) {
+        self.session = None;
+        self.reported = None;
+        self.base_mut().update_configuration_warnings();
+    }
+
+    /// Goes to a time of the walk, in seconds from where it began: it is walked there from its beginning with the speed, turning and styles that
+    /// are set now. The character does not travel by it. At most an hour; a minute takes some milliseconds.
+    #[func]
+    pub(crate) fn seek(&mut self, seconds: f64) {
+        if seconds.is_finite() {
+            self.session = None;
+            self.pending_seek = Some(seconds.clamp(0.0, 3600.0));
+        }
+    }
+
+    /// How long the walk has gone on, in seconds from where it began.
+    #[func]
+    pub(crate) fn get_time(&self) -> f64 {
+        let session = self.session.as_ref();
+        session.map_or(0.0, |session| session.elapsed_secs)
+    }
+
+    /// What keeps the character from walking, each with what to do next; empty when nothing does.
+    ///
+    /// The editor shows the same as configuration warnings.
+    #[func]
+    fn get_problems(&self) -> PackedStringArray {
+        self.problems()
+    }
+
+    /// The walk as it is now, to be saved or sent: `set_state()` of a node with the same model, styles and body goes on from it
+    /// with the same poses. About 1.5 kB; empty while the character does not walk.
+    ///
+    /// It holds the walk and not the place of the character: save that beside it.
+    #[func]
+    fn get_state(&self) -> PackedByteArray {
+        match (&self.session, &self.pending_state) {
+            (Some(session), None) => PackedByteArray::from(session.generator.state()),
+            (_, Some(pending)) => pending.clone(),
+            (None, None) => PackedByteArray::new(),
+        }
+    }
+
+    /// Goes on from a state that `get_state()` told, at the next frame. A state of another model, other styles or from a damaged
+    /// file is refused: the log says why, and the walk goes on as it was.
+    ///
+    /// `seed`, `phase` and `variation` keep their values, for the next walk that starts anew.
+    #[func]
+    fn set_state(&mut self, state: PackedByteArray) {
+        self.pending_state = Some(state);
+    }
+}

@@ -1,0 +1,40 @@
+//! What keeps a character from walking, for the editor, scripts and the log.
+
+use super::GaitGenerator3D;
+use crate::report;
+use godot::prelude::*;
+
+impl GaitGenerator3D {
+    pub(super) fn problems(&self) -> PackedStringArray {
+        let mut problems = PackedStringArray::new();
+        if let Err(problem) = self.find_source() {
+            problems.push(&GString::from(&problem));
+        }
+        let (styles, weights) = (self.styles.len(), self.style_weights.len());
+        if styles != weights {
+            let problem = format!(
+                "There are {styles} styles and {weights} style weights. Give Style Weights one number for every style."
+            );
+            problems.push(&GString::from(&problem));
+        }
+        let Some(skeleton) = self.base().get_skeleton() else {
+            problems.push("Put this node under a Skeleton3D.");
+            return problems;
+        };
+        if skeleton.is_inside_tree()
+            && let Err(problem) = self.bind(&skeleton)
+        {
+            problems.push(&GString::from(&problem));
+        }
+        problems
+    }
+
+    /// Tells the log what keeps the character from walking, once.
+    pub(super) fn report(&mut self, problem: String) {
+        if self.reported.as_ref() == Some(&problem) {
+            return;
+        }
+        report::tell(&self.base_mut(), &problem);
+        self.reported = Some(problem);
+    }
+}
