@@ -1,6 +1,7 @@
 extends Node3D
 ## The player walks the plaza: a phone in the pocket or a sensor on the foot drives the character.
 
+const GaitInput := preload("res://addons/footfall/controller/gait_input.gd")
 const WALKER: PackedScene = preload("res://scenes/shared/walker.tscn")
 const MODELS: Array[ImuModel] = [
 	preload("res://addons/footfall/models/right_foot.footimu"),
@@ -28,7 +29,6 @@ var _footsteps := 0
 
 
 func _ready() -> void:
-	Actions.register()
 	_camera.distance_m = 6.0
 	_camera.heading = PI + 0.4
 	_camera.height = deg_to_rad(16.0)
@@ -48,10 +48,10 @@ func _process(delta: float) -> void:
 	if _without_user:
 		# Ports are outside of the game, and have the world's time: frames are held to it.
 		OS.delay_msec(int(1000.0 * delta))
-	var steering := Input.get_axis(&"walk_right", &"walk_left")
+	var steering := -GaitInput.move().x
 	if steering != 0.0:
 		_driven.turn(steering * TURN_SPEED * delta)
-	_camera.heading -= Input.get_axis(&"look_left", &"look_right") * 2.5 * delta
+	_camera.heading -= GaitInput.look().x * 2.5 * delta
 	_camera.target_position = _character.global_position + Vector3.UP * 0.9
 	_calibration.step(_panel.sensor(), _driven, delta)
 	_panel.show_state(_calibration, _driven)

@@ -11,12 +11,13 @@ use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 
 /// What an add-on is not complete without, from `addons/footfall`.
-const NEEDED: [&str; 5] = [
+const NEEDED: [&str; 6] = [
     "footfall.gdextension",
     "plugin.cfg",
     "LICENSE",
     "README.md",
     "models/walk.footfall",
+    "controller/gait_character_3d.tscn",
 ];
 
 /// What the archive holds besides the add-on's own files.

@@ -1,0 +1,319 @@
+@tool
+class_name GaitCharacter3D
+extends CharacterBody3D
+## A character for keyboard, gamepad and touch that walks by its own steps: root motion moves the body, physics stops it.
+##
+## Put `gait_character_3d.tscn` into a scene with a floor and give it your character as [member character_scene]. It faces +Z, as
+## imported characters do. The capsule steps onto edges at once; the figure in it and the camera follow smoothly.
+
+## The character leaves the ground to jump.
+signal jumped
+## The character stands again after a jump or a fall, in which it came down at this speed, m/s.
+signal landed(fall_speed: float)
+
+const GaitInput := preload("gait_input.gd")
+const GaitFigure := preload("gait_figure.gd")
+## Who has been without a floor for so long is in the air, seconds: shorter is a gap between two steps.
+const FALL_SECS := 0.12
+## How long a step lasts until one has told, seconds.
+const USUAL_STEP_SECS := 0.55
+## A step takes half of this share of its time to come from the turning of the step before to its own.
+const TURN_ONSET := 0.6
+## Smaller angles are no reason for somebody who stands to take a step, radians.
+const LEAST_TURN := 0.15
+## How far ahead an edge is looked for, metres.
+const EDGE_REACH := 0.08
+## A crouching character's capsule has this share of its height, after so long, seconds.
+const CROUCHED_HEIGHT := 0.65
+const CROUCH_SECS := 0.3
+## From the ground to what the camera looks at, as a share of the height.
+const EYE_HEIGHT := 0.8
+
+## Your character: an imported glTF or FBX file, or a scene made of one. It may hold a [GaitGenerator3D] and a [FootPlacement3D] of
+## its own; those that it lacks are added.
+@export var character_scene: PackedScene:
+	set(value):
+		character_scene = value
+		_wear()
+## Tells which bones are which, for rigs that [GaitGenerator3D] does not know.
+@export var bone_map: BoneMap:
+	set(value):
+		bone_map = value
+		_wear()
+## Whether the capsule takes its size from the character's skeleton.
+@export var measure_capsule := true
+
+@export_group("Walking")
+## How fast the character walks. Keep to what the model knows: [method GaitModel.get_speed_range].
+@export_range(0.0, 3.0, 0.05, "or_greater", "suffix:m/s") var walk_speed := 1.3
+## How fast the character hurries, while the action `hurry` is pressed.
+@export_range(0.0, 3.0, 0.05, "or_greater", "suffix:m/s") var hurry_speed := 2.0
+## How fast it turns to where it is asked to go, at most.
+@export_range(0.0, 360.0, 1.0, "or_greater", "radians_as_degrees", "suffix:°/s") var max_turn_rate := 2.0
+## Higher edges than this are walls.
+@export_range(0.0, 0.5, 0.01, "or_greater", "suffix:m") var step_height := 0.22
+## How long the figure takes for half of an edge that the capsule stepped onto at once.
+@export_range(0.0, 0.5, 0.01, "suffix:s") var step_half_life := 0.15
+
+@export_group("Air")
+## How high it jumps; 0 for characters that do not.
+@export_range(0.0, 2.0, 0.01, "or_greater", "suffix:m") var jump_height := 0.45
+## How much is steered in the air.
+@export_range(0.0, 20.0, 0.1, "suffix:m/s²") var air_acceleration := 3.0
+
+@export_group("Steering")
+## Whether keyboard, gamepad and touch steer it. Off for characters that only scripts or `navigation` steer.
+@export var player_controlled := true
+## Whether it faces where the camera looks, whatever way it goes; the action `aim` does the same.
+@export var aims := false
+## Walks where this agent is sent, around what is in the way, while nobody steers.
+@export var navigation: NavigationAgent3D
+
+## Set to walk without a player: a direction on the ground, of length 0 to 1.
+var autopilot := Vector3.ZERO
+## Set to crouch without a player, where [GaitGenerator3D] can.
+var crouches := false
+## What walks the character; null without one.
+var gait: GaitGenerator3D:
+	get:
+		return _figure.gait if _figure else null
+## What keeps its feet on the ground; null without a character.
+var placement: FootPlacement3D:
+	get:
+		return _figure.placement if _figure else null
+
+var _standing_height := 0.0
+## Whether the body still has to move in this frame, and the steps that it moves by.
+var _due := false
+var _steps := Transform3D.IDENTITY
+var _wish := Vector3.ZERO
+## The step under way: how fast it turns, how long it lasts in all and from now on.
+var _step_turn := 0.0
+var _step_secs := USUAL_STEP_SECS
+var _step_left := 0.0
+var _leaps := false
+var _air_secs := 0.0
+
+@onready var _figure: GaitFigure = $Figure
+@onready var _shape: CollisionShape3D = $Shape
+@onready var _camera: Node = get_node_or_null(^"Camera")
+
+
+func _ready() -> void:
+	# Another character's capsule must not change with this one's.
+	_shape.shape = _shape.shape.duplicate()
+	_wear()
+
+
+func _get_configuration_warnings() -> PackedStringArray:
+	if character_scene == null:
+		return ["Give Character Scene your character: drag its file from the FileSystem dock there."]
+	if gait == null:
+		return ["%s holds no Skeleton3D: give Character Scene a character with a humanoid skeleton." % character_scene.resource_path]
+	return gait.get_problems()
+
+
+func _physics_process(delta: float) -> void:
+	if Engine.is_editor_hint():
+		return
+	if _due:
+		# Nobody has walked since the last frame: there is no character, or no model.
+		_travel()
+	_due = true
+	_wish = _wished()
+	if gait:
+		_steer(delta)
+		_crouch(delta)
+	if player_controlled and GaitInput.is_just_pressed(&"jump"):
+		jump()
+	if _camera and _camera.has_method(&"follow"):
+		_camera.call(&"follow", _figure.global_position + Vector3.UP * EYE_HEIGHT * _standing_height)
+
+
+## Jumps, if it stands.
+func jump() -> void:
+	if not is_on_floor() or jump_height <= 0.0:
+		return
+	if gait and gait.has_method(&"jump"):
+		# It bends its knees first, and tells when it leaves the ground.
+		gait.call(&"jump", jump_height)
+	else:
+		_take_off()
+
+
+## Puts the character elsewhere, standing still; nothing of the way there is seen.
+func teleport(place: Transform3D) -> void:
+	global_transform = place.orthonormalized()
+	velocity = Vector3.ZERO
+	reset_physics_interpolation()
+	_figure.catch_up()
+
+
+func _wear() -> void:
+	if _figure == null:
+		return
+	_figure.wear(character_scene, bone_map)
+	var capsule := _shape.shape as CapsuleShape3D
+	var size := _figure.measure()
+	if measure_capsule and capsule and size.x > 0.0:
+		capsule.height = size.x
+		capsule.radius = 0.5 * size.y
+		_shape.position.y = 0.5 * size.x
+	_standing_height = capsule.height if capsule else size.x
+	if gait and not Engine.is_editor_hint():
+		gait.modification_processed.connect(_follow_steps)
+		gait.foothold_planned.connect(_begin_step)
+		if gait.has_signal(&"took_off"):
+			gait.connect(&"took_off", _take_off)
+	update_configuration_warnings()
+
+
+## Where it is to go: a direction on the ground, of length 0 to 1.
+func _wished() -> Vector3:
+	if autopilot != Vector3.ZERO:
+		return Vector3(autopilot.x, 0.0, autopilot.z).limit_length(1.0)
+	var stick := GaitInput.move() if player_controlled else Vector2.ZERO
+	if stick == Vector2.ZERO and navigation and not navigation.is_navigation_finished():
+		var way := navigation.get_next_path_position() - global_position
+		return Vector3(way.x, 0.0, way.z).limit_length(1.0)
+	return Vector3(stick.x, 0.0, stick.y).rotated(Vector3.UP, _view_heading())
+
+
+## Where the camera is, seen from what it looks at, radians about +Y.
+func _view_heading() -> float:
+	var camera := get_viewport().get_camera_3d()
+	if camera == null:
+		return rotation.y + PI
+	return atan2(camera.global_basis.z.x, camera.global_basis.z.z)
+
+
+func _steer(delta: float) -> void:
+	_step_left -= delta
+	if _step_left < -USUAL_STEP_SECS:
+		# No step has followed: it stands.
+		_step_turn = 0.0
+	var walks := _wish.length() >= 0.1
+	var way := wrapf(atan2(_wish.x, _wish.z) - rotation.y, -PI, PI)
+	var hurries := player_controlled and GaitInput.is_pressed(&"hurry")
+	gait.speed = _wish.length() * (hurry_speed if hurries else walk_speed) if walks else 0.0
+	gait.direction = 0.0
+	if aims or (player_controlled and GaitInput.is_pressed(&"aim")):
+		# It faces where the camera looks, and goes sideways and backwards.
+		gait.direction = way if walks else 0.0
+		_turn_by(_view_heading() + PI - rotation.y)
+	elif walks:
+		# Who has to turn far slows down, or turns on the spot.
+		gait.speed *= clampf(1.3 - absf(_turn_by(way)), 0.0, 1.0)
+	else:
+		gait.turn_rate = 0.0
+
+
+## Has the next step turn as far as is left when the one under way is over. Returns how far that is.
+func _turn_by(angle: float) -> float:
+	var left := wrapf(angle - _step_turn * (maxf(_step_left, 0.0) + 0.5 * TURN_ONSET * _step_secs), -PI, PI)
+	var idle := gait.speed == 0.0 and absf(left) < LEAST_TURN
+	gait.turn_rate = 0.0 if idle else clampf(left / _step_secs, -max_turn_rate, max_turn_rate)
+	return left
+
+
+## A step begins, which turns as it was asked to until it lands.
+func _begin_step(_foot: StringName, _place: Vector3, seconds: float) -> void:
+	_step_turn = gait.turn_rate
+	_step_secs = maxf(seconds, 0.2)
+	_step_left = _step_secs
+
+
+## Crouches, where the generator can; under a low ceiling it stays down.
+func _crouch(delta: float) -> void:
+	if not &"crouch" in gait:
+		return
+	var down: float = gait.get(&"crouch")
+	var wanted := 1.0 if crouches or (player_controlled and GaitInput.is_pressed(&"crouch")) else 0.0
+	if wanted < down and test_move(global_transform, Vector3.UP * (_standing_height * (1.0 - CROUCHED_HEIGHT) * down)):
+		wanted = down
+	down = move_toward(down, wanted, delta / CROUCH_SECS)
+	gait.set(&"crouch", down)
+	var capsule := _shape.shape as CapsuleShape3D
+	if capsule:
+		capsule.height = _standing_height * lerpf(1.0, CROUCHED_HEIGHT, down)
+		_shape.position.y = 0.5 * capsule.height
+
+
+## Called by the generator, before the feet are placed.
+func _follow_steps() -> void:
+	if _due:
+		_steps = gait.get_root_motion_delta()
+		_travel()
+
+
+## Moves the body for a frame, by what the steps travelled or as it flies.
+func _travel() -> void:
+	var delta := get_physics_process_delta_time()
+	var begin := global_position.y
+	var carried := get_platform_velocity().y * delta
+	var flies := _flies()
+	var fall := velocity.y + get_gravity().y * delta
+	if flies:
+		velocity = _flight(delta)
+	else:
+		velocity = _figure.global_basis * _steps.origin / delta
+		if is_on_floor():
+			fall = 0.0
+			_step_up(delta)
+	velocity.y = fall
+	move_and_slide()
+	rotation.y += _steps.basis.get_euler().y + get_platform_angular_velocity().y * delta
+	_steps = Transform3D.IDENTITY
+	_due = false
+	if not flies:
+		_figure.stay_below(global_position.y - begin - carried)
+	_figure.follow(step_half_life, delta)
+	_stay_or_land(-fall, delta)
+
+
+## The velocity along the ground of somebody in the air.
+func _flight(delta: float) -> Vector3:
+	var level := Vector3(velocity.x, 0.0, velocity.z)
+	return level.move_toward(_wish * walk_speed, air_acceleration * delta) if _wish != Vector3.ZERO else level
+
+
+func _take_off() -> void:
+	velocity.y = sqrt(2.0 * get_gravity().length() * jump_height)
+	_leaps = true
+	jumped.emit()
+
+
+func _flies() -> bool:
+	return _leaps or _air_secs > FALL_SECS
+
+
+## Who is in the air leaves the feet to the animation, which waits for the ground.
+func _stay_or_land(fall: float, delta: float) -> void:
+	if is_on_floor():
+		if _flies():
+			landed.emit(fall)
+		_leaps = false
+		_air_secs = 0.0
+	elif _air_secs > 0.0 or not test_move(global_transform, Vector3.DOWN * step_height):
+		# Above ground that is near, the capsule slides off an edge.
+		_air_secs += delta
+	if placement and placement.in_air != _flies():
+		placement.in_air = _flies()
+		# A generator that can jump knows what to do in the air.
+		gait.playing = not _flies() or gait.has_method(&"jump")
+
+
+## Climbs an edge that is low enough: a capsule alone would stop at it.
+func _step_up(delta: float) -> void:
+	var ahead := velocity * delta
+	if ahead.length() < 1e-4:
+		return
+	var reach := ahead.normalized() * EDGE_REACH + ahead
+	if not test_move(global_transform, reach):
+		return
+	var raised := global_transform.translated(Vector3.UP * step_height)
+	if test_move(raised, reach):
+		return
+	var down := KinematicCollision3D.new()
+	if test_move(raised.translated(reach), Vector3.DOWN * step_height, down):
+		global_position.y += step_height + down.get_travel().y

@@ -1,0 +1,257 @@
+extends TestCase
+## The add-on's `GaitCharacter3D` as a game has it: physics, input, stairs, platforms, jumps.
+
+const CONTROLLER: PackedScene = preload("res://addons/footfall/controller/gait_character_3d.tscn")
+const RATE := 60.0
+## How much faster than the clock time passes.
+const HASTE := 10
+
+
+func _ready() -> void:
+	# Frames of physics last as long as in a game, and come sooner.
+	Engine.physics_ticks_per_second = int(RATE) * HASTE
+	Engine.max_physics_steps_per_frame = HASTE
+	Engine.time_scale = HASTE
+
+
+func _exit_tree() -> void:
+	Engine.physics_ticks_per_second = int(RATE)
+	Engine.max_physics_steps_per_frame = 8
+	Engine.time_scale = 1.0
+
+
+func _character(at := Vector3.ZERO, scene: PackedScene = Skinned.scene()) -> GaitCharacter3D:
+	var character: GaitCharacter3D = CONTROLLER.instantiate()
+	character.character_scene = scene
+	character.position = at
+	character.player_controlled = false
+	add_child(character)
+	return character
+
+
+func _box(middle: Vector3, size: Vector3, body: PhysicsBody3D = StaticBody3D.new()) -> PhysicsBody3D:
+	var shape := CollisionShape3D.new()
+	shape.shape = BoxShape3D.new()
+	shape.shape.size = size
+	body.add_child(shape)
+	body.position = middle
+	add_child(body)
+	return body
+
+
+func _floor() -> void:
+	_box(Vector3(0, -0.5, 0), Vector3(60, 1, 60))
+
+
+## Steps up along +Z from z = 1, a landing, and as many down again.
+func _stairs(count: int, rise: float, run: float) -> void:
+	for step: int in count:
+		var depth := 2.0 * run * (count - step) - run + 1.2
+		var height := rise * (step + 1)
+		_box(Vector3(0, 0.5 * height, 1.0 + run * count + 0.6), Vector3(2.4, height, depth))
+
+
+func _frames(count: int, each := Callable()) -> void:
+	for frame: int in count:
+		await get_tree().physics_frame
+		if each.is_valid():
+			each.call()
+
+
+func test_nobody_walks_before_a_key_is_pressed() -> void:
+	_floor()
+	var character := _character()
+	await _frames(90)
+	check(Vector2(character.position.x, character.position.z).length() < 0.01, "it stands where it was: %s" % character.position)
+	check_near(character.position.y, 0.0, 0.01, "on the floor")
+	check_equal(character.gait.speed, 0.0, "its speed")
+	check_equal(character.gait.get_problems(), PackedStringArray(), "problems")
+
+
+func test_stairs_throw_neither_the_figure_nor_the_camera() -> void:
+	_floor()
+	_stairs(6, 0.17, 0.29)
+	var character := _character(Vector3(0, 0.02, -1.0))
+	character.autopilot = Vector3.BACK
+	await _frames(30)
+	var figure: Node3D = character.get_node(^"Figure")
+	var camera: Node3D = character.get_node(^"Camera")
+	var lens: Node3D = character.get_node(^"Camera/Lens")
+	var before := [character.global_position.y, figure.global_position.y, camera.global_position.y]
+	var most := [0.0, 0.0, 0.0]
+	var top := [0.0]
+	var away := [0.0]
+	await _frames(900, func() -> void:
+		var now := [character.global_position.y, figure.global_position.y, camera.global_position.y]
+		for index: int in 3:
+			most[index] = maxf(most[index], absf(now[index] - before[index]))
+			before[index] = now[index]
+		away[0] = maxf(away[0], absf(figure.position.y))
+		top[0] = maxf(top[0], now[0]))
+	print("a frame's rise: capsule %.1f mm, figure %.1f mm, camera %.1f mm; figure off by %.0f mm" % [1e3 * most[0], 1e3 * most[1], 1e3 * most[2], 1e3 * away[0]])
+	check_near(top[0], 1.02, 0.02, "it reached the top")
+	check(character.position.z > 6.5, "and the floor behind: %s" % character.position)
+	check_near(character.position.y, 0.0, 0.02, "down again")
+	check(most[0] > 0.05, "the capsule steps at once: %.3f m" % most[0])
+	check_below(most[1], 0.02, "the figure rises smoothly, metres a frame")
+	# The camera moves with drawn frames, of which one may last several of physics here.
+	check_below(most[2] / HASTE, 0.02, "the camera, too")
+	check_below(away[0], 0.2, "the figure stays near its capsule")
+	check(lens.global_position.distance_to(character.global_position) < 6.0, "the camera came along")
+
+
+func test_walls_and_high_edges_stop_it() -> void:
+	_floor()
+	_box(Vector3(0, 0.15, 2.0), Vector3(4, 0.3, 1))
+	var character := _character()
+	character.autopilot = Vector3.BACK
+	await _frames(240)
+	check_near(character.position.y, 0.0, 0.02, "it stays below")
+	check_below(character.position.z, 1.5, "and before the edge")
+
+
+func test_a_fall_is_in_the_air_and_lands_once() -> void:
+	_floor()
+	_box(Vector3(0, 0.5, 0), Vector3(4, 1, 3))
+	var character := _character(Vector3(0, 1.02, 0))
+	var falls: Array[float] = []
+	character.landed.connect(func(speed: float) -> void: falls.append(speed))
+	character.autopilot = Vector3.BACK
+	var flew := [0]
+	await _frames(240, func() -> void: flew[0] += int(character.placement.in_air))
+	check_near(character.position.y, 0.0, 0.02, "it fell to the floor")
+	check_equal(falls.size(), 1, "landed once")
+	check_near(falls[0], sqrt(2.0 * 9.8), 0.6, "at the speed of such a fall")
+	check(flew[0] > 8 and flew[0] < 40, "feet were left to the animation meanwhile: %d frames" % flew[0])
+	check(character.position.z > 3.0, "and it walks on: %s" % character.position)
+
+
+func test_a_jump_is_as_high_as_it_is_told() -> void:
+	_floor()
+	var character := _character()
+	await _frames(60)
+	var leaps := [0]
+	character.jumped.connect(func() -> void: leaps[0] += 1)
+	var falls := [0]
+	character.landed.connect(func(_speed: float) -> void: falls[0] += 1)
+	character.jump()
+	var top := [0.0]
+	await _frames(60, func() -> void: top[0] = maxf(top[0], character.position.y))
+	check_near(top[0], character.jump_height, 0.06, "height")
+	check_equal([leaps[0], falls[0]], [1, 1], "jumped and landed")
+	check_near(character.position.y, 0.0, 0.02, "on the floor again")
+	check_equal(character.placement.in_air, false, "feet stand again")
+	character.jump_height = 0.0
+	character.jump()
+	await _frames(2)
+	check_equal(leaps[0], 1, "who does not jump stays")
+
+
+func test_a_platform_carries_it() -> void:
+	_floor()
+	var platform: AnimatableBody3D = _box(Vector3(0, 0.4, 0), Vector3(4, 0.2, 4), AnimatableBody3D.new())
+	platform.sync_to_physics = false
+	var character := _character(Vector3(0, 0.52, 0))
+	var figure: Node3D = character.get_node(^"Figure")
+	await _frames(30)
+	var begin := character.global_position - platform.global_position
+	var heading := character.rotation.y
+	var away := [0.0]
+	for frame: int in 180:
+		await get_tree().physics_frame
+		platform.position += Vector3(0.01, 0.006 * sin(frame / 20.0), 0.0)
+		platform.rotate_y(0.004)
+		away[0] = maxf(away[0], absf(figure.position.y))
+	var now := platform.global_basis.inverse() * (character.global_position - platform.global_position)
+	check_below(now.distance_to(begin), 0.1, "it stands where it stood on the platform")
+	check_near(wrapf(character.rotation.y - heading, -PI, PI), 180 * 0.004, 0.1, "turned with it")
+	check_below(away[0], 0.02, "and rose with it")
+
+
+func test_it_faces_its_way_and_where_the_camera_looks_while_aiming() -> void:
+	_floor()
+	var character := _character()
+	character.autopilot = Vector3.RIGHT
+	await _frames(180)
+	check_near(wrapf(character.rotation.y - PI / 2, -PI, PI), 0.0, 0.1, "it faces its way")
+	var camera: Node3D = character.get_node(^"Camera")
+	camera.rotation.y = PI
+	character.aims = true
+	await _frames(240)
+	check_near(wrapf(character.rotation.y, -PI, PI), 0.0, 0.15, "it faces where the camera looks")
+	var begin := character.global_position
+	await _frames(120)
+	var way := character.global_position - begin
+	check(way.x > 0.5 and absf(way.z) < 0.2 * way.x, "and goes sideways: %s" % way)
+
+
+func test_a_generator_that_can_jump_and_crouch_is_asked_to() -> void:
+	var able := GDScript.new()
+	able.source_code = "extends GaitGenerator3D\nsignal took_off\nvar crouch := 0.0\nvar height := 0.0\n" \
+		+ "func jump(up: float) -> void:\n\theight = up\n\ttook_off.emit.call_deferred()\n"
+	able.reload()
+	var root := Skinned.scene().instantiate()
+	var gait := GaitGenerator3D.new()
+	gait.set_script(able)
+	var skeleton: Skeleton3D = root.find_children("*", "Skeleton3D", true, false)[0]
+	skeleton.add_child(gait)
+	gait.owner = root
+	var scene := PackedScene.new()
+	scene.pack(root)
+	root.free()
+	_floor()
+	var character := _character(Vector3.ZERO, scene)
+	await _frames(60)
+	var shape: CapsuleShape3D = (character.get_node(^"Shape") as CollisionShape3D).shape
+	var height := shape.height
+	character.crouches = true
+	await _frames(30)
+	check_near(character.gait.get(&"crouch"), 1.0, 1e-6, "it crouches")
+	check_below(shape.height, 0.7 * height, "and its capsule, too")
+	_box(Vector3(0, 0.7 * height + 0.25, 0), Vector3(2, 0.2, 2))
+	character.crouches = false
+	await _frames(30)
+	check_near(character.gait.get(&"crouch"), 1.0, 0.15, "under a ceiling it stays down")
+	character.teleport(Transform3D(Basis.IDENTITY, Vector3(5, 0, 0)))
+	await _frames(40)
+	check_near(shape.height, height, 1e-4, "in the open it stands up")
+	character.jump()
+	check_near(character.gait.get(&"height"), character.jump_height, 1e-6, "the generator jumps")
+	await _frames(10)
+	check(character.position.y > 0.2, "and the body leaves the ground with it: %s" % character.position)
+	check(character.gait.playing, "the generator has the legs meanwhile")
+
+
+func test_capsules_fit_their_bodies() -> void:
+	for size: float in [0.5, 1.0, 1.6]:
+		var root := Skinned.scene().instantiate()
+		root.scale = Vector3.ONE * size
+		var scene := PackedScene.new()
+		scene.pack(root)
+		root.free()
+		var character := _character(Vector3.ZERO, scene)
+		var capsule: CapsuleShape3D = (character.get_node(^"Shape") as CollisionShape3D).shape
+		check_near(capsule.height, 1.72 * size, 0.08 * size, "height of a body of %.1f" % size)
+		check_near(capsule.radius, 0.24 * size, 0.04 * size, "radius of a body of %.1f" % size)
+		character.free()
+
+
+func test_without_a_character_it_says_so_and_falls() -> void:
+	_floor()
+	var character := _character(Vector3(0, 0.5, 0), null)
+	await _frames(60)
+	check_near(character.position.y, 0.0, 0.02, "it falls to the floor")
+	check_contains(character._get_configuration_warnings()[0], "Character Scene", "what to do")
+
+
+func test_a_character_may_be_changed_while_it_walks() -> void:
+	_floor()
+	var character := _character()
+	character.autopilot = Vector3.BACK
+	await _frames(60)
+	character.character_scene = Skinned.scene(["Chest", "UpperChest"])
+	await _frames(2)
+	var begin := character.position.z
+	await _frames(90)
+	check(character.position.z > begin + 0.5, "the new one walks: %s" % character.position)
+	check_equal(character.get_node(^"Figure").get_child_count(), 1, "characters in it")
