@@ -100,8 +100,6 @@ var _air_secs := 0.0
 
 
 func _ready() -> void:
-	# Another character's capsule must not change with this one's.
-	_shape.shape = _shape.shape.duplicate()
 	_wear()
 
 

@@ -16,7 +16,8 @@ func _ready() -> void:
 
 
 func _process(_delta: float) -> void:
-	%Figures.text = "%.1f m/s, grade %.0f %%" % [_player.get_real_velocity().length(), 100.0 * _player.placement.get_grade()]
+	var speed := Vector2(_player.velocity.x, _player.velocity.z).length()
+	%Figures.text = "%.1f m/s, grade %.0f %%" % [speed, 100.0 * _player.placement.get_grade()]
 
 
 func close_ups() -> Dictionary[String, Array]:

@@ -100,6 +100,52 @@ func test_stairs_throw_neither_the_figure_nor_the_camera() -> void:
 	check(lens.global_position.distance_to(character.global_position) < 6.0, "the camera came along")
 
 
+func test_slopes_are_walked_up_and_stood_on() -> void:
+	_floor()
+	var slope := deg_to_rad(25.0)
+	var ramp := _box(Vector3.ZERO, Vector3(4, 0.4, 12))
+	ramp.transform = Transform3D(Basis(Vector3.RIGHT, -slope), Vector3(0, 6.0 * sin(slope) - 0.2, 1.0 + 6.0 * cos(slope)))
+	var character := _character()
+	character.autopilot = Vector3.BACK
+	await _frames(360)
+	var height := character.position.y
+	check(height > 1.0, "it got up: %s" % character.position)
+	check_below(character.get_node(^"Figure").position.length(), 0.15, "the figure is where its capsule is")
+	character.autopilot = Vector3.ZERO
+	await _frames(90)
+	var place := character.position
+	await _frames(60)
+	check_below(character.position.distance_to(place), 0.02, "and stands there")
+
+
+func test_an_agent_leads_it_around_what_is_in_the_way() -> void:
+	_floor()
+	_box(Vector3(0, 0.5, 3), Vector3(4, 1, 0.4))
+	var ground := NavigationMesh.new()
+	ground.vertices = PackedVector3Array([
+		Vector3(-6, 0, -2), Vector3(6, 0, -2), Vector3(6, 0, 2), Vector3(-6, 0, 2),
+		Vector3(3, 0, 2), Vector3(3, 0, 8), Vector3(6, 0, 8), Vector3(-6, 0, 8), Vector3(3, 0, 4), Vector3(-6, 0, 4),
+	])
+	for corners: Array in [[0, 1, 2, 4, 3], [4, 2, 6, 5, 8], [8, 5, 7, 9]]:
+		ground.add_polygon(PackedInt32Array(corners))
+	var region := NavigationRegion3D.new()
+	region.navigation_mesh = ground
+	add_child(region)
+	var character := _character()
+	var agent := NavigationAgent3D.new()
+	agent.target_desired_distance = 0.6
+	character.add_child(agent)
+	character.navigation = agent
+	await _frames(20)
+	check_equal(character.gait.speed, 0.0, "without a goal it stands")
+	agent.target_position = Vector3(0, 0, 6)
+	await _frames(1200)
+	check(agent.is_navigation_finished(), "it arrived: %s" % character.position)
+	check_below(character.position.distance_to(agent.target_position), 1.0, "there")
+	await _frames(60)
+	check_equal(character.gait.speed, 0.0, "and stands")
+
+
 func test_walls_and_high_edges_stop_it() -> void:
 	_floor()
 	_box(Vector3(0, 0.15, 2.0), Vector3(4, 0.3, 1))
@@ -223,6 +269,8 @@ func test_a_generator_that_can_jump_and_crouch_is_asked_to() -> void:
 
 
 func test_capsules_fit_their_bodies() -> void:
+	var bodies: Array[GaitCharacter3D] = []
+	var capsules: Array[float] = []
 	for size: float in [0.5, 1.0, 1.6]:
 		var root := Skinned.scene().instantiate()
 		root.scale = Vector3.ONE * size
@@ -233,7 +281,11 @@ func test_capsules_fit_their_bodies() -> void:
 		var capsule: CapsuleShape3D = (character.get_node(^"Shape") as CollisionShape3D).shape
 		check_near(capsule.height, 1.72 * size, 0.08 * size, "height of a body of %.1f" % size)
 		check_near(capsule.radius, 0.24 * size, 0.04 * size, "radius of a body of %.1f" % size)
-		character.free()
+		capsules.append(capsule.height)
+		bodies.append(character)
+	for index: int in bodies.size():
+		var kept: CapsuleShape3D = (bodies[index].get_node(^"Shape") as CollisionShape3D).shape
+		check_equal(kept.height, capsules[index], "another body leaves it as it is")
 
 
 func test_without_a_character_it_says_so_and_falls() -> void:

@@ -3,6 +3,7 @@ extends EditorPlugin
 ## Tests of the add-on's half in the editor: `cargo xtask open tests/godot -- --headless --editor -- --editor-tests`.
 
 const SCRATCH := "res://scratch"
+const CONTROLLER := "res://addons/footfall/controller/gait_character_3d.tscn"
 const SCENE := SCRATCH + "/walker.tscn"
 const RECORDING := "res://../data/walker_1_fast.bvh"
 const STYLE := "res://styles/dock_test.footstyle"
@@ -25,6 +26,7 @@ func _run() -> void:
 	if dock:
 		await _test_dock(dock)
 		await _test_scene(dock)
+		await _test_controller()
 		await _test_hot_reload()
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE + ".import"))
@@ -33,6 +35,24 @@ func _run() -> void:
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(SCRATCH))
 	print("%d passed, %d failed" % [_passed, _failed])
 	get_tree().quit(1 if _failed > 0 or _passed == 0 else 0)
+
+
+## The controller shows its character in the editor, and a scene that holds it keeps nothing of that.
+func _test_controller() -> void:
+	var level := Node3D.new()
+	var player: Node3D = (load(CONTROLLER) as PackedScene).instantiate()
+	level.add_child(player)
+	player.owner = level
+	add_child(level)
+	_check("\n".join(player.call(&"_get_configuration_warnings")).contains("Character Scene"), "the controller says what it lacks")
+	player.set(&"character_scene", Skinned.scene())
+	await get_tree().process_frame
+	_check(player.call(&"_get_configuration_warnings").is_empty(), "with a character it lacks nothing")
+	_check(player.get_node(^"Figure").get_child_count() == 1, "the character is seen")
+	var packed := PackedScene.new()
+	packed.pack(level)
+	_check(packed.get_state().get_node_count() == 2, "nothing of it is saved: %d nodes" % packed.get_state().get_node_count())
+	level.queue_free()
 
 
 func _test_dock(dock: Node) -> void:
