@@ -3,6 +3,7 @@
 //! Godot 4.6 has a `TwoBoneIK3D`, but it ignores the target's rotation and knows nothing of contacts; this crate turns
 //! the ankle too and is the same code in the editor, in tests and on the command line.
 
+pub mod handover;
 pub mod leg;
 pub mod placement;
 pub mod rocker;

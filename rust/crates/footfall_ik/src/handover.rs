@@ -1,0 +1,225 @@
+//! From one motion to another: the body goes over without a jump, and feet that stand stay where they are.
+//!
+//! What parts the two motions when one ends, in place and in speed, dies away while the other goes on (inertialization, after Bollo,
+//! "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018). Feet are kept apart from that: one that stands in both
+//! keeps its place until the new motion lifts it, or makes a step of its own.
+
+mod fading;
+mod foot;
+
+use crate::leg::{FootTarget, Leg, reach_height};
+use crate::placement::ContactThresholds;
+use crate::rocker::RockerFoot;
+use fading::Fading;
+use foot::{HeldFoot, MovingFoot};
+use footfall_core::ease::smooth_step;
+use footfall_core::rotation::{exp_map, log_map};
+use footfall_core::{JOINT_COUNT, Joint, Pose, Side, Skeleton};
+use glam::Vec3;
+
+/// A leg is stretched to this share of its length at most while its foot is held.
+const MAX_EXTENSION: f32 = 0.999;
+/// The pelvis begins to give way so far before that, metres, for a foot that is held farther away than it; else sooner than not at all.
+const YIELD_M: f32 = 0.04;
+/// It does so from the first part of the way on: by one through this.
+const YIELD_RATE: f32 = 3.0;
+/// Speeds beyond these are no body's: a clip that jumped, or a character that was put elsewhere. Metres and radians a second.
+const MAX_SPEED_MPS: f32 = 6.0;
+const MAX_TURN_RADPS: f32 = 25.0;
+
+/// A motion at one moment: two frames of it, in the axes of the ground, with y = 0 the floor.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving<'a> {
+    /// The frame before.
+    pub before: &'a Pose,
+    /// The frame now.
+    pub now: &'a Pose,
+    /// Which feet stand.
+    pub stands: [bool; 2],
+}
+
+/// A body on its way from one motion to another. Allocates nothing.
+#[derive(Clone, Debug)]
+pub struct Handover {
+    hips: Fading,
+    turns: [Fading; JOINT_COUNT],
+    feet: [HeldFoot; 2],
+    frame: BodyFrame,
+}
+
+/// What a body's feet need to be known.
+#[derive(Clone, Debug)]
+struct BodyFrame {
+    legs: [Leg; 2],
+    rockers: [RockerFoot; 2],
+    hip_offsets: [Vec3; 2],
+    leg_lengths: [f32; 2],
+}
+
+impl Handover {
+    /// From one motion to another on the same ground, whose frames are both `dt_secs` apart, within `secs`.
+    pub fn new(
+        skeleton: &Skeleton,
+        from: &Moving<'_>,
+        to: &Moving<'_>,
+        dt_secs: f32,
+        secs: f32,
+    ) -> Self {
+        let secs = secs.max(0.0);
+        let frame = BodyFrame::new(skeleton);
+        let per_sec = |way: Vec3, most: f32| {
+            if dt_secs > 0.0 {
+                (way / dt_secs).clamp_length_max(most)
+            } else {
+                Vec3::ZERO
+            }
+        };
+        let hips = from.now.root_position - to.now.root_position;
+        let hips_before = from.before.root_position - to.before.root_position;
+        let turns = core::array::from_fn(|joint| {
+            let parted =
+                |from: &Pose, to: &Pose| from.rotations[joint] * to.rotations[joint].conjugate();
+            let (now, before) = (parted(from.now, to.now), parted(from.before, to.before));
+            let speed = per_sec(log_map(now * before.conjugate()), MAX_TURN_RADPS);
+            Fading::new(log_map(now), speed, secs)
+        });
+        let foot = |moving: &Moving<'_>, side: Side| MovingFoot {
+            now: frame.foot(side, moving.now),
+            before: frame.foot(side, moving.before),
+            stands: moving.stands[side.index()],
+        };
+        let feet = Side::BOTH.map(|side| {
+            let rocker = frame.rockers[side.index()];
+            HeldFoot::new(rocker, &foot(from, side), &foot(to, side), dt_secs, secs)
+        });
+        Self {
+            hips: Fading::new(hips, per_sec(hips - hips_before, MAX_SPEED_MPS), secs),
+            turns,
+            feet,
+            frame,
+        }
+    }
+
+    /// Lets time pass and changes a pose of the motion that goes on to what the body does. `stands` says which feet that motion has on the
+    /// ground, `rests` whether it leaves them there for good: then feet that stand elsewhere make a step, one after the other.
+    pub fn step(&mut self, dt_secs: f32, stands: [bool; 2], rests: bool, pose: &mut Pose) {
+        self.hips.advance(dt_secs);
+        if rests {
+            self.step_over();
+        }
+        let targets = Side::BOTH.map(|side| {
+            let to = self.frame.foot(side, pose);
+            self.feet[side.index()].step(dt_secs, &to, stands[side.index()])
+        });
+        for (turn, rotation) in self.turns.iter_mut().zip(&mut pose.rotations) {
+            turn.advance(dt_secs);
+            if !turn.is_over() {
+                *rotation = (exp_map(turn.left()) * *rotation).normalize();
+            }
+        }
+        pose.root_position += self.hips.left();
+        if self.is_over() {
+            return;
+        }
+        let hips_rotation = pose.rotations[Joint::Hips.index()];
+        let begun = smooth_step(YIELD_RATE * self.hips.share());
+        for (index, target) in targets.iter().enumerate() {
+            let hip = hips_rotation * self.frame.hip_offsets[index];
+            let length = self.frame.leg_lengths[index];
+            let highest =
+                reach_height(pose.root_position, hip, target.ankle, length, MAX_EXTENSION);
+            if let Some(highest) = highest {
+                let give = begun * self.feet[index].parted_m().min(YIELD_M);
+                pose.root_position.y = below(pose.root_position.y, highest, give);
+            }
+        }
+        for (leg, target) in self.frame.legs.iter().zip(&targets) {
+            leg.solve(pose.root_position, hips_rotation, target, pose);
+        }
+    }
+
+    /// Whether nothing is left of the motion that ended.
+    pub fn is_over(&self) -> bool {
+        self.hips.is_over() && self.feet.iter().all(HeldFoot::is_over)
+    }
+
+    /// Has the foot that stands farther from its place go there, if both stand.
+    fn step_over(&mut self) {
+        if !self.feet.iter().all(HeldFoot::has_landed) {
+            return;
+        }
+        let [left, right] = &mut self.feet;
+        let farther = if left.distance() >= right.distance() {
+            left
+        } else {
+            right
+        };
+        if farther.distance() > 0.0 {
+            farther.step_over();
+        }
+    }
+}
+
+/// A height that comes near a limit gently from `give` below it, and never passes it.
+fn below(height: f32, limit: f32, give: f32) -> f32 {
+    let into = height - (limit - give);
+    if into <= 0.0 || give <= 0.0 {
+        return height.min(limit);
+    }
+    limit - give * (-into / give).exp()
+}
+
+/// Which feet of a motion stand that does not tell: those that are low and slow. `stood` says which did a moment ago.
+pub fn standing_feet(
+    skeleton: &Skeleton,
+    before: &Pose,
+    now: &Pose,
+    dt_secs: f32,
+    stood: [bool; 2],
+) -> [bool; 2] {
+    let frame = BodyFrame::new(skeleton);
+    Side::BOTH.map(|side| {
+        let index = side.index();
+        let points = |pose: &Pose| frame.rockers[index].points(&frame.foot(side, pose));
+        let (now, before) = (points(now), points(before));
+        let height = now.iter().map(|point| point.y).fold(f32::MAX, f32::min);
+        let slowest = now
+            .iter()
+            .zip(&before)
+            .map(|(now, before)| now.distance(*before))
+            .fold(f32::MAX, f32::min);
+        let speed = if dt_secs > 0.0 {
+            slowest / dt_secs
+        } else {
+            0.0
+        };
+        ContactThresholds::default().stands(stood[index], speed, height)
+    })
+}
+
+impl BodyFrame {
+    fn new(skeleton: &Skeleton) -> Self {
+        Self {
+            legs: Side::BOTH.map(|side| Leg::new(skeleton, side)),
+            rockers: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
+            hip_offsets: Side::BOTH.map(|side| skeleton.offset(side.upper_leg())),
+            leg_lengths: Side::BOTH.map(|side| skeleton.leg_length(side)),
+        }
+    }
+
+    /// A foot of a pose.
+    fn foot(&self, side: Side, pose: &Pose) -> FootTarget {
+        let hips = pose.rotations[Joint::Hips.index()];
+        let thigh = hips * pose.rotation(side.upper_leg());
+        let shank = thigh * pose.rotation(side.lower_leg());
+        let foot = (shank * pose.rotation(side.foot())).normalize();
+        let index = side.index();
+        FootTarget {
+            ankle: pose.root_position
+                + hips * self.hip_offsets[index]
+                + self.legs[index].ankle_from_hip(thigh, shank),
+            foot,
+            toes: (foot * pose.rotation(side.toes())).normalize(),
+        }
+    }
+}

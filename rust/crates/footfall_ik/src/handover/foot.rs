@@ -1,0 +1,224 @@
+//! A foot while one motion gives way to another: one that stands stays where it is.
+
+use super::fading::Fading;
+use crate::leg::FootTarget;
+use crate::rocker::{RockerFoot, foot_heading, foot_pitch};
+use footfall_core::rotation::{exp_map, from_heading, log_map, wrap_angle};
+use glam::Vec3;
+
+/// A held foot comes to the place of the new motion within this time once that lifts it, and so long a step of its own takes, seconds.
+const SWING_SECS: f32 = 0.3;
+/// Places that are so near need no step, metres.
+const NEAR_M: f32 = 0.01;
+/// A turn by a radian counts as so many metres.
+const METRES_A_RADIAN: f32 = 0.1;
+/// A step of its own rises by this share of its length, within these bounds, metres.
+const RISE: f32 = 0.35;
+const RISES_M: [f32; 2] = [0.02, 0.1];
+/// A foot that has so little left to go has landed, metres.
+const LANDED_M: f32 = 0.02;
+/// A foot in the air that stands in the new motion lands within this time where it is, seconds, if that is no farther away than this, metres.
+const LANDING_SECS: f32 = 0.15;
+const REACH_M: f32 = 0.35;
+/// No foot is faster, m/s and rad/s.
+const MAX_SPEED: f32 = 12.0;
+
+/// A foot of a motion in two frames.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MovingFoot {
+    pub(super) before: FootTarget,
+    pub(super) now: FootTarget,
+    pub(super) stands: bool,
+}
+
+/// How a foot gets from where it was to where the motion that goes on has it.
+///
+/// Two things part them. Over the ground and about the vertical it is held where it stands, so that a rolling foot rolls about the place
+/// where it was put, until the new motion lifts it. The rest, its height, tilt and speed, dies away.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HeldFoot {
+    rocker: RockerFoot,
+    /// Where it stands as long as it is held, and its heading.
+    held: Option<(Vec3, f32)>,
+    going: Option<Going>,
+    /// What parts it over the ground from the motion that goes on: x and z; y is the turn. And how fast that grows.
+    parted: Vec3,
+    parting: Vec3,
+    place: Fading,
+    tilt: Fading,
+}
+
+/// A foot that was held, on its way to where the motion that goes on has it.
+#[derive(Clone, Copy, Debug)]
+struct Going {
+    parted: Fading,
+    /// Of a step of its own, metres.
+    rise: Option<f32>,
+}
+
+impl HeldFoot {
+    /// Between the foot of the motion that ends and that of the motion that goes on, `dt_secs` apart in both.
+    pub(super) fn new(
+        rocker: RockerFoot,
+        from: &MovingFoot,
+        to: &MovingFoot,
+        dt_secs: f32,
+        secs: f32,
+    ) -> Self {
+        let mut foot = Self {
+            rocker,
+            held: None,
+            going: None,
+            parted: Vec3::ZERO,
+            parting: Vec3::ZERO,
+            place: Fading::default(),
+            tilt: Fading::default(),
+        };
+        let mut parted_before = Vec3::ZERO;
+        let mut secs = secs;
+        let stood = foot.footprint(&from.now);
+        let apart = parted(stood, foot.footprint(&to.now));
+        if to.stands && (from.stands || level(apart).length() < REACH_M) {
+            foot.held = Some(stood);
+            foot.parted = apart;
+            parted_before = parted(stood, foot.footprint(&to.before));
+            if !from.stands {
+                secs = secs.min(LANDING_SECS);
+            }
+        }
+        let rest = |from: &FootTarget, to: &FootTarget, parted: Vec3| {
+            let to = foot.moved(to, parted);
+            let tilt = log_map(from.foot * to.foot.conjugate());
+            (from.ankle - to.ankle, tilt)
+        };
+        let now = rest(&from.now, &to.now, foot.parted);
+        let before = rest(&from.before, &to.before, parted_before);
+        let fading = |now: Vec3, before| Fading::new(now, speed(now - before, dt_secs), secs);
+        (foot.place, foot.tilt) = (fading(now.0, before.0), fading(now.1, before.1));
+        foot.parting = speed(foot.parted - parted_before, dt_secs);
+        foot
+    }
+
+    /// Lets time pass. Takes where the motion that goes on has the foot, and whether it stands there; returns where it is.
+    pub(super) fn step(&mut self, dt_secs: f32, to: &FootTarget, stands: bool) -> FootTarget {
+        self.place.advance(dt_secs);
+        self.tilt.advance(dt_secs);
+        let flat = self.footprint(to);
+        let before = self.parted;
+        let mut lift = 0.0;
+        if let Some(held) = self.held {
+            self.parted = parted(held, flat);
+            if !stands {
+                self.go(None);
+            }
+        } else if let Some(going) = &mut self.going {
+            going.parted.advance(dt_secs);
+            self.parted = going.parted.left();
+            let s = going.parted.share();
+            lift = going.rise.unwrap_or(0.0) * 16.0 * (s * (1.0 - s)).powi(2);
+            if s >= 1.0 {
+                self.going = None;
+            } else if stands && going.rise.is_none() {
+                // It lands before it gets there: here it stays until it is lifted again.
+                let turned = self.parted.y + flat.1;
+                self.held = Some((flat.0 + level(self.parted), turned));
+                self.going = None;
+            }
+        } else {
+            self.parted = Vec3::ZERO;
+        }
+        if dt_secs > 0.0 {
+            self.parting = speed(self.parted - before, dt_secs);
+        }
+        let mut target = self.moved(to, self.parted);
+        let tilt = exp_map(self.tilt.left());
+        target.ankle += self.place.left() + Vec3::Y * lift;
+        target.foot = (tilt * target.foot).normalize();
+        target.toes = (tilt * target.toes).normalize();
+        target
+    }
+
+    /// How far it is held from where it should stand, metres; 0 for a foot that is not held.
+    pub(super) fn distance(&self) -> f32 {
+        if self.held.is_none() {
+            return 0.0;
+        }
+        self.parted_m() + METRES_A_RADIAN * self.parted.y.abs()
+    }
+
+    /// How far over the ground it is from where the motion that goes on has it, metres.
+    pub(super) fn parted_m(&self) -> f32 {
+        level(self.parted).length()
+    }
+
+    /// Whether it stands, or is as good as there.
+    pub(super) fn has_landed(&self) -> bool {
+        self.going.is_none() && self.place.left().length() < LANDED_M
+    }
+
+    /// Whether it is where the motion that goes on has it.
+    pub(super) fn is_over(&self) -> bool {
+        self.place.is_over() && self.going.is_none() && self.distance() == 0.0
+    }
+
+    /// Makes a step of its own to where it should stand.
+    pub(super) fn step_over(&mut self) {
+        let [low, high] = RISES_M;
+        let distance = self.distance();
+        let rise = if distance < NEAR_M {
+            0.0
+        } else {
+            (RISE * distance).clamp(low, high)
+        };
+        self.go(Some(rise));
+    }
+
+    fn go(&mut self, rise: Option<f32>) {
+        self.held = None;
+        self.going = Some(Going {
+            parted: Fading::new(self.parted, self.parting, SWING_SECS),
+            rise,
+        });
+    }
+
+    /// A foot moved over the ground and turned about where it would lie flat.
+    fn moved(&self, foot: &FootTarget, parted: Vec3) -> FootTarget {
+        if parted == Vec3::ZERO {
+            return *foot;
+        }
+        let (about, _) = self.footprint(foot);
+        let turn = from_heading(parted.y);
+        FootTarget {
+            ankle: about + level(parted) + turn * (foot.ankle - about),
+            foot: (turn * foot.foot).normalize(),
+            toes: (turn * foot.toes).normalize(),
+        }
+    }
+
+    /// Where it would lie if it were put down flat, and its heading.
+    fn footprint(&self, foot: &FootTarget) -> (Vec3, f32) {
+        let heading = foot_heading(foot.foot);
+        let pitch = foot_pitch(foot.foot);
+        let plant = self.rocker.plant_under(foot.ankle, heading, pitch);
+        (RockerFoot::footprint(&plant), heading)
+    }
+}
+
+/// What parts two places on the ground: x and z; y is the turn.
+fn parted(stood: (Vec3, f32), stands: (Vec3, f32)) -> Vec3 {
+    let mut parted = stood.0 - stands.0;
+    parted.y = wrap_angle(stood.1 - stands.1);
+    parted
+}
+
+fn level(parted: Vec3) -> Vec3 {
+    Vec3::new(parted.x, 0.0, parted.z)
+}
+
+fn speed(way: Vec3, dt_secs: f32) -> Vec3 {
+    if dt_secs > 0.0 {
+        (way / dt_secs).clamp_length_max(MAX_SPEED)
+    } else {
+        Vec3::ZERO
+    }
+}
