@@ -5,6 +5,7 @@ extends Control
 const SCENES: Array[Array] = [
 	["res://scenes/walk/walk.tscn", "Walk", "Seven walks from one model, none in step"],
 	["res://scenes/styles/styles.tscn", "Styles", "Eleven styles, and one walker in any mixture of them"],
+	["res://scenes/layers/layers.tscn", "Layers", "Clips wave, carry, aim and strike while the legs walk"],
 	["res://scenes/uneven/uneven.tscn", "Uneven ground", "Slopes, stairs, rubble and a platform that moves"],
 	["res://scenes/crowd/crowd.tscn", "Crowd", "Thousands on a plaza, each in its own way"],
 	["res://scenes/third_person/third_person.tscn", "Third person", "Walk the course with keyboard, gamepad or touch"],

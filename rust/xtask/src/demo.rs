@@ -5,9 +5,10 @@ use anyhow::{Context as _, Result, bail};
 use std::fs;
 
 /// The demo's scenes by topic.
-pub(crate) const SCENES: [(&str, &str); 9] = [
+pub(crate) const SCENES: [(&str, &str); 10] = [
     ("walk", "res://scenes/walk/walk.tscn"),
     ("styles", "res://scenes/styles/styles.tscn"),
+    ("layers", "res://scenes/layers/layers.tscn"),
     ("uneven", "res://scenes/uneven/uneven.tscn"),
     ("crowd", "res://scenes/crowd/crowd.tscn"),
     (

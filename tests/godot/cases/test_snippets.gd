@@ -88,6 +88,30 @@ func _body() -> CharacterBody3D:
 	return body
 
 
+## A level in which an `AnimationPlayer` has the clips `wave` and `idle`, and an `AnimationTree` the states `idle` and `gait`.
+func _animated() -> Node3D:
+	var level := _level()
+	var player := AnimationPlayer.new()
+	player.name = "AnimationPlayer"
+	var library := AnimationLibrary.new()
+	for clip: StringName in [&"wave", &"idle"]:
+		library.add_animation(clip, Animation.new())
+	player.add_animation_library(&"", library)
+	level.add_child(player)
+	var states := AnimationNodeStateMachine.new()
+	for state: StringName in [&"idle", &"gait"]:
+		var clip := AnimationNodeAnimation.new()
+		clip.animation = &"idle"
+		states.add_node(state, clip)
+	states.add_transition(&"Start", &"gait", AnimationNodeStateMachineTransition.new())
+	var tree := AnimationTree.new()
+	tree.name = "AnimationTree"
+	tree.tree_root = states
+	tree.anim_player = NodePath("../AnimationPlayer")
+	level.add_child(tree)
+	return level
+
+
 func _character() -> Node3D:
 	var character: Node3D = Skinned.scene().instantiate()
 	character.name = "Character"

@@ -9,7 +9,7 @@ func _style(style_name: String) -> GaitStyle:
 	return load("%s/%s.footstyle" % [MODELS, style_name])
 
 
-func _walker(styles: Array[GaitStyle], weights: Array, seed := 0) -> Walker:
+func _walker(styles: Array[GaitStyle], weights: Array, seed := 1) -> Walker:
 	var walker := Walker.new()
 	walker.gait.styles = styles
 	walker.gait.style_weights = PackedFloat32Array(weights)

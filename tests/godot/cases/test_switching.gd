@@ -5,7 +5,7 @@ const MODEL := "res://addons/footfall/models/walk.footdyn"
 const RATE := 60.0
 
 
-func _walker(seed := 0) -> Walker:
+func _walker(seed := 1) -> Walker:
 	var walker := Walker.new()
 	walker.gait.model = load(MODEL)
 	walker.gait.seed = seed

@@ -67,6 +67,24 @@ pub(crate) fn rotation(transform: &Affine3A) -> Quat {
     Quat::from_mat3(&glam::Mat3::from_cols(x, y, x.cross(y))).normalize()
 }
 
+/// A transform without its scale. Unlike Godot's own, it is content with a scale of 0.
+pub(crate) fn unscaled(with_scale: Transform3D) -> Transform3D {
+    transform(rotation(&affine(with_scale)), vec3(with_scale.origin))
+}
+
+/// Whether nothing can be seen of what a transform places: it is squashed flat, or not a place at all.
+pub(crate) fn is_flat(transform: Transform3D) -> bool {
+    const LEAST: f32 = 1e-5;
+    let [x, y, z] = [
+        transform.basis.col_a(),
+        transform.basis.col_b(),
+        transform.basis.col_c(),
+    ]
+    .map(vec3);
+    let volume = x.cross(y).dot(z).abs();
+    !transform.is_finite() || volume.cbrt() < LEAST
+}
+
 /// A transform without its scale, Godot to glam.
 pub(crate) fn frame(transform: Transform3D) -> Frame {
     Frame {

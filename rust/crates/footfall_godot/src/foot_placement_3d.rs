@@ -151,7 +151,7 @@ impl ISkeletonModifier3D for FootPlacement3D {
         let Some(skeleton) = self.base().get_skeleton() else {
             return;
         };
-        if !skeleton.is_inside_tree() {
+        if !skeleton.is_inside_tree() || convert::is_flat(skeleton.get_global_transform()) {
             return;
         }
         match self.take_session(&skeleton) {
@@ -377,8 +377,9 @@ impl FootPlacement3D {
             0.0
         };
         let in_editor = Engine::singleton().is_editor_hint();
+        let influence = self.base().get_influence().clamp(0.0, 1.0);
         if self.follow_ground && !in_editor && !self.in_air && dt_secs > 0.0 {
-            let share = 1.0 - (-dt_secs / RISE_SECS).exp();
+            let share = influence * (1.0 - (-dt_secs / RISE_SECS).exp());
             let up = convert::frame(session.character.get_global_transform()).up();
             let rise = convert::vector3(up * (share * session.placer.ground_offset_m()));
             if rise != Vector3::ZERO {
@@ -400,7 +401,7 @@ impl FootPlacement3D {
                 input.landings = landings;
             }
             let slowed = if self.adapt_speed {
-                slowed_by(session.placer.grade())
+                1.0 - influence * (1.0 - slowed_by(session.placer.grade()))
             } else {
                 1.0
             };

@@ -2,21 +2,33 @@
 
 mod beside;
 mod detail;
+mod fit;
 #[cfg(feature = "editor")]
 mod foresight;
+mod leaving;
 mod methods;
 mod problems;
+mod reign;
+mod rival;
+mod seed;
+mod seen;
 mod session;
 mod source;
 mod walk;
+mod watch;
 
+use crate::convert;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
+use crate::root_motion::RootMotion;
 use crate::walk_source::WalkSource;
 use detail::GaitDetail;
 use footfall_core::Side;
+use glam::Vec3;
 use godot::classes::{BoneMap, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
+use reign::{Reign, Wish};
+use rival::Rivals;
 use session::Session;
 
 /// Walks a character: every frame it poses the parent `Skeleton3D` with steps generated from a trained model.
@@ -76,16 +88,42 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_direction)]
     direction: f64,
 
+    /// How much of the spine's pose is the walk's: at 0 `Spine`, `Chest` and `UpperChest` are posed by what else animates the skeleton, such
+    /// as an `AnimationPlayer`, an `AnimationTree` or a script. Hips and legs always walk.
+    ///
+    /// The spine keeps the direction that the animation gives it in the character's space, whatever the hips do, so that steps do not shake
+    /// what is aimed. Like the other weights it may be keyed and changed at any time; nothing pops on the way.
+    #[export(range = (0.0, 1.0, 0.01))]
+    #[init(val = 1.0)]
+    spine_weight: f64,
+
+    /// How much of the pose of `Neck` and `Head` is the walk's; at 0 they look where the animation has them look in the character's space.
+    #[export(range = (0.0, 1.0, 0.01))]
+    #[init(val = 1.0)]
+    head_weight: f64,
+
+    /// How much of the left arm's pose, from shoulder to hand, is the walk's: at 0 it hangs from the walking chest as the animation poses it.
+    #[export(range = (0.0, 1.0, 0.01))]
+    #[init(val = 1.0)]
+    left_arm_weight: f64,
+
+    /// How much of the right arm's pose, from shoulder to hand, is the walk's: at 0 it hangs from the walking chest as the animation poses it.
+    #[export(range = (0.0, 1.0, 0.01))]
+    #[init(val = 1.0)]
+    right_arm_weight: f64,
+
     /// Which walk of the many that the model can generate. Equal seeds give equal walks.
     ///
-    /// Changing it starts the walk anew.
+    /// 0 gives every node a walk of its own, and a place in the stride of its own to begin at: both follow from the node's path in its
+    /// scene, so a scene that is run again walks as before, and two nodes differ. `get_effective_seed()` tells which it is. A saved state
+    /// holds it, so a walk that is loaded goes on alike wherever the node is then. Changing it starts the walk anew.
     #[export]
     #[var(set = set_seed)]
     seed: i64,
 
     /// Where in the stride the walk starts: 0 with the left foot touching down, 0.5 with the right, up to 1.
     ///
-    /// Give neighbours different phases, lest they march in step. Changing it starts the walk anew.
+    /// With a `seed` of 0 it is counted from the node's own place in the stride. Changing it starts the walk anew.
     #[export(range = (0.0, 1.0, 0.01))]
     #[var(set = set_phase)]
     phase: f64,
@@ -143,7 +181,14 @@ pub(crate) struct GaitGenerator3D {
     session: Option<Session>,
     /// What was last reported, so that it is reported once.
     reported: Option<String>,
-    root_motion_delta: Transform3D,
+    travelled: RootMotion,
+    /// How fast the character went in the last frame, on the ground: metres and radians a second.
+    velocity: (Vec3, f32),
+    reign: Reign,
+    wish: Option<Wish>,
+    /// Whether other animation has got the body at once.
+    left: bool,
+    rivals: Rivals,
     /// What is left of the speed on the ground at hand: 1 on level ground.
     #[init(val = 1.0)]
     slowed: f32,
@@ -166,11 +211,14 @@ impl ISkeletonModifier3D for GaitGenerator3D {
 
     // May come before `ready`, outside a frame, and more than once a frame; then `delta` is 0.
     fn process_modification_with_delta(&mut self, delta: f64) {
-        self.root_motion_delta = Transform3D::IDENTITY;
         let Some(skeleton) = self.base().get_skeleton() else {
             return;
         };
-        if !skeleton.is_inside_tree() {
+        if !skeleton.is_inside_tree() || convert::is_flat(skeleton.get_global_transform()) {
+            return;
+        }
+        if let Some(problem) = self.rivalry(&skeleton) {
+            self.report(problem);
             return;
         }
         match self.take_session(&skeleton) {
@@ -199,6 +247,14 @@ impl GaitGenerator3D {
     /// `position` is in global space, on the flat floor of the walk. Emitted once for every step, not in the editor.
     #[signal]
     fn foothold_planned(foot: StringName, position: Vector3, seconds: f64);
+
+    /// What was there before `take_over()` has died away: the pose is the walk's.
+    #[signal]
+    fn taken_over();
+
+    /// After `hand_over()`: the pose is that of what else animates the skeleton.
+    #[signal]
+    fn handed_over();
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {

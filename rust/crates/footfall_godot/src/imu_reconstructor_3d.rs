@@ -7,6 +7,7 @@ use crate::convert;
 use crate::imu_model::{ImuModel, NO_MODEL};
 use crate::imu_source::{self, Heard};
 use crate::report;
+use crate::root_motion::{Moves, Now, RootMotion};
 use crate::skeleton_binding::SkeletonBinding;
 use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose, Side};
@@ -75,7 +76,7 @@ pub(crate) struct ImuReconstructor3D {
     session: Option<Session>,
     /// What was last reported, so that it is reported once.
     reported: Option<String>,
-    root_motion_delta: Transform3D,
+    travelled: RootMotion,
     base: Base<SkeletonModifier3D>,
 }
 
@@ -112,10 +113,12 @@ impl ISkeletonModifier3D for ImuReconstructor3D {
         let Some(skeleton) = self.base().get_skeleton() else {
             return;
         };
+        if convert::is_flat(skeleton.get_global_transform()) {
+            return;
+        }
         match self.take_session(&skeleton) {
             Ok(session) => self.drive(session, skeleton, delta),
             Err(problem) => {
-                self.root_motion_delta = Transform3D::IDENTITY;
                 if self.reported.as_ref() != Some(&problem) {
                     report::tell(&self.base_mut(), &problem);
                     self.reported = Some(problem);
@@ -258,10 +261,14 @@ impl ImuReconstructor3D {
         mounting.map_or(0.0, |mounting| f64::from(mounting.certainty))
     }
 
-    /// How far the body went in the last frame, in the character's own space.
+    /// How far the body went, in the character's own space: since the frame before by the clock of who asks, as of `GaitGenerator3D`.
     #[func]
-    fn get_root_motion_delta(&self) -> Transform3D {
-        self.root_motion_delta
+    fn get_root_motion_delta(&mut self) -> Transform3D {
+        let Some(skeleton) = self.base().get_skeleton() else {
+            return Transform3D::IDENTITY;
+        };
+        let now = Now::of(&Engine::singleton());
+        self.travelled.tell(Moves::of(&skeleton), now)
     }
 
     #[func]
@@ -326,7 +333,7 @@ impl ImuReconstructor3D {
 
     fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
         let prepared = self.prepared()?;
-        if let Some(session) = self.session.take()
+        if let Some(mut session) = self.session.take()
             && Arc::ptr_eq(&session.prepared, &prepared)
             && session.traveller.is_for(skeleton)
         {
@@ -375,12 +382,15 @@ impl ImuReconstructor3D {
         if session.reconstructor.sensor_state() == SensorState::Waiting {
             session.pose.clone_from(&session.standing);
         }
+        let influence = self.base().get_influence().clamp(0.0, 1.0);
         let travel = session
             .traveller
-            .go_to(GroundTransform { position, heading });
-        self.root_motion_delta = session.traveller.local_delta(&travel);
+            .go_to(GroundTransform { position, heading })
+            .scaled(influence);
+        let delta = session.traveller.local_delta(&travel);
+        self.travelled.add(delta, Now::of(&Engine::singleton()));
         let now = session.traveller.start_from_ground();
-        let world_from_start = travel.world_from_ground * travel.ground * now.inverse();
+        let world_from_start = travel.world_from_current() * now.inverse();
         let travels = self.root_motion && !in_editor;
         {
             // Scripts may answer to what happens here and come back to this node: no borrow may be held.

@@ -39,6 +39,7 @@ mod physics_ground;
 mod replay_imu_source;
 mod report;
 mod rest_body;
+mod root_motion;
 mod serial_imu_source;
 mod skeleton_binding;
 mod travel;

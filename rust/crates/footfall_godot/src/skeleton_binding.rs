@@ -1,5 +1,8 @@
 //! Joints to bones and back: what a `Skeleton3D` has, where its floor is, and how a pose is written to it.
 
+mod layers;
+mod read;
+
 use crate::convert;
 use crate::rest_body::{RestBody, RestJoints, is_optional};
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
@@ -7,6 +10,7 @@ use footfall_synth::CrowdPose;
 use glam::{Affine3A, Quat, Vec3};
 use godot::classes::{BoneMap, Skeleton3D};
 use godot::prelude::*;
+pub(crate) use layers::LayerWeights;
 
 /// Facing is measured at the hips and rounded to this: a rest pose is seldom symmetric to the last degree.
 const FACING_GRAIN: f32 = 5.0_f32.to_radians();
@@ -76,6 +80,8 @@ struct BoundBone {
     turned_by: Joint,
     /// Its rotation in the T-pose, in the axes of the ground.
     ground_from_bone: Quat,
+    /// Its own rotation in the rest pose.
+    rest: Quat,
     /// The bone above that is a joint too, as a position in the list.
     parent: Option<usize>,
     /// The bones between it and that parent, highest first; above the hips, all.
@@ -137,35 +143,17 @@ impl SkeletonBinding {
 
     /// Whether it still holds for this skeleton and character.
     pub(crate) fn fits(&self, skeleton: &Gd<Skeleton3D>, character: &Gd<Node3D>) -> bool {
-        self.key.equals(&BindingKey::of(skeleton, character))
+        self.scale_to(skeleton, character)
+            .is_some_and(|scale| (scale - 1.0).abs() < 1e-3)
     }
 
-    /// Reads how the bones of hips and legs are posed, on the ground; other joints of `pose` stay as they are.
-    pub(crate) fn read_legs(&self, skeleton: &Gd<Skeleton3D>, pose: &mut Pose) {
-        let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
-        let mut turned = [Quat::IDENTITY; JOINT_COUNT];
-        for (index, bound) in self.bones.iter().enumerate() {
-            if !is_leg(bound.turned_by) {
-                continue;
-            }
-            let above = if let Some(parent) = bound.parent {
-                turned_by_links(skeleton, rotations[parent], &bound.links)
-            } else {
-                let above = self.above_hips(skeleton, &bound.links);
-                let hips = convert::vec3(skeleton.get_bone_pose_position(bound.bone));
-                pose.root_position = above.transform_point3(hips);
-                convert::rotation(&above)
-            };
-            let local = convert::quat(skeleton.get_bone_pose_rotation(bound.bone));
-            rotations[index] = (above * local).normalize();
-            let joint = bound.turned_by;
-            let model = rotations[index] * bound.ground_from_bone.conjugate();
-            let parent = joint
-                .parent()
-                .map_or(Quat::IDENTITY, |parent| turned[parent.index()]);
-            turned[joint.index()] = model;
-            pose.rotations[joint.index()] = (parent.conjugate() * model).normalize();
-        }
+    /// How large this skeleton on this character is now by how large it was when it was measured; `None` for another one.
+    pub(crate) fn scale_to(
+        &self,
+        skeleton: &Gd<Skeleton3D>,
+        character: &Gd<Node3D>,
+    ) -> Option<f32> {
+        self.key.scale_to(&BindingKey::of(skeleton, character))
     }
 
     /// Writes hips and legs of a pose, given on the ground, to the bones; all others keep the pose that they have.
@@ -241,6 +229,15 @@ impl SkeletonBinding {
         self.write_model(skeleton, wanted);
     }
 
+    /// Puts the hips in their place. Returns the rotation of what is above them on the ground.
+    fn write_hips(&self, skeleton: &mut Gd<Skeleton3D>, hips: &BoundBone) -> Quat {
+        let above = self.above_hips(skeleton, &hips.links);
+        let place = self.model_pose.position(Joint::Hips);
+        let position = above.inverse().transform_point3(place);
+        skeleton.set_bone_pose_position(hips.bone, convert::vector3(position));
+        convert::rotation(&above)
+    }
+
     fn write_model(&self, skeleton: &mut Gd<Skeleton3D>, wanted: impl Fn(Joint) -> bool) {
         let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
         for (index, bound) in self.bones.iter().enumerate() {
@@ -250,11 +247,7 @@ impl SkeletonBinding {
             let above = if let Some(parent) = bound.parent {
                 turned_by_links(skeleton, rotations[parent], &bound.links)
             } else {
-                let above = self.above_hips(skeleton, &bound.links);
-                let hips = self.model_pose.position(Joint::Hips);
-                let position = above.inverse().transform_point3(hips);
-                skeleton.set_bone_pose_position(bound.bone, convert::vector3(position));
-                convert::rotation(&above)
+                self.write_hips(skeleton, bound)
             };
             rotations[index] = self.model_pose.rotation(bound.turned_by) * bound.ground_from_bone;
             let local = (above.inverse() * rotations[index]).normalize();
@@ -265,7 +258,7 @@ impl SkeletonBinding {
 
 impl BindingKey {
     fn of(skeleton: &Gd<Skeleton3D>, character: &Gd<Node3D>) -> Self {
-        let world_from_character = character.get_global_transform().orthonormalized();
+        let world_from_character = convert::unscaled(character.get_global_transform());
         let world_from_skeleton = skeleton.get_global_transform();
         Self {
             skeleton: skeleton.instance_id(),
@@ -276,17 +269,20 @@ impl BindingKey {
         }
     }
 
-    /// Equal up to what a walk through a large world does to single precision.
-    fn equals(&self, other: &Self) -> bool {
+    /// The size of the other by this one, when they are the same up to that and to what a walk through a large world does to single
+    /// precision.
+    fn scale_to(&self, other: &Self) -> Option<f32> {
         let (a, b) = (
             &self.character_from_skeleton,
             &other.character_from_skeleton,
         );
-        let scale = a.matrix3.x_axis.length().max(f32::MIN_POSITIVE);
-        self.skeleton == other.skeleton
+        let length = a.matrix3.x_axis.length().max(f32::MIN_POSITIVE);
+        let scale = b.matrix3.x_axis.length() / length;
+        let same = self.skeleton == other.skeleton
             && self.version == other.version
-            && a.matrix3.abs_diff_eq(b.matrix3, 1e-3 * scale)
-            && a.translation.abs_diff_eq(b.translation, 1e-2)
+            && (a.matrix3 * scale).abs_diff_eq(b.matrix3, 1e-3 * scale * length)
+            && (a.translation * scale).abs_diff_eq(b.translation, 1e-2 * scale.max(1.0));
+        (same && scale > 0.0).then_some(scale)
     }
 }
 
@@ -379,6 +375,7 @@ fn bound_bones(
             joint,
             turned_by: rest.turned_by[joint.index()],
             ground_from_bone: rest.t_pose_from_rest[joint.index()] * ground_from_resting(bone),
+            rest: convert::rotation(&convert::affine(skeleton.get_bone_rest(bone))),
             parent: bound
                 .iter()
                 .position(|parent| Some(parent.bone) == expected_bone),

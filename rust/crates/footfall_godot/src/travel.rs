@@ -3,16 +3,22 @@
 use crate::convert;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::rotation;
+use footfall_ik::placement::Frame;
 use footfall_synth::GroundTransform;
-use glam::{Affine3A, Quat};
+use glam::{Affine3A, Quat, Vec3};
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
+
+/// What rounding makes of a size is no growth.
+const LEAST_GROWTH: f32 = 1e-3;
 
 /// A body on a skeleton, and the character that it carries along.
 pub(crate) struct Traveller {
     character: Gd<Node3D>,
     pub(crate) binding: SkeletonBinding,
     start_from_ground: GroundTransform,
+    /// How large the character is now by how large it was when it was measured.
+    scale: f32,
 }
 
 /// What one frame did to the ground under the character.
@@ -23,6 +29,34 @@ pub(crate) struct Travel {
     turn: f32,
     /// Global transform of that ground before the character was moved, without any scale.
     pub(crate) world_from_ground: Affine3A,
+    /// Metres of the world by metres of the body as it was measured.
+    scale: f32,
+}
+
+impl Travel {
+    /// A part of the travel.
+    #[must_use]
+    pub(crate) fn scaled(mut self, share: f32) -> Self {
+        if share < 1.0 {
+            self.turn *= share;
+            self.ground = Affine3A::from_rotation_translation(
+                Quat::from_rotation_y(self.turn),
+                Vec3::from(self.ground.translation) * share,
+            );
+        }
+        self
+    }
+
+    /// How fast that is, in the axes of the ground: metres of the body and radians a second.
+    pub(crate) fn per_second(&self, dt_secs: f32) -> (Vec3, f32) {
+        let way = Vec3::from(self.ground.translation) / self.scale;
+        (way / dt_secs, self.turn / dt_secs)
+    }
+
+    /// Global transform of the space above the ground under the body after the travel.
+    pub(crate) fn world_from_current(&self) -> Affine3A {
+        self.world_from_ground * self.ground * Affine3A::from_scale(Vec3::splat(self.scale))
+    }
 }
 
 impl Traveller {
@@ -36,14 +70,35 @@ impl Traveller {
             character,
             binding,
             start_from_ground,
+            scale: 1.0,
         }
     }
 
-    /// Whether this still is the character and its skeleton as they were.
-    pub(crate) fn is_for(&self, skeleton: &Gd<Skeleton3D>) -> bool {
-        self.character.is_instance_valid()
-            && self.character.is_inside_tree()
-            && self.binding.fits(skeleton, &self.character)
+    /// Whether this still is the character and its skeleton as they were, but for the size.
+    pub(crate) fn is_for(&mut self, skeleton: &Gd<Skeleton3D>) -> bool {
+        if !self.character.is_instance_valid() || !self.character.is_inside_tree() {
+            return false;
+        }
+        let Some(scale) = self.binding.scale_to(skeleton, &self.character) else {
+            return false;
+        };
+        // What rounding makes of a walk through a large world is no other size.
+        self.scale = if (scale - 1.0).abs() < LEAST_GROWTH {
+            1.0
+        } else {
+            scale
+        };
+        true
+    }
+
+    /// Whether the character has another size than when it was measured.
+    pub(crate) fn has_grown(&self) -> bool {
+        (self.scale - 1.0).abs() >= LEAST_GROWTH
+    }
+
+    /// How large the character is now by how large it was when it was measured.
+    pub(crate) const fn scale(&self) -> f32 {
+        self.scale
     }
 
     /// Where the body is from now on, without having gone there.
@@ -56,23 +111,52 @@ impl Traveller {
         affine(&self.start_from_ground)
     }
 
+    /// Where the body is, as place and heading.
+    pub(crate) const fn ground_place(&self) -> GroundTransform {
+        self.start_from_ground
+    }
+
+    /// The ground under the body in the world.
+    pub(crate) fn world_from_ground(&self) -> Frame {
+        let character = convert::frame(self.character.get_global_transform());
+        let ground = self.character_from_ground();
+        character.child(&Frame {
+            position: ground.translation.into(),
+            rotation: convert::rotation(&ground),
+        })
+    }
+
+    /// Puts the character elsewhere, as seen from the ground under it, in metres of the world.
+    pub(crate) fn shift(&mut self, away: Vec3) {
+        let way = self.world_from_ground().rotation * away;
+        let place = self.character.get_global_position() + convert::vector3(way);
+        self.character.set_global_position(place);
+    }
+
     /// The body has gone to a place.
     pub(crate) fn go_to(&mut self, start_from_ground: GroundTransform) -> Travel {
         let turn = rotation::wrap_angle(start_from_ground.heading - self.start_from_ground.heading);
-        let ground = affine(&self.start_from_ground).inverse() * affine(&start_from_ground);
+        let mut ground = affine(&self.start_from_ground).inverse() * affine(&start_from_ground);
+        ground.translation *= self.scale;
         self.start_from_ground = start_from_ground;
-        let world_from_character = self.character.get_global_transform().orthonormalized();
+        let world_from_character = convert::unscaled(self.character.get_global_transform());
         Travel {
             ground,
             turn,
-            world_from_ground: convert::affine(world_from_character)
-                * self.binding.character_from_ground,
+            world_from_ground: convert::affine(world_from_character) * self.character_from_ground(),
+            scale: self.scale,
         }
+    }
+
+    fn character_from_ground(&self) -> Affine3A {
+        let mut ground = self.binding.character_from_ground;
+        ground.translation *= self.scale;
+        ground
     }
 
     /// The same travel in the axes of the character, in metres.
     fn character_delta(&self, travel: &Travel) -> Transform3D {
-        let character_from_ground = self.binding.character_from_ground;
+        let character_from_ground = self.character_from_ground();
         let delta = character_from_ground * travel.ground * character_from_ground.inverse();
         convert::transform(Quat::from_rotation_y(travel.turn), delta.translation.into())
     }
@@ -94,7 +178,7 @@ impl Traveller {
     pub(crate) fn move_character(&mut self, travel: &Travel) {
         let delta = self.character_delta(travel);
         let before = self.character.get_global_transform();
-        let frame = before.basis.orthonormalized();
+        let frame = convert::unscaled(before).basis;
         let mut after = before;
         after.origin = before.origin + frame * delta.origin;
         if travel.turn != 0.0 {

@@ -259,6 +259,11 @@ impl GaitGenerator {
         }
     }
 
+    /// The seed that it walks by: that of its beginning, or of the state that it goes on from.
+    pub fn seed(&self) -> u64 {
+        self.config.seed
+    }
+
     /// The weights of the styles that are worn from the next step on.
     pub fn style_weights(&self) -> &[f32] {
         match &self.steps {

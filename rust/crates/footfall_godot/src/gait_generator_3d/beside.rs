@@ -1,7 +1,9 @@
 //! What the nodes beside the generator and the editor ask of it.
 
 use super::GaitGenerator3D;
+use super::reign::Reign;
 use crate::character;
+use crate::skeleton_binding::LayerWeights;
 use footfall_ik::placement::Landing;
 use footfall_synth::Footstep;
 use godot::classes::{BoneMap, Skeleton3D};
@@ -35,7 +37,10 @@ impl GaitGenerator3D {
 
     /// Which feet stand and where they land next, on the floor of the walk; `None` while nobody walks.
     pub(crate) fn feet(&self) -> Option<([bool; 2], [Option<Landing>; 2])> {
-        let session = self.session.as_ref()?;
+        let session = self
+            .session
+            .as_ref()
+            .filter(|_| self.reign == Reign::Walking)?;
         let landings = Footstep::landings(session.generator.next_footstep());
         Some((session.generator.feet_in_contact(), landings))
     }
@@ -43,6 +48,29 @@ impl GaitGenerator3D {
     /// Walks at this share of the speed from the next step on.
     pub(crate) fn slow_down(&mut self, share: f32) {
         self.slowed = share;
+    }
+
+    /// How much of the body is the walk's. What is not a number is all of it.
+    pub(super) fn layer_weights(&self) -> LayerWeights {
+        let [spine, head, left_arm, right_arm] = [
+            self.spine_weight,
+            self.head_weight,
+            self.left_arm_weight,
+            self.right_arm_weight,
+        ]
+        .map(|weight| {
+            if weight.is_finite() {
+                weight.clamp(0.0, 1.0) as f32
+            } else {
+                1.0
+            }
+        });
+        LayerWeights {
+            spine,
+            head,
+            left_arm,
+            right_arm,
+        }
     }
 
     /// Has the editor draw the way ahead anew. Games without the editor's half have nobody who draws it.

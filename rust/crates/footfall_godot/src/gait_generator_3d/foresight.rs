@@ -45,7 +45,7 @@ impl GaitGenerator3D {
                 break;
             }
         }
-        let world_from_character = character.get_global_transform().orthonormalized();
+        let world_from_character = convert::unscaled(character.get_global_transform());
         Some(Way {
             path,
             footsteps,

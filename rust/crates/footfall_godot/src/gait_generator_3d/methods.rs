@@ -1,19 +1,36 @@
 //! What scripts ask of the node.
 
 use super::GaitGenerator3D;
+use crate::root_motion::{Moves, Now};
 use footfall_core::Side;
+use godot::classes::Engine;
 use godot::prelude::*;
 
 #[godot_api(secondary)]
 impl GaitGenerator3D {
-    /// How far and about what the character travelled in the last frame, in its own space: axes and scale are those of its node.
+    /// How far and about what the character travelled, in its own space: axes and scale are those of its node.
+    ///
+    /// Asked in `_physics_process()`, since the frame of the physics before; asked in `_process()`, since the frame before: whoever asks once
+    /// a frame is told all of it, at any frame rate, and asked twice in a frame it says the same. After the skeleton has moved within a frame, as in a
+    /// function connected to `modification_processed`, it is that frame's. For a skeleton that is advanced by hand, it is what the last
+    /// `advance()` did.
     ///
     /// With `root_motion` off, move the character by it in a function connected to `modification_processed`, so that body and feet
     /// move in the same frame: `character.global_transform *= gait.get_root_motion_delta()`, or with collisions
     /// `character.move_and_collide(character.global_basis * gait.get_root_motion_delta().origin)`.
     #[func]
-    fn get_root_motion_delta(&self) -> Transform3D {
-        self.root_motion_delta
+    fn get_root_motion_delta(&mut self) -> Transform3D {
+        let Some(skeleton) = self.base().get_skeleton() else {
+            return Transform3D::IDENTITY;
+        };
+        let now = Now::of(&Engine::singleton());
+        self.travelled.tell(Moves::of(&skeleton), now)
+    }
+
+    /// The seed of the walk: `seed`, or where that is 0 the node's own, or that of the state that it goes on from.
+    #[func]
+    fn get_effective_seed(&self) -> i64 {
+        self.effective_seed().cast_signed()
     }
 
     /// Whether any part of a foot, `left` or `right`, stands on the ground.

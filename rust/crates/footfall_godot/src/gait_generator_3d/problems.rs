@@ -26,6 +26,9 @@ impl GaitGenerator3D {
         {
             problems.push(&GString::from(&problem));
         }
+        if let Some(problem) = self.find_rivalry(&skeleton) {
+            problems.push(&GString::from(&problem));
+        }
         problems
     }
 

@@ -1,13 +1,20 @@
 //! A walk under way: one generator on one skeleton.
 
+use super::fit::{self, Fitting, Maker};
+use super::leaving::Leaving;
+use super::seen::{Seen, lower, raise};
 use crate::convert;
-use crate::skeleton_binding::SkeletonBinding;
+use crate::skeleton_binding::{LayerWeights, SkeletonBinding};
 use crate::travel::{Travel, Traveller};
 use crate::walk_source::WalkSource;
 use footfall_core::{Pose, Side};
+use footfall_ik::handover::Handover;
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig};
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
+
+/// A body that has kept a new size for so many frames is measured anew.
+const SETTLED_FRAMES: u8 = 12;
 
 /// A generator, the skeleton that it poses and the node that travels.
 pub(super) struct Session {
@@ -16,7 +23,23 @@ pub(super) struct Session {
     /// Since the walk began.
     pub(super) elapsed_secs: f64,
     source: WalkSource,
-    pose: Pose,
+    /// In the space above the ground under the character.
+    pub(super) pose: Pose,
+    /// What the skeleton showed last, in the space where the walk began.
+    pub(super) shown: Seen,
+    /// What is left of the motion before.
+    pub(super) handover: Option<Handover>,
+    /// Since somebody else began to pose the skeleton.
+    pub(super) watched: super::watch::Watch,
+    pub(super) leaving: Option<Leaving>,
+    size: Size,
+}
+
+/// How long a character has had its size.
+#[derive(Debug, Default)]
+struct Size {
+    scale: f32,
+    frames: u8,
 }
 
 impl Session {
@@ -45,12 +68,30 @@ impl Session {
             elapsed_secs: 0.0,
             source: source.clone(),
             traveller: Traveller::new(character, binding, start_from_ground),
+            shown: Seen::default(),
+            handover: None,
+            watched: super::watch::Watch::default(),
+            leaving: None,
+            size: Size::default(),
         })
     }
 
     /// Whether this walk still is one of the model, its styles, the skeleton and the character.
-    pub(super) fn is_for(&self, source: &WalkSource, skeleton: &Gd<Skeleton3D>) -> bool {
+    pub(super) fn is_for(&mut self, source: &WalkSource, skeleton: &Gd<Skeleton3D>) -> bool {
         self.source.is(source) && self.traveller.is_for(skeleton)
+    }
+
+    /// Whether the character has another size than it was measured with, and keeps it.
+    pub(super) fn has_new_size(&mut self) -> bool {
+        let scale = self.traveller.scale();
+        let kept = (scale - self.size.scale).abs() < 1e-4 * scale;
+        self.size.frames = if kept {
+            self.size.frames.saturating_add(1)
+        } else {
+            0
+        };
+        self.size.scale = scale;
+        self.traveller.has_grown() && self.size.frames >= SETTLED_FRAMES
     }
 
     /// Goes on from a saved state; the character stays where it is.
@@ -62,15 +103,93 @@ impl Session {
             .restore(state)
             .map_err(|error| error.to_string())?;
         self.traveller.place(self.generator.start_from_character());
+        self.handover = None;
         Ok(())
+    }
+
+    /// Goes on from another motion, given on the ground under the character in metres of the body: begins where the walk fits that,
+    /// and lets what parts them die away.
+    ///
+    /// # Errors
+    /// Why the generator refuses, for the user.
+    pub(super) fn go_on_from(
+        &mut self,
+        from: &Seen,
+        style_weights: &[f32],
+        config: &GeneratorConfig,
+        controls: Controls,
+        secs: f64,
+    ) -> Result<(), String> {
+        let body = &self.traveller.binding.body;
+        let maker = Maker {
+            source: &self.source,
+            style_weights,
+            body,
+            config: *config,
+            controls: self.in_own_metres(controls),
+        };
+        let Fitting { generator, seen } = maker
+            .fitting(from)
+            .map_err(|error| format!("The walk cannot start: {error}"))?;
+        let place = generator.start_from_character();
+        let from = from.clone().raised(&fit::frame(&place));
+        let handover = Handover::new(
+            body,
+            &from.moving(),
+            &seen.moving(),
+            from.dt_secs,
+            secs as f32,
+        );
+        self.handover = Some(handover);
+        self.generator = generator;
+        self.elapsed_secs = 0.0;
+        self.traveller.place(place);
+        Ok(())
+    }
+
+    /// What the skeleton showed last, on the ground under the character, in metres of the world.
+    pub(super) fn shown_here(&self) -> Seen {
+        let place = fit::frame(&self.traveller.ground_place());
+        self.shown.seen_from(&place, self.traveller.scale())
+    }
+
+    /// Controls in metres of the body as it was measured.
+    fn in_own_metres(&self, mut controls: Controls) -> Controls {
+        controls.speed_mps /= self.traveller.scale();
+        controls
     }
 
     /// Lets time pass. With `dt_secs` 0 the pose stays and nothing travels.
     pub(super) fn advance(&mut self, dt_secs: f64, controls: Controls) -> Travel {
         self.elapsed_secs += dt_secs;
-        self.generator
-            .step(dt_secs as f32, &controls, &mut self.pose);
-        self.traveller.go_to(self.generator.start_from_character())
+        let dt_secs = dt_secs as f32;
+        let controls = self.in_own_metres(controls);
+        self.generator.step(dt_secs, &controls, &mut self.pose);
+        let place = self.generator.start_from_character();
+        let travel = self.traveller.go_to(place);
+        let ground = fit::frame(&place);
+        let stands = self.generator.feet_in_contact();
+        raise(&ground, &mut self.pose);
+        if let Some(handover) = &mut self.handover {
+            handover.step(
+                dt_secs,
+                stands,
+                self.generator.is_standing(),
+                &mut self.pose,
+            );
+        }
+        if dt_secs > 0.0 {
+            self.shown.see(&self.pose, stands, dt_secs);
+        }
+        lower(&ground, &mut self.pose);
+        travel
+    }
+
+    /// Whether the motion before has just died away.
+    pub(super) fn has_arrived(&mut self) -> bool {
+        self.handover
+            .take_if(|handover| handover.is_over())
+            .is_some()
     }
 
     /// Lets time pass without travelling.
@@ -88,16 +207,19 @@ impl Session {
         self.traveller.place(self.generator.start_from_character());
     }
 
-    /// Poses the skeleton.
-    pub(super) fn write(&mut self, skeleton: &mut Gd<Skeleton3D>) {
-        self.traveller.binding.write(skeleton, &self.pose);
+    /// Poses the skeleton, but for what the weights leave to other animation.
+    pub(super) fn write(&mut self, skeleton: &mut Gd<Skeleton3D>, weights: &LayerWeights) {
+        self.traveller
+            .binding
+            .write_layered(skeleton, &self.pose, weights);
     }
 
     /// The foot that lands next, where in global space, and the seconds until then.
     pub(super) fn next_foothold(&self, travel: &Travel) -> Option<(Side, Vector3, f32)> {
         let (footstep, secs) = self.generator.next_footstep()?;
-        let world_from_ground = travel.world_from_ground * travel.ground;
-        let position = world_from_ground.transform_point3(footstep.position);
+        let position = travel
+            .world_from_current()
+            .transform_point3(footstep.position);
         Some((footstep.side, convert::vector3(position), secs))
     }
 
@@ -106,7 +228,7 @@ impl Session {
     /// The same whether this node moved the character or the game will by the delta.
     pub(super) fn footsteps(&self, travel: &Travel) -> Vec<(Side, Vector3)> {
         let now = self.traveller.start_from_ground();
-        let world_from_start = travel.world_from_ground * travel.ground * now.inverse();
+        let world_from_start = travel.world_from_current() * now.inverse();
         self.generator
             .footsteps()
             .iter()

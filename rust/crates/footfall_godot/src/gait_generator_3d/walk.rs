@@ -1,9 +1,11 @@
 //! One frame of the walk.
 
 use super::GaitGenerator3D;
+use super::reign::Reign;
 use super::session::Session;
+use crate::root_motion::Now;
 use crate::skeleton_binding::SkeletonBinding;
-use footfall_synth::{Controls, GeneratorConfig};
+use footfall_synth::GeneratorConfig;
 use godot::classes::{Engine, Skeleton3D};
 use godot::prelude::*;
 
@@ -11,11 +13,17 @@ impl GaitGenerator3D {
     /// The walk under way, or a new one where there is none, the model was replaced or the body changed.
     pub(super) fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
         let source = self.take_source()?;
-        if let Some(session) = self.session.take()
+        if let Some(mut session) = self.session.take()
             && session.is_for(&source, skeleton)
         {
             return Ok(session);
         }
+        self.new_session(skeleton)
+    }
+
+    /// A walk that begins where the character stands.
+    pub(super) fn new_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
+        let source = self.take_source()?;
         let (character, binding) = self.bind(skeleton)?;
         let config = self.config();
         self.redraw_way();
@@ -32,18 +40,15 @@ impl GaitGenerator3D {
 
     /// Which walk of the model's it is.
     pub(super) fn config(&self) -> GeneratorConfig {
+        let (seed, begin) = if self.seed == 0 {
+            (self.own_seed(), self.own_phase())
+        } else {
+            (self.seed.cast_unsigned(), 0.0)
+        };
         GeneratorConfig {
-            seed: self.seed.cast_unsigned(),
-            phase: self.phase.rem_euclid(1.0) as f32,
+            seed,
+            phase: (self.phase.rem_euclid(1.0) as f32 + begin).rem_euclid(1.0),
             variation: self.variation as f32,
-        }
-    }
-
-    pub(super) fn controls(&self) -> Controls {
-        Controls {
-            speed_mps: self.speed as f32 * self.slowed,
-            turn_rate_radps: self.turn_rate as f32,
-            direction_rad: self.direction as f32,
         }
     }
 
@@ -68,6 +73,7 @@ impl GaitGenerator3D {
         };
         let dt_secs = if holds { 0.0 } else { delta.max(0.0) };
         let travels = self.root_motion && !in_editor;
+        let weights = self.layer_weights();
         session
             .generator
             .set_style_weights(self.style_weights.as_slice());
@@ -81,23 +87,48 @@ impl GaitGenerator3D {
         if let Some(secs) = self.pending_seek.take() {
             session.skip(secs, self.controls());
         }
-        let travel = session.advance(dt_secs, self.controls());
-        self.root_motion_delta = session.traveller.local_delta(&travel);
+        if let Err(problem) = self.fulfil(&mut session, &skeleton, delta.max(0.0)) {
+            self.report(problem);
+        }
+        if self.reign == Reign::Away {
+            self.rest(session);
+            return;
+        }
+        let (travel, arrived, out) = if self.reign == Reign::Leaving {
+            let (travel, out) = session.go_out(&skeleton, delta.max(0.0));
+            (travel, false, out)
+        } else {
+            let travel = session.advance(dt_secs, self.controls());
+            self.remember_velocity(&travel, dt_secs);
+            (travel, session.has_arrived(), false)
+        };
+        let influence = self.base().get_influence().clamp(0.0, 1.0);
+        let travel = travel.scaled(influence);
+        let delta = session.traveller.local_delta(&travel);
+        self.travelled.add(delta, Now::of(&Engine::singleton()));
         {
             // Scripts may answer to what happens here and come back to this node: no borrow may be held.
             let _released = self.base_mut();
             if travels {
                 session.traveller.move_character(&travel);
             }
-            session.write(&mut skeleton);
+            session.write(&mut skeleton, &weights);
         }
-        let footsteps = if in_editor {
+        let silent = in_editor || self.reign == Reign::Leaving;
+        let footsteps = if silent {
             Vec::new()
         } else {
             session.footsteps(&travel)
         };
-        let foothold = session.next_foothold(&travel).filter(|_| !in_editor);
+        let foothold = session.next_foothold(&travel).filter(|_| !silent);
         self.session = Some(session);
+        if arrived {
+            self.signals().taken_over().emit();
+        }
+        if out {
+            self.reign = Reign::Away;
+            self.signals().handed_over().emit();
+        }
         for (side, position) in footsteps {
             let foot = StringName::from(side.name());
             self.signals().footstep().emit(&foot, position);

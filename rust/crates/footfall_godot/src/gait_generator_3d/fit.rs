@@ -1,0 +1,201 @@
+//! Where in the stride a walk begins that goes on from another motion: where it resembles that most.
+
+use super::seen::Seen;
+use crate::walk_source::WalkSource;
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_ik::handover::Moving;
+use footfall_ik::placement::Frame;
+use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, GroundTransform, SynthError};
+use glam::Vec3;
+
+/// The stride is looked at so often, and for so long at most.
+const LOOK_SECS: f32 = 1.0 / 30.0;
+const MOST_LOOKS: usize = 75;
+/// A difference of speed counts as the place that it makes within this time, seconds.
+const SPEED_SECS: f32 = 0.12;
+/// A foot that stands in one motion and not in the other counts as so far away, metres.
+const CONTACT_M: f32 = 0.15;
+/// From standing, the foot that is lifted by then goes first, seconds.
+const LIFTED_SECS: f32 = 0.4;
+
+/// A walk, and its last two frames in the space where it began.
+pub(super) struct Fitting {
+    pub(super) generator: GaitGenerator,
+    pub(super) seen: Seen,
+}
+
+/// What makes walks.
+pub(super) struct Maker<'a> {
+    pub(super) source: &'a WalkSource,
+    pub(super) style_weights: &'a [f32],
+    pub(super) body: &'a Skeleton,
+    pub(super) config: GeneratorConfig,
+    pub(super) controls: Controls,
+}
+
+impl Maker<'_> {
+    /// A walk that begins as the motion `from`, given on the ground under the character, goes on.
+    ///
+    /// # Errors
+    /// As [`WalkSource::generator`].
+    pub(super) fn fitting(&self, from: &Seen) -> Result<Fitting, SynthError> {
+        let wanted = Look::of(self.body, &from.moving(), from.dt_secs);
+        let dt_secs = from.dt_secs.max(1e-3);
+        let mut standing = self.standing(self.config.phase)?;
+        let at_rest = walked(&mut standing, &Controls::STAND, dt_secs);
+        let mut least = wanted.distance(&Look::of(self.body, &at_rest.moving(), dt_secs));
+        let mut best = None;
+        if !self.controls.is_standing() {
+            let mut walk = self.walking()?;
+            let mut seen = walked(&mut walk, &self.controls, dt_secs);
+            let mut footsteps = 0;
+            for look in 1..=MOST_LOOKS {
+                let place = frame(&walk.start_from_character());
+                let now = seen.seen_from(&place, 1.0);
+                let distance = wanted.distance(&Look::of(self.body, &now.moving(), seen.dt_secs));
+                if distance < least {
+                    least = distance;
+                    best = Some(look);
+                }
+                one_step(&mut walk, &self.controls, LOOK_SECS, &mut seen);
+                footsteps += walk.footsteps().len();
+                if footsteps > 2 {
+                    break;
+                }
+            }
+        }
+        let Some(best) = best else {
+            let generator = self.standing(self.first_phase(from)?)?;
+            return Ok(Fitting {
+                generator,
+                seen: at_rest,
+            });
+        };
+        let mut generator = self.walking()?;
+        let mut seen = walked(&mut generator, &self.controls, dt_secs);
+        for _ in 1..best {
+            one_step(&mut generator, &self.controls, LOOK_SECS, &mut seen);
+        }
+        one_step(&mut generator, &self.controls, dt_secs, &mut seen);
+        Ok(Fitting { generator, seen })
+    }
+
+    fn walking(&self) -> Result<GaitGenerator, SynthError> {
+        self.source
+            .generator(self.style_weights, self.body, &self.config)
+    }
+
+    fn standing(&self, phase: f32) -> Result<GaitGenerator, SynthError> {
+        let config = GeneratorConfig {
+            phase,
+            ..self.config
+        };
+        let mut generator = self
+            .source
+            .generator(self.style_weights, self.body, &config)?;
+        generator.stand();
+        Ok(generator)
+    }
+
+    /// The phase from which somebody who stands goes off with the foot that is farther behind.
+    fn first_phase(&self, from: &Seen) -> Result<f32, SynthError> {
+        if self.controls.is_standing() {
+            return Ok(self.config.phase);
+        }
+        let [left, right] = Look::of(self.body, &from.moving(), 0.0).feet;
+        let behind = if left.z < right.z {
+            Side::Left
+        } else {
+            Side::Right
+        };
+        let mut generator = self.standing(self.config.phase)?;
+        let mut pose = Pose::default();
+        generator.step(LIFTED_SECS, &self.controls, &mut pose);
+        let lifted = !generator.feet_in_contact()[behind.index()];
+        Ok(if lifted {
+            self.config.phase
+        } else {
+            (self.config.phase + 0.5).rem_euclid(1.0)
+        })
+    }
+}
+
+/// What of a motion tells which moment of a stride it resembles.
+struct Look {
+    /// Ankles, from the hips over the ground, and heights over it.
+    feet: [Vec3; 2],
+    speeds: [Vec3; 2],
+    stands: [bool; 2],
+    hips_m: f32,
+    hips_mps: Vec3,
+}
+
+impl Look {
+    fn of(body: &Skeleton, moving: &Moving<'_>, dt_secs: f32) -> Self {
+        let models = [moving.before, moving.now].map(|pose| {
+            let mut model = ModelPose::default();
+            forward_kinematics(body, pose, &mut model);
+            model
+        });
+        let [before, now] = &models;
+        let speed = |joint: Joint| {
+            let way = now.position(joint) - before.position(joint);
+            if dt_secs > 0.0 {
+                way / dt_secs
+            } else {
+                Vec3::ZERO
+            }
+        };
+        let hips = now.position(Joint::Hips);
+        Self {
+            feet: Side::BOTH.map(|side| now.position(side.foot()) - Vec3::new(hips.x, 0.0, hips.z)),
+            speeds: Side::BOTH.map(|side| speed(side.foot())),
+            stands: moving.stands,
+            hips_m: hips.y,
+            hips_mps: speed(Joint::Hips),
+        }
+    }
+
+    /// Square metres.
+    fn distance(&self, other: &Self) -> f32 {
+        let feet: f32 = (0..2)
+            .map(|side| {
+                let place = self.feet[side].distance_squared(other.feet[side]);
+                let speed = self.speeds[side].distance(other.speeds[side]) * SPEED_SECS;
+                let stands = if self.stands[side] == other.stands[side] {
+                    0.0
+                } else {
+                    CONTACT_M
+                };
+                place + speed.powi(2) + stands.powi(2)
+            })
+            .sum();
+        let hips = self.hips_m - other.hips_m;
+        let speed = self.hips_mps.distance(other.hips_mps) * SPEED_SECS;
+        feet + hips.powi(2) + speed.powi(2)
+    }
+}
+
+/// The first two frames of a walk.
+fn walked(generator: &mut GaitGenerator, controls: &Controls, dt_secs: f32) -> Seen {
+    let mut seen = Seen::default();
+    one_step(generator, controls, 0.0, &mut seen);
+    one_step(generator, controls, dt_secs, &mut seen);
+    seen
+}
+
+/// One frame of a walk, in the space where it began.
+fn one_step(generator: &mut GaitGenerator, controls: &Controls, dt_secs: f32, seen: &mut Seen) {
+    let mut pose = Pose::default();
+    generator.step(dt_secs, controls, &mut pose);
+    super::seen::raise(&frame(&generator.start_from_character()), &mut pose);
+    seen.see(&pose, generator.feet_in_contact(), dt_secs);
+}
+
+/// A place on the ground with its axes.
+pub(super) fn frame(place: &GroundTransform) -> Frame {
+    Frame {
+        position: place.position,
+        rotation: footfall_core::rotation::from_heading(place.heading),
+    }
+}

@@ -1,0 +1,190 @@
+//! Who poses the skeleton: the walk, other animation, or one on its way to the other.
+
+use super::GaitGenerator3D;
+use super::session::Session;
+use crate::root_motion::Now;
+use crate::travel::Travel;
+use footfall_synth::Controls;
+use glam::Vec3;
+use godot::classes::{Engine, Skeleton3D};
+use godot::prelude::*;
+
+/// A character whose hips are farther from where it walks is moved to them, metres: a ragdoll lies where it fell.
+const FAR_M: f32 = 0.4;
+/// Longer than this nobody goes over, seconds.
+const MOST_SECS: f64 = 10.0;
+/// A walk that was measured anew goes over to itself within this time, seconds.
+const RESIZE_SECS: f64 = 0.3;
+
+/// Who poses the skeleton.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Reign {
+    #[default]
+    Walking,
+    /// The walk gives the body away.
+    Leaving,
+    /// Other animation does.
+    Away,
+}
+
+/// What was asked for and has not begun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Wish {
+    TakeOver(f64),
+    HandOver(f64),
+}
+
+#[godot_api(secondary)]
+impl GaitGenerator3D {
+    /// Begins to walk from whatever pose and speed the skeleton has: the end of an attack, a jump that lands, a ragdoll. The walk begins on
+    /// the side and at the moment of the stride that fit best, or with a first step if the body stands; feet on the ground stay there until
+    /// they are lifted. What parts the two motions is gone in `seconds`; then `taken_over` is emitted.
+    ///
+    /// Call it after `hand_over()`, so that the node knows how fast the body is; else it watches the skeleton for two frames first. A
+    /// `PhysicalBoneSimulator3D` has to be above this node under the skeleton; where the body fell, the character follows it.
+    #[func]
+    fn take_over(&mut self, seconds: f64) {
+        if self.reign == Reign::Walking {
+            self.reign = Reign::Away;
+            if let Some(session) = &mut self.session {
+                session.watched = super::watch::Watch::default();
+            }
+        }
+        self.wish = Some(Wish::TakeOver(within_reason(seconds)));
+    }
+
+    /// Leaves the skeleton to what else animates it, such as an `AnimationPlayer`: its pose takes over within `seconds`, the character comes
+    /// to rest, and feet on the ground stay where they are, or make a step if the animation has them elsewhere; that may take half a
+    /// second more. Then `handed_over` is emitted, and the node does nothing until `take_over()`.
+    ///
+    /// With 0 seconds it does nothing from the next frame on.
+    #[func]
+    fn hand_over(&mut self, seconds: f64) {
+        self.wish = match self.reign {
+            Reign::Walking => Some(Wish::HandOver(within_reason(seconds))),
+            Reign::Leaving | Reign::Away => None,
+        };
+    }
+
+    /// Whether the skeleton is left to other animation: after `hand_over()`, until `take_over()`.
+    #[func]
+    fn is_handed_over(&self) -> bool {
+        self.reign == Reign::Away
+    }
+}
+
+impl GaitGenerator3D {
+    /// Carries out what was asked for, as soon as enough is known.
+    pub(super) fn fulfil(
+        &mut self,
+        session: &mut Session,
+        skeleton: &Gd<Skeleton3D>,
+        dt_secs: f64,
+    ) -> Result<(), String> {
+        match (self.reign, self.wish) {
+            (Reign::Away, wish) => {
+                // Only what was shown before this frame counts: a ragdoll may just have been switched off.
+                if let Some(Wish::TakeOver(secs)) = wish
+                    && session.watched.in_world.is_known()
+                {
+                    self.begin(session, secs)?;
+                } else {
+                    session.watch(skeleton, dt_secs as f32);
+                }
+            }
+            (Reign::Leaving, Some(Wish::TakeOver(secs))) => {
+                session.leaving = None;
+                let from = session.shown_here();
+                self.go_on(session, &from, secs)?;
+            }
+            (Reign::Walking, Some(Wish::HandOver(secs))) => {
+                session.watch(skeleton, dt_secs as f32);
+                if secs <= 0.0 || !session.shown.is_known() {
+                    session.handover = None;
+                    self.reign = Reign::Away;
+                    self.wish = None;
+                    self.left = true;
+                } else if session.watched.in_world.is_known() {
+                    session.leave(secs, self.velocity.0, self.velocity.1);
+                    self.reign = Reign::Leaving;
+                    self.wish = None;
+                }
+            }
+            (Reign::Walking, _) if session.has_new_size() => self.resize(session, skeleton)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Remembers how fast the character goes.
+    pub(super) fn remember_velocity(&mut self, travel: &Travel, dt_secs: f64) {
+        if dt_secs > 0.0 {
+            self.velocity = travel.per_second(dt_secs as f32);
+        }
+    }
+
+    /// Time passes while other animation poses the skeleton.
+    pub(super) fn rest(&mut self, session: Session) {
+        self.session = Some(session);
+        let now = Now::of(&Engine::singleton());
+        self.travelled.add(Transform3D::IDENTITY, now);
+        self.velocity = (Vec3::ZERO, 0.0);
+        if core::mem::take(&mut self.left) {
+            self.signals().handed_over().emit();
+        }
+    }
+
+    fn begin(&mut self, session: &mut Session, secs: f64) -> Result<(), String> {
+        let hips = session.watched_here().hips();
+        let away = Vec3::new(hips.x, 0.0, hips.z) * session.traveller.scale();
+        if self.root_motion && away.length() > FAR_M {
+            let _released = self.base_mut();
+            session.traveller.shift(away);
+        }
+        let from = session.watched_here();
+        self.go_on(session, &from, secs)
+    }
+
+    fn go_on(
+        &mut self,
+        session: &mut Session,
+        from: &super::seen::Seen,
+        secs: f64,
+    ) -> Result<(), String> {
+        self.reign = Reign::Walking;
+        self.wish = None;
+        let (config, controls) = (self.config(), self.controls());
+        let weights = self.style_weights.as_slice();
+        session.go_on_from(from, weights, &config, controls, secs)?;
+        session.watched = super::watch::Watch::default();
+        Ok(())
+    }
+
+    /// Measures a character that has grown, and walks on.
+    fn resize(&mut self, session: &mut Session, skeleton: &Gd<Skeleton3D>) -> Result<(), String> {
+        let shown = session.shown.is_known().then(|| session.shown_here());
+        let mut grown = self.new_session(skeleton)?;
+        if let Some(shown) = shown {
+            self.go_on(&mut grown, &shown, RESIZE_SECS)?;
+        }
+        *session = grown;
+        Ok(())
+    }
+
+    /// The controls that a walk follows now.
+    pub(super) fn controls(&self) -> Controls {
+        Controls {
+            speed_mps: self.speed as f32 * self.slowed,
+            turn_rate_radps: self.turn_rate as f32,
+            direction_rad: self.direction as f32,
+        }
+    }
+}
+
+fn within_reason(seconds: f64) -> f64 {
+    if seconds.is_finite() {
+        seconds.clamp(0.0, MOST_SECS)
+    } else {
+        0.0
+    }
+}
