@@ -73,10 +73,18 @@ impl Maker<'_> {
         };
         let mut generator = self.walking()?;
         let mut seen = walked(&mut generator, &self.controls, dt_secs);
-        for _ in 1..best {
-            one_step(&mut generator, &self.controls, LOOK_SECS, &mut seen);
+        for look in 1..best {
+            // The last frame is as long as those of the motion before.
+            let rest = if look + 1 == best {
+                dt_secs.min(LOOK_SECS)
+            } else {
+                0.0
+            };
+            one_step(&mut generator, &self.controls, LOOK_SECS - rest, &mut seen);
+            if rest > 0.0 {
+                one_step(&mut generator, &self.controls, rest, &mut seen);
+            }
         }
-        one_step(&mut generator, &self.controls, dt_secs, &mut seen);
         Ok(Fitting { generator, seen })
     }
 
