@@ -16,6 +16,7 @@ use crate::standing::Amplitude;
 use crate::steps::Ask;
 use crate::styled::Worn;
 use crate::walker::{Origin, WINDOW, Walker};
+use crate::workbench::Workbench;
 use footfall_core::rotation::from_heading;
 use footfall_core::{ModelPose, Pose, Skeleton};
 use frames::CrowdFrames;
@@ -48,7 +49,8 @@ impl StyledBody {
         skeleton.check()?;
         let blend = space.blend(style_weights);
         let average = Planner::new(&blend.model, 0, 0.0);
-        let paces = PaceTable::measure(&average, skeleton, &blend)?;
+        let paces =
+            space.at_bench(|bench| PaceTable::measure(&average, skeleton, &blend, bench))?;
         Ok(Self(Arc::new(Styled {
             space: Arc::clone(space),
             skeleton: skeleton.clone(),
@@ -72,6 +74,7 @@ impl StyledBody {
 pub struct Workshop {
     planner: Planner,
     walker: Walker,
+    bench: Workbench,
     pose: Pose,
     model_pose: ModelPose,
 }
@@ -83,6 +86,7 @@ impl Workshop {
         Self {
             planner: Planner::new(&blend.model, 0, 0.0),
             walker: Walker::new(&styled.0.skeleton, blend),
+            bench: Workbench::new(&blend.model),
             pose: Pose::default(),
             model_pose: ModelPose::default(),
         }
@@ -154,7 +158,10 @@ impl CrowdWalker {
         let first = check(&styled.0.skeleton, config)?;
         let worn = &styled.0.worn;
         let Workshop {
-            planner, walker, ..
+            planner,
+            walker,
+            bench,
+            ..
         } = &mut *workshop;
         *planner = Planner::new(&worn.blend.model, config.seed, variation(config));
         let request = if standing {
@@ -163,7 +170,7 @@ impl CrowdWalker {
             worn.first_request(Detail::Full)
         };
         let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
-        walker.start(planner, &worn.blend, draws, request)?;
+        walker.start(planner, &worn.blend, draws, request, bench)?;
         let shape = *walker.step();
         let mut made = Self {
             config: *config,
@@ -340,7 +347,10 @@ impl CrowdWalker {
             origin.planter = Some(feet.moved(&last.place, &end));
         }
         let Workshop {
-            planner, walker, ..
+            planner,
+            walker,
+            bench,
+            ..
         } = &mut *workshop;
         let model = &self.blend.model;
         planner.become_walker(
@@ -355,7 +365,10 @@ impl CrowdWalker {
         draws[WINDOW - 1] = planner.draw(leading);
         let blends = [&self.blend, &worn.blend];
         // The model gave a trajectory when the walker was made, so it gives one now.
-        if walker.restore(planner, blends, draws, origin).is_err() {
+        if walker
+            .restore(planner, blends, draws, origin, bench)
+            .is_err()
+        {
             return;
         }
         let done = core::mem::take(&mut self.frames);

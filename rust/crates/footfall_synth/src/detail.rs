@@ -18,6 +18,10 @@ pub enum Detail {
 /// Frames of a step that are put on the ground at least.
 const LEAST_GROUND_FRAMES: usize = 4;
 
+/// The same at most, as far as coarser detail keeps to it: every walker has room for so many. Longer steps are slow ones, between whose
+/// frames little moves.
+const MOST_GROUND_FRAMES: usize = 64;
+
 impl Detail {
     /// All, finest first.
     pub const ALL: [Self; 3] = [Self::Full, Self::Half, Self::Quarter];
@@ -25,6 +29,21 @@ impl Detail {
     /// Frames of the model from one that is put on the ground to the next.
     pub(crate) const fn stride(self) -> usize {
         1 << self as usize
+    }
+
+    /// This detail, or as much less that a step of so many frames needs no more room than [`ground_room`](Self::ground_room).
+    pub(crate) fn holding(self, frames: usize) -> Self {
+        let holds =
+            |detail: &Self| detail.whole_frames(frames) <= MOST_GROUND_FRAMES * detail.stride();
+        let mut coarser = Self::ALL.into_iter().skip(self as usize);
+        coarser.find(holds).unwrap_or(Self::Quarter)
+    }
+
+    /// Frames that are put on the ground of any step, when the longest has so many.
+    pub(crate) fn ground_room(longest: usize) -> usize {
+        longest
+            .div_ceil(Self::Quarter.stride())
+            .max(MOST_GROUND_FRAMES)
     }
 
     /// So many frames of the model or a few more: a step ends with a frame that is put on the ground.

@@ -27,6 +27,7 @@ mod trajectory;
 mod variance;
 mod walk;
 mod walker;
+mod workbench;
 #[doc(hidden)]
 pub mod workload;
 

@@ -6,6 +6,7 @@ use crate::space::Blend;
 use crate::standing::Amplitude;
 use crate::strafe::overstep;
 use crate::walker::{Request, Walker};
+use crate::workbench::Workbench;
 use footfall_core::{Side, Skeleton};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -41,6 +42,7 @@ impl PaceTable {
         planner: &Planner,
         skeleton: &Skeleton,
         blend: &Arc<Blend>,
+        bench: &mut Workbench,
     ) -> Result<Self, SynthError> {
         let model = &blend.model;
         let mut planner = planner.clone();
@@ -49,6 +51,7 @@ impl PaceTable {
             walker: Walker::new(skeleton, blend),
             planner,
             blend,
+            bench,
         };
         let (way, _) = trial.travel(model.speed.reference_mps, 0.0)?;
         let facing = -way.x.atan2(way.z);
@@ -125,6 +128,7 @@ struct Trial<'a> {
     planner: Planner,
     walker: Walker,
     blend: &'a Arc<Blend>,
+    bench: &'a mut Workbench,
 }
 
 impl Trial<'_> {
@@ -143,7 +147,7 @@ impl Trial<'_> {
         };
         let draws = [Side::Right, Side::Left, Side::Right].map(Planner::mean_draw);
         let (planner, walker) = (&mut self.planner, &mut self.walker);
-        walker.start(planner, self.blend, draws, request)?;
+        walker.start(planner, self.blend, draws, request, self.bench)?;
         let mut travel = Vec3::ZERO;
         let mut frames = 0;
         for step in 0..4 {
@@ -153,7 +157,7 @@ impl Trial<'_> {
                 frames += timing.frames;
             }
             let ahead = Planner::mean_draw(timing.leading);
-            walker.advance(planner, self.blend, ahead, request);
+            walker.advance(planner, self.blend, ahead, request, self.bench);
         }
         Ok((travel, frames))
     }

@@ -98,6 +98,7 @@ impl StepShape {
         stride: f64,
         detail: Detail,
     ) -> Self {
+        let detail = detail.holding(frames);
         let frames = detail.whole_frames(frames);
         let terminal = (terminal.clamp(0.02, 0.6) * frames as f64).round() as usize;
         Self {
@@ -306,6 +307,7 @@ impl Planner {
             plan.state_frames[state] = end - passed;
             passed = end;
         }
+        let detail = detail.holding(passed);
         let whole = detail.whole_frames(passed);
         plan.state_frames[STATES_PER_STEP - 1] += whole - passed;
         let terminal = step.other_terminal + offsets.other_terminal();

@@ -4,8 +4,9 @@ use crate::error::SynthError;
 use crate::standing::standing_features;
 use crate::statistics::Statistics;
 use crate::variance;
+use crate::workbench::{Workbench, Workbenches};
 use footfall_model::{FEATURE_COUNT, GaitModel, GaitStyle};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// A model and its styles, shared by any number of walkers.
 #[derive(Debug)]
@@ -16,6 +17,9 @@ pub struct StyleSpace {
     /// Per feature, the pull that keeps the variance of the base walk and of each style.
     base_pull: Vec<f64>,
     style_pulls: Vec<Vec<f64>>,
+    /// Mixtures that somebody wears.
+    blends: Mutex<Vec<Weak<Blend>>>,
+    benches: Workbenches,
 }
 
 /// One mixture of styles, ready to be walked.
@@ -47,6 +51,8 @@ impl StyleSpace {
             style_pulls,
             model: Arc::clone(model),
             styles: styles.to_vec(),
+            blends: Mutex::default(),
+            benches: Workbenches::default(),
         })
     }
 
@@ -73,9 +79,26 @@ impl StyleSpace {
         })
     }
 
-    /// The mixture by these weights.
+    /// Works at a bench that all walkers of the space share.
+    pub(crate) fn at_bench<R>(&self, work: impl FnOnce(&mut Workbench) -> R) -> R {
+        self.benches.at_one(&self.model, work)
+    }
+
+    /// The mixture by these weights: the same one for all who wear it at the same time.
     pub(crate) fn blend(&self, weights: &[f32]) -> Arc<Blend> {
         let weights: Vec<f32> = self.weights(weights).collect();
+        let mut worn = self.blends.lock().unwrap_or_else(PoisonError::into_inner);
+        worn.retain(|blend| blend.strong_count() > 0);
+        let mut known = worn.iter().filter_map(Weak::upgrade);
+        if let Some(blend) = known.find(|blend| blend.weights == weights) {
+            return blend;
+        }
+        let blend = Arc::new(self.mix(weights));
+        worn.push(Arc::downgrade(&blend));
+        blend
+    }
+
+    fn mix(&self, weights: Vec<f32>) -> Blend {
         let parts: Vec<(&GaitStyle, f64)> = self
             .styles
             .iter()
@@ -85,12 +108,12 @@ impl StyleSpace {
         let model = Arc::new(self.model.mixture(&parts));
         let mut statistics = Statistics::new(&model);
         statistics.set_pull(&self.pull(&weights));
-        Arc::new(Blend {
+        Blend {
             standing: standing_features(&model),
             model,
             statistics,
             weights,
-        })
+        }
     }
 
     /// The pull of a mixture: between those of the base and of the styles in it.

@@ -1,5 +1,6 @@
 //! The ground under one walker: steps of generated features become frames on it.
 
+use crate::detail::Detail;
 use crate::plan::StepShape;
 use crate::planting::{Course, PlantedFrame, Planter, PlanterState};
 use crate::raw::RawFrame;
@@ -34,7 +35,6 @@ pub(crate) struct Placing<'a> {
 pub(crate) struct Stage {
     skeleton: Skeleton,
     frame_secs: f32,
-    raw: Vec<RawFrame>,
     /// Where the feet were put last; `None` before the first step.
     planter: Option<Planter>,
     /// The last step on the ground, at its own detail, one frame longer than the step; what lies beyond is left from others.
@@ -47,10 +47,14 @@ impl Stage {
         Self {
             skeleton: skeleton.clone(),
             frame_secs: (1.0 / frame_rate_hz) as f32,
-            raw: vec![RawFrame::default(); longest + 1],
             planter: None,
-            frames: vec![PlantedFrame::default(); longest + 1],
+            frames: vec![PlantedFrame::default(); Detail::ground_room(longest) + 1],
         }
+    }
+
+    /// What [`put`](Self::put) works on, for steps of at most `longest` frames.
+    pub(crate) fn raw(longest: usize) -> Vec<RawFrame> {
+        vec![RawFrame::default(); Detail::ground_room(longest) + 1]
     }
 
     /// The next step is the first.
@@ -80,8 +84,13 @@ impl Stage {
         (to - from) * Vec3::new(1.0, 0.0, 1.0)
     }
 
-    /// Puts a step on the ground: `rows` are the features of its frames, and of the first frame of the next step.
-    pub(crate) fn put<'a>(&mut self, rows: impl Iterator<Item = &'a [f32]>, placing: &Placing<'_>) {
+    /// Puts a step on the ground: `rows` are the features of its frames, and of the first frame of the next step. `raw` has room for it.
+    pub(crate) fn put<'a>(
+        &mut self,
+        rows: impl Iterator<Item = &'a [f32]>,
+        placing: &Placing<'_>,
+        raw: &mut [RawFrame],
+    ) {
         let shape = placing.shape;
         let timing = shape.ground_timing();
         let detail = shape.detail.stride();
@@ -93,7 +102,7 @@ impl Stage {
         let step_secs = frame_secs * timing.frames as f32;
         let strafe = Strafe::of(placing.velocity_mps, step_secs, &self.skeleton);
         let as_it_is = shape.amplitude == Amplitude::WALK && [before, strafe] == [Strafe::NONE; 2];
-        let raw = &mut self.raw[..=timing.frames];
+        let raw = &mut raw[..=timing.frames];
         let frames = &mut self.frames[..=timing.frames];
         let rows = rows.step_by(detail).enumerate();
         for (frame, (index, features)) in frames.iter_mut().zip(rows) {

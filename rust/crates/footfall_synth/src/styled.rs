@@ -116,12 +116,15 @@ impl StyledSteps {
         let mut planner = walker_of(space, config);
         let blend = space.blend(style_weights);
         planner.wear(&blend.model);
-        let paces = PaceTable::measure(&planner, skeleton, &blend)?;
         let mut walker = Walker::new(skeleton, &blend);
-        let worn = Worn { blend, paces };
-        let request = worn.first_request(Detail::Full);
-        let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
-        walker.start(&mut planner, &worn.blend, draws, request)?;
+        let (worn, request) = space.at_bench(|bench| {
+            let paces = PaceTable::measure(&planner, skeleton, &blend, bench)?;
+            let worn = Worn { blend, paces };
+            let request = worn.first_request(Detail::Full);
+            let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
+            walker.start(&mut planner, &worn.blend, draws, request, bench)?;
+            Ok::<_, SynthError>((worn, request))
+        })?;
         Ok(Self {
             space: Arc::clone(space),
             planner,
@@ -162,7 +165,10 @@ impl StyledSteps {
         }
         let blend = self.space.blend(weights);
         // The planner of a checked model gives a trajectory; were it not to, the walker keeps its style.
-        if let Ok(paces) = PaceTable::measure(&self.planner, skeleton, &blend) {
+        let measured = self
+            .space
+            .at_bench(|bench| PaceTable::measure(&self.planner, skeleton, &blend, bench));
+        if let Ok(paces) = measured {
             self.retired = Some(Arc::clone(self.walker.blends()[0]));
             self.worn = Worn { blend, paces };
         }
@@ -190,7 +196,10 @@ impl StepSource for StyledSteps {
         self.planner.wear(&self.worn.blend.model);
         let (planner, blend) = (&mut self.planner, &self.worn.blend);
         // The model gave a trajectory when the generator was made, so it gives one now.
-        let started = self.walker.start(planner, blend, draws, request).is_ok();
+        let walker = &mut self.walker;
+        let started = self
+            .space
+            .at_bench(|bench| walker.start(planner, blend, draws, request, bench).is_ok());
         if started {
             self.velocity_mps = Vec2::ZERO;
         }
@@ -206,8 +215,14 @@ impl StepSource for StyledSteps {
             .request(ask, model, before, side, &mut self.velocity_mps);
         let draw = self.planner.draw(self.walker.step().timing.leading);
         self.planner.wear(&self.worn.blend.model);
-        self.walker
-            .advance(&mut self.planner, &self.worn.blend, draw, request);
+        let Self {
+            planner,
+            walker,
+            worn,
+            ..
+        } = self;
+        self.space
+            .at_bench(|bench| walker.advance(planner, &worn.blend, draw, request, bench));
     }
 }
 

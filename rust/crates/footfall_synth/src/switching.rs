@@ -9,6 +9,7 @@ use crate::generator::{GeneratorConfig, STANDING_SPEED_MPS};
 use crate::pace::tempo_and_stride;
 use crate::plan::{MAX_STEP_SECS, StepShape};
 use crate::planting::PlanterState;
+use crate::raw::RawFrame;
 use crate::stage::{Placing, Posture, Stage};
 use crate::standing::{Amplitude, standing_posture};
 use crate::steps::{Ask, StepSource};
@@ -55,6 +56,7 @@ pub(crate) struct SwitchingSteps {
     pose: Pose,
     standing: Posture,
     stage: Stage,
+    raw: Vec<RawFrame>,
     rng: ChaCha8Rng,
     variation: f64,
     shape: StepShape,
@@ -120,6 +122,7 @@ impl SwitchingSteps {
             standing: standing_of(&model.mean),
             pose: Pose::new(model),
             stage: Stage::new(skeleton, model.frame_rate_hz, longest),
+            raw: Stage::raw(longest),
             rng: ChaCha8Rng::seed_from_u64(0),
             variation: 0.0,
             shape: StepShape::of_walk(Side::Left, 1, 0.0, 1.0, Detail::Full),
@@ -269,6 +272,7 @@ impl SwitchingSteps {
                 facing: self.origin.facing,
                 velocity_mps: self.velocity_mps,
             },
+            &mut self.raw,
         );
     }
 

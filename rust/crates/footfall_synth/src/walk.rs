@@ -107,7 +107,8 @@ pub fn synthesize(
         .speed_mps
         .map_or(model.speed.reference_mps, f64::from);
     let space = StyleSpace::new(model, &[])?;
-    let paces = PaceTable::measure(&planner, skeleton, &space.blend(&[]))?;
+    let paces =
+        space.at_bench(|bench| PaceTable::measure(&planner, skeleton, &space.blend(&[]), bench))?;
     let pace = paces.pace(speed.max(MIN_SPEED_MPS));
 
     let mut side = if LEAD_STEPS.is_multiple_of(2) {

@@ -6,9 +6,8 @@ use crate::planting::PlanterState;
 use crate::space::Blend;
 use crate::stage::{Placing, Stage};
 use crate::standing::Amplitude;
-use crate::trajectory::TrajectorySolver;
-use footfall_core::{Joint, Side, Skeleton, StepPosition};
-use footfall_model::layout::feature_offset;
+use crate::workbench::Workbench;
+use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::{FEATURE_COUNT, STATES_PER_STEP};
 use glam::Vec2;
 use std::sync::Arc;
@@ -18,16 +17,13 @@ use std::sync::Arc;
 pub(crate) const WINDOW: usize = 3;
 
 /// Frames that tie a window to the one before: the longest dynamic window couples no more.
-const TIE: usize = 4;
+pub(crate) const TIE: usize = 4;
 
 /// The state of a step in which its last frames are at the earliest: each lasts a frame at least.
 const TIE_FROM_STATE: usize = STATES_PER_STEP - TIE;
 
 /// Numbers that tie a window to the one before.
 pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;
-
-/// Features that are generated: all but those of the right toes, which come last. The planter turns toes.
-const WALKED: usize = feature_offset(Joint::RightToes);
 
 /// What a step is asked to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,10 +50,9 @@ pub(crate) struct Origin {
     pub(crate) tie: [f32; TIE_LEN],
 }
 
-/// The stage between the planner's draws and frames on the ground; allocates nothing after it was made.
+/// One walker between the planner's draws and frames on the ground; allocates nothing after it was made.
 #[derive(Debug)]
 pub(crate) struct Walker {
-    solver: TrajectorySolver<f32>,
     blend: Arc<Blend>,
     /// The mixture of the step before.
     blend_before: Arc<Blend>,
@@ -65,17 +60,15 @@ pub(crate) struct Walker {
     plans: [StepPlan<f32>; WINDOW],
     /// Whether the steps ahead are not those of the last request.
     stale: bool,
-    /// Features of the window, and where the current step begins in it.
-    trajectory: Vec<f32>,
-    current: usize,
     origin: Origin,
+    /// The last frames of the current step, which tie the next one to it.
+    end: [f32; TIE_LEN],
     stage: Stage,
 }
 
 impl Walker {
     pub(crate) fn new(skeleton: &Skeleton, blend: &Arc<Blend>) -> Self {
         let longest = Planner::longest_step(&blend.model);
-        let room = WINDOW * longest + TIE;
         let nothing = Request {
             manner: Manner::inside(Pace {
                 covariate_mps: 0.0,
@@ -88,14 +81,12 @@ impl Walker {
             facing: 0.0,
         };
         Self {
-            solver: TrajectorySolver::new(WINDOW, room),
             blend: Arc::clone(blend),
             blend_before: Arc::clone(blend),
             draws: [(); WINDOW].map(|()| Planner::mean_draw(Side::Left)),
             plans: [(); WINDOW].map(|()| StepPlan::empty()),
             stale: true,
-            trajectory: Vec::with_capacity(room * FEATURE_COUNT),
-            current: 0,
+            end: [0.0; TIE_LEN],
             origin: Origin {
                 request: nothing,
                 manner_before: nothing.manner,
@@ -117,6 +108,7 @@ impl Walker {
         blend: &Arc<Blend>,
         draws: [StepDraw; WINDOW],
         request: Request,
+        bench: &mut Workbench,
     ) -> Result<(), SynthError> {
         self.blend = Arc::clone(blend);
         self.blend_before = Arc::clone(blend);
@@ -130,15 +122,10 @@ impl Walker {
             planner.realise(draw, request.manner, &blend.statistics, plan);
             plan.shape.set_amplitude(request.amplitude);
         }
-        let frames = self.solver.load(&blend.statistics, &self.plans, 0);
-        self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
-        self.solver
-            .solve(&blend.statistics, &mut self.trajectory, 0, WALKED)?;
+        bench.start(&blend.statistics, &self.plans)?;
         self.stage.clear();
-        self.current = 0;
-        self.put_on_ground(0);
-        self.current = self.plans[0].shape.timing.frames;
-        self.put_on_ground(1);
+        self.put_on_ground(0, 0, bench);
+        self.put_on_ground(1, self.plans[0].shape.timing.frames, bench);
         Ok(())
     }
 
@@ -149,6 +136,7 @@ impl Walker {
         blend: &Arc<Blend>,
         draw: StepDraw,
         request: Request,
+        bench: &mut Workbench,
     ) {
         // A new pace or style is taken up by every step ahead: what is asked now takes effect at once.
         let same = !self.stale
@@ -162,24 +150,17 @@ impl Walker {
         self.blend_before = core::mem::replace(&mut self.blend, Arc::clone(blend));
         self.stale = false;
         self.realise(planner, if same { WINDOW - 1 } else { 1 });
-        self.solve_tied();
+        self.solve_tied(bench);
     }
 
     /// Where the step after the current one will come from when it is asked to be this.
     pub(crate) fn next_origin(&self, request: Request) -> Origin {
-        let frames = self.plans[1].shape.timing.frames;
-        let tie_at = (self.current + frames + 1 - TIE) * FEATURE_COUNT;
-        let mut tie = [0.0; TIE_LEN];
-        tie.copy_from_slice(&self.trajectory[tie_at..][..TIE_LEN]);
-        for frame in tie.chunks_exact_mut(FEATURE_COUNT) {
-            frame[WALKED..].fill(0.0);
-        }
         Origin {
             request,
             manner_before: self.origin.request.manner,
             facing_before: self.origin.request.facing,
             planter: self.stage.planter_state(),
-            tie,
+            tie: self.end,
         }
     }
 
@@ -193,10 +174,11 @@ impl Walker {
         [blend_before, blend]: [&Arc<Blend>; 2],
         draws: [StepDraw; WINDOW],
         origin: Origin,
+        bench: &mut Workbench,
     ) -> Result<(), SynthError> {
         let Some(state) = origin.planter else {
             planner.wear(&blend.model);
-            return self.start(planner, blend, draws, origin.request);
+            return self.start(planner, blend, draws, origin.request, bench);
         };
         self.draws = draws;
         planner.wear(&blend_before.model);
@@ -215,7 +197,7 @@ impl Walker {
         self.origin = origin;
         self.stale = false;
         self.realise(planner, 1);
-        self.solve_tied();
+        self.solve_tied(bench);
         Ok(())
     }
 
@@ -239,21 +221,9 @@ impl Walker {
     }
 
     /// Solves the current step and the one ahead, tied to the step before, and puts the current one on the ground.
-    fn solve_tied(&mut self) {
-        let skip = (self.plans[0].shape.timing.frames + 1).saturating_sub(TIE);
-        let statistics = &self.blend.statistics;
-        let frames = self.solver.load(statistics, &self.plans, skip);
-        self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
-        self.trajectory[..TIE_LEN].copy_from_slice(&self.origin.tie);
-        let solved = self
-            .solver
-            .solve(statistics, &mut self.trajectory, TIE, WALKED);
-        if solved.is_err() {
-            // A checked model does not get here; were it to, a rough pose beats none.
-            self.solver.fill_with_means(&mut self.trajectory, TIE);
-        }
-        self.current = TIE - 1;
-        self.put_on_ground(1);
+    fn solve_tied(&mut self, bench: &mut Workbench) {
+        bench.go_on(&self.blend.statistics, &self.plans, &self.origin.tie);
+        self.put_on_ground(1, TIE - 1, bench);
     }
 
     /// The step that is on the ground now.
@@ -281,18 +251,21 @@ impl Walker {
         [&self.blend_before, &self.blend]
     }
 
-    /// Puts a step of the window, which begins at `current`, on the ground.
-    fn put_on_ground(&mut self, step: usize) {
-        let rows = self.trajectory[self.current * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
-        self.stage.put(
-            rows,
-            &Placing {
-                shape: &self.plans[step].shape,
-                standing: [&self.blend_before.standing, &self.blend.standing],
-                turn_rate: self.origin.request.turn_rate,
-                facing: [self.origin.facing_before, self.origin.request.facing],
-                velocity_mps: self.origin.request.velocity_mps,
-            },
-        );
+    /// Puts a step of the window, which begins with frame `first` of what was solved, on the ground.
+    fn put_on_ground(&mut self, step: usize, first: usize, bench: &mut Workbench) {
+        let shape = &self.plans[step].shape;
+        self.end = bench.tie_at(first + shape.timing.frames + 1 - TIE);
+        let placing = Placing {
+            shape,
+            standing: [&self.blend_before.standing, &self.blend.standing],
+            turn_rate: self.origin.request.turn_rate,
+            facing: [self.origin.facing_before, self.origin.request.facing],
+            velocity_mps: self.origin.request.velocity_mps,
+        };
+        let Workbench {
+            trajectory, raw, ..
+        } = bench;
+        let rows = trajectory[first * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
+        self.stage.put(rows, &placing, raw);
     }
 }

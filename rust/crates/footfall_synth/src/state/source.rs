@@ -1,6 +1,7 @@
 //! What each kind of steps adds to a state, and how it goes on from one.
 
 use super::{Feet, Source, State, StateError, detail_of};
+use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
 use crate::pace::PaceTable;
 use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
@@ -8,7 +9,6 @@ use crate::styled::{StyledSteps, Worn, walker_of};
 use crate::switching::{SwitchingOrigin, SwitchingSteps};
 use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
 use footfall_core::{Side, Skeleton, StepPosition};
-use std::sync::Arc;
 
 impl Source {
     pub(super) fn of_styled(steps: &StyledSteps) -> Self {
@@ -121,16 +121,13 @@ impl State {
         }
         let mut planner = walker_of(space, config);
         let [before, now, next] = weights.each_ref().map(|w| space.blend(w));
-        // The same mixture must be one and the same: a walker tells changes by it.
-        let now = if weights[1] == weights[2] {
-            Arc::clone(&next)
-        } else {
-            now
-        };
         planner.resume(self.chance_position, &draws);
-        let paces = PaceTable::measure(&planner, skeleton, &next)?;
         let mut walker = Walker::new(skeleton, &now);
-        walker.restore(&mut planner, [&before, &now], draws, origin)?;
+        let paces = space.at_bench(|bench| {
+            let paces = PaceTable::measure(&planner, skeleton, &next, bench)?;
+            walker.restore(&mut planner, [&before, &now], draws, origin, bench)?;
+            Ok::<_, SynthError>(paces)
+        })?;
         let worn = Worn { blend: next, paces };
         Ok(StyledSteps::resumed(
             space,

@@ -1,0 +1,99 @@
+//! Where steps are solved: buffers that nobody needs between two steps, so that all walkers share them.
+
+use crate::error::SynthError;
+use crate::plan::{Planner, StepPlan};
+use crate::raw::RawFrame;
+use crate::stage::Stage;
+use crate::statistics::Statistics;
+use crate::trajectory::TrajectorySolver;
+use crate::walker::{TIE, TIE_LEN, WINDOW};
+use footfall_core::Joint;
+use footfall_model::layout::feature_offset;
+use footfall_model::{FEATURE_COUNT, GaitModel};
+use std::sync::{Mutex, PoisonError};
+
+/// Features that are generated: all but those of the right toes, which come last. The planter turns toes.
+const WALKED: usize = feature_offset(Joint::RightToes);
+
+/// Buffers in which a step is solved and put on the ground.
+#[derive(Debug)]
+pub(crate) struct Workbench {
+    solver: TrajectorySolver<f32>,
+    /// Features of the window that was solved last.
+    pub(crate) trajectory: Vec<f32>,
+    pub(crate) raw: Vec<RawFrame>,
+}
+
+impl Workbench {
+    /// For steps of this model, in any style.
+    pub(crate) fn new(model: &GaitModel) -> Self {
+        let longest = Planner::longest_step(model);
+        let room = WINDOW * longest + TIE;
+        Self {
+            solver: TrajectorySolver::new(WINDOW, room),
+            trajectory: Vec::with_capacity(room * FEATURE_COUNT),
+            raw: Stage::raw(longest),
+        }
+    }
+
+    /// Solves a window that nothing comes before.
+    ///
+    /// # Errors
+    /// [`SynthError::Inference`] when the model gives no trajectory.
+    pub(crate) fn start(
+        &mut self,
+        statistics: &Statistics<f32>,
+        plans: &[StepPlan<f32>],
+    ) -> Result<(), SynthError> {
+        let frames = self.solver.load(statistics, plans, 0);
+        self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
+        self.solver
+            .solve(statistics, &mut self.trajectory, 0, WALKED)
+    }
+
+    /// Solves a window from the last frames of its first step on, which are given.
+    pub(crate) fn go_on(
+        &mut self,
+        statistics: &Statistics<f32>,
+        plans: &[StepPlan<f32>; WINDOW],
+        tie: &[f32; TIE_LEN],
+    ) {
+        let skip = (plans[0].shape.timing.frames + 1).saturating_sub(TIE);
+        let frames = self.solver.load(statistics, plans, skip);
+        self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
+        self.trajectory[..TIE_LEN].copy_from_slice(tie);
+        let solved = self
+            .solver
+            .solve(statistics, &mut self.trajectory, TIE, WALKED);
+        if solved.is_err() {
+            // A checked model does not get here; were it to, a rough pose beats none.
+            self.solver.fill_with_means(&mut self.trajectory, TIE);
+        }
+    }
+
+    /// The frames from this one on that tie the next window to this one.
+    pub(crate) fn tie_at(&self, frame: usize) -> [f32; TIE_LEN] {
+        let mut tie = [0.0; TIE_LEN];
+        tie.copy_from_slice(&self.trajectory[frame * FEATURE_COUNT..][..TIE_LEN]);
+        for frame in tie.chunks_exact_mut(FEATURE_COUNT) {
+            frame[WALKED..].fill(0.0);
+        }
+        tie
+    }
+}
+
+/// Workbenches that walkers of one model lend each other: as many as there ever were threads that worked steps out at the same time.
+#[derive(Debug, Default)]
+pub(crate) struct Workbenches(Mutex<Vec<Box<Workbench>>>);
+
+impl Workbenches {
+    /// Works at one of them. Allocates only when all are in use.
+    pub(crate) fn at_one<R>(&self, model: &GaitModel, work: impl FnOnce(&mut Workbench) -> R) -> R {
+        let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut bench = free.unwrap_or_else(|| Box::new(Workbench::new(model)));
+        let done = work(&mut bench);
+        let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        free.push(bench);
+        done
+    }
+}
