@@ -34,6 +34,7 @@ func _ready() -> void:
 	figures["tiers_ms"] = tiers
 	figures["tiers_us_per_walker"] = 1000.0 * tiers / _instances
 	await _skeleton_tier(figures)
+	await _making(figures)
 	print("BENCH ", JSON.stringify(figures))
 	get_tree().quit()
 
@@ -64,6 +65,63 @@ func _crowd(configure: Callable) -> float:
 	for index: int in counted:
 		sum += times[index]
 	return sum / counted
+
+
+## Ten thousand walkers that come at once, with a few whole scenes: the longest time that the crowd takes of a frame meanwhile.
+func _making(figures: Dictionary) -> void:
+	var clock: Array[int] = [0]
+	var times := PackedFloat32Array()
+	var crowd := GaitCrowd3D.new()
+	crowd.model = MODEL
+	crowd.character = Skinned.scene()
+	crowd.count = 10
+	crowd.area = Vector2(100, 100)
+	var before := _at_process(func() -> void: clock[0] = Time.get_ticks_usec())
+	add_child(crowd)
+	var after := _at_process(func() -> void: times.append((Time.get_ticks_usec() - clock[0]) / 1000.0))
+	for frame: int in 60:
+		await get_tree().process_frame
+	figures["start_longest_ms"] = _longest(times)
+	times.clear()
+	var places := PackedVector3Array()
+	for index: int in _instances:
+		places.append(Vector3(index % 100 - 50, 0, index / 100 - 50))
+	var begin := Time.get_ticks_usec()
+	crowd.add_agents(places, [])
+	figures["add_agents_ms"] = (Time.get_ticks_usec() - begin) / 1000.0
+	var usual := times.size()
+	while crowd.is_making():
+		await get_tree().process_frame
+	figures["making_frames"] = times.size() - usual
+	figures["making_longest_ms"] = _longest(times)
+	times.clear()
+	for frame: int in 120:
+		await get_tree().process_frame
+	figures["made_longest_ms"] = _longest(times)
+	for node: Node in [before, crowd, after]:
+		node.queue_free()
+
+
+func _longest(times: PackedFloat32Array) -> float:
+	var sorted := times.duplicate()
+	sorted.sort()
+	return sorted[-1]
+
+
+## A node that does this in every frame, in its place among those that are added.
+func _at_process(what: Callable) -> Node:
+	var node := Ticker.new()
+	node.what = what
+	add_child(node)
+	return node
+
+
+class Ticker:
+	extends Node
+	var what: Callable
+
+	func _process(_delta: float) -> void:
+		what.call()
 
 
 ## Whole skeletons of a crowd: the engine's frame with them idle, and with all of them walking.

@@ -2,27 +2,32 @@
 
 mod actors;
 mod agent;
+mod batch;
+mod begin;
 mod crowd_mesh;
 mod flock;
+mod frame;
+mod ground;
+mod kit;
+mod maker;
 mod making;
+mod members;
+mod motion;
 mod navigation;
 mod neighbours;
+mod pick;
+mod roster;
 mod save;
 mod scene;
 mod tiers;
 mod walkers;
 mod way;
 
-use crate::convert;
-use crate::gait_model::{GaitModel, NO_MODEL};
+use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
-use agent::Goal;
-use glam::{Vec2, Vec3};
 use godot::classes::{Engine, INode3D, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
-use navigation::Navigation;
-use scene::{CrowdScene, Look};
-use tiers::Limits;
+use scene::CrowdScene;
 use walkers::Walkers;
 
 /// What to do where there is no character.
@@ -81,7 +86,8 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_character)]
     character: Option<Gd<PackedScene>>,
 
-    /// How many walkers there are at the start. `add_agents()` adds more.
+    /// How many walkers the crowd has of its own. `add_agents()` adds more. While it runs, raising it adds some and lowering it removes
+    /// those that came last; the others walk on.
     #[export(range = (0.0, 20000.0, 1.0, or_greater))]
     #[var(set = set_count)]
     #[init(val = 200)]
@@ -191,8 +197,8 @@ pub(crate) struct GaitCrowd3D {
 
     walkers: Option<Walkers>,
     scene: Option<CrowdScene>,
-    /// Whether the crowd could not be made and nothing has changed since.
-    failed: bool,
+    /// Why the crowd could not be made, as long as nothing has changed since.
+    problem: Option<String>,
     base: Base<Node3D>,
 }
 
@@ -214,7 +220,7 @@ impl INode3D for GaitCrowd3D {
         } else {
             0.0
         };
-        self.advance_by(dt);
+        self.advance_by(dt, false);
     }
 
     fn get_configuration_warnings(&self) -> PackedStringArray {
@@ -243,216 +249,10 @@ impl GaitCrowd3D {
     #[signal]
     fn footsteps(agents: PackedInt32Array, feet: PackedByteArray, positions: PackedVector3Array);
 
-    /// Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns the
-    /// index of the first, or -1 when the crowd cannot be made.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn add_agents(&mut self, positions: PackedVector3Array, headings: PackedFloat32Array) -> i64 {
-        if !self.make() {
-            return -1;
-        }
-        let Some(walkers) = &mut self.walkers else {
-            return -1;
-        };
-        let first = i64::from(convert::count(walkers.agents.len()));
-        let room = (MOST_AGENTS - first).max(0) as usize;
-        if positions.len() > room {
-            godot_warn!(
-                "A crowd holds {MOST_AGENTS} walkers at most: {} are left out.",
-                positions.len() - room
-            );
-        }
-        for (index, position) in positions.as_slice().iter().take(room).enumerate() {
-            let heading = headings.get(index).unwrap_or(0.0);
-            if position.is_finite() && heading.is_finite() {
-                walkers.add(convert::vec3(*position), heading, None);
-            }
-        }
-        self.changed_count();
-        first
-    }
-
-    /// Removes all walkers.
-    #[func]
-    fn clear_agents(&mut self) {
-        if let Some(walkers) = &mut self.walkers {
-            walkers.clear();
-        }
-        self.changed_count();
-    }
-
-    /// Makes the crowd anew from `count` and `seed`.
-    #[func]
-    fn restart(&mut self) {
-        self.forget();
-        self.base_mut().update_configuration_warnings();
-    }
-
-    /// How many walkers there are.
-    #[func]
-    fn get_agent_count(&mut self) -> i64 {
-        self.make();
-        self.walkers
-            .as_ref()
-            .map_or(0, |walkers| i64::from(convert::count(walkers.agents.len())))
-    }
-
-    /// Where all walkers are, on the ground, in this node's space.
-    #[func]
-    fn get_positions(&mut self) -> PackedVector3Array {
-        self.each(|agent| convert::vector3(agent.place))
-    }
-
-    /// Where all walkers face, radians about +Y from +Z.
-    #[func]
-    fn get_headings(&mut self) -> PackedFloat32Array {
-        self.each(|agent| agent.heading)
-    }
-
-    /// How much of its stride each walker has behind it: 0 when its left foot lands, 0.5 when its right foot does.
-    #[func]
-    fn get_phases(&mut self) -> PackedFloat32Array {
-        self.each(|agent| agent.walker.phase())
-    }
-
-    /// How each walker is drawn: 0 as a whole scene, 1 with a new pose in every frame, 2 as one far away.
-    #[func]
-    fn get_tiers(&self) -> PackedByteArray {
-        let walkers = self.walkers.as_ref();
-        walkers
-            .into_iter()
-            .flat_map(|walkers| walkers.tiers.iter().map(|tier| *tier as u8))
-            .collect()
-    }
-
-    /// The size of each walker, against the character.
-    #[func]
-    fn get_sizes(&mut self) -> PackedFloat32Array {
-        self.each(|agent| agent.size)
-    }
-
-    /// How fast each walker would like to walk, in metres per second. Missing or not finite: it stays.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn set_speeds(&mut self, speeds: PackedFloat32Array) {
-        self.set_each(speeds.as_slice(), |agent, speed| {
-            if speed.is_finite() {
-                agent.speed_mps = speed.clamp(0.0, 3.0);
-            }
-        });
-    }
-
-    /// How fast each walker turns, in radians per second, positive to its left; it gives up its goal. For `behaviour` scripted.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn set_turn_rates(&mut self, turn_rates: PackedFloat32Array) {
-        self.set_each(turn_rates.as_slice(), |agent, rate| {
-            if rate.is_finite() {
-                agent.goal = Goal::Turn(*rate);
-                agent.route.clear();
-            }
-        });
-    }
-
-    /// Where each walker goes straight, in this node's space. It stops there. For `behaviour` scripted. Not finite: its goal stays.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn set_targets(&mut self, targets: PackedVector3Array) {
-        self.set_each(targets.as_slice(), |agent, target| {
-            if target.is_finite() {
-                agent.goal = Goal::Place(Vec2::new(target.x, target.z));
-                agent.route.clear();
-            }
-        });
-    }
-
-    /// Where each walker goes over the navigation map of the world, around what is between, in this node's space. It stops there. For
-    /// `behaviour` scripted. Not finite: its goal stays. Each way takes some tens of microseconds to find, once.
-    ///
-    /// Returns whether there was a way for everybody; whoever has none keeps its goal. In the first frames of a scene there is no map yet.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn set_destinations(&mut self, destinations: PackedVector3Array) -> bool {
-        let host = self.to_gd().upcast::<Node3D>();
-        let Some(mut navigation) = Navigation::of(&host, self.navigation_layers) else {
-            return false;
-        };
-        let mut all = true;
-        self.set_each(destinations.as_slice(), |agent, place| {
-            if place.is_finite() {
-                all &= navigation.send(agent, *place);
-            }
-        });
-        all
-    }
-
-    /// The tint of each walker.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn set_tints(&mut self, colours: PackedColorArray) {
-        self.set_each(colours.as_slice(), |agent, colour| {
-            agent.tint = linear(*colour);
-        });
-    }
-
-    /// What one walker wears: weights in the order of `styles`, taken up with its next step. They are rounded to eighths, so that a
-    /// crowd needs few mixtures.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn set_agent_style(&mut self, agent: i64, weights: PackedFloat32Array) {
-        if let Some(walkers) = &mut self.walkers
-            && let Ok(index) = usize::try_from(agent)
-        {
-            walkers.wear(index, weights.as_slice());
-        }
-    }
-
-    /// The crowd as it is now, to be saved: who walks where, how, and in which phase. `set_state()` goes on from it with the same
-    /// walkers at the same places; their next steps are drawn anew.
-    #[func]
-    fn get_state(&self) -> PackedByteArray {
-        let agents = self
-            .walkers
-            .as_ref()
-            .map(|walkers| save::write(&walkers.agents));
-        agents.unwrap_or_default().into()
-    }
-
-    /// Goes on from what `get_state()` told. Bytes that are no crowd are refused: the log says why, and the crowd stays as it is.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn set_state(&mut self, state: PackedByteArray) {
-        match save::read(state.as_slice()) {
-            Ok(saved) if self.make() => {
-                if let Some(walkers) = &mut self.walkers {
-                    walkers.clear();
-                    for agent in saved.iter().take(MOST_AGENTS as usize) {
-                        walkers.add(Vec3::from(agent.place), agent.heading, Some(agent));
-                    }
-                }
-                self.changed_count();
-            }
-            Ok(_) => {}
-            Err(problem) => {
-                let node = self.base().get_path();
-                godot_warn!("{node}: the state is refused: {problem}");
-            }
-        }
-    }
-
-    /// Lets time pass at once, in seconds, whatever `playing` says: for tests, and for games with a clock of their own.
-    #[func]
-    fn advance(&mut self, delta: f64) {
-        if delta.is_finite() {
-            self.advance_by(delta.clamp(0.0, 0.25) as f32);
-        }
-    }
-
-    /// What keeps the crowd from walking, each with what to do next; empty when nothing does.
-    #[func]
-    fn get_problems(&self) -> PackedStringArray {
-        self.problems()
-    }
+    /// Walkers were made and began to walk in the last frame: their ids. Making many takes a while, on other threads; `is_making()` tells
+    /// whether there are more to come.
+    #[signal]
+    fn agents_ready(agents: PackedInt32Array);
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
@@ -488,7 +288,10 @@ impl GaitCrowd3D {
             );
         }
         self.count = count.clamp(0, MOST_AGENTS);
-        self.restart();
+        if let Some(walkers) = &mut self.walkers {
+            let places = walkers.set_count(self.count as usize);
+            self.left(&places);
+        }
     }
 
     #[func]
@@ -560,129 +363,7 @@ impl GaitCrowd3D {
             scene.free();
         }
         self.walkers = None;
-        self.failed = false;
-    }
-
-    /// The number of walkers changed: what draws them has to be made anew.
-    fn changed_count(&mut self) {
-        if let Some(scene) = self.scene.take() {
-            scene.free();
-        }
-    }
-
-    fn each<T, C: FromIterator<T>>(&mut self, of: impl Fn(&agent::Agent) -> T) -> C {
-        self.make();
-        let agents = self.walkers.iter().flat_map(|walkers| &walkers.agents);
-        agents.map(of).collect()
-    }
-
-    fn set_each<T>(&mut self, values: &[T], mut set: impl FnMut(&mut agent::Agent, &T)) {
-        self.make();
-        if let Some(walkers) = &mut self.walkers {
-            for (agent, value) in walkers.agents.iter_mut().zip(values) {
-                set(agent, value);
-            }
-        }
-    }
-
-    fn problems(&self) -> PackedStringArray {
-        let mut problems = PackedStringArray::new();
-        let mut say = |problem: &str| problems.push(&GString::from(problem));
-        match &self.model {
-            None => say(NO_MODEL),
-            Some(model) => {
-                if let Err(problem) = self.space(model) {
-                    say(&problem);
-                }
-            }
-        }
-        if self.character.is_none() {
-            say(NO_CHARACTER);
-        }
-        if self.behaviour == CrowdBehaviour::Path
-            && let Err(problem) = self.way()
-        {
-            say(&problem);
-        }
-        problems
-    }
-
-    fn advance_by(&mut self, dt_secs: f32) {
-        if !self.make() {
-            return;
-        }
-        let limits = self.limits();
-        let (avoidance, repeat_far, mask) = (self.avoidance, self.repeat_far, self.ground_mask);
-        let look = Look {
-            character: self.character.clone(),
-            material: self.material.clone(),
-            culls: self.culling,
-        };
-        let host = self.to_gd().upcast::<Node3D>();
-        let (Some(mut walkers), scene) = (self.walkers.take(), self.scene.take()) else {
-            return;
-        };
-        walkers.repeat_far(repeat_far);
-        if walkers.is_navigated()
-            && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)
-        {
-            navigation.wander(&mut walkers);
-        }
-        walkers.advance(dt_secs, avoidance);
-        scene::find_ground(&mut walkers, &host, mask);
-        let scene = scene.or_else(|| {
-            let _released = self.base_mut();
-            CrowdScene::new(&host, &walkers, &limits, &look)
-        });
-        let drawn = scene.map(|mut scene| {
-            let _released = self.base_mut();
-            scene.draw(&mut walkers, &host, &limits, &look);
-            scene
-        });
-        let landed = self.landed(&walkers);
-        // A script that was called in between may have made everything anew.
-        if self.walkers.is_none() && self.base().is_inside_tree() {
-            self.walkers = Some(walkers);
-            self.scene = drawn;
-        } else if let Some(scene) = drawn {
-            scene.free();
-        }
-        if let Some((agents, feet, positions)) = landed {
-            self.signals().footsteps().emit(&agents, &feet, &positions);
-        }
-    }
-
-    fn limits(&self) -> Limits {
-        let metres = |value: f64| {
-            if value.is_finite() {
-                value.max(0.0) as f32
-            } else {
-                0.0
-            }
-        };
-        Limits {
-            counts: [self.full_count, self.near_count]
-                .map(|count| count.clamp(0, MOST_AGENTS) as usize),
-            distances_m: [metres(self.full_distance), metres(self.near_distance)],
-        }
-    }
-
-    /// What `footsteps` has to tell, if anything; nothing in the editor.
-    fn landed(
-        &self,
-        walkers: &Walkers,
-    ) -> Option<(PackedInt32Array, PackedByteArray, PackedVector3Array)> {
-        walkers.landed().next()?;
-        if Engine::singleton().is_editor_hint() {
-            return None;
-        }
-        let world = self.base().get_global_transform();
-        let agents = walkers.landed().map(|(agent, ..)| convert::count(agent));
-        let feet = walkers.landed().map(|(_, side, _)| side.index() as u8);
-        let places = walkers
-            .landed()
-            .map(|(.., place)| world * convert::vector3(place));
-        Some((agents.collect(), feet.collect(), places.collect()))
+        self.problem = None;
     }
 }
 

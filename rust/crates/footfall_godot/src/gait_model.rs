@@ -3,7 +3,7 @@
 use crate::loaded::Loaded;
 use crate::walk_source::WalkSource;
 use footfall_core::Side;
-use footfall_model::{GaitStyle as TrainedStyle, WalkModel};
+use footfall_model::{GaitModel as TrainedWalk, GaitStyle as TrainedStyle, WalkModel};
 use footfall_synth::{GaitGenerator, GeneratorConfig, StyleSpace};
 use godot::classes::{IResource, Resource};
 use godot::prelude::*;
@@ -130,20 +130,45 @@ impl GaitModel {
                 );
             }
         };
+        if let Some(space) = self.space_with(styles) {
+            return Ok(WalkSource::Styled(space));
+        }
+        let space = StyleSpace::new(&trained, styles).map_err(|error| error.to_string())?;
+        let space = Arc::new(space);
+        self.share(&space);
+        Ok(WalkSource::Styled(space))
+    }
+
+    /// The trained walk, and with these styles if some character walks so already.
+    ///
+    /// # Errors
+    /// What is wrong with the model, for the user.
+    pub(crate) fn prepared(
+        &self,
+        styles: &[Arc<TrainedStyle>],
+    ) -> Result<(Arc<TrainedWalk>, Option<Arc<StyleSpace>>), String> {
+        let WalkModel::Gait(model) = &*self.trained()? else {
+            return Err(
+                "A crowd walks with a trained walk (.footfall), not with a switching model: load another Model.".to_owned(),
+            );
+        };
+        Ok((Arc::clone(model), self.space_with(styles)))
+    }
+
+    /// Shares a model with styles, prepared elsewhere, with characters that wear the same.
+    pub(crate) fn share(&mut self, space: &Arc<StyleSpace>) {
         self.spaces.retain(|space| space.strong_count() > 0);
+        self.spaces.push(Arc::downgrade(space));
+    }
+
+    fn space_with(&self, styles: &[Arc<TrainedStyle>]) -> Option<Arc<StyleSpace>> {
         let holds_these = |space: &Arc<StyleSpace>| {
             let pairs = space.styles().iter().zip(styles);
             space.styles().len() == styles.len()
                 && pairs.into_iter().all(|(a, b)| Arc::ptr_eq(a, b))
         };
-        let known = self.spaces.iter().filter_map(Weak::upgrade);
-        if let Some(space) = known.into_iter().find(holds_these) {
-            return Ok(WalkSource::Styled(space));
-        }
-        let space = StyleSpace::new(&trained, styles).map_err(|error| error.to_string())?;
-        let space = Arc::new(space);
-        self.spaces.push(Arc::downgrade(&space));
-        Ok(WalkSource::Styled(space))
+        let mut known = self.spaces.iter().filter_map(Weak::upgrade);
+        known.find(holds_these)
     }
 }
 

@@ -151,13 +151,14 @@ impl Trial<'_> {
         let mut travel = Vec3::ZERO;
         let mut frames = 0;
         for step in 0..4 {
-            let timing = walker.step().timing;
+            if step > 0 {
+                let ahead = Planner::mean_draw(walker.step().timing.leading);
+                walker.advance(planner, self.blend, ahead, request, self.bench);
+            }
             if step >= 2 {
                 travel += walker.stage().travel(walker.step());
-                frames += timing.frames;
+                frames += walker.step().timing.frames;
             }
-            let ahead = Planner::mean_draw(timing.leading);
-            walker.advance(planner, self.blend, ahead, request, self.bench);
         }
         Ok((travel, frames))
     }

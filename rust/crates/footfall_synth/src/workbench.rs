@@ -1,4 +1,4 @@
-//! Where steps are solved: buffers that nobody needs between two steps, so that all walkers share them.
+//! Buffers in which steps are solved: nobody needs them between two steps, so all walkers share them.
 
 use crate::error::SynthError;
 use crate::plan::{Planner, StepPlan};
@@ -84,13 +84,13 @@ impl Workbench {
 
 /// Workbenches that walkers of one model lend each other: as many as there ever were threads that worked steps out at the same time.
 #[derive(Debug, Default)]
-pub(crate) struct Workbenches(Mutex<Vec<Box<Workbench>>>);
+pub(crate) struct Workbenches(Mutex<Vec<Workbench>>);
 
 impl Workbenches {
     /// Works at one of them. Allocates only when all are in use.
     pub(crate) fn at_one<R>(&self, model: &GaitModel, work: impl FnOnce(&mut Workbench) -> R) -> R {
         let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut bench = free.unwrap_or_else(|| Box::new(Workbench::new(model)));
+        let mut bench = free.unwrap_or_else(|| Workbench::new(model));
         let done = work(&mut bench);
         let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         free.push(bench);

@@ -34,14 +34,16 @@ pub(super) struct Actors {
 }
 
 impl Actors {
-    /// Lends scenes to the walkers of this tier, and takes them back from all others. Who has one keeps it.
+    /// Lends scenes to the walkers of this tier, and takes them back from all others. Who has one keeps it. At most so
+    /// many scenes are made in one call; returns whether there are walkers still without.
     pub(super) fn lend(
         &mut self,
         tiers: &[Tier],
         agents: &[Agent],
         scene: &Gd<PackedScene>,
         host: &mut Gd<Node3D>,
-    ) {
+        most_made: usize,
+    ) -> bool {
         let is_full = |index: u32| tiers.get(index as usize) == Some(&Tier::Full);
         self.playing.clear();
         self.playing.resize(tiers.len(), false);
@@ -52,12 +54,11 @@ impl Actors {
             if is_full(index) {
                 self.playing[index as usize] = true;
             } else {
-                actor.plays = None;
-                actor.node.set_visible(false);
-                actor.node.set_process_mode(ProcessMode::DISABLED);
+                actor.rest();
             }
         }
         let mut next = 0;
+        let mut made = 0;
         for walker in 0..tiers.len() as u32 {
             if !is_full(walker) || self.playing[walker as usize] {
                 continue;
@@ -70,15 +71,14 @@ impl Actors {
                 next += 1;
             }
             if next == self.all.len() {
-                let made = if self.broken {
-                    None
-                } else {
-                    Actor::new(scene, host)
-                };
-                let Some(actor) = made else {
+                if self.broken || made == most_made {
+                    return !self.broken;
+                }
+                let Some(actor) = Actor::new(scene, host) else {
                     self.broken = true;
-                    return;
+                    return false;
                 };
+                made += 1;
                 self.all.push(actor);
             }
             let actor = &mut self.all[next];
@@ -98,24 +98,57 @@ impl Actors {
                 placement.bind_mut().forget();
             }
         }
+        false
+    }
+
+    /// Takes the scene of a walker back.
+    pub(super) fn take_back(&mut self, walker: usize) {
+        let mut actors = self.all.iter_mut();
+        if let Some(actor) = actors.find(|actor| actor.plays == Some(walker as u32)) {
+            actor.rest();
+        }
+        if let Some(playing) = self.playing.get_mut(walker) {
+            *playing = false;
+        }
+    }
+
+    /// The scene that plays a walker.
+    pub(super) fn node_of(&self, walker: usize) -> Option<Gd<Node3D>> {
+        let mut actors = self.all.iter();
+        let actor = actors.find(|actor| actor.plays == Some(walker as u32))?;
+        actor.node.is_instance_valid().then(|| actor.node.clone())
+    }
+
+    /// The walker whom a scene plays that is this node, or has it in it.
+    pub(super) fn walker_of(&self, node: &Gd<Node>) -> Option<usize> {
+        let holds = |actor: &&Actor| {
+            actor.node.is_instance_valid()
+                && (actor.node.instance_id() == node.instance_id()
+                    || actor.node.is_ancestor_of(node))
+        };
+        let actor = self.all.iter().find(holds)?;
+        actor.plays.map(|walker| walker as usize)
     }
 
     /// Poses every scene as the walker that it plays.
     pub(super) fn pose(&mut self, agents: &[Agent]) {
         let mut pose = CrowdPose::default();
         for actor in &mut self.all {
-            let Some(agent) = actor.plays.and_then(|index| agents.get(index as usize)) else {
+            let agent = actor.plays.and_then(|index| agents.get(index as usize));
+            let Some((agent, walker)) =
+                agent.and_then(|agent| Some((agent, agent.walker.as_ref()?)))
+            else {
                 continue;
             };
             let turn = Basis::from_quaternion(convert::quaternion(from_heading(agent.heading)));
             let scaled = turn.scaled(Vector3::splat(agent.size));
             let place = Transform3D::new(scaled, convert::vector3(agent.place));
             actor.node.set_transform(place);
-            agent.walker.pose(&mut pose);
+            walker.pose(&mut pose);
             actor.binding.write_joints(&mut actor.skeleton, &pose);
             if let Some(placement) = &mut actor.placement {
                 // The scene is scaled, and a large body takes longer for its steps.
-                let next = agent.walker.next_footstep().map(|(footstep, secs)| {
+                let next = walker.next_footstep().map(|(footstep, secs)| {
                     let position = footstep.position * agent.size;
                     (
                         Footstep {
@@ -126,7 +159,7 @@ impl Actors {
                     )
                 });
                 let landings = Footstep::landings(next);
-                let contacts = agent.walker.feet_in_contact();
+                let contacts = walker.feet_in_contact();
                 placement.bind_mut().feed(contacts, landings);
             }
         }
@@ -152,6 +185,15 @@ impl Actors {
 }
 
 impl Actor {
+    /// Plays nobody.
+    fn rest(&mut self) {
+        self.plays = None;
+        if self.node.is_instance_valid() {
+            self.node.set_visible(false);
+            self.node.set_process_mode(ProcessMode::DISABLED);
+        }
+    }
+
     fn new(scene: &Gd<PackedScene>, host: &mut Gd<Node3D>) -> Option<Self> {
         let mut node = scene.instantiate()?.try_cast::<Node3D>().ok()?;
         host.add_child_ex(&node)

@@ -1,5 +1,6 @@
 //! One walker of a crowd: where it is, where it wants to go, and how it gets there. Nothing here knows the engine.
 
+use super::kit::Outfit;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop};
 use glam::{Vec2, Vec3};
@@ -61,7 +62,14 @@ impl Drawn {
 /// One walker in the space of the crowd: +Y up.
 #[derive(Debug)]
 pub(super) struct Agent {
-    pub(super) walker: CrowdWalker,
+    /// Its walk; none before it is made, and for places that nobody has.
+    pub(super) walker: Option<CrowdWalker>,
+    /// Tells it from others who had its place or will have it.
+    pub(super) ticket: u64,
+    /// Whether it is one of the node's `count`, not one that a script added.
+    pub(super) counted: bool,
+    /// Where in its stride it begins.
+    pub(super) start_phase: f32,
     pub(super) goal: Goal,
     /// What it would like to walk, m/s.
     pub(super) speed_mps: f32,
@@ -73,8 +81,8 @@ pub(super) struct Agent {
     pub(super) heading: f32,
     pub(super) ground_m: f32,
     pub(super) velocity: Vec2,
-    /// Weights of the styles that it wears.
-    pub(super) weights: Vec<f32>,
+    /// Weights of the styles that it wears, in parts: see [`Kit`](super::kit::Kit).
+    pub(super) outfit: Outfit,
     /// Places to go to after its goal, the next one last.
     pub(super) route: Vec<Vec2>,
     /// How far along a path it is, metres, and how far beside its middle.
@@ -90,10 +98,14 @@ pub(super) struct Agent {
 }
 
 impl Agent {
-    pub(super) fn new(walker: CrowdWalker, place: Vec3, heading: f32, seed: u64) -> Self {
+    /// Somebody who stands there until what walks is made.
+    pub(super) fn new(ticket: u64, place: Vec3, heading: f32, seed: u64) -> Self {
         Self {
-            walked: walker.start_from_character(),
-            walker,
+            walked: GroundTransform::default(),
+            walker: None,
+            ticket,
+            counted: false,
+            start_phase: 0.0,
             goal: Goal::Turn(0.0),
             speed_mps: 1.3,
             size: 1.0,
@@ -103,7 +115,7 @@ impl Agent {
             heading,
             ground_m: place.y,
             velocity: Vec2::ZERO,
-            weights: Vec::new(),
+            outfit: Outfit::default(),
             route: Vec::new(),
             progress_m: 0.0,
             aside_m: 0.0,
@@ -112,6 +124,24 @@ impl Agent {
             chance: seed,
             controls: Controls::STAND,
         }
+    }
+
+    /// Nobody.
+    pub(super) fn absent() -> Self {
+        Self::new(u64::MAX, Vec3::ZERO, 0.0, 0)
+    }
+
+    /// Begins to walk, at this time of the crowd.
+    pub(super) fn begin(&mut self, walker: CrowdWalker, now_secs: f64) {
+        self.walked = walker.start_from_character();
+        self.clock_secs = now_secs;
+        self.walker = Some(walker);
+    }
+
+    /// Share of its stride that is behind it.
+    pub(super) fn phase(&self) -> f32 {
+        let walker = self.walker.as_ref();
+        walker.map_or(self.start_phase, CrowdWalker::phase)
     }
 
     /// Decides what to do next; what it decides is taken up with the next step.
@@ -181,13 +211,16 @@ impl Agent {
 
     /// Lets time pass.
     pub(super) fn advance(&mut self, dt_secs: f32, workshop: &mut Workshop) {
+        let Some(walker) = &mut self.walker else {
+            return;
+        };
         let own_secs = dt_secs / self.size.sqrt();
-        self.walker.step(own_secs, self.controls, workshop);
-        let now = self.walker.start_from_character();
+        walker.step(own_secs, self.controls, workshop);
+        let now = walker.start_from_character();
         let back = from_heading(-self.walked.heading);
         let moved = back * (now.position - self.walked.position) * self.size;
         let step = from_heading(self.heading) * moved;
-        self.landed = self.walker.footstep().map(|footstep| {
+        self.landed = walker.footstep().map(|footstep| {
             let from = back * (footstep.position - self.walked.position) * self.size;
             (
                 footstep.side,
@@ -218,7 +251,8 @@ impl Agent {
 
     /// Whether it will take up a decision in this time: then is the time to decide.
     pub(super) fn is_about_to_step(&self, dt_secs: f32) -> bool {
-        self.walker.secs_to_next_step() <= dt_secs / self.size.sqrt()
+        let walker = self.walker.as_ref();
+        walker.is_some_and(|walker| walker.secs_to_next_step() <= dt_secs / self.size.sqrt())
     }
 
     /// A number between 0 and 1, another one at every call and the same ones for equal seeds (`SplitMix64`).
@@ -266,15 +300,23 @@ impl Agent {
     /// Has memory bring what [`advance`](Self::advance) reads.
     pub(super) fn fetch(&self) {
         core::hint::black_box((self.seed, self.clock_secs, self.controls));
-        self.walker.fetch_place();
+        if let Some(walker) = &self.walker {
+            walker.fetch_place();
+        }
     }
 
     /// Has memory bring what [`pose`](Self::pose) reads.
     pub(super) fn fetch_pose(&self) {
-        self.walker.fetch_pose();
+        if let Some(walker) = &self.walker {
+            walker.fetch_pose();
+        }
     }
 
-    pub(super) fn pose(&self, out: &mut CrowdPose) {
-        self.walker.pose(out);
+    /// Writes its pose; whether there is one.
+    pub(super) fn pose(&self, out: &mut CrowdPose) -> bool {
+        if let Some(walker) = &self.walker {
+            walker.pose(out);
+        }
+        self.walker.is_some()
     }
 }

@@ -26,6 +26,15 @@ pub(super) struct CrowdMesh {
     pub(super) turned_by: [Joint; JOINT_COUNT],
 }
 
+impl CrowdMesh {
+    /// How high its highest joint is in the T-pose.
+    pub(super) fn height(&self) -> f32 {
+        self.rest
+            .iter()
+            .fold(0.0, |height, joint| height.max(joint.y))
+    }
+}
+
 /// Finds the skeleton of a character.
 pub(super) fn skeleton_of(character: &Gd<Node3D>) -> Option<Gd<Skeleton3D>> {
     let found = character

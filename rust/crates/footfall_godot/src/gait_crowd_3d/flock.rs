@@ -38,6 +38,8 @@ pub(super) struct Flock {
     instances: [PackedFloat32Array; 2],
     turn: [usize; 2],
     height: i32,
+    /// Most instances.
+    pub(super) room: usize,
 }
 
 impl Flock {
@@ -75,8 +77,17 @@ impl Flock {
             multimesh,
             image,
             texture,
-            poses: [(); 2].map(|()| std::iter::repeat_n(0_u8, bytes).collect()),
-            instances: [(); 2].map(|()| std::iter::repeat_n(0.0_f32, numbers).collect()),
+            poses: [(); 2].map(|()| {
+                let mut zeros = PackedByteArray::new();
+                zeros.resize(bytes);
+                zeros
+            }),
+            instances: [(); 2].map(|()| {
+                let mut zeros = PackedFloat32Array::new();
+                zeros.resize(numbers);
+                zeros
+            }),
+            room,
             turn: [0; 2],
             height: convert::count(height),
         })

@@ -1,28 +1,29 @@
 //! A crowd made of what its node was given.
 
 use super::crowd_mesh::CrowdMesh;
+use super::kit::Recipe;
 use super::walkers::{Settings, Walkers};
 use super::way::{Path, Way};
 use super::{CrowdBehaviour, GaitCrowd3D, NO_CHARACTER, linear};
-use crate::gait_model::{GaitModel, NO_MODEL};
+use crate::gait_model::NO_MODEL;
 use crate::gait_style;
-use crate::walk_source::WalkSource;
+use footfall_model::{GaitModel, GaitStyle};
 use footfall_synth::StyleSpace;
 use glam::Vec2;
 use godot::classes::{Engine, Node3D, Path3D};
 use godot::prelude::*;
 use std::sync::Arc;
 
+/// A walk, its styles, and both prepared if somebody walks so already.
+type CrowdWalk = (Arc<GaitModel>, Vec<Arc<GaitStyle>>, Option<Arc<StyleSpace>>);
+
 impl GaitCrowd3D {
-    pub(super) fn space(&self, model: &Gd<GaitModel>) -> Result<Arc<StyleSpace>, String> {
+    /// The walk and the styles that walkers are made of.
+    fn walk(&self) -> Result<CrowdWalk, String> {
+        let model = self.model.as_ref().ok_or(NO_MODEL)?;
         let styles = gait_style::trained_all(&self.styles)?;
-        let mut model = model.clone();
-        match model.bind_mut().source(&styles)? {
-            WalkSource::Styled(space) => Ok(space),
-            WalkSource::Switching(_) => Err(
-                "A crowd walks with a trained walk (.footfall), not with a switching model: load another Model.".to_owned(),
-            ),
-        }
+        let (trained, space) = model.bind().prepared(&styles)?;
+        Ok((trained, styles, space))
     }
 
     pub(super) fn way(&self) -> Result<Way, String> {
@@ -59,26 +60,60 @@ impl GaitCrowd3D {
         if self.walkers.is_some() {
             return true;
         }
-        if self.failed || !self.base().is_inside_tree() {
+        if self.problem.is_some() || !self.base().is_inside_tree() {
             return false;
         }
         match self.made() {
             Ok(walkers) => self.walkers = Some(walkers),
-            Err(problem) => {
-                self.failed = true;
-                if !Engine::singleton().is_editor_hint() {
-                    let node = self.base().get_path();
-                    godot_warn!("{node}: {problem}");
-                }
-            }
+            Err(problem) => self.fail(problem),
         }
         self.walkers.is_some()
     }
 
+    /// There is no crowd, for this reason, until something changes.
+    pub(super) fn fail(&mut self, problem: String) {
+        self.forget();
+        if !Engine::singleton().is_editor_hint() {
+            let node = self.base().get_path();
+            godot_warn!("{node}: {problem}");
+        }
+        self.problem = Some(problem);
+        self.base_mut().update_configuration_warnings();
+    }
+
+    /// What keeps the crowd from walking, as far as it is known.
+    pub(super) fn problems(&self) -> PackedStringArray {
+        let mut problems: Vec<String> = Vec::new();
+        let checked = self.walk().and_then(|(model, styles, space)| {
+            // Checked already when somebody walks so.
+            if space.is_some() {
+                return Ok(());
+            }
+            let all: Vec<&GaitStyle> = styles.iter().map(AsRef::as_ref).collect();
+            model.check_styles(&all).map_err(|error| error.to_string())
+        });
+        if let Err(problem) = checked {
+            problems.push(problem);
+        }
+        if self.character.is_none() {
+            problems.push(NO_CHARACTER.to_owned());
+        }
+        if self.behaviour == CrowdBehaviour::Path
+            && let Err(problem) = self.way()
+        {
+            problems.push(problem);
+        }
+        if let Some(problem) = &self.problem
+            && !problems.contains(problem)
+        {
+            problems.push(problem.clone());
+        }
+        problems.iter().map(GString::from).collect()
+    }
+
     fn made(&mut self) -> Result<Walkers, String> {
-        let model = self.model.clone().ok_or(NO_MODEL)?;
+        let (model, styles, space) = self.walk()?;
         let character = self.character.clone().ok_or(NO_CHARACTER)?;
-        let space = self.space(&model)?;
         let way = self.way()?;
         let mut host = self.to_gd().upcast::<Node3D>();
         let mesh = {
@@ -95,8 +130,16 @@ impl GaitCrowd3D {
             half_area: 0.5 * Vec2::new(self.area.x, self.area.y),
             path_width: self.path_width as f32,
         };
-        let mut walkers = Walkers::new(&space, mesh, way, settings)?;
-        walkers.populate(self.count as usize);
+        let recipe = Recipe {
+            model,
+            styles,
+            space,
+            body: mesh.body.clone(),
+            // One for each thread, and one for who calls.
+            threads: rayon::current_num_threads() + 1,
+        };
+        let mut walkers = Walkers::new(recipe, mesh, way, settings);
+        walkers.set_count(self.count as usize);
         Ok(walkers)
     }
 }

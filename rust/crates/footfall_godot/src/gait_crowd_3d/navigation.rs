@@ -70,7 +70,7 @@ impl Navigation {
             if left == 0 {
                 break;
             }
-            if agent.is_on_its_way() {
+            if agent.walker.is_none() || agent.is_on_its_way() {
                 continue;
             }
             left -= 1;

@@ -1,10 +1,13 @@
 //! A crowd as bytes.
 
+use super::MOST_AGENTS;
 use super::agent::{Agent, Goal};
+use super::roster::{Roster, SavedRoster};
 use serde::{Deserialize, Serialize};
 
-/// Says what the bytes are, and which version of it.
-const HEADER: &[u8; 8] = b"footcrw1";
+/// Headers of the bytes, one a version: the first knew no names.
+const HEADER: &[u8; 8] = b"footcrw2";
+const HEADER_1: &[u8; 8] = b"footcrw1";
 
 /// What is kept of a walker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,12 +26,37 @@ pub(super) struct SavedAgent {
     pub(super) weights: Vec<f32>,
 }
 
-/// Writes everybody.
-pub(super) fn write(agents: &[Agent]) -> Vec<u8> {
-    let saved: Vec<SavedAgent> = agents.iter().map(SavedAgent::of).collect();
+/// A crowd as it is kept.
+#[derive(Debug, PartialEq)]
+pub(super) struct SavedCrowd {
+    /// How many walkers there ever were.
+    pub(super) made: u64,
+    /// None for a crowd that was saved before walkers had names.
+    pub(super) roster: Option<Roster>,
+    /// In the order in which they came.
+    pub(super) agents: Vec<SavedAgent>,
+    /// Which of them are of the node's `count`.
+    pub(super) counted: Vec<bool>,
+}
+
+/// The layout of the second version.
+type Content = (u64, SavedRoster, Vec<SavedAgent>, Vec<bool>);
+
+/// Writes everybody; `agents` come in the roster's order.
+pub(super) fn write<'a>(
+    made: u64,
+    roster: &Roster,
+    agents: impl Iterator<Item = &'a Agent> + Clone,
+) -> Vec<u8> {
+    let content: Content = (
+        made,
+        roster.saved(),
+        agents.clone().map(SavedAgent::of).collect(),
+        agents.map(|agent| agent.counted).collect(),
+    );
     let mut bytes = HEADER.to_vec();
     // Plain numbers always can be written.
-    bytes.extend(postcard::to_stdvec(&saved).unwrap_or_default());
+    bytes.extend(postcard::to_stdvec(&content).unwrap_or_default());
     bytes
 }
 
@@ -36,13 +64,38 @@ pub(super) fn write(agents: &[Agent]) -> Vec<u8> {
 ///
 /// # Errors
 /// What is wrong with the bytes, for the user.
-pub(super) fn read(bytes: &[u8]) -> Result<Vec<SavedAgent>, String> {
-    let content = bytes
-        .strip_prefix(HEADER)
-        .ok_or("these are not the bytes of a crowd, or those of another version of Footfall")?;
-    let saved: Vec<SavedAgent> = postcard::from_bytes(content)
-        .map_err(|error| format!("the bytes are damaged ({error})"))?;
-    if saved.iter().all(SavedAgent::is_sound) {
+pub(super) fn read(bytes: &[u8]) -> Result<SavedCrowd, String> {
+    let damaged = |error| format!("the bytes are damaged ({error})");
+    let saved = if let Some(content) = bytes.strip_prefix(HEADER) {
+        let (made, roster, agents, counted): Content =
+            postcard::from_bytes(content).map_err(damaged)?;
+        let roster = Roster::restored(&roster)
+            .filter(|roster| roster.order().len() == agents.len())
+            .ok_or("the bytes are damaged: its walkers and their names do not agree")?;
+        SavedCrowd {
+            made,
+            roster: Some(roster),
+            agents,
+            counted,
+        }
+    } else if let Some(content) = bytes.strip_prefix(HEADER_1) {
+        let agents: Vec<SavedAgent> = postcard::from_bytes(content).map_err(damaged)?;
+        SavedCrowd {
+            made: agents.len() as u64,
+            roster: None,
+            counted: vec![true; agents.len()],
+            agents,
+        }
+    } else {
+        return Err(
+            "these are not the bytes of a crowd, or those of another version of Footfall"
+                .to_owned(),
+        );
+    };
+    if saved.agents.len() > MOST_AGENTS as usize {
+        return Err(format!("it has more than {MOST_AGENTS} walkers"));
+    }
+    if saved.agents.iter().all(SavedAgent::is_sound) {
         Ok(saved)
     } else {
         Err("the bytes are damaged: a number is not finite".to_owned())
@@ -57,7 +110,7 @@ impl SavedAgent {
         };
         Self {
             seed: agent.seed,
-            phase: agent.walker.phase(),
+            phase: agent.phase(),
             place: agent.place.to_array(),
             heading: agent.heading,
             speed_mps: agent.speed_mps,
@@ -67,7 +120,7 @@ impl SavedAgent {
             turn_rate,
             progress_m: agent.progress_m,
             aside_m: agent.aside_m,
-            weights: agent.weights.clone(),
+            weights: agent.outfit.weights(),
         }
     }
 
@@ -94,12 +147,41 @@ impl SavedAgent {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     #[test]
     fn bytes_that_are_no_crowd_are_refused() {
         assert!(read(b"").is_err());
         assert!(read(b"footcrw9").is_err());
         assert!(read(b"footcrw1\xff\xff\xff\xff").is_err());
-        assert_eq!(read(&write(&[])).unwrap(), Vec::new());
+        assert!(read(b"footcrw2\xff\xff\xff\xff").is_err());
+        let empty = read(&write(3, &Roster::default(), core::iter::empty())).unwrap();
+        assert_eq!(empty.made, 3);
+        assert_eq!(empty.roster, Some(Roster::default()));
+    }
+
+    #[test]
+    fn names_are_kept_and_bytes_of_the_first_version_are_read() {
+        let mut roster = Roster::default();
+        let agents: Vec<Agent> = (0..3_u16)
+            .map(|index| {
+                roster.enter();
+                let mut agent = Agent::new(u64::from(index), Vec3::X, f32::from(index), 7);
+                agent.counted = index == 1;
+                agent
+            })
+            .collect();
+        roster.leave(&[1]);
+        let there = roster.order().iter().map(|place| &agents[*place as usize]);
+        let saved = read(&write(3, &roster, there)).unwrap();
+        assert_eq!(saved.roster, Some(roster));
+        assert_eq!(saved.agents.len(), 2);
+        assert!((saved.agents[1].heading - 2.0).abs() < 1e-6);
+        assert_eq!(saved.counted, [false, false]);
+
+        let mut old = HEADER_1.to_vec();
+        old.extend(postcard::to_stdvec(&saved.agents).unwrap());
+        let read = read(&old).unwrap();
+        assert_eq!((read.roster, read.agents.len()), (None, 2));
     }
 }

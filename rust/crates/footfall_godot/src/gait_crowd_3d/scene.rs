@@ -1,12 +1,12 @@
 //! What is seen of a crowd.
 
 use super::actors::Actors;
+use super::agent::Agent;
 use super::flock::{Flock, INSTANCE_NUMBERS, POSE_BYTES, write_instance, write_pose};
+use super::motion::{FETCHED, GROUPS};
 use super::tiers::{Chooser, Limits, Tier};
-use super::walkers::{FETCHED, GROUPS, Walkers};
+use super::walkers::Walkers;
 use crate::convert;
-use crate::physics_ground::PhysicsGround;
-use footfall_ik::placement::Terrain as _;
 use footfall_synth::CrowdPose;
 use glam::{Vec3, Vec4};
 use godot::classes::{Node, Node3D, PackedScene, ShaderMaterial};
@@ -17,14 +17,14 @@ use rayon::prelude::*;
 const CHOOSE_EVERY: u64 = 8;
 /// Who is this close to what the camera sees counts as seen, metres: poses must be there before they are needed.
 const MARGIN_M: f32 = 3.0;
-/// Ground is looked for so far above and below a walker, metres.
-const GROUND_REACH_M: f32 = 1.5;
 
 /// How the node wants its crowd to look.
 pub(super) struct Look {
     pub(super) character: Option<Gd<PackedScene>>,
     pub(super) material: Option<Gd<ShaderMaterial>>,
     pub(super) culls: bool,
+    /// Whole scenes that are made in one frame at most: each takes the engine a millisecond or more.
+    pub(super) most_made: usize,
 }
 
 /// What draws a crowd.
@@ -35,42 +35,18 @@ pub(super) struct CrowdScene {
     chooser: Chooser,
     /// Frames that were drawn.
     drawn: u64,
+    /// The crowd's frame that was drawn last.
+    frame: u64,
     /// The sides of what the camera sees, kept for its memory.
     planes: Vec<Vec4>,
     /// The walkers in each instance of the near flock, and in each of a far one.
     shown: Vec<u32>,
     /// When each walker's pose among those far away was written last, counted in frames.
     ticks: Vec<u64>,
-}
-
-/// Finds the ground under walkers that have just put a foot down.
-pub(super) fn find_ground(walkers: &mut Walkers, host: &Gd<Node3D>, mask: u32) {
-    if mask == 0 {
-        return;
-    }
-    let space = host
-        .get_world_3d()
-        .and_then(|world| world.get_direct_space_state());
-    let Some(space) = space else {
-        return;
-    };
-    let world = convert::frame(host.get_global_transform());
-    let mut rays = PhysicsGround::new(mask, 0.0, &Array::new());
-    let mut ground = rays.now(space);
-    for index in 0..walkers.agents.len() {
-        let moved = walkers.moved(index);
-        let agent = &mut walkers.agents[index];
-        if !moved || agent.landed.is_none() {
-            continue;
-        }
-        // A little ahead, where it will be in the middle of the step.
-        let ahead = agent.place + 0.25 * Vec3::new(agent.velocity.x, 0.0, agent.velocity.y);
-        let from = world.point(ahead + Vec3::Y * GROUND_REACH_M);
-        let way = world.up() * (-2.0 * GROUND_REACH_M);
-        if let Some(hit) = ground.cast(from, way) {
-            agent.ground_m = world.local_point(hit.position).y;
-        }
-    }
+    /// Groups of those far away of whom no poses are written yet.
+    unwritten: [bool; GROUPS],
+    /// Whether walkers are waiting for a whole scene.
+    lacking: bool,
 }
 
 impl CrowdScene {
@@ -80,25 +56,59 @@ impl CrowdScene {
         limits: &Limits,
         look: &Look,
     ) -> Option<Self> {
-        let material = look.material.as_ref();
-        let count = walkers.agents.len();
-        let node = host.clone().upcast::<Node>();
-        let room = count.min(limits.counts[0] + limits.counts[1]).max(1);
-        let near = Flock::new(&node, &walkers.mesh, 0, room, room, material)?;
-        let each = count.div_ceil(GROUPS).max(1);
-        let far = (0..GROUPS)
-            .map(|_| Flock::new(&node, &walkers.mesh, 1, each, 2 * each, material))
-            .collect::<Option<Vec<_>>>()?;
+        let (room, each) = rooms(walkers, limits);
         Some(Self {
-            near,
-            far,
+            near: near(host, walkers, room, look)?,
+            far: (0..GROUPS)
+                .map(|_| far(host, walkers, each, look))
+                .collect::<Option<Vec<_>>>()?,
             actors: Actors::default(),
             chooser: Chooser::default(),
             drawn: 0,
+            frame: 0,
             planes: Vec::new(),
-            shown: Vec::with_capacity(count),
-            ticks: vec![0; count],
+            shown: Vec::new(),
+            ticks: Vec::new(),
+            unwritten: [true; GROUPS],
+            lacking: false,
         })
+    }
+
+    /// Gives it room for everybody.
+    fn fit(&mut self, host: &Gd<Node3D>, walkers: &Walkers, limits: &Limits, look: &Look) {
+        let (room, each) = rooms(walkers, limits);
+        let places = walkers.agents.len();
+        self.shown.reserve(room.saturating_sub(self.shown.len()));
+        self.ticks.resize(places, 0);
+        if room > self.near.room
+            && let Some(made) = near(host, walkers, room, look)
+        {
+            core::mem::replace(&mut self.near, made).free();
+        }
+        for (flock, unwritten) in self.far.iter_mut().zip(&mut self.unwritten) {
+            // Half as much again, so that it seldom happens.
+            if each > flock.room
+                && let Some(made) = far(host, walkers, each.max(flock.room * 3 / 2), look)
+            {
+                core::mem::replace(flock, made).free();
+                *unwritten = true;
+            }
+        }
+    }
+
+    /// Forgets those who had these places.
+    pub(super) fn leave(&mut self, places: &[usize]) {
+        for place in places {
+            self.actors.take_back(*place);
+            if let Some(tick) = self.ticks.get_mut(*place) {
+                *tick = 0;
+            }
+        }
+    }
+
+    /// The whole scenes.
+    pub(super) fn actors(&self) -> &Actors {
+        &self.actors
     }
 
     /// Draws everybody as they are now.
@@ -110,7 +120,12 @@ impl CrowdScene {
         look: &Look,
     ) {
         self.drawn += 1;
-        walkers.tiers.resize(walkers.agents.len(), Tier::Far);
+        self.fit(host, walkers, limits, look);
+        if !walkers.began.is_empty() && self.frame == walkers.frame {
+            // While time stands still it is nobody's turn.
+            self.unwritten = [true; GROUPS];
+        }
+        self.frame = walkers.frame;
         let camera = host
             .get_viewport()
             .and_then(|viewport| viewport.get_camera_3d());
@@ -118,9 +133,12 @@ impl CrowdScene {
             let place = camera.as_ref().map_or(Vec3::ZERO, |camera| {
                 convert::vec3(host.to_local(camera.get_global_position()))
             });
-            let places = walkers.drawn.iter().map(|drawn| drawn.places[1]);
+            let agents = walkers.agents.iter();
+            let places = agents.map(|agent| agent.walker.as_ref().map(|_| agent.place));
             self.chooser
                 .choose(place, limits, places, &mut walkers.tiers);
+            self.lend(walkers, host, look);
+        } else if self.lacking {
             self.lend(walkers, host, look);
         }
         let mut planes = core::mem::take(&mut self.planes);
@@ -146,8 +164,13 @@ impl CrowdScene {
     fn lend(&mut self, walkers: &Walkers, host: &Gd<Node3D>, look: &Look) {
         if let Some(character) = &look.character {
             let mut host = host.clone();
-            self.actors
-                .lend(&walkers.tiers, &walkers.agents, character, &mut host);
+            self.lacking = self.actors.lend(
+                &walkers.tiers,
+                &walkers.agents,
+                character,
+                &mut host,
+                look.most_made,
+            );
         }
     }
 
@@ -215,6 +238,7 @@ impl CrowdScene {
     /// the one to the other.
     fn draw_far(&mut self, walkers: &Walkers, planes: &[Vec4]) {
         let Walkers {
+            agents,
             tiers,
             drawn,
             frame,
@@ -224,10 +248,11 @@ impl CrowdScene {
         for (group, flock) in self.far.iter_mut().enumerate() {
             let since = (frame + GROUPS as u64 - group as u64) % GROUPS as u64;
             // At first all are, so that a crowd whose time stands still is seen.
-            if since == 0 || self.drawn == 1 {
+            let unwritten = core::mem::take(&mut self.unwritten[group]);
+            if since == 0 || unwritten {
                 write_far(flock, group, walkers, planes, &self.ticks);
                 for index in (group..drawn.len()).step_by(GROUPS) {
-                    if tiers[index] == Tier::Far && is_seen(drawn[index].places[1], planes) {
+                    if is_far(tiers[index], &agents[index], planes) {
                         self.ticks[index] = frame;
                     }
                 }
@@ -260,12 +285,11 @@ fn write_far(flock: &mut Flock, group: usize, walkers: &Walkers, planes: &[Vec4]
     let Walkers {
         agents,
         tiers,
-        drawn,
         mesh,
         frame,
         ..
     } = walkers;
-    let (agents, turned_by) = (agents.as_slice(), &mesh.turned_by);
+    let (agents, tiers, turned_by) = (agents.as_slice(), tiers.as_slice(), &mesh.turned_by);
     let (poses, last) = flock.poses_and_last();
     poses
         .par_chunks_mut(2 * POSE_BYTES)
@@ -277,7 +301,7 @@ fn write_far(flock: &mut Flock, group: usize, walkers: &Walkers, planes: &[Vec4]
             let Some(agent) = agents.get(index) else {
                 return;
             };
-            if tiers[index] != Tier::Far || !is_seen(drawn[index].places[1], planes) {
+            if !is_far(tiers[index], agent, planes) {
                 return;
             }
             let mut pose = CrowdPose::default();
@@ -290,6 +314,35 @@ fn write_far(flock: &mut Flock, group: usize, walkers: &Walkers, planes: &[Vec4]
                 was.copy_from_slice(is);
             }
         });
+}
+
+/// Whether a walker is there, far away and seen.
+fn is_far(tier: Tier, agent: &Agent, planes: &[Vec4]) -> bool {
+    tier == Tier::Far && agent.walker.is_some() && is_seen(agent.place, planes)
+}
+
+/// Room for walkers whose pose is new in every frame, and for each group of those far away.
+fn rooms(walkers: &Walkers, limits: &Limits) -> (usize, usize) {
+    let places = walkers.agents.len();
+    let near = places.min(limits.counts[0] + limits.counts[1]);
+    (near.max(1), places.div_ceil(GROUPS).max(1))
+}
+
+fn near(host: &Gd<Node3D>, walkers: &Walkers, room: usize, look: &Look) -> Option<Flock> {
+    let node = host.clone().upcast::<Node>();
+    Flock::new(&node, &walkers.mesh, 0, room, room, look.material.as_ref())
+}
+
+fn far(host: &Gd<Node3D>, walkers: &Walkers, room: usize, look: &Look) -> Option<Flock> {
+    let node = host.clone().upcast::<Node>();
+    Flock::new(
+        &node,
+        &walkers.mesh,
+        1,
+        room,
+        2 * room,
+        look.material.as_ref(),
+    )
 }
 
 /// A box around places.

@@ -34,18 +34,18 @@ pub(super) struct Chooser {
 }
 
 impl Chooser {
-    /// Chooses everybody's tier from where they are. Who is in a better tier already counts as nearer.
+    /// Chooses everybody's tier from where they are, if they are. Who is in a better tier already counts as nearer.
     pub(super) fn choose(
         &mut self,
         camera: Vec3,
         limits: &Limits,
-        places: impl Iterator<Item = Vec3>,
+        places: impl Iterator<Item = Option<Vec3>>,
         tiers: &mut [Tier],
     ) {
         self.order.clear();
         let reach = limits.distances_m[1].max(limits.distances_m[0]) * KEEP;
         for ((index, place), tier) in places.enumerate().zip(tiers.iter_mut()) {
-            let far = place.distance(camera);
+            let far = place.map_or(f32::INFINITY, |place| place.distance(camera));
             let counts = if *tier == Tier::Far { far } else { far / KEEP };
             if counts < reach {
                 self.order.push((counts, index as u32));
@@ -89,8 +89,8 @@ mod tests {
         distances_m: [5.0, 20.0],
     };
 
-    fn line(count: usize) -> impl Iterator<Item = Vec3> + Clone {
-        (0..count).map(|index| Vec3::X * (index as f32 + 0.5))
+    fn line(count: usize) -> impl Iterator<Item = Option<Vec3>> + Clone {
+        (0..count).map(|index| Some(Vec3::X * (index as f32 + 0.5)))
     }
 
     #[test]
@@ -123,13 +123,18 @@ mod tests {
             chooser.choose(
                 Vec3::ZERO,
                 &limits,
-                [Vec3::X * (4.9 + wobble)].into_iter(),
+                [Some(Vec3::X * (4.9 + wobble))].into_iter(),
                 &mut tiers,
             );
             changes += usize::from(before != tiers);
         }
         assert!(changes <= 2, "{changes} changes");
-        chooser.choose(Vec3::ZERO, &limits, [Vec3::X * 5.6].into_iter(), &mut tiers);
+        chooser.choose(
+            Vec3::ZERO,
+            &limits,
+            [Some(Vec3::X * 5.6)].into_iter(),
+            &mut tiers,
+        );
         assert_eq!(tiers, [Tier::Near]);
     }
 }

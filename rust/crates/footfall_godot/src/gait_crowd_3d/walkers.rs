@@ -1,28 +1,18 @@
-//! Everybody in a crowd, moved on many threads at once.
+//! Everybody in a crowd: coming, going, and the settings of each.
 
 use super::agent::{Agent, Drawn, Goal, WHITE};
 use super::crowd_mesh::CrowdMesh;
+use super::kit::{Kit, Outfit, Recipe};
+use super::maker::{Maker, Order};
 use super::neighbours::Neighbours;
-use super::save::SavedAgent;
+use super::roster::Roster;
+use super::save::{self, SavedAgent, SavedCrowd};
 use super::tiers::Tier;
 use super::way::Way;
-use footfall_core::Side;
-use footfall_synth::{CrowdWalker, Detail, GeneratorConfig, StyleSpace, StyledBody, Workshop};
+use footfall_synth::GeneratorConfig;
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-/// Walkers that one thread takes at a time.
-const CHUNK: usize = 128;
-/// Walkers whose memory is fetched together.
-pub(super) const FETCHED: usize = 16;
-/// Walkers far away are in so many groups, of which one moves in each frame.
-pub(super) const GROUPS: usize = 4;
-/// Who is near whom is looked at in every so many frames.
-const NEIGHBOURS_EVERY: u64 = 4;
-/// Weights of styles are rounded to such parts.
-const WEIGHT_PARTS: f32 = 8.0;
 /// The golden ratio spreads phases evenly, and the plastic number places in a rectangle, however many there are.
 const GOLDEN: f32 = 0.618_034;
 const PLASTIC: [f32; 2] = [0.754_877_7, 0.569_840_3];
@@ -38,133 +28,252 @@ pub(super) struct Settings {
     pub(super) path_width: f32,
 }
 
-/// Everybody.
+/// Everybody. Whoever is in the crowd has a place in `agents`, `tiers` and `drawn` for as long as it is there.
 pub(super) struct Walkers {
     pub(super) agents: Vec<Agent>,
     pub(super) tiers: Vec<Tier>,
     /// What is drawn of each.
     pub(super) drawn: Vec<Drawn>,
+    pub(super) roster: Roster,
+    /// Who began to walk in the last frame, by name.
+    pub(super) began: Vec<i32>,
     /// How many frames there were.
     pub(super) frame: u64,
-    time_secs: f64,
+    pub(super) time_secs: f64,
     pub(super) mesh: CrowdMesh,
-    space: Arc<StyleSpace>,
-    outfits: HashMap<Vec<i8>, StyledBody>,
-    plain: StyledBody,
-    workshops: Vec<Mutex<Workshop>>,
-    neighbours: Neighbours,
-    way: Way,
+    pub(super) kit: Option<Arc<Kit>>,
+    pub(super) neighbours: Neighbours,
+    pub(super) way: Way,
+    pub(super) repeats: bool,
+    pub(super) maker: Maker,
     settings: Settings,
-    repeats: bool,
+    /// How many walkers there ever were: the number of the next, which says who it is.
     made: u64,
+    tickets: u64,
 }
 
 impl Walkers {
-    /// # Errors
-    /// Why nobody can walk, for the user.
-    pub(super) fn new(
-        space: &Arc<StyleSpace>,
-        mesh: CrowdMesh,
-        way: Way,
-        settings: Settings,
-    ) -> Result<Self, String> {
-        let plain = StyledBody::new(space, &[], &mesh.body)
-            .map_err(|error| format!("The walk cannot start: {error}"))?;
-        // One for each thread, and one for who calls.
-        let threads = rayon::current_num_threads() + 1;
-        let workshop = |_| Mutex::new(Workshop::new(&plain));
-        Ok(Self {
-            workshops: (0..threads).map(workshop).collect(),
+    /// A crowd of nobody yet; what its walkers are made with is prepared meanwhile.
+    pub(super) fn new(recipe: Recipe, mesh: CrowdMesh, way: Way, settings: Settings) -> Self {
+        Self {
             agents: Vec::new(),
             tiers: Vec::new(),
             drawn: Vec::new(),
+            roster: Roster::default(),
+            began: Vec::new(),
             // So that nobody's pose seems to have been written just now.
             frame: 1000,
             time_secs: 0.0,
             mesh,
-            space: Arc::clone(space),
-            outfits: HashMap::new(),
-            plain,
+            kit: None,
             neighbours: Neighbours::default(),
             way,
-            settings,
             repeats: true,
+            maker: Maker::new(recipe),
+            settings,
             made: 0,
-        })
-    }
-
-    /// Puts so many walkers where they begin.
-    pub(super) fn populate(&mut self, count: usize) {
-        self.agents.reserve(count);
-        for index in 0..count {
-            let share = |axis: usize| (0.5 + (index + 1) as f32 * PLASTIC[axis]).fract();
-            let (place, heading, progress, aside) = match &self.way {
-                Way::Path(path) => {
-                    let progress = path.length() * index as f32 / count as f32;
-                    let aside = self.settings.path_width * (share(0) - 0.5);
-                    let (place, direction) = path.beside(progress, aside);
-                    (place, direction.x.atan2(direction.y), progress, aside)
-                }
-                Way::Told | Way::Wander { .. } | Way::Navigate => {
-                    let across = Vec2::new(share(0), share(1)) * 2.0 - Vec2::ONE;
-                    let heading = core::f32::consts::TAU * (index as f32 * GOLDEN * GOLDEN).fract();
-                    (across * self.settings.half_area, heading, 0.0, 0.0)
-                }
-            };
-            self.add(Vec3::new(place.x, 0.0, place.y), heading, None);
-            if let Some(agent) = self.agents.last_mut() {
-                if self.way.is_navigated() {
-                    agent.goal = Goal::Place(place);
-                }
-                agent.progress_m = progress;
-                agent.aside_m = aside;
-            }
+            tickets: 0,
         }
     }
 
-    /// Adds one walker, as it was saved or as its number has it.
-    pub(super) fn add(&mut self, place: Vec3, heading: f32, saved: Option<&SavedAgent>) {
+    /// Names of all, in the order in which they came.
+    pub(super) fn names(&self) -> impl Iterator<Item = i32> {
+        let order = self.roster.order().iter();
+        order.map(|place| self.roster.name(*place as usize))
+    }
+
+    /// Makes the crowd's own walkers, those that no script added, so many. Who is too much leaves, the last first; returns their
+    /// places.
+    pub(super) fn set_count(&mut self, count: usize) -> Vec<usize> {
+        let own = |place: &u32| self.agents[*place as usize].counted;
+        let there = self
+            .roster
+            .order()
+            .iter()
+            .filter(|place| own(place))
+            .count();
+        if there > count {
+            let last = self.roster.order().iter().rev().filter(|place| own(place));
+            let leaving: Vec<usize> = last
+                .take(there - count)
+                .map(|place| *place as usize)
+                .collect();
+            self.leave(&leaving);
+            return leaving;
+        }
+        self.reserve(count - there);
+        let fresh = self.made == 0;
+        let orders: Vec<Order> = (there..count)
+            .map(|index| self.add_own(index, if fresh { Some(count) } else { None }))
+            .collect();
+        self.maker.take(orders.into_iter());
+        Vec::new()
+    }
+
+    /// Adds the crowd's own walker of this index, one of so many that begin together.
+    fn add_own(&mut self, index: usize, together: Option<usize>) -> Order {
+        let share = |axis: usize| (0.5 + (index + 1) as f32 * PLASTIC[axis]).fract();
+        let (level, heading, progress, aside) = match &self.way {
+            Way::Path(path) => {
+                let along = together.map_or_else(
+                    || ((index + 1) as f32 * GOLDEN).fract(),
+                    |count| index as f32 / count as f32,
+                );
+                let progress = path.length() * along;
+                let aside = self.settings.path_width * (share(0) - 0.5);
+                let (place, direction) = path.beside(progress, aside);
+                (place, direction.x.atan2(direction.y), progress, aside)
+            }
+            Way::Told | Way::Wander { .. } | Way::Navigate => {
+                let across = Vec2::new(share(0), share(1)) * 2.0 - Vec2::ONE;
+                let heading = core::f32::consts::TAU * (index as f32 * GOLDEN * GOLDEN).fract();
+                (across * self.settings.half_area, heading, 0.0, 0.0)
+            }
+        };
+        let (place, order) = self.enter(Vec3::new(level.x, 0.0, level.y), heading);
+        let agent = &mut self.agents[place];
+        agent.counted = true;
+        if self.way.is_navigated() {
+            agent.goal = Goal::Place(level);
+        }
+        agent.progress_m = progress;
+        agent.aside_m = aside;
+        order
+    }
+
+    /// Adds walkers at these places under these headings; returns their names.
+    pub(super) fn add(&mut self, starts: impl ExactSizeIterator<Item = (Vec3, f32)>) -> Vec<i32> {
+        self.reserve(starts.len());
+        let mut orders = Vec::with_capacity(starts.len());
+        let mut names = Vec::with_capacity(starts.len());
+        for (place, heading) in starts {
+            let (place, order) = self.enter(place, heading);
+            orders.push(order);
+            names.push(self.roster.name(place));
+        }
+        self.maker.take(orders.into_iter());
+        names
+    }
+
+    /// Goes on with those who were saved, when nobody is there.
+    pub(super) fn restore(&mut self, saved: &SavedCrowd) {
+        self.made = saved.made;
+        if let Some(roster) = &saved.roster {
+            self.roster = roster.clone();
+        } else {
+            for _ in &saved.agents {
+                self.roster.enter();
+            }
+        }
+        self.make_room();
+        let places: Vec<usize> = self
+            .roster
+            .order()
+            .iter()
+            .map(|place| *place as usize)
+            .collect();
+        let mut orders = Vec::with_capacity(places.len());
+        for (index, (place, agent)) in places.into_iter().zip(&saved.agents).enumerate() {
+            let start = (Vec3::from(agent.place), agent.heading);
+            let order = self.put(place, 0, start, Some(agent));
+            self.agents[place].counted = saved.counted.get(index) == Some(&true);
+            orders.push(order);
+        }
+        self.maker.take(orders.into_iter());
+    }
+
+    /// Removes those who have these places.
+    pub(super) fn leave(&mut self, places: &[usize]) {
+        self.roster.leave(places);
+        for place in places {
+            self.agents[*place] = Agent::absent();
+            self.tiers[*place] = Tier::Far;
+            self.drawn[*place] = Drawn::default();
+        }
+    }
+
+    /// Removes everybody; returns the places that they had.
+    pub(super) fn clear(&mut self) -> Vec<usize> {
+        self.maker.cancel();
+        let everybody: Vec<usize> = self
+            .roster
+            .order()
+            .iter()
+            .map(|place| *place as usize)
+            .collect();
+        self.leave(&everybody);
+        everybody
+    }
+
+    /// Whether walkers go from place to place of the navigation map.
+    pub(super) fn is_navigated(&self) -> bool {
+        self.way.is_navigated()
+    }
+
+    /// Everybody, to be saved.
+    pub(super) fn save(&self) -> Vec<u8> {
+        let places = self.roster.order().iter();
+        let agents = places.map(|place| &self.agents[*place as usize]);
+        save::write(self.made, &self.roster, agents)
+    }
+
+    fn reserve(&mut self, more: usize) {
+        self.roster.reserve(more);
+        self.agents.reserve(more);
+        self.tiers.reserve(more);
+        self.drawn.reserve(more);
+    }
+
+    /// Gives every place of the roster its row.
+    fn make_room(&mut self) {
+        let places = self.roster.places();
+        self.agents.resize_with(places, Agent::absent);
+        self.tiers.resize(places, Tier::Far);
+        self.drawn.resize(places, Drawn::default());
+    }
+
+    /// Adds one walker; returns its place, and the order to make it.
+    fn enter(&mut self, start: Vec3, heading: f32) -> (usize, Order) {
+        let place = self.roster.enter();
+        self.make_room();
         let number = self.made;
         self.made += 1;
-        let seed = saved.map_or_else(
-            || {
-                self.settings
-                    .seed
-                    .wrapping_mul(1_000_003)
-                    .wrapping_add(number + 1)
-            },
-            |saved| saved.seed,
-        );
+        let order = self.put(place, number, (start, heading), None);
+        (place, order)
+    }
+
+    /// Puts a walker into its row, as it was saved or as its number has it.
+    fn put(
+        &mut self,
+        place: usize,
+        number: u64,
+        (start, heading): (Vec3, f32),
+        saved: Option<&SavedAgent>,
+    ) -> Order {
+        let settings = &self.settings;
+        let seed = settings
+            .seed
+            .wrapping_mul(1_000_003)
+            .wrapping_add(number + 1);
+        let seed = saved.map_or(seed, |saved| saved.seed);
         let phase = saved.map_or_else(
             || ((number + 1) as f32 * GOLDEN).fract(),
             |saved| saved.phase,
         );
-        let config = GeneratorConfig {
-            seed,
-            phase,
-            variation: 1.0,
-        };
-        let plain = self.plain.clone();
-        let Ok(workshop) = self.workshops[0].get_mut() else {
-            return;
-        };
-        let Ok(walker) = CrowdWalker::new(&plain, &config, false, workshop) else {
-            return;
-        };
-        let mut agent = Agent::new(walker, place, heading, seed);
+        self.tickets += 1;
+        let mut agent = Agent::new(self.tickets, start, heading, seed);
+        agent.start_phase = phase;
         let between = |[low, high]: [f32; 2], share: f32| low + share * (high - low);
-        agent.speed_mps = between(self.settings.speeds_mps, agent.chance());
-        agent.size = between(self.settings.sizes, agent.chance()).max(0.05);
-        let tints = &self.settings.tints;
-        let tint = (agent.chance() * tints.len() as f32) as usize;
-        agent.tint = tints.get(tint).copied().unwrap_or(WHITE);
-        let styles = self.space.styles().len();
+        agent.speed_mps = between(settings.speeds_mps, agent.chance());
+        agent.size = between(settings.sizes, agent.chance()).max(0.05);
+        let tint = (agent.chance() * settings.tints.len() as f32) as usize;
+        agent.tint = settings.tints.get(tint).copied().unwrap_or(WHITE);
+        let styles = self.maker.styles();
         // One of the styles, or none.
         let style = (agent.chance() * (styles + 1) as f32) as usize;
-        let amount = self.settings.style_amount * (0.5 + 0.5 * agent.chance());
-        let mut weights = vec![0.0; styles];
-        if let Some(weight) = weights.get_mut(style) {
-            *weight = amount;
+        let amount = settings.style_amount * (0.5 + 0.5 * agent.chance());
+        if style < styles {
+            agent.outfit = Outfit::of_one(style, amount);
         }
         if let Some(saved) = saved {
             agent.speed_mps = saved.speed_mps;
@@ -176,148 +285,20 @@ impl Walkers {
             agent.goal = saved.target.map_or(Goal::Turn(saved.turn_rate), |target| {
                 Goal::Place(Vec2::from(target))
             });
-            weights.clone_from(&saved.weights);
+            agent.outfit = Outfit::of(&saved.weights[..saved.weights.len().min(styles)]);
         }
-        agent.walker.set_detail(Detail::Quarter);
-        agent.clock_secs = self.time_secs;
-        self.drawn.push(agent.drawn(place, heading));
-        self.agents.push(agent);
-        self.wear(self.agents.len() - 1, &weights);
-    }
-
-    /// Removes everybody.
-    pub(super) fn clear(&mut self) {
-        self.agents.clear();
-        self.tiers.clear();
-        self.drawn.clear();
-    }
-
-    /// Lets a walker wear a mixture of styles.
-    pub(super) fn wear(&mut self, index: usize, weights: &[f32]) {
-        let Some(agent) = self.agents.get_mut(index) else {
-            return;
+        self.drawn[place] = agent.drawn(start, heading);
+        let order = Order {
+            place,
+            ticket: self.tickets,
+            outfit: agent.outfit.clone(),
+            config: Some(GeneratorConfig {
+                seed,
+                phase,
+                variation: 1.0,
+            }),
         };
-        let styles = self.space.styles().len();
-        let parts: Vec<i8> = (0..styles)
-            .map(|style| {
-                let weight = weights.get(style).copied().unwrap_or(0.0);
-                let weight = if weight.is_finite() { weight } else { 0.0 };
-                (weight * WEIGHT_PARTS).round().clamp(-32.0, 32.0) as i8
-            })
-            .collect();
-        let rounded: Vec<f32> = parts
-            .iter()
-            .map(|part| f32::from(*part) / WEIGHT_PARTS)
-            .collect();
-        if !self.outfits.contains_key(&parts)
-            && let Ok(styled) = StyledBody::new(&self.space, &rounded, self.plain.skeleton())
-        {
-            self.outfits.insert(parts.clone(), styled);
-        }
-        if let Some(styled) = self.outfits.get(&parts) {
-            agent.walker.wear(styled);
-            agent.weights = rounded;
-        }
-    }
-
-    /// Whether walkers go from place to place of the navigation map.
-    pub(super) fn is_navigated(&self) -> bool {
-        self.way.is_navigated()
-    }
-
-    /// Whether walkers far away repeat their steps.
-    pub(super) fn repeat_far(&mut self, repeats: bool) {
-        self.repeats = repeats;
-    }
-
-    /// Lets time pass for everybody.
-    pub(super) fn advance(&mut self, dt_secs: f32, avoidance: bool) {
-        self.drawn.truncate(self.agents.len());
-        if dt_secs <= 0.0 {
-            for agent in &mut self.agents {
-                agent.landed = None;
-            }
-            return;
-        }
-        self.frame += 1;
-        self.time_secs += f64::from(dt_secs);
-        self.tiers.resize(self.agents.len(), Tier::Far);
-        let frame = self.frame;
-        if avoidance && frame.is_multiple_of(NEIGHBOURS_EVERY) {
-            self.neighbours.rebuild(self.agents.iter().map(Agent::seen));
-        }
-        let Self {
-            agents,
-            tiers,
-            drawn,
-            workshops,
-            neighbours,
-            way,
-            repeats,
-            time_secs,
-            ..
-        } = self;
-        let (workshops, neighbours, way) = (&*workshops, &*neighbours, &*way);
-        let (repeats, now_secs) = (*repeats, *time_secs);
-        let chunks = agents
-            .par_chunks_mut(CHUNK)
-            .zip(tiers.par_chunks(CHUNK))
-            .zip(drawn.par_chunks_mut(CHUNK))
-            .enumerate();
-        chunks.for_each(|(chunk, ((agents, tiers), drawn))| {
-            let thread = rayon::current_thread_index().map_or(0, |index| index + 1);
-            let workshop = &workshops[thread.min(workshops.len() - 1)];
-            let mut workshop = workshop.lock().unwrap_or_else(PoisonError::into_inner);
-            let moves = |index: usize, tier: Tier| {
-                // Those far away move in their group's frame, for all frames since the last one.
-                let group = (chunk * CHUNK + index) % GROUPS;
-                tier != Tier::Far || frame % GROUPS as u64 == group as u64
-            };
-            for index in 0..agents.len() {
-                if index.is_multiple_of(FETCHED) {
-                    let together = index..agents.len().min(index + FETCHED);
-                    let moving = together.filter(|index| moves(*index, tiers[*index]));
-                    moving.for_each(|index| agents[index].fetch());
-                }
-                let (agent, tier, drawn) = (&mut agents[index], &tiers[index], &mut drawn[index]);
-                if !moves(index, *tier) {
-                    continue;
-                }
-                let secs = (now_secs - agent.clock_secs) as f32;
-                agent.clock_secs = now_secs;
-                agent.walker.set_detail(match tier {
-                    Tier::Full => Detail::Full,
-                    // Fifteen frames a second, blended: from a dozen metres on nobody sees the difference.
-                    Tier::Near | Tier::Far => Detail::Quarter,
-                });
-                agent.walker.set_repeating(repeats && *tier == Tier::Far);
-                if agent.is_about_to_step(secs) {
-                    way.lead(agent);
-                    if avoidance {
-                        agent.decide(neighbours.around(agent.level()));
-                    } else {
-                        agent.decide(core::iter::empty());
-                    }
-                }
-                let (from, heading) = (agent.place, agent.heading);
-                agent.advance(secs, &mut workshop);
-                *drawn = agent.drawn(from, heading);
-            }
-        });
-    }
-
-    /// Whether a walker moved in the last frame.
-    pub(super) fn moved(&self, index: usize) -> bool {
-        self.tiers.get(index) != Some(&Tier::Far)
-            || self.frame % GROUPS as u64 == (index % GROUPS) as u64
-    }
-
-    /// Whose feet landed in the last frame, which, and where.
-    pub(super) fn landed(&self) -> impl Iterator<Item = (usize, Side, Vec3)> {
-        let agents = self.agents.iter().enumerate();
-        agents.filter_map(|(index, agent)| {
-            let (side, place) = agent.landed.filter(|_| self.moved(index))?;
-            Some((index, side, place))
-        })
+        self.agents[place] = agent;
+        order
     }
 }

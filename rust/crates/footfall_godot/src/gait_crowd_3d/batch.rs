@@ -1,0 +1,225 @@
+//! Questions and requests of scripts to walkers: many at once, in packed arrays.
+
+use super::agent::{Agent, Goal};
+use super::navigation::Navigation;
+use super::{GaitCrowd3D, linear};
+use crate::convert;
+use glam::Vec2;
+use godot::classes::Node3D;
+use godot::prelude::*;
+
+#[godot_api(secondary)]
+impl GaitCrowd3D {
+    /// Places of walkers, on the ground, in this node's space: one place for each id in `agents`, or for everybody in the order of
+    /// `get_agents()`. An id that nobody has gets places that are not finite.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn get_positions(
+        &mut self,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) -> PackedVector3Array {
+        let nowhere = Vector3::splat(f32::NAN);
+        self.each(&agents, nowhere, |agent| convert::vector3(agent.place))
+    }
+
+    /// Headings of walkers, radians about +Y from +Z. Shapes and ids as of `get_positions()`.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn get_headings(
+        &mut self,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) -> PackedFloat32Array {
+        self.each(&agents, f32::NAN, |agent| agent.heading)
+    }
+
+    /// Share of its stride that each walker has behind it: 0 when its left foot lands, 0.5 when its right foot does. Shapes and ids as of
+    /// `get_positions()`.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn get_phases(
+        &mut self,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) -> PackedFloat32Array {
+        self.each(&agents, f32::NAN, Agent::phase)
+    }
+
+    /// The size of walkers, against the character. Shapes and ids as of `get_positions()`.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn get_sizes(
+        &mut self,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) -> PackedFloat32Array {
+        self.each(&agents, f32::NAN, |agent| agent.size)
+    }
+
+    /// Tiers of walkers: 0 as a whole scene, 1 with a new pose in every frame, 2 as one far away, or one that is not made yet.
+    /// Shapes and ids as of `get_positions()`; 2 for an id that nobody has.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn get_tiers(
+        &mut self,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) -> PackedByteArray {
+        self.make();
+        let tier = |place: Option<usize>| {
+            let walkers = self.walkers.as_ref();
+            let tier = walkers.and_then(|walkers| walkers.tiers.get(place?));
+            tier.copied().unwrap_or_default() as u8
+        };
+        self.places(&agents).into_iter().map(tier).collect()
+    }
+
+    /// Sets the speeds that walkers would like to walk, in metres per second: one speed for each id in `agents`, or for everybody in the order of
+    /// `get_agents()`. Missing or not finite: it stays.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_speeds(
+        &mut self,
+        speeds: PackedFloat32Array,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) {
+        self.set_each(speeds.as_slice(), &agents, |agent, speed| {
+            if speed.is_finite() {
+                agent.speed_mps = speed.clamp(0.0, 3.0);
+            }
+        });
+    }
+
+    /// Sets how fast walkers turn, in radians per second, positive to their left; they give up their goals. For `behaviour` scripted. Shapes
+    /// and ids as of `set_speeds()`.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_turn_rates(
+        &mut self,
+        turn_rates: PackedFloat32Array,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) {
+        self.set_each(turn_rates.as_slice(), &agents, |agent, rate| {
+            if rate.is_finite() {
+                agent.goal = Goal::Turn(*rate);
+                agent.route.clear();
+            }
+        });
+    }
+
+    /// Sends walkers straight to places, in this node's space. They stop there. For `behaviour` scripted. Not finite: the goal stays. Shapes and
+    /// ids as of `set_speeds()`.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_targets(
+        &mut self,
+        targets: PackedVector3Array,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) {
+        self.set_each(targets.as_slice(), &agents, |agent, target| {
+            if target.is_finite() {
+                agent.goal = Goal::Place(Vec2::new(target.x, target.z));
+                agent.route.clear();
+            }
+        });
+    }
+
+    /// Sends walkers over the navigation map of the world, around what is between, to places in this node's space. They stop there. For
+    /// `behaviour` scripted. Not finite: the goal stays. Each way takes some tens of microseconds to find, once. Shapes and ids as of
+    /// `set_speeds()`.
+    ///
+    /// Returns whether there was a way for everybody; whoever has none keeps its goal. In the first frames of a scene there is no map yet.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_destinations(
+        &mut self,
+        destinations: PackedVector3Array,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) -> bool {
+        let host = self.to_gd().upcast::<Node3D>();
+        let Some(mut navigation) = Navigation::of(&host, self.navigation_layers) else {
+            return false;
+        };
+        let mut all = true;
+        self.set_each(destinations.as_slice(), &agents, |agent, place| {
+            if place.is_finite() {
+                all &= navigation.send(agent, *place);
+            }
+        });
+        all
+    }
+
+    /// Sets the tints of walkers. Shapes and ids as of `set_speeds()`.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_tints(
+        &mut self,
+        colours: PackedColorArray,
+        #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
+    ) {
+        self.set_each(colours.as_slice(), &agents, |agent, colour| {
+            agent.tint = linear(*colour);
+        });
+    }
+
+    /// Lets one walker wear styles: weights in the order of `styles`, taken up with its next step. They are rounded to eighths, so that a
+    /// crowd needs few mixtures.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_agent_style(&mut self, agent: i32, weights: PackedFloat32Array) {
+        self.make();
+        if let Some(walkers) = &mut self.walkers
+            && let Some(place) = walkers.roster.place(agent)
+        {
+            walkers.wear(place, weights.as_slice());
+        }
+    }
+}
+
+impl GaitCrowd3D {
+    /// The rows of those who are named, or of everybody when nobody is.
+    pub(super) fn places(&self, agents: &PackedInt32Array) -> Vec<Option<usize>> {
+        let Some(walkers) = &self.walkers else {
+            return vec![None; agents.len()];
+        };
+        let roster = &walkers.roster;
+        if agents.is_empty() {
+            return roster
+                .order()
+                .iter()
+                .map(|place| Some(*place as usize))
+                .collect();
+        }
+        let names = agents.as_slice().iter();
+        names.map(|name| roster.place(*name)).collect()
+    }
+
+    fn each<T: Clone, C: FromIterator<T>>(
+        &mut self,
+        agents: &PackedInt32Array,
+        nobody: T,
+        of: impl Fn(&Agent) -> T,
+    ) -> C {
+        self.make();
+        let places = self.places(agents);
+        let agent = |place: Option<usize>| self.walkers.as_ref()?.agents.get(place?);
+        places
+            .into_iter()
+            .map(|place| agent(place).map_or_else(|| nobody.clone(), &of))
+            .collect()
+    }
+
+    fn set_each<T>(
+        &mut self,
+        values: &[T],
+        agents: &PackedInt32Array,
+        mut set: impl FnMut(&mut Agent, &T),
+    ) {
+        self.make();
+        let places = self.places(agents);
+        let Some(walkers) = &mut self.walkers else {
+            return;
+        };
+        for (place, value) in places.into_iter().zip(values) {
+            if let Some(agent) = place.and_then(|place| walkers.agents.get_mut(place)) {
+                set(agent, value);
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! One frame of a crowd: time passes, everybody is drawn, and what happened is told.
+
+use super::navigation::Navigation;
+use super::scene::{CrowdScene, Look};
+use super::tiers::Limits;
+use super::walkers::Walkers;
+use super::{GaitCrowd3D, MOST_AGENTS, ground};
+use crate::convert;
+use godot::classes::{Engine, Node3D};
+use godot::prelude::*;
+
+impl GaitCrowd3D {
+    /// Lets time pass; `waits` for walkers that are being made, or leaves them for a later frame.
+    pub(super) fn advance_by(&mut self, dt_secs: f32, waits: bool) {
+        if !self.make() || !self.begin_walkers(waits) {
+            return;
+        }
+        let limits = self.limits();
+        let (avoidance, repeat_far, mask) = (self.avoidance, self.repeat_far, self.ground_mask);
+        let look = Look {
+            character: self.character.clone(),
+            material: self.material.clone(),
+            culls: self.culling,
+            most_made: if waits { usize::MAX } else { 1 },
+        };
+        let host = self.to_gd().upcast::<Node3D>();
+        let (Some(mut walkers), scene) = (self.walkers.take(), self.scene.take()) else {
+            return;
+        };
+        walkers.repeats = repeat_far;
+        if walkers.is_navigated()
+            && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)
+        {
+            navigation.wander(&mut walkers);
+        }
+        walkers.advance(dt_secs, avoidance);
+        ground::find(&mut walkers, &host, mask);
+        let scene = scene.or_else(|| {
+            let _released = self.base_mut();
+            CrowdScene::new(&host, &walkers, &limits, &look)
+        });
+        let drawn = scene.map(|mut scene| {
+            let _released = self.base_mut();
+            scene.draw(&mut walkers, &host, &limits, &look);
+            scene
+        });
+        let landed = self.landed(&walkers);
+        let began: PackedInt32Array = walkers.began.iter().copied().collect();
+        // A script that was called in between may have made everything anew.
+        if self.walkers.is_none() && self.base().is_inside_tree() {
+            self.walkers = Some(walkers);
+            self.scene = drawn;
+        } else if let Some(scene) = drawn {
+            scene.free();
+        }
+        if !began.is_empty() {
+            self.signals().agents_ready().emit(&began);
+        }
+        if let Some((agents, feet, positions)) = landed {
+            self.signals().footsteps().emit(&agents, &feet, &positions);
+        }
+    }
+
+    /// Lets those begin who were made meanwhile; whether there is a crowd still.
+    fn begin_walkers(&mut self, waits: bool) -> bool {
+        let Some(walkers) = &mut self.walkers else {
+            return false;
+        };
+        let came = if waits {
+            walkers.begin_all()
+        } else {
+            walkers.begin_some()
+        };
+        match came {
+            Ok(space) => {
+                if let (Some(space), Some(model)) = (space, &mut self.model) {
+                    model.bind_mut().share(&space);
+                }
+                true
+            }
+            Err(problem) => {
+                self.fail(problem);
+                false
+            }
+        }
+    }
+
+    fn limits(&self) -> Limits {
+        let metres = |value: f64| {
+            if value.is_finite() {
+                value.max(0.0) as f32
+            } else {
+                0.0
+            }
+        };
+        Limits {
+            counts: [self.full_count, self.near_count]
+                .map(|count| count.clamp(0, MOST_AGENTS) as usize),
+            distances_m: [metres(self.full_distance), metres(self.near_distance)],
+        }
+    }
+
+    /// What `footsteps` has to tell, if anything; nothing in the editor.
+    fn landed(
+        &self,
+        walkers: &Walkers,
+    ) -> Option<(PackedInt32Array, PackedByteArray, PackedVector3Array)> {
+        walkers.landed().next()?;
+        if Engine::singleton().is_editor_hint() {
+            return None;
+        }
+        let world = self.base().get_global_transform();
+        let agents = walkers
+            .landed()
+            .map(|(place, ..)| walkers.roster.name(place));
+        let feet = walkers.landed().map(|(_, side, _)| side.index() as u8);
+        let places = walkers
+            .landed()
+            .map(|(.., place)| world * convert::vector3(place));
+        Some((agents.collect(), feet.collect(), places.collect()))
+    }
+}

@@ -1,0 +1,237 @@
+//! Walkers made on threads of their own, so that no frame waits for them. Who is made when does not change who they are.
+
+use super::kit::{Kit, Outfit, Recipe};
+use footfall_synth::{CrowdWalker, GeneratorConfig, StyledBody, Workshop};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::thread::{self, JoinHandle};
+
+/// So many orders are worth more than one thread.
+const FEW: usize = 16;
+/// Most threads of one crowd.
+const MOST_THREADS: usize = 4;
+/// Walkers that a frame makes itself where there are no threads to be had.
+const MADE_A_FRAME: usize = 8;
+
+/// Somebody to be made or dressed.
+#[derive(Debug)]
+pub(super) struct Order {
+    pub(super) place: usize,
+    /// Which walker it is for: another one may have its place when it is done.
+    pub(super) ticket: u64,
+    pub(super) outfit: Outfit,
+    /// How it walks; none for a walker that is there and only dressed.
+    pub(super) config: Option<GeneratorConfig>,
+}
+
+/// An order that was carried out.
+#[derive(Debug)]
+pub(super) struct Made {
+    pub(super) order: Order,
+    pub(super) styled: StyledBody,
+    pub(super) walker: Option<CrowdWalker>,
+}
+
+#[derive(Debug, Default)]
+struct Queue {
+    orders: VecDeque<Order>,
+    /// Threads that will look here again.
+    working: usize,
+}
+
+#[derive(Debug)]
+struct Shared {
+    recipe: Recipe,
+    kit: OnceLock<Result<Arc<Kit>, String>>,
+    queue: Mutex<Queue>,
+    made: Mutex<VecDeque<Made>>,
+}
+
+/// The threads of one crowd. They end when there is nothing to do, and when this is dropped.
+#[derive(Debug)]
+pub(super) struct Maker {
+    shared: Arc<Shared>,
+    threads: Vec<JoinHandle<()>>,
+    /// Orders that were given and have not come back.
+    waiting: usize,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Maker {
+    /// Begins to prepare what walkers are made with.
+    pub(super) fn new(recipe: Recipe) -> Self {
+        let shared = Shared {
+            recipe,
+            kit: OnceLock::new(),
+            queue: Mutex::default(),
+            made: Mutex::default(),
+        };
+        let mut maker = Self {
+            shared: Arc::new(shared),
+            threads: Vec::new(),
+            waiting: 0,
+        };
+        maker.hire(1);
+        maker
+    }
+
+    /// How many styles there are.
+    pub(super) fn styles(&self) -> usize {
+        self.shared.recipe.styles.len()
+    }
+
+    /// What walkers are made with, once it is there, or why it cannot be.
+    pub(super) fn kit(&self) -> Option<&Result<Arc<Kit>, String>> {
+        self.shared.kit.get()
+    }
+
+    /// Whether orders have not come back.
+    pub(super) fn is_busy(&self) -> bool {
+        self.waiting > 0
+    }
+
+    /// Takes orders.
+    pub(super) fn take(&mut self, orders: impl Iterator<Item = Order>) {
+        let mut queue = locked(&self.shared.queue);
+        let before = queue.orders.len();
+        queue.orders.extend(orders);
+        let more = queue.orders.len() - before;
+        let many = queue.orders.len() > FEW;
+        drop(queue);
+        self.waiting += more;
+        if many {
+            let cores = thread::available_parallelism().map_or(2, usize::from);
+            self.hire((cores / 2).clamp(1, MOST_THREADS));
+        } else if more > 0 {
+            self.hire(1);
+        }
+    }
+
+    /// Forgets all orders.
+    pub(super) fn cancel(&mut self) {
+        let left = core::mem::take(&mut locked(&self.shared.queue).orders);
+        let made = core::mem::take(&mut *locked(&self.shared.made));
+        self.waiting -= left.len() + made.len();
+    }
+
+    /// Hands out at most so many that are made, and never waits for them.
+    pub(super) fn hand_out(&mut self, most: usize, mut take: impl FnMut(Made)) {
+        if !self.is_busy() {
+            return;
+        }
+        if locked(&self.shared.queue).working == 0 {
+            self.shared.work_at_most(MADE_A_FRAME);
+        }
+        // The thread that has the lock gives it back at once; the next frame takes what this one cannot.
+        let Ok(mut made) = self.shared.made.try_lock() else {
+            return;
+        };
+        let count = made.len().min(most);
+        for made in made.drain(..count) {
+            self.waiting -= 1;
+            take(made);
+        }
+        drop(made);
+        if !self.is_busy() {
+            self.join();
+        }
+    }
+
+    /// Waits until all orders are carried out, and works along meanwhile.
+    pub(super) fn finish(&mut self) {
+        if self.is_busy() || self.kit().is_none() {
+            self.shared.work_at_most(usize::MAX);
+            self.join();
+        }
+    }
+
+    fn hire(&mut self, threads: usize) {
+        self.threads.retain(|thread| !thread.is_finished());
+        let mut queue = locked(&self.shared.queue);
+        while queue.working < threads {
+            let shared = Arc::clone(&self.shared);
+            let hired = thread::Builder::new()
+                .name("footfall crowd".to_owned())
+                .spawn(move || shared.work());
+            // Where there are no threads, frames do the work.
+            let Ok(hired) = hired else {
+                break;
+            };
+            queue.working += 1;
+            self.threads.push(hired);
+        }
+    }
+
+    fn join(&mut self) {
+        for thread in self.threads.drain(..) {
+            // One that panicked has said so.
+            let _ended = thread.join();
+        }
+    }
+}
+
+impl Drop for Maker {
+    fn drop(&mut self) {
+        self.cancel();
+        // A library must not be unloaded while threads run in it; they end with the walker that they are at.
+        self.join();
+    }
+}
+
+impl Shared {
+    fn prepared(&self) -> &Result<Arc<Kit>, String> {
+        self.kit
+            .get_or_init(|| Kit::new(&self.recipe).map(Arc::new))
+    }
+
+    /// A thread's whole life.
+    fn work(&self) {
+        let Ok(kit) = self.prepared() else {
+            locked(&self.queue).working -= 1;
+            return;
+        };
+        let mut workshop = Workshop::new(&kit.plain);
+        loop {
+            let mut queue = locked(&self.queue);
+            let Some(order) = queue.orders.pop_front() else {
+                queue.working -= 1;
+                return;
+            };
+            drop(queue);
+            let made = make(kit, order, &mut workshop);
+            locked(&self.made).push_back(made);
+        }
+    }
+
+    /// Carries out so many orders on the caller's thread.
+    fn work_at_most(&self, most: usize) {
+        let Ok(kit) = self.prepared() else {
+            return;
+        };
+        for _ in 0..most {
+            let Some(order) = locked(&self.queue).orders.pop_front() else {
+                break;
+            };
+            let made = make(kit, order, &mut locked(&kit.workshops[0]));
+            locked(&self.made).push_back(made);
+        }
+    }
+}
+
+fn make(kit: &Kit, order: Order, workshop: &mut Workshop) -> Made {
+    let styled = kit.tailor(&order.outfit);
+    let walker = order.config.and_then(|config| {
+        // A walker is of the plain walk when it begins, and dresses with its first step.
+        let mut walker = CrowdWalker::new(&kit.plain, &config, false, workshop).ok()?;
+        walker.wear(&styled);
+        Some(walker)
+    });
+    Made {
+        order,
+        styled,
+        walker,
+    }
+}

@@ -1,0 +1,224 @@
+//! Members of a crowd, as scripts see them: walkers come, go, are named, found and saved.
+
+use super::{GaitCrowd3D, MOST_AGENTS, pick, save};
+use crate::convert;
+use godot::classes::{Node, Node3D};
+use godot::prelude::*;
+
+/// The id of nobody.
+const NOBODY: i32 = -1;
+
+#[godot_api(secondary)]
+impl GaitCrowd3D {
+    /// Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns their
+    /// ids, in the same order, without those for whom there was no finite place; none when the crowd cannot be made.
+    ///
+    /// They stand in all arrays at once, and appear as soon as they are made, on other threads: see `agents_ready`.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn add_agents(
+        &mut self,
+        positions: PackedVector3Array,
+        #[opt(default = &PackedFloat32Array::new())] headings: PackedFloat32Array,
+    ) -> PackedInt32Array {
+        self.make();
+        let Some(walkers) = &mut self.walkers else {
+            return PackedInt32Array::new();
+        };
+        let room = (MOST_AGENTS as usize).saturating_sub(walkers.roster.order().len());
+        if positions.len() > room {
+            godot_warn!(
+                "A crowd holds {MOST_AGENTS} walkers at most: {} are left out.",
+                positions.len() - room
+            );
+        }
+        let places = positions.as_slice().iter().take(room).enumerate();
+        let starts: Vec<_> = places
+            .map(|(index, place)| (convert::vec3(*place), headings.get(index).unwrap_or(0.0)))
+            .filter(|(place, heading)| place.is_finite() && heading.is_finite())
+            .collect();
+        walkers.add(starts.into_iter()).into()
+    }
+
+    /// Removes the walkers that have these ids. Nobody else's id or way changes.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn remove_agents(&mut self, agents: PackedInt32Array) {
+        self.make();
+        let Some(walkers) = &mut self.walkers else {
+            return;
+        };
+        let names = agents.as_slice().iter();
+        let mut places: Vec<usize> = names
+            .filter_map(|name| walkers.roster.place(*name))
+            .collect();
+        places.sort_unstable();
+        places.dedup();
+        walkers.leave(&places);
+        self.left(&places);
+    }
+
+    /// Removes all walkers.
+    #[func]
+    fn clear_agents(&mut self) {
+        if let Some(walkers) = &mut self.walkers {
+            let everybody = walkers.clear();
+            self.left(&everybody);
+        }
+    }
+
+    /// Makes the crowd anew from `count` and `seed`.
+    #[func]
+    pub(super) fn restart(&mut self) {
+        self.forget();
+        self.base_mut().update_configuration_warnings();
+    }
+
+    /// How many walkers there are, with those who are still being made.
+    #[func]
+    fn get_agent_count(&mut self) -> i64 {
+        self.make();
+        let walkers = self.walkers.as_ref();
+        walkers.map_or(0, |walkers| {
+            i64::from(convert::count(walkers.roster.order().len()))
+        })
+    }
+
+    /// The ids of all walkers, in the order in which they came. All arrays that are for everybody have this order.
+    ///
+    /// An id stays a walker's own for as long as it is in the crowd, through `get_state()` and `set_state()` too, and is nobody
+    /// else's for long after. As long as nobody is removed, ids are 0, 1, 2 and so on.
+    #[func]
+    fn get_agents(&mut self) -> PackedInt32Array {
+        self.make();
+        let walkers = self.walkers.iter();
+        walkers.flat_map(super::walkers::Walkers::names).collect()
+    }
+
+    /// Whether a walker has this id.
+    #[func]
+    fn has_agent(&mut self, agent: i32) -> bool {
+        self.make();
+        self.place(agent).is_some()
+    }
+
+    /// Whether walkers are still being made.
+    #[func]
+    fn is_making(&self) -> bool {
+        let walkers = self.walkers.as_ref();
+        walkers.is_some_and(super::walkers::Walkers::is_making)
+    }
+
+    /// The id of the first walker that a ray meets, or -1. In global space, as `Camera3D.project_ray_origin()` and
+    /// `Camera3D.project_ray_normal()` have it: from one point to another. Bodies count as capsules.
+    #[func]
+    fn pick(&mut self, from: Vector3, to: Vector3) -> i32 {
+        self.make();
+        let crowd_from_world = self.base().get_global_transform().affine_inverse();
+        let [from, to] = [from, to].map(|point| convert::vec3(crowd_from_world * point));
+        let walkers = self.walkers.as_ref();
+        let met = walkers.and_then(|walkers| pick::first(walkers, from, to));
+        self.name_at(met)
+    }
+
+    /// The id of the walker that is nearest to a point of global space, at most `max_distance` away, or -1.
+    #[func]
+    fn find_nearest(
+        &mut self,
+        position: Vector3,
+        #[opt(default = f64::INFINITY)] max_distance: f64,
+    ) -> i32 {
+        self.make();
+        let world = self.base().get_global_transform();
+        let near = convert::vec3(world.affine_inverse() * position);
+        let scale = world.basis.get_scale().x.abs().max(1e-6);
+        let reach = max_distance as f32 / scale;
+        let walkers = self.walkers.as_ref();
+        let nearest = walkers.and_then(|walkers| pick::nearest(walkers, near, reach));
+        self.name_at(nearest)
+    }
+
+    /// The whole scene that shows a walker, or null while it is drawn as an instance. The scene is lent: it shows another walker later.
+    #[func]
+    fn get_agent_node(&self, agent: i32) -> Option<Gd<Node3D>> {
+        let scene = self.scene.as_ref()?;
+        scene.actors().node_of(self.place(agent)?)
+    }
+
+    /// The id of the walker whom a node shows: a whole scene of the crowd, or anything in it, such as a body that a ray has hit. -1
+    /// when it shows nobody.
+    #[func]
+    fn get_agent_of(&self, node: Option<Gd<Node>>) -> i32 {
+        let scene = self.scene.as_ref();
+        let place = scene
+            .zip(node)
+            .and_then(|(scene, node)| scene.actors().walker_of(&node));
+        self.name_at(place)
+    }
+
+    /// The crowd as it is now, to be saved: who walks where, how, in which phase and with which id. `set_state()` goes on from it with
+    /// the same walkers at the same places; their next steps are drawn anew.
+    #[func]
+    fn get_state(&mut self) -> PackedByteArray {
+        self.make();
+        let walkers = self.walkers.as_ref();
+        let bytes = walkers.map(super::walkers::Walkers::save);
+        bytes.unwrap_or_default().into()
+    }
+
+    /// Goes on from what `get_state()` told. Bytes that are no crowd are refused: the log says why, and the crowd stays as it is.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_state(&mut self, state: PackedByteArray) {
+        match save::read(state.as_slice()) {
+            Ok(saved) if self.make() => {
+                if let Some(walkers) = &mut self.walkers {
+                    let everybody = walkers.clear();
+                    walkers.restore(&saved);
+                    self.left(&everybody);
+                }
+            }
+            Ok(_) => {}
+            Err(problem) => {
+                let node = self.base().get_path();
+                godot_warn!("{node}: the state is refused: {problem}");
+            }
+        }
+    }
+
+    /// Lets time pass at once, in seconds, whatever `playing` says: for tests, and for games with a clock of their own. It waits for
+    /// walkers that are still being made, so that equal calls give equal crowds.
+    #[func]
+    fn advance(&mut self, delta: f64) {
+        if delta.is_finite() {
+            self.advance_by(delta.clamp(0.0, 0.25) as f32, true);
+        }
+    }
+
+    /// What keeps the crowd from walking, each with what to do next; empty when nothing does.
+    #[func]
+    fn get_problems(&mut self) -> PackedStringArray {
+        if self.problems().is_empty() {
+            self.make();
+        }
+        self.problems()
+    }
+}
+
+impl GaitCrowd3D {
+    fn place(&self, name: i32) -> Option<usize> {
+        self.walkers.as_ref()?.roster.place(name)
+    }
+
+    fn name_at(&self, place: Option<usize>) -> i32 {
+        let walkers = self.walkers.as_ref().zip(place);
+        walkers.map_or(NOBODY, |(walkers, place)| walkers.roster.name(place))
+    }
+
+    /// Those who had these places are gone.
+    pub(super) fn left(&mut self, places: &[usize]) {
+        if let Some(scene) = &mut self.scene {
+            scene.leave(places);
+        }
+    }
+}
