@@ -5,6 +5,11 @@ class_name Skinned
 static func scene(without: PackedStringArray = []) -> PackedScene:
 	var walker := Walker.new()
 	walker.missing = without
+	return packed(walker)
+
+
+## A scene with the body of a walker that is not built yet.
+static func packed(walker: Walker) -> PackedScene:
 	walker.build(false)
 	var root := Node3D.new()
 	var skeleton := walker.skeleton
@@ -20,11 +25,11 @@ static func scene(without: PackedStringArray = []) -> PackedScene:
 	mesh.skin = skeleton.create_skin_from_rest_transforms()
 	mesh.skeleton = ^".."
 	mesh.owner = root
-	var packed := PackedScene.new()
-	packed.pack(root)
+	var scene := PackedScene.new()
+	scene.pack(root)
 	root.free()
 	walker.free()
-	return packed
+	return scene
 
 
 ## A small triangle at every bone.

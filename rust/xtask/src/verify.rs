@@ -14,7 +14,7 @@ struct Step {
     check: fn() -> Result<()>,
 }
 
-const STEPS: [Step; 11] = [
+const STEPS: [Step; 12] = [
     Step {
         name: "format",
         check: format,
@@ -46,6 +46,10 @@ const STEPS: [Step; 11] = [
     Step {
         name: "godot-tests",
         check: tests_in_godot,
+    },
+    Step {
+        name: "godot-play",
+        check: play_in_godot,
     },
     Step {
         name: "godot-editor",
@@ -169,6 +173,17 @@ fn tests_in_godot() -> Result<()> {
     let said = in_godot("tests/godot", "tests", &[])?;
     // The tests' own report is worth seeing.
     eprintln!("{}", process::tail(&said, 12));
+    Ok(())
+}
+
+/// A game of some minutes, as fast as frames come: no error, no growth, no slow frame.
+fn play_in_godot() -> Result<()> {
+    let said = in_godot(
+        "tests/godot",
+        "play",
+        &["res://play/play.tscn", "--fixed-fps", "60"],
+    )?;
+    eprintln!("{}", process::tail(&said, 3));
     Ok(())
 }
 
