@@ -112,6 +112,29 @@ func _animated() -> Node3D:
 	return level
 
 
+## A level with a floor and the controller, whose character came with a clip in which it waves.
+func _player() -> Node3D:
+	var root: Node3D = Skinned.scene().instantiate()
+	var skeleton: Skeleton3D = root.find_children("*", "Skeleton3D", true, false)[0]
+	skeleton.name = "Skeleton3D"
+	var library := AnimationLibrary.new()
+	library.add_animation(&"wave", Rigs.wave(skeleton, "RightUpperArm", "RightLowerArm"))
+	var clips := AnimationPlayer.new()
+	clips.name = "AnimationPlayer"
+	clips.add_animation_library(&"", library)
+	root.add_child(clips)
+	clips.owner = root
+	var scene := PackedScene.new()
+	scene.pack(root)
+	root.free()
+	var player: GaitCharacter3D = preload("res://addons/footfall/controller/gait_character_3d.tscn").instantiate()
+	player.character_scene = scene
+	var level := Node3D.new()
+	level.add_child(_floor())
+	level.add_child(player)
+	return level
+
+
 func _character() -> Node3D:
 	var character: Node3D = Skinned.scene().instantiate()
 	character.name = "Character"
