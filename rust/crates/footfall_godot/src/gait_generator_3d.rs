@@ -1,5 +1,6 @@
 //! `GaitGenerator3D`: walks a character.
 
+mod absence;
 mod beside;
 mod detail;
 mod fit;
@@ -22,6 +23,7 @@ use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use crate::root_motion::RootMotion;
 use crate::walk_source::WalkSource;
+use absence::Absent;
 use detail::GaitDetail;
 use footfall_core::Side;
 use glam::Vec3;
@@ -179,6 +181,8 @@ pub(crate) struct GaitGenerator3D {
     pending_state: Option<PackedByteArray>,
     /// The walk under way; `None` until the next frame that can start it.
     session: Option<Session>,
+    /// The walk that went on before the node left the tree or its skeleton.
+    absent: Option<Absent>,
     /// What was last reported, so that it is reported once.
     reported: Option<String>,
     travelled: RootMotion,
@@ -200,13 +204,11 @@ pub(crate) struct GaitGenerator3D {
 #[godot_api]
 impl ISkeletonModifier3D for GaitGenerator3D {
     fn enter_tree(&mut self) {
-        self.session = None;
-        self.reported = None;
+        self.put_aside();
     }
 
     fn skeleton_changed(&mut self, _old: Option<Gd<Skeleton3D>>, _new: Option<Gd<Skeleton3D>>) {
-        self.session = None;
-        self.reported = None;
+        self.put_aside();
     }
 
     // May come before `ready`, outside a frame, and more than once a frame; then `delta` is 0.

@@ -184,6 +184,11 @@ impl SkeletonBinding {
         turned_by
     }
 
+    /// The skeleton that was measured.
+    pub(crate) fn skeleton(&self) -> InstanceId {
+        self.key.skeleton
+    }
+
     /// For every bone of the skeleton the joint that it moves with, and how its rest pose becomes the T-pose: from the skeleton's
     /// space to the ground. Bones above the hips move with them.
     pub(crate) fn t_pose_of_bones(&self, skeleton: &Gd<Skeleton3D>) -> Vec<(Joint, Affine3A)> {

@@ -101,6 +101,11 @@ impl Traveller {
         self.scale
     }
 
+    /// The skeleton that is posed.
+    pub(crate) fn skeleton(&self) -> InstanceId {
+        self.binding.skeleton()
+    }
+
     /// Where the body is from now on, without having gone there.
     pub(crate) const fn place(&mut self, start_from_ground: GroundTransform) {
         self.start_from_ground = start_from_ground;

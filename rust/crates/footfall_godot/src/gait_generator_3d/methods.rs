@@ -51,6 +51,7 @@ impl GaitGenerator3D {
     #[func]
     pub(super) fn restart(&mut self) {
         self.session = None;
+        self.absent = None;
         self.reported = None;
         self.base_mut().update_configuration_warnings();
     }
@@ -61,6 +62,7 @@ impl GaitGenerator3D {
     pub(crate) fn seek(&mut self, seconds: f64) {
         if seconds.is_finite() {
             self.session = None;
+            self.absent = None;
             self.pending_seek = Some(seconds.clamp(0.0, 3600.0));
         }
     }
@@ -68,8 +70,9 @@ impl GaitGenerator3D {
     /// How long the walk has gone on, in seconds from where it began.
     #[func]
     pub(crate) fn get_time(&self) -> f64 {
-        let session = self.session.as_ref();
-        session.map_or(0.0, |session| session.elapsed_secs)
+        let session = self.session.as_ref().map(|session| session.elapsed_secs);
+        let absent = self.absent.as_ref().map(|absent| absent.elapsed_secs);
+        session.or(absent).unwrap_or_default()
     }
 
     /// What keeps the character from walking, each with what to do next; empty when nothing does.
@@ -89,7 +92,12 @@ impl GaitGenerator3D {
         match (&self.session, &self.pending_state) {
             (Some(session), None) => PackedByteArray::from(session.generator.state()),
             (_, Some(pending)) => pending.clone(),
-            (None, None) => PackedByteArray::new(),
+            (None, None) => {
+                let absent = self.absent.as_ref();
+                absent.map_or_else(PackedByteArray::new, |absent| {
+                    absent.state.as_slice().into()
+                })
+            }
         }
     }
 

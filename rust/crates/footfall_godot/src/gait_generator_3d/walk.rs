@@ -28,14 +28,16 @@ impl GaitGenerator3D {
         let config = self.config();
         self.redraw_way();
         let weights = self.style_weights.as_slice();
-        Session::new(
+        let mut session = Session::new(
             &source,
             weights,
             character,
             binding,
             &config,
             self.controls(),
-        )
+        )?;
+        self.resume(&mut session, skeleton);
+        Ok(session)
     }
 
     /// Which walk of the model's it is.
@@ -69,7 +71,8 @@ impl GaitGenerator3D {
         let holds = if in_editor {
             self.is_preview_paused()
         } else {
-            !self.playing
+            // The skeleton calls its modifiers whatever their own process mode is.
+            !self.playing || !self.base().can_process()
         };
         let dt_secs = if holds { 0.0 } else { delta.max(0.0) };
         let travels = self.root_motion && !in_editor;
