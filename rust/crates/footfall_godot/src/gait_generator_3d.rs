@@ -1,6 +1,7 @@
 //! `GaitGenerator3D`: walks a character.
 
 mod absence;
+mod bake;
 mod beside;
 mod detail;
 mod fit;

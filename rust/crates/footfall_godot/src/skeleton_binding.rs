@@ -189,6 +189,11 @@ impl SkeletonBinding {
         self.key.skeleton
     }
 
+    /// The bones that are posed, parents first; the hips' is the first.
+    pub(crate) fn bones(&self) -> Vec<i32> {
+        self.bones.iter().map(|bound| bound.bone).collect()
+    }
+
     /// For every bone of the skeleton the joint that it moves with, and how its rest pose becomes the T-pose: from the skeleton's
     /// space to the ground. Bones above the hips move with them.
     pub(crate) fn t_pose_of_bones(&self, skeleton: &Gd<Skeleton3D>) -> Vec<(Joint, Affine3A)> {

@@ -162,7 +162,7 @@ pub struct GaitGenerator {
     pub(crate) skeleton: Skeleton,
     pub(crate) config: GeneratorConfig,
     pub(crate) steps: Steps,
-    frame_rate_hz: f32,
+    pub(crate) frame_rate_hz: f32,
     /// Of the next step.
     pub(crate) detail: Detail,
     /// Frames since the current step began.
