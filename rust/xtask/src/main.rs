@@ -9,8 +9,10 @@
 #![expect(clippy::disallowed_methods, reason = "steps are timed for the user")]
 
 mod addon;
+mod apt;
 mod bench_crowd;
 mod contact_sheet;
+mod csharp;
 mod demo;
 mod display;
 mod engine_run;
@@ -21,6 +23,7 @@ mod library;
 mod link;
 mod mannequin;
 mod models;
+mod mono;
 mod open;
 mod paths;
 mod process;
@@ -67,6 +70,12 @@ enum Command {
         /// Keep the new results instead.
         #[arg(long)]
         update: bool,
+    },
+    /// Make the add-on's typed wrappers for C# from the library's class reference.
+    Csharp {
+        /// Make none: compare, compile and try those that are there.
+        #[arg(long)]
+        check: bool,
     },
     /// Check the design's invariants.
     Tidy,
@@ -120,6 +129,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Addon { packed } => addon::command(*packed),
         Command::Models => models::command(),
         Command::Golden { update } => golden::command(*update),
+        Command::Csharp { check } => csharp::command(*check),
         Command::Tidy => tidy::command(),
         Command::Verify { steps } => verify::command(steps),
         Command::Demo => demo::command(),

@@ -34,8 +34,16 @@ pub(crate) fn addon() -> PathBuf {
 /// The folder outside the repository that keeps a fetched Godot: `${XDG_CACHE_HOME:-~/.cache}/footfall/godot`.
 ///
 /// # Errors
-/// When neither a cache nor a home folder is known.
+/// As [`cache`].
 pub(crate) fn godot_cache() -> Result<PathBuf> {
+    cache("godot").context("or let GODOT name a Godot of at least 4.6")
+}
+
+/// A folder outside the repository that keeps something fetched.
+///
+/// # Errors
+/// When neither a cache nor a home folder is known.
+pub(crate) fn cache(name: &str) -> Result<PathBuf> {
     let set = |name: &str| {
         env::var_os(name)
             .filter(|value| !value.is_empty())
@@ -49,8 +57,8 @@ pub(crate) fn godot_cache() -> Result<PathBuf> {
     };
     cache
         .or_else(|| set("HOME").map(|home| home.join(".cache")))
-        .map(|folder| folder.join("footfall").join("godot"))
-        .context("no cache folder: set HOME or XDG_CACHE_HOME, or let GODOT name a Godot of at least 4.6")
+        .map(|folder| folder.join("footfall").join(name))
+        .context("no cache folder: set HOME or XDG_CACHE_HOME")
 }
 
 /// The first executable of one of these names on the PATH.

@@ -1,6 +1,6 @@
 //! `cargo verify`: everything that must hold before a change goes in, in the order in which it fails soonest.
 
-use crate::{demo, engine_run, export, godot, library, link, open, paths, process, tidy};
+use crate::{csharp, demo, engine_run, export, godot, library, link, open, paths, process, tidy};
 use anyhow::{Context as _, Result, bail};
 use std::path::Path;
 use std::time::Instant;
@@ -173,7 +173,7 @@ fn tests_in_godot() -> Result<()> {
     let said = in_godot("tests/godot", "tests", &[])?;
     // The tests' own report is worth seeing.
     eprintln!("{}", process::tail(&said, 12));
-    Ok(())
+    csharp::check()
 }
 
 /// A game of some minutes, as fast as frames come: no error, no growth, no slow frame.

@@ -1,6 +1,7 @@
 //! Debian's archive as the machine's own apt knows it: its site and the key that signs it.
 
-use super::{SUITE, apt_get, private_state};
+use super::SUITE;
+use crate::apt::Apt;
 use crate::{paths, process};
 use anyhow::{Context as _, Result};
 use std::fs;
@@ -61,7 +62,7 @@ impl Archive {
                 .with_context(|| format!("there is no `{tool}` on this system"))?;
         }
         let architecture = Architecture::of_host()?;
-        let (site, entry) = match debian_site(&targets(&[])?) {
+        let (site, entry) = match debian_site(&targets(Command::new("apt-get"))?) {
             Some(found) => found,
             // Where the system's lists are empty, apt does not know its archive yet: fetch lists of our own.
             None => debian_site(&targets_from_own_lists(&cache.join("probe"))?)
@@ -90,21 +91,16 @@ impl Archive {
 }
 
 /// Each package index that apt knows of: origin, code name, site and the source entry it stems from.
-fn targets(options: &[String]) -> Result<String> {
+fn targets(mut apt_get: Command) -> Result<String> {
     let format = "$(CREATED_BY)|$(ORIGIN)|$(CODENAME)|$(SITE)|$(SOURCESENTRY)";
-    process::read(
-        Command::new("apt-get")
-            .args(options)
-            .args(["indextargets", "--format", format]),
-    )
+    process::read(apt_get.args(["indextargets", "--format", format]))
 }
 
 fn targets_from_own_lists(folder: &Path) -> Result<String> {
     eprintln!("asking the package archives for their lists …");
-    let options = private_state(folder)?;
-    process::read(apt_get(&options).arg("update"))
-        .context("apt cannot reach its package archives")?;
-    targets(&options)
+    let apt = Apt::bare(folder)?;
+    process::read(apt.get().arg("update")).context("apt cannot reach its package archives")?;
+    targets(apt.get())
 }
 
 /// The site of Debian's main archive and the entry of the source that names it.

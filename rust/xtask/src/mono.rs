@@ -1,0 +1,89 @@
+//! A C# compiler and a runtime for what it makes: Mono's, found or fetched.
+//!
+//! Looked for on the PATH, then in the cache; on Debian it is fetched into the cache from the machine's own archive (7 MB), as Godot is.
+
+use crate::apt::Apt;
+use crate::{paths, process};
+use anyhow::{Context as _, Result};
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const PACKAGES: [&str; 2] = ["mono-mcs", "mono-runtime"];
+/// From the folder that packages are unpacked into.
+const RUNTIME: &str = "usr/bin/mono";
+const COMPILER: &str = "usr/lib/mono/4.5/mcs.exe";
+
+/// Mono on this machine.
+#[derive(Debug)]
+pub(crate) enum Mono {
+    Installed,
+    /// Unpacked into this folder.
+    Unpacked(PathBuf),
+}
+
+impl Mono {
+    /// Finds Mono, or fetches it.
+    ///
+    /// # Errors
+    /// Why there is none and none to be had.
+    pub(crate) fn provision() -> Result<Self> {
+        if paths::on_path(&["mcs"]).is_some() && paths::on_path(&["mono"]).is_some() {
+            return Ok(Self::Installed);
+        }
+        let cache = paths::cache("mono")?;
+        fs::create_dir_all(&cache).with_context(|| format!("cannot create {}", cache.display()))?;
+        let lock = File::create(cache.join("lock"))
+            .with_context(|| format!("cannot write into {}", cache.display()))?;
+        lock.lock()
+            .with_context(|| format!("cannot lock {}", cache.display()))?;
+        let unpacked = Self::Unpacked(cache.join("root"));
+        if unpacked.runs() {
+            return Ok(unpacked);
+        }
+        fetch(&cache)?;
+        anyhow::ensure!(
+            unpacked.runs(),
+            "the Mono that was just fetched does not run"
+        );
+        Ok(unpacked)
+    }
+
+    /// The C# compiler.
+    pub(crate) fn compiler(&self) -> Command {
+        match self {
+            Self::Installed => Command::new("mcs"),
+            Self::Unpacked(root) => self.program(&root.join(COMPILER)),
+        }
+    }
+
+    /// A program that the compiler made.
+    pub(crate) fn program(&self, program: &Path) -> Command {
+        let mut command = match self {
+            Self::Installed => Command::new("mono"),
+            Self::Unpacked(root) => {
+                let mut command = Command::new(root.join(RUNTIME));
+                // Tells which native library is which.
+                command.env("MONO_CFG_DIR", root.join("etc"));
+                command
+            }
+        };
+        command.arg(program);
+        command
+    }
+
+    fn runs(&self) -> bool {
+        process::read(self.compiler().arg("--version")).is_ok()
+    }
+}
+
+fn fetch(cache: &Path) -> Result<()> {
+    for tool in ["apt-get", "dpkg"] {
+        paths::on_path(&[tool]).with_context(|| format!("there is no `{tool}` on this system"))?;
+    }
+    let apt = Apt::on_system(&cache.join("apt"))?;
+    process::read(apt.get().arg("update")).context("apt cannot reach its package archives")?;
+    let packages = apt.packages(&PACKAGES)?;
+    apt.download(&PACKAGES, &packages)?;
+    apt.unpack(&packages, &cache.join("root"), "unpacking Mono")
+}
