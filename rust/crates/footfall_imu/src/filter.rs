@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec3};
 
 /// A second-order Butterworth low-pass, run forwards and backwards: no delay, and the ends held.
-pub(crate) fn low_pass(values: &[Vec3], rate_hz: f64, cut_off_hz: f64) -> Vec<Vec3> {
+pub fn low_pass(values: &[Vec3], rate_hz: f64, cut_off_hz: f64) -> Vec<Vec3> {
     if values.len() < 2 || cut_off_hz >= 0.45 * rate_hz {
         return values.to_vec();
     }

@@ -11,7 +11,7 @@ pub mod checks;
 pub mod csv;
 pub mod events;
 pub mod features;
-mod filter;
+pub mod filter;
 #[cfg(feature = "live")]
 pub mod live;
 pub mod orientation;

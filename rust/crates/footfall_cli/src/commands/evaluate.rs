@@ -3,6 +3,7 @@
 mod contacts;
 mod dynamics;
 mod imu;
+mod naturalness;
 mod style;
 mod style_report;
 mod training;
@@ -26,6 +27,7 @@ enum What {
     Contacts(contacts::ContactsArgs),
     Dynamics(dynamics::DynamicsArgs),
     Imu(imu::ImuArgs),
+    Naturalness(naturalness::NaturalnessArgs),
     Style(style::StyleArgs),
     Training(training::TrainingArgs),
 }
@@ -35,6 +37,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<()> {
         What::Contacts(args) => contacts::run(args),
         What::Dynamics(args) => dynamics::run(args),
         What::Imu(args) => imu::run(args),
+        What::Naturalness(args) => naturalness::run(args),
         What::Style(args) => style::run(args),
         What::Training(args) => training::run(args),
     }
@@ -67,6 +70,7 @@ pub(crate) fn report(request: &EvaluateRequest) -> Result<Value> {
         What::Contacts(args) => value(&contacts::evaluate(&args)?),
         What::Dynamics(args) => value(&dynamics::evaluate(&args)?),
         What::Imu(args) => value(&imu::evaluate(&args)?),
+        What::Naturalness(args) => value(&naturalness::evaluate(&args)?),
         What::Style(args) => value(&style::evaluate(&args)?),
         What::Training(args) => value(&training::evaluate(&args)?),
     }

@@ -41,7 +41,7 @@ pub(crate) struct SynthArgs {
 
 /// A `.footstyle` file and how much of it.
 #[derive(Clone, Debug, PartialEq)]
-struct StyleArg {
+pub(crate) struct StyleArg {
     path: PathBuf,
     weight: f64,
 }
@@ -71,7 +71,7 @@ impl FromStr for StyleArg {
 }
 
 #[derive(Serialize)]
-struct StyleReport {
+pub(crate) struct StyleReport {
     name: String,
     weight: f64,
 }
@@ -90,7 +90,7 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
     let styles = args.styles.iter().map(|style| style.path.as_path());
     let inputs: Vec<&Path> = styles.chain([args.model.as_path()]).collect();
     args.walk.check(&inputs)?;
-    let (model, styles) = dressed(args)?;
+    let (model, styles) = dressed(&args.model, &args.styles)?;
     let model = Arc::new(model);
     let mut warnings = Vec::new();
     let [slowest, fastest] = model.speed_range();
@@ -117,13 +117,14 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
 }
 
 /// The model in the given styles.
-fn dressed(args: &SynthArgs) -> Result<(GaitModel, Vec<StyleReport>)> {
-    let model = read_model(&args.model)?;
-    if args.styles.is_empty() {
+pub(crate) fn dressed(path: &Path, styles: &[StyleArg]) -> Result<(GaitModel, Vec<StyleReport>)> {
+    let model = read_model(path)?;
+    if styles.is_empty() {
         return Ok((model, Vec::new()));
     }
+    let (base, chosen) = (path, styles);
     let mut styles: Vec<(GaitStyle, f64)> = Vec::new();
-    for StyleArg { path, weight } in &args.styles {
+    for StyleArg { path, weight } in chosen {
         if !weight.is_finite() {
             bail!(
                 "{}: a weight of {weight} says nothing; give a number",
@@ -135,7 +136,7 @@ fn dressed(args: &SynthArgs) -> Result<(GaitModel, Vec<StyleReport>)> {
     let weighted: Vec<(&GaitStyle, f64)> = styles.iter().map(|(s, weight)| (s, *weight)).collect();
     let dressed = model
         .styled(&weighted)
-        .with_context(|| args.model.display().to_string())?;
+        .with_context(|| base.display().to_string())?;
     let reports = styles.into_iter().map(|(style, weight)| StyleReport {
         name: style.name,
         weight,

@@ -64,4 +64,16 @@ pub enum EvaluateError {
         "the synthesised recordings hold no two steps in a row; synthesise walks of at least four steps"
     )]
     NoSynthesisedStride,
+    /// Too few walkers to learn from some and judge others.
+    #[error(
+        "{kind}: {found} walkers show a stride, and {least} are needed: some to learn from, others to judge"
+    )]
+    TooFewWalkers {
+        /// `captured` or `generated`.
+        kind: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        least: usize,
+    },
 }

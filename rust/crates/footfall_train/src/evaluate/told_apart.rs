@@ -1,0 +1,122 @@
+//! Generated walks beside captured ones: can a classifier tell them apart, and by what?
+//!
+//! Strides of both are reduced to the swing of fourteen parts of the body, low-passed at 6 Hz so that the noise of markers does not
+//! count. Two classifiers learn which strides were captured, from some people and some seeds, and judge others
+//! ([`judge`](folds::judge)). People differ from each other too, so the yardstick is what people score in the generator's place
+//! ([`people_apart`](folds::people_apart)), not 0.5. Beside the verdict stand measures that say where a difference lies: [`detail`] of 3 to
+//! 6 Hz by part, [`root`] (surge, limp and bob of the hips) and [`posture`] (knees, pitch of the feet).
+//!
+//! Modules in the order in which data flows: [`swings`], [`features`], [`classifiers`], [`folds`]; [`detail`], [`root`], [`posture`].
+
+pub mod classifiers;
+pub mod detail;
+pub mod features;
+pub mod folds;
+pub mod posture;
+pub mod root;
+pub mod swings;
+
+use crate::evaluate::EvaluateError;
+use detail::PartDetail;
+use features::View;
+use folds::{Sample, Verdict};
+use footfall_core::Clip;
+use footfall_motion::steps::Walk;
+use posture::Posture;
+use rayon::prelude::*;
+use root::RootHarmonics;
+use swings::{StrideSwings, stride_swings};
+
+/// Walking of one captured person, or of one seed of a generator.
+#[derive(Clone, Debug)]
+pub struct Walker {
+    /// Name of the person, or number of the seed.
+    pub name: String,
+    /// Recordings on the canonical body with their walks.
+    pub clips: Vec<(Clip, Vec<Walk>)>,
+}
+
+/// Measures of captured and generated walks side by side.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Captured strides, generated strides.
+    pub strides: [usize; 2],
+    /// Captured people with strides, generated seeds with strides.
+    pub walkers: [usize; 2],
+    /// Classifiers on each [`View`]: generated against captured, and people in the generator's place.
+    pub told_apart: Vec<(View, Verdict, Option<Verdict>)>,
+    /// Detail of 3 to 6 Hz by part: captured, generated.
+    pub detail: Vec<(&'static str, [PartDetail; 2])>,
+    /// Harmonics of the hips: captured, generated.
+    pub root: [RootHarmonics; 2],
+    /// Knees and feet: captured, generated.
+    pub posture: [Posture; 2],
+}
+
+/// Compares generated walks with captured ones.
+///
+/// # Errors
+/// [`EvaluateError::TooFewWalkers`] with fewer than three people or seeds that show a stride, and errors of the classifiers.
+pub fn compare(captured: &[Walker], generated: &[Walker]) -> Result<Comparison, EvaluateError> {
+    let sides = [
+        ("captured", strides_of(captured)),
+        ("generated", strides_of(generated)),
+    ];
+    for (kind, walkers) in &sides {
+        if walkers.len() < LEAST_WALKERS {
+            return Err(EvaluateError::TooFewWalkers {
+                kind,
+                found: walkers.len(),
+                least: LEAST_WALKERS,
+            });
+        }
+    }
+    let [captured, generated] = sides.map(|(_, walkers)| walkers);
+    let told_apart = View::ALL
+        .into_par_iter()
+        .map(|view| {
+            let (people, seeds) = (samples(&captured, view), samples(&generated, view));
+            let verdict = folds::judge(&people, &seeds)?;
+            let people = folds::people_apart(&people)?;
+            Ok((view, verdict, people))
+        })
+        .collect::<Result<_, EvaluateError>>()?;
+    let both = [&captured, &generated];
+    let count = |walkers: &[Vec<StrideSwings>]| walkers.iter().map(Vec::len).sum();
+    Ok(Comparison {
+        strides: both.map(|walkers| count(walkers)),
+        walkers: both.map(Vec::len),
+        told_apart,
+        detail: detail::by_part(both),
+        root: both.map(|walkers| RootHarmonics::of(walkers.iter().flatten())),
+        posture: both.map(|walkers| Posture::of(walkers.iter().flatten())),
+    })
+}
+
+/// Walkers fewer than this cannot be divided into those learned from and those judged.
+const LEAST_WALKERS: usize = 3;
+
+/// Strides of each walker who shows any.
+fn strides_of(walkers: &[Walker]) -> Vec<Vec<StrideSwings>> {
+    let of = |walker: &Walker| -> Vec<StrideSwings> {
+        let clips = walker.clips.iter();
+        clips
+            .flat_map(|(clip, walks)| stride_swings(clip, walks))
+            .collect()
+    };
+    let all: Vec<Vec<StrideSwings>> = walkers.par_iter().map(of).collect();
+    all.into_iter()
+        .filter(|strides| !strides.is_empty())
+        .collect()
+}
+
+fn samples(walkers: &[Vec<StrideSwings>], view: View) -> Vec<Sample> {
+    let of = |(walker, strides): (usize, &Vec<StrideSwings>)| {
+        let sample = |stride: &StrideSwings| Sample {
+            walker,
+            features: features::of(stride, view),
+        };
+        strides.iter().map(sample).collect::<Vec<_>>()
+    };
+    walkers.iter().enumerate().flat_map(of).collect()
+}
