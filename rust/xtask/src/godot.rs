@@ -88,7 +88,14 @@ pub(crate) fn provision() -> Result<Engine> {
 fn cached(cache: &Path) -> Option<Engine> {
     let marker = fs::read_to_string(cache.join("finished")).ok()?;
     let program = program_in_marker(&marker)?;
-    probe(&program, template_of(cache)).ok()
+    let template = template_of(cache);
+    if template.is_some()
+        && let Err(reason) = apt::refresh(cache)
+    {
+        eprintln!("fetching Godot anew: {reason:#}");
+        return None;
+    }
+    probe(&program, template).ok()
 }
 
 fn program_in_marker(marker: &str) -> Option<PathBuf> {

@@ -16,6 +16,17 @@ pub(crate) fn shown(command: &Command) -> String {
 pub(crate) fn cargo() -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(crate::paths::workspace());
+    // What the cargo that runs this program says of it: build scripts that look at it would run anew, and with them half of all crates be
+    // built anew, whenever somebody calls cargo now by way of this program and now directly.
+    for (name, _) in std::env::vars_os() {
+        let name = name.to_string_lossy();
+        if ["CARGO_PKG_", "CARGO_MANIFEST_"]
+            .iter()
+            .any(|own| name.starts_with(own))
+        {
+            cargo.env_remove(&*name);
+        }
+    }
     if std::env::var_os("CI").is_some() {
         // What is built once is never built again: what the next build would save, this one would pay for.
         cargo.env("CARGO_INCREMENTAL", "0");

@@ -2,9 +2,10 @@
 //!
 //! The machine's own apt names the archive and the key that signs it. A private apt state then asks that archive for the suite
 //! whose Godot is new enough, downloads the packages with all that they need, and `dpkg -x` unpacks them side by side. As they
-//! are newer than the machine's own C library, a script starts Godot with the loader that came along.
+//! are newer than the machine's own C library, Godot is patched to name the loader and the libraries that came along ([`patched`]).
 
 mod archive;
+mod patched;
 
 pub(super) use archive::Archive;
 
@@ -12,6 +13,7 @@ use crate::apt::Apt;
 use crate::process;
 use anyhow::{Context as _, Result, bail};
 use archive::Architecture;
+use patched::Patcher;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -32,6 +34,8 @@ const PACKAGES: [&str; 9] = [
 ];
 /// Where the export template is, from the cache folder.
 pub(super) const RELEASE_TEMPLATE: &str = "root/usr/bin/godot-template-release";
+/// What is started, from the cache folder.
+const STARTER: &str = "godot";
 
 /// Downloads and unpacks; what an interrupted run had finished is kept. Returns the script that starts Godot.
 pub(super) fn fetch(archive: &Archive, cache: &Path) -> Result<PathBuf> {
@@ -61,47 +65,56 @@ pub(super) fn fetch(archive: &Archive, cache: &Path) -> Result<PathBuf> {
     write_starter(archive.architecture, cache)
 }
 
-/// Writes the script that starts Godot with its own loader and libraries.
-fn write_starter(architecture: &Architecture, cache: &Path) -> Result<PathBuf> {
+/// Brings what an earlier version of this program unpacked to how it is unpacked now; nothing is fetched.
+///
+/// # Errors
+/// When files of the cache cannot be changed.
+pub(super) fn refresh(cache: &Path) -> Result<()> {
+    let architecture = Architecture::of_host()?;
+    let starter = fs::read_to_string(cache.join(STARTER)).unwrap_or_default();
+    if starter != starter_script(architecture) {
+        write_starter(architecture, cache)?;
+    }
+    Ok(())
+}
+
+/// Makes Godot start with its own loader and libraries, and writes the script that starts it; the script comes last, for it says that
+/// the rest is done.
+fn write_starter(architecture: &'static Architecture, cache: &Path) -> Result<PathBuf> {
     let root = cache.join("root");
     for part in [architecture.loader, "usr/bin/godot"] {
         if !root.join(part).exists() {
             bail!("the packages do not hold {part}: Debian's layout has changed");
         }
     }
-    let starter = cache.join("godot");
-    fs::write(&starter, starter_script(architecture))
+    let patcher = Patcher::new(&root, architecture);
+    patcher.libraries()?;
+    patcher.program(&root.join("usr/bin/godot"))?;
+    let starter = cache.join(STARTER);
+    let partial = cache.join("godot.partial");
+    fs::write(&partial, starter_script(architecture))
+        .with_context(|| format!("cannot write {}", partial.display()))?;
+    make_executable(&partial)?;
+    fs::rename(&partial, &starter)
         .with_context(|| format!("cannot write {}", starter.display()))?;
-    make_executable(&starter)?;
     Ok(starter)
 }
 
 fn starter_script(architecture: &Architecture) -> String {
-    let Architecture {
-        libraries, loader, ..
-    } = architecture;
+    let libraries = architecture.libraries;
     format!(
         "#!/bin/sh\n\
-         # Written by `cargo xtask godot`: starts Debian's Godot with the loader and the libraries that came with it.\n\
+         # Written by `cargo xtask godot`: starts Debian's Godot with the drivers that came with it.\n\
          root=\"$(dirname -- \"$(readlink -f -- \"$0\")\")/root\"\n\
-         LIBGL_DRIVERS_PATH=\"$root/{libraries}/dri\" exec \"$root/{loader}\" \\\n  \
-         --library-path \"$root/{libraries}:$root/{libraries}/pulseaudio:$root/usr/lib\" \"$root/usr/bin/godot\" \"$@\"\n"
+         LIBGL_DRIVERS_PATH=\"$root/{libraries}/dri\" exec \"$root/usr/bin/godot\" \"$@\"\n"
     )
 }
 
 /// A command that starts a game which was exported with Debian's template. It needs the loader and the libraries that the template came
-/// with, so a copy of it is made beside it that names that loader: started through the loader it would not find its data.
+/// with, so a copy of it is made beside it that names them: started through the loader it would not find its data.
 pub(super) fn game(cache: &Path, game: &Path) -> Result<Command> {
     let root = cache.join("root");
     let architecture = Architecture::of_host()?;
-    let library_path = [
-        root.join(architecture.libraries),
-        root.join(architecture.libraries).join("pulseaudio"),
-        root.join("usr/lib"),
-    ]
-    .map(|folder| folder.display().to_string())
-    .join(":");
-    let loader = root.join(architecture.loader);
     let folder = game.with_extension("started");
     if folder.exists() {
         fs::remove_dir_all(&folder)
@@ -117,18 +130,9 @@ pub(super) fn game(cache: &Path, game: &Path) -> Result<Command> {
         }
     }
     let copy = folder.join(game.file_name().context("a game without a name")?);
-    process::read(
-        Command::new(&loader)
-            .arg("--library-path")
-            .arg(&library_path)
-            .arg(root.join("usr/bin/patchelf"))
-            .arg("--set-interpreter")
-            .args([&loader, &copy]),
-    )
-    .context("patchelf cannot change the exported game")?;
-    make_executable(&copy)?;
+    Patcher::new(&root, architecture).program(&copy)?;
     let mut command = Command::new(copy);
-    command.env("LD_LIBRARY_PATH", library_path).env(
+    command.env(
         "LIBGL_DRIVERS_PATH",
         root.join(architecture.libraries).join("dri"),
     );
@@ -153,11 +157,9 @@ mod tests {
     use archive::ARCHITECTURES;
 
     #[test]
-    fn the_starter_uses_the_loader_that_came_along() {
+    fn the_starter_uses_the_drivers_that_came_along() {
         let script = starter_script(&ARCHITECTURES[0]);
-        assert!(script.contains("exec \"$root/usr/lib64/ld-linux-x86-64.so.2\""));
-        assert!(
-            script.contains("pulseaudio") && script.ends_with("\"$root/usr/bin/godot\" \"$@\"\n")
-        );
+        assert!(script.contains("usr/lib/x86_64-linux-gnu/dri"));
+        assert!(script.ends_with("exec \"$root/usr/bin/godot\" \"$@\"\n"));
     }
 }
