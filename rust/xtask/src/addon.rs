@@ -50,13 +50,25 @@ pub(crate) fn command(packed: bool) -> Result<()> {
         eprintln!("not in the archive, since it is not built here: {name}");
     }
     let archive = paths::target_folder().join("footfall-addon.zip");
-    let files = pack(&addon, &archive, &third_party()?)?;
+    let files = self::archive(&archive)?;
     let sums = archive.with_extension("zip.sha256");
     let bytes = fs::read(&archive).with_context(|| format!("cannot read {}", archive.display()))?;
     fs::write(&sums, format!("{}  footfall-addon.zip\n", sha256(&bytes)))
         .with_context(|| format!("cannot write {}", sums.display()))?;
     eprintln!("{} ({files} files)", archive.display());
     Ok(())
+}
+
+/// Writes the add-on, with the libraries that `bin/` holds, into an archive; returns how many files that is.
+///
+/// # Errors
+/// When a file cannot be read or written.
+pub(crate) fn archive(archive: &Path) -> Result<usize> {
+    if let Some(folder) = archive.parent() {
+        fs::create_dir_all(folder)
+            .with_context(|| format!("cannot create {}", folder.display()))?;
+    }
+    pack(&paths::addon(), archive, &third_party()?)
 }
 
 /// What the library is built from besides this project, and under which terms.

@@ -37,6 +37,24 @@ const LIMIT: Duration = Duration::from_mins(5);
 /// # Errors
 /// When it cannot be started, fails, hangs or complains; with the end of its output and where all of it is.
 pub(crate) fn judged(command: &mut Command, log: &Path) -> Result<String> {
+    judged_by(command, log, complaint)
+}
+
+/// Runs Godot as [`judged`] does, but fails on any error, whoever it names.
+///
+/// # Errors
+/// As [`judged`].
+pub(crate) fn quiet(command: &mut Command, log: &Path) -> Result<String> {
+    judged_by(command, log, |said| {
+        complaint(said).or_else(|| said.lines().find(|line| line.contains("ERROR")))
+    })
+}
+
+fn judged_by(
+    command: &mut Command,
+    log: &Path,
+    complaint: impl Fn(&str) -> Option<&str>,
+) -> Result<String> {
     let shown = process::shown(command);
     let (status, said) = started(command, log)?;
     let problem = match status {

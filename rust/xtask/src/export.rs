@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The preset's name.
-const PRESET: &str = "Footfall demo";
+const PRESET: &str = "Footfall";
 /// Frames that the exported game looks into each of its scenes when it is started for a check.
 const FRAMES: &str = "20";
 
@@ -39,26 +39,35 @@ pub(crate) fn export(engine: &Engine) -> Result<PathBuf> {
     link::ensure()?;
     let project = paths::repository_root().join("demo_project");
     demo::import(engine, &project, "demo")?;
+    let folder = paths::target_folder().join("export");
+    let game = folder.join(format!("footfall_demo.{ARCH}"));
+    let log = paths::target_folder().join("verify/export.log");
+    make(engine, &project, &game, &log)?;
+    Ok(game)
+}
+
+/// Exports a project, as it is, to an executable in a folder of its own, which is made anew.
+///
+/// # Errors
+/// When Godot fails or has an error to tell.
+pub(crate) fn make(engine: &Engine, project: &Path, game: &Path, log: &Path) -> Result<()> {
+    let folder = game.parent().context("a game without a folder")?;
     let presets = project.join("export_presets.cfg");
     fs::write(&presets, preset(engine.release_template.as_deref()))
         .with_context(|| format!("cannot write {}", presets.display()))?;
-    let folder = paths::target_folder().join("export");
     if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("cannot clear {}", folder.display()))?;
+        fs::remove_dir_all(folder).with_context(|| format!("cannot clear {}", folder.display()))?;
     }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
-    let game = folder.join(format!("footfall_demo.{ARCH}"));
-    let log = paths::target_folder().join("verify/export.log");
-    let exported = engine_run::judged(
-        open::headless(engine, &project)
+    fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    let exported = engine_run::quiet(
+        open::headless(engine, project)
             .args(["--export-release", PRESET])
-            .arg(&game),
-        &log,
+            .arg(game),
+        log,
     );
     fs::remove_file(&presets).with_context(|| format!("cannot remove {}", presets.display()))?;
     exported?;
-    for file in [&game, &game.with_extension("pck")] {
+    for file in [game, &game.with_extension("pck")] {
         if !file.is_file() {
             bail!(
                 "Godot exported no {}: what it said is in {}",
@@ -67,7 +76,7 @@ pub(crate) fn export(engine: &Engine) -> Result<PathBuf> {
             );
         }
     }
-    Ok(game)
+    Ok(())
 }
 
 /// Starts the exported game without a window; it looks into every scene and quits.

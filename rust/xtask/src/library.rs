@@ -1,6 +1,6 @@
 //! `cargo xtask library`: the add-on's library, built and put where `footfall.gdextension` looks for it.
 //!
-//! There are two flavours. The editor's (`libfootfall_godot.editor.so` and its like) holds the class docs and import plugins;
+//! There are two flavours. The editor's (`libfootfall_godot.editor.so` and its like) holds the class docs and the dock;
 //! exported games load the plain one. Both share every compiled crate but `godot` and `footfall_godot`.
 
 use crate::{paths, process};

@@ -24,6 +24,7 @@ mod link;
 mod mannequin;
 mod models;
 mod mono;
+mod newcomer;
 mod open;
 mod paths;
 mod process;

@@ -1,6 +1,8 @@
 //! `cargo verify`: everything that must hold before a change goes in, in the order in which it fails soonest.
 
-use crate::{csharp, demo, engine_run, export, godot, library, link, open, paths, process, tidy};
+use crate::{
+    csharp, demo, engine_run, export, godot, library, link, newcomer, open, paths, process, tidy,
+};
 use anyhow::{Context as _, Result, bail};
 use std::path::Path;
 use std::time::Instant;
@@ -14,7 +16,7 @@ struct Step {
     check: fn() -> Result<()>,
 }
 
-const STEPS: [Step; 12] = [
+const STEPS: [Step; 13] = [
     Step {
         name: "format",
         check: format,
@@ -62,6 +64,10 @@ const STEPS: [Step; 12] = [
     Step {
         name: "export",
         check: exported_demo,
+    },
+    Step {
+        name: "newcomer",
+        check: newcomer::check,
     },
 ];
 

@@ -83,9 +83,10 @@ func test_bytes_that_are_no_model_say_so() -> void:
 	check_equal(GaitModel.from_bytes(newer).get_error(), "", "the same bytes are a model")
 
 
-func test_without_a_model_it_rests_and_says_what_to_load() -> void:
+func test_with_an_empty_model_it_rests_and_says_what_to_load() -> void:
 	var walker := Walker.new().build(false)
 	add_child(walker)
+	walker.gait.model = GaitModel.new()
 	check_contains("\n".join(walker.gait.get_problems()), ".footfall", "says what to load")
 	begin_expected_errors()
 	walker.walk(10)
@@ -125,63 +126,37 @@ func test_a_model_that_is_replaced_in_place_is_taken_up() -> void:
 	check(walker.global_position.z > 1.0, "it walks on")
 
 
-func test_importing_in_a_fresh_project() -> void:
-	var folder := DirAccess.create_temp("footfall_import").get_current_dir()
-	# The folder above is removed with its DirAccess: work beside it.
-	folder += "_project"
-	DirAccess.make_dir_recursive_absolute(folder)
-	var project := FileAccess.open(folder + "/project.godot", FileAccess.WRITE)
-	project.store_string("config_version=5\n[application]\nconfig/name=\"Import\"\n")
-	project.close()
-	var here := DirAccess.open(folder)
-	here.create_link(ProjectSettings.globalize_path("res://addons"), folder + "/addons")
+func test_files_load_as_they_are() -> void:
+	var folder := DirAccess.create_temp("footfall_files")
 	var bytes := (load(Walker.MODEL) as GaitModel).data
-	_write(folder + "/good.footfall", bytes)
-	_write(folder + "/damaged.footfall", bytes.slice(0, bytes.size() - 9))
-	_write(folder + "/other.footfall", "something else".to_utf8_buffer())
-	var said := ""
-	for run: int in 2:
-		said = _godot(["--headless", "--path", folder, "--import"])
-	var imported := "\n".join(DirAccess.get_files_at(folder + "/.godot/imported"))
-	check_contains(imported, "good.footfall", "a whole file is imported\n" + said)
-	check(not imported.contains("damaged.footfall-") or not imported.contains("damaged.footfall.res"), "a damaged one is not")
-	check_contains(said, "damaged.footfall: ", "the log names the damaged file")
-	check_contains(said, "other.footfall: ", "and the one that is no model")
-	check(not said.contains("panicked"), "no panic")
-	OS.move_to_trash(folder) if OS.get_name() == "Windows" else OS.execute("rm", ["-rf", folder])
+	_write(folder.get_current_dir() + "/good.footfall", bytes)
+	_write(folder.get_current_dir() + "/damaged.footfall", bytes.slice(0, bytes.size() - 9))
+	_write(folder.get_current_dir() + "/other.footstyle", "something else".to_utf8_buffer())
+	var good: GaitModel = load(folder.get_current_dir() + "/good.footfall")
+	check_equal(good.data, bytes, "a whole file is what it holds")
+	check_equal(good.get_error(), "", "and has no error")
+	begin_expected_errors()
+	var damaged: GaitModel = load(folder.get_current_dir() + "/damaged.footfall")
+	var other: GaitStyle = load(folder.get_current_dir() + "/other.footstyle")
+	var missing := load(folder.get_current_dir() + "/missing.footimu")
+	end_expected_errors()
+	check(not damaged.get_error().is_empty(), "a scene with a damaged file opens, and the model says what it is")
+	check_contains(other.get_error(), "not a Footfall", "a file that is no style says so")
+	check(missing == null, "no file is no model")
+
+
+func test_a_file_that_changes_is_taken_up() -> void:
+	var folder := DirAccess.create_temp("footfall_files")
+	var path := folder.get_current_dir() + "/walk.footfall"
+	_write(path, (load(Walker.MODEL) as GaitModel).data)
+	var model: GaitModel = load(path)
+	_write(path, FileAccess.get_file_as_bytes("res://addons/footfall/models/walk.footdyn"))
+	check(not model.is_switching(), "the first is a trained walk")
+	ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_REPLACE)
+	check(model.is_switching(), "the resource that everybody has holds the new file")
 
 
 func _write(path: String, bytes: PackedByteArray) -> void:
 	var file := FileAccess.open(path, FileAccess.WRITE)
 	file.store_buffer(bytes)
 	file.close()
-
-
-## Runs another Godot like this one, which may itself have been started through a loader or wrapper, and returns what it said.
-func _godot(arguments: PackedStringArray) -> String:
-	var command: PackedStringArray = [OS.get_executable_path()]
-	if FileAccess.file_exists("/proc/self/cmdline"):
-		var started_as := FileAccess.get_file_as_bytes("/proc/self/cmdline").get_string_from_utf8()
-		var file := FileAccess.open("/proc/self/cmdline", FileAccess.READ)
-		var bytes := file.get_buffer(65536)
-		command = []
-		for part: PackedByteArray in _split(bytes):
-			started_as = part.get_string_from_utf8()
-			if started_as in ["--headless", "--path", "--audio-driver"]:
-				break
-			command.append(started_as)
-	var said: Array = []
-	OS.execute(command[0], command.slice(1) + arguments, said, true)
-	return said[0]
-
-
-func _split(bytes: PackedByteArray) -> Array[PackedByteArray]:
-	var parts: Array[PackedByteArray] = []
-	var start := 0
-	while start < bytes.size():
-		var end := bytes.find(0, start)
-		if end < 0:
-			end = bytes.size()
-		parts.append(bytes.slice(start, end))
-		start = end + 1
-	return parts

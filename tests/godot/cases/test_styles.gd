@@ -26,7 +26,7 @@ func _lean(walker: Walker, frames: int) -> float:
 	return sum[0] / frames
 
 
-func test_every_shipped_style_is_imported_fits_the_shipped_model_and_walks() -> void:
+func test_every_shipped_style_fits_the_shipped_model_and_walks() -> void:
 	var names := PackedStringArray()
 	for file: String in DirAccess.get_files_at(MODELS):
 		if file.get_extension() == "footstyle":

@@ -14,7 +14,7 @@ func _walker(seed := 1) -> Walker:
 	return walker
 
 
-func test_the_shipped_switching_model_is_imported() -> void:
+func test_the_shipped_switching_model_is_there() -> void:
 	var model: GaitModel = load(MODEL)
 	check(model != null, "a .footdyn file loads as a GaitModel")
 	check_equal(model.get_error(), "", "and is whole")
@@ -65,7 +65,7 @@ func test_it_stops_and_its_state_goes_on_bit_for_bit() -> void:
 	check_equal(walker.global_position, stands, "it stands")
 
 
-func test_styles_are_refused_with_what_to_do() -> void:
+func test_styles_are_passed_over_with_what_to_do() -> void:
 	var walker := _walker()
 	walker.gait.styles = [load("res://addons/footfall/models/sad.footstyle")]
 	walker.gait.style_weights = PackedFloat32Array([1.0])

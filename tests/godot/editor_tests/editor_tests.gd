@@ -29,7 +29,7 @@ func _run() -> void:
 		await _test_controller()
 		await _test_hot_reload()
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE))
-	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE + ".import"))
+	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE + ".uid"))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE.get_base_dir()))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(SCENE))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(SCRATCH))
@@ -56,6 +56,8 @@ func _test_controller() -> void:
 
 
 func _test_dock(dock: Node) -> void:
+	_check(dock.default_slot == EditorDock.DOCK_SLOT_BOTTOM, "the dock leaves the inspector alone")
+	_check((dock as Control).get_combined_minimum_size().y < 120.0, "and needs little height")
 	dock.call(&"make")
 	_check(dock.call(&"get_message").contains("Add recordings"), "nothing is made of nothing")
 	dock.call(&"add_recordings", PackedStringArray([RECORDING, RECORDING]))
@@ -74,7 +76,7 @@ func _test_dock(dock: Node) -> void:
 	await _until(func() -> bool: return not dock.call(&"is_working"), "making a style")
 	_check(dock.call(&"get_message").contains("steps at"), "the style is told of: " + dock.call(&"get_message"))
 	_check(FileAccess.file_exists(STYLE), "the style was written")
-	await _until(func() -> bool: return ResourceLoader.exists(STYLE), "the style's import")
+	await _until(func() -> bool: return ResourceLoader.exists(STYLE), "the style's file")
 	_check(load(STYLE) is GaitStyle, "the project has it")
 	var stage := _only("FootfallWalkerView", dock)
 	_check(stage and stage.is_visible_in_tree() == dock.is_visible_in_tree(), "someone walks in it")
@@ -89,6 +91,11 @@ func _test_scene(dock: Node) -> void:
 	await _until(func() -> bool: return EditorInterface.get_edited_scene_root() != null, "the scene")
 	var character: Node3D = EditorInterface.get_edited_scene_root()
 	var gait: GaitGenerator3D = character.find_children("*", "GaitGenerator3D")[0]
+
+	var own := gait.model
+	gait.model = GaitModel.new()
+	_check(gait.model.resource_path.ends_with("walk.footfall"), "a new model is the shipped one: " + gait.model.resource_path)
+	gait.model = own
 
 	EditorInterface.get_selection().clear()
 	dock.call(&"give_to_selected")
@@ -130,6 +137,7 @@ func _test_hot_reload() -> void:
 	GDExtensionManager.reload_extension("res://addons/footfall/footfall.gdextension")
 	await get_tree().create_timer(1.0).timeout
 	_check(is_instance_valid(gait) and gait.speed == speed and gait.model == model, "properties outlive a hot reload")
+	_check(ResourceLoader.load(STYLE, "", ResourceLoader.CACHE_MODE_IGNORE) is GaitStyle, "files load after a hot reload")
 	var before: float = gait.call(&"get_time")
 	await get_tree().create_timer(0.5).timeout
 	_check(gait.call(&"get_time") > before, "it walks on after a hot reload")

@@ -1,8 +1,9 @@
-//! The editor's half of the add-on: importers, the dock that makes styles of recordings, gizmos and the preview bar. Exported games are built
+//! The editor's half of the add-on: the dock that makes styles of recordings, gizmos and the preview bar. Exported games are built
 //! without it.
 
 mod class_reference;
-mod import_plugin;
+pub(crate) mod headless;
+mod leftovers;
 mod plugin;
 mod preview_bar;
 mod style_dock;

@@ -25,6 +25,7 @@ mod way;
 
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
+use crate::shipped::{self, Fallback};
 use godot::classes::{Engine, INode3D, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
 use scene::CrowdScene;
@@ -65,12 +66,12 @@ pub(crate) enum CrowdBehaviour {
     reason = "the inspector shows check boxes"
 )]
 pub(crate) struct GaitCrowd3D {
-    /// The way of walking: an imported `.footfall` file such as `addons/footfall/models/walk.footfall`.
+    /// The way of walking: a `.footfall` file such as `addons/footfall/models/walk.footfall`, with which the crowd walks where this is empty.
     #[export]
-    #[var(set = set_model)]
+    #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
     model: Option<Gd<GaitModel>>,
 
-    /// Styles that walkers wear, imported `.footstyle` files that were made for this model.
+    /// Styles that walkers wear, `.footstyle` files that were made for this model.
     #[export]
     #[var(set = set_styles)]
     styles: Array<Option<Gd<GaitStyle>>>,
@@ -195,6 +196,8 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_material)]
     material: Option<Gd<ShaderMaterial>>,
 
+    /// The add-on's own walk, where `model` is empty.
+    fallback: Fallback<GaitModel>,
     walkers: Option<Walkers>,
     scene: Option<CrowdScene>,
     /// Why the crowd could not be made, as long as nothing has changed since.
@@ -256,7 +259,7 @@ impl GaitCrowd3D {
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
-        self.model = model;
+        self.model = shipped::instead_of_new(model, shipped::WALK, |model| model.bind().is_new());
         self.restart();
     }
 

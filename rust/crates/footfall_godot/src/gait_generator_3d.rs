@@ -23,6 +23,7 @@ use crate::convert;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use crate::root_motion::RootMotion;
+use crate::shipped::{self, Fallback};
 use crate::walk_source::WalkSource;
 use absence::Absent;
 use detail::GaitDetail;
@@ -47,13 +48,16 @@ use session::Session;
 #[derive(GodotClass)]
 #[class(tool, init, base = SkeletonModifier3D)]
 pub(crate) struct GaitGenerator3D {
-    /// The way of walking: an imported `.footfall` file such as `addons/footfall/models/walk.footfall`, or a `.footdyn` file such as
+    /// The way of walking: a `.footfall` file such as `addons/footfall/models/walk.footfall`, or a `.footdyn` file such as
     /// `addons/footfall/models/walk.footdyn`, a switching model, which is smaller and wears no styles.
+    ///
+    /// A node that is added in the editor has `walk.footfall`; where this is empty, as after `GaitGenerator3D.new()` in a script, the
+    /// character walks with the same.
     #[export]
-    #[var(set = set_model)]
+    #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
     model: Option<Gd<GaitModel>>,
 
-    /// Styles to walk in, imported `.footstyle` files that were made for this model. `style_weights` says how much of each.
+    /// Styles to walk in, `.footstyle` files that were made for this model. `style_weights` says how much of each.
     ///
     /// Changing the list starts the walk anew; change weights to change the style while it walks.
     #[export]
@@ -172,6 +176,8 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
 
+    /// The add-on's own walk, where `model` is empty.
+    fallback: Fallback<GaitModel>,
     /// The model and its styles; `None` until they are needed.
     source: Option<WalkSource>,
     /// The time of the walk to go to in the next frame, seconds.
@@ -261,7 +267,7 @@ impl GaitGenerator3D {
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
-        self.model = model;
+        self.model = shipped::instead_of_new(model, shipped::WALK, |model| model.bind().is_new());
         self.source = None;
         self.restart();
     }

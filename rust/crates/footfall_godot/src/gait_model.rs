@@ -10,13 +10,16 @@ use godot::prelude::*;
 use std::cell::OnceCell;
 use std::sync::{Arc, Weak};
 
+/// What a model makes of styles that cannot wear any.
+pub(crate) const NO_STYLES: &str = "A switching model (.footdyn) wears no styles and walks without them: empty Styles, or load a .footfall file into Model.";
+
 /// What to do where there is no model.
-pub(crate) const NO_MODEL: &str = "No gait model. Load a .footfall file into Model, for example addons/footfall/models/walk.footfall.";
+pub(crate) const NO_MODEL: &str = "No gait model, and the add-on's own, models/walk.footfall, is gone. Load a .footfall file into Model.";
 
 /// A way of walking that was learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
 /// (`.footdyn`, made by `footfall dynamics fit`).
 ///
-/// Put either file into the project and it is imported as this resource. Give it to a `GaitGenerator3D`'s `model`. One model serves
+/// Either file in the project is this resource, as it is. Give it to a `GaitGenerator3D`'s `model`. One model serves
 /// any number of characters. A trained walk knows many walkers, changes its step with its speed and wears styles; a switching model is a
 /// hundredth of its size, and is one person's way of walking.
 #[derive(GodotClass)]
@@ -24,7 +27,7 @@ pub(crate) const NO_MODEL: &str = "No gait model. Load a .footfall file into Mod
 pub(crate) struct GaitModel {
     /// The bytes of the `.footfall` or `.footdyn` file.
     ///
-    /// Plain bytes, so that loading the imported resource needs nothing but built-in storage.
+    /// Plain bytes, so that a scene or `.res` file that holds the resource needs nothing but built-in storage.
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
@@ -94,12 +97,17 @@ impl GaitModel {
 
     /// Whether this is a switching model, which wears no styles.
     #[func]
-    fn is_switching(&self) -> bool {
+    pub(crate) fn is_switching(&self) -> bool {
         matches!(self.trained().as_deref(), Ok(WalkModel::Dynamics(_)))
     }
 }
 
 impl GaitModel {
+    /// Whether it was made by *New* and holds nothing yet.
+    pub(crate) fn is_new(&self) -> bool {
+        self.data.is_empty()
+    }
+
     fn speeds_of(&self, model: &WalkModel) -> [f32; 2] {
         *self.speeds.get_or_init(|| speed_range(model))
     }
@@ -110,7 +118,7 @@ impl GaitModel {
     /// What is wrong with the file, for the user.
     pub(crate) fn trained(&self) -> Result<Arc<WalkModel>, String> {
         self.loaded
-            .content("the gait model is empty: load a .footfall or a .footdyn file into it")
+            .content("the gait model is empty: load a .footfall or a .footdyn file in its place")
     }
 
     /// The model with these styles, prepared once for all characters that wear the same.
@@ -123,12 +131,7 @@ impl GaitModel {
             WalkModel::Dynamics(model) if styles.is_empty() => {
                 return Ok(WalkSource::Switching(Arc::clone(model)));
             }
-            WalkModel::Dynamics(_) => {
-                return Err(
-                    "a switching model (.footdyn) wears no styles: empty Styles, or take a .footfall model"
-                        .to_owned(),
-                );
-            }
+            WalkModel::Dynamics(_) => return Err(NO_STYLES.to_owned()),
         };
         if let Some(space) = self.space_with(styles) {
             return Ok(WalkSource::Styled(space));

@@ -8,14 +8,14 @@ use std::sync::Arc;
 
 /// A style of walking, made by `footfall adapt` from about a dozen steps and stored in a `.footstyle` file.
 ///
-/// Put a `.footstyle` file into the project and it is imported as this resource. Add it to a `GaitGenerator3D`'s `styles` and
+/// A `.footstyle` file in the project is this resource, as it is. Add it to a `GaitGenerator3D`'s `styles` and
 /// give it a weight in `style_weights`. A style belongs to the `GaitModel` that it was adapted from.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct GaitStyle {
     /// The bytes of the `.footstyle` file.
     ///
-    /// Plain bytes, so that loading the imported resource needs nothing but built-in storage.
+    /// Plain bytes, so that a scene or `.res` file that holds the resource needs nothing but built-in storage.
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
@@ -87,7 +87,7 @@ impl GaitStyle {
     /// What is wrong with the file, for the user.
     pub(crate) fn trained(&self) -> Result<Arc<TrainedStyle>, String> {
         self.loaded
-            .content("the gait style is empty: load a .footstyle file into it")
+            .content("the gait style is empty: load a .footstyle file in its place")
     }
 }
 

@@ -8,19 +8,18 @@ use godot::prelude::*;
 use std::sync::Arc;
 
 /// What to do where there is no model.
-pub(crate) const NO_MODEL: &str =
-    "No sensor model. Load a .footimu file into Model; `footfall imu train` makes one.";
+pub(crate) const NO_MODEL: &str = "No sensor model, and the add-on's own, models/right_foot.footimu, is gone. Load a .footimu file into Model.";
 
 /// Knows what one or two inertial sensors on a body mean for the whole body (`.footimu`, made by `footfall imu train`).
 ///
-/// Put the file into the project and it is imported as this resource. Give it to an `ImuReconstructor3D`'s `model`. One model serves any number of
+/// The file in the project is this resource, as it is. Give it to an `ImuReconstructor3D`'s `model`. One model serves any number of
 /// characters.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct ImuModel {
     /// The bytes of the `.footimu` file.
     ///
-    /// Plain bytes, so that loading the imported resource needs nothing but built-in storage.
+    /// Plain bytes, so that a scene or `.res` file that holds the resource needs nothing but built-in storage.
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
@@ -87,13 +86,18 @@ impl ImuModel {
 }
 
 impl ImuModel {
+    /// Whether it was made by *New* and holds nothing yet.
+    pub(crate) fn is_new(&self) -> bool {
+        self.data.is_empty()
+    }
+
     /// The model, laid out, shared with every character that it drives.
     ///
     /// # Errors
     /// What is wrong with the file, for the user.
     pub(crate) fn prepared(&self) -> Result<Arc<Prepared>, String> {
         self.loaded
-            .content("the sensor model is empty: load a .footimu file into it")
+            .content("the sensor model is empty: load a .footimu file in its place")
     }
 }
 

@@ -8,6 +8,7 @@ use crate::imu_model::{ImuModel, NO_MODEL};
 use crate::imu_source::{self, Heard};
 use crate::report;
 use crate::root_motion::{Moves, Now, RootMotion};
+use crate::shipped::{self, Fallback};
 use crate::skeleton_binding::SkeletonBinding;
 use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose, Side};
@@ -36,9 +37,11 @@ const STANDING_RATE_HZ: f64 = 50.0;
 #[derive(GodotClass)]
 #[class(tool, init, base = SkeletonModifier3D)]
 pub(crate) struct ImuReconstructor3D {
-    /// What the sensors mean: an imported `.footimu` file.
+    /// What the sensors mean: a `.footimu` file.
+    ///
+    /// A node that is added in the editor has `addons/footfall/models/right_foot.footimu`; where this is empty, it is used as well.
     #[export]
-    #[var(set = set_model)]
+    #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
     model: Option<Gd<ImuModel>>,
 
     /// Where the samples come from: a `PhoneImuSource`, `SerialImuSource`, `NetworkImuSource`, `DeviceImuSource` or `ReplayImuSource`. Live ones are opened in the game, not in the
@@ -74,6 +77,8 @@ pub(crate) struct ImuReconstructor3D {
 
     /// The body under way; `None` until the next frame that can start it.
     session: Option<Session>,
+    /// The add-on's own sensor model, where `model` is empty.
+    fallback: Fallback<ImuModel>,
     /// What was last reported, so that it is reported once.
     reported: Option<String>,
     travelled: RootMotion,
@@ -273,7 +278,8 @@ impl ImuReconstructor3D {
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<ImuModel>>) {
-        self.model = model;
+        self.model =
+            shipped::instead_of_new(model, shipped::RIGHT_FOOT, |model| model.bind().is_new());
         self.restart();
     }
 
@@ -316,9 +322,10 @@ impl ImuReconstructor3D {
     }
 
     fn prepared(&self) -> Result<Arc<Prepared>, String> {
-        let Some(model) = &self.model else {
-            return Err(NO_MODEL.to_owned());
-        };
+        let used = self
+            .fallback
+            .model(self.model.as_ref(), shipped::RIGHT_FOOT);
+        let model = used.ok_or(NO_MODEL)?;
         let prepared = model.bind().prepared();
         prepared.map_err(|error| format!("The sensor model cannot be used: {error}"))
     }

@@ -3,11 +3,12 @@
 //! `gait_model` is the resource that holds a trained walk, `gait_style` one that holds a style of it, `gait_generator_3d` the
 //! node that walks a character with them, `foot_placement_3d` the one that puts feet on uneven ground, `gait_crowd_3d` the one that walks thousands;
 //! `imu_model` is the resource that knows what sensors mean, `replay_imu_source` one that plays their recordings,
-//! `serial_`, `network_`, `phone_` and `device_imu_source` those that hear them live, `imu_source` what all of these are to `imu_reconstructor_3d`, the node that they drive; `loaded` is what a resource made of a file.
+//! `serial_`, `network_`, `phone_` and `device_imu_source` those that hear them live, `imu_source` what all of these are to `imu_reconstructor_3d`, the node that they drive; `loaded` is what a resource made of a file,
+//! `format_loader` what loads it, `shipped` where the models are that come with the add-on.
 //! Between the engine and the runtime stand `rest_body` (proportions of any character from its rest pose),
 //! `skeleton_binding` (joints to bones and back), `character` and `travel` (which node travels, and how), `physics_ground` (what feet stand on) and `convert` (vectors).
 //!
-//! Two flavours are built. With the feature `editor` the library also holds `editor` (importers, a dock, gizmos, a preview bar) and the
+//! Two flavours are built. With the feature `editor` the library also holds `editor` (a dock, gizmos, a preview bar) and the
 //! class reference that Godot shows; exported games get the library without. Both register the same runtime classes.
 
 #![expect(
@@ -25,6 +26,7 @@ mod device_imu_source;
 #[cfg(feature = "editor")]
 mod editor;
 mod foot_placement_3d;
+mod format_loader;
 mod gait_crowd_3d;
 mod gait_generator_3d;
 mod gait_model;
@@ -41,15 +43,32 @@ mod report;
 mod rest_body;
 mod root_motion;
 mod serial_imu_source;
+mod shipped;
 mod skeleton_binding;
 mod travel;
 mod walk_source;
 
+use godot::init::InitStage;
 use godot::prelude::{ExtensionLibrary, gdextension};
 
 /// The entry point that `footfall.gdextension` names.
 struct FootfallExtension;
 
 #[gdextension(entry_symbol = footfall_init)]
-// SAFETY: nothing is overridden, so gdext's own initialisation runs.
-unsafe impl ExtensionLibrary for FootfallExtension {}
+// SAFETY: the entry point and its level are not overridden, so gdext's own initialisation runs.
+unsafe impl ExtensionLibrary for FootfallExtension {
+    fn on_stage_init(stage: InitStage) {
+        match stage {
+            InitStage::Scene => format_loader::register(),
+            #[cfg(feature = "editor")]
+            InitStage::Editor => editor::headless::skip_class_reference(),
+            _ => {}
+        }
+    }
+
+    fn on_stage_deinit(stage: InitStage) {
+        if stage == InitStage::Scene {
+            format_loader::unregister();
+        }
+    }
+}

@@ -29,6 +29,8 @@ pub(super) struct FootfallStyleDock {
     job: Option<Job<Result<Made, String>>>,
     /// The file of the style that was made last.
     made: Option<GString>,
+    /// Whether the dock is at a side of the editor.
+    narrow: bool,
     base: Base<EditorDock>,
 }
 
@@ -36,8 +38,17 @@ pub(super) struct FootfallStyleDock {
 impl IEditorDock for FootfallStyleDock {
     fn enter_tree(&mut self) {
         if self.form.is_none() {
-            self.form = Some(Form::build(&self.to_gd()));
+            let mut form = Form::build(&self.to_gd());
+            form.lay_out(self.narrow);
+            self.form = Some(form);
             self.refresh();
+        }
+    }
+
+    fn update_layout(&mut self, layout: i32) {
+        self.narrow = layout == editor_dock::DockLayout::VERTICAL.ord() as i32;
+        if let Some(form) = &mut self.form {
+            form.lay_out(self.narrow);
         }
     }
 
@@ -181,7 +192,9 @@ impl FootfallStyleDock {
         let mut dock = Self::new_alloc();
         dock.set_title("Gait Style");
         dock.set_layout_key("footfall_gait_style");
-        dock.set_default_slot(editor_dock::DockSlot::RIGHT_BL);
+        // At the bottom it is a button until it is wanted; at the side it would halve the inspector.
+        dock.set_default_slot(editor_dock::DockSlot::BOTTOM);
+        dock.set_available_layouts(editor_dock::DockLayout::ALL);
         dock
     }
 
@@ -206,12 +219,11 @@ impl FootfallStyleDock {
         }
         let model = form
             .base_model()
-            .ok_or("Choose a base: an imported .footfall file.")?;
+            .ok_or("Choose a base: a .footfall file.")?;
         let trained = model.bind().trained()?;
         let WalkModel::Gait(base) = &*trained else {
             return Err(
-                "A switching model (.footdyn) wears no styles. Choose an imported .footfall file."
-                    .to_owned(),
+                "A switching model (.footdyn) wears no styles. Choose a .footfall file.".to_owned(),
             );
         };
         Ok(Order {
@@ -223,7 +235,7 @@ impl FootfallStyleDock {
         })
     }
 
-    /// A style has been made: the project imports it, and it walks on the stage.
+    /// A style has been made: the project learns of it, and it walks on the stage.
     fn take(&mut self, made: &Made) {
         let style = &made.style;
         let Some(form) = &mut self.form else { return };
@@ -249,13 +261,13 @@ impl FootfallStyleDock {
         }
     }
 
-    /// The style that was made, as the project has imported it.
+    /// The style that was made, as the project has it.
     fn made_style(&self) -> Result<Gd<GaitStyle>, String> {
         let file = self.made.as_ref().ok_or("Make a style first.")?;
         let found = ResourceLoader::singleton().load(file);
         found
             .and_then(|resource| resource.try_cast().ok())
-            .ok_or_else(|| format!("{file} is not imported yet. Try again in a moment."))
+            .ok_or_else(|| format!("{file} is gone. Make the style again."))
     }
 
     fn tell(&mut self, message: &str) {

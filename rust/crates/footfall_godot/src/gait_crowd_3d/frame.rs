@@ -73,7 +73,9 @@ impl GaitCrowd3D {
         };
         match came {
             Ok(space) => {
-                if let (Some(space), Some(model)) = (space, &mut self.model) {
+                if let Some(space) = space
+                    && let Ok(mut model) = self.used_model()
+                {
                     model.bind_mut().share(&space);
                 }
                 true

@@ -5,8 +5,9 @@ use super::kit::Recipe;
 use super::walkers::{Settings, Walkers};
 use super::way::{Path, Way};
 use super::{CrowdBehaviour, GaitCrowd3D, NO_CHARACTER, linear};
-use crate::gait_model::NO_MODEL;
+use crate::gait_model::{self, NO_MODEL};
 use crate::gait_style;
+use crate::shipped;
 use footfall_model::{GaitModel, GaitStyle};
 use footfall_synth::StyleSpace;
 use glam::Vec2;
@@ -18,9 +19,15 @@ use std::sync::Arc;
 type CrowdWalk = (Arc<GaitModel>, Vec<Arc<GaitStyle>>, Option<Arc<StyleSpace>>);
 
 impl GaitCrowd3D {
+    /// The way of walking, the add-on's own where none was given.
+    pub(super) fn used_model(&self) -> Result<Gd<gait_model::GaitModel>, String> {
+        let used = self.fallback.model(self.model.as_ref(), shipped::WALK);
+        used.ok_or_else(|| NO_MODEL.to_owned())
+    }
+
     /// The walk and the styles that walkers are made of.
     fn walk(&self) -> Result<CrowdWalk, String> {
-        let model = self.model.as_ref().ok_or(NO_MODEL)?;
+        let model = self.used_model()?;
         let styles = gait_style::trained_all(&self.styles)?;
         let (trained, space) = model.bind().prepared(&styles)?;
         Ok((trained, styles, space))

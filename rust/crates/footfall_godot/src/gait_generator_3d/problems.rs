@@ -1,6 +1,7 @@
 //! What keeps a character from walking, for the editor, scripts and the log.
 
 use super::GaitGenerator3D;
+use crate::gait_model::NO_STYLES;
 use crate::report;
 use godot::prelude::*;
 
@@ -9,6 +10,9 @@ impl GaitGenerator3D {
         let mut problems = PackedStringArray::new();
         if let Err(problem) = self.find_source() {
             problems.push(&GString::from(&problem));
+        }
+        if self.passes_over_styles() {
+            problems.push(NO_STYLES);
         }
         let (styles, weights) = (self.styles.len(), self.style_weights.len());
         if styles != weights {

@@ -1,17 +1,31 @@
 //! The model with its styles, prepared for walkers.
 
 use super::GaitGenerator3D;
-use crate::gait_model::NO_MODEL;
+use crate::gait_model::{GaitModel, NO_MODEL};
 use crate::gait_style;
+use crate::shipped;
 use crate::walk_source::WalkSource;
 use footfall_model::WalkModel;
+use godot::obj::Gd;
 use std::sync::Arc;
 
 impl GaitGenerator3D {
+    /// The way of walking, the add-on's own where none was given.
+    fn used_model(&self) -> Result<Gd<GaitModel>, String> {
+        let used = self.fallback.model(self.model.as_ref(), shipped::WALK);
+        used.ok_or_else(|| NO_MODEL.to_owned())
+    }
+
+    /// Whether there are styles that the model cannot wear.
+    pub(super) fn passes_over_styles(&self) -> bool {
+        !self.styles.is_empty()
+            && self
+                .used_model()
+                .is_ok_and(|model| model.bind().is_switching())
+    }
+
     fn trained(&self) -> Result<Arc<WalkModel>, String> {
-        let Some(model) = &self.model else {
-            return Err(NO_MODEL.to_owned());
-        };
+        let model = self.used_model()?;
         model.bind().trained().map_err(|error| {
             let path = model.get_path();
             let name = if path.is_empty() { "it".into() } else { path };
@@ -33,10 +47,10 @@ impl GaitGenerator3D {
 
     /// Whether a source is that of the resources as they are now.
     fn is_current(&self, source: &WalkSource) -> bool {
-        let model = self.model.as_ref().map(|model| model.bind().trained());
+        let model = self.used_model().and_then(|model| model.bind().trained());
         let known = source.styles();
-        matches!(model, Some(Ok(model)) if source.is_of(&model))
-            && known.len() == self.styles.len()
+        model.is_ok_and(|model| source.is_of(&model))
+            && (known.len() == self.styles.len() || self.passes_over_styles())
             && self.styles.iter_shared().zip(known).all(|(style, known)| {
                 let style = style.map(|style| style.bind().trained());
                 matches!(style, Some(Ok(style)) if Arc::ptr_eq(&style, known))
@@ -45,11 +59,12 @@ impl GaitGenerator3D {
 
     pub(super) fn find_source(&self) -> Result<WalkSource, String> {
         self.trained()?;
-        let styles = gait_style::trained_all(&self.styles)?;
-        let Some(model) = &self.model else {
-            return Err(NO_MODEL.to_owned());
+        let styles = if self.passes_over_styles() {
+            Vec::new()
+        } else {
+            gait_style::trained_all(&self.styles)?
         };
-        let mut model = model.clone();
+        let mut model = self.used_model()?;
         let source = model.bind_mut().source(&styles);
         source.map_err(|error| format!("The styles cannot be worn: {error}"))
     }

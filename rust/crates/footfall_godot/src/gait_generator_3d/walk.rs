@@ -3,6 +3,8 @@
 use super::GaitGenerator3D;
 use super::reign::Reign;
 use super::session::Session;
+use crate::gait_model::NO_STYLES;
+use crate::report;
 use crate::root_motion::Now;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_synth::GeneratorConfig;
@@ -25,6 +27,9 @@ impl GaitGenerator3D {
     pub(super) fn new_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
         let source = self.take_source()?;
         let (character, binding) = self.bind(skeleton)?;
+        if self.passes_over_styles() {
+            report::tell(&self.base_mut(), NO_STYLES);
+        }
         let config = self.config();
         self.redraw_way();
         let weights = self.style_weights.as_slice();

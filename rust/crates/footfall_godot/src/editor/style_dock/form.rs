@@ -5,9 +5,9 @@ use crate::editor::walker_view::FootfallWalkerView;
 use footfall_synth::StyleSpace;
 use footfall_train::job::JobProgress;
 use godot::classes::{
-    Button, Control, EditorResourcePicker, FileDialog, HBoxContainer, ItemList, Label, LineEdit,
-    ProgressBar, Resource, ResourceLoader, ScrollContainer, SpinBox, VBoxContainer, control,
-    file_dialog, scroll_container, text_server,
+    BoxContainer, Button, Control, EditorResourcePicker, FileDialog, HBoxContainer, ItemList,
+    Label, LineEdit, ProgressBar, Resource, ResourceLoader, ScrollContainer, SpinBox,
+    VBoxContainer, control, file_dialog, scroll_container, text_server,
 };
 use godot::prelude::*;
 use std::sync::Arc;
@@ -26,6 +26,8 @@ pub(super) struct Form {
     told: Gd<Label>,
     view: Gd<FootfallWalkerView>,
     give: Gd<Button>,
+    /// Recordings, what is made of them, and the result: side by side or one below the other.
+    parts: Gd<BoxContainer>,
 }
 
 /// How far a style has come.
@@ -43,9 +45,12 @@ impl Form {
     /// Fills the dock and connects its controls to it.
     pub(super) fn build(dock: &Gd<FootfallStyleDock>) -> Self {
         let mut rows = VBoxContainer::new_alloc();
+        let mut parts = BoxContainer::new_alloc();
+        add_part(&mut parts, &rows);
         rows.add_child(&label("Recordings"));
         let mut files = ItemList::new_alloc();
-        files.set_custom_minimum_size(Vector2::new(0.0, 90.0));
+        files.set_custom_minimum_size(Vector2::new(0.0, 60.0));
+        files.set_v_size_flags(control::SizeFlags::EXPAND_FILL);
         files.set_tooltip_text(
             "BVH files of someone who walks in the style; six to twelve steps are enough",
         );
@@ -57,6 +62,8 @@ impl Form {
         let remove = button("Remove", "Remove the recording that is selected, or all");
         rows.add_child(&row(&[&add.clone().upcast(), &remove.clone().upcast()]));
 
+        let mut rows = VBoxContainer::new_alloc();
+        add_part(&mut parts, &rows);
         let mut base = EditorResourcePicker::new_alloc();
         base.set_base_type("GaitModel");
         base.set_tooltip_text(
@@ -88,6 +95,8 @@ impl Form {
         let mut told = Label::new_alloc();
         told.set_autowrap_mode(text_server::AutowrapMode::WORD_SMART);
         rows.add_child(&told);
+        let mut rows = VBoxContainer::new_alloc();
+        add_part(&mut parts, &rows);
         let mut view = FootfallWalkerView::stage();
         view.set_v_size_flags(control::SizeFlags::EXPAND_FILL);
         view.set_visible(false);
@@ -102,12 +111,12 @@ impl Form {
         dialog.set_access(file_dialog::Access::FILESYSTEM);
         dialog.set_file_mode(file_dialog::FileMode::OPEN_FILES);
         dialog.add_filter("*.bvh");
-        // A dock that needs height takes it from the inspector.
+        // A dock that needs height takes it from its neighbours.
         let mut scroll = ScrollContainer::new_alloc();
         scroll.set_horizontal_scroll_mode(scroll_container::ScrollMode::DISABLED);
-        rows.set_h_size_flags(control::SizeFlags::EXPAND_FILL);
-        rows.set_v_size_flags(control::SizeFlags::EXPAND_FILL);
-        scroll.add_child(&rows);
+        parts.set_h_size_flags(control::SizeFlags::EXPAND_FILL);
+        parts.set_v_size_flags(control::SizeFlags::EXPAND_FILL);
+        scroll.add_child(&parts);
         let mut host = dock.clone();
         host.add_child(&scroll);
         host.add_child(&dialog);
@@ -136,7 +145,13 @@ impl Form {
             told,
             view,
             give,
+            parts,
         }
+    }
+
+    /// Puts the parts one below the other, for a narrow dock at the side, or side by side.
+    pub(super) fn lay_out(&mut self, narrow: bool) {
+        self.parts.set_vertical(narrow);
     }
 
     pub(super) fn name(&self) -> String {
@@ -228,6 +243,13 @@ fn file_of(name: &str) -> String {
     };
     let stem: String = name.trim().to_lowercase().chars().map(word).collect();
     format!("res://styles/{stem}.footstyle")
+}
+
+fn add_part(parts: &mut Gd<BoxContainer>, part: &Gd<VBoxContainer>) {
+    let mut part = part.clone();
+    part.set_h_size_flags(control::SizeFlags::EXPAND_FILL);
+    part.set_v_size_flags(control::SizeFlags::EXPAND_FILL);
+    parts.add_child(&part);
 }
 
 fn label(text: &str) -> Gd<Label> {
