@@ -1,6 +1,7 @@
 //! Walks that end as they begin, for tools that play clips.
 
 use crate::generator::{Controls, GaitGenerator, GroundTransform};
+use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, forward_kinematics};
 use glam::{Quat, Vec3};
@@ -18,6 +19,8 @@ const SPEED_TOLERANCE: f32 = 0.003;
 const MOST_STRETCH: f32 = 0.03;
 /// A mismatch of joints' velocities counts as one of places this many seconds apart.
 const VELOCITY_SECS: f32 = 0.1;
+/// For this long before the end, trunk and arms go over to how they came to the beginning, seconds.
+const FADE_SECS: f32 = 0.4;
 /// A mismatch of a leg's joints counts as much as this many of others': arms that drift are not seen, feet that do are.
 const LEG_WEIGHT: f32 = 6.0;
 /// A relative error of speed counts as a mismatch of this many metres.
@@ -204,6 +207,7 @@ impl Recording {
             (Some(first), Some(last)) => Look::farthest(&first, &last),
             _ => 0.0,
         };
+        self.fade(from, to, &mut poses);
         close(&mut poses);
         let walked = self.speed_between(from, to);
         let stretch = if speed_mps > 0.0 {
@@ -223,6 +227,26 @@ impl Recording {
             seam_m,
         }
     }
+
+    /// Lets what does not bear the body end in its motion before the beginning, so that it goes on there at the same pace.
+    fn fade(&self, from: usize, to: usize, poses: &mut [Pose]) {
+        let frames = ((FADE_SECS / self.frame_secs) as usize)
+            .min(from)
+            .min(to - from);
+        for (left, pose) in poses.iter_mut().rev().enumerate().take(frames) {
+            let share = smooth_step(1.0 - left as f32 / frames as f32);
+            for joint in Joint::ALL.into_iter().filter(|joint| !is_bearing(*joint)) {
+                let before = self.poses[from - left].rotation(joint);
+                let rotation = &mut pose.rotations[joint.index()];
+                *rotation = rotation.slerp(before, share);
+            }
+        }
+    }
+}
+
+/// Whether a joint is one of the hips and legs.
+fn is_bearing(joint: Joint) -> bool {
+    joint == Joint::Hips || joint >= Joint::LeftUpperLeg
 }
 
 /// Where the joints of a frame are, and how fast they move.
@@ -236,11 +260,8 @@ impl Look {
     fn apart(a: &Self, b: &Self) -> f32 {
         let (mut sum, mut weights) = (0.0, 0.0);
         for joint in Joint::ALL {
-            let (index, of_leg) = (
-                joint.index(),
-                joint == Joint::Hips || joint >= Joint::LeftUpperLeg,
-            );
-            let weight = if of_leg { LEG_WEIGHT } else { 1.0 };
+            let index = joint.index();
+            let weight = if is_bearing(joint) { LEG_WEIGHT } else { 1.0 };
             sum += weight
                 * (a.positions[index].distance(b.positions[index])
                     + VELOCITY_SECS * a.velocities[index].distance(b.velocities[index]));
@@ -273,7 +294,7 @@ fn close(poses: &mut [Pose]) {
             *rotation = (*rotation * Quat::IDENTITY.slerp(missing, share)).normalize();
         }
     }
-    if let Some(end) = poses.last_mut() {
-        end.clone_from(&first);
-    }
+    // Without the rounding of what was turned.
+    let last = poses.len() - 1;
+    poses[last] = poses[0].clone();
 }
