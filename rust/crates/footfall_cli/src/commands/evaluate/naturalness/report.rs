@@ -59,6 +59,9 @@ struct Measures {
     foot_pitch_deg: f64,
 }
 
+/// A line of the table and its measure.
+type MeasureRow = (&'static str, fn(&Measures) -> f64);
+
 impl Measures {
     fn new(root: &RootHarmonics, posture: &Posture) -> Self {
         let [limp, step, surge] = root.speed_mps;
@@ -173,7 +176,7 @@ impl Report {
             );
         }
         text.push_str("\nHips, knees and feet                               captured  generated\n");
-        let rows: [(&str, fn(&Measures) -> f64); 10] = [
+        let rows: [MeasureRow; 10] = [
             ("speed, stride's frequency (limp), m/s", |m| m.hips_limp_mps),
             ("speed, step's frequency, m/s", |m| m.hips_step_mps),
             ("speed, harmonics 3 to 8 (surge), m/s", |m| m.hips_surge_mps),
