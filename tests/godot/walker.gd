@@ -38,6 +38,8 @@ var rest_rotations: Dictionary[String, Quaternion] = {}
 var rest_places: Dictionary[String, Vector3] = {}
 ## Prefix of all bone names, so that they are not the profile's.
 var prefix := ""
+## Joint → name of its bone, where it is neither the profile's nor that with the prefix.
+var names: Dictionary[String, String] = {}
 ## Joint → name of a bone put between it and its parent.
 var between: Dictionary[String, String] = {}
 
@@ -52,8 +54,25 @@ var bones_before: Dictionary[String, Transform3D] = {}
 var bone_poses: Array[Transform3D] = []
 
 
-## Makes the skeleton. Without `with_model` the node stays without a model.
+## Makes the skeleton, unless it has bones already. Without `with_model` the node stays without a model.
 func build(with_model := true) -> Walker:
+	if skeleton.get_bone_count() == 0:
+		_add_bones()
+	skeleton.reset_bone_poses()
+	add_child(skeleton)
+	if with_model:
+		gait.model = load(MODEL)
+	if gait.seed == 0:
+		# A walk of the test's and not of the node's own place in the tree.
+		gait.seed = 1
+	gait.footstep.connect(func(foot: StringName, place: Vector3) -> void: footsteps.append([foot, place]))
+	gait.modification_processed.connect(_read_bones)
+	skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_MANUAL
+	skeleton.add_child(gait)
+	return self
+
+
+func _add_bones() -> void:
 	# Asking the skeleton for global rests would freeze its poses until they are set in the tree, so they are kept here.
 	var global_rests: Array[Transform3D] = []
 	for joint: String in BODY:
@@ -74,18 +93,6 @@ func build(with_model := true) -> Walker:
 		var above := global_rests[parent_bone] if parent_bone >= 0 else Transform3D.IDENTITY
 		global_rests.append(rest(joint))
 		skeleton.set_bone_rest(bone, above.affine_inverse() * rest(joint))
-	skeleton.reset_bone_poses()
-	add_child(skeleton)
-	if with_model:
-		gait.model = load(MODEL)
-	if gait.seed == 0:
-		# A walk of the test's and not of the node's own place in the tree.
-		gait.seed = 1
-	gait.footstep.connect(func(foot: StringName, place: Vector3) -> void: footsteps.append([foot, place]))
-	gait.modification_processed.connect(_read_bones)
-	skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_MANUAL
-	skeleton.add_child(gait)
-	return self
 
 
 ## Global rest of a joint's bone, in the skeleton's space.
@@ -155,6 +162,6 @@ func _read_bones() -> void:
 	for bone: int in skeleton.get_bone_count():
 		bone_poses.append(skeleton.get_bone_pose(bone))
 	for joint_name: String in BODY:
-		var bone := skeleton.find_bone(prefix + joint_name)
+		var bone := skeleton.find_bone(names.get(joint_name, prefix + joint_name))
 		if bone >= 0:
 			bones[joint_name] = skeleton.global_transform * skeleton.get_bone_global_pose(bone)

@@ -170,7 +170,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Tells which bones are which joints, where they are not named as in SkeletonProfileHumanoid. Left empty, it is that of a <see cref="GaitGenerator3D"/> beside this node.</summary>
+        /// <summary>Tells which bones are which joints, where they are not recognised. Comes before their names. Left empty, it is that of a <see cref="GaitGenerator3D"/> beside this node.</summary>
         public BoneMap BoneMap
         {
             get => (BoneMap)Native.Get(PropertyName.BoneMap).AsGodotObject();

@@ -9,7 +9,7 @@ namespace Footfall
     /// <summary>Walks a character: every frame it poses the parent <c>Skeleton3D</c> with steps generated from a trained model.</summary>
     /// <remarks>
     /// <para>Add it under a <c>Skeleton3D</c> with humanoid bones, give it a <see cref="Model"/>, and the character walks. No animation clips are needed. Feet stay where they are put; every seed walks a little differently.</para>
-    /// <para>Bones are found by the names of <c>SkeletonProfileHumanoid</c>, which the importer gives a character that is retargeted, or through <see cref="BoneMap"/>. Chest, <c>UpperChest</c>, Neck, the shoulders and the toes may be missing. Bones that are none of the body's 22 joints, such as fingers, keep the pose that they have.</para>
+    /// <para>Bones are found by <see cref="BoneMap"/> where there is one, else by the names of <c>SkeletonProfileHumanoid</c>, else the rig is recognised: Mixamo, <c>VRM</c> (<c>VRoid</c>), Unreal, Rigify, Reallusion CC, Daz Genesis, <c>MakeHuman</c>, Biped and others. Chest, <c>UpperChest</c>, Neck, the shoulders and the toes may be missing. Bones that are none of the body's 22 joints, such as fingers, keep the pose that they have.</para>
     /// <para>In the editor the character walks in place while <see cref="Playing"/> is on, and nothing of it is saved.</para>
     /// </remarks>
     public class GaitGenerator3D : FootfallObject
@@ -219,7 +219,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Tells which bones are which joints, where they are not named as in SkeletonProfileHumanoid.</summary>
+        /// <summary>Tells which bones are which joints, where they are not recognised. Comes before their names.</summary>
         public BoneMap BoneMap
         {
             get => (BoneMap)Native.Get(PropertyName.BoneMap).AsGodotObject();

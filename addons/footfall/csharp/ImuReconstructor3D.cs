@@ -116,7 +116,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Tells which bones are which joints, where they are not named as in <c>SkeletonProfileHumanoid</c>.</summary>
+        /// <summary>Tells which bones are which joints, where they are not recognised. Comes before their names.</summary>
         public BoneMap BoneMap
         {
             get => (BoneMap)Native.Get(PropertyName.BoneMap).AsGodotObject();

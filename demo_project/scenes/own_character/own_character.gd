@@ -3,7 +3,7 @@ extends WalkingScene
 
 const PLACED: PackedScene = preload("res://characters/mannequin.glb")
 const MODEL: GaitModel = preload("res://addons/footfall/models/walk.footfall")
-## What the bones of the mannequin are called here, as in characters from Mixamo, so that there is something to guess.
+## The names of the mannequin's bones here, as in characters from Mixamo, so that there is something to recognise.
 const OTHER_NAMES: Dictionary[String, String] = {
 	"Hips": "mixamorig:Hips", "Spine": "mixamorig:Spine", "Chest": "mixamorig:Spine1", "UpperChest": "mixamorig:Spine2",
 	"Neck": "mixamorig:Neck", "Head": "mixamorig:Head",
@@ -25,7 +25,7 @@ func _ready() -> void:
 	_walk(stranger)
 
 
-## Gives the bones of the mannequin, and the binds of its skins, names that the add-on does not know.
+## Gives the bones of the mannequin, and the binds of its skins, names that are not the humanoid profile's.
 func _rename_bones(character: Node3D) -> void:
 	var names: Dictionary[StringName, StringName] = {}
 	for joint: String in OTHER_NAMES:
@@ -68,7 +68,6 @@ func _walk(character: Node3D) -> void:
 	var gait := GaitGenerator3D.new()
 	gait.name = "GaitGenerator3D"
 	gait.model = MODEL
-	gait.bone_map = BoneGuess.map(skeletons[0])
 	gait.footstep.connect(func(foot: StringName, at: Vector3) -> void:
 		footsteps += 1
 		_footprints.mark(foot, at, character))

@@ -4,7 +4,7 @@ use anyhow::{Context as _, Result};
 use footfall_core::Clip;
 use footfall_motion::bvh::{self, BvhFile};
 use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
-use footfall_motion::retarget::{JointMap, RetargetOptions, Retargeted, retarget};
+use footfall_motion::retarget::{JointMap, RetargetOptions, Retargeted, parse_joint_map, retarget};
 use footfall_motion::steps::{Step, Walk, segment_walks};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ impl MapArgs {
         };
         let text = fs::read_to_string(path)
             .with_context(|| format!("{}: cannot read the joint map", path.display()))?;
-        let map = JointMap::from_toml(&text).with_context(|| path.display().to_string())?;
+        let map = parse_joint_map(&text).with_context(|| path.display().to_string())?;
         Ok(Some(map))
     }
 }

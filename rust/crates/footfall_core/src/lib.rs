@@ -5,7 +5,7 @@
 //! transform is named `target_from_source`. Nothing here reads a file, a clock or a random number.
 //!
 //! Modules in suggested reading order: [`joint`], [`skeleton`], [`pose`], [`rotation`], [`clip`], [`contact`],
-//! [`step_position`], [`behaviour`], [`phase`], [`site`], [`ease`], [`lanes`].
+//! [`step_position`], [`rig`], [`behaviour`], [`phase`], [`site`], [`ease`], [`lanes`].
 
 pub mod behaviour;
 pub mod clip;
@@ -15,6 +15,7 @@ pub mod joint;
 pub mod lanes;
 pub mod phase;
 pub mod pose;
+pub mod rig;
 pub mod rotation;
 pub mod site;
 pub mod skeleton;
@@ -26,6 +27,7 @@ pub use contact::{EventKind, FrameSpan, GaitEvent};
 pub use joint::{JOINT_COUNT, Joint, Side};
 pub use phase::{PhaseKind, PhaseStart};
 pub use pose::{ModelPose, Pose, forward_kinematics};
+pub use rig::Rig;
 pub use site::Site;
 pub use skeleton::{FootShape, Skeleton, SkeletonError};
 pub use step_position::StepPosition;

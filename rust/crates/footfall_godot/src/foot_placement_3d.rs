@@ -2,6 +2,7 @@
 
 mod marks;
 
+use crate::bones;
 use crate::character;
 use crate::convert;
 use crate::gait_generator_3d::GaitGenerator3D;
@@ -105,7 +106,7 @@ pub(crate) struct FootPlacement3D {
     #[var(set = set_character)]
     character: NodePath,
 
-    /// Tells which bones are which joints, where they are not named as in SkeletonProfileHumanoid. Left empty, it is that of a
+    /// Tells which bones are which joints, where they are not recognised. Comes before their names. Left empty, it is that of a
     /// `GaitGenerator3D` beside this node.
     #[export]
     #[var(set = set_bone_map)]
@@ -254,6 +255,7 @@ impl FootPlacement3D {
 
     #[func]
     fn set_bone_map(&mut self, bone_map: Option<Gd<BoneMap>>) {
+        bones::complete(bone_map.as_ref());
         self.bone_map = bone_map;
         self.reset();
     }
@@ -280,7 +282,7 @@ impl FootPlacement3D {
     fn problems(&self) -> PackedStringArray {
         let mut problems = PackedStringArray::new();
         let Some(skeleton) = self.base().get_skeleton() else {
-            problems.push("Put this node under a Skeleton3D.");
+            problems.push(&bones::no_skeleton(&self.to_gd().upcast()));
             return problems;
         };
         if self.collision_mask == 0 {

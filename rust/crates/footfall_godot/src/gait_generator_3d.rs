@@ -19,6 +19,7 @@ mod source;
 mod walk;
 mod watch;
 
+use crate::bones;
 use crate::convert;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
@@ -40,8 +41,8 @@ use session::Session;
 /// Add it under a `Skeleton3D` with humanoid bones, give it a `model`, and the character walks. No animation clips are needed.
 /// Feet stay where they are put; every seed walks a little differently.
 ///
-/// Bones are found by the names of `SkeletonProfileHumanoid`, which the importer gives a character that is retargeted, or
-/// through `bone_map`. Chest, `UpperChest`, Neck, the shoulders and the toes may be missing. Bones that are none of the body's 22
+/// Bones are found by `bone_map` where there is one, else by the names of `SkeletonProfileHumanoid`, else the rig is recognised: Mixamo, `VRM` (`VRoid`), Unreal,
+/// Rigify, Reallusion CC, Daz Genesis, `MakeHuman`, Biped and others. Chest, `UpperChest`, Neck, the shoulders and the toes may be missing. Bones that are none of the body's 22
 /// joints, such as fingers, keep the pose that they have.
 ///
 /// In the editor the character walks in place while `playing` is on, and nothing of it is saved.
@@ -171,7 +172,7 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_character)]
     character: NodePath,
 
-    /// Tells which bones are which joints, where they are not named as in SkeletonProfileHumanoid.
+    /// Tells which bones are which joints, where they are not recognised. Comes before their names.
     #[export]
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
@@ -343,6 +344,7 @@ impl GaitGenerator3D {
 
     #[func]
     fn set_bone_map(&mut self, bone_map: Option<Gd<BoneMap>>) {
+        bones::complete(bone_map.as_ref());
         self.bone_map = bone_map;
         self.restart();
     }

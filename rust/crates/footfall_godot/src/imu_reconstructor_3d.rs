@@ -2,6 +2,7 @@
 
 mod worn;
 
+use crate::bones;
 use crate::character;
 use crate::convert;
 use crate::imu_model::{ImuModel, NO_MODEL};
@@ -70,7 +71,7 @@ pub(crate) struct ImuReconstructor3D {
     #[var(set = set_character)]
     character: NodePath,
 
-    /// Tells which bones are which joints, where they are not named as in `SkeletonProfileHumanoid`.
+    /// Tells which bones are which joints, where they are not recognised. Comes before their names.
     #[export]
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
@@ -143,7 +144,7 @@ impl ISkeletonModifier3D for ImuReconstructor3D {
             problems.push(&GString::from(&problem));
         }
         match self.base().get_skeleton() {
-            None => problems.push("Put this node under a Skeleton3D."),
+            None => problems.push(&bones::no_skeleton(&self.to_gd().upcast())),
             Some(skeleton) if skeleton.is_inside_tree() => {
                 if let Err(problem) = self.bind(&skeleton) {
                     problems.push(&GString::from(&problem));
@@ -297,6 +298,7 @@ impl ImuReconstructor3D {
 
     #[func]
     fn set_bone_map(&mut self, bone_map: Option<Gd<BoneMap>>) {
+        bones::complete(bone_map.as_ref());
         self.bone_map = bone_map;
         self.restart();
     }

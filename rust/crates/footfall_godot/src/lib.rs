@@ -20,6 +20,7 @@
     reason = "gdext makes public accessors for exported fields"
 )]
 
+mod bones;
 mod character;
 mod convert;
 mod device_imu_source;

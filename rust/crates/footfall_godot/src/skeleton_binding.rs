@@ -3,8 +3,9 @@
 mod layers;
 mod read;
 
+use crate::bones;
 use crate::convert;
-use crate::rest_body::{RestBody, RestJoints, is_optional};
+use crate::rest_body::{RestBody, RestJoints};
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_synth::CrowdPose;
 use glam::{Affine3A, Quat, Vec3};
@@ -19,12 +20,8 @@ const FACING_GRAIN: f32 = 5.0_f32.to_radians();
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub(crate) enum BindingError {
     /// Required bones are missing.
-    #[error(
-        "The skeleton lacks {names}. Reimport the character with a BoneMap (Advanced Import Settings, Skeleton3D, Retarget), \
-         or give this node a Bone Map that tells which bones these are.",
-        names = .0.iter().map(|joint| joint.name()).collect::<Vec<_>>().join(", ")
-    )]
-    MissingBones(Vec<Joint>),
+    #[error(transparent)]
+    MissingBones(#[from] bones::MissingBones),
     /// A bone does not hang where a body needs it.
     #[error(
         "Bone {bone} ({joint}) does not hang from {expected}. Correct the Bone Map, or the hierarchy of the skeleton.",
@@ -99,7 +96,7 @@ impl SkeletonBinding {
         bone_map: Option<&Gd<BoneMap>>,
     ) -> Result<Self, BindingError> {
         let key = BindingKey::of(skeleton, character);
-        let bones = bones_of_joints(skeleton, bone_map)?;
+        let bones = bones::of_joints(skeleton, bone_map)?;
         let character_from_bone = |bone: i32| {
             key.character_from_skeleton * convert::affine(skeleton.get_bone_global_rest(bone))
         };
@@ -320,32 +317,6 @@ fn facing(to_left: Vec3) -> Option<f32> {
     // Heading 0 has +X to its left; turning left brings that towards -Z.
     let heading = (-level.z).atan2(level.x);
     Some((heading / FACING_GRAIN).round() * FACING_GRAIN)
-}
-
-/// The bone of each joint, by profile name or by the map.
-fn bones_of_joints(
-    skeleton: &Gd<Skeleton3D>,
-    bone_map: Option<&Gd<BoneMap>>,
-) -> Result<[Option<i32>; JOINT_COUNT], BindingError> {
-    let bones = Joint::ALL.map(|joint| {
-        let mapped = bone_map
-            .map(|map| map.get_skeleton_bone_name(joint.name()))
-            .filter(|name| !name.is_empty());
-        let bone = match mapped {
-            Some(name) => skeleton.find_bone(&GString::from(&name)),
-            None => skeleton.find_bone(joint.name()),
-        };
-        (bone >= 0).then_some(bone)
-    });
-    let missing: Vec<Joint> = Joint::ALL
-        .into_iter()
-        .filter(|joint| bones[joint.index()].is_none() && !is_optional(*joint))
-        .collect();
-    if missing.is_empty() {
-        Ok(bones)
-    } else {
-        Err(BindingError::MissingBones(missing))
-    }
 }
 
 /// Links each bone to the joint's bone above it.

@@ -11,7 +11,8 @@ mod joint_map;
 mod rest;
 mod source;
 
-pub use joint_map::{JointMap, Placement};
+pub use footfall_core::rig::{JointMap, Placement};
+pub use joint_map::parse_joint_map;
 
 use crate::bvh::BvhFile;
 use feet::FlatFoot;
@@ -60,7 +61,7 @@ pub struct RetargetReport {
 pub enum RetargetError {
     /// The joints' names fit no map.
     #[error(
-        "no joint of the file is known to be {missing}; the closest map is \"{map}\"; write a map with lines such as \
+        "no joint of the file is known to be {missing}; the closest map is \"{map}\"{doubts}; write a map with lines such as \
          `{example} = \"name in the file\"` and give it with --map; the file's joints are {joints}",
         missing = missing.iter().map(|joint| joint.name()).collect::<Vec<_>>().join(", "),
         example = missing.first().map_or("Hips", |joint| joint.name()),
@@ -71,6 +72,8 @@ pub enum RetargetError {
         missing: Vec<Joint>,
         /// The map that fits best.
         map: String,
+        /// Why joints that have bones of their names were left out, each with `; ` before it.
+        doubts: String,
         /// All joints of the file.
         joints: Vec<String>,
     },
@@ -113,14 +116,7 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
     {
         return Err(RetargetError::FrameRate(rate));
     }
-    let (map, placement) = match &options.map {
-        Some(map) => {
-            let placement = map.place(file);
-            map.check(file, &placement)?;
-            (map.clone(), placement)
-        }
-        None => JointMap::best_fit(file)?,
-    };
+    let (map, placement) = joint_map::place(file, options.map.as_ref())?;
     let name_of = |joint: Joint| placement.joint(joint).map(|n| file.joints[n].name.clone());
     let source = SourceMotion::new(file, &placement);
     if !(source.leg_length.is_finite() && source.leg_length > 1e-6) {
@@ -162,7 +158,7 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
         clip,
         first_frame,
         report: RetargetReport {
-            map: map.label,
+            map,
             source_joints: Joint::ALL.map(name_of),
             scale,
             flat_foot_frames: flat.map(|foot| foot.frames),

@@ -6,7 +6,7 @@ use common::walker::walker;
 use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
 use footfall_motion::bvh::{BvhFile, Channel, clip_to_bvh, parse};
 use footfall_motion::retarget::{
-    JointMap, RetargetError, RetargetOptions, Retargeted, normalised_start, retarget,
+    RetargetError, RetargetOptions, Retargeted, normalised_start, parse_joint_map, retarget,
 };
 use glam::{EulerRot, Quat, Vec3};
 use proptest::prelude::*;
@@ -476,12 +476,12 @@ fn an_unknown_skeleton_is_told_what_to_do() {
 ",
         );
     let with_map = RetargetOptions {
-        map: Some(JointMap::from_toml(&toml).unwrap()),
+        map: Some(parse_joint_map(&toml).unwrap()),
         ..options()
     };
     expect_near(&clip, &retarget(&strange, &with_map).unwrap(), 1.0);
     let partial = RetargetOptions {
-        map: Some(JointMap::from_toml("Hips = 'thing0'").unwrap()),
+        map: Some(parse_joint_map("Hips = 'thing0'").unwrap()),
         ..options()
     };
     let RetargetError::UnknownSkeleton { missing, .. } = retarget(&strange, &partial).unwrap_err()
@@ -494,7 +494,7 @@ fn an_unknown_skeleton_is_told_what_to_do() {
         ("Pelvis = 'a'", "UpperChest"),
         ("Hips = 3", "in quotes"),
     ] {
-        let error = JointMap::from_toml(text).unwrap_err().to_string();
+        let error = parse_joint_map(text).unwrap_err().to_string();
         assert!(error.contains(word), "{error}");
     }
 }

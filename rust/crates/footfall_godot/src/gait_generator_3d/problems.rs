@@ -1,6 +1,7 @@
 //! What keeps a character from walking, for the editor, scripts and the log.
 
 use super::GaitGenerator3D;
+use crate::bones;
 use crate::gait_model::NO_STYLES;
 use crate::report;
 use godot::prelude::*;
@@ -22,7 +23,7 @@ impl GaitGenerator3D {
             problems.push(&GString::from(&problem));
         }
         let Some(skeleton) = self.base().get_skeleton() else {
-            problems.push("Put this node under a Skeleton3D.");
+            problems.push(&bones::no_skeleton(&self.to_gd().upcast()));
             return problems;
         };
         if skeleton.is_inside_tree()

@@ -1,6 +1,6 @@
 //! The motion of a file seen through a joint map: what each canonical joint does there, turned so that Y is up.
 
-use super::joint_map::Placement;
+use super::Placement;
 use crate::bvh::{BvhFile, JointTransforms, rest_transforms};
 use footfall_core::rotation::shortest_arc;
 use footfall_core::{JOINT_COUNT, Joint, Side};

@@ -1,7 +1,7 @@
 //! The skeletons that are known by name.
 
 use super::JointMap;
-use footfall_core::{JOINT_COUNT, Joint};
+use crate::{JOINT_COUNT, Joint};
 
 /// The maps of all families.
 pub(super) fn known() -> Vec<JointMap> {
@@ -21,7 +21,7 @@ struct Family {
     leg: [&'static str; 4],
 }
 
-const FAMILIES: [Family; 14] = [
+const FAMILIES: [Family; 20] = [
     Family {
         label: "humanoid (Godot, VRM, Unity)",
         sides: ["Left", "Right"],
@@ -58,23 +58,85 @@ const FAMILIES: [Family; 14] = [
         leg: ["*Thigh", "*Shin", "*Foot", "*Toe"],
     },
     Family {
-        label: "Daz and Poser",
+        label: "Daz Genesis 3 and 8",
         sides: ["l", "r"],
         trunk: [
             "hip|pelvis",
-            "abdomen|abdomenLower",
-            "abdomen2|abdomenUpper",
-            "chest|chestLower",
-            "neck|neckLower",
+            "abdomenLower",
+            "chestLower",
+            "chestUpper",
+            "neckLower",
             "head",
         ],
-        arm: [
-            "*Collar",
-            "*Shldr|*ShldrBend",
-            "*ForeArm|*ForearmBend",
-            "*Hand",
+        arm: ["*Collar", "*ShldrBend", "*ForearmBend", "*Hand"],
+        leg: ["*ThighBend", "*Shin", "*Foot", "*Toe"],
+    },
+    Family {
+        label: "Daz Genesis 9",
+        sides: ["l_", "r_"],
+        trunk: ["hip|pelvis", "spine1", "spine2", "spine4", "neck1", "head"],
+        arm: ["*shoulder", "*upperarm", "*forearm", "*hand"],
+        leg: ["*thigh", "*shin", "*foot", "*toes"],
+    },
+    Family {
+        label: "older Daz and Poser",
+        sides: ["l", "r"],
+        trunk: ["hip|pelvis", "abdomen", "abdomen2", "chest", "neck", "head"],
+        arm: ["*Collar", "*Shldr", "*ForeArm", "*Hand"],
+        leg: ["*Thigh", "*Shin", "*Foot", "*Toe"],
+    },
+    Family {
+        label: "Reallusion CC",
+        sides: ["L_", "R_"],
+        trunk: [
+            "Hip",
+            "Waist",
+            "Spine01",
+            "Spine02",
+            "NeckTwist01|Neck",
+            "Head",
         ],
-        leg: ["*Thigh|*ThighBend", "*Shin", "*Foot", "*Toe"],
+        arm: ["*Clavicle", "*Upperarm", "*Forearm", "*Hand"],
+        leg: ["*Thigh", "*Calf", "*Foot", "*ToeBase"],
+    },
+    Family {
+        label: "MakeHuman",
+        sides: [".L", ".R"],
+        trunk: ["root", "spine05", "spine03", "spine01", "neck01", "head"],
+        arm: ["clavicle*", "upperarm01*", "lowerarm01*", "wrist*"],
+        // Its toes bend one by one, so none of them is the joint of all.
+        leg: ["upperleg01*", "lowerleg01*", "foot*", ""],
+    },
+    Family {
+        label: "Synty",
+        sides: ["_L", "_R"],
+        trunk: ["Hips", "Spine_01", "Spine_02", "Spine_03", "Neck", "Head"],
+        arm: ["Clavicle*", "Shoulder*", "Elbow*", "Hand*"],
+        leg: ["UpperLeg*", "LowerLeg*", "Ankle*", "Ball*"],
+    },
+    Family {
+        label: "Auto-Rig Pro",
+        sides: [".l", ".r"],
+        trunk: [
+            "root.x",
+            "spine_01.x",
+            "spine_02.x",
+            "spine_03.x",
+            "neck.x",
+            "head.x",
+        ],
+        arm: [
+            "shoulder*",
+            "arm_stretch*|arm*",
+            "forearm_stretch*|forearm*",
+            "hand*",
+        ],
+        leg: [
+            "thigh_stretch*|thigh*",
+            "leg_stretch*|leg*",
+            "foot*",
+            "toes_01*",
+        ],
     },
     Family {
         label: "Bandai Namco",
@@ -87,12 +149,12 @@ const FAMILIES: [Family; 14] = [
         label: "Rigify and Blender",
         sides: ["_L", "_R"],
         trunk: [
-            "hips|pelvis|spine|torso",
+            "hips|pelvis|spine",
             "spine|spine_001",
             "chest|spine_001|spine_002",
             "upper_chest|spine_002|spine_003",
             "neck|spine_004",
-            "head|face|spine_006",
+            "head|spine_006",
         ],
         arm: [
             "shoulder*|clavicle*",
@@ -192,7 +254,10 @@ const FAMILIES: [Family; 14] = [
 impl Family {
     fn joint_map(&self) -> JointMap {
         let mut names: [Vec<String>; JOINT_COUNT] = Default::default();
-        let alternatives = |list: &str| list.split('|').map(str::to_owned).collect::<Vec<_>>();
+        let alternatives = |list: &str| {
+            let names = list.split('|').filter(|name| !name.is_empty());
+            names.map(str::to_owned).collect::<Vec<_>>()
+        };
         for (joint, list) in Joint::ALL.into_iter().zip(self.trunk) {
             names[joint.index()] = alternatives(list);
         }
