@@ -49,21 +49,29 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
-            public static readonly StringName AddAgents = "add_agents";
-            public static readonly StringName ClearAgents = "clear_agents";
-            public static readonly StringName Restart = "restart";
-            public static readonly StringName GetAgentCount = "get_agent_count";
             public static readonly StringName GetPositions = "get_positions";
             public static readonly StringName GetHeadings = "get_headings";
             public static readonly StringName GetPhases = "get_phases";
-            public static readonly StringName GetTiers = "get_tiers";
             public static readonly StringName GetSizes = "get_sizes";
+            public static readonly StringName GetTiers = "get_tiers";
             public static readonly StringName SetSpeeds = "set_speeds";
             public static readonly StringName SetTurnRates = "set_turn_rates";
             public static readonly StringName SetTargets = "set_targets";
             public static readonly StringName SetDestinations = "set_destinations";
             public static readonly StringName SetTints = "set_tints";
             public static readonly StringName SetAgentStyle = "set_agent_style";
+            public static readonly StringName AddAgents = "add_agents";
+            public static readonly StringName RemoveAgents = "remove_agents";
+            public static readonly StringName ClearAgents = "clear_agents";
+            public static readonly StringName Restart = "restart";
+            public static readonly StringName GetAgentCount = "get_agent_count";
+            public static readonly StringName GetAgents = "get_agents";
+            public static readonly StringName HasAgent = "has_agent";
+            public static readonly StringName IsMaking = "is_making";
+            public static readonly StringName Pick = "pick";
+            public static readonly StringName FindNearest = "find_nearest";
+            public static readonly StringName GetAgentNode = "get_agent_node";
+            public static readonly StringName GetAgentOf = "get_agent_of";
             public static readonly StringName GetState = "get_state";
             public static readonly StringName SetState = "set_state";
             public static readonly StringName Advance = "advance";
@@ -74,6 +82,7 @@ namespace Footfall
         public static class SignalName
         {
             public static readonly StringName Footsteps = "footsteps";
+            public static readonly StringName AgentsReady = "agents_ready";
         }
 
         /// <summary>Makes a new <c>GaitCrowd3D</c> in the engine.</summary>
@@ -98,14 +107,14 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>The way of walking: an imported <c>.footfall</c> file such as <c>addons/footfall/models/walk.footfall</c>.</summary>
+        /// <summary>The way of walking: a <c>.footfall</c> file such as <c>addons/footfall/models/walk.footfall</c>, with which the crowd walks where this is empty.</summary>
         public GaitModel Model
         {
             get => GaitModel.From(Native.Get(PropertyName.Model).AsGodotObject());
             set => Native.Set(PropertyName.Model, value);
         }
 
-        /// <summary>Styles that walkers wear, imported <c>.footstyle</c> files that were made for this model.</summary>
+        /// <summary>Styles that walkers wear, <c>.footstyle</c> files that were made for this model.</summary>
         public GaitStyle[] Styles
         {
             get => List(Native.Get(PropertyName.Styles), GaitStyle.From);
@@ -126,7 +135,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>How many walkers there are at the start. <see cref="AddAgents"/> adds more.</summary>
+        /// <summary>How many walkers the crowd has of its own. <see cref="AddAgents"/> adds more. While it runs, raising it adds some and lowering it removes those that came last; the others walk on.</summary>
         public long Count
         {
             get => Native.Get(PropertyName.Count).AsInt64();
@@ -274,8 +283,54 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.Footsteps, Callable.From(value));
         }
 
-        /// <summary>Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns the index of the first, or -1 when the crowd cannot be made.</summary>
-        public long AddAgents(Vector3[] positions, float[] headings) => Native.Call(MethodName.AddAgents, positions, headings).AsInt64();
+        /// <summary>Walkers were made and began to walk in the last frame: their ids. Making many takes a while, on other threads; <see cref="IsMaking"/> tells whether there are more to come.</summary>
+        /// <value>Handlers take <c>agents</c>.</value>
+        public event Action<int[]> AgentsReady
+        {
+            add => Native.Connect(SignalName.AgentsReady, Callable.From(value));
+            remove => Native.Disconnect(SignalName.AgentsReady, Callable.From(value));
+        }
+
+        /// <summary>Places of walkers, on the ground, in this node's space: one place for each id in <c>agents</c>, or for everybody in the order of <see cref="GetAgents"/>. An id that nobody has gets places that are not finite.</summary>
+        public Vector3[] GetPositions(int[] agents) => Native.Call(MethodName.GetPositions, agents).AsVector3Array();
+
+        /// <summary>Headings of walkers, radians about +Y from +Z. Shapes and ids as of <see cref="GetPositions"/>.</summary>
+        public float[] GetHeadings(int[] agents) => Native.Call(MethodName.GetHeadings, agents).AsFloat32Array();
+
+        /// <summary>Share of its stride that each walker has behind it: 0 when its left foot lands, 0.5 when its right foot does. Shapes and ids as of <see cref="GetPositions"/>.</summary>
+        public float[] GetPhases(int[] agents) => Native.Call(MethodName.GetPhases, agents).AsFloat32Array();
+
+        /// <summary>The size of walkers, against the character. Shapes and ids as of <see cref="GetPositions"/>.</summary>
+        public float[] GetSizes(int[] agents) => Native.Call(MethodName.GetSizes, agents).AsFloat32Array();
+
+        /// <summary>Tiers of walkers: 0 as a whole scene, 1 with a new pose in every frame, 2 as one far away, or one that is not made yet. Shapes and ids as of <see cref="GetPositions"/>; 2 for an id that nobody has.</summary>
+        public byte[] GetTiers(int[] agents) => Native.Call(MethodName.GetTiers, agents).AsByteArray();
+
+        /// <summary>Sets the speeds that walkers would like to walk, in metres per second: one speed for each id in <c>agents</c>, or for everybody in the order of <see cref="GetAgents"/>. Missing or not finite: it stays.</summary>
+        public void SetSpeeds(float[] speeds, int[] agents) => Native.Call(MethodName.SetSpeeds, speeds, agents);
+
+        /// <summary>Sets how fast walkers turn, in radians per second, positive to their left; they give up their goals. For <see cref="Behaviour"/> scripted. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        public void SetTurnRates(float[] turnRates, int[] agents) => Native.Call(MethodName.SetTurnRates, turnRates, agents);
+
+        /// <summary>Sends walkers straight to places, in this node's space. They stop there. For <see cref="Behaviour"/> scripted. Not finite: the goal stays. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        public void SetTargets(Vector3[] targets, int[] agents) => Native.Call(MethodName.SetTargets, targets, agents);
+
+        /// <summary>Sends walkers over the navigation map of the world, around what is between, to places in this node's space. They stop there. For <see cref="Behaviour"/> scripted. Not finite: the goal stays. Each way takes some tens of microseconds to find, once. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        /// <remarks>Returns whether there was a way for everybody; whoever has none keeps its goal. In the first frames of a scene there is no map yet.</remarks>
+        public bool SetDestinations(Vector3[] destinations, int[] agents) => Native.Call(MethodName.SetDestinations, destinations, agents).AsBool();
+
+        /// <summary>Sets the tints of walkers. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        public void SetTints(Color[] colours, int[] agents) => Native.Call(MethodName.SetTints, colours, agents);
+
+        /// <summary>Lets one walker wear styles: weights in the order of <see cref="Styles"/>, taken up with its next step. They are rounded to eighths, so that a crowd needs few mixtures.</summary>
+        public void SetAgentStyle(int agent, float[] weights) => Native.Call(MethodName.SetAgentStyle, agent, weights);
+
+        /// <summary>Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns their ids, in the same order, without those for whom there was no finite place; none when the crowd cannot be made.</summary>
+        /// <remarks>They stand in all arrays at once, and appear as soon as they are made, on other threads: see <see cref="AgentsReady"/>.</remarks>
+        public int[] AddAgents(Vector3[] positions, float[] headings) => Native.Call(MethodName.AddAgents, positions, headings).AsInt32Array();
+
+        /// <summary>Removes the walkers that have these ids. Nobody else's id or way changes.</summary>
+        public void RemoveAgents(int[] agents) => Native.Call(MethodName.RemoveAgents, agents);
 
         /// <summary>Removes all walkers.</summary>
         public void ClearAgents() => Native.Call(MethodName.ClearAgents);
@@ -283,50 +338,38 @@ namespace Footfall
         /// <summary>Makes the crowd anew from <see cref="Count"/> and <see cref="Seed"/>.</summary>
         public void Restart() => Native.Call(MethodName.Restart);
 
-        /// <summary>How many walkers there are.</summary>
+        /// <summary>How many walkers there are, with those who are still being made.</summary>
         public long GetAgentCount() => Native.Call(MethodName.GetAgentCount).AsInt64();
 
-        /// <summary>Where all walkers are, on the ground, in this node's space.</summary>
-        public Vector3[] GetPositions() => Native.Call(MethodName.GetPositions).AsVector3Array();
+        /// <summary>The ids of all walkers, in the order in which they came. All arrays that are for everybody have this order.</summary>
+        /// <remarks>An id stays a walker's own for as long as it is in the crowd, through <see cref="GetState"/> and <see cref="SetState"/> too, and is nobody else's for long after. As long as nobody is removed, ids are 0, 1, 2 and so on.</remarks>
+        public int[] GetAgents() => Native.Call(MethodName.GetAgents).AsInt32Array();
 
-        /// <summary>Where all walkers face, radians about +Y from +Z.</summary>
-        public float[] GetHeadings() => Native.Call(MethodName.GetHeadings).AsFloat32Array();
+        /// <summary>Whether a walker has this id.</summary>
+        public bool HasAgent(int agent) => Native.Call(MethodName.HasAgent, agent).AsBool();
 
-        /// <summary>How much of its stride each walker has behind it: 0 when its left foot lands, 0.5 when its right foot does.</summary>
-        public float[] GetPhases() => Native.Call(MethodName.GetPhases).AsFloat32Array();
+        /// <summary>Whether walkers are still being made.</summary>
+        public bool IsMaking() => Native.Call(MethodName.IsMaking).AsBool();
 
-        /// <summary>How each walker is drawn: 0 as a whole scene, 1 with a new pose in every frame, 2 as one far away.</summary>
-        public byte[] GetTiers() => Native.Call(MethodName.GetTiers).AsByteArray();
+        /// <summary>The id of the first walker that a ray meets, or -1. In global space, as <c>Camera3D.project_ray_origin()</c> and <c>Camera3D.project_ray_normal()</c> have it: from one point to another. Bodies count as capsules.</summary>
+        public int Pick(Vector3 from, Vector3 to) => Native.Call(MethodName.Pick, from, to).AsInt32();
 
-        /// <summary>The size of each walker, against the character.</summary>
-        public float[] GetSizes() => Native.Call(MethodName.GetSizes).AsFloat32Array();
+        /// <summary>The id of the walker that is nearest to a point of global space, at most <c>max_distance</c> away, or -1.</summary>
+        public int FindNearest(Vector3 position, double maxDistance = inf) => Native.Call(MethodName.FindNearest, position, maxDistance).AsInt32();
 
-        /// <summary>How fast each walker would like to walk, in metres per second. Missing or not finite: it stays.</summary>
-        public void SetSpeeds(float[] speeds) => Native.Call(MethodName.SetSpeeds, speeds);
+        /// <summary>The whole scene that shows a walker, or null while it is drawn as an instance. The scene is lent: it shows another walker later.</summary>
+        public Node3D GetAgentNode(int agent) => (Node3D)Native.Call(MethodName.GetAgentNode, agent).AsGodotObject();
 
-        /// <summary>How fast each walker turns, in radians per second, positive to its left; it gives up its goal. For <see cref="Behaviour"/> scripted.</summary>
-        public void SetTurnRates(float[] turnRates) => Native.Call(MethodName.SetTurnRates, turnRates);
+        /// <summary>The id of the walker whom a node shows: a whole scene of the crowd, or anything in it, such as a body that a ray has hit. -1 when it shows nobody.</summary>
+        public int GetAgentOf(Node node) => Native.Call(MethodName.GetAgentOf, node).AsInt32();
 
-        /// <summary>Where each walker goes straight, in this node's space. It stops there. For <see cref="Behaviour"/> scripted. Not finite: its goal stays.</summary>
-        public void SetTargets(Vector3[] targets) => Native.Call(MethodName.SetTargets, targets);
-
-        /// <summary>Where each walker goes over the navigation map of the world, around what is between, in this node's space. It stops there. For <see cref="Behaviour"/> scripted. Not finite: its goal stays. Each way takes some tens of microseconds to find, once.</summary>
-        /// <remarks>Returns whether there was a way for everybody; whoever has none keeps its goal. In the first frames of a scene there is no map yet.</remarks>
-        public bool SetDestinations(Vector3[] destinations) => Native.Call(MethodName.SetDestinations, destinations).AsBool();
-
-        /// <summary>The tint of each walker.</summary>
-        public void SetTints(Color[] colours) => Native.Call(MethodName.SetTints, colours);
-
-        /// <summary>What one walker wears: weights in the order of <see cref="Styles"/>, taken up with its next step. They are rounded to eighths, so that a crowd needs few mixtures.</summary>
-        public void SetAgentStyle(long agent, float[] weights) => Native.Call(MethodName.SetAgentStyle, agent, weights);
-
-        /// <summary>The crowd as it is now, to be saved: who walks where, how, and in which phase. <see cref="SetState"/> goes on from it with the same walkers at the same places; their next steps are drawn anew.</summary>
+        /// <summary>The crowd as it is now, to be saved: who walks where, how, in which phase and with which id. <see cref="SetState"/> goes on from it with the same walkers at the same places; their next steps are drawn anew.</summary>
         public byte[] GetState() => Native.Call(MethodName.GetState).AsByteArray();
 
         /// <summary>Goes on from what <see cref="GetState"/> told. Bytes that are no crowd are refused: the log says why, and the crowd stays as it is.</summary>
         public void SetState(byte[] state) => Native.Call(MethodName.SetState, state);
 
-        /// <summary>Lets time pass at once, in seconds, whatever <see cref="Playing"/> says: for tests, and for games with a clock of their own.</summary>
+        /// <summary>Lets time pass at once, in seconds, whatever <see cref="Playing"/> says: for tests, and for games with a clock of their own. It waits for walkers that are still being made, so that equal calls give equal crowds.</summary>
         public void Advance(double delta) => Native.Call(MethodName.Advance, delta);
 
         /// <summary>What keeps the crowd from walking, each with what to do next; empty when nothing does.</summary>

@@ -43,7 +43,6 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
-            public static readonly StringName Bake = "bake";
             public static readonly StringName GetRootMotionDelta = "get_root_motion_delta";
             public static readonly StringName GetEffectiveSeed = "get_effective_seed";
             public static readonly StringName IsFootOnGround = "is_foot_on_ground";
@@ -56,6 +55,7 @@ namespace Footfall
             public static readonly StringName TakeOver = "take_over";
             public static readonly StringName HandOver = "hand_over";
             public static readonly StringName IsHandedOver = "is_handed_over";
+            public static readonly StringName Bake = "bake";
         }
 
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
@@ -89,14 +89,15 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>The way of walking: an imported <c>.footfall</c> file such as <c>addons/footfall/models/walk.footfall</c>, or a <c>.footdyn</c> file such as <c>addons/footfall/models/walk.footdyn</c>, a switching model, which is smaller and wears no styles.</summary>
+        /// <summary>The way of walking: a <c>.footfall</c> file such as <c>addons/footfall/models/walk.footfall</c>, or a <c>.footdyn</c> file such as <c>addons/footfall/models/walk.footdyn</c>, a switching model, which is smaller and wears no styles.</summary>
+        /// <remarks>A node that is added in the editor has <c>walk.footfall</c>; where this is empty, as after <c>GaitGenerator3D.new()</c> in a script, the character walks with the same.</remarks>
         public GaitModel Model
         {
             get => GaitModel.From(Native.Get(PropertyName.Model).AsGodotObject());
             set => Native.Set(PropertyName.Model, value);
         }
 
-        /// <summary>Styles to walk in, imported <c>.footstyle</c> files that were made for this model. <see cref="StyleWeights"/> says how much of each.</summary>
+        /// <summary>Styles to walk in, <c>.footstyle</c> files that were made for this model. <see cref="StyleWeights"/> says how much of each.</summary>
         /// <remarks>Changing the list starts the walk anew; change weights to change the style while it walks.</remarks>
         public GaitStyle[] Styles
         {
@@ -258,14 +259,6 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.HandedOver, Callable.From(value));
         }
 
-        /// <summary>Makes animations of this character's walk, which an <c>AnimationPlayer</c> or <c>AnimationTree</c> plays without the add-on: for a platform that the add-on is not built for, for another tool, or for a crowd of one's own. Returns <c>null</c> where the character cannot walk; the log says why.</summary>
-        /// <remarks>
-        /// <para><c>seconds</c> is how long a clip is about: whole strides are taken, from one touching down of the left foot to another. <see cref="Styles"/> names some of the node's <see cref="Styles"/>, and <c>neutral</c> the walk without one; empty are all of them. <c>speeds</c> are in metres per second. The clips are <c>walk_&lt;style&gt;_&lt;speed&gt;</c>, such as <c>walk_sad_1.2</c>, and <c>idle_&lt;style&gt;</c>; all of them loop, and are made of <see cref="Seed"/> and <see cref="Variation"/>.</para>
-        /// <para>The root moves evenly, exactly at the speed that the clip is named for. Its track is the topmost bone above the hips, or the <c>Skeleton3D</c> itself where hips are topmost. Tell it to whoever plays the clips: <c>player.root_motion_track = library.get_meta(&quot;root_motion_track&quot;)</c>. Paths begin at the root of the scene that the skeleton came in, where an imported character has its <c>AnimationPlayer</c>.</para>
-        /// <para>A clip takes some tens of milliseconds to make. Nothing of the node changes.</para>
-        /// </remarks>
-        public AnimationLibrary Bake(double seconds, string[] styles, float[] speeds) => (AnimationLibrary)Native.Call(MethodName.Bake, seconds, styles, speeds).AsGodotObject();
-
         /// <summary>How far and about what the character travelled, in its own space: axes and scale are those of its node.</summary>
         /// <remarks>
         /// <para>Asked in <c>_physics_process()</c>, since the frame of the physics before; asked in <c>_process()</c>, since the frame before: whoever asks once a frame is told all of it, at any frame rate, and asked twice in a frame it says the same. After the skeleton has moved within a frame, as in a function connected to <c>modification_processed</c>, it is that frame's. For a skeleton that is advanced by hand, it is what the last <c>advance()</c> did.</para>
@@ -310,5 +303,13 @@ namespace Footfall
 
         /// <summary>Whether the skeleton is left to other animation: after <see cref="HandOver"/>, until <see cref="TakeOver"/>.</summary>
         public bool IsHandedOver() => Native.Call(MethodName.IsHandedOver).AsBool();
+
+        /// <summary>Makes animations of this character's walk, which an <c>AnimationPlayer</c> or <c>AnimationTree</c> plays without the add-on: for a platform that the add-on is not built for, for another tool, or for a crowd of one's own. Returns <c>null</c> where the character cannot walk; the log says why.</summary>
+        /// <remarks>
+        /// <para><c>seconds</c> is how long a clip is about: whole strides are taken, from one touching down of the left foot to another. <see cref="Styles"/> names some of the node's <see cref="Styles"/>, and <c>neutral</c> the walk without one; empty are all of them. <c>speeds</c> are in metres per second. The clips are <c>walk_&lt;style&gt;_&lt;speed&gt;</c>, such as <c>walk_sad_1.2</c>, and <c>idle_&lt;style&gt;</c>; all of them loop, and are made of <see cref="Seed"/> and <see cref="Variation"/>.</para>
+        /// <para>The root moves evenly, exactly at the speed that the clip is named for. Its track is the topmost bone above the hips, or the <c>Skeleton3D</c> itself where hips are topmost. Tell it to whoever plays the clips: <c>player.root_motion_track = library.get_meta(&quot;root_motion_track&quot;)</c>. Paths begin at the root of the scene that the skeleton came in, where an imported character has its <c>AnimationPlayer</c>.</para>
+        /// <para>A clip takes some tens of milliseconds to make. Nothing of the node changes.</para>
+        /// </remarks>
+        public AnimationLibrary Bake(double seconds, string[] styles, float[] speeds) => (AnimationLibrary)Native.Call(MethodName.Bake, seconds, styles, speeds).AsGodotObject();
     }
 }

@@ -7,7 +7,7 @@ using Godot;
 namespace Footfall
 {
     /// <summary>A way of walking that was learned from recordings: a trained walk (<c>.footfall</c>, made by <c>footfall train</c>) or a switching model (<c>.footdyn</c>, made by <c>footfall dynamics fit</c>).</summary>
-    /// <remarks>Put either file into the project and it is imported as this resource. Give it to a <see cref="GaitGenerator3D"/>'s <c>model</c>. One model serves any number of characters. A trained walk knows many walkers, changes its step with its speed and wears styles; a switching model is a hundredth of its size, and is one person's way of walking.</remarks>
+    /// <remarks>Either file in the project is this resource, as it is. Give it to a <see cref="GaitGenerator3D"/>'s <c>model</c>. One model serves any number of characters. A trained walk knows many walkers, changes its step with its speed and wears styles; a switching model is a hundredth of its size, and is one person's way of walking.</remarks>
     public class GaitModel : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -55,7 +55,7 @@ namespace Footfall
         public static GaitModel Load(string path) => From(GD.Load<Resource>(path));
 
         /// <summary>The bytes of the <c>.footfall</c> or <c>.footdyn</c> file.</summary>
-        /// <remarks>Plain bytes, so that loading the imported resource needs nothing but built-in storage.</remarks>
+        /// <remarks>Plain bytes, so that a scene or <c>.res</c> file that holds the resource needs nothing but built-in storage.</remarks>
         public byte[] Data
         {
             get => Native.Get(PropertyName.Data).AsByteArray();

@@ -7,7 +7,7 @@ using Godot;
 namespace Footfall
 {
     /// <summary>A style of walking, made by <c>footfall adapt</c> from about a dozen steps and stored in a <c>.footstyle</c> file.</summary>
-    /// <remarks>Put a <c>.footstyle</c> file into the project and it is imported as this resource. Add it to a <see cref="GaitGenerator3D"/>'s <c>styles</c> and give it a weight in <c>style_weights</c>. A style belongs to the <see cref="GaitModel"/> that it was adapted from.</remarks>
+    /// <remarks>A <c>.footstyle</c> file in the project is this resource, as it is. Add it to a <see cref="GaitGenerator3D"/>'s <c>styles</c> and give it a weight in <c>style_weights</c>. A style belongs to the <see cref="GaitModel"/> that it was adapted from.</remarks>
     public class GaitStyle : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -55,7 +55,7 @@ namespace Footfall
         public static GaitStyle Load(string path) => From(GD.Load<Resource>(path));
 
         /// <summary>The bytes of the <c>.footstyle</c> file.</summary>
-        /// <remarks>Plain bytes, so that loading the imported resource needs nothing but built-in storage.</remarks>
+        /// <remarks>Plain bytes, so that a scene or <c>.res</c> file that holds the resource needs nothing but built-in storage.</remarks>
         public byte[] Data
         {
             get => Native.Get(PropertyName.Data).AsByteArray();

@@ -7,7 +7,7 @@ using Godot;
 namespace Footfall
 {
     /// <summary>Knows what one or two inertial sensors on a body mean for the whole body (<c>.footimu</c>, made by <c>footfall imu train</c>).</summary>
-    /// <remarks>Put the file into the project and it is imported as this resource. Give it to an <see cref="ImuReconstructor3D"/>'s <c>model</c>. One model serves any number of characters.</remarks>
+    /// <remarks>The file in the project is this resource, as it is. Give it to an <see cref="ImuReconstructor3D"/>'s <c>model</c>. One model serves any number of characters.</remarks>
     public class ImuModel : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -54,7 +54,7 @@ namespace Footfall
         public static ImuModel Load(string path) => From(GD.Load<Resource>(path));
 
         /// <summary>The bytes of the <c>.footimu</c> file.</summary>
-        /// <remarks>Plain bytes, so that loading the imported resource needs nothing but built-in storage.</remarks>
+        /// <remarks>Plain bytes, so that a scene or <c>.res</c> file that holds the resource needs nothing but built-in storage.</remarks>
         public byte[] Data
         {
             get => Native.Get(PropertyName.Data).AsByteArray();

@@ -74,7 +74,8 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>What the sensors mean: an imported <c>.footimu</c> file.</summary>
+        /// <summary>What the sensors mean: a <c>.footimu</c> file.</summary>
+        /// <remarks>A node that is added in the editor has <c>addons/footfall/models/right_foot.footimu</c>; where this is empty, it is used as well.</remarks>
         public ImuModel Model
         {
             get => ImuModel.From(Native.Get(PropertyName.Model).AsGodotObject());

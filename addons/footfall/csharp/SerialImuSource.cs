@@ -28,12 +28,12 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
+            public static readonly StringName ListPorts = "list_ports";
             public static readonly StringName Start = "start";
             public static readonly StringName Stop = "stop";
             public static readonly StringName GetState = "get_state";
             public static readonly StringName GetMessage = "get_message";
             public static readonly StringName GetSensorStatus = "get_sensor_status";
-            public static readonly StringName ListPorts = "list_ports";
         }
 
         /// <summary>Makes a new <c>SerialImuSource</c> in the engine.</summary>
@@ -111,6 +111,9 @@ namespace Footfall
             set => Native.Set(PropertyName.TimeUnit, (long)value);
         }
 
+        /// <summary>The serial ports of this machine, those on USB first.</summary>
+        public static string[] ListPorts() => ClassDB.ClassCallStatic(NativeName, MethodName.ListPorts).AsStringArray();
+
         /// <summary>Opens the port now; otherwise it is opened when a node uses this source for the first time.</summary>
         public void Start() => Native.Call(MethodName.Start);
 
@@ -125,8 +128,5 @@ namespace Footfall
 
         /// <summary>What is known of the sensor: <c>name</c>, <see cref="Format"/>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
         public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
-
-        /// <summary>The serial ports of this machine, those on USB first.</summary>
-        public static string[] ListPorts() => ClassDB.ClassCallStatic(NativeName, MethodName.ListPorts).AsStringArray();
     }
 }
