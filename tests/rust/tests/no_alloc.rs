@@ -1,7 +1,8 @@
 //! What runs in every frame allocates nothing, whatever it is asked to do.
 #![expect(unsafe_code, reason = "counting allocations takes an allocator")]
 
-use footfall_core::Pose;
+use footfall_core::{Pose, Skeleton};
+use footfall_ik::handover::{Handover, Moving};
 use footfall_ik::placement::PlacementConfig;
 use footfall_imu::ImuSample;
 use footfall_model::{DynamicsModel, GaitModel, ImuModel};
@@ -130,6 +131,39 @@ fn assert_placing_allocates_nothing(generator: GaitGenerator) {
     }
 }
 
+/// A walk that goes over into its rest pose, with steps of its own.
+fn assert_going_over_allocates_nothing(mut generator: GaitGenerator, skeleton: &Skeleton) {
+    const DT_SECS: f32 = 1.0 / 60.0;
+    let controls = Controls {
+        speed_mps: 1.3,
+        ..Controls::STAND
+    };
+    let (mut before, mut now) = (Pose::default(), Pose::default());
+    for frame in 0..120 {
+        core::mem::swap(&mut before, &mut now);
+        generator.step(DT_SECS, &controls, &mut now);
+        let rest = Pose::rest(skeleton);
+        let allocated = allocations();
+        let from = Moving {
+            before: &before,
+            now: &now,
+            stands: generator.feet_in_contact(),
+        };
+        let to = Moving {
+            before: &rest,
+            now: &rest,
+            stands: [true; 2],
+        };
+        let mut handover = Handover::new(skeleton, &from, &to, DT_SECS, 0.3);
+        for _ in 0..90 {
+            let mut pose = rest.clone();
+            handover.step(DT_SECS, [true; 2], true, &mut pose);
+        }
+        assert_eq!(allocations() - allocated, 0, "going over, frame {frame}");
+        assert!(handover.is_over());
+    }
+}
+
 /// A walker of a crowd allocates only for a step that is longer than any before: slow ones in full detail come first.
 fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Workshop) {
     for frame in 0..3000 {
@@ -173,6 +207,10 @@ fn a_step_of_the_generator_allocates_nothing() {
         assert_no_allocation(other, seed);
     }
     assert_placing_allocates_nothing(GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap());
+    assert_going_over_allocates_nothing(
+        GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap(),
+        &skeleton,
+    );
     let styled = StyledBody::new(&space, &[], &skeleton).unwrap();
     let mut workshop = Workshop::new(&styled);
     let walker = CrowdWalker::new(&styled, &CONFIG, false, &mut workshop).unwrap();

@@ -28,7 +28,8 @@ impl Session {
     /// Begins to leave the body to the animation that was watched.
     pub(super) fn leave(&mut self, secs: f64, velocity_mps: Vec3, turn_rate: f32) {
         let place = fit::frame(&self.traveller.ground_place());
-        let to = self.watched_here().raised(&place);
+        let stands = self.stands_in_place();
+        let to = self.watched_here().with_standing(stands).raised(&place);
         let from = self.shown.moving();
         let body = &self.traveller.binding.body;
         let secs = secs as f32;

@@ -26,12 +26,27 @@ impl Seen {
         self.frames = (self.frames + 1).min(2);
     }
 
-    /// One frame more of a motion that does not tell which feet stand.
-    pub(super) fn see_silent(&mut self, body: &Skeleton, pose: &Pose, dt_secs: f32) {
+    /// One frame more of a motion that does not tell which feet stand. The floor is that of a frame of its space in which lengths are
+    /// `scale` times as long.
+    pub(super) fn see_silent(
+        &mut self,
+        body: &Skeleton,
+        pose: &Pose,
+        dt_secs: f32,
+        floor: &Frame,
+        scale: f32,
+    ) {
         let known = self.frames > 0;
         self.see(pose, self.stands, dt_secs);
-        let before = if known { &self.before } else { &self.now };
-        self.stands = standing_feet(body, before, &self.now, dt_secs, self.stands);
+        let Self { before, now, .. } = self.seen_from(floor, scale);
+        let before = if known { &before } else { &now };
+        self.stands = standing_feet(body, before, &now, dt_secs, self.stands);
+    }
+
+    /// The same motion with other feet that stand.
+    pub(super) const fn with_standing(mut self, stands: [bool; 2]) -> Self {
+        self.stands = stands;
+        self
     }
 
     /// Whether its speed is known.

@@ -3,15 +3,16 @@
 use super::seen::{Seen, raise};
 use super::session::Session;
 use footfall_core::Pose;
+use footfall_ik::placement::Frame;
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
 /// The motion of an animation, or of a ragdoll.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
-    /// In the world.
+    /// In the world. A foot of an animation that travels with its character stands here.
     pub(super) in_world: Seen,
-    /// On the ground under the character: an animation that stays in place stands there, though the character travels.
+    /// On the ground under the character. A foot of an animation that stays in place stands here, though the character still travels.
     in_place: Seen,
 }
 
@@ -21,20 +22,27 @@ impl Session {
         let mut pose = Pose::default();
         self.traveller.binding.read(skeleton, &mut pose);
         let body = &self.traveller.binding.body;
-        let scale = self.traveller.scale();
+        let (scale, ground) = (self.traveller.scale(), self.traveller.world_from_ground());
         let mut in_world = pose.clone();
         in_world.root_position *= scale;
-        raise(&self.traveller.world_from_ground(), &mut in_world);
-        let watched = &mut self.watched;
+        raise(&ground, &mut in_world);
+        let Watch {
+            in_world: world,
+            in_place: place,
+        } = &mut self.watched;
         if dt_secs > 0.0 {
-            watched.in_place.see_silent(body, &pose, dt_secs);
-            let stands = watched.in_place.moving().stands;
-            watched.in_world.see(&in_world, stands, dt_secs);
+            place.see_silent(body, &pose, dt_secs, &Frame::IDENTITY, 1.0);
+            world.see_silent(body, &in_world, dt_secs, &ground, scale.recip());
         }
-        (pose, watched.in_place.moving().stands)
+        (pose, self.stands_in_place())
     }
 
-    /// The motion that was watched, on the ground under the character as it is now, in metres of the body.
+    /// Which feet stand on the ground that the character takes along.
+    pub(super) fn stands_in_place(&self) -> [bool; 2] {
+        self.watched.in_place.moving().stands
+    }
+
+    /// The motion that was watched, on the ground under the character as it is now, in metres of the body; its feet stand in the world.
     pub(super) fn watched_here(&self) -> Seen {
         let ground = self.traveller.world_from_ground();
         let scale = self.traveller.scale().recip();

@@ -4,7 +4,7 @@ use super::fading::Fading;
 use crate::leg::FootTarget;
 use crate::rocker::{RockerFoot, foot_heading, foot_pitch};
 use footfall_core::rotation::{exp_map, from_heading, log_map, wrap_angle};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 /// A held foot comes to the place of the new motion within this time once that lifts it, and so long a step of its own takes, seconds.
 const SWING_SECS: f32 = 0.3;
@@ -46,6 +46,7 @@ pub(super) struct HeldFoot {
     parting: Vec3,
     place: Fading,
     tilt: Fading,
+    toes: Fading,
 }
 
 /// A foot that was held, on its way to where the motion that goes on has it.
@@ -73,8 +74,10 @@ impl HeldFoot {
             parting: Vec3::ZERO,
             place: Fading::default(),
             tilt: Fading::default(),
+            toes: Fading::default(),
         };
         let mut parted_before = Vec3::ZERO;
+        let mut from_before = from.before;
         let mut secs = secs;
         let stood = foot.footprint(&from.now);
         let apart = parted(stood, foot.footprint(&to.now));
@@ -82,19 +85,30 @@ impl HeldFoot {
             foot.held = Some(stood);
             foot.parted = apart;
             parted_before = parted(stood, foot.footprint(&to.before));
-            if !from.stands {
+            if from.stands {
+                // It may just have landed: it takes along how it rolls, and nothing else.
+                from_before = foot.moved(&from.before, parted(stood, foot.footprint(&from.before)));
+                from_before.ankle.y +=
+                    rocker.lowest_point(&from.now) - rocker.lowest_point(&from_before);
+            } else {
                 secs = secs.min(LANDING_SECS);
             }
         }
         let rest = |from: &FootTarget, to: &FootTarget, parted: Vec3| {
             let to = foot.moved(to, parted);
-            let tilt = log_map(from.foot * to.foot.conjugate());
-            (from.ankle - to.ankle, tilt)
+            let parted = |from: Quat, to: Quat| log_map(from * to.conjugate());
+            [
+                from.ankle - to.ankle,
+                parted(from.foot, to.foot),
+                parted(from.toes, to.toes),
+            ]
         };
         let now = rest(&from.now, &to.now, foot.parted);
-        let before = rest(&from.before, &to.before, parted_before);
-        let fading = |now: Vec3, before| Fading::new(now, speed(now - before, dt_secs), secs);
-        (foot.place, foot.tilt) = (fading(now.0, before.0), fading(now.1, before.1));
+        let before = rest(&from_before, &to.before, parted_before);
+        [foot.place, foot.tilt, foot.toes] = core::array::from_fn(|part| {
+            let velocity = speed(now[part] - before[part], dt_secs);
+            Fading::new(now[part], velocity, secs)
+        });
         foot.parting = speed(foot.parted - parted_before, dt_secs);
         foot
     }
@@ -103,14 +117,16 @@ impl HeldFoot {
     pub(super) fn step(&mut self, dt_secs: f32, to: &FootTarget, stands: bool) -> FootTarget {
         self.place.advance(dt_secs);
         self.tilt.advance(dt_secs);
+        self.toes.advance(dt_secs);
         let flat = self.footprint(to);
         let before = self.parted;
         let mut lift = 0.0;
+        if self.held.is_some() && !stands {
+            // It goes along with the new motion from this very frame on, instead of standing for a frame longer.
+            self.go(None);
+        }
         if let Some(held) = self.held {
             self.parted = parted(held, flat);
-            if !stands {
-                self.go(None);
-            }
         } else if let Some(going) = &mut self.going {
             going.parted.advance(dt_secs);
             self.parted = going.parted.left();
@@ -131,10 +147,9 @@ impl HeldFoot {
             self.parting = speed(self.parted - before, dt_secs);
         }
         let mut target = self.moved(to, self.parted);
-        let tilt = exp_map(self.tilt.left());
         target.ankle += self.place.left() + Vec3::Y * lift;
-        target.foot = (tilt * target.foot).normalize();
-        target.toes = (tilt * target.toes).normalize();
+        target.foot = (exp_map(self.tilt.left()) * target.foot).normalize();
+        target.toes = (exp_map(self.toes.left()) * target.toes).normalize();
         target
     }
 
