@@ -1,7 +1,8 @@
 //! Helpers that the integration tests share: where the recordings are, a walk's quality judged from its BVH file alone,
-//! text goldens, ground from formulas, and a browser.
+//! text goldens, ground from formulas and climbs over it, and a browser.
 
 pub mod browser;
+pub mod climb;
 pub mod data;
 pub mod evaluator;
 pub mod golden;

@@ -5,22 +5,22 @@ use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_ik::placement::{
     FootPlacer, Frame, Ground, PlacementConfig, PlacementInput, SupportId, Terrain,
 };
-use footfall_synth::{Controls, Footstep, GaitGenerator};
+use footfall_synth::{Controls, GaitGenerator};
 use glam::{Quat, Vec3};
 
 /// Ground whose height is a function of the place, on a support that may move.
 pub struct Relief {
     /// Height at x and z of the support, metres.
-    pub height: fn(f32, f32) -> f32,
+    pub height: Box<dyn Fn(f32, f32) -> f32>,
     /// Where the support is in the world.
     pub support: Frame,
 }
 
 impl Relief {
     /// Ground that does not move.
-    pub fn still(height: fn(f32, f32) -> f32) -> Self {
+    pub fn still(height: impl Fn(f32, f32) -> f32 + 'static) -> Self {
         Self {
-            height,
+            height: Box::new(height),
             support: Frame::IDENTITY,
         }
     }
@@ -61,6 +61,20 @@ impl Terrain for Relief {
     }
 }
 
+/// What holds a character's origin at the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// The ground under its feet, as `follow_ground` has it.
+    Follows,
+    /// The highest ground under a capsule, at once, as physics has it.
+    Capsule,
+}
+
+/// Radius of a capsule on which an adult stands, metres: what edges it is lifted over.
+const CAPSULE_M: f32 = 0.2;
+/// Time constant with which a character rises and falls with the ground under its feet, seconds.
+const RISE_SECS: f32 = 0.12;
+
 /// A generated walk on uneven ground; the character's origin follows the ground as a game's would.
 pub struct PlacedWalker {
     /// The walk.
@@ -79,24 +93,61 @@ pub struct PlacedWalker {
     pub pose: Pose,
     /// Every joint in the world.
     pub world: ModelPose,
+    /// What holds its origin at the ground.
+    pub carrier: Origin,
     height: f32,
 }
 
 impl PlacedWalker {
     /// At the origin of the world.
     pub fn new(generator: GaitGenerator, config: &PlacementConfig) -> Self {
-        let skeleton = Skeleton::standard();
+        Self::of(generator, &Skeleton::standard(), config)
+    }
+
+    /// At the origin of the world, with this body.
+    pub fn of(generator: GaitGenerator, skeleton: &Skeleton, config: &PlacementConfig) -> Self {
         Self {
             generator,
-            placer: FootPlacer::new(&skeleton, config),
-            skeleton,
+            placer: FootPlacer::new(skeleton, config),
+            skeleton: skeleton.clone(),
             world_from_start: Frame::IDENTITY,
             world_from_floor: Frame::IDENTITY,
             animated: Pose::default(),
             pose: Pose::default(),
             world: ModelPose::default(),
+            carrier: Origin::Follows,
             height: f32::NAN,
         }
+    }
+
+    /// Lets time pass for a character that a game carries over the ground and that slows down on slopes.
+    pub fn climb(&mut self, dt_secs: f32, controls: Controls, terrain: &mut Relief, told: bool) {
+        let slowed = Controls {
+            speed_mps: controls.speed_mps * self.placer.pace(),
+            ..controls
+        };
+        let origin = self.origin(dt_secs, slowed).position;
+        let ground = terrain.at(origin).position.y;
+        if self.height.is_nan() {
+            self.height = ground;
+        }
+        match self.carrier {
+            Origin::Follows => {
+                let share = 1.0 - (-dt_secs / RISE_SECS).exp();
+                self.height += share * self.placer.ground_offset_m();
+            }
+            Origin::Capsule => {
+                let around = [Vec3::ZERO, Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
+                let under = around.map(|way| terrain.at(origin + CAPSULE_M * way).position.y);
+                self.height = under.into_iter().fold(ground, f32::max);
+            }
+        }
+        self.put(dt_secs, terrain, told);
+    }
+
+    /// Which feet the animation has on the ground.
+    pub fn contacts(&self) -> [bool; 2] {
+        self.generator.feet_in_contact()
     }
 
     /// Lets time pass. Without `told` the placer finds contacts by itself and knows no footholds.
@@ -130,20 +181,29 @@ impl PlacedWalker {
     }
 
     fn place(&mut self, dt_secs: f32, terrain: &mut Relief, told: bool, ground: f32) {
-        let mut floor = self.world_from_floor;
         if self.height.is_nan() {
             self.height = ground;
         }
         self.height += (ground - self.height) * (1.0 - (-dt_secs / 0.15).exp());
+        self.put(dt_secs, terrain, told);
+    }
+
+    fn put(&mut self, dt_secs: f32, terrain: &mut Relief, told: bool) {
+        let mut floor = self.world_from_floor;
         floor.position.y = self.height;
-        let next = self.generator.next_footstep().filter(|_| told);
-        let landings = Footstep::landings(next);
-        let input = PlacementInput {
+        let mut input = PlacementInput {
             world_from_floor: floor,
             contacts: told.then(|| self.generator.feet_in_contact()),
-            landings,
+            landings: [None; 2],
             airborne: false,
         };
+        if told {
+            input.landings = self.generator.landings();
+            if let Some(share) = self.placer.step_share(&input, terrain) {
+                self.generator.stretch_step(share);
+                input.landings = self.generator.landings();
+            }
+        }
         self.pose = self.animated.clone();
         self.placer.step(dt_secs, &input, terrain, &mut self.pose);
         self.world_from_floor = floor;

@@ -47,7 +47,8 @@ pub(crate) struct FootPlacement3D {
     #[var(set = set_cast_radius)]
     cast_radius: f64,
 
-    /// Ground that is more than this above the higher foot or below the lower one is out of reach.
+    /// Edges that are higher than this are walls, and lower ones an abyss: no foot goes there. The ground ahead is followed edge by
+    /// edge, so that a staircase of lower steps is never out of reach.
     #[export(range = (0.0, 1.0, 0.01, or_greater, suffix = "m"))]
     #[init(val = 0.5)]
     max_step: f64,
@@ -77,13 +78,14 @@ pub(crate) struct FootPlacement3D {
     #[init(val = 0.6)]
     max_twist: f64,
 
-    /// Whether a foot that would stand across an edge, as on stairs, is put ahead of it or behind it.
+    /// Whether a foot that would stand across an edge, as on stairs, is put ahead of it or behind it. A `GaitGenerator3D` beside this
+    /// node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.
     #[export]
     #[init(val = true)]
     adjust_footholds: bool,
 
     /// Whether a `GaitGenerator3D` beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking
-    /// function, down to 0.45 of its speed).
+    /// function, down to 0.45 of its speed), from a step before it gets there.
     #[export]
     #[init(val = true)]
     adapt_speed: bool,
@@ -403,11 +405,21 @@ impl FootPlacement3D {
                 input.landings = landings;
             }
             let slowed = if self.adapt_speed {
-                1.0 - influence * (1.0 - slowed_by(session.placer.grade()))
+                1.0 - influence * (1.0 - session.placer.pace())
             } else {
                 1.0
             };
             generator.slow_down(slowed);
+            let mut ground = session.ground.now(space.clone());
+            if !in_editor
+                && self.adjust_footholds
+                && let Some(share) = session.placer.step_share(&input, &mut ground)
+            {
+                generator.stretch_step(share);
+                if let Some((_, landings)) = generator.feet() {
+                    input.landings = landings;
+                }
+            }
         }
         if let Some((contacts, landings)) = self.fed.take() {
             input.contacts = Some(contacts);
@@ -465,13 +477,4 @@ fn generator_beside(skeleton: &Gd<Skeleton3D>) -> Option<Gd<GaitGenerator3D>> {
     children
         .iter_shared()
         .find_map(|child| child.try_cast::<GaitGenerator3D>().ok())
-}
-
-/// What is left of a walker's speed on a grade: Tobler's hiking function (1993) relative to level ground, and no less than people
-/// keep on stairs.
-fn slowed_by(grade: f32) -> f32 {
-    const STEEPNESS: f32 = 3.5;
-    const EASIEST: f32 = -0.05;
-    let speed = |grade: f32| (-STEEPNESS * (grade - EASIEST).abs()).exp();
-    (speed(grade) / speed(0.0)).clamp(0.45, 1.0)
 }

@@ -4,83 +4,40 @@
 //! carries a swinging foot from one foothold to the next, moves the pelvis so that both legs reach, and solves the legs. Whatever
 //! supports a foot may move: its foothold moves along.
 //!
-//! Modules in suggested reading order: `frame`, `terrain`, `correction`, `foothold`, `contact`, `foot`, `swing`,
-//! `pelvis`, `carry`.
+//! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `foothold`, `profile`, `aim`, `told`, `contact`,
+//! `foot`, `swing`, `pelvis`, `carry`.
 
+mod aim;
 mod carry;
+mod config;
 mod contact;
 mod correction;
+mod effort;
 mod foot;
 mod foothold;
 mod frame;
 mod pelvis;
+mod profile;
 mod swing;
 mod terrain;
+mod told;
 
 use crate::leg::{FootTarget, Leg};
 use crate::rocker::{RockerFoot, foot_heading, foot_pitch, settled_pitch};
+use carry::Moment;
+pub use config::{PlacementConfig, PlacementInput};
 pub use contact::ContactThresholds;
 pub use foot::Landing;
-use foot::{Animated, Foot, Mode, Scene};
+use foot::{Animated, Foot, Mode};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Pose, Side, Skeleton};
 pub use frame::Frame;
 use glam::{Quat, Vec3};
-use pelvis::Follower;
+use pelvis::Ride;
 pub use terrain::{Ground, SupportId, Terrain};
 
 /// A character that moved farther than this in a frame was put somewhere else, metres.
 const TELEPORT_M: f32 = 1.0;
-
-/// How feet meet the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlacementConfig {
-    /// Ground that is farther above the animation's floor and the higher sole, or farther below the floor and the lower one, is out of
-    /// reach, metres.
-    pub max_step_m: f32,
-    /// Feet are tilted against the animation by this much at most, radians.
-    pub max_tilt: f32,
-    /// How long the pelvis takes for half of its way up or down, seconds.
-    pub pelvis_half_life_secs: f32,
-    /// How far the pelvis moves against the animation's floor at most, metres.
-    pub max_pelvis_m: f32,
-    /// A foot that the animation drags this far from where it is locked is put anew, metres.
-    pub max_drift_m: f32,
-    /// A foot that the animation turns this far from where it is locked is put anew, radians.
-    pub max_twist: f32,
-    /// Whether a foot that would stand across an edge is put ahead of it or behind it.
-    pub adjust_footholds: bool,
-    /// When a foot stands, for animations that do not tell.
-    pub contact: ContactThresholds,
-}
-
-impl Default for PlacementConfig {
-    fn default() -> Self {
-        Self {
-            max_step_m: 0.5,
-            max_tilt: 0.6,
-            pelvis_half_life_secs: 0.08,
-            max_pelvis_m: 0.6,
-            max_drift_m: 0.2,
-            max_twist: 0.6,
-            adjust_footholds: true,
-            contact: ContactThresholds::default(),
-        }
-    }
-}
-
-/// One frame of the animation.
-#[derive(Clone, Copy, Debug)]
-pub struct PlacementInput {
-    /// `world_from_floor`: the flat floor that the animation moves over. +Y is up, against gravity.
-    pub world_from_floor: Frame,
-    /// Which feet stand, where the animation tells; otherwise height and speed of the feet do.
-    pub contacts: Option<[bool; 2]>,
-    /// Where the left and the right foot will land next, where the animation knows.
-    pub landings: [Option<Landing>; 2],
-    /// Whether the character is in the air: feet are left to the animation.
-    pub airborne: bool,
-}
 
 /// What a foot does now.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,9 +66,12 @@ pub struct FootPlacer {
     feet: [Foot; 2],
     placed: [PlacedFoot; 2],
     /// Height in the world of the ground under the pelvis.
-    pelvis: Follower,
+    pelvis: Ride,
     ground_m: f32,
     grade: f32,
+    /// How steep the ground is to which the step under way leads, and the foot that takes it.
+    grade_ahead: f32,
+    aimed: Option<usize>,
     memory: Option<Memory>,
 }
 
@@ -143,9 +103,11 @@ impl FootPlacer {
             rockers: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
             feet: [Foot::default(); 2],
             placed: [placed; 2],
-            pelvis: Follower::default(),
+            pelvis: Ride::default(),
             ground_m: 0.0,
             grade: 0.0,
+            grade_ahead: 0.0,
+            aimed: None,
             memory: None,
         }
     }
@@ -161,6 +123,8 @@ impl FootPlacer {
         self.feet = [Foot::default(); 2];
         self.ground_m = 0.0;
         self.grade = 0.0;
+        self.grade_ahead = 0.0;
+        self.aimed = None;
     }
 
     /// The feet after the last step, left and right.
@@ -205,16 +169,17 @@ impl FootPlacer {
             self.reset();
         }
         let animated = self.animated(dt_secs, input, pose, terrain);
-        let mut scene = Scene {
-            terrain,
-            world_from_floor: floor,
-            config: &self.config,
-            soles_m: self.memory.map_or([0.0; 2], |memory| {
-                let [left, right] = memory.soles.map(|sole| floor.local_point(sole.position).y);
-                [left.min(right), left.max(right)]
-            }),
-            dt_secs,
-        };
+        let config = self.config;
+        let mut scene = self.scene(dt_secs, input, terrain, &config);
+        if !input.airborne {
+            let mut feet = self.feet;
+            for (index, foot) in feet.iter_mut().enumerate() {
+                if let Some(step) = self.next_step(&mut scene, input, index, false) {
+                    foot.plan(&mut scene, &step);
+                }
+            }
+            self.feet = feet;
+        }
         let mut targets = [FootTarget {
             ankle: Vec3::ZERO,
             foot: Quat::IDENTITY,
@@ -226,7 +191,13 @@ impl FootPlacer {
         }
         let soles = [0, 1].map(|index| floor.child(&self.feet[index].sole));
         self.measure_grade(dt_secs);
-        self.carry_pelvis(dt_secs, input, &soles, pose, &targets);
+        let moment = Moment {
+            dt_secs,
+            input,
+            animated: &animated,
+        };
+        let terrain = scene.terrain;
+        self.carry_pelvis(&moment, &soles, terrain, pose, &mut targets);
         let hips_rotation = pose.rotations[Joint::Hips.index()];
         for (leg, target) in self.legs.iter().zip(&targets) {
             leg.solve(pose.root_position, hips_rotation, target, pose);

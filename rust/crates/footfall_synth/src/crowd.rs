@@ -8,10 +8,12 @@ mod frames;
 
 use crate::detail::Detail;
 use crate::error::SynthError;
+use crate::footing;
 use crate::generator::{Controls, Footstep, GeneratorConfig, GroundTransform, MAX_DT_SECS, check};
 use crate::pace::PaceTable;
 use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape};
 use crate::space::{Blend, StyleSpace};
+use crate::stage::Arrival;
 use crate::standing::Amplitude;
 use crate::steps::Ask;
 use crate::styled::Worn;
@@ -19,6 +21,7 @@ use crate::walker::{Origin, WINDOW, Walker};
 use crate::workbench::Workbench;
 use footfall_core::rotation::from_heading;
 use footfall_core::{ModelPose, Pose, Skeleton};
+use footfall_ik::placement::Landing;
 use frames::CrowdFrames;
 pub use frames::CrowdPose;
 use glam::Vec2;
@@ -142,6 +145,8 @@ pub struct CrowdWalker {
     plan_from_start: GroundTransform,
     start_from_character: GroundTransform,
     footstep: Option<Footstep>,
+    /// Where the body is when the current step ends.
+    arrival: Arrival,
 }
 
 impl CrowdWalker {
@@ -193,6 +198,7 @@ impl CrowdWalker {
             plan_from_start: GroundTransform::default(),
             start_from_character: GroundTransform::default(),
             footstep: None,
+            arrival: Arrival::default(),
         };
         made.take_over(workshop);
         let frames = made.shape.timing.frames as f32;
@@ -262,6 +268,12 @@ impl CrowdWalker {
         let plant = self.next.planter.as_ref()?.plants[side.index()];
         let footstep = Footstep::seen_from(&self.plan_from_character(), side, &plant);
         Some((footstep, self.secs_to_next_step()))
+    }
+
+    /// Where each foot lands next and where the body is then, for who puts feet on real ground.
+    pub fn landings(&self) -> [Option<Landing>; 2] {
+        let from = self.plan_from_character();
+        footing::landings(self.next_footstep(), &from, &self.arrival)
     }
 
     /// Whether the left and the right foot bear on the ground.
@@ -393,6 +405,7 @@ impl CrowdWalker {
     /// Keeps the step that was just worked out.
     fn take_over(&mut self, workshop: &mut Workshop) {
         self.chance_position = workshop.planner.chance_position();
+        self.arrival = workshop.walker.stage().arrival;
         let timing = self.shape.ground_timing();
         let stage = &workshop.walker.stage().frames[..=timing.frames];
         let (pose, model_pose) = (&mut workshop.pose, &mut workshop.model_pose);

@@ -10,7 +10,6 @@ use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
 use footfall_core::rotation::{blend_near, from_heading, wrap_angle};
 use footfall_core::{Joint, Pose, Side, Skeleton};
-use footfall_ik::placement::{Frame, Landing};
 use footfall_ik::{Plant, RockerFoot};
 use footfall_model::DynamicsModel;
 use glam::{Vec2, Vec3};
@@ -124,21 +123,6 @@ pub struct Footstep {
 }
 
 impl Footstep {
-    /// Where each foot lands next, from what `next_footstep` tells, for who puts feet on real ground.
-    pub fn landings(next: Option<(Self, f32)>) -> [Option<Landing>; 2] {
-        let mut landings = [None; 2];
-        if let Some((footstep, secs)) = next {
-            landings[footstep.side.index()] = Some(Landing {
-                flat: Frame {
-                    position: footstep.position,
-                    rotation: from_heading(footstep.heading),
-                },
-                secs,
-            });
-        }
-        landings
-    }
-
     /// A foot that was put there, as it is seen from a place of the same space.
     pub(crate) fn seen_from(from: &GroundTransform, side: Side, plant: &Plant) -> Self {
         let place = from.local(&GroundTransform {
@@ -362,7 +346,7 @@ impl GaitGenerator {
         self.contact
     }
 
-    fn shape(&self) -> &StepShape {
+    pub(crate) fn shape(&self) -> &StepShape {
         self.steps.source().shape()
     }
 

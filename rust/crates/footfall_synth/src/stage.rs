@@ -30,6 +30,13 @@ pub(crate) struct Placing<'a> {
     pub(crate) velocity_mps: Vec2,
 }
 
+/// A body whose foot lands.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Arrival {
+    pub(crate) hips: Vec3,
+    pub(crate) ankles: [Vec3; 2],
+}
+
 /// Puts one step after another on the ground; allocates nothing after it was made.
 #[derive(Debug)]
 pub(crate) struct Stage {
@@ -37,6 +44,8 @@ pub(crate) struct Stage {
     frame_secs: f32,
     /// Where the feet were put last; `None` before the first step.
     planter: Option<Planter>,
+    /// Where the body is when the step on the ground ends.
+    pub(crate) arrival: Arrival,
     /// The last step on the ground, at its own detail, one frame longer than the step; what lies beyond is left from others.
     pub(crate) frames: Vec<PlantedFrame>,
 }
@@ -48,6 +57,7 @@ impl Stage {
             skeleton: skeleton.clone(),
             frame_secs: (1.0 / frame_rate_hz) as f32,
             planter: None,
+            arrival: Arrival::default(),
             frames: vec![PlantedFrame::default(); Detail::ground_room(longest) + 1],
         }
     }
@@ -133,6 +143,10 @@ impl Stage {
         planter.set_stride(stride);
         planter.turn_step(raw, &timing, strafe, facing - strafe.turn, frames);
         planter.plant_step(raw, &timing, course, frames);
+        self.arrival = Arrival {
+            hips: frames[timing.frames].pose.root_position,
+            ankles: Side::BOTH.map(|side| raw[timing.frames].legs[side.index()].target.ankle),
+        };
     }
 }
 

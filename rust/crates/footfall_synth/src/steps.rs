@@ -43,6 +43,9 @@ impl Ask {
     }
 }
 
+/// The next factor on the legs' reach, made of a step and the ground that it is on; `None` when it lies well.
+pub(crate) type Stretches<'a> = dyn FnMut(&StepShape, &Stage) -> Option<f32> + 'a;
+
 /// One walker's steps, put on the ground one after the other.
 pub(crate) trait StepSource {
     /// The step that is on the ground now.
@@ -59,6 +62,10 @@ pub(crate) trait StepSource {
 
     /// Goes on to the next step.
     fn advance(&mut self, ask: &Ask);
+
+    /// Puts the current step on the ground anew, again and again, with the factors on the legs' reach that `next` makes of where it
+    /// lies; the walk goes on from the speed that this gives. The first step of all stays as it is.
+    fn stretch(&mut self, next: &mut Stretches<'_>);
 }
 
 /// The kinds of models that walk.

@@ -8,7 +8,7 @@ use crate::plan::{Manner, Planner, StepShape};
 use crate::space::{Blend, StyleSpace};
 use crate::stage::Stage;
 use crate::standing::Amplitude;
-use crate::steps::{Ask, StepSource};
+use crate::steps::{Ask, StepSource, Stretches};
 use crate::strafe::pelvis_turn;
 use crate::walker::{Request, Walker};
 use footfall_core::{Side, Skeleton, StepPosition};
@@ -223,6 +223,11 @@ impl StepSource for StyledSteps {
         } = self;
         self.space
             .at_bench(|bench| walker.advance(planner, &worn.blend, draw, request, bench));
+    }
+
+    fn stretch(&mut self, next: &mut Stretches<'_>) {
+        let walker = &mut self.walker;
+        self.velocity_mps *= self.space.at_bench(|bench| walker.stretch(next, bench));
     }
 }
 

@@ -1,19 +1,20 @@
 //! Steps of a switching model: two linear systems take turns, each from a state in which a recorded segment began (*Gait as a
 //! switching dynamical system*, section 4).
 
+mod source;
 mod system;
 
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::generator::{GeneratorConfig, STANDING_SPEED_MPS};
+use crate::generator::GeneratorConfig;
 use crate::pace::tempo_and_stride;
 use crate::plan::{MAX_STEP_SECS, StepShape};
 use crate::planting::PlanterState;
 use crate::raw::RawFrame;
 use crate::stage::{Placing, Posture, Stage};
 use crate::standing::{Amplitude, standing_posture};
-use crate::steps::{Ask, StepSource};
-use crate::strafe::{overstep, pelvis_turn};
+use crate::steps::{Ask, StepSource as _};
+use crate::strafe::overstep;
 use footfall_core::{Side, Skeleton};
 use footfall_model::{DynamicsModel, FEATURE_COUNT, SEGMENT_SLACK};
 use glam::{Vec2, Vec3};
@@ -261,6 +262,10 @@ impl SwitchingSteps {
     /// Works the step of the [`origin`](SwitchingOrigin) out and puts it on the ground.
     fn realise(&mut self) {
         self.work_out();
+        self.put_on_ground();
+    }
+
+    fn put_on_ground(&mut self) {
         let rows = self.features.iter();
         let rows = rows.map(|row| &row.as_flattened()[..FEATURE_COUNT]);
         self.stage.put(
@@ -352,40 +357,6 @@ impl SwitchingSteps {
         let frames_per_row = length as f32 / frames as f32;
         self.pose
             .write(&self.weights, frames_per_row, &mut self.features);
-    }
-}
-
-impl StepSource for SwitchingSteps {
-    fn shape(&self) -> &StepShape {
-        &self.shape
-    }
-
-    fn stage(&self) -> &Stage {
-        &self.stage
-    }
-
-    fn facing(&self) -> [f32; 2] {
-        self.origin.facing
-    }
-
-    fn stand(&mut self, detail: Detail) -> bool {
-        let first = self.origin.leading;
-        let speed = f64::from(STANDING_SPEED_MPS);
-        self.begin(first, Amplitude::STAND, speed, detail);
-        self.velocity_mps = Vec2::ZERO;
-        true
-    }
-
-    fn advance(&mut self, ask: &Ask) {
-        self.velocity_mps = ask.velocity_after(self.velocity_mps);
-        self.take_over(self.origin.leading.other());
-        self.set_pace();
-        self.origin.turn_rate = ask.turn_rate;
-        self.origin.amplitude = ask.amplitude;
-        self.origin.detail = ask.detail;
-        let facing = self.facing() + pelvis_turn(self.velocity_mps);
-        self.origin.facing = [self.origin.facing[1], facing];
-        self.realise();
     }
 }
 

@@ -6,6 +6,7 @@ use crate::planting::PlanterState;
 use crate::space::Blend;
 use crate::stage::{Placing, Stage};
 use crate::standing::Amplitude;
+use crate::steps::Stretches;
 use crate::workbench::Workbench;
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::{FEATURE_COUNT, STATES_PER_STEP};
@@ -151,6 +152,31 @@ impl Walker {
         self.stale = false;
         self.realise(planner, if same { WINDOW - 1 } else { 1 });
         self.solve_tied(bench);
+    }
+
+    /// Puts the current step on the ground anew with the factors on the legs' reach that `next` gives, and returns what they make
+    /// together. The first step came from nowhere and stays.
+    pub(crate) fn stretch(&mut self, next: &mut Stretches<'_>, bench: &mut Workbench) -> f32 {
+        let mut whole = 1.0;
+        let Some(feet) = self.origin.planter else {
+            return whole;
+        };
+        let mut solved = false;
+        while let Some(share) = next(&self.plans[1].shape, &self.stage) {
+            whole *= share;
+            let stride = self.origin.request.manner.pace.stride * f64::from(share);
+            self.origin.request.manner.pace.stride = stride;
+            self.plans[1].shape.stride = stride;
+            self.stage.resume(feet);
+            if solved {
+                self.put_on_ground(1, TIE - 1, bench);
+            } else {
+                // Nobody kept what it was made of.
+                self.solve_tied(bench);
+                solved = true;
+            }
+        }
+        whole
     }
 
     /// Where the step after the current one will come from when it is asked to be this.

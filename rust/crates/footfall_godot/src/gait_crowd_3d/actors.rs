@@ -8,7 +8,8 @@ use crate::foot_placement_3d::FootPlacement3D;
 use crate::gait_generator_3d::GaitGenerator3D;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::rotation::from_heading;
-use footfall_synth::{CrowdPose, Footstep};
+use footfall_ik::placement::{Frame, Landing};
+use footfall_synth::CrowdPose;
 use godot::classes::node::ProcessMode;
 use godot::classes::{BaseMaterial3D, MeshInstance3D, Node, Node3D, PackedScene, Skeleton3D};
 use godot::prelude::*;
@@ -148,17 +149,19 @@ impl Actors {
             actor.binding.write_joints(&mut actor.skeleton, &pose);
             if let Some(placement) = &mut actor.placement {
                 // The scene is scaled, and a large body takes longer for its steps.
-                let next = walker.next_footstep().map(|(footstep, secs)| {
-                    let position = footstep.position * agent.size;
-                    (
-                        Footstep {
-                            position,
-                            ..footstep
-                        },
-                        secs * agent.size.sqrt(),
-                    )
+                let landings = walker.landings().map(|landing| {
+                    let landing = landing?;
+                    let flat = Frame {
+                        position: landing.flat.position * agent.size,
+                        ..landing.flat
+                    };
+                    Some(Landing {
+                        flat,
+                        secs: landing.secs * agent.size.sqrt(),
+                        hips: landing.hips * agent.size,
+                        ankles: landing.ankles.map(|ankle| ankle * agent.size),
+                    })
                 });
-                let landings = Footstep::landings(next);
                 let contacts = walker.feet_in_contact();
                 placement.bind_mut().feed(contacts, landings);
             }

@@ -5,7 +5,6 @@ use super::reign::Reign;
 use crate::character;
 use crate::skeleton_binding::LayerWeights;
 use footfall_ik::placement::Landing;
-use footfall_synth::Footstep;
 use godot::classes::{BoneMap, Skeleton3D};
 use godot::prelude::*;
 
@@ -41,8 +40,15 @@ impl GaitGenerator3D {
             .session
             .as_ref()
             .filter(|_| self.reign == Reign::Walking)?;
-        let landings = Footstep::landings(session.generator.next_footstep());
+        let landings = session.generator.landings();
         Some((session.generator.feet_in_contact(), landings))
+    }
+
+    /// Has the step that has just begun land at this share of its way.
+    pub(crate) fn stretch_step(&mut self, share: f32) {
+        if let Some(session) = &mut self.session {
+            session.generator.stretch_step(share);
+        }
     }
 
     /// Walks at this share of the speed from the next step on.

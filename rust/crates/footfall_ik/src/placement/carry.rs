@@ -1,55 +1,184 @@
 //! Where the pelvis goes: as high as the ground under it has it, and no higher than the legs reach.
 
 use crate::leg::{FootTarget, reach_height};
-use crate::placement::foot::{Foot, Mode};
+use crate::placement::correction::Correction;
+use crate::placement::foot::{Animated, Foot, MAX_PITCH, Mode};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::plane_height;
+use crate::placement::terrain::Terrain;
 use crate::placement::{FootPlacer, PlacementInput};
 use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Pose, Side};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 /// Legs are stretched to this share of their length for the pelvis' sake, unless the animation stretches them more.
 const EASY_EXTENSION: f32 = 0.98;
+/// A standing foot raises its heel rather than have its leg stretched to more, unless the animation stretches it more.
+const FIRM_EXTENSION: f32 = 0.995;
 /// Legs are never stretched more.
 const MAX_EXTENSION: f32 = 0.999;
-/// From so long before a foot lands until so long before, the pelvis comes to where the leg can reach the ground, seconds: it takes
-/// a while to get there.
-const LANDING_SECS: [f32; 2] = [0.35, 0.1];
+/// A step takes so long, about, and its rise is reckoned over this time at least, seconds.
+const STEP_SECS: f32 = 0.6;
+const LEAST_STEP_SECS: f32 = 0.2;
 /// A foot of which nobody knows when it lands is about to when it is lower than this, metres.
 const SOON_M: f32 = 0.15;
-/// A foot that lands has its ankle so much higher than a flat one, for its toes are up, metres.
-const LANDING_ANKLE_M: f32 = 0.015;
 /// Soles that are farther apart than this tell the grade, metres, which follows within this time, seconds.
 const GRADE_RUN_M: f32 = 0.2;
 const GRADE_SECS: f32 = 0.3;
 
+/// One frame of the animation, and how long it lasts.
+pub(super) struct Moment<'a> {
+    pub(super) dt_secs: f32,
+    pub(super) input: &'a PlacementInput,
+    pub(super) animated: &'a [Animated; 2],
+}
+
+/// Where the pelvis has to be when the next foot lands.
+struct Arrival {
+    /// Above the animation's floor, metres, and how fast it rises then, m/s.
+    offset_m: f32,
+    rise_mps: f32,
+    secs: f32,
+}
+
 impl FootPlacer {
-    /// Moves the pelvis up or down so that both legs reach the ground, now and at the next landing.
+    /// Moves the pelvis up or down so that both legs reach the ground, now and at the next landing, and raises the heels of standing
+    /// feet whose legs fall short.
     pub(super) fn carry_pelvis(
         &mut self,
-        dt_secs: f32,
-        input: &PlacementInput,
+        moment: &Moment<'_>,
         soles: &[Frame; 2],
+        terrain: &mut impl Terrain,
         pose: &mut Pose,
-        targets: &[FootTarget; 2],
+        targets: &mut [FootTarget; 2],
     ) {
-        let floor = input.world_from_floor;
+        let (dt_secs, animated) = (moment.dt_secs, moment.animated);
+        let floor = moment.input.world_from_floor;
         let floor_height = floor.position.dot(floor.up());
         let hips = pose.root_position;
         let hips_rotation = pose.rotations[Joint::Hips.index()];
-        let grounded = |foot: &Foot| foot.mode != Mode::Free && foot.over_ground;
-        let mut offset = 0.0;
-        if self.feet.iter().all(grounded) {
-            let planes = self
-                .feet
-                .map(|foot| plane_height(foot.sole.position, foot.sole.up(), hips));
-            offset = 0.5 * (planes[0] + planes[1]);
+        self.ground_m = self.ground_under(hips);
+        let bound = self.config.max_pelvis_m;
+        let arrival = self.arrival(moment, terrain, hips_rotation);
+        // Of an animation that tells nothing it is not known that the heel is about to rise anyway.
+        let firm = if arrival.is_some() {
+            FIRM_EXTENSION
+        } else {
+            MAX_EXTENSION
+        };
+        let rise = self.carried(soles).dot(floor.up());
+        self.pelvis.carry(rise);
+        let known = self.memory.is_some();
+        if let Some(arrival) = arrival.filter(|_| known) {
+            let target = floor_height + arrival.offset_m.clamp(-bound, bound);
+            self.pelvis
+                .arrive(target, arrival.rise_mps, arrival.secs, dt_secs);
+        } else {
+            let offset = self.easy_offset(hips, hips_rotation, pose, targets);
+            let target = floor_height + offset.clamp(-bound, bound);
+            if known {
+                let half_life = self.config.pelvis_half_life_secs;
+                self.pelvis.settle(target, half_life, dt_secs);
+            } else {
+                self.pelvis.jump(target);
+            }
         }
-        self.ground_m = offset;
-        let carried = self.carried(soles);
-        let velocity = self.level_velocity(dt_secs, &floor, carried);
-        let mut hard_limit = f32::MAX;
+        let limit = self.hard_limit(animated, hips, hips_rotation);
+        self.pelvis.hold_below(floor_height + limit.max(-bound));
+        let hips = hips + Vec3::Y * (self.pelvis.value - floor_height);
+        for (index, target) in targets.iter_mut().enumerate() {
+            let stretch = self.stretch(index, animated, pose.root_position, hips_rotation);
+            let hip = hips + hips_rotation * self.hips_from_hip[index];
+            let reach = stretch.clamp(firm, MAX_EXTENSION) * self.leg_lengths[index];
+            let rocker = &self.rockers[index];
+            self.feet[index].rise(rocker, &animated[index], hip, reach, target);
+        }
+        pose.root_position = hips;
+    }
+
+    /// Height of the ground under a place between the soles, above the animation's floor; 0 where there is none.
+    fn ground_under(&self, place: Vec3) -> f32 {
+        if !self.feet.iter().all(grounded) {
+            return 0.0;
+        }
+        let plane = |foot: &Foot| plane_height(foot.sole.position, foot.sole.up(), place);
+        0.5 * (plane(&self.feet[0]) + plane(&self.feet[1]))
+    }
+
+    /// How much of its length a leg of the animation takes.
+    fn stretch(&self, index: usize, animated: &[Animated; 2], hips: Vec3, rotation: Quat) -> f32 {
+        let hip = hips + rotation * self.hips_from_hip[index];
+        animated[index].foot.ankle.distance(hip) / self.leg_lengths[index]
+    }
+
+    /// Where the pelvis has to be at the next landing, for a walk that tells of it.
+    fn arrival(
+        &self,
+        moment: &Moment<'_>,
+        terrain: &mut impl Terrain,
+        hips_rotation: Quat,
+    ) -> Option<Arrival> {
+        let (input, animated) = (moment.input, moment.animated);
+        let floor = input.world_from_floor;
+        let index = input.landings.iter().position(Option::is_some)?;
+        let landing = input.landings[index]?;
+        let plan = self.feet[index].plan?;
+        let sole = floor.local(&plan.foothold.world_from_sole(terrain)?);
+        let other = 1 - index;
+        let standing = &self.feet[other];
+        if standing.mode != Mode::Locked {
+            return None;
+        }
+        let plane = |sole: &Frame| plane_height(sole.position, sole.up(), landing.hips);
+        let mut offset = 0.5 * (plane(&sole) + plane(&standing.sole));
+        let corrections = [
+            (
+                index,
+                landing.flat,
+                Correction::between(&landing.flat, &sole),
+            ),
+            (other, animated[other].flat, standing.correction),
+        ];
+        for (leg, flat, correction) in corrections {
+            let ankle = landing.ankles[leg];
+            let hip = hips_rotation * self.hips_from_hip[leg];
+            let limit = |ankle: Vec3| {
+                let length = self.leg_lengths[leg];
+                reach_height(landing.hips, hip, ankle, length, EASY_EXTENSION)
+                    .map_or(0.0, |height| height - landing.hips.y)
+            };
+            let real = flat.position + correction.shift + correction.tilt * (ankle - flat.position);
+            // What the leg lacks on the animation's own floor is the animation's affair.
+            offset = offset.min(limit(real) - limit(ankle).min(0.0));
+        }
+        let floor_height = floor.position.dot(floor.up());
+        let rise = sole.position.y - standing.sole.position.y;
+        let secs = landing.secs.max(LEAST_STEP_SECS);
+        // It passes a landing at the pace of the way there and of that to come, and turns where they differ.
+        let coming = 0.5 * (rise + plan.next_rise_m) / STEP_SECS;
+        let going = (floor_height + offset - self.pelvis.value) / secs;
+        let rise_mps = if coming * going > 0.0 {
+            coming.signum() * coming.abs().min(going.abs())
+        } else {
+            0.0
+        };
+        Some(Arrival {
+            offset_m: offset,
+            rise_mps,
+            secs: landing.secs,
+        })
+    }
+
+    /// How high the pelvis can be above the animation's floor with legs that are not stretched, over ground of which nobody knows
+    /// where the next foot lands.
+    fn easy_offset(
+        &self,
+        hips: Vec3,
+        hips_rotation: Quat,
+        pose: &Pose,
+        targets: &[FootTarget; 2],
+    ) -> f32 {
+        let mut offset = self.ground_m;
         for (index, foot) in self.feet.iter().enumerate() {
             if !grounded(foot) {
                 continue;
@@ -60,44 +189,47 @@ impl FootPlacer {
                 reach_height(hips, hip, ankle, length, extension)
                     .map_or(0.0, |height| height - hips.y)
             };
+            let ankle = targets[index].ankle;
             if foot.mode == Mode::Locked {
                 let animated = self.foot_of(Side::BOTH[index], pose).ankle;
                 let stretch = (animated - hips - hip).length() / length;
-                let ankle = targets[index].ankle;
                 let easy = stretch.clamp(EASY_EXTENSION, MAX_EXTENSION);
                 offset = offset.min(limit(ankle, easy));
-                hard_limit = hard_limit.min(limit(ankle, MAX_EXTENSION));
-            } else if let Some(lands) = foot.lands {
-                // The hips will have come nearer by then.
-                let height = self.rockers[index].ankle_height() + LANDING_ANKLE_M;
-                let above = Vec3::Y * height - velocity * lands.secs;
-                let [real, flat] =
-                    [lands.sole, lands.flat].map(|sole| limit(sole + above, EASY_EXTENSION));
-                // What the leg lacks on the animation's own floor is the animation's affair.
-                let easy = (real - flat.min(0.0)).min(offset);
-                let [from, until] = LANDING_SECS;
-                let share = smooth_step((from - lands.secs) / (from - until));
-                offset += share * (easy - offset);
             } else {
                 // Nobody knows when it will stand: the lower, the sooner.
-                let ankle = targets[index].ankle;
                 let lift = ankle.y - foot.sole.position.y - self.rockers[index].ankle_height();
                 let easy = limit(ankle, EASY_EXTENSION).min(offset);
                 offset += smooth_step(1.0 - lift / SOON_M) * (easy - offset);
             }
         }
-        let bound = self.config.max_pelvis_m;
-        let target = floor_height + offset.clamp(-bound, bound);
-        if self.memory.is_some() {
-            self.pelvis.value += carried.dot(floor.up());
-            let half_life = self.config.pelvis_half_life_secs;
-            self.pelvis.follow(target, half_life, dt_secs);
-        } else {
-            self.pelvis.jump(target);
+        offset
+    }
+
+    /// The highest above the animation's floor that the pelvis can be for every standing foot to stay where it is.
+    fn hard_limit(&self, animated: &[Animated; 2], hips: Vec3, hips_rotation: Quat) -> f32 {
+        let mut lowest = f32::MAX;
+        for (index, foot) in self.feet.iter().enumerate() {
+            if foot.mode == Mode::Locked {
+                let hip = hips_rotation * self.hips_from_hip[index];
+                let limit = |pitch: f32| {
+                    let ankle = foot.ankle_at(&self.rockers[index], pitch);
+                    let length = self.leg_lengths[index];
+                    reach_height(hips, hip, ankle, length, MAX_EXTENSION)
+                };
+                // The heel of a foot behind the body can rise; one ahead would only go farther away.
+                let pitch = animated[index].pitch;
+                let limit = if pitch < 0.0 {
+                    limit(pitch)
+                } else {
+                    let risen = limit(MAX_PITCH.max(pitch));
+                    limit(pitch).map_or(risen, |flat| {
+                        risen.map(|risen| risen.max(flat)).or(Some(flat))
+                    })
+                };
+                lowest = lowest.min(limit.map_or(0.0, |height| height - hips.y));
+            }
         }
-        self.pelvis
-            .hold_below(floor_height + hard_limit.max(-bound));
-        pose.root_position.y += self.pelvis.value - floor_height;
+        lowest
     }
 
     /// Follows the grade between the soles while they are apart.
@@ -105,7 +237,7 @@ impl FootPlacer {
         // A foot on its way is where it will land.
         let [left, right] = self
             .feet
-            .map(|foot| foot.lands.map_or(foot.sole.position, |lands| lands.sole));
+            .map(|foot| foot.lands.unwrap_or(foot.sole.position));
         let way = left - right;
         let grounded = self.feet.iter().all(|foot| foot.over_ground);
         let grade = if !grounded {
@@ -116,15 +248,6 @@ impl FootPlacer {
             return;
         };
         self.grade += (grade - self.grade) * (1.0 - (-dt_secs / GRADE_SECS).exp());
-    }
-
-    /// How fast the animation's floor travels over what supports the feet, in its own axes, without its rise, m/s.
-    fn level_velocity(&self, dt_secs: f32, floor: &Frame, carried: Vec3) -> Vec3 {
-        let Some(memory) = self.memory.as_ref().filter(|_| dt_secs > 0.0) else {
-            return Vec3::ZERO;
-        };
-        let travel = floor.position - memory.world_from_floor.position - carried;
-        floor.rotation.conjugate() * travel * Vec3::new(1.0, 0.0, 1.0) / dt_secs
     }
 
     /// How far the supports of locked feet moved since the last frame.
@@ -142,4 +265,9 @@ impl FootPlacer {
         }
         sum / count.max(1.0)
     }
+}
+
+/// Whether there is ground under a foot that looks for it.
+fn grounded(foot: &Foot) -> bool {
+    foot.mode != Mode::Free && foot.over_ground
 }

@@ -19,6 +19,10 @@ pub(super) const FOLLOW_SECS: f32 = 0.08;
 /// A foot that slid too far from its lock is put anew, for at least so long, seconds.
 pub(super) const REPLANT_SECS: f32 = 0.22;
 
+/// The heel of a standing foot is raised to this pitch at most, for its leg to reach, radians, which is found in so many trials.
+pub(super) const MAX_PITCH: f32 = 0.95;
+const PITCH_TRIALS: usize = 12;
+
 /// Where the animation will put a foot, relative to the animation's floor now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landing {
@@ -26,6 +30,10 @@ pub struct Landing {
     pub flat: Frame,
     /// Time until it lands, seconds.
     pub secs: f32,
+    /// Where the hips and both ankles will be then, metres.
+    pub hips: Vec3,
+    /// The left ankle and the right.
+    pub ankles: [Vec3; 2],
 }
 
 /// One foot of the animation, relative to its floor.
@@ -48,16 +56,6 @@ pub(super) enum Mode {
     Locked,
 }
 
-/// The end of a swing, relative to the floor of the animation.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lands {
-    /// Where the animation puts it.
-    pub(super) flat: Vec3,
-    /// The ground under the ankle of the flat foot.
-    pub(super) sole: Vec3,
-    pub(super) secs: f32,
-}
-
 /// What goes from frame to frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Foot {
@@ -67,14 +65,22 @@ pub(super) struct Foot {
     pub(super) over_ground: bool,
     /// Where the sole is, or would be if it were put down, relative to the floor of the animation.
     pub(super) sole: Frame,
-    /// Where and when it will stand next, as far as that is known.
-    pub(super) lands: Option<Lands>,
+    /// Where it will stand next, relative to the floor of the animation, as far as that is known.
+    pub(super) lands: Option<Vec3>,
     pub(super) plan: Option<Plan>,
+    /// Where in the world the animation's landing was when no ground was found for it.
+    pub(super) missed_at: Option<Vec3>,
     /// What was on the way to a foothold that was given up in this frame.
     pub(super) dropped: Option<(Correction, f32)>,
+    /// Where in the world a swinging ankle was in the last frame.
+    pub(super) passed: Option<Vec3>,
     /// Where in the world the animation had a foot that follows the ground.
     pub(super) followed: Option<Vec3>,
+    /// What carried it when it last changed its mode, and the height in the world of the animation's floor then.
     pub(super) lifted_with: Correction,
+    pub(super) lifted_from_m: f32,
+    /// The same height in the last frame.
+    pub(super) floor_m: f32,
     pub(super) correction: Correction,
     pub(super) locked_with: Correction,
     pub(super) swing_secs: f32,
@@ -97,6 +103,12 @@ pub(super) struct Scene<'a, T> {
 }
 
 impl<T: Terrain> Scene<'_, T> {
+    /// Height in the world of the animation's floor, metres.
+    pub(super) fn floor_m(&self) -> f32 {
+        let floor = self.world_from_floor;
+        floor.position.dot(floor.up())
+    }
+
     pub(super) fn search(&self) -> Search {
         Search {
             up: self.world_from_floor.up(),
@@ -131,9 +143,13 @@ impl Default for Foot {
             sole: Frame::IDENTITY,
             lands: None,
             plan: None,
+            missed_at: None,
             dropped: None,
+            passed: None,
             followed: None,
             lifted_with: Correction::NONE,
+            lifted_from_m: 0.0,
+            floor_m: 0.0,
             correction: Correction::NONE,
             locked_with: Correction::NONE,
             swing_secs: 0.0,
@@ -156,6 +172,9 @@ impl Foot {
         airborne: bool,
     ) -> FootTarget {
         self.replant_secs = (self.replant_secs - scene.dt_secs).max(0.0);
+        if !self.begun {
+            self.floor_m = scene.floor_m();
+        }
         self.swing_secs += scene.dt_secs;
         let was = self.mode;
         if was == Mode::Locked && (airborne || !animated.contact) {
@@ -169,6 +188,7 @@ impl Foot {
         let mode = self.mode;
         if airborne {
             if mode != Mode::Free {
+                self.plan = None;
                 self.let_go(Mode::Free);
             }
         } else if animated.contact && mode != Mode::Locked && self.replant_secs == 0.0 {
@@ -188,6 +208,7 @@ impl Foot {
             self.residual = Residual::of(&was, &target);
         }
         self.begun = true;
+        self.floor_m = scene.floor_m();
         let out = self.residual.apply(&target);
         if self.mode == Mode::Locked {
             let unlocked = self.correction.apply(&animated.flat, &animated.foot);
@@ -214,12 +235,14 @@ impl Foot {
         }
     }
 
+    /// Goes over to a mode; where it is to land next stays.
     fn let_go(&mut self, mode: Mode) {
         self.mode = mode;
         self.hold = None;
-        self.plan = None;
         self.lands = None;
+        self.lifted_from_m = self.floor_m;
         self.followed = None;
+        self.passed = None;
         self.lifted_with = self.correction;
         self.swing_secs = 0.0;
         self.guard.jump(0.0);
@@ -232,7 +255,9 @@ impl Foot {
         rocker: &RockerFoot,
         animated: &Animated,
     ) {
-        let planned = self.plan.map(|plan| plan.foothold);
+        // One that is planned already for the step to come is not for this contact.
+        let planned = self.plan.filter(|_| animated.landing.is_none());
+        let planned = planned.map(|plan| plan.foothold);
         let hold = planned.or_else(|| {
             // Where the foot is now and not where the animation has it, so that it need not slide.
             let mut flat = animated.flat;
@@ -249,6 +274,7 @@ impl Foot {
         let Some(sole) = scene.sole(&hold) else {
             return;
         };
+        self.plan = None;
         self.let_go(Mode::Locked);
         self.hold = Some(hold);
         self.locked_with = Correction::between(&animated.flat, &sole);
@@ -278,12 +304,59 @@ impl Foot {
         self.correction = correction;
         self.sole = sole;
         self.over_ground = true;
+        Some(self.standing(rocker, animated.pitch))
+    }
+
+    /// A foot on its sole at this pitch.
+    fn standing(&self, rocker: &RockerFoot, pitch: f32) -> FootTarget {
         let plant = Plant {
             flat_ankle: Vec3::Y * rocker.ankle_height(),
             heading: 0.0,
         };
-        let on_sole = rocker.stand_level(&plant, Quat::IDENTITY, animated.pitch);
-        Some(world_target(&sole, &on_sole))
+        let on_sole = rocker.stand_level(&plant, Quat::IDENTITY, self.on_ball(pitch));
+        world_target(&self.sole, &on_sole)
+    }
+
+    /// The pitch on its foothold of a foot at this pitch: nobody lands on a heel under which there is nothing.
+    fn on_ball(&self, pitch: f32) -> f32 {
+        let hangs = self.hold.is_some_and(|hold| hold.heel_hangs);
+        if hangs { pitch.max(0.0) } else { pitch }
+    }
+
+    /// A locked foot with its heel so much higher that the leg reaches from the hip; at most [`MAX_PITCH`].
+    pub(super) fn rise(
+        &mut self,
+        rocker: &RockerFoot,
+        animated: &Animated,
+        hip: Vec3,
+        reach: f32,
+        target: &mut FootTarget,
+    ) {
+        let lacks = |foot: &FootTarget| foot.ankle.distance(hip) - reach;
+        if self.mode != Mode::Locked || animated.pitch < 0.0 || lacks(target) <= 0.0 {
+            return;
+        }
+        let [mut low, mut high] = [animated.pitch, MAX_PITCH.max(animated.pitch)];
+        for _ in 0..PITCH_TRIALS {
+            let middle = 0.5 * (low + high);
+            let foot = self.residual.apply(&self.standing(rocker, middle));
+            if lacks(&foot) > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let risen = self.residual.apply(&self.standing(rocker, high));
+        if lacks(&risen) < lacks(target) {
+            *target = risen;
+            let unlocked = self.correction.apply(&animated.flat, &animated.foot);
+            self.at_lock = Residual::of(target, &unlocked);
+        }
+    }
+
+    /// The ankle of a locked foot at this pitch.
+    pub(super) fn ankle_at(&self, rocker: &RockerFoot, pitch: f32) -> Vec3 {
+        self.residual.apply(&self.standing(rocker, pitch)).ankle
     }
 
     /// In the air a foot is where the animation has it.

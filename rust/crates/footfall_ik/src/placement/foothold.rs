@@ -16,6 +16,9 @@ const CLEAR_M: f32 = 0.05;
 /// Ground that is higher by less is stepped over.
 const HIGHER_M: f32 = 0.03;
 
+/// A sole follows heel and toes rather than the ground under its ball by so much at most, radians.
+const MAX_BRIDGE: f32 = 0.3;
+
 /// A foot that would stand across an edge is put so much farther ahead or back, in the order of trial, metres.
 const SHIFTS_M: [f32; 17] = [
     0.0, 0.02, -0.02, 0.04, -0.04, 0.06, -0.06, 0.08, -0.08, 0.1, -0.1, 0.12, -0.12, 0.14, -0.14,
@@ -25,6 +28,8 @@ const SHIFTS_M: [f32; 17] = [
 /// A place for a sole, on something that may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Foothold {
+    /// Whether the heel sticks out over an edge.
+    pub(crate) heel_hangs: bool,
     support: SupportId,
     support_from_sole: Frame,
 }
@@ -41,22 +46,35 @@ impl Foothold {
     pub(crate) fn support(&self) -> SupportId {
         self.support
     }
+}
 
-    fn new(
-        world_from_sole: &Frame,
-        support: SupportId,
-        terrain: &mut impl Terrain,
-    ) -> Option<Self> {
-        Some(Self {
-            support,
-            support_from_sole: terrain.support(support)?.local(world_from_sole),
+/// What a place costs: a metre of shift, higher ground close by, and a heel or toes that stick out over an edge. A sole that is borne
+/// by less costs more than any of them.
+pub(crate) const SHIFT_COST: f32 = 1.0;
+const TIGHT_COST: f32 = 0.08;
+const OVERHANG_COST: f32 = 0.3;
+
+/// A sole on the ground.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lie {
+    /// In the world.
+    pub(crate) sole: Frame,
+    support: SupportId,
+    /// How far from the ground its farthest point is, and its ball with the nearer end, metres.
+    gap: f32,
+    borne_gap: f32,
+    heel_hangs: bool,
+}
+
+impl Lie {
+    pub(crate) fn foothold(&self, terrain: &mut impl Terrain) -> Option<Foothold> {
+        Some(Foothold {
+            heel_hangs: self.heel_hangs,
+            support: self.support,
+            support_from_sole: terrain.support(self.support)?.local(&self.sole),
         })
     }
 }
-
-/// What a place costs: a metre of shift, and higher ground close by. A sole across an edge costs more than either.
-const SHIFT_COST: f32 = 1.0;
-const TIGHT_COST: f32 = 0.08;
 
 /// What limits a foothold.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +110,7 @@ impl Search {
         } else {
             &SHIFTS_M[..1]
         };
-        let mut best: Option<(f32, Frame, SupportId)> = None;
+        let mut best: Option<(f32, Lie)> = None;
         for shift in shifts {
             // No farther one is better.
             if best.is_some_and(|(least, ..)| least <= SHIFT_COST * shift.abs()) {
@@ -102,20 +120,35 @@ impl Search {
                 position: world_from_flat.position + forward * *shift,
                 ..*world_from_flat
             };
-            let Some((sole, support, gap)) = self.lay(terrain, &flat, foot) else {
+            let Some((lie, cost)) = self.judge(terrain, &flat, foot) else {
                 continue;
             };
-            let crossing = if gap > FLAT_M { 1.0 + gap } else { 0.0 };
-            let mut cost = SHIFT_COST * shift.abs() + crossing;
-            if crossing == 0.0 && self.is_tight(terrain, &sole, foot) {
-                cost += TIGHT_COST;
-            }
+            let cost = cost + SHIFT_COST * shift.abs();
             if best.is_none_or(|(least, ..)| cost < least) {
-                best = Some((cost, sole, support));
+                best = Some((cost, lie));
             }
         }
-        let (_, sole, support) = best?;
-        Foothold::new(&sole, support, terrain)
+        best?.1.foothold(terrain)
+    }
+
+    /// How a sole lies in this place and what that costs, beyond the way to it; `None` where there is no ground.
+    pub(crate) fn judge(
+        &self,
+        terrain: &mut impl Terrain,
+        flat: &Frame,
+        foot: &RockerFoot,
+    ) -> Option<(Lie, f32)> {
+        let lie = self.lay(terrain, flat, foot)?;
+        let cost = if lie.borne_gap > FLAT_M {
+            1.0 + lie.gap
+        } else if lie.gap > FLAT_M {
+            OVERHANG_COST
+        } else if self.is_tight(terrain, &lie.sole, foot) {
+            TIGHT_COST
+        } else {
+            0.0
+        };
+        Some((lie, cost))
     }
 
     /// Whether higher ground stands close behind the heel or before the toes of a sole.
@@ -129,13 +162,8 @@ impl Search {
             })
     }
 
-    /// A sole laid on the ground here, what it lies on, and how far from the ground its farthest point is.
-    fn lay(
-        &self,
-        terrain: &mut impl Terrain,
-        flat: &Frame,
-        foot: &RockerFoot,
-    ) -> Option<(Frame, SupportId, f32)> {
+    /// A sole laid on the ground here.
+    fn lay(&self, terrain: &mut impl Terrain, flat: &Frame, foot: &RockerFoot) -> Option<Lie> {
         let [heel, ball, tip] = foot.sole_points();
         let margin = Vec3::Z * MARGIN_M;
         let [heel, ball, tip] =
@@ -155,27 +183,32 @@ impl Search {
                 .flatten()
                 .map(|ground| (ground.position - ball.position).dot(normal))
                 .fold(f32::NEG_INFINITY, f32::max);
-            let gap = [heel, Some(ball), tip]
-                .into_iter()
-                .map(|ground| {
-                    ground.map_or(self.above_m, |ground| {
-                        rise - (ground.position - ball.position).dot(normal)
-                    })
+            let [heel_gap, ball_gap, tip_gap] = [heel, Some(ball), tip].map(|ground| {
+                ground.map_or(self.above_m, |ground| {
+                    rise - (ground.position - ball.position).dot(normal)
                 })
-                .fold(0.0, f32::max);
+            });
             let on_plane = ball.position + normal * rise - flat.position;
             let height = on_plane.dot(normal) / self.up.dot(normal);
             let sole = Frame {
                 position: flat.position + self.up * height,
                 rotation,
             };
-            (sole, ball.support, gap)
+            Lie {
+                sole,
+                support: ball.support,
+                gap: heel_gap.max(ball_gap).max(tip_gap),
+                borne_gap: ball_gap.max(heel_gap.min(tip_gap)),
+                heel_hangs: heel_gap > FLAT_M,
+            }
         };
         let by_normal = on_plane(across);
         // Over a crest or through a dip the line from heel to toes lies better than the normal under the ball.
         let by_line =
             on_plane((across - along_ground * across.dot(along_ground)).normalize_or(across));
-        Some(if by_normal.2 <= by_line.2.max(FLAT_M) {
+        // Nor does a sole lie from edge to edge of a staircase.
+        let bridges = by_line.sole.up().angle_between(self.limited(across)) > MAX_BRIDGE;
+        Some(if bridges || by_normal.gap <= by_line.gap.max(FLAT_M) {
             by_normal
         } else {
             by_line

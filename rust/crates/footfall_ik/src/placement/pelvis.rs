@@ -28,12 +28,116 @@ impl Follower {
             velocity: 0.0,
         };
     }
+}
+
+/// A height that goes where it is to be without a jerk.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Ride {
+    pub(crate) value: f32,
+    velocity: f32,
+    acceleration: f32,
+    course: Option<Course>,
+}
+
+/// A curve of least jerk from one height, velocity and acceleration to another height and velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Course {
+    from: [f32; 3],
+    to: [f32; 2],
+    secs: f32,
+    passed_secs: f32,
+}
+
+/// A course is kept as long as its end is within so many metres and seconds of what is asked.
+const SAME_M: f32 = 0.004;
+const SAME_SECS: f32 = 0.03;
+/// No course is shorter, seconds.
+const LEAST_SECS: f32 = 0.1;
+/// A height that is followed over courses that never end has half of its way behind it after this share of theirs.
+const HALF_SHARE: f32 = 0.55;
+
+impl Course {
+    /// Height, velocity and acceleration now.
+    fn now(&self) -> [f32; 3] {
+        let ([from, departure, bend], [to, arrival], secs) = (self.from, self.to, self.secs);
+        let s = self.passed_secs / secs;
+        if s >= 1.0 {
+            return [to + arrival * (self.passed_secs - secs), arrival, 0.0];
+        }
+        let (c1, c2) = (departure * secs, 0.5 * bend * secs * secs);
+        let way = to - (from + c1 + c2);
+        let speed = arrival * secs - (c1 + 2.0 * c2);
+        let turn = -2.0 * c2;
+        let c3 = 10.0 * way - 4.0 * speed + 0.5 * turn;
+        let c4 = -15.0 * way + 7.0 * speed - turn;
+        let c5 = 6.0 * way - 3.0 * speed + 0.5 * turn;
+        [
+            from + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5)))),
+            (c1 + s * (2.0 * c2 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / secs,
+            (2.0 * c2 + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (secs * secs),
+        ]
+    }
+}
+
+impl Ride {
+    /// Goes on towards `target`, which it is to pass in `secs` at a velocity.
+    pub(crate) fn arrive(&mut self, target: f32, velocity: f32, secs: f32, dt_secs: f32) {
+        let kept = self.course.filter(|course| {
+            let left = course.secs - course.passed_secs - dt_secs;
+            (course.to[0] - target).abs() < SAME_M && (left - secs).abs() < SAME_SECS
+        });
+        let course = kept.unwrap_or(Course {
+            from: [self.value, self.velocity, self.acceleration],
+            to: [target, velocity],
+            secs: (secs + dt_secs).max(LEAST_SECS),
+            passed_secs: 0.0,
+        });
+        self.go(course, dt_secs);
+        self.course = self.course.filter(|_| dt_secs > 0.0 || kept.is_some());
+    }
+
+    /// Comes closer to `target` for a time; `half_life_secs` is how long half of the way takes, about.
+    pub(crate) fn settle(&mut self, target: f32, half_life_secs: f32, dt_secs: f32) {
+        let course = Course {
+            from: [self.value, self.velocity, self.acceleration],
+            to: [target, 0.0],
+            secs: (half_life_secs / HALF_SHARE).max(1e-3),
+            passed_secs: 0.0,
+        };
+        self.go(course, dt_secs);
+        self.course = None;
+    }
+
+    fn go(&mut self, mut course: Course, dt_secs: f32) {
+        course.passed_secs += dt_secs;
+        [self.value, self.velocity, self.acceleration] = course.now();
+        self.course = Some(course);
+    }
+
+    /// Is at `value` at once, at rest.
+    pub(crate) fn jump(&mut self, value: f32) {
+        *self = Self {
+            value,
+            ..Self::default()
+        };
+    }
+
+    /// Is carried along.
+    pub(crate) fn carry(&mut self, rise_m: f32) {
+        self.value += rise_m;
+        if let Some(course) = &mut self.course {
+            course.from[0] += rise_m;
+            course.to[0] += rise_m;
+        }
+    }
 
     /// Is no higher than `limit`.
     pub(crate) fn hold_below(&mut self, limit: f32) {
         if self.value > limit {
             self.value = limit;
             self.velocity = self.velocity.min(0.0);
+            self.acceleration = 0.0;
+            self.course = None;
         }
     }
 }
@@ -61,6 +165,31 @@ mod tests {
             }
         }
         assert!(follower.value > 0.999);
+    }
+
+    #[test]
+    fn a_ride_arrives_in_time_without_a_jerk_whatever_it_comes_from() {
+        let mut ride = Ride::default();
+        let dt = 1.0 / 60.0;
+        let mut heights = vec![0.0, 0.0];
+        for (target, velocity) in [(0.15, 0.3), (0.3, 0.3), (0.3, 0.0), (0.1, -0.2)] {
+            for frame in 0..30 {
+                let secs = (29 - frame) as f32 * dt;
+                ride.arrive(target, velocity, secs, dt);
+                heights.push(ride.value);
+            }
+            assert!((ride.value - target).abs() < 1e-4, "{}", ride.value);
+            assert!((ride.velocity - velocity).abs() < 1e-3);
+        }
+        for _ in 0..60 {
+            ride.settle(0.2, 0.2, dt);
+            heights.push(ride.value);
+        }
+        assert!((ride.value - 0.2).abs() < 1e-3);
+        for at in heights.windows(3) {
+            let bend = (at[0] - 2.0 * at[1] + at[2]).abs() / (dt * dt);
+            assert!(bend < 8.0, "{bend} m/s²");
+        }
     }
 
     #[test]

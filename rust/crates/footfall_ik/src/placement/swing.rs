@@ -1,8 +1,9 @@
 //! A foot on its way: to a planned foothold, or over ground that nobody planned for.
 
 use crate::leg::FootTarget;
+use crate::placement::aim::{Aim, Step};
 use crate::placement::correction::{Correction, Residual};
-use crate::placement::foot::{Animated, FOLLOW_SECS, Foot, Landing, Lands, REPLANT_SECS, Scene};
+use crate::placement::foot::{Animated, FOLLOW_SECS, Foot, REPLANT_SECS, Scene};
 use crate::placement::foothold::Foothold;
 use crate::placement::frame::Frame;
 use crate::placement::terrain::Terrain;
@@ -11,14 +12,26 @@ use core::f32::consts::PI;
 use footfall_core::ease::smooth_step;
 use glam::{Quat, Vec3};
 
+/// A foot on its way is lifted to so far above what it would touch, metres.
+const GUARD_M: f32 = 0.01;
 /// How long a foot that would pass through something takes for half of its way over it, seconds.
-const GUARD_HALF_LIFE_SECS: f32 = 0.03;
+const GUARD_HALF_LIFE_SECS: f32 = 0.021;
+/// No point of its sole is deeper inside than this, even where the way over it is short, metres.
+const TOUCH_M: f32 = 0.015;
 /// So long before it lands it is no longer held up, seconds: it comes down where it was meant to.
-const COMING_DOWN_SECS: f32 = 0.15;
+const COMING_DOWN_SECS: f32 = 0.05;
+/// So far ahead on its way the ground is looked at, seconds.
+const LOOK_AHEAD_SECS: f32 = 0.06;
+/// A foot that goes down is over its foothold so long before it stands, beginning to hurry so long before, seconds; as one that goes down
+/// counts it from so many metres on.
+const EARLY_SECS: [f32; 2] = [0.25, 0.05];
+const EARLY_FALL_M: f32 = 0.08;
 /// How high it is lifted then, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
+/// A foot that lands where nothing is under its heel is level from so long before on, after so long a turn, seconds.
+const LEVEL_SECS: [f32; 2] = [0.25, 0.02];
 /// Part of the swing in which a foot that goes up, or down, does so: it clears the edge before it, or after it.
-const RISE_SHARE: f32 = 0.6;
+const RISE_SHARE: f32 = 0.5;
 /// A swinging foot keeps this far from ground that it passes over, metres.
 const CLEARANCE_M: f32 = 0.03;
 /// The lift that walkers have over flat ground in the middle of the swing, about, metres.
@@ -28,15 +41,19 @@ const FLAT_WAY_M: f32 = 0.01;
 /// At how many places of its way the ground is looked at.
 const WAY_POINTS: usize = 6;
 /// A planned foothold is kept as long as the animation's landing moved less than this, metres.
-const SAME_LANDING_M: f32 = 0.03;
+const SAME_LANDING_M: f32 = 0.1;
 
 /// A place chosen for the end of a swing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
     pub(super) foothold: Foothold,
-    /// Where the animation would put the foot, as it is seen from the foothold.
-    flat_from_sole: Vec3,
-    lift_m: f32,
+    /// By how much the ground rises from there to the next foothold, about, metres.
+    pub(super) next_rise_m: f32,
+    /// Where the animation would put the foot, as it is seen from the foothold; `None` until it is told again, for it may change its
+    /// step for this foothold's sake.
+    flat_from_sole: Option<Vec3>,
+    /// How much higher than usual it has to be lifted; `None` until it leaves the ground.
+    lift_m: Option<f32>,
 }
 
 impl Foot {
@@ -49,21 +66,18 @@ impl Foot {
     ) -> FootTarget {
         let mut lift = 0.0;
         // In the frame of the contact itself there is nothing more to land.
-        let here = Landing {
-            flat: animated.flat,
-            secs: 0.0,
-        };
-        let landed = (self.plan.is_some() && animated.contact).then_some(here);
-        let planned = landed
-            .or(animated.landing)
-            .and_then(|landing| Some((landing, self.plan(scene, rocker, animated, &landing)?)));
-        if let Some((landing, (toward, height))) = planned {
+        let here = (animated.flat, 0.0);
+        let told = animated.landing.map(|landing| (landing.flat, landing.secs));
+        let ends = told.or_else(|| animated.contact.then_some(here));
+        let planned = ends.and_then(|end| Some((end, self.toward(scene, animated, &end.0)?)));
+        if let Some(((_, secs), (toward, height))) = planned {
             self.over_ground = true;
-            let share = self.swing_secs / (self.swing_secs + landing.secs).max(1e-3);
-            (self.correction, lift) = self.on_way(&toward, height, share);
+            let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
+            let from = self.lifted(scene);
+            (self.correction, lift) = on_way(&from, &toward, height, share);
             if let Some((old_toward, old_height)) = self.dropped.take() {
                 // It turns to another foothold without a jump.
-                let (correction, old_lift) = self.on_way(&old_toward, old_height, share);
+                let (correction, old_lift) = on_way(&from, &old_toward, old_height, share);
                 let mut was = correction.apply(&animated.flat, &animated.foot);
                 was.ankle.y += old_lift;
                 let mut now = self.correction.apply(&animated.flat, &animated.foot);
@@ -71,22 +85,39 @@ impl Foot {
                 self.residual = Residual::of(&self.residual.apply(&was), &now);
             }
         } else {
-            self.plan = None;
+            self.dropped = None;
             self.follow(scene, rocker, animated);
             if self.replant_secs > 0.0 {
                 let share = 1.0 - self.replant_secs / REPLANT_SECS;
                 lift = REPLANT_LIFT_M * (PI * share).sin();
             }
         }
-        let mut target = self.correction.apply(&animated.flat, &animated.foot);
+        let secs_left = planned.map(|((_, secs), _)| secs);
+        if let Some(((flat, secs), (toward, _))) = planned {
+            // A foot that goes down does so where it is to stand: its heel keeps clear of the edge behind it.
+            let fall = self.lifted(scene).shift.y - toward.shift.y;
+            let [from, until] = EARLY_SECS;
+            let early =
+                smooth_step((from - secs) / (from - until)) * smooth_step(fall / EARLY_FALL_M);
+            let left = flat.position - animated.flat.position;
+            self.correction.shift += early * left * Vec3::new(1.0, 0.0, 1.0);
+        }
+        let mut foot = animated.foot;
+        if let Some(((_, secs), _)) = planned
+            && self.plan.is_some_and(|plan| plan.foothold.heel_hangs)
+        {
+            let [from, until] = LEVEL_SECS;
+            let level = smooth_step((from - secs) / (from - until)) * animated.pitch.min(0.0);
+            let roll = rocker.roll(animated.pitch - level) - rocker.roll(animated.pitch);
+            let turn = Quat::from_rotation_x(-level);
+            foot.ankle += animated.flat.rotation * roll;
+            foot.foot = (foot.foot * turn).normalize();
+            foot.toes = (foot.toes * turn).normalize();
+        }
+        let mut target = self.correction.apply(&animated.flat, &foot);
         target.ankle.y += lift;
-        self.lands = planned.map(|(landing, (toward, _))| Lands {
-            flat: landing.flat.position,
-            sole: landing.flat.position + toward.shift,
-            secs: landing.secs,
-        });
-        let secs_left = planned.map(|(landing, _)| landing.secs);
-        self.guard(scene, rocker, secs_left, &mut target);
+        self.lands = planned.map(|((flat, _), (toward, _))| flat.position + toward.shift);
+        self.guard(scene, rocker, animated, secs_left, &mut target);
         self.sole = Frame {
             position: animated.flat.position + self.correction.shift,
             rotation: (self.correction.tilt * animated.flat.rotation).normalize(),
@@ -94,47 +125,73 @@ impl Foot {
         target
     }
 
-    /// The correction on the way to another, and how much the foot is lifted there.
-    fn on_way(&self, toward: &Correction, height: f32, share: f32) -> (Correction, f32) {
-        let rises = toward.shift.y > self.lifted_with.shift.y;
-        let up = smooth_step(rising(share, rises));
-        let correction = self.lifted_with.toward(toward, smooth_step(share), up);
-        (correction, height * (share * (1.0 - share) * 4.0).powi(2))
+    /// What carried the foot when it was lifted, over the floor as it is now.
+    fn lifted<T: Terrain>(&self, scene: &Scene<'_, T>) -> Correction {
+        let mut lifted = self.lifted_with;
+        lifted.shift.y -= scene.floor_m() - self.lifted_from_m;
+        lifted
     }
 
-    /// The correction at the landing and how high the foot has to be lifted before; plans them where they are not yet.
-    fn plan<T: Terrain>(
+    /// The correction at the landing and how high the foot has to be lifted before; `None` where nothing is planned.
+    fn toward<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
-        rocker: &RockerFoot,
         animated: &Animated,
-        landing: &Landing,
+        flat: &Frame,
     ) -> Option<(Correction, f32)> {
-        let floor = scene.world_from_floor;
-        let world_from_flat = floor.child(&landing.flat);
-        if let Some(plan) = self.plan
+        let plan = self.plan?;
+        let sole = scene.sole(&plan.foothold)?;
+        let lift_m = match plan.lift_m {
+            Some(lift_m) => lift_m,
+            None => self.way_lift(scene, animated, &sole),
+        };
+        self.plan = Some(Plan {
+            lift_m: Some(lift_m),
+            ..plan
+        });
+        Some((Correction::between(flat, &sole), lift_m))
+    }
+
+    /// Plans where the foot lands next; what is planned stays as long as the animation's landing does.
+    pub(super) fn plan<T: Terrain>(&mut self, scene: &mut Scene<'_, T>, step: &Step<'_>) {
+        let flat = scene.world_from_floor.child(&step.landing.flat);
+        if let Some(plan) = &mut self.plan
             && let Some(sole) = plan.foothold.world_from_sole(scene.terrain)
         {
-            let way = sole.point(plan.flat_from_sole) - world_from_flat.position;
-            let toward = Correction::between(&landing.flat, &floor.local(&sole));
+            let place = sole.local_point(flat.position);
+            let seen = *plan.flat_from_sole.get_or_insert(place);
             // How high the animation's floor is says nothing about where it lands.
-            if way.reject_from_normalized(floor.up()).length() < SAME_LANDING_M {
-                return Some((toward, plan.lift_m));
+            let way = sole.rotation * (place - seen);
+            if way
+                .reject_from_normalized(scene.world_from_floor.up())
+                .length()
+                < SAME_LANDING_M
+            {
+                return;
             }
-            self.dropped = Some((toward, plan.lift_m));
+            let toward =
+                Correction::between(&step.landing.flat, &scene.world_from_floor.local(&sole));
+            self.dropped = plan.lift_m.map(|lift_m| (toward, lift_m));
         }
-        let foothold = scene
-            .search()
-            .find(scene.terrain, &world_from_flat, rocker)?;
-        let sole = foothold.world_from_sole(scene.terrain)?;
-        let on_floor = floor.local(&sole);
-        let lift_m = self.way_lift(scene, animated, &on_floor);
-        self.plan = Some(Plan {
-            foothold,
-            flat_from_sole: sole.local_point(world_from_flat.position),
-            lift_m,
+        let again = self
+            .missed_at
+            .is_some_and(|place| place.distance(flat.position) < SAME_LANDING_M);
+        if self.plan.is_none() && again {
+            return;
+        }
+        let aim = step.aim(scene);
+        self.missed_at = aim.is_none().then_some(flat.position);
+        self.set_plan(aim.as_ref());
+    }
+
+    /// Takes a place for the end of the next swing, or none.
+    pub(super) fn set_plan(&mut self, aim: Option<&Aim>) {
+        self.plan = aim.map(|aim| Plan {
+            foothold: aim.foothold,
+            next_rise_m: aim.next_rise_m,
+            flat_from_sole: None,
+            lift_m: None,
         });
-        Some((Correction::between(&landing.flat, &on_floor), lift_m))
     }
 
     /// How much higher than usual the foot has to be lifted in the middle of its way to `sole`.
@@ -144,7 +201,7 @@ impl Foot {
         animated: &Animated,
         sole: &Frame,
     ) -> f32 {
-        let from = animated.flat.position + self.lifted_with.shift;
+        let from = animated.flat.position + self.lifted(scene).shift;
         let rises = sole.position.y > from.y;
         let mut lift = 0.0_f32;
         for point in 1..=WAY_POINTS {
@@ -206,26 +263,60 @@ impl Foot {
         self.correction = self.correction.toward(&toward, share, share);
     }
 
-    /// Lifts a foot that would pass through the ground.
+    /// Lifts a foot that would pass through the ground now or a moment later.
     fn guard<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
         rocker: &RockerFoot,
+        animated: &Animated,
         secs_left: Option<f32>,
         target: &mut FootTarget,
     ) {
-        let [heel, _, tip] = rocker.points(target);
-        let short = [heel, tip]
-            .into_iter()
-            .filter_map(|point| Some(scene.ground(point)?.0 - point.y))
-            .fold(0.0, f32::max)
+        let place = scene.world_from_floor.point(target.ankle);
+        let way = self.passed.map_or(Vec3::ZERO, |before| {
+            scene.world_from_floor.rotation.conjugate() * (place - before)
+        });
+        self.passed = Some(place);
+        let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS);
+        let ahead = way * Vec3::new(1.0, 0.0, 1.0) * (left / scene.dt_secs.max(1e-3));
+        let points = rocker.points(target);
+        let free = rocker.points(&animated.foot);
+        let mut short = 0.0_f32;
+        let mut inside = 0.0_f32;
+        for (point, free) in points.into_iter().zip(free) {
+            // No more room than the animation leaves over its own floor.
+            let room = free.y.clamp(0.0, GUARD_M);
+            let Some((height, normal)) = scene.ground(point) else {
+                continue;
+            };
+            short = short.max(height + room - point.y);
+            inside = inside.max(height - point.y);
+            // An edge ahead, as far as it is not the slope on which the foot goes anyway.
+            let slope = -normal.dot(ahead) / normal.y.max(0.5);
+            if let Some((edge, _)) = scene.ground(point + ahead) {
+                short = short.max(edge - slope + room - point.y);
+            }
+        }
+        let short = short
             // What is a step's height below is a wall and not ground.
             .min(scene.config.max_step_m);
         self.guard
             .follow(short, GUARD_HALF_LIFE_SECS, scene.dt_secs);
         let share = secs_left.map_or(1.0, |secs| smooth_step(secs / COMING_DOWN_SECS));
-        target.ankle.y += share * self.guard.value.max(0.0);
+        let guard = self
+            .guard
+            .value
+            .max(inside.min(scene.config.max_step_m) - TOUCH_M);
+        target.ankle.y += share * guard.max(0.0);
     }
+}
+
+/// The correction on the way from one to another, and how much the foot is lifted there.
+fn on_way(from: &Correction, toward: &Correction, height: f32, share: f32) -> (Correction, f32) {
+    let rises = toward.shift.y > from.shift.y;
+    let up = smooth_step(rising(share, rises));
+    let correction = from.toward(toward, smooth_step(share), up);
+    (correction, height * (share * (1.0 - share) * 4.0).powi(2))
 }
 
 /// How much of its rise a foot has behind it: one that goes up does so early, one that goes down late.

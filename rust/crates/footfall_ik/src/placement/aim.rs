@@ -1,0 +1,149 @@
+//! Where the step that has just begun is to land.
+
+use crate::placement::foot::{Landing, Scene};
+use crate::placement::foothold::{Foothold, SHIFT_COST, Search};
+use crate::placement::frame::Frame;
+use crate::placement::profile::Profile;
+use crate::placement::terrain::Terrain;
+use crate::rocker::RockerFoot;
+use glam::Vec3;
+
+/// Shorter steps land where they land, metres.
+const SHORT_STEP_M: f32 = 0.1;
+/// Steps are shortened to this share of their way at least, lengthened by that share at most and so many metres.
+const LEAST_SHARE: f32 = 0.3;
+const MORE_SHARE: f32 = 0.3;
+const MOST_MORE_M: f32 = 0.16;
+/// Distance between the places that are tried, metres.
+const TRIAL_M: f32 = 0.01;
+/// Rises and falls of a step that are no effort and those that are out of reach, in lengths of the leg; what a metre of effort costs.
+const EASY_RISE: f32 = 0.28;
+const MOST_RISE: f32 = 0.6;
+const RISE_COST: f32 = 6.0;
+/// Longer steps cost so much more than shorter ones.
+const LONGER_COST: f32 = 1.5;
+
+/// A place for the foot of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Aim {
+    pub(super) foothold: Foothold,
+    /// How long the step has to be, as a share of what it is.
+    pub(super) share: f32,
+    /// By how much the ground rises from this foothold to about the next one, metres.
+    pub(super) next_rise_m: f32,
+    /// How steep the ground ahead is over two steps from the standing foot.
+    pub(super) grade: f32,
+}
+
+/// What a step has to do with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step<'a> {
+    /// The sole of the standing foot, in the world.
+    pub(super) standing: Frame,
+    pub(super) landing: &'a Landing,
+    pub(super) rocker: &'a RockerFoot,
+    pub(super) leg_m: f32,
+    /// Whether the step can still be made shorter or longer; otherwise only its foot is put elsewhere.
+    pub(super) may_stretch: bool,
+}
+
+impl Step<'_> {
+    /// Chooses where it lands; `None` where there is no ground within reach.
+    pub(super) fn aim<T: Terrain>(&self, scene: &mut Scene<'_, T>) -> Option<Aim> {
+        let floor = scene.world_from_floor;
+        let up = floor.up();
+        let flat = floor.child(&self.landing.flat);
+        let along = floor.rotation * (self.landing.hips * Vec3::new(1.0, 0.0, 1.0));
+        let along = along.normalize_or(floor.forward());
+        let length = (flat.position - self.standing.position).dot(along);
+        if length < SHORT_STEP_M {
+            return self.beside(scene, &flat);
+        }
+        let start = flat.position - along * length;
+        let start = start + up * (self.standing.position - start).dot(up);
+        let max_step = scene.config.max_step_m;
+        let profile = Profile::trace(
+            scene.terrain,
+            [start, along, up],
+            2.0 * length + MOST_MORE_M,
+            max_step,
+        );
+        let search = Search {
+            above_m: max_step,
+            below_m: max_step,
+            ..scene.search()
+        };
+        let (least, most) = self.bounds(length, search.may_shift);
+        let standing = self.standing.position.dot(up);
+        let mut best: Option<(f32, Aim)> = None;
+        for trial in 0..=((least.max(most) / TRIAL_M) as i32) {
+            let shift = TRIAL_M * trial as f32;
+            // No farther one is better.
+            if best.is_some_and(|(cost, _)| cost <= SHIFT_COST * shift) {
+                break;
+            }
+            for shift in [shift, -shift] {
+                if shift > most || -shift > least {
+                    continue;
+                }
+                let Some(height) = profile.height(length + shift) else {
+                    continue;
+                };
+                let place = Frame {
+                    position: profile.at(length + shift, height),
+                    ..flat
+                };
+                let Some((lie, cost)) = search.judge(scene.terrain, &place, self.rocker) else {
+                    continue;
+                };
+                let rise = (lie.sole.position.dot(up) - standing) / self.leg_m;
+                if rise.abs() > MOST_RISE {
+                    continue;
+                }
+                let effort = RISE_COST * self.leg_m * (rise.abs() - EASY_RISE).max(0.0);
+                let farther = if shift > 0.0 { LONGER_COST } else { 1.0 };
+                let cost = cost + farther * SHIFT_COST * shift.abs() + effort;
+                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                    let height = |along_m: f32| profile.height(along_m);
+                    let sole = lie.sole.position.dot(up);
+                    let next = height(2.0 * length + shift).or(height(1.5 * length + shift));
+                    let easy = EASY_RISE * self.leg_m;
+                    let ahead = next.map_or(0.0, |next| next - standing);
+                    best = Some((
+                        cost,
+                        Aim {
+                            foothold: lie.foothold(scene.terrain)?,
+                            share: (length + shift) / length,
+                            next_rise_m: next.map_or(0.0, |next| (next - sole).clamp(-easy, easy)),
+                            grade: (ahead / (2.0 * length)).clamp(-1.0, 1.0),
+                        },
+                    ));
+                }
+            }
+        }
+        best.map(|(_, aim)| aim)
+    }
+
+    /// How far the foot may be put short of where it would land and beyond, metres.
+    fn bounds(&self, length: f32, may_shift: bool) -> (f32, f32) {
+        let more = MOST_MORE_M.min(MORE_SHARE * length);
+        if self.may_stretch {
+            ((1.0 - LEAST_SHARE) * length, more)
+        } else if may_shift {
+            (MOST_MORE_M, more)
+        } else {
+            (0.0, 0.0)
+        }
+    }
+
+    /// A foot that is put beside the other, or behind it.
+    fn beside<T: Terrain>(&self, scene: &mut Scene<'_, T>, flat: &Frame) -> Option<Aim> {
+        let search = scene.search();
+        Some(Aim {
+            foothold: search.find(scene.terrain, flat, self.rocker)?,
+            share: 1.0,
+            next_rise_m: 0.0,
+            grade: 0.0,
+        })
+    }
+}

@@ -1,0 +1,96 @@
+//! Steps of which the animation tells beforehand where they land.
+
+use crate::placement::aim::Step;
+use crate::placement::effort::slowed_by;
+use crate::placement::foot::Scene;
+use crate::placement::frame::Frame;
+use crate::placement::terrain::Terrain;
+use crate::placement::{FootPlacer, PlacementConfig, PlacementInput};
+use glam::Vec3;
+
+/// Steps that have to be longer or shorter by less are right as they are.
+const SAME_SHARE: f32 = 0.02;
+
+impl FootPlacer {
+    /// How much of its speed a walker keeps on the ground under it and on that ahead.
+    pub fn pace(&self) -> f32 {
+        slowed_by(self.grade).min(slowed_by(self.grade_ahead))
+    }
+
+    /// How long the step that has just begun has to be for its foot to find ground within reach, as a share of how long it is; `None`
+    /// for a step that is right as it is. For walks that can change their steps: once they have, [`step`](Self::step) is to be told of
+    /// the landing as it is then.
+    pub fn step_share(
+        &mut self,
+        input: &PlacementInput,
+        terrain: &mut impl Terrain,
+    ) -> Option<f32> {
+        let next = input.landings.iter().position(Option::is_some);
+        if next == self.aimed || input.airborne {
+            return None;
+        }
+        self.aimed = next;
+        let (config, mut feet) = (self.config, self.feet);
+        let mut scene = self.scene(0.0, input, terrain, &config);
+        let step = self.next_step(&mut scene, input, next?, true)?;
+        let aim = step.aim(&mut scene);
+        feet[next?].set_plan(aim.as_ref());
+        self.feet = feet;
+        let aim = aim?;
+        self.grade_ahead = aim.grade;
+        ((aim.share - 1.0).abs() > SAME_SHARE).then_some(aim.share)
+    }
+
+    pub(super) fn scene<'a, T: Terrain>(
+        &self,
+        dt_secs: f32,
+        input: &PlacementInput,
+        terrain: &'a mut T,
+        config: &'a PlacementConfig,
+    ) -> Scene<'a, T> {
+        let floor = input.world_from_floor;
+        Scene {
+            terrain,
+            world_from_floor: floor,
+            config,
+            soles_m: self.memory.map_or([0.0; 2], |memory| {
+                let [left, right] = memory.soles.map(|sole| floor.local_point(sole.position).y);
+                [left.min(right), left.max(right)]
+            }),
+            dt_secs,
+        }
+    }
+
+    /// The step that this foot takes next, where the animation tells of it and the other foot has ground to stand on.
+    pub(super) fn next_step<'a, T: Terrain>(
+        &'a self,
+        scene: &mut Scene<'_, T>,
+        input: &'a PlacementInput,
+        index: usize,
+        may_stretch: bool,
+    ) -> Option<Step<'a>> {
+        let landing = input.landings[index].as_ref()?;
+        let other = &self.feet[1 - index];
+        let planned = other.plan.map(|plan| plan.foothold);
+        let held = other
+            .hold
+            .or(planned.filter(|_| input.landings[1 - index].is_none()));
+        let standing = held.and_then(|hold| hold.world_from_sole(scene.terrain));
+        let standing = standing.or_else(|| {
+            let ankle = landing.ankles[1 - index];
+            let (height, _) = scene.ground(ankle)?;
+            let place = Vec3::new(ankle.x, height, ankle.z);
+            Some(Frame {
+                position: scene.world_from_floor.point(place),
+                ..scene.world_from_floor
+            })
+        })?;
+        Some(Step {
+            standing,
+            landing,
+            rocker: &self.rockers[index],
+            leg_m: self.leg_lengths[index],
+            may_stretch,
+        })
+    }
+}

@@ -1,0 +1,81 @@
+//! The walk and the ground that it is put on: where feet will land, and steps that are to land elsewhere.
+
+use crate::generator::{Footstep, GaitGenerator, GroundTransform};
+use crate::plan::StepShape;
+use crate::stage::{Arrival, Stage};
+use footfall_core::rotation::from_heading;
+use footfall_ik::placement::{Frame, Landing};
+use glam::Vec3;
+
+/// Until this share of a step it can still become another.
+const STRETCHED_UNTIL: f32 = 0.25;
+/// By how much a step is shortened and lengthened at most.
+const SHORTEST: f32 = 0.25;
+const LONGEST: f32 = 1.4;
+/// Steps are no shorter than this and near enough to what was wanted within that, metres, which takes so many trials at most.
+const SHORT_STEP_M: f32 = 0.05;
+const SAME_LENGTH_M: f32 = 0.01;
+const STRETCHES: usize = 3;
+
+impl GaitGenerator {
+    /// Where each foot lands next and where the body is then, for who puts feet on real ground.
+    pub fn landings(&self) -> [Option<Landing>; 2] {
+        let arrival = &self.steps.source().stage().arrival;
+        landings(self.next_footstep(), &self.plan_from_character(), arrival)
+    }
+
+    /// Has the step that has just begun land at this share of its way, within what people do; the walk goes on at the speed that this
+    /// gives and comes back to the one that is asked for with the steps to follow. Once a step is under way it stays as it is.
+    pub fn stretch_step(&mut self, share: f32) {
+        let timing = self.shape().timing;
+        let begun = self.position < STRETCHED_UNTIL * timing.frames as f32;
+        if !begun || timing.rests || !share.is_finite() {
+            return;
+        }
+        let wanted =
+            share.clamp(SHORTEST, LONGEST) * step_length(self.shape(), self.steps.source().stage());
+        if wanted < SHORT_STEP_M {
+            return;
+        }
+        let mut trials = 0..STRETCHES;
+        let mut next = |shape: &StepShape, stage: &Stage| {
+            trials.next()?;
+            let length = step_length(shape, stage);
+            let far = (length - wanted).abs() >= SAME_LENGTH_M;
+            far.then(|| wanted / length.max(SHORT_STEP_M))
+        };
+        self.steps.source_mut().stretch(&mut next);
+    }
+}
+
+/// Where the next footstep puts a foot, and the body with it, as it is seen from where the character is.
+pub(crate) fn landings(
+    next: Option<(Footstep, f32)>,
+    from: &GroundTransform,
+    arrival: &Arrival,
+) -> [Option<Landing>; 2] {
+    let mut landings = [None; 2];
+    if let Some((footstep, secs)) = next {
+        let back = from_heading(-from.heading);
+        let seen = |place: Vec3| back * (place - from.position);
+        landings[footstep.side.index()] = Some(Landing {
+            flat: Frame {
+                position: footstep.position,
+                rotation: from_heading(footstep.heading),
+            },
+            secs,
+            hips: seen(arrival.hips),
+            ankles: arrival.ankles.map(seen),
+        });
+    }
+    landings
+}
+
+/// How far ahead of the standing foot the other one lands, metres.
+fn step_length(shape: &StepShape, stage: &Stage) -> f32 {
+    let way = stage.travel(shape).normalize_or_zero();
+    let leading = shape.timing.leading;
+    let [from, to] = [leading, leading.other()].map(|side| stage.plant(side));
+    from.zip(to)
+        .map_or(0.0, |(from, to)| (to.flat_ankle - from.flat_ankle).dot(way))
+}

@@ -1,0 +1,58 @@
+//! The steps of a switching model, one after the other.
+
+use super::SwitchingSteps;
+use crate::detail::Detail;
+use crate::generator::STANDING_SPEED_MPS;
+use crate::plan::StepShape;
+use crate::stage::Stage;
+use crate::standing::Amplitude;
+use crate::steps::{Ask, StepSource, Stretches};
+use crate::strafe::pelvis_turn;
+use glam::Vec2;
+
+impl StepSource for SwitchingSteps {
+    fn shape(&self) -> &StepShape {
+        &self.shape
+    }
+
+    fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    fn facing(&self) -> [f32; 2] {
+        self.origin.facing
+    }
+
+    fn stand(&mut self, detail: Detail) -> bool {
+        let first = self.origin.leading;
+        let speed = f64::from(STANDING_SPEED_MPS);
+        self.begin(first, Amplitude::STAND, speed, detail);
+        self.velocity_mps = Vec2::ZERO;
+        true
+    }
+
+    fn advance(&mut self, ask: &Ask) {
+        self.velocity_mps = ask.velocity_after(self.velocity_mps);
+        self.take_over(self.origin.leading.other());
+        self.set_pace();
+        self.origin.turn_rate = ask.turn_rate;
+        self.origin.amplitude = ask.amplitude;
+        self.origin.detail = ask.detail;
+        let facing = self.facing() + pelvis_turn(self.velocity_mps);
+        self.origin.facing = [self.origin.facing[1], facing];
+        self.realise();
+    }
+
+    fn stretch(&mut self, next: &mut Stretches<'_>) {
+        let Some(feet) = self.origin.planter else {
+            return;
+        };
+        while let Some(share) = next(&self.shape, &self.stage) {
+            self.origin.stride *= f64::from(share);
+            self.shape.stride = self.origin.stride;
+            self.velocity_mps *= share;
+            self.stage.resume(feet);
+            self.put_on_ground();
+        }
+    }
+}

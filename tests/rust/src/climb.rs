@@ -1,0 +1,388 @@
+//! Walks over stairs and rough ground from a distance on, and what goes wrong on the way.
+
+use crate::data::repository;
+use crate::terrain::{Origin, PlacedWalker, Relief};
+use footfall_core::{Side, Skeleton};
+use footfall_ik::placement::PlacementConfig;
+use footfall_model::GaitModel;
+use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
+use glam::Vec3;
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
+/// Time between two frames, seconds.
+pub const DT: f32 = 1.0 / 60.0;
+/// The walker comes out of its first pose before anything counts, frames.
+const SETTLED: usize = 60;
+/// How long the body goes on behind the last step, metres.
+const BEYOND_M: f32 = 1.5;
+/// A contact of the animation that is not one on the ground for longer is a lost one, seconds.
+const LOST_SECS: f32 = 0.1;
+/// A point of a sole is inside a step when it is farther from its surface, up and sideways, metres.
+const INSIDE_M: f32 = 0.02;
+/// A sole that stands has a point at the ground within this distance, metres.
+const OFF_M: f32 = 0.02;
+/// Hips over the ground below them, in lengths of the leg.
+const HIPS: [f32; 2] = [0.5, 1.6];
+
+/// One walk over a profile.
+#[derive(Clone, Copy, Debug)]
+pub struct Climb {
+    /// Size of the body, of an adult of 1.77 m.
+    pub body: f32,
+    /// The speed that is asked for, m/s.
+    pub speed_mps: f32,
+    /// What is walked over.
+    pub way: Way,
+    /// From the start to the first edge, metres.
+    pub distance_m: f32,
+    /// What holds the character's origin at the ground.
+    pub origin: Origin,
+    /// Whether the placer is told of contacts and landings.
+    pub told: bool,
+    /// Of the walker.
+    pub seed: u64,
+}
+
+/// What is walked over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// Level ground.
+    Level,
+    /// Six steps up, or down where the rise is negative.
+    Stairs {
+        /// Height of a step, metres.
+        rise: f32,
+        /// Depth of a tread, metres.
+        run: f32,
+    },
+    /// A ramp of this slope, 3 m long, down where negative.
+    Ramp {
+        /// Rise by run.
+        slope: f32,
+    },
+    /// Blocks of 45 cm, up to this high, for 9 m.
+    Blocks {
+        /// Height of the highest, metres.
+        height: f32,
+        /// Which blocks.
+        seed: u32,
+    },
+}
+
+const STEPS: f32 = 6.0;
+const BLOCK_M: f32 = 0.45;
+
+impl Way {
+    /// Height of the ground so far behind the first edge and to the side, metres.
+    pub fn height(self, x: f32, z: f32) -> f32 {
+        match self {
+            Self::Level => 0.0,
+            Self::Stairs { rise, run } => ((z / run).floor() + 1.0).clamp(0.0, STEPS) * rise,
+            Self::Ramp { slope } => z.clamp(0.0, self.length()) * slope,
+            Self::Blocks { height, seed } => {
+                if z < 0.0 || z > self.length() {
+                    return 0.0;
+                }
+                let cell = |value: f32| (value / BLOCK_M).floor() as i32 as u32;
+                let mut hash =
+                    cell(x).wrapping_mul(0x9E37_79B9) ^ cell(z).wrapping_mul(0x85EB_CA6B);
+                hash ^= seed.wrapping_mul(0xC2B2_AE35);
+                hash = (hash ^ (hash >> 15)).wrapping_mul(0x2C1B_3C6D);
+                hash = (hash ^ (hash >> 12)).wrapping_mul(0x297A_2D39);
+                height * ((hash ^ (hash >> 15)) >> 8) as f32 / 16_777_216.0
+            }
+        }
+    }
+
+    fn length(self) -> f32 {
+        match self {
+            Self::Level => 6.0,
+            Self::Stairs { run, .. } => STEPS * run,
+            Self::Ramp { .. } => 3.0,
+            Self::Blocks { .. } => 9.0,
+        }
+    }
+}
+
+/// What ends a climb before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Failure {
+    /// A foot that the animation puts down is locked to nothing.
+    GroundLost,
+    /// An ankle is higher than its hip joint.
+    FootAboveHip,
+    /// A point of a sole is inside a step.
+    Inside,
+    /// The body is in the ground, or far above it.
+    BodyLeft,
+    /// No point of a locked sole is at the ground.
+    OffGround,
+    /// It does not arrive.
+    Stuck,
+}
+
+/// A failure, where and when.
+#[derive(Clone, Copy, Debug)]
+pub struct Fault {
+    /// The kind.
+    pub failure: Failure,
+    /// After so many seconds.
+    pub secs: f32,
+    /// Where the hips were.
+    pub hips: Vec3,
+    /// How bad it is, in the failure's own measure.
+    pub measure: f32,
+}
+
+/// What was seen.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// The first failure of every kind.
+    pub faults: Vec<Fault>,
+    /// Accelerations of the hips against gravity, m/s².
+    pub lift: Vec<f32>,
+    /// Accelerations of the hips, m/s².
+    pub acceleration: Vec<f32>,
+    /// Fastest that the stillest point of a locked sole moved, m/s.
+    pub slip: f32,
+    /// Highest angular acceleration of a knee, rad/s².
+    pub knee: f32,
+    /// Farthest that an ankle jumped beyond how it moved the frame before, metres.
+    pub jump: f32,
+    /// How long it took, seconds.
+    pub secs: f32,
+    /// How many steps were taken on the way.
+    pub steps: usize,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for fault in &self.faults {
+            write!(
+                f,
+                "{:?} {:.3} at {:.2} s {:.2}; ",
+                fault.failure, fault.measure, fault.secs, fault.hips
+            )?;
+        }
+        write!(
+            f,
+            "lift 99 %: {:.1}, all: {:.1}, slip {:.4}, knee {:.0}, jump {:.3}, {:.1} s, {} steps",
+            percentile(&self.lift, 0.99),
+            percentile(&self.acceleration, 0.99),
+            self.slip,
+            self.knee,
+            self.jump,
+            self.secs,
+            self.steps
+        )
+    }
+}
+
+/// The value below which this share of all lies.
+pub fn percentile(values: &[f32], share: f32) -> f32 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f32::total_cmp);
+    let last = sorted.len().saturating_sub(1);
+    sorted
+        .get((share * last as f32).round() as usize)
+        .copied()
+        .unwrap_or(0.0)
+}
+
+fn space() -> &'static Arc<StyleSpace> {
+    static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
+    SPACE.get_or_init(|| {
+        let path = repository().join("addons/footfall/models/walk.footfall");
+        let bytes = std::fs::read(path).expect("the shipped model is there");
+        let model = GaitModel::from_bytes(&bytes).expect("the shipped model can be read");
+        Arc::new(StyleSpace::new(&Arc::new(model), &[]).expect("the shipped model walks"))
+    })
+}
+
+/// A walker of the shipped model with this body.
+pub fn walker(skeleton: &Skeleton, seed: u64) -> PlacedWalker {
+    let config = GeneratorConfig {
+        seed,
+        phase: 0.0,
+        variation: 1.0,
+    };
+    let generator = GaitGenerator::new(space(), &[], skeleton, &config).expect("the body walks");
+    PlacedWalker::of(generator, skeleton, &PlacementConfig::default())
+}
+
+impl Climb {
+    /// An adult with default settings.
+    pub fn adult(way: Way, distance_m: f32, speed_mps: f32) -> Self {
+        Self {
+            body: 1.0,
+            speed_mps,
+            way,
+            distance_m,
+            origin: Origin::Follows,
+            told: true,
+            seed: 7,
+        }
+    }
+
+    /// Walks it.
+    pub fn walk(&self) -> Outcome {
+        self.watch(|_, _| {})
+    }
+
+    /// Walks it, and shows every frame.
+    pub fn watch(&self, mut show: impl FnMut(usize, &PlacedWalker)) -> Outcome {
+        let (way, from) = (self.way, self.distance_m);
+        let mut terrain = Relief::still(move |x, z| way.height(x, z - from));
+        let skeleton = Skeleton::standard().scaled(self.body);
+        let mut walker = walker(&skeleton, self.seed);
+        walker.carrier = self.origin;
+        let controls = Controls {
+            speed_mps: self.speed_mps,
+            ..Controls::STAND
+        };
+        let mut watcher = Watcher {
+            leg: skeleton.mean_leg_length(),
+            ..Watcher::default()
+        };
+        let goal = from + way.length() + BEYOND_M;
+        let longest = ((10.0 + 4.0 * goal) / DT) as usize;
+        for frame in 0..longest {
+            walker.climb(DT, controls, &mut terrain, self.told);
+            show(frame, &walker);
+            watcher.see(frame, &walker, &terrain);
+            if walker.hips().z > goal {
+                break;
+            }
+            if frame + 1 == longest {
+                watcher.fault(Failure::Stuck, frame, &walker, walker.hips().z);
+            }
+        }
+        watcher.outcome
+    }
+}
+
+#[derive(Default)]
+struct Watcher {
+    leg: f32,
+    outcome: Outcome,
+    hips: Vec<Vec3>,
+    knees: [Vec<f32>; 2],
+    ankles: [Vec<Vec3>; 2],
+    soles: [[Vec3; 3]; 2],
+    lost: [f32; 2],
+}
+
+impl Watcher {
+    fn fault(&mut self, failure: Failure, frame: usize, walker: &PlacedWalker, measure: f32) {
+        let worst = self
+            .outcome
+            .faults
+            .iter_mut()
+            .find(|fault| fault.failure == failure);
+        if let Some(worst) = worst {
+            worst.measure = worst.measure.max(measure);
+        } else {
+            self.outcome.faults.push(Fault {
+                failure,
+                secs: frame as f32 * DT,
+                hips: walker.hips(),
+                measure,
+            });
+        }
+    }
+
+    fn see(&mut self, frame: usize, walker: &PlacedWalker, terrain: &Relief) {
+        let hips = walker.hips();
+        self.hips.push(hips);
+        self.outcome.secs = frame as f32 * DT;
+        let contacts = walker.contacts();
+        let soles = Side::BOTH.map(|side| walker.sole(side));
+        for side in Side::BOTH {
+            let index = side.index();
+            let ankle = walker.world.position(side.foot());
+            self.ankles[index].push(ankle);
+            self.knees[index].push(walker.knee(side));
+            if frame < SETTLED {
+                continue;
+            }
+            let placed = &walker.placer.feet()[index];
+            self.outcome.steps += usize::from(placed.landed);
+            self.lost[index] = if contacts[index] && !placed.locked {
+                self.lost[index] + DT
+            } else {
+                0.0
+            };
+            if self.lost[index] > LOST_SECS {
+                self.fault(Failure::GroundLost, frame, walker, self.lost[index]);
+            }
+            let above = ankle.y - walker.world.position(side.upper_leg()).y;
+            if above > 0.0 {
+                self.fault(Failure::FootAboveHip, frame, walker, above);
+            }
+            let inside = soles[index]
+                .map(|point| depth(terrain, point))
+                .into_iter()
+                .fold(0.0, f32::max);
+            if inside > INSIDE_M {
+                self.fault(Failure::Inside, frame, walker, inside);
+            }
+            if placed.locked {
+                let off = soles[index].map(|point| point.y - terrain.at(point).position.y);
+                let off = off.into_iter().fold(f32::MAX, f32::min);
+                if off > OFF_M {
+                    self.fault(Failure::OffGround, frame, walker, off);
+                }
+                if !placed.landed {
+                    let moved = soles[index].iter().zip(&self.soles[index]);
+                    let slip = moved
+                        .map(|(now, then)| now.distance(*then) / DT)
+                        .fold(f32::MAX, f32::min);
+                    self.outcome.slip = self.outcome.slip.max(slip);
+                }
+            }
+        }
+        self.soles = soles;
+        if frame < SETTLED {
+            return;
+        }
+        let height = (hips.y - terrain.at(hips).position.y) / self.leg;
+        if !(HIPS[0]..HIPS[1]).contains(&height) {
+            self.fault(Failure::BodyLeft, frame, walker, height);
+        }
+        if let [.., a, b, c] = self.hips[..] {
+            let bend = (a - 2.0 * b + c) / (DT * DT);
+            self.outcome.lift.push(bend.y.abs());
+            self.outcome.acceleration.push(bend.length());
+        }
+        for knee in &self.knees {
+            if let [.., a, b, c] = knee[..] {
+                self.outcome.knee = self.outcome.knee.max((a - 2.0 * b + c).abs() / (DT * DT));
+            }
+        }
+        for ankle in &self.ankles {
+            if let [.., a, b, c] = ankle[..] {
+                self.outcome.jump = self.outcome.jump.max((a - 2.0 * b + c).length());
+            }
+        }
+    }
+}
+
+/// How far a point is from the nearest way out of the ground, up or along the way; 0 outside.
+fn depth(terrain: &Relief, point: Vec3) -> f32 {
+    let down = |place: Vec3| terrain.at(place).position.y - point.y;
+    let below = down(point);
+    if below <= INSIDE_M {
+        return below.max(0.0);
+    }
+    let near = (1..=10).map(|step| 0.01 * step as f32);
+    let out = near.into_iter().find(|out| {
+        [Vec3::Z, -Vec3::Z, Vec3::X, -Vec3::X]
+            .iter()
+            .any(|way| down(point + *way * *out) <= 0.0)
+    });
+    below.min(out.unwrap_or(below))
+}
+
+/// Adults, a child and somebody tall: sizes of the body.
+pub const BODIES: [f32; 3] = [0.68, 1.0, 1.13];

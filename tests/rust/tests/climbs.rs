@@ -1,0 +1,288 @@
+//! Climbs from many distances: nobody loses the ground, sinks in, or jerks.
+#![expect(
+    clippy::print_stdout,
+    clippy::expect_used,
+    reason = "the whole sweep prints its table, and tests may fail"
+)]
+
+use footfall_tests::climb::{BODIES, Climb, Failure, Fault, Outcome, Way, percentile};
+use footfall_tests::terrain::Origin;
+use std::collections::BTreeMap;
+use std::num::NonZero;
+use std::thread;
+
+/// Hips are accelerated by less, for 99 frames of a hundred, m/s².
+const HIPS_99: f32 = 12.0;
+
+/// What was seen of many climbs.
+#[derive(Default)]
+struct Survey {
+    climbs: usize,
+    failed: usize,
+    failures: BTreeMap<Failure, usize>,
+    lift: Vec<f32>,
+    acceleration: Vec<f32>,
+    slip: f32,
+    knee: Vec<f32>,
+    jump: Vec<f32>,
+    /// The worst of every kind.
+    worst: BTreeMap<Failure, (Climb, Fault)>,
+}
+
+impl Survey {
+    fn of(climbs: &[Climb]) -> Self {
+        let workers = thread::available_parallelism().map_or(1, NonZero::get);
+        let share = climbs.len().div_ceil(workers).max(1);
+        let mut survey = Self::default();
+        thread::scope(|scope| {
+            let parts: Vec<_> = climbs
+                .chunks(share)
+                .map(|part| {
+                    scope.spawn(|| {
+                        part.iter()
+                            .map(|climb| (*climb, climb.walk()))
+                            .collect::<Vec<_>>()
+                    })
+                })
+                .collect();
+            for part in parts {
+                for (climb, outcome) in part.join().expect("a climb does not panic") {
+                    survey.add(climb, outcome);
+                }
+            }
+        });
+        survey
+    }
+
+    fn add(&mut self, climb: Climb, outcome: Outcome) {
+        self.climbs += 1;
+        self.failed += usize::from(!outcome.faults.is_empty());
+        for fault in &outcome.faults {
+            *self.failures.entry(fault.failure).or_default() += 1;
+        }
+        self.lift.extend(&outcome.lift);
+        self.acceleration.extend(&outcome.acceleration);
+        self.slip = self.slip.max(outcome.slip);
+        self.knee.push(outcome.knee);
+        self.jump.push(outcome.jump);
+        for fault in &outcome.faults {
+            let worst = self
+                .worst
+                .get(&fault.failure)
+                .map_or(0.0, |(_, fault)| fault.measure);
+            if fault.measure > worst {
+                self.worst.insert(fault.failure, (climb, *fault));
+            }
+        }
+    }
+
+    fn line(&self) -> String {
+        let max = |values: &[f32]| values.iter().copied().fold(0.0, f32::max);
+        format!(
+            "{} of {} failed {:?}; hips up and down 99 %: {:.1} (most {:.1}), all ways {:.1} ({:.1}); slip {:.4}; knee {:.0}/{:.0}; jump {:.3}/{:.3}",
+            self.failed,
+            self.climbs,
+            self.failures,
+            percentile(&self.lift, 0.99),
+            max(&self.lift),
+            percentile(&self.acceleration, 0.99),
+            max(&self.acceleration),
+            self.slip,
+            percentile(&self.knee, 0.5),
+            max(&self.knee),
+            percentile(&self.jump, 0.5),
+            max(&self.jump),
+        )
+    }
+
+    fn show(&self) {
+        for (climb, fault) in self.worst.values() {
+            println!("    {climb:?}: {fault:?}");
+        }
+    }
+
+    fn expect_no_fault(&self) {
+        self.show();
+        assert_eq!(self.failed, 0, "{}", self.line());
+        assert!(percentile(&self.lift, 0.99) <= HIPS_99, "{}", self.line());
+    }
+}
+
+/// Distances from which the stairs are come upon: a stride of them, spread evenly.
+fn distances(count: usize) -> impl Iterator<Item = f32> {
+    (0..count).map(move |index| 2.5 + 1.7 * index as f32 / count as f32)
+}
+
+const SPEEDS: [f32; 5] = [0.8, 1.0, 1.3, 1.6, 2.0];
+const RISES: [f32; 4] = [0.12, 0.15, 0.17, 0.2];
+const RUNS: [f32; 4] = [0.28, 0.29, 0.32, 0.4];
+const ORIGINS: [Origin; 2] = [Origin::Follows, Origin::Capsule];
+
+/// Climbs of one body over stairs of one rise, from so many distances and at every speed; treads and what carries the body take turns.
+fn stairs(body: f32, rise: f32, count: usize) -> Vec<Climb> {
+    let mut climbs = vec![];
+    for (index, distance_m) in distances(count).enumerate() {
+        for speed_mps in SPEEDS {
+            climbs.push(Climb {
+                body,
+                speed_mps,
+                way: Way::Stairs {
+                    rise,
+                    run: RUNS[index % 4],
+                },
+                distance_m,
+                origin: ORIGINS[index / 4 % 2],
+                told: true,
+                seed: index as u64,
+            });
+        }
+    }
+    climbs
+}
+
+/// The same over other ground; blocks lie differently every time.
+fn ground(body: f32, way: Way, count: usize) -> Vec<Climb> {
+    let mut climbs = stairs(body, 0.0, count);
+    for climb in &mut climbs {
+        climb.way = match way {
+            Way::Blocks { height, .. } => Way::Blocks {
+                height,
+                seed: climb.seed as u32,
+            },
+            way => way,
+        };
+    }
+    climbs
+}
+
+const ROUGH: Way = Way::Blocks {
+    height: 0.15,
+    seed: 0,
+};
+const RAMPS: [Way; 2] = [Way::Ramp { slope: 0.466 }, Way::Ramp { slope: -0.466 }];
+
+#[test]
+#[ignore = "takes a quarter of an hour: 200 distances, at every speed, up and down every rise, with every body"]
+fn the_whole_sweep() {
+    let count = std::env::var("CLIMBS")
+        .ok()
+        .and_then(|value| value.parse().ok());
+    let count = count.unwrap_or(200);
+    let mut whole = Survey::default();
+    for body in BODIES {
+        for rise in RISES.into_iter().flat_map(|rise| [rise, -rise]) {
+            let survey = Survey::of(&stairs(body, rise, count));
+            println!("body {body}, rise {rise}: {}", survey.line());
+            survey.show();
+            whole.merge(survey);
+        }
+    }
+    println!("all stairs: {}", whole.line());
+    for way in [Way::Level, RAMPS[0], RAMPS[1], ROUGH] {
+        for body in BODIES {
+            let survey = Survey::of(&ground(body, way, count.div_ceil(4)));
+            println!("body {body}, {way:?}: {}", survey.line());
+            survey.show();
+        }
+    }
+}
+
+impl Survey {
+    fn merge(&mut self, other: Self) {
+        self.climbs += other.climbs;
+        self.failed += other.failed;
+        for (failure, count) in other.failures {
+            *self.failures.entry(failure).or_default() += count;
+        }
+        self.lift.extend(other.lift);
+        self.acceleration.extend(other.acceleration);
+        self.slip = self.slip.max(other.slip);
+        self.knee.extend(other.knee);
+        self.jump.extend(other.jump);
+        for (failure, (climb, fault)) in other.worst {
+            let worst = self
+                .worst
+                .get(&failure)
+                .map_or(0.0, |(_, fault)| fault.measure);
+            if fault.measure > worst {
+                self.worst.insert(failure, (climb, fault));
+            }
+        }
+    }
+}
+
+#[test]
+fn nobody_falls_through_stairs() {
+    let mut climbs = vec![];
+    for (index, distance_m) in distances(240).enumerate() {
+        let rise = RISES[index % 4];
+        climbs.push(Climb {
+            body: BODIES[index / 4 % 3],
+            speed_mps: SPEEDS[index % 5],
+            way: Way::Stairs {
+                rise: if index / 2 % 2 == 0 { rise } else { -rise },
+                run: RUNS[index / 12 % 4],
+            },
+            distance_m,
+            origin: ORIGINS[index / 7 % 2],
+            told: true,
+            seed: index as u64,
+        });
+    }
+    Survey::of(&climbs).expect_no_fault();
+}
+
+#[test]
+fn ramps_are_no_stairs() {
+    let climbs: Vec<Climb> = RAMPS
+        .into_iter()
+        .flat_map(|way| ground(1.0, way, 6))
+        .collect();
+    Survey::of(&climbs).expect_no_fault();
+}
+
+/// Blocks have edges on all sides, and a sole is looked at along its middle: its toes may touch one.
+#[test]
+fn nobody_is_lost_on_rough_ground() {
+    let mut climbs = ground(1.0, ROUGH, 12);
+    climbs.retain(|climb| climb.speed_mps < 2.0);
+    let survey = Survey::of(&climbs);
+    survey.show();
+    let harmless = [Failure::Inside, Failure::OffGround];
+    let lost = survey
+        .failures
+        .keys()
+        .any(|failure| !harmless.contains(failure));
+    assert!(!lost, "{}", survey.line());
+    assert!(
+        percentile(&survey.lift, 0.99) <= HIPS_99,
+        "{}",
+        survey.line()
+    );
+}
+
+/// Nobody tells the placer where a foot will land: it comes down late, but never to nothing.
+#[test]
+fn an_animation_that_tells_nothing_does_not_lose_the_ground() {
+    let mut climbs: Vec<Climb> = [0.17, -0.17]
+        .into_iter()
+        .flat_map(|rise| stairs(1.0, rise, 8))
+        .collect();
+    climbs.retain(|climb| climb.speed_mps < 1.5);
+    for climb in &mut climbs {
+        climb.told = false;
+    }
+    let survey = Survey::of(&climbs);
+    survey.show();
+    let lost = [
+        Failure::GroundLost,
+        Failure::FootAboveHip,
+        Failure::BodyLeft,
+        Failure::Stuck,
+    ];
+    assert!(
+        !survey.failures.keys().any(|failure| lost.contains(failure)),
+        "{}",
+        survey.line()
+    );
+}
