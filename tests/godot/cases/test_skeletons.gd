@@ -78,13 +78,14 @@ func test_an_a_pose_rest_walks_the_same() -> void:
 
 
 func test_a_bone_map_names_foreign_bones() -> void:
-	var walker := Walker.new()
-	walker.prefix = "rig_"
-	walker.build()
+	var walker := Walker.new().build()
 	var map := BoneMap.new()
 	map.profile = SkeletonProfileHumanoid.new()
 	for joint: String in Walker.BODY:
-		map.set_skeleton_bone_name(joint, "rig_" + joint)
+		# Names that nobody recognises.
+		walker.names[joint] = "part_%d" % walker.names.size()
+		walker.skeleton.set_bone_name(walker.skeleton.find_bone(joint), walker.names[joint])
+		map.set_skeleton_bone_name(joint, walker.names[joint])
 	add_child(walker)
 	check(not walker.gait.get_problems().is_empty(), "without the map there is a problem")
 	walker.gait.bone_map = map

@@ -9,6 +9,8 @@ const RISE := 0.17
 const RUN := 0.29
 ## A point of a sole may be so far in a step, as people see it.
 const DEPTH := 0.03
+## An ankle, 8 cm above its sole, is at least so high above the tread below it.
+const ANKLE := 0.035
 
 
 func _exit_tree() -> void:
@@ -106,7 +108,7 @@ func test_the_controller_climbs_from_every_distance() -> void:
 			for bone: String in ["LeftFoot", "RightFoot"]:
 				var ankle: Vector3 = place.call(bone)
 				check_below(ankle.y, hips.y, "%s: a foot is below the hips" % what)
-				check(ankle.y > _height(ankle.z) + 0.04, "%s: an ankle is above its tread, at %s" % [what, ankle])
+				check(ankle.y > _height(ankle.z) + ANKLE, "%s: an ankle is above its tread, at %s" % [what, ankle])
 			seen[0] += 1
 		character.placement.modification_processed.connect(watch)
 		for frame: int in 720:
