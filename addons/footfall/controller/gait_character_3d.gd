@@ -23,6 +23,8 @@ const TURN_ONSET := 0.6
 const LEAST_TURN := 0.15
 ## How far ahead an edge is looked for, metres.
 const EDGE_REACH := 0.08
+## Ground that is lower by less is level, metres.
+const EDGE_SLACK := 0.001
 ## A crouching character's capsule has this share of its height, after so long, seconds.
 const CROUCHED_HEIGHT := 0.65
 const CROUCH_SECS := 0.3
@@ -255,9 +257,9 @@ func _travel() -> void:
 		velocity = _flight(delta)
 	else:
 		velocity = _figure.global_basis * _steps.origin / delta
-		if is_on_floor():
+		var climbs := _air_secs == 0.0 and _step_up(delta)
+		if climbs or is_on_floor():
 			fall = 0.0
-			_step_up(delta)
 	velocity.y = fall
 	move_and_slide()
 	rotation.y += _steps.basis.get_euler().y + get_platform_angular_velocity().y * delta
@@ -301,17 +303,26 @@ func _stay_or_land(fall: float, delta: float) -> void:
 		gait.playing = not _flies() or gait.has_method(&"jump")
 
 
-## Climbs an edge that is low enough: a capsule alone would stop at it.
-func _step_up(delta: float) -> void:
+## Climbs an edge that is low enough: a capsule alone would stop at it, and a slow one slide back off it. Returns whether there is
+## such an edge.
+func _step_up(delta: float) -> bool:
 	var ahead := velocity * delta
 	if ahead.length() < 1e-4:
-		return
+		return false
 	var reach := ahead.normalized() * EDGE_REACH + ahead
-	if not test_move(global_transform, reach):
-		return
-	var raised := global_transform.translated(Vector3.UP * step_height)
-	if test_move(raised, reach):
-		return
+	var over := global_transform
+	if test_move(over, reach):
+		over = over.translated(Vector3.UP * step_height)
+		if test_move(over, reach):
+			return false
+	elif is_on_floor():
+		return false
 	var down := KinematicCollision3D.new()
-	if test_move(raised.translated(reach), Vector3.DOWN * step_height, down):
-		global_position.y += step_height + down.get_travel().y
+	if not test_move(over.translated(reach), Vector3.DOWN * step_height, down):
+		return false
+	var height := over.origin.y + down.get_travel().y
+	if height < global_position.y - EDGE_SLACK:
+		# The ground ahead is lower.
+		return false
+	global_position.y = maxf(global_position.y, height)
+	return true

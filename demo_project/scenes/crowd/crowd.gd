@@ -54,6 +54,10 @@ func close_ups() -> Dictionary[String, Array]:
 	}
 
 
+func is_getting_ready() -> bool:
+	return _crowd.get_positions().is_empty() or _crowd.is_making()
+
+
 func begin_check() -> void:
 	_starts = _crowd.get_positions()
 

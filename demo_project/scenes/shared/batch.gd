@@ -6,6 +6,7 @@ extends Node
 ##
 ## The scene tells what is to be seen and checked: `close_ups()`, name → [place, heading and height in degrees, distance in metres] of
 ## the camera; `FRAMES_BEFORE_PICTURES`, when half a second is too early; `begin_check()`; and `problems(frames)`, what is wrong after so many of them.
+## A scene with `is_getting_ready()` is waited for.
 ##
 ## Start Godot with `--fixed-fps 60` for both, so that time runs by frames.
 
@@ -27,6 +28,7 @@ func _take_pictures(folder: String) -> void:
 	DirAccess.make_dir_recursive_absolute(folder)
 	# Drawn in software a frame takes a second: only what is saved is drawn.
 	RenderingServer.render_loop_enabled = false
+	await _until_ready()
 	await _frames(_scene.FRAMES_BEFORE_PICTURES if &"FRAMES_BEFORE_PICTURES" in _scene else 30)
 	for picture: int in PICTURES:
 		await _save(folder.path_join("frame_%04d.png" % picture))
@@ -59,6 +61,7 @@ func _save(path: String) -> void:
 func _run_frames(count: int) -> void:
 	# The scene is ready after the nodes in it.
 	await _frames(1)
+	await _until_ready()
 	_scene.begin_check()
 	await _frames(count)
 	var problems: PackedStringArray = _scene.problems(count)
@@ -67,6 +70,12 @@ func _run_frames(count: int) -> void:
 	if problems.is_empty():
 		print("DEMO OK")
 	get_tree().quit(0 if problems.is_empty() else 1)
+
+
+## Time that runs by frames does not wait for what is made on other threads.
+func _until_ready() -> void:
+	while _scene.has_method(&"is_getting_ready") and _scene.is_getting_ready():
+		await _frames(1)
 
 
 func _frames(count: int) -> void:

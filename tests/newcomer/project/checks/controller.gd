@@ -13,7 +13,7 @@ const BONES: Dictionary[String, String] = {
 const RISE_M := 0.17
 const TREAD_M := 0.29
 const STEPS := 6
-const FRAMES := 720
+const FRAMES := 1080
 
 
 func run() -> void:
