@@ -47,14 +47,14 @@ impl Survey {
                 .collect();
             for part in parts {
                 for (climb, outcome) in part.join().expect("a climb does not panic") {
-                    survey.add(climb, outcome);
+                    survey.add(climb, &outcome);
                 }
             }
         });
         survey
     }
 
-    fn add(&mut self, climb: Climb, outcome: Outcome) {
+    fn add(&mut self, climb: Climb, outcome: &Outcome) {
         self.climbs += 1;
         self.failed += usize::from(!outcome.faults.is_empty());
         for fault in &outcome.faults {
