@@ -18,14 +18,11 @@ func test_a_generator_without_a_model_walks_with_the_shipped_one() -> void:
 	check_equal(plain.bone_poses, given.bone_poses, "as with the shipped model")
 
 
-func test_a_crowd_and_a_reconstructor_without_a_model_use_the_shipped_ones() -> void:
+func test_a_crowd_without_a_model_uses_the_shipped_one() -> void:
 	var crowd := GaitCrowd3D.new()
 	check_equal(crowd.get_problems().size(), 1, "a crowd lacks one thing")
 	check_contains(crowd.get_problems()[0], "character", "which is no model")
 	crowd.free()
-	var reconstructor := ImuReconstructor3D.new()
-	check(not "; ".join(reconstructor.get_problems()).contains("model"), "a reconstructor does not lack one either")
-	reconstructor.free()
 
 
 func test_nodes_that_the_editor_adds_are_given_a_model() -> void:
