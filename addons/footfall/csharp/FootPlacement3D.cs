@@ -91,7 +91,7 @@ namespace Footfall
             set => Native.Set(PropertyName.CastRadius, value);
         }
 
-        /// <summary>Ground that is more than this above the higher foot or below the lower one is out of reach.</summary>
+        /// <summary>Edges that are higher than this are walls, and lower ones an abyss: no foot goes there. The ground ahead is followed edge by edge, so that a staircase of lower steps is never out of reach.</summary>
         public double MaxStep
         {
             get => Native.Get(PropertyName.MaxStep).AsDouble();
@@ -133,14 +133,14 @@ namespace Footfall
             set => Native.Set(PropertyName.MaxTwist, value);
         }
 
-        /// <summary>Whether a foot that would stand across an edge, as on stairs, is put ahead of it or behind it.</summary>
+        /// <summary>Whether a foot that would stand across an edge, as on stairs, is put ahead of it or behind it. A <see cref="GaitGenerator3D"/> beside this node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.</summary>
         public bool AdjustFootholds
         {
             get => Native.Get(PropertyName.AdjustFootholds).AsBool();
             set => Native.Set(PropertyName.AdjustFootholds, value);
         }
 
-        /// <summary>Whether a <see cref="GaitGenerator3D"/> beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking function, down to 0.45 of its speed).</summary>
+        /// <summary>Whether a <see cref="GaitGenerator3D"/> beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking function, down to 0.45 of its speed), from a step before it gets there.</summary>
         public bool AdaptSpeed
         {
             get => Native.Get(PropertyName.AdaptSpeed).AsBool();
