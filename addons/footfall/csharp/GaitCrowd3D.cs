@@ -355,7 +355,7 @@ namespace Footfall
         public int Pick(Vector3 from, Vector3 to) => Native.Call(MethodName.Pick, from, to).AsInt32();
 
         /// <summary>The id of the walker that is nearest to a point of global space, at most <c>max_distance</c> away, or -1.</summary>
-        public int FindNearest(Vector3 position, double maxDistance = inf) => Native.Call(MethodName.FindNearest, position, maxDistance).AsInt32();
+        public int FindNearest(Vector3 position, double maxDistance = double.PositiveInfinity) => Native.Call(MethodName.FindNearest, position, maxDistance).AsInt32();
 
         /// <summary>The whole scene that shows a walker, or null while it is drawn as an instance. The scene is lent: it shows another walker later.</summary>
         public Node3D GetAgentNode(int agent) => (Node3D)Native.Call(MethodName.GetAgentNode, agent).AsGodotObject();

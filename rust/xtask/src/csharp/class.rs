@@ -271,6 +271,10 @@ fn write_property(out: &mut Writer, property: &Property, kind: &Type) {
 fn default_value(kind: &Type, default: &str) -> Option<String> {
     match kind {
         Type::Plain {
+            name: name @ ("float" | "double"),
+            ..
+        } if default == "inf" => Some(format!("{name}.PositiveInfinity")),
+        Type::Plain {
             name: "bool" | "int" | "uint" | "long" | "double" | "string",
             ..
         } => Some(default.to_owned()),
