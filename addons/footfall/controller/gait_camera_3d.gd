@@ -24,14 +24,14 @@ enum MouseLook {
 @export_range(0.0, 1.0, 0.01, "radians_as_degrees", "suffix:°/px") var mouse_speed := 0.005
 ## How fast the right stick turns the view.
 @export_range(0.0, 360.0, 1.0, "radians_as_degrees", "suffix:°/s") var stick_speed := 2.5
-## How long the camera takes for half of its way along the ground.
+## Half-life of the camera's distance from its place, along the ground.
 @export_range(0.0, 1.0, 0.01, "suffix:s") var follow_half_life := 0.05
-## How long the camera takes for half of its way up or down.
+## Half-life of the camera's distance from its place, up and down.
 @export_range(0.0, 1.0, 0.01, "suffix:s") var height_half_life := 0.15
 ## The nearest and the farthest that the mouse wheel brings it.
 @export var distance_range := Vector2(1.2, 12.0)
 
-## What it looks at, in global space; the character says.
+## The point that it looks at, in global space; set by the character.
 var _target := Vector3.INF
 var _climb := 0.0
 
@@ -44,7 +44,7 @@ func _ready() -> void:
 		add_excluded_object(body.get_rid())
 
 
-## Tells where what it looks at is now.
+## Moves the point that it looks at.
 func follow(point: Vector3) -> void:
 	if not _target.is_finite() or global_position.distance_to(point) > FAR:
 		global_position = point

@@ -13,9 +13,9 @@ signal landed(fall_speed: float)
 
 const GaitInput := preload("gait_input.gd")
 const GaitFigure := preload("gait_figure.gd")
-## Who has been without a floor for so long is in the air, seconds: shorter is a gap between two steps.
+## Time without a floor after which the character is in the air, seconds; shorter is a gap between two steps.
 const FALL_SECS := 0.12
-## How long a step lasts until one has told, seconds.
+## Duration of a step before the first has begun, seconds.
 const USUAL_STEP_SECS := 0.55
 ## A step takes half of this share of its time to come from the turning of the step before to its own.
 const TURN_ONSET := 0.6
@@ -37,7 +37,7 @@ const EYE_HEIGHT := 0.8
 	set(value):
 		character_scene = value
 		_wear()
-## Tells which bones are which, for rigs that [GaitGenerator3D] does not know.
+## Names of the bones, for rigs that [GaitGenerator3D] does not recognise.
 @export var bone_map: BoneMap:
 	set(value):
 		bone_map = value
@@ -54,7 +54,7 @@ const EYE_HEIGHT := 0.8
 @export_range(0.0, 360.0, 1.0, "or_greater", "radians_as_degrees", "suffix:°/s") var max_turn_rate := 2.0
 ## Higher edges than this are walls.
 @export_range(0.0, 0.5, 0.01, "or_greater", "suffix:m") var step_height := 0.22
-## How long the figure takes for half of an edge that the capsule stepped onto at once.
+## Half-life of the figure's distance from its capsule after an edge, which the capsule steps onto at once.
 @export_range(0.0, 0.5, 0.01, "suffix:s") var step_half_life := 0.15
 
 @export_group("Air")
