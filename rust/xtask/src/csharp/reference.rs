@@ -149,6 +149,16 @@ impl Reference {
         classes.retain(|class| {
             documents.class(&class.name).is_some() && !class.name.starts_with("Footfall")
         });
+        // The order of registration is the linker's, and another one in every profile. Properties are one struct's, in its order.
+        classes.sort_by(|one, other| one.name.cmp(&other.name));
+        for class in &mut classes {
+            class
+                .methods
+                .sort_by(|one, other| one.name.cmp(&other.name));
+            class
+                .signals
+                .sort_by(|one, other| one.name.cmp(&other.name));
+        }
         Ok(Self { classes, documents })
     }
 
