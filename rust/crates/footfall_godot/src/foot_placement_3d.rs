@@ -1,6 +1,8 @@
 //! `FootPlacement3D`: keeps feet on uneven ground.
 
 mod marks;
+mod methods;
+mod session;
 
 use crate::bones;
 use crate::character;
@@ -17,6 +19,7 @@ use glam::Affine3A;
 use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
 use marks::Marks;
+use session::Session;
 
 /// Time constant with which the character rises and falls with the ground, seconds.
 const RISE_SECS: f32 = 0.12;
@@ -127,15 +130,6 @@ pub(crate) struct FootPlacement3D {
     base: Base<SkeletonModifier3D>,
 }
 
-/// The feet of one skeleton.
-struct Session {
-    binding: SkeletonBinding,
-    character: Gd<Node3D>,
-    placer: FootPlacer,
-    ground: PhysicsGround,
-    pose: Pose,
-}
-
 #[godot_api]
 impl ISkeletonModifier3D for FootPlacement3D {
     fn enter_tree(&mut self) {
@@ -180,61 +174,6 @@ impl FootPlacement3D {
     #[signal]
     fn foot_lifted(foot: StringName);
 
-    /// Whether a foot, `left` or `right`, is locked to the ground.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn is_foot_planted(&self, foot: StringName) -> bool {
-        self.foot(&foot).is_some_and(|placed| placed.locked)
-    }
-
-    /// Where the sole of a foot, `left` or `right`, is, in global space: its origin lies on the ground under the ankle of the flat foot,
-    /// +Y is the ground's normal and +Z points to the toes. For a foot on its way, of the place over which it is.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn get_foot_transform(&self, foot: StringName) -> Transform3D {
-        self.foot(&foot).map_or(Transform3D::IDENTITY, |placed| {
-            convert::frame_transform(&placed.sole)
-        })
-    }
-
-    /// What a foot, `left` or `right`, is locked to: the body, or null.
-    #[func]
-    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
-    fn get_foot_support(&self, foot: StringName) -> Option<Gd<Node3D>> {
-        let support = self.foot(&foot)?.support?;
-        let id = InstanceId::try_from_i64(support.cast_signed())?;
-        Gd::try_from_instance_id(id).ok()
-    }
-
-    /// How far the pelvis is moved up against the animation, in metres.
-    #[func]
-    fn get_pelvis_offset(&self) -> f64 {
-        let session = self.session.as_ref();
-        session.map_or(0.0, |session| f64::from(session.placer.pelvis_offset_m()))
-    }
-
-    /// How steep the way under the feet is: rise by run, positive uphill.
-    #[func]
-    fn get_grade(&self) -> f64 {
-        let session = self.session.as_ref();
-        session.map_or(0.0, |session| f64::from(session.placer.grade()))
-    }
-
-    /// Forgets where the feet were put, for example after the character was put elsewhere. Also measures the skeleton anew.
-    #[func]
-    fn reset(&mut self) {
-        self.forget();
-        self.base_mut().update_configuration_warnings();
-    }
-
-    /// What keeps the feet from being placed, each with what to do next; empty when nothing does.
-    ///
-    /// The editor shows the same as configuration warnings.
-    #[func]
-    fn get_problems(&self) -> PackedStringArray {
-        self.problems()
-    }
-
     #[func]
     fn set_collision_mask(&mut self, collision_mask: u32) {
         self.collision_mask = collision_mask;
@@ -273,12 +212,6 @@ impl FootPlacement3D {
     pub(crate) fn forget(&mut self) {
         self.session = None;
         self.reported = None;
-    }
-
-    fn foot(&self, foot: &StringName) -> Option<&footfall_ik::placement::PlacedFoot> {
-        let side = Side::BOTH.into_iter().find(|side| *foot == side.name())?;
-        let session = self.session.as_ref()?;
-        Some(&session.placer.feet()[side.index()])
     }
 
     fn problems(&self) -> PackedStringArray {
@@ -393,7 +326,7 @@ impl FootPlacement3D {
         }
         let generator = generator_beside(&skeleton);
         let mut input = PlacementInput {
-            world_from_floor: floor(&session),
+            world_from_floor: session.world_from_floor(),
             contacts: None,
             landings: [None; 2],
             airborne: self.in_air,
@@ -459,16 +392,6 @@ impl FootPlacement3D {
         report::tell(&self.base_mut(), &problem);
         self.reported = Some(problem);
     }
-}
-
-/// The floor of the animation in the world.
-fn floor(session: &Session) -> Frame {
-    let world = convert::frame(session.character.get_global_transform());
-    let ground: Affine3A = session.binding.character_from_ground;
-    world.child(&Frame {
-        position: ground.translation.into(),
-        rotation: convert::rotation(&ground),
-    })
 }
 
 /// The generator that walks the same skeleton.

@@ -108,7 +108,7 @@ pub(crate) struct GaitCrowd3D {
 
     /// The `Path3D` that walkers follow, side by side within `path_width`.
     #[export(node_path = ("Path3D"))]
-    #[var(set = set_path)]
+    #[var(get = get_followed_path, set = set_path)]
     path: NodePath,
 
     /// How wide the stream of walkers along `path` is.
@@ -309,6 +309,12 @@ impl GaitCrowd3D {
             self.area = area.abs();
             self.restart();
         }
+    }
+
+    /// A getter named after the property would hide the node's own `get_path()`.
+    #[func]
+    fn get_followed_path(&self) -> NodePath {
+        self.path.clone()
     }
 
     #[func]

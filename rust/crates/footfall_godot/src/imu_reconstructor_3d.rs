@@ -1,5 +1,7 @@
 //! `ImuReconstructor3D`: a character that sensors drive.
 
+mod methods;
+mod session;
 mod worn;
 
 use crate::bones;
@@ -22,12 +24,9 @@ use godot::classes::{
     BoneMap, Engine, ISkeletonModifier3D, ProjectSettings, Resource, Skeleton3D, SkeletonModifier3D,
 };
 use godot::prelude::*;
+use session::{Session, standing};
 use std::sync::Arc;
 use worn::Worn;
-
-/// Somebody has stood for so long before anything is heard: a second.
-const STANDING_SAMPLES: u32 = 50;
-const STANDING_RATE_HZ: f64 = 50.0;
 
 /// Drives a whole character from one or two inertial sensors on a person: walking, running, jumping, hopping, sidestepping.
 ///
@@ -98,21 +97,6 @@ pub(crate) enum ImuMounting {
     Aligned = 1,
 }
 
-/// A reconstructor on a skeleton.
-struct Session {
-    reconstructor: Reconstructor,
-    prepared: Arc<Prepared>,
-    traveller: Traveller,
-    sensors: [Worn; MAX_SENSORS],
-    /// Whether it is found out how sensors are worn.
-    finds_mountings: bool,
-    /// How the body stands before anything is heard.
-    standing: Pose,
-    pose: Pose,
-    behaviour: Behaviour,
-    state: SensorState,
-}
-
 #[godot_api]
 impl ISkeletonModifier3D for ImuReconstructor3D {
     fn process_modification_with_delta(&mut self, delta: f64) {
@@ -134,25 +118,7 @@ impl ISkeletonModifier3D for ImuReconstructor3D {
     }
 
     fn get_configuration_warnings(&self) -> PackedStringArray {
-        let mut problems = PackedStringArray::new();
-        for problem in self
-            .prepared()
-            .err()
-            .into_iter()
-            .chain(self.source_problems())
-        {
-            problems.push(&GString::from(&problem));
-        }
-        match self.base().get_skeleton() {
-            None => problems.push(&bones::no_skeleton(&self.to_gd().upcast())),
-            Some(skeleton) if skeleton.is_inside_tree() => {
-                if let Err(problem) = self.bind(&skeleton) {
-                    problems.push(&GString::from(&problem));
-                }
-            }
-            Some(_) => {}
-        }
-        problems
+        self.problems()
     }
 }
 
@@ -180,102 +146,6 @@ impl ImuReconstructor3D {
     /// Samples come, for the first time or again.
     #[signal]
     fn sensor_found();
-
-    /// Takes a sample of a sensor: 0, or 1 for the second site of the model. `time` is the sensor's clock in seconds, `force` its specific
-    /// force in m/s² (gravity included), `rate` its angular rate in rad/s, both in its own axes.
-    ///
-    /// Samples that are late, repeated or not finite are left out.
-    #[func]
-    fn push_sample(&mut self, sensor: i64, time: f64, force: Vector3, rate: Vector3) {
-        let sample = ImuSample {
-            time_secs: time,
-            force: convert::vec3(force),
-            rate: convert::vec3(rate),
-        };
-        if let (Some(session), Ok(sensor)) = (&mut self.session, usize::try_from(sensor)) {
-            session.push(sensor, sample);
-        }
-    }
-
-    /// The direction in which the character faces now is straight ahead of the person from now on.
-    #[func]
-    fn reset_heading(&mut self) {
-        if let Some(session) = &mut self.session {
-            let heading = session.reconstructor.heading();
-            session.reconstructor.reset_heading(heading);
-        }
-    }
-
-    /// Turns the body by an angle, in radians, to the left: for steering by stick where the player cannot turn.
-    #[func]
-    fn turn(&mut self, angle: f64) {
-        if let Some(session) = &mut self.session {
-            let heading = session.reconstructor.heading() + angle as f32;
-            session.reconstructor.reset_heading(heading);
-        }
-    }
-
-    /// Forgets how the sensors are worn, and finds it out anew: when they have moved. The character stands until samples come.
-    #[func]
-    fn forget_mounting(&mut self) {
-        if let Some(session) = &mut self.session {
-            session.forget_mountings();
-        }
-    }
-
-    /// How old the newest sample of the live sensors is when the pose is made, in seconds; 0 for others.
-    #[func]
-    fn get_latency(&self) -> f64 {
-        let sensors = self.session.iter().flat_map(|session| &session.sensors);
-        sensors.map(Worn::latency_secs).fold(0.0, f64::max)
-    }
-
-    /// Records what a sensor gives from now on, into a file that a `ReplayImuSource` plays; tells whether the file can be made.
-    #[func]
-    fn start_recording(&mut self, path: GString, #[opt(default = 0)] sensor: i64) -> bool {
-        let path = String::from(path);
-        let path = ProjectSettings::singleton().globalize_path(path.as_str());
-        let worn = self.worn_mut(sensor);
-        worn.is_some_and(|worn| worn.start_recording(&path.to_string()))
-    }
-
-    /// Ends a recording and gives its file its name; tells whether all of it was written.
-    #[func]
-    fn stop_recording(&mut self, #[opt(default = 0)] sensor: i64) -> bool {
-        self.worn_mut(sensor).is_some_and(Worn::stop_recording)
-    }
-
-    /// What the body does: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
-    #[func]
-    fn get_behaviour(&self) -> StringName {
-        let behaviour = self
-            .session
-            .as_ref()
-            .map_or(Behaviour::Stand, |s| s.behaviour);
-        StringName::from(behaviour.name())
-    }
-
-    /// How certain the mounting of a sensor is, 0 to 1; 0 before it was found.
-    #[func]
-    fn get_mounting_certainty(&self, sensor: i64) -> f64 {
-        if self.mounting == ImuMounting::Aligned {
-            return 1.0;
-        }
-        let sensor = usize::try_from(sensor).unwrap_or(usize::MAX);
-        let worn = self.session.as_ref().and_then(|s| s.sensors.get(sensor));
-        let mounting = worn.and_then(|worn| worn.mounting);
-        mounting.map_or(0.0, |mounting| f64::from(mounting.certainty))
-    }
-
-    /// How far the body went, in the character's own space: since the frame before by the clock of who asks, as of `GaitGenerator3D`.
-    #[func]
-    fn get_root_motion_delta(&mut self) -> Transform3D {
-        let Some(skeleton) = self.base().get_skeleton() else {
-            return Transform3D::IDENTITY;
-        };
-        let now = Now::of(&Engine::singleton());
-        self.travelled.tell(Moves::of(&skeleton), now)
-    }
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<ImuModel>>) {
@@ -308,6 +178,28 @@ impl ImuReconstructor3D {
     fn worn_mut(&mut self, sensor: i64) -> Option<&mut Worn> {
         let sensor = usize::try_from(sensor).ok()?;
         self.session.as_mut()?.sensors.get_mut(sensor)
+    }
+
+    fn problems(&self) -> PackedStringArray {
+        let mut problems = PackedStringArray::new();
+        for problem in self
+            .prepared()
+            .err()
+            .into_iter()
+            .chain(self.source_problems())
+        {
+            problems.push(&GString::from(&problem));
+        }
+        match self.base().get_skeleton() {
+            None => problems.push(&bones::no_skeleton(&self.to_gd().upcast())),
+            Some(skeleton) if skeleton.is_inside_tree() => {
+                if let Err(problem) = self.bind(&skeleton) {
+                    problems.push(&GString::from(&problem));
+                }
+            }
+            Some(_) => {}
+        }
+        problems
     }
 
     /// What is wrong with the sources' settings.
@@ -435,77 +327,6 @@ impl ImuReconstructor3D {
         if told.1 != behaviour {
             let name = StringName::from(behaviour.name());
             self.signals().behaviour_changed().emit(&name);
-        }
-    }
-}
-
-/// What every sensor of a person measures who stands.
-fn standing_sample(time_secs: f64) -> ImuSample {
-    ImuSample {
-        time_secs,
-        force: Vec3::Y * GRAVITY_MPS2,
-        rate: Vec3::ZERO,
-    }
-}
-
-/// The pose, above the body's place, of somebody who stands.
-fn standing(reconstructor: &Reconstructor) -> Pose {
-    let mut own = reconstructor.clone();
-    let mut pose = Pose::default();
-    for n in 0..STANDING_SAMPLES {
-        for sensor in 0..MAX_SENSORS {
-            own.push(sensor, standing_sample(f64::from(n) / STANDING_RATE_HZ));
-        }
-        own.step((1.0 / STANDING_RATE_HZ) as f32, &mut pose);
-    }
-    own.split(&mut pose);
-    pose
-}
-
-/// A sample as the reconstructor takes it: as long as nobody knows how the sensor is worn, the person is taken to stand.
-fn understood(sample: ImuSample, unknown_mounting: bool) -> ImuSample {
-    if !unknown_mounting || !sample.is_finite() {
-        return sample;
-    }
-    standing_sample(sample.time_secs)
-}
-
-impl Session {
-    fn push(&mut self, sensor: usize, sample: ImuSample) {
-        let Some(worn) = self.sensors.get_mut(sensor) else {
-            return;
-        };
-        if sample.is_finite() {
-            worn.keep(sample);
-        }
-        let understood = understood(sample, self.finds_mountings && worn.mounting.is_none());
-        self.reconstructor.push(sensor, understood);
-    }
-
-    /// Takes what a source gives in a frame.
-    fn hear(&mut self, sensor: usize, heard: Heard, delta: f64) {
-        let reconstructor = &mut self.reconstructor;
-        let worn = &mut self.sensors[sensor];
-        let unknown = self.finds_mountings && worn.mounting.is_none();
-        worn.hear(heard, delta, |sample| {
-            reconstructor.push(sensor, understood(sample, unknown));
-        });
-    }
-
-    fn forget_mountings(&mut self) {
-        for (sensor, worn) in self.sensors.iter_mut().enumerate() {
-            worn.forget_mounting();
-            self.reconstructor.set_mounting(sensor, Quat::IDENTITY);
-        }
-        self.reconstructor.reset();
-    }
-
-    fn find_mountings(&mut self) {
-        let used = self.prepared.model().sites.len();
-        for (sensor, worn) in self.sensors.iter_mut().enumerate().take(used) {
-            if let Some(mounting) = worn.find_mounting(&self.prepared, sensor) {
-                self.reconstructor.set_mounting(sensor, mounting);
-            }
         }
     }
 }

@@ -1,0 +1,73 @@
+//! Methods of the node that scripts call.
+
+use super::FootPlacement3D;
+use crate::convert;
+use footfall_core::Side;
+use footfall_ik::placement::PlacedFoot;
+use godot::prelude::*;
+
+#[godot_api(secondary)]
+impl FootPlacement3D {
+    /// Whether a foot, `left` or `right`, is locked to the ground.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn is_foot_planted(&self, foot: StringName) -> bool {
+        self.foot(&foot).is_some_and(|placed| placed.locked)
+    }
+
+    /// Where the sole of a foot, `left` or `right`, is, in global space: its origin lies on the ground under the ankle of the flat foot,
+    /// +Y is the ground's normal and +Z points to the toes. For a foot on its way, of the place over which it is.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn get_foot_transform(&self, foot: StringName) -> Transform3D {
+        self.foot(&foot).map_or(Transform3D::IDENTITY, |placed| {
+            convert::frame_transform(&placed.sole)
+        })
+    }
+
+    /// What a foot, `left` or `right`, is locked to: the body, or null.
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn get_foot_support(&self, foot: StringName) -> Option<Gd<Node3D>> {
+        let support = self.foot(&foot)?.support?;
+        let id = InstanceId::try_from_i64(support.cast_signed())?;
+        Gd::try_from_instance_id(id).ok()
+    }
+
+    /// How far the pelvis is moved up against the animation, in metres.
+    #[func]
+    fn get_pelvis_offset(&self) -> f64 {
+        let session = self.session.as_ref();
+        session.map_or(0.0, |session| f64::from(session.placer.pelvis_offset_m()))
+    }
+
+    /// How steep the way under the feet is: rise by run, positive uphill.
+    #[func]
+    fn get_grade(&self) -> f64 {
+        let session = self.session.as_ref();
+        session.map_or(0.0, |session| f64::from(session.placer.grade()))
+    }
+
+    /// Forgets where the feet were put, for example after the character was put elsewhere. Also measures the skeleton anew.
+    #[func]
+    fn reset(&mut self) {
+        self.forget();
+        self.base_mut().update_configuration_warnings();
+    }
+
+    /// What keeps the feet from being placed, each with what to do next; empty when nothing does.
+    ///
+    /// The editor shows the same as configuration warnings.
+    #[func]
+    fn get_problems(&self) -> PackedStringArray {
+        self.problems()
+    }
+}
+
+impl FootPlacement3D {
+    fn foot(&self, foot: &StringName) -> Option<&PlacedFoot> {
+        let side = Side::BOTH.into_iter().find(|side| *foot == side.name())?;
+        let session = self.session.as_ref()?;
+        Some(&session.placer.feet()[side.index()])
+    }
+}

@@ -1,0 +1,117 @@
+//! Methods of the node that scripts call.
+
+use super::worn::Worn;
+use super::{ImuMounting, ImuReconstructor3D};
+use crate::convert;
+use crate::root_motion::{Moves, Now};
+use footfall_core::Behaviour;
+use footfall_imu::ImuSample;
+use godot::classes::{Engine, ProjectSettings};
+use godot::prelude::*;
+
+#[godot_api(secondary)]
+impl ImuReconstructor3D {
+    /// Takes a sample of a sensor: 0, or 1 for the second site of the model. `time` is the sensor's clock in seconds, `force` its specific
+    /// force in m/s² (gravity included), `rate` its angular rate in rad/s, both in its own axes.
+    ///
+    /// Samples that are late, repeated or not finite are left out.
+    #[func]
+    fn push_sample(&mut self, sensor: i64, time: f64, force: Vector3, rate: Vector3) {
+        let sample = ImuSample {
+            time_secs: time,
+            force: convert::vec3(force),
+            rate: convert::vec3(rate),
+        };
+        if let (Some(session), Ok(sensor)) = (&mut self.session, usize::try_from(sensor)) {
+            session.push(sensor, sample);
+        }
+    }
+
+    /// The direction in which the character faces now is straight ahead of the person from now on.
+    #[func]
+    fn reset_heading(&mut self) {
+        if let Some(session) = &mut self.session {
+            let heading = session.reconstructor.heading();
+            session.reconstructor.reset_heading(heading);
+        }
+    }
+
+    /// Turns the body by an angle, in radians, to the left: for steering by stick where the player cannot turn.
+    #[func]
+    fn turn(&mut self, angle: f64) {
+        if let Some(session) = &mut self.session {
+            let heading = session.reconstructor.heading() + angle as f32;
+            session.reconstructor.reset_heading(heading);
+        }
+    }
+
+    /// Forgets how the sensors are worn, and finds it out anew: when they have moved. The character stands until samples come.
+    #[func]
+    fn forget_mounting(&mut self) {
+        if let Some(session) = &mut self.session {
+            session.forget_mountings();
+        }
+    }
+
+    /// How old the newest sample of the live sensors is when the pose is made, in seconds; 0 for others.
+    #[func]
+    fn get_latency(&self) -> f64 {
+        let sensors = self.session.iter().flat_map(|session| &session.sensors);
+        sensors.map(Worn::latency_secs).fold(0.0, f64::max)
+    }
+
+    /// Records what a sensor gives from now on, into a file that a `ReplayImuSource` plays; tells whether the file can be made.
+    #[func]
+    fn start_recording(&mut self, path: GString, #[opt(default = 0)] sensor: i64) -> bool {
+        let path = String::from(path);
+        let path = ProjectSettings::singleton().globalize_path(path.as_str());
+        let worn = self.worn_mut(sensor);
+        worn.is_some_and(|worn| worn.start_recording(&path.to_string()))
+    }
+
+    /// Ends a recording and gives its file its name; tells whether all of it was written.
+    #[func]
+    fn stop_recording(&mut self, #[opt(default = 0)] sensor: i64) -> bool {
+        self.worn_mut(sensor).is_some_and(Worn::stop_recording)
+    }
+
+    /// What the body does: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
+    #[func]
+    fn get_behaviour(&self) -> StringName {
+        let behaviour = self
+            .session
+            .as_ref()
+            .map_or(Behaviour::Stand, |s| s.behaviour);
+        StringName::from(behaviour.name())
+    }
+
+    /// How certain the mounting of a sensor is, 0 to 1; 0 before it was found.
+    #[func]
+    fn get_mounting_certainty(&self, sensor: i64) -> f64 {
+        if self.mounting == ImuMounting::Aligned {
+            return 1.0;
+        }
+        let sensor = usize::try_from(sensor).unwrap_or(usize::MAX);
+        let worn = self.session.as_ref().and_then(|s| s.sensors.get(sensor));
+        let mounting = worn.and_then(|worn| worn.mounting);
+        mounting.map_or(0.0, |mounting| f64::from(mounting.certainty))
+    }
+
+    /// How far the body went, in the character's own space: since the frame before by the clock of who asks, as of `GaitGenerator3D`.
+    #[func]
+    fn get_root_motion_delta(&mut self) -> Transform3D {
+        let Some(skeleton) = self.base().get_skeleton() else {
+            return Transform3D::IDENTITY;
+        };
+        let now = Now::of(&Engine::singleton());
+        self.travelled.tell(Moves::of(&skeleton), now)
+    }
+
+    /// What keeps the character from being driven, each with what to do next; empty when nothing does.
+    ///
+    /// The editor shows the same as configuration warnings.
+    #[func]
+    fn get_problems(&self) -> PackedStringArray {
+        self.problems()
+    }
+}
