@@ -18,11 +18,11 @@ enum MouseLook {
 	NONE,
 }
 
-## How the mouse looks around.
+## Use of the mouse for looking around.
 @export var mouse_look := MouseLook.CAPTURED
-## How far a pixel of the mouse turns the view.
+## Angle by which a pixel of the mouse turns the view.
 @export_range(0.0, 1.0, 0.01, "radians_as_degrees", "suffix:°/px") var mouse_speed := 0.005
-## How fast the right stick turns the view.
+## Speed at which the right stick turns the view.
 @export_range(0.0, 360.0, 1.0, "radians_as_degrees", "suffix:°/s") var stick_speed := 2.5
 ## Half-life of the camera's distance from its place, along the ground.
 @export_range(0.0, 1.0, 0.01, "suffix:s") var follow_half_life := 0.05

@@ -21,7 +21,7 @@ const USUAL_STEP_SECS := 0.55
 const TURN_ONSET := 0.6
 ## Smaller angles are no reason for somebody who stands to take a step, radians.
 const LEAST_TURN := 0.15
-## How far ahead an edge is looked for, metres.
+## Distance ahead at which an edge is looked for, metres.
 const EDGE_REACH := 0.08
 ## Ground that is lower by less is level, metres.
 const EDGE_SLACK := 0.001
@@ -46,11 +46,11 @@ const EYE_HEIGHT := 0.8
 @export var measure_capsule := true
 
 @export_group("Walking")
-## How fast the character walks. Keep to what the model knows: [method GaitModel.get_speed_range].
+## Speed of the walk. Keep to what the model knows: [method GaitModel.get_speed_range].
 @export_range(0.0, 3.0, 0.05, "or_greater", "suffix:m/s") var walk_speed := 1.3
-## How fast the character hurries, while the action `hurry` is pressed.
+## Speed of hurrying, while the action `hurry` is pressed.
 @export_range(0.0, 3.0, 0.05, "or_greater", "suffix:m/s") var hurry_speed := 2.0
-## How fast it turns to where it is asked to go, at most.
+## Turning towards where it is asked to go, at most.
 @export_range(0.0, 360.0, 1.0, "or_greater", "radians_as_degrees", "suffix:°/s") var max_turn_rate := 2.0
 ## Higher edges than this are walls.
 @export_range(0.0, 0.5, 0.01, "or_greater", "suffix:m") var step_height := 0.22
@@ -58,9 +58,9 @@ const EYE_HEIGHT := 0.8
 @export_range(0.0, 0.5, 0.01, "suffix:s") var step_half_life := 0.15
 
 @export_group("Air")
-## How high it jumps; 0 for characters that do not.
+## Height of a jump; 0 for characters that do not.
 @export_range(0.0, 2.0, 0.01, "or_greater", "suffix:m") var jump_height := 0.45
-## How much is steered in the air.
+## Share of the control that is left in the air.
 @export_range(0.0, 20.0, 0.1, "suffix:m/s²") var air_acceleration := 3.0
 
 @export_group("Steering")
@@ -75,11 +75,11 @@ const EYE_HEIGHT := 0.8
 var autopilot := Vector3.ZERO
 ## Set to crouch without a player, where [GaitGenerator3D] can.
 var crouches := false
-## What walks the character; null without one.
+## The generator that walks the character; null without one.
 var gait: GaitGenerator3D:
 	get:
 		return _figure.gait if _figure else null
-## What keeps its feet on the ground; null without a character.
+## The foot placement that keeps its feet on the ground; null without a character.
 var placement: FootPlacement3D:
 	get:
 		return _figure.placement if _figure else null
@@ -287,7 +287,7 @@ func _flies() -> bool:
 	return _leaps or _air_secs > FALL_SECS
 
 
-## Who is in the air leaves the feet to the animation, which waits for the ground.
+## In the air, feet are left to the animation, which waits for the ground.
 func _stay_or_land(fall: float, delta: float) -> void:
 	if is_on_floor():
 		if _flies():

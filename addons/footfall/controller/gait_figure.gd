@@ -1,6 +1,6 @@
 @tool
 extends Node3D
-## What is seen of a character: your scene, with the nodes that walk it, above a capsule that it follows smoothly.
+## The visible part of a character: your scene, with the nodes that walk it, above a capsule that it follows smoothly.
 
 const MODEL := "res://addons/footfall/models/walk.footfall"
 ## The highest bone is a head's joint or its end: a body is so much higher.
@@ -11,10 +11,10 @@ const WIDTH_PER_SHOULDERS := 1.4
 const WIDTH_PER_HEIGHT := 0.3
 const MOST_WIDTH_PER_HEIGHT := 0.6
 
-## What walks the character and what keeps its feet on the ground; null without a skeleton.
+## The generator that walks the character and the foot placement below it; null without a skeleton.
 var gait: GaitGenerator3D
 var placement: FootPlacement3D
-## How far it is from where it belongs, and how fast that changes: metres, upwards.
+## Distance from where it belongs and the speed at which that changes: metres, upwards.
 var _off := 0.0
 var _off_speed := 0.0
 

@@ -3,7 +3,7 @@
 ## An action of the project's Input Map with one of the names below is used as it is. Where there is none, an action of the same
 ## name with the prefix `footfall_` is made for the running game: the Input Map of the project never changes.
 
-## What the controller asks for → the project's actions that do it, best first.
+## Actions of the controller → the project's actions that do it, best first.
 const NAMES: Dictionary[StringName, Array] = {
 	&"forward": [&"move_forward", &"move_forwards", &"walk_forward"],
 	&"back": [&"move_back", &"move_backward", &"move_backwards", &"walk_back"],

@@ -39,20 +39,20 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
-            public static readonly StringName IsFootPlanted = "is_foot_planted";
-            public static readonly StringName GetFootTransform = "get_foot_transform";
             public static readonly StringName GetFootSupport = "get_foot_support";
-            public static readonly StringName GetPelvisOffset = "get_pelvis_offset";
+            public static readonly StringName GetFootTransform = "get_foot_transform";
             public static readonly StringName GetGrade = "get_grade";
-            public static readonly StringName Reset = "reset";
+            public static readonly StringName GetPelvisOffset = "get_pelvis_offset";
             public static readonly StringName GetProblems = "get_problems";
+            public static readonly StringName IsFootPlanted = "is_foot_planted";
+            public static readonly StringName Reset = "reset";
         }
 
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class SignalName
         {
-            public static readonly StringName FootPlanted = "foot_planted";
             public static readonly StringName FootLifted = "foot_lifted";
+            public static readonly StringName FootPlanted = "foot_planted";
         }
 
         /// <summary>Makes a new <c>FootPlacement3D</c> in the engine.</summary>
@@ -105,14 +105,14 @@ namespace Footfall
             set => Native.Set(PropertyName.MaxTilt, value);
         }
 
-        /// <summary>How long the pelvis takes for half of its way up or down.</summary>
+        /// <summary>Time in which the pelvis makes half of its way up or down.</summary>
         public double PelvisHalfLife
         {
             get => Native.Get(PropertyName.PelvisHalfLife).AsDouble();
             set => Native.Set(PropertyName.PelvisHalfLife, value);
         }
 
-        /// <summary>How far the pelvis moves against the animation at most.</summary>
+        /// <summary>Largest offset of the pelvis from the animation.</summary>
         public double MaxPelvisOffset
         {
             get => Native.Get(PropertyName.MaxPelvisOffset).AsDouble();
@@ -170,7 +170,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Tells which bones are which joints, where they are not recognised. Comes before their names. Left empty, it is that of a <see cref="GaitGenerator3D"/> beside this node.</summary>
+        /// <summary>Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names. Left empty, it is that of a <see cref="GaitGenerator3D"/> beside this node.</summary>
         public BoneMap BoneMap
         {
             get => (BoneMap)Native.Get(PropertyName.BoneMap).AsGodotObject();
@@ -184,14 +184,6 @@ namespace Footfall
             set => Native.Set(PropertyName.DebugDraw, value);
         }
 
-        /// <summary>A foot is locked to the ground: <c>foot</c> is <c>left</c> or <c>right</c>, <c>position</c> the ground under its ankle in global space, <c>normal</c> the ground's. Emitted once for every contact, not in the editor.</summary>
-        /// <value>Handlers take <c>foot</c>, <c>position</c>, <c>normal</c>.</value>
-        public event Action<StringName, Vector3, Vector3> FootPlanted
-        {
-            add => Native.Connect(SignalName.FootPlanted, Callable.From(value));
-            remove => Native.Disconnect(SignalName.FootPlanted, Callable.From(value));
-        }
-
         /// <summary>A foot leaves the ground. Not emitted in the editor.</summary>
         /// <value>Handlers take <c>foot</c>.</value>
         public event Action<StringName> FootLifted
@@ -200,26 +192,34 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.FootLifted, Callable.From(value));
         }
 
-        /// <summary>Whether a foot, <c>left</c> or <c>right</c>, is locked to the ground.</summary>
-        public bool IsFootPlanted(StringName foot) => Native.Call(MethodName.IsFootPlanted, foot).AsBool();
+        /// <summary>A foot is locked to the ground: <c>foot</c> is <c>left</c> or <c>right</c>, <c>position</c> the ground under its ankle in global space, <c>normal</c> the ground's. Emitted once for every contact, not in the editor.</summary>
+        /// <value>Handlers take <c>foot</c>, <c>position</c>, <c>normal</c>.</value>
+        public event Action<StringName, Vector3, Vector3> FootPlanted
+        {
+            add => Native.Connect(SignalName.FootPlanted, Callable.From(value));
+            remove => Native.Disconnect(SignalName.FootPlanted, Callable.From(value));
+        }
+
+        /// <summary>The body that a foot, <c>left</c> or <c>right</c>, is locked to, or null.</summary>
+        public Node3D GetFootSupport(StringName foot) => (Node3D)Native.Call(MethodName.GetFootSupport, foot).AsGodotObject();
 
         /// <summary>Where the sole of a foot, <c>left</c> or <c>right</c>, is, in global space: its origin lies on the ground under the ankle of the flat foot, +Y is the ground's normal and +Z points to the toes. For a foot on its way, of the place over which it is.</summary>
         public Transform3D GetFootTransform(StringName foot) => Native.Call(MethodName.GetFootTransform, foot).AsTransform3D();
 
-        /// <summary>What a foot, <c>left</c> or <c>right</c>, is locked to: the body, or null.</summary>
-        public Node3D GetFootSupport(StringName foot) => (Node3D)Native.Call(MethodName.GetFootSupport, foot).AsGodotObject();
+        /// <summary>Grade of the ground under the feet: rise by run, positive uphill.</summary>
+        public double GetGrade() => Native.Call(MethodName.GetGrade).AsDouble();
 
-        /// <summary>How far the pelvis is moved up against the animation, in metres.</summary>
+        /// <summary>Offset of the pelvis from the animation, in metres upwards.</summary>
         public double GetPelvisOffset() => Native.Call(MethodName.GetPelvisOffset).AsDouble();
 
-        /// <summary>How steep the way under the feet is: rise by run, positive uphill.</summary>
-        public double GetGrade() => Native.Call(MethodName.GetGrade).AsDouble();
+        /// <summary>Problems that keep the feet from being placed, each with what to do next; empty without any.</summary>
+        /// <remarks>The editor shows the same as configuration warnings.</remarks>
+        public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
+
+        /// <summary>Whether a foot, <c>left</c> or <c>right</c>, is locked to the ground.</summary>
+        public bool IsFootPlanted(StringName foot) => Native.Call(MethodName.IsFootPlanted, foot).AsBool();
 
         /// <summary>Forgets where the feet were put, for example after the character was put elsewhere. Also measures the skeleton anew.</summary>
         public void Reset() => Native.Call(MethodName.Reset);
-
-        /// <summary>What keeps the feet from being placed, each with what to do next; empty when nothing does.</summary>
-        /// <remarks>The editor shows the same as configuration warnings.</remarks>
-        public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
     }
 }

@@ -49,40 +49,40 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
-            public static readonly StringName GetPositions = "get_positions";
+            public static readonly StringName AddAgents = "add_agents";
+            public static readonly StringName Advance = "advance";
+            public static readonly StringName ClearAgents = "clear_agents";
+            public static readonly StringName FindNearest = "find_nearest";
+            public static readonly StringName GetAgentCount = "get_agent_count";
+            public static readonly StringName GetAgentNode = "get_agent_node";
+            public static readonly StringName GetAgentOf = "get_agent_of";
+            public static readonly StringName GetAgents = "get_agents";
             public static readonly StringName GetHeadings = "get_headings";
             public static readonly StringName GetPhases = "get_phases";
+            public static readonly StringName GetPositions = "get_positions";
+            public static readonly StringName GetProblems = "get_problems";
             public static readonly StringName GetSizes = "get_sizes";
+            public static readonly StringName GetState = "get_state";
             public static readonly StringName GetTiers = "get_tiers";
-            public static readonly StringName SetSpeeds = "set_speeds";
-            public static readonly StringName SetTurnRates = "set_turn_rates";
-            public static readonly StringName SetTargets = "set_targets";
-            public static readonly StringName SetDestinations = "set_destinations";
-            public static readonly StringName SetTints = "set_tints";
-            public static readonly StringName SetAgentStyle = "set_agent_style";
-            public static readonly StringName AddAgents = "add_agents";
-            public static readonly StringName RemoveAgents = "remove_agents";
-            public static readonly StringName ClearAgents = "clear_agents";
-            public static readonly StringName Restart = "restart";
-            public static readonly StringName GetAgentCount = "get_agent_count";
-            public static readonly StringName GetAgents = "get_agents";
             public static readonly StringName HasAgent = "has_agent";
             public static readonly StringName IsMaking = "is_making";
             public static readonly StringName Pick = "pick";
-            public static readonly StringName FindNearest = "find_nearest";
-            public static readonly StringName GetAgentNode = "get_agent_node";
-            public static readonly StringName GetAgentOf = "get_agent_of";
-            public static readonly StringName GetState = "get_state";
+            public static readonly StringName RemoveAgents = "remove_agents";
+            public static readonly StringName Restart = "restart";
+            public static readonly StringName SetAgentStyle = "set_agent_style";
+            public static readonly StringName SetDestinations = "set_destinations";
+            public static readonly StringName SetSpeeds = "set_speeds";
             public static readonly StringName SetState = "set_state";
-            public static readonly StringName Advance = "advance";
-            public static readonly StringName GetProblems = "get_problems";
+            public static readonly StringName SetTargets = "set_targets";
+            public static readonly StringName SetTints = "set_tints";
+            public static readonly StringName SetTurnRates = "set_turn_rates";
         }
 
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class SignalName
         {
-            public static readonly StringName Footsteps = "footsteps";
             public static readonly StringName AgentsReady = "agents_ready";
+            public static readonly StringName Footsteps = "footsteps";
         }
 
         /// <summary>Makes a new <c>GaitCrowd3D</c> in the engine.</summary>
@@ -121,7 +121,7 @@ namespace Footfall
             set => SetList(PropertyName.Styles, value);
         }
 
-        /// <summary>How much of a style a walker wears at most. Each wears one of <see cref="Styles"/> or none, drawn by its seed.</summary>
+        /// <summary>Greatest weight of a walker's style. Each wears one of <see cref="Styles"/> or none, drawn by its seed.</summary>
         public double StyleAmount
         {
             get => Native.Get(PropertyName.StyleAmount).AsDouble();
@@ -135,14 +135,14 @@ namespace Footfall
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>How many walkers the crowd has of its own. <see cref="AddAgents"/> adds more. While it runs, raising it adds some and lowering it removes those that came last; the others walk on.</summary>
+        /// <summary>Number of walkers that the crowd has of its own. <see cref="AddAgents"/> adds more. While it runs, raising it adds some and lowering it removes those that came last; the others walk on.</summary>
         public long Count
         {
             get => Native.Get(PropertyName.Count).AsInt64();
             set => Native.Set(PropertyName.Count, value);
         }
 
-        /// <summary>What walkers do by themselves: wander over <see cref="Area"/>, follow <see cref="Path"/>, only what a script tells them, or go from place to place of the world's navigation map.</summary>
+        /// <summary>Behaviour of the walkers by themselves: they wander over <see cref="Area"/>, follow <see cref="Path"/>, go from place to place of the world's navigation map, or do only what a script tells them.</summary>
         public CrowdBehaviour Behaviour
         {
             get => (CrowdBehaviour)Native.Get(PropertyName.Behaviour).AsInt64();
@@ -163,7 +163,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Path, value);
         }
 
-        /// <summary>How wide the stream of walkers along <see cref="Path"/> is.</summary>
+        /// <summary>Width of the stream of walkers along <see cref="Path"/>.</summary>
         public double PathWidth
         {
             get => Native.Get(PropertyName.PathWidth).AsDouble();
@@ -226,28 +226,28 @@ namespace Footfall
             set => Native.Set(PropertyName.GroundMask, value);
         }
 
-        /// <summary>How many of the nearest walkers are whole scenes.</summary>
+        /// <summary>Number of the nearest walkers that are whole scenes.</summary>
         public long FullCount
         {
             get => Native.Get(PropertyName.FullCount).AsInt64();
             set => Native.Set(PropertyName.FullCount, value);
         }
 
-        /// <summary>How far from the camera they are at most.</summary>
+        /// <summary>Their greatest distance from the camera.</summary>
         public double FullDistance
         {
             get => Native.Get(PropertyName.FullDistance).AsDouble();
             set => Native.Set(PropertyName.FullDistance, value);
         }
 
-        /// <summary>How many walkers beyond them have a new pose in every frame.</summary>
+        /// <summary>Number of walkers beyond them that have a new pose in every frame.</summary>
         public long NearCount
         {
             get => Native.Get(PropertyName.NearCount).AsInt64();
             set => Native.Set(PropertyName.NearCount, value);
         }
 
-        /// <summary>How far from the camera they are at most.</summary>
+        /// <summary>Their greatest distance from the camera.</summary>
         public double NearDistance
         {
             get => Native.Get(PropertyName.NearDistance).AsDouble();
@@ -275,14 +275,6 @@ namespace Footfall
             set => Native.Set(PropertyName.Material, value);
         }
 
-        /// <summary>Feet touched down in the last frame: whose, which (0 left, 1 right), and where in global space. One signal for all of them.</summary>
-        /// <value>Handlers take <c>agents</c>, <c>feet</c>, <c>positions</c>.</value>
-        public event Action<int[], byte[], Vector3[]> Footsteps
-        {
-            add => Native.Connect(SignalName.Footsteps, Callable.From(value));
-            remove => Native.Disconnect(SignalName.Footsteps, Callable.From(value));
-        }
-
         /// <summary>Walkers were made and began to walk in the last frame: their ids. Making many takes a while, on other threads; <see cref="IsMaking"/> tells whether there are more to come.</summary>
         /// <value>Handlers take <c>agents</c>.</value>
         public event Action<int[]> AgentsReady
@@ -291,8 +283,39 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.AgentsReady, Callable.From(value));
         }
 
-        /// <summary>Places of walkers, on the ground, in this node's space: one place for each id in <c>agents</c>, or for everybody in the order of <see cref="GetAgents"/>. An id that nobody has gets places that are not finite.</summary>
-        public Vector3[] GetPositions(int[] agents) => Native.Call(MethodName.GetPositions, agents).AsVector3Array();
+        /// <summary>Feet touched down in the last frame: whose, which (0 left, 1 right), and where in global space. One signal for all of them.</summary>
+        /// <value>Handlers take <c>agents</c>, <c>feet</c>, <c>positions</c>.</value>
+        public event Action<int[], byte[], Vector3[]> Footsteps
+        {
+            add => Native.Connect(SignalName.Footsteps, Callable.From(value));
+            remove => Native.Disconnect(SignalName.Footsteps, Callable.From(value));
+        }
+
+        /// <summary>Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns their ids, in the same order, without those for whom there was no finite place; none when the crowd cannot be made.</summary>
+        /// <remarks>They stand in all arrays at once, and appear as soon as they are made, on other threads: see <see cref="AgentsReady"/>.</remarks>
+        public int[] AddAgents(Vector3[] positions, float[] headings) => Native.Call(MethodName.AddAgents, positions, headings).AsInt32Array();
+
+        /// <summary>Lets time pass at once, in seconds, whatever <see cref="Playing"/> says: for tests, and for games with a clock of their own. It waits for walkers that are still being made, so that equal calls give equal crowds.</summary>
+        public void Advance(double delta) => Native.Call(MethodName.Advance, delta);
+
+        /// <summary>Removes all walkers.</summary>
+        public void ClearAgents() => Native.Call(MethodName.ClearAgents);
+
+        /// <summary>The id of the walker that is nearest to a point of global space, at most <c>max_distance</c> away, or -1.</summary>
+        public int FindNearest(Vector3 position, double maxDistance = double.PositiveInfinity) => Native.Call(MethodName.FindNearest, position, maxDistance).AsInt32();
+
+        /// <summary>Number of walkers, with those who are still being made.</summary>
+        public long GetAgentCount() => Native.Call(MethodName.GetAgentCount).AsInt64();
+
+        /// <summary>The whole scene that shows a walker, or null while it is drawn as an instance. The scene is lent: it shows another walker later.</summary>
+        public Node3D GetAgentNode(int agent) => (Node3D)Native.Call(MethodName.GetAgentNode, agent).AsGodotObject();
+
+        /// <summary>The id of the walker whom a node shows: a whole scene of the crowd, or anything in it, such as a body that a ray has hit. -1 when it shows nobody.</summary>
+        public int GetAgentOf(Node node) => Native.Call(MethodName.GetAgentOf, node).AsInt32();
+
+        /// <summary>The ids of all walkers, in the order in which they came. All arrays that are for everybody have this order.</summary>
+        /// <remarks>An id stays a walker's own for as long as it is in the crowd, through <see cref="GetState"/> and <see cref="SetState"/> too, and is nobody else's for long after. As long as nobody is removed, ids are 0, 1, 2 and so on.</remarks>
+        public int[] GetAgents() => Native.Call(MethodName.GetAgents).AsInt32Array();
 
         /// <summary>Headings of walkers, radians about +Y from +Z. Shapes and ids as of <see cref="GetPositions"/>.</summary>
         public float[] GetHeadings(int[] agents) => Native.Call(MethodName.GetHeadings, agents).AsFloat32Array();
@@ -300,50 +323,20 @@ namespace Footfall
         /// <summary>Share of its stride that each walker has behind it: 0 when its left foot lands, 0.5 when its right foot does. Shapes and ids as of <see cref="GetPositions"/>.</summary>
         public float[] GetPhases(int[] agents) => Native.Call(MethodName.GetPhases, agents).AsFloat32Array();
 
+        /// <summary>Places of walkers, on the ground, in this node's space: one place for each id in <c>agents</c>, or for everybody in the order of <see cref="GetAgents"/>. An id that nobody has gets places that are not finite.</summary>
+        public Vector3[] GetPositions(int[] agents) => Native.Call(MethodName.GetPositions, agents).AsVector3Array();
+
+        /// <summary>Problems that keep the crowd from walking, each with what to do next; empty without any.</summary>
+        public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
+
         /// <summary>The size of walkers, against the character. Shapes and ids as of <see cref="GetPositions"/>.</summary>
         public float[] GetSizes(int[] agents) => Native.Call(MethodName.GetSizes, agents).AsFloat32Array();
 
+        /// <summary>The crowd as it is now, to be saved: who walks where, how, in which phase and with which id. <see cref="SetState"/> goes on from it with the same walkers at the same places; their next steps are drawn anew.</summary>
+        public byte[] GetState() => Native.Call(MethodName.GetState).AsByteArray();
+
         /// <summary>Tiers of walkers: 0 as a whole scene, 1 with a new pose in every frame, 2 as one far away, or one that is not made yet. Shapes and ids as of <see cref="GetPositions"/>; 2 for an id that nobody has.</summary>
         public byte[] GetTiers(int[] agents) => Native.Call(MethodName.GetTiers, agents).AsByteArray();
-
-        /// <summary>Sets the speeds that walkers would like to walk, in metres per second: one speed for each id in <c>agents</c>, or for everybody in the order of <see cref="GetAgents"/>. Missing or not finite: it stays.</summary>
-        public void SetSpeeds(float[] speeds, int[] agents) => Native.Call(MethodName.SetSpeeds, speeds, agents);
-
-        /// <summary>Sets how fast walkers turn, in radians per second, positive to their left; they give up their goals. For <see cref="Behaviour"/> scripted. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
-        public void SetTurnRates(float[] turnRates, int[] agents) => Native.Call(MethodName.SetTurnRates, turnRates, agents);
-
-        /// <summary>Sends walkers straight to places, in this node's space. They stop there. For <see cref="Behaviour"/> scripted. Not finite: the goal stays. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
-        public void SetTargets(Vector3[] targets, int[] agents) => Native.Call(MethodName.SetTargets, targets, agents);
-
-        /// <summary>Sends walkers over the navigation map of the world, around what is between, to places in this node's space. They stop there. For <see cref="Behaviour"/> scripted. Not finite: the goal stays. Each way takes some tens of microseconds to find, once. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
-        /// <remarks>Returns whether there was a way for everybody; whoever has none keeps its goal. In the first frames of a scene there is no map yet.</remarks>
-        public bool SetDestinations(Vector3[] destinations, int[] agents) => Native.Call(MethodName.SetDestinations, destinations, agents).AsBool();
-
-        /// <summary>Sets the tints of walkers. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
-        public void SetTints(Color[] colours, int[] agents) => Native.Call(MethodName.SetTints, colours, agents);
-
-        /// <summary>Lets one walker wear styles: weights in the order of <see cref="Styles"/>, taken up with its next step. They are rounded to eighths, so that a crowd needs few mixtures.</summary>
-        public void SetAgentStyle(int agent, float[] weights) => Native.Call(MethodName.SetAgentStyle, agent, weights);
-
-        /// <summary>Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns their ids, in the same order, without those for whom there was no finite place; none when the crowd cannot be made.</summary>
-        /// <remarks>They stand in all arrays at once, and appear as soon as they are made, on other threads: see <see cref="AgentsReady"/>.</remarks>
-        public int[] AddAgents(Vector3[] positions, float[] headings) => Native.Call(MethodName.AddAgents, positions, headings).AsInt32Array();
-
-        /// <summary>Removes the walkers that have these ids. Nobody else's id or way changes.</summary>
-        public void RemoveAgents(int[] agents) => Native.Call(MethodName.RemoveAgents, agents);
-
-        /// <summary>Removes all walkers.</summary>
-        public void ClearAgents() => Native.Call(MethodName.ClearAgents);
-
-        /// <summary>Makes the crowd anew from <see cref="Count"/> and <see cref="Seed"/>.</summary>
-        public void Restart() => Native.Call(MethodName.Restart);
-
-        /// <summary>How many walkers there are, with those who are still being made.</summary>
-        public long GetAgentCount() => Native.Call(MethodName.GetAgentCount).AsInt64();
-
-        /// <summary>The ids of all walkers, in the order in which they came. All arrays that are for everybody have this order.</summary>
-        /// <remarks>An id stays a walker's own for as long as it is in the crowd, through <see cref="GetState"/> and <see cref="SetState"/> too, and is nobody else's for long after. As long as nobody is removed, ids are 0, 1, 2 and so on.</remarks>
-        public int[] GetAgents() => Native.Call(MethodName.GetAgents).AsInt32Array();
 
         /// <summary>Whether a walker has this id.</summary>
         public bool HasAgent(int agent) => Native.Call(MethodName.HasAgent, agent).AsBool();
@@ -354,25 +347,32 @@ namespace Footfall
         /// <summary>The id of the first walker that a ray meets, or -1. In global space, as <c>Camera3D.project_ray_origin()</c> and <c>Camera3D.project_ray_normal()</c> have it: from one point to another. Bodies count as capsules.</summary>
         public int Pick(Vector3 from, Vector3 to) => Native.Call(MethodName.Pick, from, to).AsInt32();
 
-        /// <summary>The id of the walker that is nearest to a point of global space, at most <c>max_distance</c> away, or -1.</summary>
-        public int FindNearest(Vector3 position, double maxDistance = double.PositiveInfinity) => Native.Call(MethodName.FindNearest, position, maxDistance).AsInt32();
+        /// <summary>Removes the walkers that have these ids. Nobody else's id or way changes.</summary>
+        public void RemoveAgents(int[] agents) => Native.Call(MethodName.RemoveAgents, agents);
 
-        /// <summary>The whole scene that shows a walker, or null while it is drawn as an instance. The scene is lent: it shows another walker later.</summary>
-        public Node3D GetAgentNode(int agent) => (Node3D)Native.Call(MethodName.GetAgentNode, agent).AsGodotObject();
+        /// <summary>Makes the crowd anew from <see cref="Count"/> and <see cref="Seed"/>.</summary>
+        public void Restart() => Native.Call(MethodName.Restart);
 
-        /// <summary>The id of the walker whom a node shows: a whole scene of the crowd, or anything in it, such as a body that a ray has hit. -1 when it shows nobody.</summary>
-        public int GetAgentOf(Node node) => Native.Call(MethodName.GetAgentOf, node).AsInt32();
+        /// <summary>Lets one walker wear styles: weights in the order of <see cref="Styles"/>, taken up with its next step. They are rounded to eighths, so that a crowd needs few mixtures.</summary>
+        public void SetAgentStyle(int agent, float[] weights) => Native.Call(MethodName.SetAgentStyle, agent, weights);
 
-        /// <summary>The crowd as it is now, to be saved: who walks where, how, in which phase and with which id. <see cref="SetState"/> goes on from it with the same walkers at the same places; their next steps are drawn anew.</summary>
-        public byte[] GetState() => Native.Call(MethodName.GetState).AsByteArray();
+        /// <summary>Sends walkers over the navigation map of the world, around what is between, to places in this node's space. They stop there. For <see cref="Behaviour"/> scripted. Not finite: the goal stays. Each way takes some tens of microseconds to find, once. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        /// <remarks>Returns whether there was a way for everybody; whoever has none keeps its goal. In the first frames of a scene there is no map yet.</remarks>
+        public bool SetDestinations(Vector3[] destinations, int[] agents) => Native.Call(MethodName.SetDestinations, destinations, agents).AsBool();
+
+        /// <summary>Sets the speeds that walkers would like to walk, in metres per second: one speed for each id in <c>agents</c>, or for everybody in the order of <see cref="GetAgents"/>. Missing or not finite: it stays.</summary>
+        public void SetSpeeds(float[] speeds, int[] agents) => Native.Call(MethodName.SetSpeeds, speeds, agents);
 
         /// <summary>Goes on from what <see cref="GetState"/> told. Bytes that are no crowd are refused: the log says why, and the crowd stays as it is.</summary>
         public void SetState(byte[] state) => Native.Call(MethodName.SetState, state);
 
-        /// <summary>Lets time pass at once, in seconds, whatever <see cref="Playing"/> says: for tests, and for games with a clock of their own. It waits for walkers that are still being made, so that equal calls give equal crowds.</summary>
-        public void Advance(double delta) => Native.Call(MethodName.Advance, delta);
+        /// <summary>Sends walkers straight to places, in this node's space. They stop there. For <see cref="Behaviour"/> scripted. Not finite: the goal stays. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        public void SetTargets(Vector3[] targets, int[] agents) => Native.Call(MethodName.SetTargets, targets, agents);
 
-        /// <summary>What keeps the crowd from walking, each with what to do next; empty when nothing does.</summary>
-        public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
+        /// <summary>Sets the tints of walkers. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        public void SetTints(Color[] colours, int[] agents) => Native.Call(MethodName.SetTints, colours, agents);
+
+        /// <summary>Sets how fast walkers turn, in radians per second, positive to their left; they give up their goals. For <see cref="Behaviour"/> scripted. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        public void SetTurnRates(float[] turnRates, int[] agents) => Native.Call(MethodName.SetTurnRates, turnRates, agents);
     }
 }

@@ -43,28 +43,28 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
-            public static readonly StringName GetRootMotionDelta = "get_root_motion_delta";
+            public static readonly StringName Bake = "bake";
             public static readonly StringName GetEffectiveSeed = "get_effective_seed";
+            public static readonly StringName GetProblems = "get_problems";
+            public static readonly StringName GetRootMotionDelta = "get_root_motion_delta";
+            public static readonly StringName GetState = "get_state";
+            public static readonly StringName GetTime = "get_time";
+            public static readonly StringName HandOver = "hand_over";
             public static readonly StringName IsFootOnGround = "is_foot_on_ground";
+            public static readonly StringName IsHandedOver = "is_handed_over";
             public static readonly StringName Restart = "restart";
             public static readonly StringName Seek = "seek";
-            public static readonly StringName GetTime = "get_time";
-            public static readonly StringName GetProblems = "get_problems";
-            public static readonly StringName GetState = "get_state";
             public static readonly StringName SetState = "set_state";
             public static readonly StringName TakeOver = "take_over";
-            public static readonly StringName HandOver = "hand_over";
-            public static readonly StringName IsHandedOver = "is_handed_over";
-            public static readonly StringName Bake = "bake";
         }
 
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class SignalName
         {
-            public static readonly StringName Footstep = "footstep";
             public static readonly StringName FootholdPlanned = "foothold_planned";
-            public static readonly StringName TakenOver = "taken_over";
+            public static readonly StringName Footstep = "footstep";
             public static readonly StringName HandedOver = "handed_over";
+            public static readonly StringName TakenOver = "taken_over";
         }
 
         /// <summary>Makes a new <c>GaitGenerator3D</c> in the engine.</summary>
@@ -121,7 +121,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Speed, value);
         }
 
-        /// <summary>How fast the character turns, in radians per second. Positive turns to its left. Taken up with the next step.</summary>
+        /// <summary>Turning of the character in radians per second. Positive turns to its left. Taken up with the next step.</summary>
         public double TurnRate
         {
             get => Native.Get(PropertyName.TurnRate).AsDouble();
@@ -144,21 +144,21 @@ namespace Footfall
             set => Native.Set(PropertyName.SpineWeight, value);
         }
 
-        /// <summary>How much of the pose of <c>Neck</c> and <c>Head</c> is the walk's; at 0 they look where the animation has them look in the character's space.</summary>
+        /// <summary>Weight of the walk in the pose of <c>Neck</c> and <c>Head</c>; at 0 they look where the animation has them look in the character's space.</summary>
         public double HeadWeight
         {
             get => Native.Get(PropertyName.HeadWeight).AsDouble();
             set => Native.Set(PropertyName.HeadWeight, value);
         }
 
-        /// <summary>How much of the left arm's pose, from shoulder to hand, is the walk's: at 0 it hangs from the walking chest as the animation poses it.</summary>
+        /// <summary>Weight of the walk in the left arm's pose, from shoulder to hand; at 0 it hangs from the walking chest as the animation poses it.</summary>
         public double LeftArmWeight
         {
             get => Native.Get(PropertyName.LeftArmWeight).AsDouble();
             set => Native.Set(PropertyName.LeftArmWeight, value);
         }
 
-        /// <summary>How much of the right arm's pose, from shoulder to hand, is the walk's: at 0 it hangs from the walking chest as the animation poses it.</summary>
+        /// <summary>Weight of the walk in the right arm's pose, from shoulder to hand; at 0 it hangs from the walking chest as the animation poses it.</summary>
         public double RightArmWeight
         {
             get => Native.Get(PropertyName.RightArmWeight).AsDouble();
@@ -181,7 +181,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Phase, value);
         }
 
-        /// <summary>How much steps differ from each other: 0 repeats the same step, 1 varies as people do.</summary>
+        /// <summary>Variation between steps: 0 repeats the same step, 1 varies as people do.</summary>
         /// <remarks>Changing it starts the walk anew.</remarks>
         public double Variation
         {
@@ -220,20 +220,11 @@ namespace Footfall
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Tells which bones are which joints, where they are not recognised. Comes before their names.</summary>
+        /// <summary>Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names.</summary>
         public BoneMap BoneMap
         {
             get => (BoneMap)Native.Get(PropertyName.BoneMap).AsGodotObject();
             set => Native.Set(PropertyName.BoneMap, value);
-        }
-
-        /// <summary>A foot touches down: <c>foot</c> is <c>left</c> or <c>right</c>, <c>position</c> the middle of the contact on the ground, in global space.</summary>
-        /// <remarks>Emitted exactly once for every initial contact, not in the editor.</remarks>
-        /// <value>Handlers take <c>foot</c>, <c>position</c>.</value>
-        public event Action<StringName, Vector3> Footstep
-        {
-            add => Native.Connect(SignalName.Footstep, Callable.From(value));
-            remove => Native.Disconnect(SignalName.Footstep, Callable.From(value));
         }
 
         /// <summary>A step begins: <c>foot</c>, <c>left</c> or <c>right</c>, will land at <c>position</c> in <c>seconds</c>, as long as the walk goes on as it does.</summary>
@@ -245,11 +236,13 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.FootholdPlanned, Callable.From(value));
         }
 
-        /// <summary>What was there before <see cref="TakeOver"/> has died away: the pose is the walk's.</summary>
-        public event Action TakenOver
+        /// <summary>A foot touches down: <c>foot</c> is <c>left</c> or <c>right</c>, <c>position</c> the middle of the contact on the ground, in global space.</summary>
+        /// <remarks>Emitted exactly once for every initial contact, not in the editor.</remarks>
+        /// <value>Handlers take <c>foot</c>, <c>position</c>.</value>
+        public event Action<StringName, Vector3> Footstep
         {
-            add => Native.Connect(SignalName.TakenOver, Callable.From(value));
-            remove => Native.Disconnect(SignalName.TakenOver, Callable.From(value));
+            add => Native.Connect(SignalName.Footstep, Callable.From(value));
+            remove => Native.Disconnect(SignalName.Footstep, Callable.From(value));
         }
 
         /// <summary>After <see cref="HandOver"/>: the pose is that of what else animates the skeleton.</summary>
@@ -259,50 +252,12 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.HandedOver, Callable.From(value));
         }
 
-        /// <summary>How far and about what the character travelled, in its own space: axes and scale are those of its node.</summary>
-        /// <remarks>
-        /// <para>Asked in <c>_physics_process()</c>, since the frame of the physics before; asked in <c>_process()</c>, since the frame before: whoever asks once a frame is told all of it, at any frame rate, and asked twice in a frame it says the same. After the skeleton has moved within a frame, as in a function connected to <c>modification_processed</c>, it is that frame's. For a skeleton that is advanced by hand, it is what the last <c>advance()</c> did.</para>
-        /// <para>With <see cref="RootMotion"/> off, move the character by it in a function connected to <c>modification_processed</c>, so that body and feet move in the same frame: <c>character.global_transform *= gait.get_root_motion_delta()</c>, or with collisions <c>character.move_and_collide(character.global_basis * gait.get_root_motion_delta().origin)</c>.</para>
-        /// </remarks>
-        public Transform3D GetRootMotionDelta() => Native.Call(MethodName.GetRootMotionDelta).AsTransform3D();
-
-        /// <summary>The seed of the walk: <see cref="Seed"/>, or where that is 0 the node's own, or that of the state that it goes on from.</summary>
-        public long GetEffectiveSeed() => Native.Call(MethodName.GetEffectiveSeed).AsInt64();
-
-        /// <summary>Whether any part of a foot, <c>left</c> or <c>right</c>, stands on the ground.</summary>
-        public bool IsFootOnGround(StringName foot) => Native.Call(MethodName.IsFootOnGround, foot).AsBool();
-
-        /// <summary>Starts the walk anew from <see cref="Seed"/> and <see cref="Phase"/>, where the character stands now. Also measures the skeleton anew.</summary>
-        public void Restart() => Native.Call(MethodName.Restart);
-
-        /// <summary>Goes to a time of the walk, in seconds from where it began: it is walked there from its beginning with the speed, turning and styles that are set now. The character does not travel by it. At most an hour; a minute takes some milliseconds.</summary>
-        public void Seek(double seconds) => Native.Call(MethodName.Seek, seconds);
-
-        /// <summary>How long the walk has gone on, in seconds from where it began.</summary>
-        public double GetTime() => Native.Call(MethodName.GetTime).AsDouble();
-
-        /// <summary>What keeps the character from walking, each with what to do next; empty when nothing does.</summary>
-        /// <remarks>The editor shows the same as configuration warnings.</remarks>
-        public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
-
-        /// <summary>The walk as it is now, to be saved or sent: <see cref="SetState"/> of a node with the same model, styles and body goes on from it with the same poses. About 1.5 kB; empty while the character does not walk.</summary>
-        /// <remarks>It holds the walk and not the place of the character: save that beside it.</remarks>
-        public byte[] GetState() => Native.Call(MethodName.GetState).AsByteArray();
-
-        /// <summary>Goes on from a state that <see cref="GetState"/> told, at the next frame. A state of another model, other styles or from a damaged file is refused: the log says why, and the walk goes on as it was.</summary>
-        /// <remarks><see cref="Seed"/>, <see cref="Phase"/> and <see cref="Variation"/> keep their values, for the next walk that starts anew.</remarks>
-        public void SetState(byte[] state) => Native.Call(MethodName.SetState, state);
-
-        /// <summary>Begins to walk from whatever pose and speed the skeleton has: the end of an attack, a jump that lands, a ragdoll. The walk begins on the side and at the moment of the stride that fit best, or with a first step if the body stands; feet on the ground stay there until they are lifted. What parts the two motions is gone in <c>seconds</c>; then <see cref="TakenOver"/> is emitted.</summary>
-        /// <remarks>Call it after <see cref="HandOver"/>, so that the node knows how fast the body is; else it watches the skeleton for two frames first. A <c>PhysicalBoneSimulator3D</c> has to be above this node under the skeleton; where the body fell, the character follows it.</remarks>
-        public void TakeOver(double seconds) => Native.Call(MethodName.TakeOver, seconds);
-
-        /// <summary>Leaves the skeleton to what else animates it, such as an <c>AnimationPlayer</c>: its pose takes over within <c>seconds</c>, the character comes to rest, and feet on the ground stay where they are, or make a step if the animation has them elsewhere; that may take half a second more. Then <see cref="HandedOver"/> is emitted, and the node does nothing until <see cref="TakeOver"/>.</summary>
-        /// <remarks>With 0 seconds it does nothing from the next frame on.</remarks>
-        public void HandOver(double seconds) => Native.Call(MethodName.HandOver, seconds);
-
-        /// <summary>Whether the skeleton is left to other animation: after <see cref="HandOver"/>, until <see cref="TakeOver"/>.</summary>
-        public bool IsHandedOver() => Native.Call(MethodName.IsHandedOver).AsBool();
+        /// <summary>Emitted when the pose from before <see cref="TakeOver"/> has faded: the pose is the walk's.</summary>
+        public event Action TakenOver
+        {
+            add => Native.Connect(SignalName.TakenOver, Callable.From(value));
+            remove => Native.Disconnect(SignalName.TakenOver, Callable.From(value));
+        }
 
         /// <summary>Makes animations of this character's walk, which an <c>AnimationPlayer</c> or <c>AnimationTree</c> plays without the add-on: for a platform that the add-on is not built for, for another tool, or for a crowd of one's own. Returns <c>null</c> where the character cannot walk; the log says why.</summary>
         /// <remarks>
@@ -311,5 +266,50 @@ namespace Footfall
         /// <para>A clip takes some tens of milliseconds to make. Nothing of the node changes.</para>
         /// </remarks>
         public AnimationLibrary Bake(double seconds, string[] styles, float[] speeds) => (AnimationLibrary)Native.Call(MethodName.Bake, seconds, styles, speeds).AsGodotObject();
+
+        /// <summary>The seed of the walk: <see cref="Seed"/>, or where that is 0 the node's own, or that of the state that it goes on from.</summary>
+        public long GetEffectiveSeed() => Native.Call(MethodName.GetEffectiveSeed).AsInt64();
+
+        /// <summary>Problems that keep the character from walking, each with what to do next; empty without any.</summary>
+        /// <remarks>The editor shows the same as configuration warnings.</remarks>
+        public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
+
+        /// <summary>How far and about what the character travelled, in its own space: axes and scale are those of its node.</summary>
+        /// <remarks>
+        /// <para>Asked in <c>_physics_process()</c>, since the frame of the physics before; asked in <c>_process()</c>, since the frame before: whoever asks once a frame is told all of it, at any frame rate, and asked twice in a frame it says the same. After the skeleton has moved within a frame, as in a function connected to <c>modification_processed</c>, it is that frame's. For a skeleton that is advanced by hand, it is what the last <c>advance()</c> did.</para>
+        /// <para>With <see cref="RootMotion"/> off, move the character by it in a function connected to <c>modification_processed</c>, so that body and feet move in the same frame: <c>character.global_transform *= gait.get_root_motion_delta()</c>, or with collisions <c>character.move_and_collide(character.global_basis * gait.get_root_motion_delta().origin)</c>.</para>
+        /// </remarks>
+        public Transform3D GetRootMotionDelta() => Native.Call(MethodName.GetRootMotionDelta).AsTransform3D();
+
+        /// <summary>The walk as it is now, to be saved or sent: <see cref="SetState"/> of a node with the same model, styles and body goes on from it with the same poses. About 1.5 kB; empty while the character does not walk.</summary>
+        /// <remarks>It holds the walk and not the place of the character: save that beside it.</remarks>
+        public byte[] GetState() => Native.Call(MethodName.GetState).AsByteArray();
+
+        /// <summary>Time since the walk began, in seconds.</summary>
+        public double GetTime() => Native.Call(MethodName.GetTime).AsDouble();
+
+        /// <summary>Leaves the skeleton to what else animates it, such as an <c>AnimationPlayer</c>: its pose takes over within <c>seconds</c>, the character comes to rest, and feet on the ground stay where they are, or make a step if the animation has them elsewhere; that may take half a second more. Then <see cref="HandedOver"/> is emitted, and the node does nothing until <see cref="TakeOver"/>.</summary>
+        /// <remarks>With 0 seconds it does nothing from the next frame on.</remarks>
+        public void HandOver(double seconds) => Native.Call(MethodName.HandOver, seconds);
+
+        /// <summary>Whether any part of a foot, <c>left</c> or <c>right</c>, stands on the ground.</summary>
+        public bool IsFootOnGround(StringName foot) => Native.Call(MethodName.IsFootOnGround, foot).AsBool();
+
+        /// <summary>Whether the skeleton is left to other animation: after <see cref="HandOver"/>, until <see cref="TakeOver"/>.</summary>
+        public bool IsHandedOver() => Native.Call(MethodName.IsHandedOver).AsBool();
+
+        /// <summary>Starts the walk anew from <see cref="Seed"/> and <see cref="Phase"/>, where the character stands now. Also measures the skeleton anew.</summary>
+        public void Restart() => Native.Call(MethodName.Restart);
+
+        /// <summary>Goes to a time of the walk, in seconds from where it began: it is walked there from its beginning with the speed, turning and styles that are set now. The character does not travel by it. At most an hour; a minute takes some milliseconds.</summary>
+        public void Seek(double seconds) => Native.Call(MethodName.Seek, seconds);
+
+        /// <summary>Goes on from a state that <see cref="GetState"/> told, at the next frame. A state of another model, other styles or from a damaged file is refused: the log says why, and the walk goes on as it was.</summary>
+        /// <remarks><see cref="Seed"/>, <see cref="Phase"/> and <see cref="Variation"/> keep their values, for the next walk that starts anew.</remarks>
+        public void SetState(byte[] state) => Native.Call(MethodName.SetState, state);
+
+        /// <summary>Begins to walk from whatever pose and speed the skeleton has: the end of an attack, a jump that lands, a ragdoll. The walk begins on the side and at the moment of the stride that fit best, or with a first step if the body stands; feet on the ground stay there until they are lifted. What parts the two motions is gone in <c>seconds</c>; then <see cref="TakenOver"/> is emitted.</summary>
+        /// <remarks>Call it after <see cref="HandOver"/>, so that the node knows how fast the body is; else it watches the skeleton for two frames first. A <c>PhysicalBoneSimulator3D</c> has to be above this node under the skeleton; where the body fell, the character follows it.</remarks>
+        public void TakeOver(double seconds) => Native.Call(MethodName.TakeOver, seconds);
     }
 }

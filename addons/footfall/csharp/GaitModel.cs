@@ -62,14 +62,14 @@ namespace Footfall
             set => Native.Set(PropertyName.Data, value);
         }
 
-        /// <summary>What the model is and what it was trained on, or what is wrong with its file.</summary>
+        /// <summary>Description of the model and of the recordings that it was trained on, or what is wrong with its file.</summary>
         public string Description => Native.Get(PropertyName.Description).AsString();
 
         /// <summary>Makes a model from the bytes of a <c>.footfall</c> or <c>.footdyn</c> file, for example one that the game downloaded.</summary>
         /// <remarks>Ask <see cref="GetError"/> whether the bytes were a model.</remarks>
         public static GaitModel FromBytes(byte[] bytes) => GaitModel.From(ClassDB.ClassCallStatic(NativeName, MethodName.FromBytes, bytes).AsGodotObject());
 
-        /// <summary>What is wrong with the model's file, with the next thing to do; empty when nothing is.</summary>
+        /// <summary>Problem of the model's file, with the next thing to do; empty without one.</summary>
         public string GetError() => Native.Call(MethodName.GetError).AsString();
 
         /// <summary>The slowest and the fastest walk that the model was trained on, in metres per second. Zero for a broken model; a switching model knows one speed.</summary>

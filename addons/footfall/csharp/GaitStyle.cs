@@ -62,20 +62,20 @@ namespace Footfall
             set => Native.Set(PropertyName.Data, value);
         }
 
-        /// <summary>What the style is and what it was made from, or what is wrong with its file.</summary>
+        /// <summary>Description of the style and of the recordings that it was made from, or what is wrong with its file.</summary>
         public string Description => Native.Get(PropertyName.Description).AsString();
 
         /// <summary>Makes a style from the bytes of a <c>.footstyle</c> file, for example one that the game downloaded.</summary>
         /// <remarks>Ask <see cref="GetError"/> whether the bytes were a style.</remarks>
         public static GaitStyle FromBytes(byte[] bytes) => GaitStyle.From(ClassDB.ClassCallStatic(NativeName, MethodName.FromBytes, bytes).AsGodotObject());
 
-        /// <summary>What is wrong with the style's file, with the next thing to do; empty when nothing is.</summary>
+        /// <summary>Problem of the style's file, with the next thing to do; empty without one.</summary>
         public string GetError() => Native.Call(MethodName.GetError).AsString();
 
-        /// <summary>What the style is called, such as <c>proud</c>. Empty for a broken style.</summary>
+        /// <summary>Name of the style, such as <c>proud</c>. Empty for a broken style.</summary>
         public string GetStyleName() => Native.Call(MethodName.GetStyleName).AsString();
 
-        /// <summary>How fast people walked in this style, in metres per second. Zero for a broken style.</summary>
+        /// <summary>Speed at which people walked in this style, in metres per second. Zero for a broken style.</summary>
         /// <remarks>A character walks at its node's <c>speed</c> whatever its style; this is the speed that suits the style best.</remarks>
         public double GetUsualSpeed() => Native.Call(MethodName.GetUsualSpeed).AsDouble();
     }

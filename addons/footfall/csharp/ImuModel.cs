@@ -68,7 +68,7 @@ namespace Footfall
         /// <remarks>Ask <see cref="GetError"/> whether the bytes were a model.</remarks>
         public static ImuModel FromBytes(byte[] bytes) => ImuModel.From(ClassDB.ClassCallStatic(NativeName, MethodName.FromBytes, bytes).AsGodotObject());
 
-        /// <summary>What is wrong with the model's file, with the next thing to do; empty when nothing is.</summary>
+        /// <summary>Problem of the model's file, with the next thing to do; empty without one.</summary>
         public string GetError() => Native.Call(MethodName.GetError).AsString();
 
         /// <summary>Where the sensors sit, in order: for example <c>right_foot</c>. Empty for a broken model.</summary>

@@ -31,25 +31,26 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
+            public static readonly StringName ForgetMounting = "forget_mounting";
+            public static readonly StringName GetBehaviour = "get_behaviour";
+            public static readonly StringName GetLatency = "get_latency";
+            public static readonly StringName GetMountingCertainty = "get_mounting_certainty";
+            public static readonly StringName GetProblems = "get_problems";
+            public static readonly StringName GetRootMotionDelta = "get_root_motion_delta";
             public static readonly StringName PushSample = "push_sample";
             public static readonly StringName ResetHeading = "reset_heading";
-            public static readonly StringName Turn = "turn";
-            public static readonly StringName ForgetMounting = "forget_mounting";
-            public static readonly StringName GetLatency = "get_latency";
             public static readonly StringName StartRecording = "start_recording";
             public static readonly StringName StopRecording = "stop_recording";
-            public static readonly StringName GetBehaviour = "get_behaviour";
-            public static readonly StringName GetMountingCertainty = "get_mounting_certainty";
-            public static readonly StringName GetRootMotionDelta = "get_root_motion_delta";
+            public static readonly StringName Turn = "turn";
         }
 
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class SignalName
         {
-            public static readonly StringName Footstep = "footstep";
             public static readonly StringName BehaviourChanged = "behaviour_changed";
-            public static readonly StringName SensorLost = "sensor_lost";
+            public static readonly StringName Footstep = "footstep";
             public static readonly StringName SensorFound = "sensor_found";
+            public static readonly StringName SensorLost = "sensor_lost";
         }
 
         /// <summary>Makes a new <c>ImuReconstructor3D</c> in the engine.</summary>
@@ -74,7 +75,7 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>What the sensors mean: a <c>.footimu</c> file.</summary>
+        /// <summary>The sensor model: a <c>.footimu</c> file.</summary>
         /// <remarks>A node that is added in the editor has <c>addons/footfall/models/right_foot.footimu</c>; where this is empty, it is used as well.</remarks>
         public ImuModel Model
         {
@@ -96,7 +97,7 @@ namespace Footfall
             set => Native.Set(PropertyName.SecondSource, value);
         }
 
-        /// <summary>How the sensors are worn.</summary>
+        /// <summary>Mounting of the sensors on the person.</summary>
         public ImuMounting Mounting
         {
             get => (ImuMounting)Native.Get(PropertyName.Mounting).AsInt64();
@@ -117,19 +118,11 @@ namespace Footfall
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Tells which bones are which joints, where they are not recognised. Comes before their names.</summary>
+        /// <summary>Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names.</summary>
         public BoneMap BoneMap
         {
             get => (BoneMap)Native.Get(PropertyName.BoneMap).AsGodotObject();
             set => Native.Set(PropertyName.BoneMap, value);
-        }
-
-        /// <summary>A foot came down: <c>left</c> or <c>right</c>, and where in global space.</summary>
-        /// <value>Handlers take <c>foot</c>, <c>position</c>.</value>
-        public event Action<StringName, Vector3> Footstep
-        {
-            add => Native.Connect(SignalName.Footstep, Callable.From(value));
-            remove => Native.Disconnect(SignalName.Footstep, Callable.From(value));
         }
 
         /// <summary>The body does something else now: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
@@ -140,11 +133,12 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.BehaviourChanged, Callable.From(value));
         }
 
-        /// <summary>Nothing was heard of the sensors for half a second. The body goes on as is probable.</summary>
-        public event Action SensorLost
+        /// <summary>A foot came down: <c>left</c> or <c>right</c>, and where in global space.</summary>
+        /// <value>Handlers take <c>foot</c>, <c>position</c>.</value>
+        public event Action<StringName, Vector3> Footstep
         {
-            add => Native.Connect(SignalName.SensorLost, Callable.From(value));
-            remove => Native.Disconnect(SignalName.SensorLost, Callable.From(value));
+            add => Native.Connect(SignalName.Footstep, Callable.From(value));
+            remove => Native.Disconnect(SignalName.Footstep, Callable.From(value));
         }
 
         /// <summary>Samples come, for the first time or again.</summary>
@@ -154,6 +148,32 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.SensorFound, Callable.From(value));
         }
 
+        /// <summary>Nothing was heard of the sensors for half a second. The body goes on as is probable.</summary>
+        public event Action SensorLost
+        {
+            add => Native.Connect(SignalName.SensorLost, Callable.From(value));
+            remove => Native.Disconnect(SignalName.SensorLost, Callable.From(value));
+        }
+
+        /// <summary>Forgets how the sensors are worn, and finds it out anew: when they have moved. The character stands until samples come.</summary>
+        public void ForgetMounting() => Native.Call(MethodName.ForgetMounting);
+
+        /// <summary>The body's behaviour: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
+        public StringName GetBehaviour() => Native.Call(MethodName.GetBehaviour).AsStringName();
+
+        /// <summary>Age of the live sensors' newest sample when the pose is made, in seconds; 0 for others.</summary>
+        public double GetLatency() => Native.Call(MethodName.GetLatency).AsDouble();
+
+        /// <summary>Certainty of a sensor's mounting, 0 to 1; 0 before it was found.</summary>
+        public double GetMountingCertainty(long sensor) => Native.Call(MethodName.GetMountingCertainty, sensor).AsDouble();
+
+        /// <summary>Problems that keep the character from being driven, each with what to do next; empty without any.</summary>
+        /// <remarks>The editor shows the same as configuration warnings.</remarks>
+        public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
+
+        /// <summary>The body's motion in the character's own space since the frame before by the clock of who asks, as of <see cref="GaitGenerator3D"/>.</summary>
+        public Transform3D GetRootMotionDelta() => Native.Call(MethodName.GetRootMotionDelta).AsTransform3D();
+
         /// <summary>Takes a sample of a sensor: 0, or 1 for the second site of the model. <c>time</c> is the sensor's clock in seconds, <c>force</c> its specific force in m/s² (gravity included), <c>rate</c> its angular rate in rad/s, both in its own axes.</summary>
         /// <remarks>Samples that are late, repeated or not finite are left out.</remarks>
         public void PushSample(long sensor, double time, Vector3 force, Vector3 rate) => Native.Call(MethodName.PushSample, sensor, time, force, rate);
@@ -161,28 +181,13 @@ namespace Footfall
         /// <summary>The direction in which the character faces now is straight ahead of the person from now on.</summary>
         public void ResetHeading() => Native.Call(MethodName.ResetHeading);
 
-        /// <summary>Turns the body by an angle, in radians, to the left: for steering by stick where the player cannot turn.</summary>
-        public void Turn(double angle) => Native.Call(MethodName.Turn, angle);
-
-        /// <summary>Forgets how the sensors are worn, and finds it out anew: when they have moved. The character stands until samples come.</summary>
-        public void ForgetMounting() => Native.Call(MethodName.ForgetMounting);
-
-        /// <summary>How old the newest sample of the live sensors is when the pose is made, in seconds; 0 for others.</summary>
-        public double GetLatency() => Native.Call(MethodName.GetLatency).AsDouble();
-
         /// <summary>Records what a sensor gives from now on, into a file that a <see cref="ReplayImuSource"/> plays; tells whether the file can be made.</summary>
         public bool StartRecording(string path, long sensor = 0) => Native.Call(MethodName.StartRecording, path, sensor).AsBool();
 
         /// <summary>Ends a recording and gives its file its name; tells whether all of it was written.</summary>
         public bool StopRecording(long sensor = 0) => Native.Call(MethodName.StopRecording, sensor).AsBool();
 
-        /// <summary>What the body does: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
-        public StringName GetBehaviour() => Native.Call(MethodName.GetBehaviour).AsStringName();
-
-        /// <summary>How certain the mounting of a sensor is, 0 to 1; 0 before it was found.</summary>
-        public double GetMountingCertainty(long sensor) => Native.Call(MethodName.GetMountingCertainty, sensor).AsDouble();
-
-        /// <summary>How far the body went, in the character's own space: since the frame before by the clock of who asks, as of <see cref="GaitGenerator3D"/>.</summary>
-        public Transform3D GetRootMotionDelta() => Native.Call(MethodName.GetRootMotionDelta).AsTransform3D();
+        /// <summary>Turns the body by an angle, in radians, to the left: for steering by stick where the player cannot turn.</summary>
+        public void Turn(double angle) => Native.Call(MethodName.Turn, angle);
     }
 }

@@ -25,11 +25,11 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
-            public static readonly StringName Start = "start";
-            public static readonly StringName Stop = "stop";
-            public static readonly StringName GetState = "get_state";
             public static readonly StringName GetMessage = "get_message";
             public static readonly StringName GetSensorStatus = "get_sensor_status";
+            public static readonly StringName GetState = "get_state";
+            public static readonly StringName Start = "start";
+            public static readonly StringName Stop = "stop";
         }
 
         /// <summary>Makes a new <c>NetworkImuSource</c> in the engine.</summary>
@@ -57,7 +57,7 @@ namespace Footfall
         /// <summary>Loads one from a file of the project.</summary>
         public static NetworkImuSource Load(string path) => From(GD.Load<Resource>(path));
 
-        /// <summary>How samples come.</summary>
+        /// <summary>Protocol of the samples.</summary>
         public NetworkImuTransport Transport
         {
             get => (NetworkImuTransport)Native.Get(PropertyName.Transport).AsInt64();
@@ -85,19 +85,19 @@ namespace Footfall
             set => Native.Set(PropertyName.Sensor, value);
         }
 
+        /// <summary>Message for the player: what is awaited, or what is wrong and what to do. Empty while all is well.</summary>
+        public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
+
+        /// <summary>Status of the sensor: <c>name</c>, <c>format</c>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
+        public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
+
+        /// <summary>State of the source: <c>closed</c>, <c>opening</c>, <c>listening</c> (nothing was heard yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (it is tried again).</summary>
+        public StringName GetState() => Native.Call(MethodName.GetState).AsStringName();
+
         /// <summary>Opens the port now; otherwise it is opened when a node uses this source for the first time.</summary>
         public void Start() => Native.Call(MethodName.Start);
 
         /// <summary>Closes the port, unless another source uses it.</summary>
         public void Stop() => Native.Call(MethodName.Stop);
-
-        /// <summary>How it does: <c>closed</c>, <c>opening</c>, <c>listening</c> (nothing was heard yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (it is tried again).</summary>
-        public StringName GetState() => Native.Call(MethodName.GetState).AsStringName();
-
-        /// <summary>What the player should be told: what is awaited, or what is wrong and what to do. Empty while all is well.</summary>
-        public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
-
-        /// <summary>What is known of the sensor: <c>name</c>, <c>format</c>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
-        public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
     }
 }

@@ -24,13 +24,13 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
-            public static readonly StringName GetUrl = "get_url";
+            public static readonly StringName GetMessage = "get_message";
             public static readonly StringName GetQrCode = "get_qr_code";
+            public static readonly StringName GetSensorStatus = "get_sensor_status";
+            public static readonly StringName GetState = "get_state";
+            public static readonly StringName GetUrl = "get_url";
             public static readonly StringName Start = "start";
             public static readonly StringName Stop = "stop";
-            public static readonly StringName GetState = "get_state";
-            public static readonly StringName GetMessage = "get_message";
-            public static readonly StringName GetSensorStatus = "get_sensor_status";
         }
 
         /// <summary>Makes a new <c>PhoneImuSource</c> in the engine.</summary>
@@ -79,25 +79,25 @@ namespace Footfall
             set => Native.Set(PropertyName.VibrateOnFootsteps, value);
         }
 
-        /// <summary>The address of the page for this player; empty before <see cref="Start"/>, and while the port cannot be had.</summary>
-        public string GetUrl() => Native.Call(MethodName.GetUrl).AsString();
+        /// <summary>Message for the player: what is awaited, or what is wrong and what to do. Empty while all is well.</summary>
+        public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
 
         /// <summary>The address as a code to scan, one pixel a module with a light margin; <c>null</c> before <see cref="Start"/>. Show it large and without filter.</summary>
         public Image GetQrCode() => (Image)Native.Call(MethodName.GetQrCode).AsGodotObject();
+
+        /// <summary>Status of the sensor: <c>name</c>, <c>format</c>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
+        public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
+
+        /// <summary>State of the source: <c>closed</c>, <c>opening</c>, <c>listening</c> (nothing was heard yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (it is tried again).</summary>
+        public StringName GetState() => Native.Call(MethodName.GetState).AsStringName();
+
+        /// <summary>The address of the page for this player; empty before <see cref="Start"/>, and while the port cannot be had.</summary>
+        public string GetUrl() => Native.Call(MethodName.GetUrl).AsString();
 
         /// <summary>Opens the port now; otherwise it is opened when a node uses this source for the first time.</summary>
         public void Start() => Native.Call(MethodName.Start);
 
         /// <summary>Closes the port, unless another source uses it.</summary>
         public void Stop() => Native.Call(MethodName.Stop);
-
-        /// <summary>How it does: <c>closed</c>, <c>opening</c>, <c>listening</c> (nothing was heard yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (it is tried again).</summary>
-        public StringName GetState() => Native.Call(MethodName.GetState).AsStringName();
-
-        /// <summary>What the player should be told: what is awaited, or what is wrong and what to do. Empty while all is well.</summary>
-        public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
-
-        /// <summary>What is known of the sensor: <c>name</c>, <c>format</c>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
-        public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
     }
 }

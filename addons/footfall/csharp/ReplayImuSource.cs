@@ -66,10 +66,10 @@ namespace Footfall
             set => Native.Set(PropertyName.Repeat, value);
         }
 
-        /// <summary>What is wrong with the recording, with the next thing to do; empty when nothing is.</summary>
+        /// <summary>Problem of the recording, with the next thing to do; empty without one.</summary>
         public string GetError() => Native.Call(MethodName.GetError).AsString();
 
-        /// <summary>How long the recording is, in seconds; 0 for a broken one.</summary>
+        /// <summary>Length of the recording in seconds; 0 for a broken one.</summary>
         public double GetLength() => Native.Call(MethodName.GetLength).AsDouble();
     }
 }

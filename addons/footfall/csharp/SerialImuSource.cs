@@ -28,12 +28,12 @@ namespace Footfall
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
         public static class MethodName
         {
+            public static readonly StringName GetMessage = "get_message";
+            public static readonly StringName GetSensorStatus = "get_sensor_status";
+            public static readonly StringName GetState = "get_state";
             public static readonly StringName ListPorts = "list_ports";
             public static readonly StringName Start = "start";
             public static readonly StringName Stop = "stop";
-            public static readonly StringName GetState = "get_state";
-            public static readonly StringName GetMessage = "get_message";
-            public static readonly StringName GetSensorStatus = "get_sensor_status";
         }
 
         /// <summary>Makes a new <c>SerialImuSource</c> in the engine.</summary>
@@ -75,7 +75,7 @@ namespace Footfall
             set => Native.Set(PropertyName.BaudRate, value);
         }
 
-        /// <summary>What the device speaks.</summary>
+        /// <summary>Protocol of the device.</summary>
         public SerialImuFormat Format
         {
             get => (SerialImuFormat)Native.Get(PropertyName.Format).AsInt64();
@@ -111,6 +111,15 @@ namespace Footfall
             set => Native.Set(PropertyName.TimeUnit, (long)value);
         }
 
+        /// <summary>Message for the player: what is awaited, or what is wrong and what to do. Empty while all is well.</summary>
+        public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
+
+        /// <summary>Status of the sensor: <c>name</c>, <see cref="Format"/>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
+        public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
+
+        /// <summary>State of the source: <c>closed</c>, <c>opening</c>, <c>listening</c> (nothing was heard yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (it is tried again).</summary>
+        public StringName GetState() => Native.Call(MethodName.GetState).AsStringName();
+
         /// <summary>The serial ports of this machine, those on USB first.</summary>
         public static string[] ListPorts() => ClassDB.ClassCallStatic(NativeName, MethodName.ListPorts).AsStringArray();
 
@@ -119,14 +128,5 @@ namespace Footfall
 
         /// <summary>Closes the port, unless another source uses it.</summary>
         public void Stop() => Native.Call(MethodName.Stop);
-
-        /// <summary>How it does: <c>closed</c>, <c>opening</c>, <c>listening</c> (nothing was heard yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (it is tried again).</summary>
-        public StringName GetState() => Native.Call(MethodName.GetState).AsStringName();
-
-        /// <summary>What the player should be told: what is awaited, or what is wrong and what to do. Empty while all is well.</summary>
-        public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
-
-        /// <summary>What is known of the sensor: <c>name</c>, <see cref="Format"/>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
-        public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
     }
 }

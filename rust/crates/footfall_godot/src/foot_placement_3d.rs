@@ -13,9 +13,8 @@ use crate::report;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::{Pose, Side};
 use footfall_ik::placement::{
-    ContactThresholds, FootPlacer, Frame, Landing, PlacementConfig, PlacementInput,
+    ContactThresholds, FootPlacer, Landing, PlacementConfig, PlacementInput,
 };
-use glam::Affine3A;
 use godot::classes::{BoneMap, Engine, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
 use marks::Marks;
@@ -61,12 +60,12 @@ pub(crate) struct FootPlacement3D {
     #[init(val = 0.6)]
     max_tilt: f64,
 
-    /// How long the pelvis takes for half of its way up or down.
+    /// Time in which the pelvis makes half of its way up or down.
     #[export(range = (0.01, 0.5, 0.01, or_greater, suffix = "s"))]
     #[init(val = 0.08)]
     pelvis_half_life: f64,
 
-    /// How far the pelvis moves against the animation at most.
+    /// Largest offset of the pelvis from the animation.
     #[export(range = (0.0, 1.0, 0.01, or_greater, suffix = "m"))]
     #[init(val = 0.6)]
     max_pelvis_offset: f64,
@@ -111,7 +110,7 @@ pub(crate) struct FootPlacement3D {
     #[var(set = set_character)]
     character: NodePath,
 
-    /// Tells which bones are which joints, where they are not recognised. Comes before their names. Left empty, it is that of a
+    /// Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names. Left empty, it is that of a
     /// `GaitGenerator3D` beside this node.
     #[export]
     #[var(set = set_bone_map)]

@@ -76,7 +76,7 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_styles)]
     styles: Array<Option<Gd<GaitStyle>>>,
 
-    /// How much of a style a walker wears at most. Each wears one of `styles` or none, drawn by its seed.
+    /// Greatest weight of a walker's style. Each wears one of `styles` or none, drawn by its seed.
     #[export(range = (0.0, 1.5, 0.01))]
     #[var(set = set_style_amount)]
     #[init(val = 1.0)]
@@ -87,15 +87,15 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_character)]
     character: Option<Gd<PackedScene>>,
 
-    /// How many walkers the crowd has of its own. `add_agents()` adds more. While it runs, raising it adds some and lowering it removes
+    /// Number of walkers that the crowd has of its own. `add_agents()` adds more. While it runs, raising it adds some and lowering it removes
     /// those that came last; the others walk on.
     #[export(range = (0.0, 20000.0, 1.0, or_greater))]
     #[var(set = set_count)]
     #[init(val = 200)]
     count: i64,
 
-    /// What walkers do by themselves: wander over `area`, follow `path`, only what a script tells them, or go from place to place of the
-    /// world's navigation map.
+    /// Behaviour of the walkers by themselves: they wander over `area`, follow `path`, go from place to place of the
+    /// world's navigation map, or do only what a script tells them.
     #[export]
     #[var(set = set_behaviour)]
     behaviour: CrowdBehaviour,
@@ -111,7 +111,7 @@ pub(crate) struct GaitCrowd3D {
     #[var(get = get_followed_path, set = set_path)]
     path: NodePath,
 
-    /// How wide the stream of walkers along `path` is.
+    /// Width of the stream of walkers along `path`.
     #[export(range = (0.0, 50.0, 0.1, or_greater, suffix = "m"))]
     #[var(set = set_path_width)]
     #[init(val = 4.0)]
@@ -159,23 +159,23 @@ pub(crate) struct GaitCrowd3D {
     #[export(flags_3d_physics)]
     ground_mask: u32,
 
-    /// How many of the nearest walkers are whole scenes.
+    /// Number of the nearest walkers that are whole scenes.
     #[export_group(name = "Tiers")]
     #[export(range = (0.0, 200.0, 1.0, or_greater))]
     #[init(val = 12)]
     full_count: i64,
 
-    /// How far from the camera they are at most.
+    /// Their greatest distance from the camera.
     #[export(range = (0.0, 100.0, 0.1, or_greater, suffix = "m"))]
     #[init(val = 12.0)]
     full_distance: f64,
 
-    /// How many walkers beyond them have a new pose in every frame.
+    /// Number of walkers beyond them that have a new pose in every frame.
     #[export(range = (0.0, 10000.0, 1.0, or_greater))]
     #[init(val = 600)]
     near_count: i64,
 
-    /// How far from the camera they are at most.
+    /// Their greatest distance from the camera.
     #[export(range = (0.0, 500.0, 0.1, or_greater, suffix = "m"))]
     #[init(val = 60.0)]
     near_distance: f64,

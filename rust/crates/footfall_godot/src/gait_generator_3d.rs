@@ -82,7 +82,7 @@ pub(crate) struct GaitGenerator3D {
     #[init(val = 1.3)]
     speed: f64,
 
-    /// How fast the character turns, in radians per second. Positive turns to its left. Taken up with the next step.
+    /// Turning of the character in radians per second. Positive turns to its left. Taken up with the next step.
     #[export(range = (-180.0, 180.0, 0.1, or_less, or_greater, radians_as_degrees, suffix = "°/s"))]
     #[var(set = set_turn_rate)]
     turn_rate: f64,
@@ -105,17 +105,17 @@ pub(crate) struct GaitGenerator3D {
     #[init(val = 1.0)]
     spine_weight: f64,
 
-    /// How much of the pose of `Neck` and `Head` is the walk's; at 0 they look where the animation has them look in the character's space.
+    /// Weight of the walk in the pose of `Neck` and `Head`; at 0 they look where the animation has them look in the character's space.
     #[export(range = (0.0, 1.0, 0.01))]
     #[init(val = 1.0)]
     head_weight: f64,
 
-    /// How much of the left arm's pose, from shoulder to hand, is the walk's: at 0 it hangs from the walking chest as the animation poses it.
+    /// Weight of the walk in the left arm's pose, from shoulder to hand; at 0 it hangs from the walking chest as the animation poses it.
     #[export(range = (0.0, 1.0, 0.01))]
     #[init(val = 1.0)]
     left_arm_weight: f64,
 
-    /// How much of the right arm's pose, from shoulder to hand, is the walk's: at 0 it hangs from the walking chest as the animation poses it.
+    /// Weight of the walk in the right arm's pose, from shoulder to hand; at 0 it hangs from the walking chest as the animation poses it.
     #[export(range = (0.0, 1.0, 0.01))]
     #[init(val = 1.0)]
     right_arm_weight: f64,
@@ -136,7 +136,7 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_phase)]
     phase: f64,
 
-    /// How much steps differ from each other: 0 repeats the same step, 1 varies as people do.
+    /// Variation between steps: 0 repeats the same step, 1 varies as people do.
     ///
     /// Changing it starts the walk anew.
     #[export(range = (0.0, 1.0, 0.01, or_greater))]
@@ -172,7 +172,7 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_character)]
     character: NodePath,
 
-    /// Tells which bones are which joints, where they are not recognised. Comes before their names.
+    /// Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names.
     #[export]
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
@@ -258,7 +258,7 @@ impl GaitGenerator3D {
     #[signal]
     fn foothold_planned(foot: StringName, position: Vector3, seconds: f64);
 
-    /// What was there before `take_over()` has died away: the pose is the walk's.
+    /// Emitted when the pose from before `take_over()` has faded: the pose is the walk's.
     #[signal]
     fn taken_over();
 

@@ -31,7 +31,7 @@ pub(crate) struct GaitModel {
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
-    /// What the model is and what it was trained on, or what is wrong with its file.
+    /// Description of the model and of the recordings that it was trained on, or what is wrong with its file.
     #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
     description: PhantomVar<GString>,
 
@@ -69,14 +69,14 @@ impl GaitModel {
         self.base_mut().emit_changed();
     }
 
-    /// What the model is and what it was trained on, or what is wrong with its file.
+    /// Description of the model and of the recordings that it was trained on, or what is wrong with its file.
     #[func]
     fn get_description(&self) -> GString {
         self.loaded
             .describe(|model| describe(model, self.speeds_of(model)))
     }
 
-    /// What is wrong with the model's file, with the next thing to do; empty when nothing is.
+    /// Problem of the model's file, with the next thing to do; empty without one.
     #[func]
     fn get_error(&self) -> GString {
         self.trained()

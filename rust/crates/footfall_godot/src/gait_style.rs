@@ -19,7 +19,7 @@ pub(crate) struct GaitStyle {
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
-    /// What the style is and what it was made from, or what is wrong with its file.
+    /// Description of the style and of the recordings that it was made from, or what is wrong with its file.
     #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
     description: PhantomVar<GString>,
 
@@ -51,27 +51,27 @@ impl GaitStyle {
         self.base_mut().emit_changed();
     }
 
-    /// What the style is and what it was made from, or what is wrong with its file.
+    /// Description of the style and of the recordings that it was made from, or what is wrong with its file.
     #[func]
     fn get_description(&self) -> GString {
         self.loaded.describe(describe)
     }
 
-    /// What is wrong with the style's file, with the next thing to do; empty when nothing is.
+    /// Problem of the style's file, with the next thing to do; empty without one.
     #[func]
     fn get_error(&self) -> GString {
         self.trained()
             .map_or_else(|error| GString::from(&error), |_| GString::new())
     }
 
-    /// What the style is called, such as `proud`. Empty for a broken style.
+    /// Name of the style, such as `proud`. Empty for a broken style.
     #[func]
     fn get_style_name(&self) -> GString {
         self.trained()
             .map_or_else(|_| GString::new(), |style| GString::from(&style.name))
     }
 
-    /// How fast people walked in this style, in metres per second. Zero for a broken style.
+    /// Speed at which people walked in this style, in metres per second. Zero for a broken style.
     ///
     /// A character walks at its node's `speed` whatever its style; this is the speed that suits the style best.
     #[func]

@@ -64,7 +64,7 @@ impl ImuModel {
         self.loaded.describe(|prepared| describe(prepared.model()))
     }
 
-    /// What is wrong with the model's file, with the next thing to do; empty when nothing is.
+    /// Problem of the model's file, with the next thing to do; empty without one.
     #[func]
     fn get_error(&self) -> GString {
         self.prepared()

@@ -8,20 +8,18 @@ use crate::bones;
 use crate::character;
 use crate::convert;
 use crate::imu_model::{ImuModel, NO_MODEL};
-use crate::imu_source::{self, Heard};
+use crate::imu_source;
 use crate::report;
-use crate::root_motion::{Moves, Now, RootMotion};
+use crate::root_motion::{Now, RootMotion};
 use crate::shipped::{self, Fallback};
 use crate::skeleton_binding::SkeletonBinding;
 use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose, Side};
-use footfall_imu::{GRAVITY_MPS2, ImuSample};
-use footfall_model::imu_model::MAX_SENSORS;
 use footfall_recon::{Prepared, ReconConfig, Reconstructor, SensorState};
 use footfall_synth::GroundTransform;
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use godot::classes::{
-    BoneMap, Engine, ISkeletonModifier3D, ProjectSettings, Resource, Skeleton3D, SkeletonModifier3D,
+    BoneMap, Engine, ISkeletonModifier3D, Resource, Skeleton3D, SkeletonModifier3D,
 };
 use godot::prelude::*;
 use session::{Session, standing};
@@ -37,7 +35,7 @@ use worn::Worn;
 #[derive(GodotClass)]
 #[class(tool, init, base = SkeletonModifier3D)]
 pub(crate) struct ImuReconstructor3D {
-    /// What the sensors mean: a `.footimu` file.
+    /// The sensor model: a `.footimu` file.
     ///
     /// A node that is added in the editor has `addons/footfall/models/right_foot.footimu`; where this is empty, it is used as well.
     #[export]
@@ -55,7 +53,7 @@ pub(crate) struct ImuReconstructor3D {
     #[var(hint = RESOURCE_TYPE, hint_string = imu_source::CLASSES)]
     second_source: Option<Gd<Resource>>,
 
-    /// How the sensors are worn.
+    /// Mounting of the sensors on the person.
     #[export]
     #[var(set = set_mounting)]
     mounting: ImuMounting,
@@ -70,7 +68,7 @@ pub(crate) struct ImuReconstructor3D {
     #[var(set = set_character)]
     character: NodePath,
 
-    /// Tells which bones are which joints, where they are not recognised. Comes before their names.
+    /// Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names.
     #[export]
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,

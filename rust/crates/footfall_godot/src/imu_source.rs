@@ -233,21 +233,21 @@ macro_rules! live_source_api {
                 $crate::imu_source::LiveSource::live(self).close();
             }
 
-            /// How it does: `closed`, `opening`, `listening` (nothing was heard yet), `receiving`, `silent` or `failed` (it is tried again).
+            /// State of the source: `closed`, `opening`, `listening` (nothing was heard yet), `receiving`, `silent` or `failed` (it is tried again).
             #[func]
             fn get_state(&self) -> StringName {
                 let place = $crate::imu_source::LiveSource::place(self);
                 StringName::from($crate::imu_source::LiveSource::live(self).state(place))
             }
 
-            /// What the player should be told: what is awaited, or what is wrong and what to do. Empty while all is well.
+            /// Message for the player: what is awaited, or what is wrong and what to do. Empty while all is well.
             #[func]
             fn get_message(&self) -> GString {
                 let place = $crate::imu_source::LiveSource::place(self);
                 GString::from(&$crate::imu_source::LiveSource::live(self).message(place))
             }
 
-            /// What is known of the sensor: `name`, `format`, `samples`, `lost` and `rejected` (counts), `rate` (samples a second), `jitter` (seconds),
+            /// Status of the sensor: `name`, `format`, `samples`, `lost` and `rejected` (counts), `rate` (samples a second), `jitter` (seconds),
             /// `silent` (seconds), `force` (m/s², the last) and `rotation` (rad/s, the last). Empty before it is heard.
             #[func]
             fn get_sensor_status(&self) -> VarDictionary {

@@ -17,7 +17,7 @@ static LINKS: SharedPorts<(NetworkImuTransport, String), Link> = SharedPorts::ne
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct NetworkImuSource {
-    /// How samples come.
+    /// Protocol of the samples.
     #[export]
     #[var(set = set_transport)]
     transport: NetworkImuTransport,
@@ -41,7 +41,7 @@ pub(crate) struct NetworkImuSource {
     base: Base<Resource>,
 }
 
-/// How samples come.
+/// Protocol of the samples.
 #[derive(GodotConvert, Var, Export, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[godot(via = i64)]
 #[repr(i32)]

@@ -42,14 +42,14 @@ impl ReplayImuSource {
         self.base_mut().emit_changed();
     }
 
-    /// What is wrong with the recording, with the next thing to do; empty when nothing is.
+    /// Problem of the recording, with the next thing to do; empty without one.
     #[func]
     fn get_error(&self) -> GString {
         self.recording()
             .map_or_else(|error| GString::from(&error), |_| GString::new())
     }
 
-    /// How long the recording is, in seconds; 0 for a broken one.
+    /// Length of the recording in seconds; 0 for a broken one.
     #[func]
     fn get_length(&self) -> f64 {
         self.recording()

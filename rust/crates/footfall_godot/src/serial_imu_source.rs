@@ -28,7 +28,7 @@ pub(crate) struct SerialImuSource {
     #[var(set = set_baud_rate)]
     baud_rate: i64,
 
-    /// What the device speaks.
+    /// Protocol of the device.
     #[export]
     #[var(set = set_format)]
     format: SerialImuFormat,

@@ -3,13 +3,6 @@ extends NewcomerCheck
 
 const CONTROLLER := "res://addons/footfall/controller/gait_character_3d.tscn"
 const STRANGER := "res://stranger.glb"
-const BONES: Dictionary[String, String] = {
-	"Hips": "Hips", "Spine": "Spine", "Chest": "Spine1", "UpperChest": "Spine2", "Neck": "Neck", "Head": "Head",
-	"LeftShoulder": "LeftShoulder", "LeftUpperArm": "LeftArm", "LeftLowerArm": "LeftForeArm", "LeftHand": "LeftHand",
-	"RightShoulder": "RightShoulder", "RightUpperArm": "RightArm", "RightLowerArm": "RightForeArm", "RightHand": "RightHand",
-	"LeftUpperLeg": "LeftUpLeg", "LeftLowerLeg": "LeftLeg", "LeftFoot": "LeftFoot", "LeftToes": "LeftToeBase",
-	"RightUpperLeg": "RightUpLeg", "RightLowerLeg": "RightLeg", "RightFoot": "RightFoot", "RightToes": "RightToeBase",
-}
 const RISE_M := 0.17
 const TREAD_M := 0.29
 const STEPS := 6
@@ -23,7 +16,6 @@ func run() -> void:
 		_box(Vector3(0, 0.5 * RISE_M * (step + 1), 4), Vector3(2.4, RISE_M * (step + 1), depth))
 	var player: GaitCharacter3D = (load(CONTROLLER) as PackedScene).instantiate()
 	player.character_scene = load(STRANGER)
-	player.bone_map = _bones()
 	add_child(player)
 	var problems := player.gait.get_problems()
 	expect(problems.is_empty(), "the stranger has problems: " + "; ".join(problems))
@@ -45,14 +37,6 @@ func run() -> void:
 	expect(absf(top - STEPS * RISE_M) < 0.03, "it did not get up the stairs: its top is %.2f m" % top)
 	expect(player.position.z > 6.5 and absf(player.position.y) < 0.03, "it did not come down behind them: it is at %s" % player.position)
 	expect(raised[0] > 0.9 * FRAMES, "it waved for %d frames of %d" % [raised[0], FRAMES])
-
-
-func _bones() -> BoneMap:
-	var map := BoneMap.new()
-	map.profile = SkeletonProfileHumanoid.new()
-	for joint: String in BONES:
-		map.set_skeleton_bone_name(joint, "mixamorig_" + BONES[joint])
-	return map
 
 
 func _wave(player: GaitCharacter3D) -> void:

@@ -112,7 +112,7 @@ impl FootfallStyleDock {
         }
     }
 
-    /// What the style is to be called; the file follows.
+    /// Name of the style; the file follows.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_style_name(&mut self, name: GString) {

@@ -25,7 +25,7 @@ impl FootPlacement3D {
         })
     }
 
-    /// What a foot, `left` or `right`, is locked to: the body, or null.
+    /// The body that a foot, `left` or `right`, is locked to, or null.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn get_foot_support(&self, foot: StringName) -> Option<Gd<Node3D>> {
@@ -34,14 +34,14 @@ impl FootPlacement3D {
         Gd::try_from_instance_id(id).ok()
     }
 
-    /// How far the pelvis is moved up against the animation, in metres.
+    /// Offset of the pelvis from the animation, in metres upwards.
     #[func]
     fn get_pelvis_offset(&self) -> f64 {
         let session = self.session.as_ref();
         session.map_or(0.0, |session| f64::from(session.placer.pelvis_offset_m()))
     }
 
-    /// How steep the way under the feet is: rise by run, positive uphill.
+    /// Grade of the ground under the feet: rise by run, positive uphill.
     #[func]
     fn get_grade(&self) -> f64 {
         let session = self.session.as_ref();
@@ -50,12 +50,12 @@ impl FootPlacement3D {
 
     /// Forgets where the feet were put, for example after the character was put elsewhere. Also measures the skeleton anew.
     #[func]
-    fn reset(&mut self) {
+    pub(super) fn reset(&mut self) {
         self.forget();
         self.base_mut().update_configuration_warnings();
     }
 
-    /// What keeps the feet from being placed, each with what to do next; empty when nothing does.
+    /// Problems that keep the feet from being placed, each with what to do next; empty without any.
     ///
     /// The editor shows the same as configuration warnings.
     #[func]

@@ -74,7 +74,7 @@ impl GaitCrowd3D {
         self.base_mut().update_configuration_warnings();
     }
 
-    /// How many walkers there are, with those who are still being made.
+    /// Number of walkers, with those who are still being made.
     #[func]
     fn get_agent_count(&mut self) -> i64 {
         self.make();
@@ -195,7 +195,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// What keeps the crowd from walking, each with what to do next; empty when nothing does.
+    /// Problems that keep the crowd from walking, each with what to do next; empty without any.
     #[func]
     fn get_problems(&mut self) -> PackedStringArray {
         if self.problems().is_empty() {

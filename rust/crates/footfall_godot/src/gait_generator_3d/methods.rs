@@ -67,7 +67,7 @@ impl GaitGenerator3D {
         }
     }
 
-    /// How long the walk has gone on, in seconds from where it began.
+    /// Time since the walk began, in seconds.
     #[func]
     pub(crate) fn get_time(&self) -> f64 {
         let session = self.session.as_ref().map(|session| session.elapsed_secs);
@@ -75,7 +75,7 @@ impl GaitGenerator3D {
         session.or(absent).unwrap_or_default()
     }
 
-    /// What keeps the character from walking, each with what to do next; empty when nothing does.
+    /// Problems that keep the character from walking, each with what to do next; empty without any.
     ///
     /// The editor shows the same as configuration warnings.
     #[func]

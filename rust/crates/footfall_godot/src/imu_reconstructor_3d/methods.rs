@@ -53,7 +53,7 @@ impl ImuReconstructor3D {
         }
     }
 
-    /// How old the newest sample of the live sensors is when the pose is made, in seconds; 0 for others.
+    /// Age of the live sensors' newest sample when the pose is made, in seconds; 0 for others.
     #[func]
     fn get_latency(&self) -> f64 {
         let sensors = self.session.iter().flat_map(|session| &session.sensors);
@@ -75,7 +75,7 @@ impl ImuReconstructor3D {
         self.worn_mut(sensor).is_some_and(Worn::stop_recording)
     }
 
-    /// What the body does: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
+    /// The body's behaviour: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
     #[func]
     fn get_behaviour(&self) -> StringName {
         let behaviour = self
@@ -85,7 +85,7 @@ impl ImuReconstructor3D {
         StringName::from(behaviour.name())
     }
 
-    /// How certain the mounting of a sensor is, 0 to 1; 0 before it was found.
+    /// Certainty of a sensor's mounting, 0 to 1; 0 before it was found.
     #[func]
     fn get_mounting_certainty(&self, sensor: i64) -> f64 {
         if self.mounting == ImuMounting::Aligned {
@@ -97,7 +97,7 @@ impl ImuReconstructor3D {
         mounting.map_or(0.0, |mounting| f64::from(mounting.certainty))
     }
 
-    /// How far the body went, in the character's own space: since the frame before by the clock of who asks, as of `GaitGenerator3D`.
+    /// The body's motion in the character's own space since the frame before by the clock of who asks, as of `GaitGenerator3D`.
     #[func]
     fn get_root_motion_delta(&mut self) -> Transform3D {
         let Some(skeleton) = self.base().get_skeleton() else {
@@ -107,7 +107,7 @@ impl ImuReconstructor3D {
         self.travelled.tell(Moves::of(&skeleton), now)
     }
 
-    /// What keeps the character from being driven, each with what to do next; empty when nothing does.
+    /// Problems that keep the character from being driven, each with what to do next; empty without any.
     ///
     /// The editor shows the same as configuration warnings.
     #[func]
