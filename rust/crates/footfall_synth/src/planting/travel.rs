@@ -11,6 +11,10 @@ use glam::{Quat, Vec3};
 /// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
 const SETTLE_SECS: f32 = 0.07;
 
+/// Steps that are made shorter, as on stairs, still lift and lower the hips as long ones do: in a step of no length they would take so
+/// much longer to settle, as a share.
+const SHORT_SETTLE_SHARE: f32 = 1.8;
+
 /// Part of a step over which a new turn rate sets in.
 const TURN_ONSET: f32 = 0.6;
 
@@ -69,7 +73,7 @@ impl Planter {
             velocity: self.state.hips_velocity.map_or(Vec3::ZERO, |velocity| {
                 velocity * self.frame_secs - (follow - start)
             }),
-            decay: self.frame_secs / SETTLE_SECS,
+            decay: self.frame_secs / settle_secs(self.state.stride),
             meeting: MEETING_SHARE * self.landing_height_gap(raw, timing),
             frames: timing.frames as f32,
         }
@@ -146,6 +150,11 @@ impl Settling {
         remains.y += lanes::smooth_step(part * (1.0 - MEETING_FROM).recip()) * self.meeting;
         remains
     }
+}
+
+/// Time constant of the settling at this factor on the legs' reach, seconds.
+fn settle_secs(stride: f32) -> f32 {
+    SETTLE_SECS * (1.0 + SHORT_SETTLE_SHARE * (1.0 - stride.clamp(0.0, 1.0)))
 }
 
 /// Where the hips are when this foot stands on its plant and the leg is as generated.
