@@ -156,6 +156,8 @@ pub struct Outcome {
     pub secs: f32,
     /// How many steps were taken on the way.
     pub steps: usize,
+    /// How fast the hips went over the ground between the first edge and the last, m/s.
+    pub pace_mps: f32,
 }
 
 impl fmt::Display for Outcome {
@@ -248,11 +250,13 @@ impl Climb {
             ..Watcher::default()
         };
         let goal = from + way.length() + BEYOND_M;
+        let mut between = 0;
         let longest = ((10.0 + 4.0 * goal) / DT) as usize;
         for frame in 0..longest {
             walker.climb(DT, controls, &mut terrain, self.told);
             show(frame, &walker);
             watcher.see(frame, &walker, &terrain);
+            between += usize::from((from..from + way.length()).contains(&walker.hips().z));
             if walker.hips().z > goal {
                 break;
             }
@@ -260,6 +264,7 @@ impl Climb {
                 watcher.fault(Failure::Stuck, frame, &walker, walker.hips().z);
             }
         }
+        watcher.outcome.pace_mps = way.length() / (between as f32 * DT);
         watcher.outcome
     }
 }

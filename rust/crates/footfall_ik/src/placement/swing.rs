@@ -38,6 +38,8 @@ const CLEARANCE_M: f32 = 0.03;
 const USUAL_LIFT_M: f32 = 0.05;
 /// Ground that is higher than the way of the sole by less is no obstacle, metres.
 const FLAT_WAY_M: f32 = 0.01;
+/// A foot is lifted by so much more in the middle of its way at most than it has to be over any place on it.
+const MOST_LIFT_SHARE: f32 = 1.5;
 /// At how many places of its way the ground is looked at.
 const WAY_POINTS: usize = 6;
 /// A planned foothold is kept as long as the animation's landing moved less than this, metres.
@@ -203,7 +205,7 @@ impl Foot {
     ) -> f32 {
         let from = animated.flat.position + self.lifted(scene).shift;
         let rises = sole.position.y > from.y;
-        let mut lift = 0.0_f32;
+        let (mut lift, mut highest) = (0.0_f32, 0.0_f32);
         for point in 1..=WAY_POINTS {
             let share = point as f32 / (WAY_POINTS + 1) as f32;
             let at = from.lerp(sole.position, smooth_step(share));
@@ -217,9 +219,11 @@ impl Foot {
             // What lies no higher than the way from one foothold to the other is cleared by any walk.
             if height > foot + FLAT_WAY_M && short > 0.0 {
                 lift = lift.max(short / shape.max(0.2));
+                highest = highest.max(short);
             }
         }
-        lift
+        // What stands near an end of the way is no reason to kick in its middle: there the guard lifts the foot.
+        lift.min(MOST_LIFT_SHARE * highest)
     }
 
     /// Follows the ground under a foot of which nobody knows where it will land.

@@ -9,7 +9,7 @@ use footfall_core::{Joint, Side};
 use glam::{Quat, Vec3};
 
 /// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
-const SETTLE_SECS: f32 = 0.07;
+const SETTLE_SECS: f32 = 0.05;
 
 /// Steps that are made shorter, as on stairs, still lift and lower the hips as long ones do: in a step of no length they would take so
 /// much longer to settle, as a share.
@@ -142,10 +142,12 @@ struct Settling {
 impl Settling {
     /// How far they are from the new way at eight times.
     fn at(&self, time: f32x8) -> Vec3x8 {
-        // A critically damped return from where the hips were to where the landed foot has them.
-        let pace = Vec3x8::splat(self.velocity + self.offset * self.decay);
+        // A return from where the hips were to where the landed foot has them, threefold damped: it sets out without a jerk.
+        let pace = self.velocity + self.offset * self.decay;
+        let bend = (self.velocity + self.offset * (0.5 * self.decay)) * self.decay;
         let left = (time * -self.decay).exp();
-        let mut remains = (Vec3x8::splat(self.offset) + pace * time) * left;
+        let [offset, pace, bend] = [self.offset, pace, bend].map(Vec3x8::splat);
+        let mut remains = (offset + (pace + bend * time) * time) * left;
         let part = time * self.frames.recip() - f32x8::splat(MEETING_FROM);
         remains.y += lanes::smooth_step(part * (1.0 - MEETING_FROM).recip()) * self.meeting;
         remains
