@@ -153,7 +153,7 @@ pub struct GaitGenerator {
     pub(crate) position: f32,
     pub(crate) plan_from_start: GroundTransform,
     footsteps: Vec<Footstep>,
-    /// The speed that was asked for last, m/s.
+    /// The speed forwards that was asked for last, m/s.
     pub(crate) asked_mps: f32,
     start_from_character: GroundTransform,
     contact: [bool; 2],
@@ -278,7 +278,7 @@ impl GaitGenerator {
     /// A `dt_secs` of 0 gives the same pose again.
     pub fn step(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
         self.footsteps.clear();
-        self.asked_mps = controls.velocity().length();
+        self.asked_mps = controls.velocity().y.max(0.0);
         if dt_secs > 0.0 {
             self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
         }

@@ -55,14 +55,15 @@ impl Planter {
         let fade_frames = REACH_FADE_SECS / self.frame_secs;
         let landing = Landing::of(raw, timing, frames);
         let trailing = timing.leading.other();
-        let mut drop = Drop::default();
+        let release = (-self.frame_secs / REACH_RELEASE_SECS).exp();
+        let mut drop = 0.0_f32;
         for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
             let hips = frame.pose.root_position;
             let bears = index <= timing.terminal;
             frame.contact[timing.leading.index()] = true;
             frame.contact[trailing.index()] = bears || index == timing.frames;
             // A leg that lets go of the pelvis does so smoothly, also when its contact is all but over as the step begins.
-            drop.release(self.frame_secs / REACH_RELEASE_SECS);
+            drop *= release;
             if bears && let Some(limit) = self.reach_limit(trailing, hips, raw, frame) {
                 let fade = if index == 0 {
                     0.0
@@ -73,9 +74,9 @@ impl Planter {
                 };
                 let length = self.leg_lengths[trailing.index()];
                 let yielding = soft_min(hips.y, limit + 0.1 * length * fade * fade);
-                drop.hold(hips.y - yielding);
+                drop = drop.max(hips.y - yielding);
             }
-            frame.pose.root_position.y -= drop.way;
+            frame.pose.root_position.y -= drop;
             if let Some(limit) = self.reach_limit(timing.leading, hips, raw, frame) {
                 let height = &mut frame.pose.root_position.y;
                 *height = soft_min(*height, limit);
@@ -143,35 +144,6 @@ impl Planter {
             frame.contact[trailing.index()] = false;
         }
         beyond - 1
-    }
-}
-
-/// How far a leg pulls the hips down.
-#[derive(Clone, Copy, Default)]
-struct Drop {
-    /// Metres, and how much more a frame.
-    way: f32,
-    rate: f32,
-    before: f32,
-}
-
-impl Drop {
-    /// Goes back for a frame as a critically damped spring does, so that the hips are not flung up; `decay` is the frame's share of its
-    /// time constant.
-    fn release(&mut self, decay: f32) {
-        self.before = self.way;
-        let momentum = self.rate + decay * self.way;
-        let left = (-decay).exp();
-        self.way = (self.way + momentum) * left;
-        self.rate = (self.rate - decay * momentum) * left;
-    }
-
-    /// Is no less than this.
-    fn hold(&mut self, least: f32) {
-        if least > self.way {
-            self.way = least;
-            self.rate = (least - self.before).min(0.0);
-        }
     }
 }
 

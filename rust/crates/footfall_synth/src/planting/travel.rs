@@ -2,6 +2,7 @@
 
 use super::{Course, PlantedFrame, Planter, StepTiming};
 use crate::raw::RawFrame;
+use crate::strafe::Strafe;
 use footfall_core::ease::{hermite, smooth_step};
 use footfall_core::lanes::{self, COUNTING, LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;
@@ -9,7 +10,7 @@ use footfall_core::{Joint, Side};
 use glam::{Quat, Vec3};
 
 /// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
-const SETTLE_SECS: f32 = 0.05;
+const SETTLE_SECS: f32 = 0.07;
 
 /// Steps that are made shorter, as on stairs, still lift and lower the hips as long ones do: in a step of no length they would take so
 /// much longer to settle, as a share.
@@ -73,10 +74,18 @@ impl Planter {
             velocity: self.state.hips_velocity.map_or(Vec3::ZERO, |velocity| {
                 velocity * self.frame_secs - (follow - start)
             }),
-            decay: self.frame_secs / settle_secs(self.state.stride),
+            decay: self.frame_secs / self.settle_secs(),
             meeting: MEETING_SHARE * self.landing_height_gap(raw, timing),
             frames: timing.frames as f32,
         }
+    }
+
+    /// Time constant of the settling in a step with this reach of the legs, seconds.
+    fn settle_secs(&self) -> f32 {
+        let forwards = self.state.strafe == Strafe::NONE;
+        let stride = self.state.stride.clamp(0.0, 1.0);
+        let short = if forwards { 1.0 - stride } else { 0.0 };
+        SETTLE_SECS * (1.0 + SHORT_SETTLE_SHARE * short)
     }
 
     /// Fills the heading of every frame; returns that of the first.
@@ -142,21 +151,14 @@ struct Settling {
 impl Settling {
     /// How far they are from the new way at eight times.
     fn at(&self, time: f32x8) -> Vec3x8 {
-        // A return from where the hips were to where the landed foot has them, threefold damped: it sets out without a jerk.
-        let pace = self.velocity + self.offset * self.decay;
-        let bend = (self.velocity + self.offset * (0.5 * self.decay)) * self.decay;
+        // A critically damped return from where the hips were to where the landed foot has them.
+        let pace = Vec3x8::splat(self.velocity + self.offset * self.decay);
         let left = (time * -self.decay).exp();
-        let [offset, pace, bend] = [self.offset, pace, bend].map(Vec3x8::splat);
-        let mut remains = (offset + (pace + bend * time) * time) * left;
+        let mut remains = (Vec3x8::splat(self.offset) + pace * time) * left;
         let part = time * self.frames.recip() - f32x8::splat(MEETING_FROM);
         remains.y += lanes::smooth_step(part * (1.0 - MEETING_FROM).recip()) * self.meeting;
         remains
     }
-}
-
-/// Time constant of the settling at this factor on the legs' reach, seconds.
-fn settle_secs(stride: f32) -> f32 {
-    SETTLE_SECS * (1.0 + SHORT_SETTLE_SHARE * (1.0 - stride.clamp(0.0, 1.0)))
 }
 
 /// Where the hips are when this foot stands on its plant and the leg is as generated.
