@@ -26,6 +26,10 @@ const LOOK_AHEAD_SECS: f32 = 0.06;
 /// counts it from so many metres on.
 const EARLY_SECS: [f32; 2] = [0.25, 0.05];
 const EARLY_FALL_M: f32 = 0.08;
+/// A foot that goes up stays over where it stood until this part of its swing, and has caught up by that one: its toes come over the edge
+/// before it and not through it. As one that goes up counts it from so many metres on.
+const LATE_SHARES: [f32; 2] = [0.1, 0.6];
+const LATE_RISE_M: f32 = 0.08;
 /// How high it is lifted then, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
 /// A foot that lands where nothing is under its heel is level from so long before on, after so long a turn, seconds.
@@ -67,6 +71,7 @@ impl Foot {
         animated: &Animated,
     ) -> FootTarget {
         let mut lift = 0.0;
+        self.held = 0.0;
         // In the frame of the contact itself there is nothing more to land.
         let here = (animated.flat, 0.0);
         let told = animated.landing.map(|landing| (landing.flat, landing.secs));
@@ -103,6 +108,15 @@ impl Foot {
                 smooth_step((from - secs) / (from - until)) * smooth_step(fall / EARLY_FALL_M);
             let left = flat.position - animated.flat.position;
             self.correction.shift += early * left * Vec3::new(1.0, 0.0, 1.0);
+            let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
+            let [from, until] = LATE_SHARES;
+            let late =
+                smooth_step((until - share) / (until - from)) * smooth_step(-fall / LATE_RISE_M);
+            let place = scene.world_from_floor.point(animated.flat.position);
+            let start = *self.left_from.get_or_insert(place);
+            let come = scene.world_from_floor.local_point(start) - animated.flat.position;
+            self.correction.shift += late * come * Vec3::new(1.0, 0.0, 1.0);
+            self.held = late;
         }
         let mut foot = animated.foot;
         if let Some(((_, secs), _)) = planned
@@ -281,7 +295,7 @@ impl Foot {
             scene.world_from_floor.rotation.conjugate() * (place - before)
         });
         self.passed = Some(place);
-        let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS);
+        let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS) * (1.0 - self.held);
         let ahead = way * Vec3::new(1.0, 0.0, 1.0) * (left / scene.dt_secs.max(1e-3));
         let points = rocker.points(target);
         let free = rocker.points(&animated.foot);
