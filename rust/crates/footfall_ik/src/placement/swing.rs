@@ -109,14 +109,7 @@ impl Foot {
             let left = flat.position - animated.flat.position;
             self.correction.shift += early * left * Vec3::new(1.0, 0.0, 1.0);
             let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
-            let [from, until] = LATE_SHARES;
-            let late =
-                smooth_step((until - share) / (until - from)) * smooth_step(-fall / LATE_RISE_M);
-            let place = scene.world_from_floor.point(animated.flat.position);
-            let start = *self.left_from.get_or_insert(place);
-            let come = scene.world_from_floor.local_point(start) - animated.flat.position;
-            self.correction.shift += late * come * Vec3::new(1.0, 0.0, 1.0);
-            self.held = late;
+            self.hold_back(scene, animated, &flat, &toward, share);
         }
         let mut foot = animated.foot;
         if let Some(((_, secs), _)) = planned
@@ -139,6 +132,30 @@ impl Foot {
             rotation: (self.correction.tilt * animated.flat.rotation).normalize(),
         };
         target
+    }
+
+    /// Holds a foot that goes up an edge over where it stood, for the first part of its way.
+    fn hold_back<T: Terrain>(
+        &mut self,
+        scene: &Scene<'_, T>,
+        animated: &Animated,
+        flat: &Frame,
+        toward: &Correction,
+        share: f32,
+    ) {
+        let place = scene.world_from_floor.point(animated.flat.position);
+        let start = *self.left_from.get_or_insert(place);
+        let start = scene.world_from_floor.local_point(start);
+        let lifted = self.lifted(scene);
+        let way = flat.position + toward.shift - (start + lifted.shift);
+        // A slope on which it stood goes on: it is no edge.
+        let normal = lifted.tilt * Vec3::Y;
+        let slope = -(normal.x * way.x + normal.z * way.z) / normal.y.max(0.5);
+        let rise = toward.shift.y - lifted.shift.y - slope;
+        let [from, until] = LATE_SHARES;
+        self.held = smooth_step((until - share) / (until - from)) * smooth_step(rise / LATE_RISE_M);
+        let come = start - animated.flat.position;
+        self.correction.shift += self.held * come * Vec3::new(1.0, 0.0, 1.0);
     }
 
     /// What carried the foot when it was lifted, over the floor as it is now.
