@@ -43,7 +43,7 @@ const USUAL_LIFT_M: f32 = 0.05;
 /// Ground that is higher than the way of the sole by less is no obstacle, metres.
 const FLAT_WAY_M: f32 = 0.01;
 /// A foot is lifted by so much more in the middle of its way at most than it has to be over any place on it.
-const MOST_LIFT_SHARE: f32 = 1.5;
+const MOST_LIFT_SHARE: f32 = 2.5;
 /// At how many places of its way the ground is looked at.
 const WAY_POINTS: usize = 6;
 /// A planned foothold is kept as long as the animation's landing moved less than this, metres.
