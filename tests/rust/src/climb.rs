@@ -3,7 +3,7 @@
 use crate::data::repository;
 use crate::terrain::{Origin, PlacedWalker, Relief};
 use footfall_core::{Side, Skeleton};
-use footfall_ik::placement::PlacementConfig;
+use footfall_ik::placement::{Frame, PlacementConfig};
 use footfall_model::GaitModel;
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
 use glam::Vec3;
@@ -22,6 +22,8 @@ const LOST_SECS: f32 = 0.1;
 const INSIDE_M: f32 = 0.02;
 /// A sole that stands has a point at the ground within this distance, metres.
 const OFF_M: f32 = 0.02;
+/// A point of a sole bears when it is no higher above the ground than this, metres.
+const BEARS_M: f32 = 0.005;
 /// Hips over the ground below them, in lengths of the leg.
 const HIPS: [f32; 2] = [0.5, 1.6];
 
@@ -144,7 +146,7 @@ pub struct Outcome {
     pub lift: Vec<f32>,
     /// Accelerations of the hips, m/s².
     pub acceleration: Vec<f32>,
-    /// Fastest that the stillest point of a locked sole moved, m/s.
+    /// Fastest that the stillest of the points on which a locked sole stands moved along the ground, m/s.
     pub slip: f32,
     /// Highest angular acceleration of a knee, rad/s².
     pub knee: f32,
@@ -154,6 +156,8 @@ pub struct Outcome {
     pub secs: f32,
     /// How many steps were taken on the way.
     pub steps: usize,
+    /// How fast the hips went over the ground between the first edge and the last, m/s.
+    pub pace_mps: f32,
 }
 
 impl fmt::Display for Outcome {
@@ -246,11 +250,13 @@ impl Climb {
             ..Watcher::default()
         };
         let goal = from + way.length() + BEYOND_M;
+        let mut between = 0;
         let longest = ((10.0 + 4.0 * goal) / DT) as usize;
         for frame in 0..longest {
             walker.climb(DT, controls, &mut terrain, self.told);
             show(frame, &walker);
             watcher.see(frame, &walker, &terrain);
+            between += usize::from((from..from + way.length()).contains(&walker.hips().z));
             if walker.hips().z > goal {
                 break;
             }
@@ -258,6 +264,7 @@ impl Climb {
                 watcher.fault(Failure::Stuck, frame, &walker, walker.hips().z);
             }
         }
+        watcher.outcome.pace_mps = way.length() / (between as f32 * DT);
         watcher.outcome
     }
 }
@@ -334,10 +341,7 @@ impl Watcher {
                     self.fault(Failure::OffGround, frame, walker, off);
                 }
                 if !placed.landed {
-                    let moved = soles[index].iter().zip(&self.soles[index]);
-                    let slip = moved
-                        .map(|(now, then)| now.distance(*then) / DT)
-                        .fold(f32::MAX, f32::min);
+                    let slip = slide(&placed.sole, soles[index], self.soles[index]) / DT;
                     self.outcome.slip = self.outcome.slip.max(slip);
                 }
             }
@@ -366,6 +370,21 @@ impl Watcher {
             }
         }
     }
+}
+
+/// How far a sole that rolls slid: a point on which it stood and stands moves along the ground no more than that. That one end comes
+/// down while the other rises is no slide.
+fn slide(sole: &Frame, now: [Vec3; 3], then: [Vec3; 3]) -> f32 {
+    let height = |point: Vec3| sole.local_point(point).y;
+    let along = |now: Vec3, then: Vec3| (now - then).reject_from_normalized(sole.up()).length();
+    let pairs = || now.into_iter().zip(then);
+    let bearing = pairs().filter(|(now, then)| height(*now).max(height(*then)) < BEARS_M);
+    let slid = bearing.map(|(now, then)| along(now, then));
+    let slid = slid.reduce(f32::min);
+    slid.unwrap_or_else(|| {
+        let any = pairs().map(|(now, then)| along(now, then));
+        any.fold(f32::MAX, f32::min)
+    })
 }
 
 /// How far a point is from the nearest way out of the ground, up or along the way; 0 outside.

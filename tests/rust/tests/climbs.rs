@@ -13,6 +13,8 @@ use std::thread;
 
 /// Hips are accelerated by less, for 99 frames of a hundred, m/s².
 const HIPS_99: f32 = 12.0;
+/// No standing foot moves faster along the ground, m/s.
+const SLIP_MPS: f32 = 0.001;
 
 /// What was seen of many climbs.
 #[derive(Default)]
@@ -105,6 +107,7 @@ impl Survey {
         self.show();
         assert_eq!(self.failed, 0, "{}", self.line());
         assert!(percentile(&self.lift, 0.99) <= HIPS_99, "{}", self.line());
+        assert!(self.slip < SLIP_MPS, "{}", self.line());
     }
 }
 
@@ -234,6 +237,21 @@ fn nobody_falls_through_stairs() {
         });
     }
     Survey::of(&climbs).expect_no_fault();
+}
+
+/// Adults of 1.3 m/s on the level go up and down stairs at 0.5 to 0.7 m/s along the slope, one tread a step; nobody dawdles on them.
+#[test]
+fn stairs_are_climbed_at_the_pace_of_people() {
+    const TREADS: [f32; 2] = [0.17, 0.29];
+    let [rise, run] = TREADS;
+    let along = rise.hypot(run) / run;
+    for rise in [rise, -rise] {
+        for distance_m in distances(12) {
+            let outcome = Climb::adult(Way::Stairs { rise, run }, distance_m, 1.3).walk();
+            let pace = along * outcome.pace_mps;
+            assert!((0.55..0.8).contains(&pace), "{pace} m/s from {distance_m}");
+        }
+    }
 }
 
 #[test]

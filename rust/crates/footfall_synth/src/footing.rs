@@ -12,6 +12,8 @@ const STRETCHED_UNTIL: f32 = 0.25;
 /// By how much a step is shortened and lengthened at most.
 const SHORTEST: f32 = 0.25;
 const LONGEST: f32 = 1.4;
+/// By how much it is quicker at most: nobody trips up stairs.
+const MOST_HASTE: f32 = 1.5;
 /// Steps are no shorter than this and near enough to what was wanted within that, metres, which takes so many trials at most.
 const SHORT_STEP_M: f32 = 0.05;
 const SAME_LENGTH_M: f32 = 0.01;
@@ -32,11 +34,15 @@ impl GaitGenerator {
         if !begun || timing.rests || !share.is_finite() {
             return;
         }
-        let wanted =
-            share.clamp(SHORTEST, LONGEST) * step_length(self.shape(), self.steps.source().stage());
+        let length = step_length(self.shape(), self.steps.source().stage());
+        let wanted = share.clamp(SHORTEST, LONGEST) * length;
         if wanted < SHORT_STEP_M {
             return;
         }
+        // Who is to go on at a speed in shorter steps takes them quicker, and who brakes less so.
+        let secs = timing.frames as f32 / self.frame_rate_hz;
+        let quickest = (secs * self.asked_mps / wanted).min(length / wanted);
+        let haste = quickest.clamp(1.0, MOST_HASTE);
         let mut trials = 0..STRETCHES;
         let mut next = |shape: &StepShape, stage: &Stage| {
             trials.next()?;
@@ -44,7 +50,7 @@ impl GaitGenerator {
             let far = (length - wanted).abs() >= SAME_LENGTH_M;
             far.then(|| wanted / length.max(SHORT_STEP_M))
         };
-        self.steps.source_mut().stretch(&mut next);
+        self.steps.source_mut().stretch(haste, &mut next);
     }
 }
 

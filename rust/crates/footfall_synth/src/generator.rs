@@ -153,6 +153,8 @@ pub struct GaitGenerator {
     pub(crate) position: f32,
     pub(crate) plan_from_start: GroundTransform,
     footsteps: Vec<Footstep>,
+    /// The speed forwards that was asked for last, m/s.
+    pub(crate) asked_mps: f32,
     start_from_character: GroundTransform,
     contact: [bool; 2],
 }
@@ -217,6 +219,7 @@ impl GaitGenerator {
             position: (2.0 * config.phase.rem_euclid(1.0)).fract() * frames,
             plan_from_start: GroundTransform::default(),
             footsteps: Vec::with_capacity(MAX_FOOTSTEPS),
+            asked_mps: 0.0,
             start_from_character: GroundTransform::default(),
             contact: [true; 2],
         };
@@ -275,6 +278,7 @@ impl GaitGenerator {
     /// A `dt_secs` of 0 gives the same pose again.
     pub fn step(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
         self.footsteps.clear();
+        self.asked_mps = controls.velocity().y.max(0.0);
         if dt_secs > 0.0 {
             self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
         }

@@ -64,8 +64,9 @@ pub(crate) trait StepSource {
     fn advance(&mut self, ask: &Ask);
 
     /// Puts the current step on the ground anew, again and again, with the factors on the legs' reach that `next` makes of where it
-    /// lies; the walk goes on from the speed that this gives. The first step of all stays as it is.
-    fn stretch(&mut self, next: &mut Stretches<'_>);
+    /// lies; the walk goes on from the speed that this gives. Before, it becomes quicker by the factor
+    /// `haste` and shorter by as much, which is the same speed. The first step of all stays as it is.
+    fn stretch(&mut self, haste: f32, next: &mut Stretches<'_>);
 }
 
 /// The kinds of models that walk.

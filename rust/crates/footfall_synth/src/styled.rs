@@ -225,9 +225,15 @@ impl StepSource for StyledSteps {
             .at_bench(|bench| walker.advance(planner, &worn.blend, draw, request, bench));
     }
 
-    fn stretch(&mut self, next: &mut Stretches<'_>) {
-        let walker = &mut self.walker;
-        self.velocity_mps *= self.space.at_bench(|bench| walker.stretch(next, bench));
+    fn stretch(&mut self, haste: f32, next: &mut Stretches<'_>) {
+        let haste = f64::from(haste);
+        // Styles may have changed since the step began.
+        self.planner.wear(&self.walker.blends()[1].model);
+        let (planner, walker) = (&mut self.planner, &mut self.walker);
+        let whole = self
+            .space
+            .at_bench(|bench| walker.stretch(planner, haste, next, bench));
+        self.velocity_mps *= whole;
     }
 }
 

@@ -154,14 +154,29 @@ impl Walker {
         self.solve_tied(bench);
     }
 
-    /// Puts the current step on the ground anew with the factors on the legs' reach that `next` gives, and returns what they make
-    /// together. The first step came from nowhere and stays.
-    pub(crate) fn stretch(&mut self, next: &mut Stretches<'_>, bench: &mut Workbench) -> f32 {
+    /// Puts the current step on the ground anew, quicker by the factor `haste` and shorter by as much, and then with the factors on the
+    /// legs' reach that `next` gives; returns what these make together. The first step came from nowhere and stays.
+    pub(crate) fn stretch(
+        &mut self,
+        planner: &mut Planner,
+        haste: f64,
+        next: &mut Stretches<'_>,
+        bench: &mut Workbench,
+    ) -> f32 {
         let mut whole = 1.0;
         let Some(feet) = self.origin.planter else {
             return whole;
         };
         let mut solved = false;
+        if haste > 1.0 {
+            let pace = &mut self.origin.request.manner.pace;
+            pace.tempo *= haste;
+            pace.stride /= haste;
+            self.stage.resume(feet);
+            self.realise(planner, 1);
+            self.solve_tied(bench);
+            solved = true;
+        }
         while let Some(share) = next(&self.plans[1].shape, &self.stage) {
             whole *= share;
             let stride = self.origin.request.manner.pace.stride * f64::from(share);

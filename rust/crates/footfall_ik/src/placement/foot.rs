@@ -74,6 +74,10 @@ pub(super) struct Foot {
     pub(super) dropped: Option<(Correction, f32)>,
     /// Where in the world a swinging ankle was in the last frame.
     pub(super) passed: Option<Vec3>,
+    /// Where in the world the animation had the foot when its way to a planned foothold began.
+    pub(super) left_from: Option<Vec3>,
+    /// How much of it is held there yet.
+    pub(super) held: f32,
     /// Where in the world the animation had a foot that follows the ground.
     pub(super) followed: Option<Vec3>,
     /// What carried it when it last changed its mode, and the height in the world of the animation's floor then.
@@ -146,6 +150,8 @@ impl Default for Foot {
             missed_at: None,
             dropped: None,
             passed: None,
+            left_from: None,
+            held: 0.0,
             followed: None,
             lifted_with: Correction::NONE,
             lifted_from_m: 0.0,
@@ -241,6 +247,7 @@ impl Foot {
         self.hold = None;
         self.lands = None;
         self.lifted_from_m = self.floor_m;
+        self.left_from = None;
         self.followed = None;
         self.passed = None;
         self.lifted_with = self.correction;

@@ -26,6 +26,10 @@ const LOOK_AHEAD_SECS: f32 = 0.06;
 /// counts it from so many metres on.
 const EARLY_SECS: [f32; 2] = [0.25, 0.05];
 const EARLY_FALL_M: f32 = 0.08;
+/// A foot that goes up stays over where it stood until this part of its swing, and has caught up by that one: its toes come over the edge
+/// before it and not through it. As one that goes up counts it from so many metres on.
+const LATE_SHARES: [f32; 2] = [0.1, 0.6];
+const LATE_RISE_M: f32 = 0.08;
 /// How high it is lifted then, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
 /// A foot that lands where nothing is under its heel is level from so long before on, after so long a turn, seconds.
@@ -38,6 +42,8 @@ const CLEARANCE_M: f32 = 0.03;
 const USUAL_LIFT_M: f32 = 0.05;
 /// Ground that is higher than the way of the sole by less is no obstacle, metres.
 const FLAT_WAY_M: f32 = 0.01;
+/// A foot is lifted by so much more in the middle of its way at most than it has to be over any place on it.
+const MOST_LIFT_SHARE: f32 = 2.5;
 /// At how many places of its way the ground is looked at.
 const WAY_POINTS: usize = 6;
 /// A planned foothold is kept as long as the animation's landing moved less than this, metres.
@@ -65,6 +71,7 @@ impl Foot {
         animated: &Animated,
     ) -> FootTarget {
         let mut lift = 0.0;
+        self.held = 0.0;
         // In the frame of the contact itself there is nothing more to land.
         let here = (animated.flat, 0.0);
         let told = animated.landing.map(|landing| (landing.flat, landing.secs));
@@ -101,6 +108,8 @@ impl Foot {
                 smooth_step((from - secs) / (from - until)) * smooth_step(fall / EARLY_FALL_M);
             let left = flat.position - animated.flat.position;
             self.correction.shift += early * left * Vec3::new(1.0, 0.0, 1.0);
+            let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
+            self.hold_back(scene, animated, &flat, &toward, share);
         }
         let mut foot = animated.foot;
         if let Some(((_, secs), _)) = planned
@@ -123,6 +132,30 @@ impl Foot {
             rotation: (self.correction.tilt * animated.flat.rotation).normalize(),
         };
         target
+    }
+
+    /// Holds a foot that goes up an edge over where it stood, for the first part of its way.
+    fn hold_back<T: Terrain>(
+        &mut self,
+        scene: &Scene<'_, T>,
+        animated: &Animated,
+        flat: &Frame,
+        toward: &Correction,
+        share: f32,
+    ) {
+        let place = scene.world_from_floor.point(animated.flat.position);
+        let start = *self.left_from.get_or_insert(place);
+        let start = scene.world_from_floor.local_point(start);
+        let lifted = self.lifted(scene);
+        let way = flat.position + toward.shift - (start + lifted.shift);
+        // A slope on which it stood goes on: it is no edge.
+        let normal = lifted.tilt * Vec3::Y;
+        let slope = -(normal.x * way.x + normal.z * way.z) / normal.y.max(0.5);
+        let rise = toward.shift.y - lifted.shift.y - slope;
+        let [from, until] = LATE_SHARES;
+        self.held = smooth_step((until - share) / (until - from)) * smooth_step(rise / LATE_RISE_M);
+        let come = start - animated.flat.position;
+        self.correction.shift += self.held * come * Vec3::new(1.0, 0.0, 1.0);
     }
 
     /// What carried the foot when it was lifted, over the floor as it is now.
@@ -203,7 +236,7 @@ impl Foot {
     ) -> f32 {
         let from = animated.flat.position + self.lifted(scene).shift;
         let rises = sole.position.y > from.y;
-        let mut lift = 0.0_f32;
+        let (mut lift, mut highest) = (0.0_f32, 0.0_f32);
         for point in 1..=WAY_POINTS {
             let share = point as f32 / (WAY_POINTS + 1) as f32;
             let at = from.lerp(sole.position, smooth_step(share));
@@ -217,9 +250,11 @@ impl Foot {
             // What lies no higher than the way from one foothold to the other is cleared by any walk.
             if height > foot + FLAT_WAY_M && short > 0.0 {
                 lift = lift.max(short / shape.max(0.2));
+                highest = highest.max(short);
             }
         }
-        lift
+        // What stands near an end of the way is no reason to kick in its middle: there the guard lifts the foot.
+        lift.min(MOST_LIFT_SHARE * highest)
     }
 
     /// Follows the ground under a foot of which nobody knows where it will land.
@@ -277,7 +312,7 @@ impl Foot {
             scene.world_from_floor.rotation.conjugate() * (place - before)
         });
         self.passed = Some(place);
-        let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS);
+        let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS) * (1.0 - self.held);
         let ahead = way * Vec3::new(1.0, 0.0, 1.0) * (left / scene.dt_secs.max(1e-3));
         let points = rocker.points(target);
         let free = rocker.points(&animated.foot);

@@ -2,6 +2,7 @@
 
 use super::{Course, PlantedFrame, Planter, StepTiming};
 use crate::raw::RawFrame;
+use crate::strafe::Strafe;
 use footfall_core::ease::{hermite, smooth_step};
 use footfall_core::lanes::{self, COUNTING, LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;
@@ -10,6 +11,10 @@ use glam::{Quat, Vec3};
 
 /// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
 const SETTLE_SECS: f32 = 0.07;
+
+/// Steps that are made shorter, as on stairs, still lift and lower the hips as long ones do: in a step of no length they would take so
+/// much longer to settle, as a share.
+const SHORT_SETTLE_SHARE: f32 = 1.8;
 
 /// Part of a step over which a new turn rate sets in.
 const TURN_ONSET: f32 = 0.6;
@@ -69,10 +74,18 @@ impl Planter {
             velocity: self.state.hips_velocity.map_or(Vec3::ZERO, |velocity| {
                 velocity * self.frame_secs - (follow - start)
             }),
-            decay: self.frame_secs / SETTLE_SECS,
+            decay: self.frame_secs / self.settle_secs(),
             meeting: MEETING_SHARE * self.landing_height_gap(raw, timing),
             frames: timing.frames as f32,
         }
+    }
+
+    /// Time constant of the settling in a step with this reach of the legs, seconds.
+    fn settle_secs(&self) -> f32 {
+        let forwards = self.state.strafe == Strafe::NONE;
+        let stride = self.state.stride.clamp(0.0, 1.0);
+        let short = if forwards { 1.0 - stride } else { 0.0 };
+        SETTLE_SECS * (1.0 + SHORT_SETTLE_SHARE * short)
     }
 
     /// Fills the heading of every frame; returns that of the first.

@@ -43,10 +43,20 @@ impl StepSource for SwitchingSteps {
         self.realise();
     }
 
-    fn stretch(&mut self, next: &mut Stretches<'_>) {
+    fn stretch(&mut self, haste: f32, next: &mut Stretches<'_>) {
         let Some(feet) = self.origin.planter else {
             return;
         };
+        if haste > 1.0 {
+            let haste = f64::from(haste);
+            self.origin.tempo *= haste;
+            self.origin.stride /= haste;
+            // The same step, drawn by the same chance.
+            self.rng
+                .set_word_pos(u128::from(self.origin.chance_position));
+            self.stage.resume(feet);
+            self.realise();
+        }
         while let Some(share) = next(&self.shape, &self.stage) {
             self.origin.stride *= f64::from(share);
             self.shape.stride = self.origin.stride;
