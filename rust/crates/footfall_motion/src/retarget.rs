@@ -54,6 +54,12 @@ pub struct RetargetReport {
     pub scale: f32,
     /// Frames in which the left and the right foot lay flat, from which the foot's zero was learned.
     pub flat_foot_frames: [usize; 2],
+    /// Whether the body walked in place, and its way was taken [from the standing foot](crate::game_clip).
+    pub in_place: bool,
+    /// Frames of one round, for a clip that is a loop.
+    pub cycle_frames: Option<usize>,
+    /// How often the clip shows the same steps: more than once for a loop that was unrolled.
+    pub repeats: usize,
 }
 
 /// Why a file cannot be retargeted.
@@ -162,6 +168,9 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
             source_joints: Joint::ALL.map(name_of),
             scale,
             flat_foot_frames: flat.map(|foot| foot.frames),
+            in_place: false,
+            cycle_frames: None,
+            repeats: 1,
         },
     })
 }

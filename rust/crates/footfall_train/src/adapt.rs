@@ -17,7 +17,7 @@ use crate::train::{TrainConfig, TrainingClip, encode, mean_terminal, steady_part
 use footfall_core::Side;
 use footfall_model::{
     FEATURE_COUNT, GaitModel, GaitStyle, GlobalVarianceModel, OBSERVATION_COUNT, Provenance,
-    STATES_PER_STEP, StateModel, StepModel,
+    STATES_PER_STEP, StateModel, StepModel, StepSpread,
 };
 use footfall_motion::steps::Walk;
 use footfall_prob::duration::{DurationDist, GaussianDuration};
@@ -135,13 +135,13 @@ pub fn adapt_style(
             states.step(Side::Right, mean_terminal(&corpus, Side::Right))?,
         ],
         global_variance: global_variance(base, &corpus),
-        step_spread: spread::step_spread(base, &corpus),
+        step_spread: own_spread(base, &chosen, &encoding)?,
         speed_mps: mean_speed(&corpus),
         cadence_hz: counts.steps as f64 * base.frame_rate_hz / frames as f64,
         provenance: Provenance {
             clips: counts.clips,
             subjects: counts.subjects,
-            steps: counts.steps,
+            steps: distinct_steps(&chosen),
             ..provenance
         },
     };
@@ -153,6 +153,30 @@ pub fn adapt_style(
         classes: adapting.classes(),
         frames,
     })
+}
+
+/// How much the steps differ, by the clips that show different ones.
+fn own_spread(
+    base: &GaitModel,
+    clips: &[TrainingClip],
+    encoding: &TrainConfig,
+) -> Result<StepSpread, TrainError> {
+    let distinct: Vec<TrainingClip> = clips
+        .iter()
+        .filter(|clip| clip.repeats <= 1)
+        .cloned()
+        .collect();
+    let (corpus, _) = encode(&distinct, encoding)?;
+    Ok(spread::step_spread(base, &corpus))
+}
+
+/// Steps that were taken, those of a loop once.
+fn distinct_steps(clips: &[TrainingClip]) -> usize {
+    let of_clip = |clip: &TrainingClip| {
+        let steps: usize = clip.walks.iter().map(|walk| walk.steps.len()).sum();
+        steps.div_ceil(clip.repeats.max(1))
+    };
+    clips.iter().map(of_clip).sum()
 }
 
 /// The clips with only their first `limit` steps in full stride.

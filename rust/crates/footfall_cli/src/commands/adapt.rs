@@ -15,7 +15,8 @@ use std::time::Instant;
 /// Make a style from a dozen steps
 ///
 /// Moves a base model to the walks that an index lists. Any frame rate, any body, any walker: 6 to 12 steps straight ahead are
-/// enough. The style fits the base model that it was made for, and no other.
+/// enough, BVH or glTF (`hero.glb#Walk` where a file has several animations). Clips that walk in place travel as their standing feet
+/// tell, and loops are repeated. The style fits the base model that it was made for, and no other.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall adapt --base walk.footfall --corpus index.csv --where style=sad --name sad -o sad.footstyle\n  \
@@ -82,9 +83,6 @@ struct Report<'a> {
     adaptation_seconds: f64,
     seconds: f64,
 }
-
-/// Fewer steps than this make a style that hangs on chance.
-const FEW_STEPS: usize = 6;
 
 #[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
 pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
@@ -163,13 +161,7 @@ fn report(
 ) -> Result<()> {
     let style = &adapted.style;
     let made_from = &style.provenance;
-    let mut warnings = Vec::new();
-    if made_from.steps < FEW_STEPS {
-        warnings.push(format!(
-            "only {} steps: what is chance in them is in the style; give six to twelve",
-            made_from.steps
-        ));
-    }
+    let warnings = style.thin_warning().into_iter().collect();
     let report = Report {
         output: &args.output,
         name: &style.name,

@@ -2,6 +2,7 @@
 
 mod form;
 
+use super::clip_source::Clip;
 use super::style_maker::{Made, Order};
 use crate::gait_generator_3d::GaitGenerator3D;
 use crate::gait_model::GaitModel;
@@ -14,18 +15,18 @@ use godot::classes::{
     EditorDock, EditorInterface, IEditorDock, ProjectSettings, ResourceLoader, editor_dock,
 };
 use godot::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The walk that is adapted where none was chosen.
 const USUAL_BASE: &str = "res://addons/footfall/models/walk.footfall";
 
-/// Makes a `.footstyle` of `.bvh` recordings, shows it, and gives it to a walker.
+/// Makes a `.footstyle` of recordings and of animations of characters, shows it, and gives it to a walker.
 #[derive(GodotClass)]
 #[class(tool, init, internal, base = EditorDock)]
 pub(super) struct FootfallStyleDock {
     form: Option<Form>,
-    recordings: Vec<PathBuf>,
+    recordings: Vec<Clip>,
     job: Option<Job<Result<Made, String>>>,
     /// The file of the style that was made last.
     made: Option<GString>,
@@ -71,16 +72,24 @@ impl IEditorDock for FootfallStyleDock {
 
 #[godot_api]
 impl FootfallStyleDock {
-    /// Adds recordings to learn from.
+    /// Adds files to learn from: recordings, and characters with all their animations.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn add_recordings(&mut self, files: PackedStringArray) {
+        let mut problems = Vec::new();
         for file in files.as_slice() {
-            let path = PathBuf::from(globalized(file).to_string());
-            if !self.recordings.contains(&path) {
-                self.recordings.push(path);
+            match Clip::all_of(file) {
+                Ok(clips) => {
+                    for clip in clips {
+                        if !self.recordings.contains(&clip) {
+                            self.recordings.push(clip);
+                        }
+                    }
+                }
+                Err(problem) => problems.push(problem),
             }
         }
+        self.tell(&problems.join("\n"));
         self.refresh();
     }
 
@@ -203,7 +212,7 @@ impl FootfallStyleDock {
         let form = self.form.as_ref().ok_or("The dock is not open.")?;
         if self.recordings.is_empty() {
             return Err(
-                "Add recordings of the style first: BVH files of someone who walks in it."
+                "Add recordings of the style first: BVH files of someone who walks in it, or characters with animations (.glb, .fbx)."
                     .to_owned(),
             );
         }
@@ -245,13 +254,11 @@ impl FootfallStyleDock {
             form.show_walker(&Arc::new(space));
         }
         let steps = style.provenance.steps;
-        let few = if steps < 6 {
-            " Six to twelve are better."
-        } else {
-            ""
-        };
+        let thin = style
+            .thin_warning()
+            .map_or_else(String::new, |warning| format!(" A thin style: {warning}."));
         let text = format!(
-            "{file}: {steps} steps at {:.2} m/s, {:.0} steps a minute.{few}",
+            "{file}: {steps} steps at {:.2} m/s, {:.0} steps a minute.{thin}",
             style.speed_mps,
             60.0 * style.cadence_hz
         );
@@ -277,7 +284,7 @@ impl FootfallStyleDock {
     }
 
     fn refresh(&mut self) {
-        let names = self.recordings.iter().map(|path| name_of(path));
+        let names = self.recordings.iter().map(Clip::label);
         if let Some(form) = &mut self.form {
             let state = match (&self.job, &self.made) {
                 (Some(_), _) => State::Working,
@@ -320,10 +327,4 @@ fn wear(walker: &Gd<GaitGenerator3D>, style: &Gd<GaitStyle>) {
 /// A path of the project as one of the machine.
 fn globalized(path: &GString) -> GString {
     ProjectSettings::singleton().globalize_path(path)
-}
-
-fn name_of(path: &Path) -> String {
-    let name = path.file_name();
-    name.map(|name| name.to_string_lossy().into_owned())
-        .unwrap_or_default()
 }

@@ -1,8 +1,10 @@
 //! Making a style of recordings, on a thread of its own.
 
+use super::clip_source::Clip;
 use footfall_model::{GaitModel, GaitStyle, Provenance};
 use footfall_motion::files::write_atomic;
 use footfall_train::Recordings;
+use footfall_train::TrainError;
 use footfall_train::job::{Job, Reporter};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,7 +14,7 @@ pub(super) struct Order {
     /// The walk that is adapted.
     pub(super) base: Arc<GaitModel>,
     /// Recordings of the style.
-    pub(super) recordings: Vec<PathBuf>,
+    pub(super) recordings: Vec<Clip>,
     /// What the style is called.
     pub(super) name: String,
     /// How many steps are taken from them at most.
@@ -36,10 +38,15 @@ impl Order {
     }
 
     fn make(self, reporter: &mut Reporter) -> Result<Made, String> {
-        let message = |error: footfall_train::TrainError| error.to_string();
-        let walker = |path: PathBuf| (path, self.name.clone());
-        let chosen: Vec<_> = self.recordings.into_iter().map(walker).collect();
-        let read = Recordings::read(&chosen, reporter).map_err(message)?;
+        let message = |error: TrainError| error.to_string();
+        let count = self.recordings.len();
+        let mut read = Recordings::default();
+        for (done, clip) in self.recordings.iter().enumerate() {
+            if reporter.tell("reading", done, count).is_break() {
+                return Err(TrainError::Cancelled.to_string());
+            }
+            read.0.push((self.name.clone(), clip.read()?));
+        }
         let made_from = Provenance {
             corpus: "recordings chosen in the Godot editor".to_owned(),
             terms: "not stated".to_owned(),
@@ -51,7 +58,7 @@ impl Order {
             .map_err(message)?;
         // Whoever cancelled by now wants no file.
         if reporter.tell("writing", 0, 1).is_break() {
-            return Err(footfall_train::TrainError::Cancelled.to_string());
+            return Err(TrainError::Cancelled.to_string());
         }
         let bytes = adapted
             .style

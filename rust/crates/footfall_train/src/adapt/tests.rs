@@ -14,6 +14,7 @@ fn clips(condition: &str) -> Vec<TrainingClip> {
         clip: clip.retargeted.clip.clone(),
         skip_frames: clip.retargeted.first_frame,
         walks: clip.walks.clone(),
+        repeats: 1,
     };
     corpus.clips.iter().map(clip).collect()
 }
