@@ -179,6 +179,11 @@ fn distinct_steps(clips: &[TrainingClip]) -> usize {
     clips.iter().map(of_clip).sum()
 }
 
+/// Whether there is enough in walks to learn a style from: a step of each foot, one after the other.
+pub fn shows_steps(walks: &[Walk]) -> bool {
+    walks.iter().any(|walk| walk.steps.len() >= LEAST_STEPS)
+}
+
 /// The clips with only their first `limit` steps in full stride.
 fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>, TrainError> {
     if limit < LEAST_STEPS {

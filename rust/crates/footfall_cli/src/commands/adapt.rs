@@ -7,7 +7,7 @@ use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
 use footfall_model::Provenance;
 use footfall_motion::corpus::{Corpus, Where};
-use footfall_train::{AdaptConfig, AdaptMethod, Adapted, TrainingClip, adapt_style};
+use footfall_train::{AdaptConfig, AdaptMethod, Adapted, TrainingClip, adapt_style, shows_steps};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -97,6 +97,13 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     progress.0.stage("reading the corpus", 0);
     let corpus = train::read_corpus(&args.corpus, &args.conditions, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
+    let still = without_steps(&corpus);
+    ensure!(
+        still.len() < clips.len(),
+        "{}: no two steps in a row in {}; give clips that walk, of both feet's steps",
+        args.corpus.display(),
+        listed(&still)
+    );
     let config = AdaptConfig {
         method: match args.method {
             MethodArg::Cmllr => AdaptMethod::Cmllr,
@@ -122,6 +129,29 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     write_atomic(&args.output, &bytes)?;
     progress.0.finish();
     report(args, &corpus, &adapted, bytes.len(), seconds)
+}
+
+/// The clips in which nobody walks, by name and length.
+fn without_steps(corpus: &Corpus) -> Vec<String> {
+    let clips = corpus.clips.iter();
+    clips
+        .filter(|clip| !shows_steps(&clip.walks))
+        .map(|clip| {
+            let motion = &clip.retargeted;
+            let secs = motion.clip.duration_secs() / motion.report.repeats.max(1) as f64;
+            format!("{} ({secs:.1} s)", provenance::name_of(&clip.row.path))
+        })
+        .collect()
+}
+
+/// The first of many names, and how many more there are.
+fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 5;
+    let first = names[..names.len().min(SHOWN)].join(", ");
+    match names.len().saturating_sub(SHOWN) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
 }
 
 fn made_from(corpus: &Corpus, args: &AdaptArgs) -> Provenance {
@@ -161,7 +191,14 @@ fn report(
 ) -> Result<()> {
     let style = &adapted.style;
     let made_from = &style.provenance;
-    let warnings = style.thin_warning().into_iter().collect();
+    let still = without_steps(corpus);
+    let unused = (!still.is_empty()).then(|| {
+        format!(
+            "nothing was learned from {}: no two steps in a row",
+            listed(&still)
+        )
+    });
+    let warnings = unused.into_iter().chain(style.thin_warning()).collect();
     let report = Report {
         output: &args.output,
         name: &style.name,

@@ -1,6 +1,11 @@
 //! Clips as games have them: a loop of two steps on the spot, on a Mixamo-like rig in centimetres, as glTF.
 
-use crate::common::footfall;
+#![expect(
+    clippy::unwrap_used,
+    reason = "a clip that cannot be made fails its test"
+)]
+
+use crate::common::{Run, footfall};
 use footfall_core::{Clip, Joint};
 use footfall_motion::bvh;
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
@@ -175,7 +180,8 @@ fn a_loop_on_the_spot_becomes_a_style_that_walks_as_it_did() {
     let model = shipped_model();
     for speed in ["0.9", "1.5"] {
         let (clip, length) = stride(folder, speed);
-        let secs = (clip.poses.len() - 1) as f64 / clip.frame_rate_hz;
+        let frames = clip.poses.len() - 1;
+        let secs = frames as f64 / clip.frame_rate_hz;
         let walked = length / secs;
         let glb = mixamo_glb(&stripped(clip), &["mixamo.com"]);
         fs::write(folder.join("walk.glb"), glb).unwrap();
@@ -183,7 +189,7 @@ fn a_loop_on_the_spot_becomes_a_style_that_walks_as_it_did() {
         let facts = footfall(folder, &["inspect", "walk.glb", "--json"]).json();
         assert_eq!(facts["in_place"], true, "{facts}");
         assert_eq!(facts["skeleton"], "Mixamo and MotionBuilder");
-        assert_eq!(facts["cycle_frames"].as_f64().unwrap(), 30.0 * secs);
+        assert_eq!(facts["cycle_frames"], frames);
         assert_eq!(facts["steps"], 2, "{facts}");
         assert_eq!(facts["warnings"].as_array().unwrap().len(), 1);
         near(
@@ -193,24 +199,8 @@ fn a_loop_on_the_spot_becomes_a_style_that_walks_as_it_did() {
             "speed of the file",
         );
 
-        fs::write(
-            folder.join("index.csv"),
-            "path,category,style,subject\nwalk.glb,walk,loop,me\n",
-        )
-        .unwrap();
-        let arguments = [
-            "adapt",
-            "--base",
-            model.to_str().unwrap(),
-            "--corpus",
-            "index.csv",
-            "--name",
-            "loop",
-            "-o",
-            "loop.footstyle",
-            "--json",
-        ];
-        let report = footfall(folder, &arguments).json();
+        index_of(folder, "walk.glb");
+        let report = adapt(folder).json();
         assert_eq!(report["steps"], 2, "{report}");
         let warning = report["warnings"][0].as_str().unwrap();
         assert!(warning.contains("only 2 steps"), "{warning}");
@@ -238,15 +228,6 @@ fn a_loop_on_the_spot_becomes_a_style_that_walks_as_it_did() {
         ];
         assert_eq!(footfall(folder, &arguments).code, 0);
         let quality = evaluate(&bvh::read(folder.join("out.bvh")).unwrap());
-        println!(
-            "{speed} m/s: clip {walked:.3} m/s, {length:.3} m, {:.2} steps/s; file {}, style {}, walked {:.3} m/s, {:.3} m, {:.2} steps/s",
-            2.0 / secs,
-            facts["speed_mps"],
-            report["speed_mps"],
-            quality.speed_mps,
-            2.0 * quality.speed_mps / quality.cadence_hz,
-            quality.cadence_hz
-        );
         near(quality.speed_mps, walked, 0.05, "speed");
         near(quality.cadence_hz, 2.0 / secs, 0.05, "cadence");
         let stride = 2.0 * quality.speed_mps / quality.cadence_hz;
@@ -302,4 +283,73 @@ fn one_of_several_animations_is_named() {
     fs::write(folder.join("broken.glb"), b"glTF nonsense").unwrap();
     inspect("broken.glb").fails_with(&["broken.glb"]);
     inspect("missing.glb").fails_with(&["missing.glb"]);
+}
+
+/// A table of one clip.
+fn index_of(folder: &Path, clip: &str) {
+    let table = format!("path,category,style,subject\n{clip},walk,loop,me\n");
+    fs::write(folder.join("index.csv"), table).unwrap();
+}
+
+fn adapt(folder: &Path) -> Run {
+    let model = shipped_model();
+    let base = model.to_str().unwrap();
+    let wanted = ["--name", "loop", "-o", "loop.footstyle", "--json"];
+    let arguments = ["adapt", "--base", base, "--corpus", "index.csv"];
+    footfall(folder, &[&arguments[..], &wanted].concat())
+}
+
+#[test]
+fn clips_that_make_no_style_are_named_with_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (walk, _) = stride(folder, "1.2");
+    let walk = stripped(walk);
+    let refuses = |name: &str, glb: &[u8], words: &[&str]| {
+        fs::write(folder.join(name), glb).unwrap();
+        index_of(folder, name);
+        adapt(folder).fails_with(&[&[name][..], words].concat());
+        assert!(!folder.join("loop.footstyle").exists(), "{name}");
+    };
+
+    let mut idle = walk.clone();
+    for (frame, pose) in idle.poses.iter_mut().enumerate() {
+        *pose = walk.poses[0].clone();
+        let breath = 0.05 * (0.2 * frame as f32).sin();
+        pose.rotations[Joint::Chest.index()] *= Quat::from_rotation_x(breath);
+    }
+    let glb = mixamo_glb(&idle, &["Idle"]);
+    refuses("idle.glb", &glb, &["no two steps", "clips that walk"]);
+
+    let mut short = walk.clone();
+    short.poses.truncate(15);
+    let glb = mixamo_glb(&short, &["Walk"]);
+    refuses("short.glb", &glb, &["(0.5 s)", "no two steps"]);
+
+    // A name that stays as long keeps the file's sizes.
+    let glb = mixamo_glb(&walk, &["Walk"]);
+    let at = |name: &[u8]| glb.windows(name.len()).position(|bytes| bytes == name);
+    let first = at(b"mixamorig:LeftFoot").unwrap();
+    let mut strange = glb.clone();
+    strange[first..first + 18].copy_from_slice(b"mixamorig:LeftFlap");
+    refuses("strange.glb", &strange, &["LeftFoot", "--map"]);
+
+    let empty = br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]}"#;
+    refuses("empty.gltf", empty, &["no animation moves a skeleton"]);
+}
+
+#[test]
+fn a_clip_without_steps_beside_a_walk_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (walk, _) = stride(folder, "1.2");
+    let mut short = walk.clone();
+    short.poses.truncate(15);
+    fs::write(folder.join("walk.glb"), mixamo_glb(&walk, &["A", "B"])).unwrap();
+    fs::write(folder.join("short.glb"), mixamo_glb(&short, &["A"])).unwrap();
+    index_of(folder, "walk.glb#B,walk,loop,me\nshort.glb");
+    let report = adapt(folder).json();
+    let warnings = report["warnings"].to_string();
+    assert!(warnings.contains("short.glb (0.5 s)"), "{warnings}");
+    assert!(!warnings.contains("walk.glb"), "{warnings}");
 }

@@ -1,15 +1,15 @@
-//! Recordings out of what a project has: motion files, and imported scenes whose animations move a skeleton.
+//! Recordings out of what a project has: motion files, and scenes and animations that move a skeleton.
 
+mod resource;
 mod sampler;
 
 use footfall_motion::gltf::{animation_names, is_gltf};
 use footfall_motion::recording::Recording;
-use footfall_motion::retarget::RetargetOptions;
+use footfall_motion::retarget::{RetargetError, RetargetOptions};
 use footfall_motion::skeletal::SkeletalMotion;
-use godot::classes::{
-    Animation, AnimationPlayer, PackedScene, ProjectSettings, ResourceLoader, Skeleton3D,
-};
+use godot::classes::{FileAccess, ProjectSettings, Skeleton3D};
 use godot::prelude::*;
+pub(super) use resource::all_below;
 use std::path::{Path, PathBuf};
 
 /// Something to learn from.
@@ -27,100 +27,72 @@ pub(super) enum Clip {
 }
 
 impl Clip {
-    /// Everything that a file holds. Scenes of the project that Godot imported, from FBX for example, are sampled.
+    /// Everything that a file holds, or the one animation that stands behind `#`. What Godot imported is sampled as it imported it, with the
+    /// names of a `BoneMap`; animations without a character move the skeleton among `skeletons` that has their bones.
     ///
     /// # Errors
     /// The reason why there is nothing in it to learn from, for the user.
-    pub(super) fn all_of(file: &GString) -> Result<Vec<Self>, String> {
+    pub(super) fn all_of(
+        file: &GString,
+        skeletons: &[Gd<Skeleton3D>],
+    ) -> Result<Vec<Self>, String> {
         let settings = ProjectSettings::singleton();
-        let path = PathBuf::from(settings.globalize_path(file).to_string());
+        let (file, wanted) = split_name(file);
+        let path = PathBuf::from(settings.globalize_path(&file).to_string());
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         if extension == "bvh" {
             return Ok(vec![Self::File(path)]);
         }
-        if is_gltf(&path) {
-            let names = animation_names(&path).map_err(|error| error.to_string())?;
-            return Ok(match names.len() {
-                0 | 1 => vec![Self::File(path)],
-                _ => names
-                    .iter()
-                    .map(|name| Self::File(format!("{}#{name}", path.display()).into()))
-                    .collect(),
-            });
-        }
-        let local = settings.localize_path(file);
-        if !local.begins_with("res://") {
-            return Err(format!(
-                "{file}: put it into the project first, so that Godot imports it."
-            ));
-        }
-        let scene = ResourceLoader::singleton()
-            .load(&local)
-            .and_then(|resource| resource.try_cast::<PackedScene>().ok())
-            .ok_or_else(|| {
-                format!(
-                    "{local} is no scene with a character. Choose a .bvh, .glb, .gltf or .fbx file."
-                )
-            })?;
-        Self::of_scene(&scene, &local)
-    }
-
-    /// The animations of a scene.
-    ///
-    /// # Errors
-    /// As [`Self::all_of`].
-    pub(super) fn of_scene(scene: &Gd<PackedScene>, name: &GString) -> Result<Vec<Self>, String> {
-        let root = scene
-            .instantiate()
-            .ok_or_else(|| format!("{name} cannot be opened."))?;
-        let skeleton = first_below::<Skeleton3D>(&root, "Skeleton3D");
-        let player = first_below::<AnimationPlayer>(&root, "AnimationPlayer");
-        let mut clips = Vec::new();
-        if let (Some(skeleton), Some(player)) = (&skeleton, &player) {
-            for animation_name in player.get_animation_list().as_slice() {
-                let animation = player.get_animation(&StringName::from(animation_name));
-                let motion = animation.and_then(|animation| sampler::sample(&animation, skeleton));
-                clips.extend(motion.map(|motion| Self::Sampled {
-                    label: format!("{}#{animation_name}", name.get_file()),
-                    motion,
-                }));
-            }
-        }
-        let has_skeleton = skeleton.is_some();
-        root.free();
-        match (clips.is_empty(), has_skeleton) {
-            (false, _) => Ok(clips),
-            (true, false) => Err(format!(
-                "{name} has no Skeleton3D. Choose the scene of a character."
-            )),
-            (true, true) => Err(format!(
-                "{name} has no animation that moves its Skeleton3D. Choose a scene with an AnimationPlayer, as Godot imports it."
-            )),
+        let imported = resource::load(&settings.localize_path(&file))
+            .and_then(|resource| Self::of_resource(&resource, skeletons));
+        let clips = match imported {
+            Err(_) if is_gltf(&path) => Self::of_gltf(&path)?,
+            found => found?,
+        };
+        match wanted {
+            Some(wanted) => Self::named(clips, &wanted, &file),
+            None => Ok(clips),
         }
     }
 
-    /// An animation as it moves a skeleton.
-    ///
-    /// # Errors
-    /// When no track of it is of the skeleton's bones.
-    pub(super) fn of_animation(
-        animation: &Gd<Animation>,
-        skeleton: &Gd<Skeleton3D>,
-    ) -> Result<Self, String> {
-        let label = animation.get_path().get_file();
-        let motion = sampler::sample(animation, skeleton).ok_or_else(|| {
-            format!("The animation {label} turns no bone of the skeleton. Give the skeleton that it was made for.")
-        })?;
-        Ok(Self::Sampled {
-            label: label.to_string(),
-            motion,
+    /// The animations of a glTF file.
+    fn of_gltf(path: &Path) -> Result<Vec<Self>, String> {
+        let names = animation_names(path).map_err(|error| error.to_string())?;
+        if names.is_empty() {
+            return Ok(vec![Self::File(path.to_owned())]);
+        }
+        let named = |name| Self::File(format!("{}#{name}", path.display()).into());
+        Ok(names.iter().map(named).collect())
+    }
+
+    /// The one clip of a name.
+    fn named(clips: Vec<Self>, wanted: &str, file: &GString) -> Result<Vec<Self>, String> {
+        let names: Vec<String> = clips
+            .iter()
+            .map(|clip| {
+                let label = clip.label();
+                let name = label.split_once('#').map(|(_, name)| name.to_owned());
+                name.unwrap_or(label)
+            })
+            .collect();
+        let mut clips = clips.into_iter().zip(&names);
+        let found = clips.find(|(_, name)| *name == wanted);
+        found.map(|(clip, _)| vec![clip]).ok_or_else(|| {
+            format!(
+                "{file} has no animation \"{wanted}\". It has {}.",
+                names.join(", ")
+            )
         })
     }
 
     /// The name that a list shows.
     pub(super) fn label(&self) -> String {
         match self {
-            Self::File(path) => file_name(path),
+            Self::File(path) => {
+                let name = path.file_name();
+                name.map(|name| name.to_string_lossy().into_owned())
+                    .unwrap_or_default()
+            }
             Self::Sampled { label, .. } => label.clone(),
         }
     }
@@ -134,22 +106,36 @@ impl Clip {
             Self::File(path) => Recording::read(path, &RetargetOptions::default())
                 .map_err(|error| error.to_string()),
             Self::Sampled { label, motion } => {
-                Recording::of_clip(motion).map_err(|error| format!("{label}: {error}"))
+                Recording::of_clip(motion).map_err(|error| format!("{label}: {}", advice(&error)))
             }
         }
     }
 }
 
-fn file_name(path: &Path) -> String {
-    let name = path.file_name();
-    name.map(|name| name.to_string_lossy().into_owned())
-        .unwrap_or_default()
+/// What is wrong with a rig, with what can be done about it in the editor.
+fn advice(error: &RetargetError) -> String {
+    match error {
+        RetargetError::UnknownSkeleton {
+            missing, doubts, ..
+        } => {
+            let missing: Vec<&str> = missing.iter().map(|joint| joint.name()).collect();
+            format!(
+                "no bone is known to be {}{doubts}. Give the rig a BoneMap: double-click its file in the FileSystem dock, select the \
+                 Skeleton3D, and under Retarget make a new Bone Map with the profile SkeletonProfileHumanoid.",
+                missing.join(", ")
+            )
+        }
+        other => other.to_string(),
+    }
 }
 
-/// The node itself or the first below it of a class.
-fn first_below<T: Inherits<Node> + GodotClass>(root: &Gd<Node>, class: &str) -> Option<Gd<T>> {
-    let below = root.find_children_ex("*").type_(class).owned(false).done();
-    std::iter::once(root.clone())
-        .chain(below.iter_shared())
-        .find_map(|node| node.try_cast().ok())
+/// The file, and the animation's name behind `#`, unless a file has that very name.
+fn split_name(file: &GString) -> (GString, Option<String>) {
+    let text = file.to_string();
+    match text.rsplit_once('#') {
+        Some((path, name)) if !FileAccess::file_exists(file) => {
+            (GString::from(path), Some(name.to_owned()))
+        }
+        _ => (file.clone(), None),
+    }
 }

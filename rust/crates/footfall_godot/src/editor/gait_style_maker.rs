@@ -1,11 +1,11 @@
 //! Styles made by scripts of the editor.
 
 use super::clip_source::Clip;
+use super::style_maker::Walks;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use footfall_model::{Provenance, WalkModel};
-use footfall_train::Recordings;
-use godot::classes::{Animation, PackedScene, Skeleton3D};
+use godot::classes::{Resource, Skeleton3D};
 use godot::prelude::*;
 
 /// Steps that are taken from the clips at most.
@@ -17,7 +17,7 @@ const MOST_STEPS: usize = 12;
 #[derive(GodotClass)]
 #[class(tool, init, base = RefCounted)]
 pub(super) struct GaitStyleMaker {
-    /// The skeleton that clips of the type `Animation` were made for. Scenes and files bring their own.
+    /// The skeleton that animations without a character were made for. Scenes and files of characters bring their own.
     #[var]
     skeleton: Option<Gd<Skeleton3D>>,
     message: GString,
@@ -28,9 +28,10 @@ pub(super) struct GaitStyleMaker {
 impl GaitStyleMaker {
     /// Adapts the walk of `model` to `clips` and returns the style, or `null`; `get_message()` says why, or that the style is thin.
     ///
-    /// A clip is a `PackedScene` with a `Skeleton3D` and an `AnimationPlayer`, all of whose animations are taken; an `Animation` of `skeleton`; or
-    /// the path of a `.bvh`, `.glb`, `.gltf` or imported file, with `#Name` for one animation of a glTF file. Clips that walk in place get
-    /// their travel from the standing foot, and loops are repeated. Takes some seconds, and the editor waits.
+    /// A clip is a `PackedScene` with a `Skeleton3D` and an `AnimationPlayer`, all of whose animations are taken; an `Animation` or an
+    /// `AnimationLibrary` of `skeleton`; or the path of a `.bvh`, `.glb`, `.gltf`, imported or saved file, with `#Name` behind it for one
+    /// of its animations. Clips that walk in place get their travel from the standing foot, and loops are repeated. Takes some seconds,
+    /// and the editor waits.
     ///
     /// Save the style's `data` as a `.footstyle` file to use it in the game.
     #[func]
@@ -53,7 +54,8 @@ impl GaitStyleMaker {
         }
     }
 
-    /// The problem of the style that was asked for last, or that it is thin; empty when all is well.
+    /// The problem of the style that was asked for last, or what there is to be said about it: that it is thin, and which clips show no steps. Empty
+    /// when all is well.
     #[func]
     fn get_message(&self) -> GString {
         self.message.clone()
@@ -74,46 +76,41 @@ impl GaitStyleMaker {
                 "A switching model (.footdyn) wears no styles. Give a .footfall file.".into(),
             );
         };
-        let mut read = Recordings::default();
+        let mut all = Vec::new();
         for clip in clips.iter_shared() {
-            for clip in self.clips_of(&clip)? {
-                read.0.push((name.to_string(), clip.read()?));
-            }
+            all.extend(self.clips_of(&clip)?);
         }
-        if read.0.is_empty() {
+        if all.is_empty() {
             return Err("Give clips of someone who walks in the style.".to_owned());
         }
+        let walks = Walks::read(&all, &name.to_string(), &mut ())?;
         let made_from = Provenance {
             corpus: "clips chosen by a script in the Godot editor".to_owned(),
             terms: "not stated".to_owned(),
             command: "GaitStyleMaker.make_style()".to_owned(),
             ..Provenance::default()
         };
-        let adapted = read
+        let adapted = walks
+            .recordings
             .adapt(base, &name.to_string(), MOST_STEPS, made_from, &mut ())
             .map_err(|error| error.to_string())?;
         let bytes = adapted.style.to_bytes();
         let bytes = bytes.map_err(|error| error.to_string())?;
         let mut style = GaitStyle::new_gd();
         style.bind_mut().set_data(PackedByteArray::from(bytes));
-        Ok((style, adapted.style.thin_warning().unwrap_or_default()))
+        Ok((style, walks.remarks(&adapted.style)))
     }
 
     fn clips_of(&self, clip: &Variant) -> Result<Vec<Clip>, String> {
-        if let Ok(scene) = clip.try_to::<Gd<PackedScene>>() {
-            return Clip::of_scene(&scene, &scene.get_path());
-        }
-        if let Ok(animation) = clip.try_to::<Gd<Animation>>() {
-            let skeleton = self.skeleton.as_ref();
-            let skeleton = skeleton
-                .ok_or("An Animation alone does not say how its bones rest. Set the maker's skeleton, or give the character's scene.")?;
-            return Ok(vec![Clip::of_animation(&animation, skeleton)?]);
+        let skeletons = self.skeleton.as_slice();
+        if let Ok(resource) = clip.try_to::<Gd<Resource>>() {
+            return Clip::of_resource(&resource, skeletons);
         }
         if let Ok(path) = clip.try_to::<GString>() {
-            return Clip::all_of(&path);
+            return Clip::all_of(&path, skeletons);
         }
         Err(format!(
-            "{clip} is no clip. Give PackedScenes, Animations or paths of files."
+            "{clip} is no clip. Give scenes, animations, libraries of animations or paths of files."
         ))
     }
 }

@@ -2,7 +2,7 @@
 
 mod form;
 
-use super::clip_source::Clip;
+use super::clip_source::{Clip, all_below};
 use super::style_maker::{Made, Order};
 use crate::gait_generator_3d::GaitGenerator3D;
 use crate::gait_model::GaitModel;
@@ -12,7 +12,8 @@ use footfall_synth::StyleSpace;
 use footfall_train::job::{Job, finished};
 use form::{Form, State};
 use godot::classes::{
-    EditorDock, EditorInterface, IEditorDock, ProjectSettings, ResourceLoader, editor_dock,
+    EditorDock, EditorInterface, IEditorDock, ProjectSettings, ResourceLoader, Skeleton3D,
+    editor_dock,
 };
 use godot::prelude::*;
 use std::path::PathBuf;
@@ -72,13 +73,14 @@ impl IEditorDock for FootfallStyleDock {
 
 #[godot_api]
 impl FootfallStyleDock {
-    /// Adds files to learn from: recordings, and characters with all their animations.
+    /// Adds files to learn from: recordings, characters with all their animations, and animations of a character in the scene that is edited.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn add_recordings(&mut self, files: PackedStringArray) {
         let mut problems = Vec::new();
+        let skeletons = skeletons_in_view();
         for file in files.as_slice() {
-            match Clip::all_of(file) {
+            match Clip::all_of(file, &skeletons) {
                 Ok(clips) => {
                     for clip in clips {
                         if !self.recordings.contains(&clip) {
@@ -212,7 +214,7 @@ impl FootfallStyleDock {
         let form = self.form.as_ref().ok_or("The dock is not open.")?;
         if self.recordings.is_empty() {
             return Err(
-                "Add recordings of the style first: BVH files of someone who walks in it, or characters with animations (.glb, .fbx)."
+                "Add recordings of the style first: BVH files of someone who walks in it, or characters with animations (.glb, .fbx), or animations."
                     .to_owned(),
             );
         }
@@ -254,15 +256,13 @@ impl FootfallStyleDock {
             form.show_walker(&Arc::new(space));
         }
         let steps = style.provenance.steps;
-        let thin = style
-            .thin_warning()
-            .map_or_else(String::new, |warning| format!(" A thin style: {warning}."));
         let text = format!(
-            "{file}: {steps} steps at {:.2} m/s, {:.0} steps a minute.{thin}",
+            "{file}: {steps} steps at {:.2} m/s, {:.0} steps a minute. {}",
             style.speed_mps,
-            60.0 * style.cadence_hz
+            60.0 * style.cadence_hz,
+            made.remarks
         );
-        self.tell(&text);
+        self.tell(text.trim_end());
         if let Some(mut files) = EditorInterface::singleton().get_resource_filesystem() {
             files.scan();
         }
@@ -294,6 +294,18 @@ impl FootfallStyleDock {
             form.refresh(names, state);
         }
     }
+}
+
+/// The skeletons of the scene that is edited, those at selected nodes first.
+fn skeletons_in_view() -> Vec<Gd<Skeleton3D>> {
+    let editor = EditorInterface::singleton();
+    let selected = editor.get_selection();
+    let selected = selected.map(|selection| selection.get_selected_nodes());
+    let selected = selected.iter().flat_map(Array::iter_shared);
+    selected
+        .chain(editor.get_edited_scene_root())
+        .flat_map(|node| all_below(&node, "Skeleton3D"))
+        .collect()
 }
 
 /// Adds a style to what a walker wears, or gives it full weight if it is worn already.

@@ -20,18 +20,23 @@ struct Track {
     bone: usize,
 }
 
+/// How many of a skeleton's bones an animation turns.
+pub(super) fn bones_turned(animation: &Gd<Animation>, skeleton: &Gd<Skeleton3D>) -> usize {
+    let turns = tracks(animation, skeleton).into_iter();
+    turns
+        .filter(|track| track.kind == TrackType::ROTATION_3D)
+        .count()
+}
+
 /// Bones of a skeleton, in or out of the tree, as an animation poses them; `None` when it turns none of them.
 pub(super) fn sample(
     animation: &Gd<Animation>,
     skeleton: &Gd<Skeleton3D>,
 ) -> Option<SkeletalMotion> {
-    let tracks = tracks(animation, skeleton);
-    if !tracks
-        .iter()
-        .any(|track| track.kind == TrackType::ROTATION_3D)
-    {
+    if bones_turned(animation, skeleton) == 0 {
         return None;
     }
+    let tracks = tracks(animation, skeleton);
     let above = world_from(skeleton);
     let bones: Vec<(Option<usize>, Transform3D)> = (0..skeleton.get_bone_count())
         .map(|bone| {
