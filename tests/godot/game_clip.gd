@@ -64,6 +64,7 @@ static func character() -> Node3D:
 		skeleton.set_bone_parent(index, walker.skeleton.get_bone_parent(index))
 		var rest := walker.skeleton.get_bone_rest(index)
 		skeleton.set_bone_rest(index, Transform3D(rest.basis, CENTIMETRES * rest.origin))
+	skeleton.reset_bone_poses()
 	armature.add_child(skeleton)
 	walker.free()
 	return root

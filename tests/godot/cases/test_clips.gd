@@ -70,13 +70,19 @@ func test_files_and_single_animations_are_taken() -> void:
 	var file := folder + "/hero.tscn"
 	ResourceSaver.save(GameClip.scene({Walk = animation, Idle = GameClip.still(animation)}), file)
 	var maker := GaitStyleMaker.new()
-	_check_style(maker, maker.make_style(model, [file + "#Walk"], "one"), animation, "one of two")
+	var style: GaitStyle = maker.make_style(model, [file + "#Walk"], "one")
+	_check_style(maker, style, animation, "one of two")
 	check(not maker.get_message().contains("Idle"), "the other was left alone: " + maker.get_message())
 	_check_style(maker, maker.make_style(model, [file], "all"), animation, "a file")
 	check_contains(maker.get_message(), "hero.tscn#Idle", "nothing is learned from standing")
 	check(maker.make_style(model, [file + "#Run"], "none") == null, "no such animation")
 	check_contains(maker.get_message(), "Idle, Walk", "those that there are")
+	var saved := folder + "/one.footstyle"
+	FileAccess.open(saved, FileAccess.WRITE).store_buffer(style.data)
+	var loaded: GaitStyle = load(saved)
+	check_equal(loaded.get_style_name(), "one", "its data are a file")
 	DirAccess.remove_absolute(file)
+	DirAccess.remove_absolute(saved)
 	DirAccess.remove_absolute(folder)
 
 

@@ -7,18 +7,17 @@
 mod cycle;
 mod in_place;
 
-use crate::retarget::Retargeted;
+use crate::bvh::BvhFile;
+use crate::retarget::{RetargetError, RetargetOptions, Retargeted, retarget_with_way};
 
-/// Gives a clip that walks in place its way, and finds out whether it is a loop. Frames keep their numbers.
-pub fn complete(motion: &mut Retargeted) {
-    let first = motion.first_frame;
-    motion.report.cycle_frames = cycle::find(&motion.clip, first);
-    if let Some(way) = in_place::way_of_feet(&motion.clip, first) {
-        for (pose, offset) in motion.clip.poses[first..].iter_mut().zip(way) {
-            pose.root_position += offset;
-        }
-        motion.report.in_place = true;
-    }
+/// Puts a clip of a game on the canonical body: one that walks in place travels, and loops are found. Frames are the file's.
+///
+/// # Errors
+/// As [`retarget`](crate::retarget::retarget).
+pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted, RetargetError> {
+    let mut motion = retarget_with_way(file, options, in_place::way_of_feet)?;
+    motion.report.cycle_frames = cycle::find(&motion.clip, motion.first_frame);
+    Ok(motion)
 }
 
 /// Repeats a clip that is a loop until it shows a walk; others stay as they are.

@@ -50,7 +50,7 @@ pub enum RecordingError {
 
 /// Reads a BVH or glTF file and puts its motion on the canonical body. Frames are the file's.
 ///
-/// Clips in glTF files are [completed](game_clip::complete): those that walk in place travel, and loops are found.
+/// Clips in glTF files are [those of games](game_clip::retarget): if they walk in place they travel, and loops are found.
 ///
 /// # Errors
 /// [`RecordingError`] names the file.
@@ -58,19 +58,19 @@ pub fn read_motion(
     path: &Path,
     options: &RetargetOptions,
 ) -> Result<(BvhFile, Retargeted), RecordingError> {
-    let is_gltf = gltf::is_gltf(path);
-    let file = if is_gltf {
-        gltf::read(path)?
+    let (file, retargeted) = if gltf::is_gltf(path) {
+        let file = gltf::read(path)?;
+        let retargeted = game_clip::retarget(&file, options);
+        (file, retargeted)
     } else {
-        bvh::read(path)?
+        let file = bvh::read(path)?;
+        let retargeted = retarget(&file, options);
+        (file, retargeted)
     };
-    let mut retargeted = retarget(&file, options).map_err(|source| RecordingError::Retarget {
+    let retargeted = retargeted.map_err(|source| RecordingError::Retarget {
         path: path.to_owned(),
         source,
     })?;
-    if is_gltf {
-        game_clip::complete(&mut retargeted);
-    }
     Ok((file, retargeted))
 }
 
@@ -92,13 +92,13 @@ impl Recording {
         Ok(recording)
     }
 
-    /// Puts a clip of any engine on the canonical body, [completed](game_clip::complete) and [unrolled](game_clip::unroll).
+    /// Puts a clip of any engine on the canonical body, [with its travel](game_clip::retarget) and [unrolled](game_clip::unroll).
     ///
     /// # Errors
     /// [`RetargetError`] for a skeleton that is not recognised and numbers beyond all measure.
     pub fn of_clip(motion: &SkeletalMotion) -> Result<Self, RetargetError> {
-        let mut retargeted = retarget(&motion.to_recording(), &RetargetOptions::default())?;
-        game_clip::complete(&mut retargeted);
+        let options = RetargetOptions::default();
+        let mut retargeted = game_clip::retarget(&motion.to_recording(), &options)?;
         game_clip::unroll(&mut retargeted);
         Ok(Self::detected(retargeted))
     }

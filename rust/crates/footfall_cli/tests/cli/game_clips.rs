@@ -93,7 +93,7 @@ fn mixamo(joint: Joint) -> (String, Quat) {
     (format!("mixamorig:{own}"), turn)
 }
 
-/// A clip as Mixamo gives it: centimetres under an armature of 0.01, bones with axes of their own.
+/// A clip as Mixamo gives it: centimetres under an armature of 0.01, which stands somewhere; bones with axes of their own.
 fn mixamo_glb(clip: &Clip, animations: &[&str]) -> Vec<u8> {
     let glb = clip_to_glb(clip, animations[0]);
     let word = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().unwrap()) as usize;
@@ -139,7 +139,7 @@ fn mixamo_glb(clip: &Clip, animations: &[&str]) -> Vec<u8> {
     }
     let armature = document["nodes"].as_array().unwrap().len();
     let nodes = document["nodes"].as_array_mut().unwrap();
-    nodes.push(json!({"name": "Armature", "scale": [0.01, 0.01, 0.01], "children": [0]}));
+    nodes.push(json!({"name": "Armature", "translation": [2, 1.5, -3], "scale": [0.01, 0.01, 0.01], "children": [0]}));
     document["scenes"][0]["nodes"] = json!([armature]);
     let first = document["animations"][0].clone();
     let named = animations.iter().map(|name| {
