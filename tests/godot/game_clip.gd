@@ -53,6 +53,7 @@ static func still(animation: Animation) -> Animation:
 static func character() -> Node3D:
 	var walker := _walker().build(false)
 	var root := Node3D.new()
+	root.name = "Hero"
 	var armature := Node3D.new()
 	armature.name = "Armature"
 	armature.scale = Vector3.ONE / CENTIMETRES

@@ -193,18 +193,26 @@ fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>
     let mut found = 0;
     let mut chosen = Vec::new();
     for clip in clips {
+        let steady: Vec<Walk> = clip.walks.iter().map(steady_part).collect();
+        let total: usize = steady.iter().map(|walk| walk.steps.len()).sum();
+        found += total;
+        // The rounds of a loop show the same steps: they count once, and no more rounds are taken than a longer recording has steps.
+        let round = total.div_ceil(clip.repeats.max(1)).max(1);
+        let rounds = (limit / round).clamp(1, clip.repeats.max(1));
+        let mut budget = left.min(round) * rounds;
         let mut walks = Vec::new();
-        for mut walk in clip.walks.iter().map(steady_part) {
-            found += walk.steps.len();
-            walk.steps.truncate(left);
+        for mut walk in steady {
+            walk.steps.truncate(budget);
             if walk.steps.len() >= LEAST_STEPS {
-                left -= walk.steps.len();
+                budget -= walk.steps.len();
+                left = left.saturating_sub(walk.steps.len().div_ceil(rounds));
                 walks.push(walk);
             }
         }
         if !walks.is_empty() {
             chosen.push(TrainingClip {
-                walks: walks.into_iter().collect::<Vec<Walk>>(),
+                walks,
+                repeats: rounds,
                 ..clip.clone()
             });
         }
