@@ -7,6 +7,8 @@ const CONTROLLER := "res://addons/footfall/controller/gait_character_3d.tscn"
 const SCENE := SCRATCH + "/walker.tscn"
 const RECORDING := "res://../data/walker_1_fast.bvh"
 const STYLE := "res://styles/dock_test.footstyle"
+const HERO := SCRATCH + "/hero.tscn"
+const LONE_ANIMATION := SCRATCH + "/walk.res"
 const PATIENCE_SECS := 60.0
 
 var _failed := 0
@@ -25,13 +27,15 @@ func _run() -> void:
 	var dock := _only("FootfallStyleDock", EditorInterface.get_base_control())
 	if dock:
 		await _test_dock(dock)
+		await _test_dock_takes_animations(dock)
 		await _test_scene(dock)
 		await _test_controller()
 		await _test_hot_reload()
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE + ".uid"))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE.get_base_dir()))
-	DirAccess.remove_absolute(ProjectSettings.globalize_path(SCENE))
+	for file: String in [SCENE, HERO, LONE_ANIMATION]:
+		DirAccess.remove_absolute(ProjectSettings.globalize_path(file))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(SCRATCH))
 	print("%d passed, %d failed" % [_passed, _failed])
 	get_tree().quit(1 if _failed > 0 or _passed == 0 else 0)
@@ -85,10 +89,34 @@ func _test_dock(dock: Node) -> void:
 	_check(dock.call(&"get_message").contains("Add recordings"), "a recording can be removed")
 
 
+## A character of the project with its loops on the spot, and a loop without a character.
+func _test_dock_takes_animations(dock: Node) -> void:
+	var walk := GameClip.loop(self, 1.05)
+	DirAccess.make_dir_recursive_absolute(ProjectSettings.globalize_path(SCRATCH))
+	ResourceSaver.save(GameClip.scene({Walk = walk, Idle = GameClip.still(walk)}), HERO)
+	ResourceSaver.save(walk, LONE_ANIMATION)
+	var list: ItemList = dock.find_children("*", "ItemList", true, false)[0]
+	dock.call(&"add_recordings", PackedStringArray([LONE_ANIMATION]))
+	_check(dock.call(&"get_message").contains("Open the scene of its character"), "a lone animation: " + dock.call(&"get_message"))
+	_check(list.item_count == 0, "it is not taken without a skeleton")
+	EditorInterface.open_scene_from_path(HERO)
+	await _until(_is_open.bind(HERO), "the hero's scene")
+	dock.call(&"add_recordings", PackedStringArray([LONE_ANIMATION, HERO]))
+	_check(dock.call(&"get_message").is_empty(), "both are taken: " + dock.call(&"get_message"))
+	var items := range(list.item_count).map(func(item: int) -> String: return list.get_item_text(item))
+	_check(items == ["walk.res", "hero.tscn#Idle", "hero.tscn#Walk"], "every animation is listed: %s" % [items])
+	dock.call(&"make")
+	await _until(func() -> bool: return not dock.call(&"is_working"), "making a style of animations")
+	var message: String = dock.call(&"get_message")
+	_check(message.contains("4 steps at 1.0"), "the style has the loops' speed: " + message)
+	_check(message.contains("A thin style") and message.contains("hero.tscn#Idle"), "it is told to be thin: " + message)
+	dock.call(&"remove_selected")
+
+
 func _test_scene(dock: Node) -> void:
 	_save_scene()
 	EditorInterface.open_scene_from_path(SCENE)
-	await _until(func() -> bool: return EditorInterface.get_edited_scene_root() != null, "the scene")
+	await _until(_is_open.bind(SCENE), "the scene")
 	var character: Node3D = EditorInterface.get_edited_scene_root()
 	var gait: GaitGenerator3D = character.find_children("*", "GaitGenerator3D")[0]
 
@@ -165,6 +193,11 @@ func _save_scene() -> void:
 	ResourceSaver.save(packed, SCENE)
 	root.free()
 	walker.free()
+
+
+func _is_open(scene: String) -> bool:
+	var root := EditorInterface.get_edited_scene_root()
+	return root != null and root.scene_file_path == scene
 
 
 func _only(type: String, under: Node) -> Node:

@@ -2,9 +2,10 @@
 
 use anyhow::{Context as _, Result};
 use footfall_core::Clip;
-use footfall_motion::bvh::{self, BvhFile};
+use footfall_motion::bvh::BvhFile;
 use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
-use footfall_motion::retarget::{JointMap, RetargetOptions, Retargeted, parse_joint_map, retarget};
+use footfall_motion::recording::read_motion;
+use footfall_motion::retarget::{JointMap, RetargetOptions, Retargeted, parse_joint_map};
 use footfall_motion::steps::{Step, Walk, segment_walks};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ impl MapArgs {
     }
 }
 
-/// A BVH file on the canonical body.
+/// A BVH or glTF file on the canonical body.
 pub(crate) struct MotionInput {
     /// The file as it stands.
     pub(crate) file: BvhFile,
@@ -45,9 +46,10 @@ impl MotionInput {
         map: Option<JointMap>,
         frame_rate_hz: Option<f64>,
     ) -> Result<Self> {
-        let file = bvh::read(path)?;
         let options = RetargetOptions { map, frame_rate_hz };
-        let retargeted = retarget(&file, &options).with_context(|| path.display().to_string())?;
+        // The error's own text has all that its source says.
+        let (file, retargeted) =
+            read_motion(path, &options).map_err(|error| anyhow::anyhow!(error.to_string()))?;
         Ok(Self { file, retargeted })
     }
 }

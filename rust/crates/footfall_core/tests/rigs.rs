@@ -128,6 +128,35 @@ fn every_family_is_recognised_in_any_order() {
 }
 
 #[test]
+fn a_trunk_that_a_family_names_tells_the_family() {
+    for (name, family) in [
+        ("mixamo", "Mixamo and MotionBuilder"),
+        ("mixamo_numbered", "Mixamo and MotionBuilder"),
+        ("motionbuilder", "Mixamo and MotionBuilder"),
+        ("ready_player_me", "Mixamo and MotionBuilder"),
+        ("godot", "humanoid (Godot, VRM, Unity)"),
+        ("reallusion_cc", "Reallusion CC"),
+        ("unreal_5", "Unreal"),
+    ] {
+        assert_eq!(
+            recognise(&Listed::named(name).rig()).family,
+            family,
+            "{name}"
+        );
+    }
+    // Another family, which has the same limbs, would share out a longer trunk and take the bone above for the chest.
+    let mut listed = Listed::named("mixamo");
+    let upper_chest = listed.bone("mixamorig:Spine2");
+    let last = listed.add("mixamorig:Spine3", Some(upper_chest));
+    for bone in ["Neck", "LeftShoulder", "RightShoulder"] {
+        let bone = listed.bone(&format!("mixamorig:{bone}"));
+        listed.bones[bone].1 = Some(last);
+    }
+    listed.joints[Joint::UpperChest.index()] = Some(last);
+    listed.expect_recognised("with four bones of a spine");
+}
+
+#[test]
 fn bones_that_are_named_alike_and_hang_elsewhere_do_not_mislead() {
     for (name, mut listed) in all() {
         let joints: Vec<usize> = listed.joints.iter().flatten().copied().collect();

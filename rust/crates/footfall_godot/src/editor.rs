@@ -2,6 +2,8 @@
 //! without it.
 
 mod class_reference;
+mod clip_source;
+mod gait_style_maker;
 pub(crate) mod headless;
 mod leftovers;
 mod plugin;

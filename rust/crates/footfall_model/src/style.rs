@@ -92,7 +92,20 @@ const MAX_WEIGHT: f64 = 10.0;
 /// Farther than this beyond the base and the styles in use no logarithm of a variance, duration or speed goes.
 const LOG_MARGIN: f64 = 0.5;
 
+/// Fewer steps than this make a style that hangs on chance.
+const FEW_STEPS: usize = 6;
+
 impl GaitStyle {
+    /// A warning for a style of so few steps that what is chance in them is in the style.
+    pub fn thin_warning(&self) -> Option<String> {
+        let steps = self.provenance.steps;
+        (1..FEW_STEPS).contains(&steps).then(|| {
+            format!(
+                "only {steps} steps: what is chance in them is in the style; give six to twelve"
+            )
+        })
+    }
+
     /// Checks every shape and value.
     ///
     /// # Errors

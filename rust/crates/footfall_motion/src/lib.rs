@@ -5,7 +5,7 @@
 //! the [corrections](contact_file) that a person made; and [`corpus`], many files at once.
 //! [`switches`] are contacts from joint angles alone, [`sensor_switches`] from a sensor on a foot. [`virtual_imu`]
 //! measures what a sensor on the body would have, and [`phases`] cuts any locomotion at its contacts and extremes.
-//! [`figure`] is a body as capsules, for whoever draws it; [`gltf`] takes a clip to other programs.
+//! [`figure`] is a body as capsules, for whoever draws it; [`gltf`] takes clips to and from other programs by way of [`skeletal`], and [`game_clip`] makes recordings of clips that walk in place or loop.
 
 pub mod bvh;
 pub mod contact_file;
@@ -13,11 +13,13 @@ pub mod contacts;
 pub mod corpus;
 pub mod figure;
 pub mod files;
+pub mod game_clip;
 pub mod gltf;
 pub mod phases;
 pub mod recording;
 pub mod retarget;
 pub mod sensor_switches;
+pub mod skeletal;
 pub mod steps;
 pub mod switches;
 pub mod virtual_imu;

@@ -1,9 +1,12 @@
 //! A recording as everyone needs it: read, on the canonical body, with its contacts and walks.
 
-use crate::bvh::{self, BvhError};
+use crate::bvh::{self, BvhError, BvhFile};
 use crate::contact_file::{ContactFile, ContactFileError};
 use crate::contacts::{ContactConfig, Contacts, detect_contacts};
+use crate::game_clip;
+use crate::gltf::{self, GltfError};
 use crate::retarget::{RetargetError, RetargetOptions, Retargeted, retarget};
+use crate::skeletal::SkeletalMotion;
 use crate::steps::{Walk, segment_walks};
 use std::path::{Path, PathBuf};
 
@@ -29,6 +32,9 @@ pub enum RecordingError {
     /// The file is no BVH file.
     #[error(transparent)]
     Bvh(#[from] BvhError),
+    /// The file is no glTF file with an animation that can be used.
+    #[error(transparent)]
+    Gltf(#[from] GltfError),
     /// The motion cannot be put on the canonical body.
     #[error("{}: {source}", path.display())]
     Retarget {
@@ -42,18 +48,40 @@ pub enum RecordingError {
     Corrections(#[from] ContactFileError),
 }
 
+/// Reads a BVH or glTF file and puts its motion on the canonical body. Frames are the file's.
+///
+/// Clips in glTF files are [those of games](game_clip::retarget): if they walk in place they travel, and loops are found.
+///
+/// # Errors
+/// [`RecordingError`] names the file.
+pub fn read_motion(
+    path: &Path,
+    options: &RetargetOptions,
+) -> Result<(BvhFile, Retargeted), RecordingError> {
+    let (file, retargeted) = if gltf::is_gltf(path) {
+        let file = gltf::read(path)?;
+        let retargeted = game_clip::retarget(&file, options);
+        (file, retargeted)
+    } else {
+        let file = bvh::read(path)?;
+        let retargeted = retarget(&file, options);
+        (file, retargeted)
+    };
+    let retargeted = retargeted.map_err(|source| RecordingError::Retarget {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok((file, retargeted))
+}
+
 impl Recording {
-    /// Reads a file and what was corrected about it.
+    /// Reads a file and what was corrected about it. Loops are [unrolled](game_clip::unroll).
     ///
     /// # Errors
     /// [`RecordingError`] names the file.
     pub fn read(path: &Path, options: &RetargetOptions) -> Result<Self, RecordingError> {
-        let file = bvh::read(path)?;
-        let retargeted = retarget(&file, options).map_err(|source| RecordingError::Retarget {
-            path: path.to_owned(),
-            source,
-        })?;
-        drop(file);
+        let (_, mut retargeted) = read_motion(path, options)?;
+        game_clip::unroll(&mut retargeted);
         let mut recording = Self::detected(retargeted);
         // Frame numbers of the corrections are the file's.
         let labels = ContactFile::beside(path);
@@ -62,6 +90,17 @@ impl Recording {
             recording.correct(stances);
         }
         Ok(recording)
+    }
+
+    /// Puts a clip of any engine on the canonical body, [with its travel](game_clip::retarget) and [unrolled](game_clip::unroll).
+    ///
+    /// # Errors
+    /// [`RetargetError`] for a skeleton that is not recognised and numbers beyond all measure.
+    pub fn of_clip(motion: &SkeletalMotion) -> Result<Self, RetargetError> {
+        let options = RetargetOptions::default();
+        let mut retargeted = game_clip::retarget(&motion.to_recording(), &options)?;
+        game_clip::unroll(&mut retargeted);
+        Ok(Self::detected(retargeted))
     }
 
     /// A motion with what the detector finds.

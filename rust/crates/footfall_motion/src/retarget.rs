@@ -54,6 +54,12 @@ pub struct RetargetReport {
     pub scale: f32,
     /// Frames in which the left and the right foot lay flat, from which the foot's zero was learned.
     pub flat_foot_frames: [usize; 2],
+    /// Whether the body walked in place, and its way was taken [from the standing foot](crate::game_clip).
+    pub in_place: bool,
+    /// Frames of one round, for a clip that is a loop.
+    pub cycle_frames: Option<usize>,
+    /// How often the clip shows the same steps: more than once for a loop that was unrolled.
+    pub repeats: usize,
 }
 
 /// Why a file cannot be retargeted.
@@ -111,6 +117,18 @@ pub enum RetargetError {
 /// [`RetargetError`] for a skeleton whose joints cannot be placed, legs without length, numbers beyond all measure,
 /// and a rate that is not above zero.
 pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted, RetargetError> {
+    retarget_with_way(file, options, |_, _| None)
+}
+
+/// As [`retarget`], for a body that may walk in place: `way` tells from the clip and its first frame where the root is to be moved in every
+/// frame from there on.
+///
+/// Ground and feet are found from feet that stand, which those of a body in place do not; so it is put on the canonical body again with its way.
+pub(crate) fn retarget_with_way(
+    file: &BvhFile,
+    options: &RetargetOptions,
+    way: impl Fn(&Clip, usize) -> Option<Vec<Vec3>>,
+) -> Result<Retargeted, RetargetError> {
     if let Some(rate) = options.frame_rate_hz
         && !(rate.is_finite() && rate > 0.0)
     {
@@ -118,7 +136,7 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
     }
     let (map, placement) = joint_map::place(file, options.map.as_ref())?;
     let name_of = |joint: Joint| placement.joint(joint).map(|n| file.joints[n].name.clone());
-    let source = SourceMotion::new(file, &placement);
+    let mut source = SourceMotion::new(file, &placement);
     if !(source.leg_length.is_finite() && source.leg_length > 1e-6) {
         return Err(RetargetError::NoLegs {
             length: source.leg_length,
@@ -126,8 +144,48 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
             ankle: name_of(Joint::LeftFoot).unwrap_or_default(),
         });
     }
-    let mut rest = rest::rest_rotations(&source);
-    let flat = feet::flat_feet(&source, &mut rest);
+    let mut embodied = embody(&source)?;
+    let way = way(&embodied.clip, source.first_motion_frame);
+    if let Some(way) = &way {
+        source.travel(way, embodied.scale);
+        embodied = embody(&source)?;
+    }
+    let Embodied {
+        mut clip,
+        scale,
+        flat_foot_frames,
+    } = embodied;
+    let mut first_frame = source.first_motion_frame;
+    if let Some(rate) = options.frame_rate_hz {
+        first_frame = (first_frame as f64 / clip.frame_rate_hz * rate).ceil() as usize;
+        clip = clip.resampled(rate);
+        first_frame = first_frame.min(clip.poses.len().saturating_sub(1));
+    }
+    Ok(Retargeted {
+        clip,
+        first_frame,
+        report: RetargetReport {
+            map,
+            source_joints: Joint::ALL.map(name_of),
+            scale,
+            flat_foot_frames,
+            in_place: way.is_some(),
+            cycle_frames: None,
+            repeats: 1,
+        },
+    })
+}
+
+/// A motion on the canonical body, on its ground, at the file's rate.
+struct Embodied {
+    clip: Clip,
+    scale: f32,
+    flat_foot_frames: [usize; 2],
+}
+
+fn embody(source: &SourceMotion) -> Result<Embodied, RetargetError> {
+    let mut rest = rest::rest_rotations(source);
+    let flat = feet::flat_feet(source, &mut rest);
     let skeleton = skeleton_with_feet(&flat);
     let scale = skeleton.mean_leg_length() / source.leg_length;
     let poses: Vec<Pose> = source
@@ -145,25 +203,14 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
     let is_finite = |pose: &Pose| {
         pose.root_position.is_finite() && pose.rotations.iter().all(|turn| turn.is_finite())
     };
-    if let Some(frame) = clip.poses.iter().position(|pose| !is_finite(pose)) {
-        return Err(RetargetError::NotFinite { frame });
-    }
-    let mut first_frame = source.first_motion_frame;
-    if let Some(rate) = options.frame_rate_hz {
-        first_frame = (first_frame as f64 / clip.frame_rate_hz * rate).ceil() as usize;
-        clip = clip.resampled(rate);
-        first_frame = first_frame.min(clip.poses.len().saturating_sub(1));
-    }
-    Ok(Retargeted {
-        clip,
-        first_frame,
-        report: RetargetReport {
-            map,
-            source_joints: Joint::ALL.map(name_of),
+    match clip.poses.iter().position(|pose| !is_finite(pose)) {
+        Some(frame) => Err(RetargetError::NotFinite { frame }),
+        None => Ok(Embodied {
+            clip,
             scale,
             flat_foot_frames: flat.map(|foot| foot.frames),
-        },
-    })
+        }),
+    }
 }
 
 /// The canonical body with the source's slope from ankle to ball, standing on its soles.

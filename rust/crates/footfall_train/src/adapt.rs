@@ -17,7 +17,7 @@ use crate::train::{TrainConfig, TrainingClip, encode, mean_terminal, steady_part
 use footfall_core::Side;
 use footfall_model::{
     FEATURE_COUNT, GaitModel, GaitStyle, GlobalVarianceModel, OBSERVATION_COUNT, Provenance,
-    STATES_PER_STEP, StateModel, StepModel,
+    STATES_PER_STEP, StateModel, StepModel, StepSpread,
 };
 use footfall_motion::steps::Walk;
 use footfall_prob::duration::{DurationDist, GaussianDuration};
@@ -135,13 +135,13 @@ pub fn adapt_style(
             states.step(Side::Right, mean_terminal(&corpus, Side::Right))?,
         ],
         global_variance: global_variance(base, &corpus),
-        step_spread: spread::step_spread(base, &corpus),
+        step_spread: own_spread(base, &chosen, &encoding)?,
         speed_mps: mean_speed(&corpus),
         cadence_hz: counts.steps as f64 * base.frame_rate_hz / frames as f64,
         provenance: Provenance {
             clips: counts.clips,
             subjects: counts.subjects,
-            steps: counts.steps,
+            steps: distinct_steps(&chosen),
             ..provenance
         },
     };
@@ -155,6 +155,35 @@ pub fn adapt_style(
     })
 }
 
+/// How much the steps differ, by the clips that show different ones.
+fn own_spread(
+    base: &GaitModel,
+    clips: &[TrainingClip],
+    encoding: &TrainConfig,
+) -> Result<StepSpread, TrainError> {
+    let distinct: Vec<TrainingClip> = clips
+        .iter()
+        .filter(|clip| clip.repeats <= 1)
+        .cloned()
+        .collect();
+    let (corpus, _) = encode(&distinct, encoding)?;
+    Ok(spread::step_spread(base, &corpus))
+}
+
+/// Steps that were taken, those of a loop once.
+fn distinct_steps(clips: &[TrainingClip]) -> usize {
+    let of_clip = |clip: &TrainingClip| {
+        let steps: usize = clip.walks.iter().map(|walk| walk.steps.len()).sum();
+        steps.div_ceil(clip.repeats.max(1))
+    };
+    clips.iter().map(of_clip).sum()
+}
+
+/// Whether there is enough in walks to learn a style from: a step of each foot, one after the other.
+pub fn shows_steps(walks: &[Walk]) -> bool {
+    walks.iter().any(|walk| walk.steps.len() >= LEAST_STEPS)
+}
+
 /// The clips with only their first `limit` steps in full stride.
 fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>, TrainError> {
     if limit < LEAST_STEPS {
@@ -164,18 +193,26 @@ fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>
     let mut found = 0;
     let mut chosen = Vec::new();
     for clip in clips {
+        let steady: Vec<Walk> = clip.walks.iter().map(steady_part).collect();
+        let total: usize = steady.iter().map(|walk| walk.steps.len()).sum();
+        found += total;
+        // The rounds of a loop show the same steps: they count once, and no more rounds are taken than a longer recording has steps.
+        let round = total.div_ceil(clip.repeats.max(1)).max(1);
+        let rounds = (limit / round).clamp(1, clip.repeats.max(1));
+        let mut budget = left.min(round) * rounds;
         let mut walks = Vec::new();
-        for mut walk in clip.walks.iter().map(steady_part) {
-            found += walk.steps.len();
-            walk.steps.truncate(left);
+        for mut walk in steady {
+            walk.steps.truncate(budget);
             if walk.steps.len() >= LEAST_STEPS {
-                left -= walk.steps.len();
+                budget -= walk.steps.len();
+                left = left.saturating_sub(walk.steps.len().div_ceil(rounds));
                 walks.push(walk);
             }
         }
         if !walks.is_empty() {
             chosen.push(TrainingClip {
-                walks: walks.into_iter().collect::<Vec<Walk>>(),
+                walks,
+                repeats: rounds,
                 ..clip.clone()
             });
         }

@@ -22,7 +22,7 @@ pub mod train;
 pub mod training_comparison;
 pub mod walker_adaptive;
 
-pub use adapt::{AdaptConfig, AdaptMethod, Adapted, adapt_style};
+pub use adapt::{AdaptConfig, AdaptMethod, Adapted, adapt_style, shows_steps};
 pub use average::EmConfig;
 pub use contexts::ContextReport;
 pub use error::TrainError;

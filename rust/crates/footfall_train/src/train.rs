@@ -32,6 +32,8 @@ pub struct TrainingClip {
     pub skip_frames: usize,
     /// The walks in the clip, in its own frames.
     pub walks: Vec<Walk>,
+    /// How often the clip shows the same steps: more than once for a loop that was unrolled.
+    pub repeats: usize,
 }
 
 impl TrainingClip {
@@ -42,6 +44,7 @@ impl TrainingClip {
             clip: motion.clip.clone(),
             skip_frames: motion.first_frame,
             walks: walks.to_vec(),
+            repeats: motion.report.repeats,
         }
     }
 }

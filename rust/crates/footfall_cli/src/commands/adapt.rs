@@ -7,7 +7,7 @@ use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
 use footfall_model::Provenance;
 use footfall_motion::corpus::{Corpus, Where};
-use footfall_train::{AdaptConfig, AdaptMethod, Adapted, TrainingClip, adapt_style};
+use footfall_train::{AdaptConfig, AdaptMethod, Adapted, TrainingClip, adapt_style, shows_steps};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -15,7 +15,8 @@ use std::time::Instant;
 /// Make a style from a dozen steps
 ///
 /// Moves a base model to the walks that an index lists. Any frame rate, any body, any walker: 6 to 12 steps straight ahead are
-/// enough. The style fits the base model that it was made for, and no other.
+/// enough, BVH or glTF (`hero.glb#Walk` where a file has several animations). Clips that walk in place travel as their standing feet
+/// tell, and loops are repeated. The style fits the base model that it was made for, and no other.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall adapt --base walk.footfall --corpus index.csv --where style=sad --name sad -o sad.footstyle\n  \
@@ -83,9 +84,6 @@ struct Report<'a> {
     seconds: f64,
 }
 
-/// Fewer steps than this make a style that hangs on chance.
-const FEW_STEPS: usize = 6;
-
 #[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
 pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     let begun = Instant::now();
@@ -99,6 +97,13 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     progress.0.stage("reading the corpus", 0);
     let corpus = train::read_corpus(&args.corpus, &args.conditions, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
+    let still = without_steps(&corpus);
+    ensure!(
+        still.len() < clips.len(),
+        "{}: no two steps in a row in {}; give clips that walk, of both feet's steps",
+        args.corpus.display(),
+        listed(&still)
+    );
     let config = AdaptConfig {
         method: match args.method {
             MethodArg::Cmllr => AdaptMethod::Cmllr,
@@ -124,6 +129,29 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     write_atomic(&args.output, &bytes)?;
     progress.0.finish();
     report(args, &corpus, &adapted, bytes.len(), seconds)
+}
+
+/// The clips in which nobody walks, by name and length.
+fn without_steps(corpus: &Corpus) -> Vec<String> {
+    let clips = corpus.clips.iter();
+    clips
+        .filter(|clip| !shows_steps(&clip.walks))
+        .map(|clip| {
+            let motion = &clip.retargeted;
+            let secs = motion.clip.duration_secs() / motion.report.repeats.max(1) as f64;
+            format!("{} ({secs:.1} s)", provenance::name_of(&clip.row.path))
+        })
+        .collect()
+}
+
+/// The first of many names, and how many more there are.
+fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 5;
+    let first = names[..names.len().min(SHOWN)].join(", ");
+    match names.len().saturating_sub(SHOWN) {
+        0 => first,
+        more => format!("{first} and {more} more"),
+    }
 }
 
 fn made_from(corpus: &Corpus, args: &AdaptArgs) -> Provenance {
@@ -163,13 +191,14 @@ fn report(
 ) -> Result<()> {
     let style = &adapted.style;
     let made_from = &style.provenance;
-    let mut warnings = Vec::new();
-    if made_from.steps < FEW_STEPS {
-        warnings.push(format!(
-            "only {} steps: what is chance in them is in the style; give six to twelve",
-            made_from.steps
-        ));
-    }
+    let still = without_steps(corpus);
+    let unused = (!still.is_empty()).then(|| {
+        format!(
+            "nothing was learned from {}: no two steps in a row",
+            listed(&still)
+        )
+    });
+    let warnings = unused.into_iter().chain(style.thin_warning()).collect();
     let report = Report {
         output: &args.output,
         name: &style.name,

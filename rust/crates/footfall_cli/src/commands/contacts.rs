@@ -20,8 +20,8 @@ use std::path::PathBuf;
     footfall contacts walk.bvh\n  \
     footfall contacts walk.bvh --json > contacts.json")]
 pub(crate) struct ContactsArgs {
-    /// The recording
-    #[arg(value_name = "IN.bvh")]
+    /// The recording, .bvh, .glb or .gltf
+    #[arg(value_name = "IN")]
     input: PathBuf,
     #[command(flatten)]
     map: MapArgs,

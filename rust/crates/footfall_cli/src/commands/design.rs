@@ -31,7 +31,7 @@ use std::path::{Path, PathBuf};
     footfall design --sheet mine.toml --corpus index.csv --where category=neutral_walk --steps 24 -o mine")]
 pub(crate) struct DesignArgs {
     /// One recording of a walk
-    #[arg(value_name = "IN.bvh", conflicts_with_all = ["corpus", "conditions"])]
+    #[arg(value_name = "IN", conflicts_with_all = ["corpus", "conditions"])]
     input: Option<PathBuf>,
     /// The style sheet: a file, or the name of a shipped one
     #[arg(long, value_name = "SHEET.toml", required_unless_present_any = ["keys", "print"])]

@@ -12,6 +12,7 @@ use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_model::Provenance;
 use footfall_model::file::read_header;
+use footfall_motion::gltf::is_gltf;
 use serde::Serialize;
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -20,17 +21,18 @@ use std::path::{Path, PathBuf};
 
 /// Tell what is in a file
 ///
-/// A recording (.bvh): skeleton, frames, rate, speed, contacts and steps. A model (.footfall): where it comes from, states,
+/// A recording (.bvh) or a game's clip (.glb, .gltf, with `#Name` where there are several): skeleton, frames, rate, speed, contacts and steps. A model (.footfall): where it comes from, states,
 /// durations, speeds. A style (.footstyle): which base it fits, where it comes from. A
 /// switching model (.footdyn): its two systems. A sensor model (.footimu): sites, frames, behaviours. An index (.csv): clips by
 /// category, style and subject. A recording of a sensor (.csv): samples, rate, what is wrong with it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall inspect walk.bvh\n  \
+    footfall inspect hero.glb#Walk\n  \
     footfall inspect walk.footfall --json\n  \
     footfall inspect index.csv")]
 pub(crate) struct InspectArgs {
-    /// A .bvh, .footfall, .footstyle, .footdyn or .footimu, an index.csv or a sensor's .csv
+    /// A .bvh, .glb, .gltf, .footfall, .footstyle, .footdyn or .footimu, an index.csv or a sensor's .csv
     #[arg(value_name = "FILE")]
     input: PathBuf,
     #[command(flatten)]
@@ -90,6 +92,9 @@ enum Kind {
 
 /// The first bytes decide, then the name: a damaged model is still to be read as a model.
 fn kind_of(path: &Path) -> Result<Kind> {
+    if is_gltf(path) {
+        return Ok(Kind::Motion);
+    }
     let mut start = [0; 8];
     let read = File::open(path)
         .and_then(|mut file| file.read(&mut start))

@@ -20,8 +20,8 @@ use std::path::PathBuf;
     footfall retarget walk.bvh -o canonical.bvh --fps 60\n  \
     footfall retarget robot.bvh -o canonical.bvh --map robot.toml     (lines such as Hips = \"pelvis\")")]
 pub(crate) struct RetargetArgs {
-    /// The recording
-    #[arg(value_name = "IN.bvh")]
+    /// The recording, .bvh, .glb or .gltf
+    #[arg(value_name = "IN")]
     input: PathBuf,
     /// Where to write
     #[arg(short, long, value_name = "OUT.bvh")]

@@ -22,8 +22,8 @@ use std::path::{Path, PathBuf};
     footfall sheet captured.bvh synthetic.bvh -o compare.png --seconds 3\n  \
     footfall sheet walk.bvh -o sheet.png --contacts contacts.json      (from `footfall contacts walk.bvh --json`)")]
 pub(crate) struct SheetArgs {
-    /// One or more recordings, drawn one below the other
-    #[arg(value_name = "A.bvh", required = true)]
+    /// One or more recordings, .bvh, .glb or .gltf, drawn one below the other
+    #[arg(value_name = "RECORDING", required = true)]
     inputs: Vec<PathBuf>,
     /// Where to write the picture
     #[arg(short, long, value_name = "SHEET.png")]

@@ -6,6 +6,7 @@ mod designs;
 mod desk;
 mod dynamics;
 mod evaluate;
+mod game_clips;
 mod imu;
 mod monitor;
 mod pipeline;

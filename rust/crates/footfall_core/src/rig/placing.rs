@@ -25,8 +25,16 @@ impl MapKeys {
     }
 }
 
+/// The joints of a map among the bones of a body.
+pub(super) struct Placed {
+    pub(super) placement: Placement,
+    pub(super) doubts: Vec<Doubt>,
+    /// Whether the trunk's bones have the map's names. Where they have not, the bones that there are were shared out, which any map can do.
+    pub(super) has_named_trunk: bool,
+}
+
 /// Places the joints of a map among the bones of a body.
-pub(super) fn place(rig: &Rig, view: &View<'_>, keys: &MapKeys) -> (Placement, Vec<Doubt>) {
+pub(super) fn place(rig: &Rig, view: &View<'_>, keys: &MapKeys) -> Placed {
     let mut placing = Placing {
         rig,
         view,
@@ -46,8 +54,12 @@ pub(super) fn place(rig: &Rig, view: &View<'_>, keys: &MapKeys) -> (Placement, V
     }
     placing.place_chain(&[Joint::Neck, Joint::Head], &[false, true], |_| true);
     placing.place_hips();
-    placing.place_trunk();
-    (placing.placement, placing.doubts)
+    let has_named_trunk = placing.place_trunk();
+    Placed {
+        placement: placing.placement,
+        doubts: placing.doubts,
+        has_named_trunk,
+    }
 }
 
 struct Placing<'a> {
@@ -150,11 +162,11 @@ impl Placing<'_> {
         }
     }
 
-    /// The trunk is what carries arms and head and not the legs; names tell its bones apart, else they are shared out.
-    fn place_trunk(&mut self) {
+    /// The trunk is what carries arms and head and not the legs; names tell its bones apart (true), else they are shared out.
+    fn place_trunk(&mut self) -> bool {
         const TRUNK: [Joint; 3] = [Joint::Spine, Joint::Chest, Joint::UpperChest];
         let Some(hips) = self.placement.joint(Joint::Hips) else {
-            return;
+            return false;
         };
         let legs = [Joint::LeftUpperLeg, Joint::RightUpperLeg].map(|leg| self.placement.joint(leg));
         let above: Vec<usize> = self
@@ -162,7 +174,9 @@ impl Placing<'_> {
             .into_iter()
             .filter(|&bone| !legs.contains(&Some(bone)))
             .collect();
-        let Some(&top) = above.first() else { return };
+        let Some(&top) = above.first() else {
+            return false;
+        };
         let carries_legs = |bone: usize| {
             let mut legs = legs.iter().flatten();
             legs.any(|&leg| self.rig.is_below(leg, bone))
@@ -181,7 +195,7 @@ impl Placing<'_> {
         }
         self.place_chain(&TRUNK, &[true, false, false], |bone| chain.contains(&bone));
         if self.placement.joint(Joint::Spine).is_some() {
-            return;
+            return true;
         }
         self.doubts.retain(
             |doubt| !matches!(doubt, Doubt::Several { joint, .. } if TRUNK.contains(joint)),
@@ -195,5 +209,6 @@ impl Placing<'_> {
         for (n, joint) in TRUNK.into_iter().enumerate() {
             self.placement.joints[joint.index()] = picks.get(n).map(|&pick| chain[pick]);
         }
+        false
     }
 }

@@ -1,7 +1,7 @@
 //! The family that a rig is of, and its joints.
 
 use super::names::{Keys, Purpose};
-use super::placing::{MapKeys, place};
+use super::placing::{MapKeys, Placed, place};
 use super::{JointMap, Placement, Rig};
 use crate::Joint;
 use std::cmp::Reverse;
@@ -67,8 +67,8 @@ impl JointMap {
     }
 }
 
-/// The better, the larger: fewer joints missing, bones more likely to deform, more joints.
-type Rank = (Reverse<usize>, Reverse<Purpose>, usize);
+/// The better, the larger: fewer joints missing, bones more likely to deform, more joints, a trunk with the map's names.
+type Rank = (Reverse<usize>, Reverse<Purpose>, usize, bool);
 
 /// The map and the body among the bones that together place the most.
 fn best_of(rig: &Rig, maps: &[JointMap]) -> Recognition {
@@ -78,11 +78,16 @@ fn best_of(rig: &Rig, maps: &[JointMap]) -> Recognition {
     for map in maps {
         let map_keys = MapKeys::of(map);
         for view in keys.views(&map_keys.anchors()) {
-            let (placement, doubts) = place(rig, &view, &map_keys);
+            let Placed {
+                placement,
+                doubts,
+                has_named_trunk,
+            } = place(rig, &view, &map_keys);
             let rank = (
                 Reverse(placement.missing().len()),
                 Reverse(view.purpose()),
                 placement.count(),
+                has_named_trunk,
             );
             let found = Recognition {
                 family: map.label.clone(),

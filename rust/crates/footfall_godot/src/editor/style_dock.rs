@@ -2,6 +2,7 @@
 
 mod form;
 
+use super::clip_source::{Clip, all_below};
 use super::style_maker::{Made, Order};
 use crate::gait_generator_3d::GaitGenerator3D;
 use crate::gait_model::GaitModel;
@@ -11,21 +12,22 @@ use footfall_synth::StyleSpace;
 use footfall_train::job::{Job, finished};
 use form::{Form, State};
 use godot::classes::{
-    EditorDock, EditorInterface, IEditorDock, ProjectSettings, ResourceLoader, editor_dock,
+    EditorDock, EditorInterface, IEditorDock, ProjectSettings, ResourceLoader, Skeleton3D,
+    editor_dock,
 };
 use godot::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The walk that is adapted where none was chosen.
 const USUAL_BASE: &str = "res://addons/footfall/models/walk.footfall";
 
-/// Makes a `.footstyle` of `.bvh` recordings, shows it, and gives it to a walker.
+/// Makes a `.footstyle` of recordings and of animations of characters, shows it, and gives it to a walker.
 #[derive(GodotClass)]
 #[class(tool, init, internal, base = EditorDock)]
 pub(super) struct FootfallStyleDock {
     form: Option<Form>,
-    recordings: Vec<PathBuf>,
+    recordings: Vec<Clip>,
     job: Option<Job<Result<Made, String>>>,
     /// The file of the style that was made last.
     made: Option<GString>,
@@ -71,16 +73,25 @@ impl IEditorDock for FootfallStyleDock {
 
 #[godot_api]
 impl FootfallStyleDock {
-    /// Adds recordings to learn from.
+    /// Adds files to learn from: recordings, characters with all their animations, and animations of a character in the scene that is edited.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn add_recordings(&mut self, files: PackedStringArray) {
+        let mut problems = Vec::new();
+        let skeletons = skeletons_in_view();
         for file in files.as_slice() {
-            let path = PathBuf::from(globalized(file).to_string());
-            if !self.recordings.contains(&path) {
-                self.recordings.push(path);
+            match Clip::all_of(file, &skeletons) {
+                Ok(clips) => {
+                    for clip in clips {
+                        if !self.recordings.contains(&clip) {
+                            self.recordings.push(clip);
+                        }
+                    }
+                }
+                Err(problem) => problems.push(problem),
             }
         }
+        self.tell(&problems.join("\n"));
         self.refresh();
     }
 
@@ -203,7 +214,7 @@ impl FootfallStyleDock {
         let form = self.form.as_ref().ok_or("The dock is not open.")?;
         if self.recordings.is_empty() {
             return Err(
-                "Add recordings of the style first: BVH files of someone who walks in it."
+                "Add recordings of the style first: BVH files of someone who walks in it, or characters with animations (.glb, .fbx), or animations."
                     .to_owned(),
             );
         }
@@ -245,17 +256,13 @@ impl FootfallStyleDock {
             form.show_walker(&Arc::new(space));
         }
         let steps = style.provenance.steps;
-        let few = if steps < 6 {
-            " Six to twelve are better."
-        } else {
-            ""
-        };
         let text = format!(
-            "{file}: {steps} steps at {:.2} m/s, {:.0} steps a minute.{few}",
+            "{file}: {steps} steps at {:.2} m/s, {:.0} steps a minute. {}",
             style.speed_mps,
-            60.0 * style.cadence_hz
+            60.0 * style.cadence_hz,
+            made.remarks
         );
-        self.tell(&text);
+        self.tell(text.trim_end());
         if let Some(mut files) = EditorInterface::singleton().get_resource_filesystem() {
             files.scan();
         }
@@ -277,7 +284,7 @@ impl FootfallStyleDock {
     }
 
     fn refresh(&mut self) {
-        let names = self.recordings.iter().map(|path| name_of(path));
+        let names = self.recordings.iter().map(Clip::label);
         if let Some(form) = &mut self.form {
             let state = match (&self.job, &self.made) {
                 (Some(_), _) => State::Working,
@@ -287,6 +294,18 @@ impl FootfallStyleDock {
             form.refresh(names, state);
         }
     }
+}
+
+/// The skeletons of the scene that is edited, those at selected nodes first.
+fn skeletons_in_view() -> Vec<Gd<Skeleton3D>> {
+    let editor = EditorInterface::singleton();
+    let selected = editor.get_selection();
+    let selected = selected.map(|selection| selection.get_selected_nodes());
+    let selected = selected.iter().flat_map(Array::iter_shared);
+    selected
+        .chain(editor.get_edited_scene_root())
+        .flat_map(|node| all_below(&node, "Skeleton3D"))
+        .collect()
 }
 
 /// Adds a style to what a walker wears, or gives it full weight if it is worn already.
@@ -320,10 +339,4 @@ fn wear(walker: &Gd<GaitGenerator3D>, style: &Gd<GaitStyle>) {
 /// A path of the project as one of the machine.
 fn globalized(path: &GString) -> GString {
     ProjectSettings::singleton().globalize_path(path)
-}
-
-fn name_of(path: &Path) -> String {
-    let name = path.file_name();
-    name.map(|name| name.to_string_lossy().into_owned())
-        .unwrap_or_default()
 }

@@ -1,9 +1,10 @@
 //! Making a style of recordings, on a thread of its own.
 
+use super::clip_source::Clip;
 use footfall_model::{GaitModel, GaitStyle, Provenance};
 use footfall_motion::files::write_atomic;
-use footfall_train::Recordings;
 use footfall_train::job::{Job, Reporter};
+use footfall_train::{Progress, Recordings, TrainError, shows_steps};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ pub(super) struct Order {
     /// The walk that is adapted.
     pub(super) base: Arc<GaitModel>,
     /// Recordings of the style.
-    pub(super) recordings: Vec<PathBuf>,
+    pub(super) recordings: Vec<Clip>,
     /// What the style is called.
     pub(super) name: String,
     /// How many steps are taken from them at most.
@@ -25,6 +26,8 @@ pub(super) struct Order {
 pub(super) struct Made {
     pub(super) base: Arc<GaitModel>,
     pub(super) style: Arc<GaitStyle>,
+    /// What there is to be said about it, empty when all is well.
+    pub(super) remarks: String,
 }
 
 impl Order {
@@ -36,22 +39,21 @@ impl Order {
     }
 
     fn make(self, reporter: &mut Reporter) -> Result<Made, String> {
-        let message = |error: footfall_train::TrainError| error.to_string();
-        let walker = |path: PathBuf| (path, self.name.clone());
-        let chosen: Vec<_> = self.recordings.into_iter().map(walker).collect();
-        let read = Recordings::read(&chosen, reporter).map_err(message)?;
+        let message = |error: TrainError| error.to_string();
+        let walks = Walks::read(&self.recordings, &self.name, reporter)?;
         let made_from = Provenance {
             corpus: "recordings chosen in the Godot editor".to_owned(),
             terms: "not stated".to_owned(),
             command: "the style dock of the Footfall add-on".to_owned(),
             ..Provenance::default()
         };
-        let adapted = read
+        let adapted = walks
+            .recordings
             .adapt(&self.base, &self.name, self.steps, made_from, reporter)
             .map_err(message)?;
         // Whoever cancelled by now wants no file.
         if reporter.tell("writing", 0, 1).is_break() {
-            return Err(footfall_train::TrainError::Cancelled.to_string());
+            return Err(TrainError::Cancelled.to_string());
         }
         let bytes = adapted
             .style
@@ -65,7 +67,67 @@ impl Order {
             .map_err(|error| format!("{}: {error}", self.file.display()))?;
         Ok(Made {
             base: self.base,
+            remarks: walks.remarks(&adapted.style),
             style: Arc::new(adapted.style),
         })
+    }
+}
+
+/// The clips in which somebody walks.
+#[derive(Default)]
+pub(super) struct Walks {
+    pub(super) recordings: Recordings,
+    /// Labels and lengths of the clips in which nobody does.
+    left_out: Vec<String>,
+}
+
+impl Walks {
+    /// Reads clips of `walker`.
+    ///
+    /// # Errors
+    /// Names the clip that cannot be read; all of them when nobody walks in any.
+    pub(super) fn read(
+        clips: &[Clip],
+        walker: &str,
+        progress: &mut dyn Progress,
+    ) -> Result<Self, String> {
+        let mut walks = Self::default();
+        for (done, clip) in clips.iter().enumerate() {
+            if progress.advance("reading", done, clips.len()).is_break() {
+                return Err(TrainError::Cancelled.to_string());
+            }
+            let recording = clip.read()?;
+            if shows_steps(&recording.walks) {
+                walks.recordings.0.push((walker.to_owned(), recording));
+            } else {
+                let motion = &recording.retargeted;
+                let secs = motion.clip.duration_secs() / motion.report.repeats.max(1) as f64;
+                walks
+                    .left_out
+                    .push(format!("{} ({secs:.1} s)", clip.label()));
+            }
+        }
+        if walks.recordings.0.is_empty() && !walks.left_out.is_empty() {
+            return Err(format!(
+                "No two steps in a row in {}. Choose clips that walk, with steps of both feet.",
+                walks.left_out.join(", ")
+            ));
+        }
+        Ok(walks)
+    }
+
+    /// What there is to be said about the style that was made of them.
+    pub(super) fn remarks(&self, style: &GaitStyle) -> String {
+        let thin = style
+            .thin_warning()
+            .map(|warning| format!("A thin style: {warning}."));
+        let left_out = (!self.left_out.is_empty()).then(|| {
+            format!(
+                "Nothing was learned from {}: no two steps in a row.",
+                self.left_out.join(", ")
+            )
+        });
+        let remarks: Vec<String> = thin.into_iter().chain(left_out).collect();
+        remarks.join(" ")
     }
 }

@@ -93,20 +93,19 @@ fn resting_points(clip: &Clip, first: usize) -> Vec<Vec3> {
         .collect();
     still.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Most frames of a walk have a foot on the ground, a third of a run's; jumps stand before and after.
-    let Some(quarter) = still.get(still.len() / 4) else {
-        // Too short for speeds.
-        return lowest
-            .into_iter()
-            .min_by(|a, b| a.y.total_cmp(&b.y))
-            .into_iter()
-            .collect();
-    };
-    let limit = quarter.0.clamp(0.15, 0.8);
-    still
+    let quarter = still.get(still.len() / 4).map_or(0.0, |quarter| quarter.0);
+    let limit = quarter.clamp(0.15, 0.8);
+    let resting: Vec<Vec3> = still
         .iter()
         .take_while(|entry| entry.0 <= limit)
         .map(|entry| entry.1)
-        .collect()
+        .collect();
+    if resting.is_empty() {
+        // Too short for speeds, or in place, where no foot rests.
+        let lowest = lowest.into_iter().min_by(|a, b| a.y.total_cmp(&b.y));
+        return lowest.into_iter().collect();
+    }
+    resting
 }
 
 fn median(values: impl Iterator<Item = f32>) -> Option<f32> {

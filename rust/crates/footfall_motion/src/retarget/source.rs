@@ -112,6 +112,16 @@ impl SourceMotion {
         motion
     }
 
+    /// Moves the body in every frame of the motion proper by so much, in units of which the file's have `scale`.
+    pub(super) fn travel(&mut self, way: &[Vec3], scale: f32) {
+        for (frame, &offset) in self.frames[self.first_motion_frame..].iter_mut().zip(way) {
+            let offset = offset / scale;
+            for place in frame.positions.iter_mut().chain(&mut frame.tails) {
+                *place += offset;
+            }
+        }
+    }
+
     /// The frames of the motion proper.
     pub(super) fn moving(&self) -> &[SourceFrame] {
         &self.frames[self.first_motion_frame..]

@@ -14,6 +14,7 @@ fn clips(condition: &str) -> Vec<TrainingClip> {
         clip: clip.retargeted.clip.clone(),
         skip_frames: clip.retargeted.first_frame,
         walks: clip.walks.clone(),
+        repeats: 1,
     };
     corpus.clips.iter().map(clip).collect()
 }
@@ -147,4 +148,21 @@ fn too_little_is_refused() {
         adapt(&broken, &all, AdaptMethod::Csmaplr, None),
         Err(TrainError::Model(_))
     ));
+}
+
+#[test]
+fn every_loop_counts_with_the_steps_of_one_round() {
+    let mut looped = clips("category=walk");
+    for clip in &mut looped {
+        let steady = clip.walks.iter().map(steady_part);
+        let steps: usize = steady.map(|walk| walk.steps.len()).sum();
+        clip.repeats = steps.div_ceil(2);
+    }
+    let taken = |limit: usize| {
+        let chosen = first_steps(&looped, limit).unwrap();
+        (chosen.len(), distinct_steps(&chosen))
+    };
+    assert_eq!(taken(2), (1, 2));
+    assert_eq!(taken(4), (2, 4));
+    assert_eq!(taken(usize::MAX), (looped.len(), 2 * looped.len()));
 }

@@ -16,8 +16,8 @@ use std::path::PathBuf;
     footfall dynamics switches walk.bvh\n  \
     footfall dynamics switches walk.bvh --json > switches.json")]
 pub(crate) struct SwitchesArgs {
-    /// The recording
-    #[arg(value_name = "IN.bvh")]
+    /// The recording, .bvh, .glb or .gltf
+    #[arg(value_name = "IN")]
     input: PathBuf,
     #[command(flatten)]
     map: MapArgs,

@@ -19,8 +19,8 @@ use std::path::PathBuf;
     footfall imu simulate walk.bvh --site right_foot -o imu.csv\n  \
     footfall imu simulate walk.bvh --site right_thigh --rate 50 --noise 1 --mounting 90,0,30 -o imu.csv")]
 pub(crate) struct SimulateArgs {
-    /// The recording
-    #[arg(value_name = "IN.bvh")]
+    /// The recording, .bvh, .glb or .gltf
+    #[arg(value_name = "IN")]
     input: PathBuf,
     /// Where the sensor sits
     #[arg(long, value_parser = parse_site)]

@@ -4,6 +4,7 @@ use super::fact;
 use crate::motion_input::{MotionInput, Walking};
 use anyhow::Result;
 use footfall_core::{Joint, Side};
+use footfall_motion::game_clip;
 use footfall_motion::retarget::JointMap;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -35,24 +36,36 @@ pub(super) struct MotionFacts {
     /// Share of the motion in which each foot stands.
     left_stance_share: f64,
     right_stance_share: f64,
+    /// Whether it walks in place; its speed is then that of its standing feet.
+    in_place: bool,
+    /// Frames of one round, if it is a loop.
+    cycle_frames: Option<usize>,
+    warnings: Vec<String>,
 }
 
 /// Reads a recording.
 pub(super) fn inspect(path: &Path, map: Option<JointMap>) -> Result<MotionFacts> {
     let input = MotionInput::read(path, map, None)?;
     let motion = &input.retargeted;
-    let walking = Walking::of(motion);
+    let report = &motion.report;
+    let mut unrolled = motion.clone();
+    game_clip::unroll(&mut unrolled);
+    let walking = Walking::of(&unrolled);
+    let rounds = report.cycle_frames.map_or(1, |_| unrolled.report.repeats);
     let clip = &motion.clip;
     let mut heights: Vec<f32> = clip.poses[motion.first_frame..]
         .iter()
         .map(|pose| pose.root_position.y)
         .collect();
     heights.sort_by(f32::total_cmp);
-    let frames = (clip.poses.len() - motion.first_frame).max(1);
+    let frames = (unrolled.clip.poses.len() - unrolled.first_frame).max(1);
     let [left, right] = Side::BOTH.map(|side| {
         let stances = &walking.contacts.foot(side).stances;
         let standing: usize = stances.iter().map(|stance| stance.frames()).sum();
-        (stances.len(), standing as f64 / frames as f64)
+        (
+            stances.len().div_ceil(rounds),
+            standing as f64 / frames as f64,
+        )
     });
     Ok(MotionFacts {
         file: path.to_owned(),
@@ -71,12 +84,21 @@ pub(super) fn inspect(path: &Path, map: Option<JointMap>) -> Result<MotionFacts>
         hip_height_m: heights.get(heights.len() / 2).copied().unwrap_or_default(),
         mean_speed_mps: walking.speed_mps,
         walks: walking.walks.len(),
-        steps: walking.step_count(),
+        steps: walking.step_count().div_ceil(rounds),
         steps_per_minute: walking.cadence_per_min,
         left_stances: left.0,
         right_stances: right.0,
         left_stance_share: left.1,
         right_stance_share: right.1,
+        in_place: report.in_place,
+        cycle_frames: report.cycle_frames,
+        warnings: report
+            .cycle_frames
+            .map(|_| {
+                "one loop: a style made of it alone is thin, every step of it alike".to_owned()
+            })
+            .into_iter()
+            .collect(),
     })
 }
 
@@ -129,6 +151,18 @@ impl MotionFacts {
                 "motion from",
                 format!("frame {} on (a T-pose before)", self.first_motion_frame),
             ));
+        }
+        if self.in_place {
+            lines.push(fact(
+                "in place",
+                "yes; its way is that of the standing feet",
+            ));
+        }
+        if let Some(frames) = self.cycle_frames {
+            lines.push(fact("loop", format!("of {frames} frames")));
+        }
+        for warning in &self.warnings {
+            lines.push(fact("warning", warning));
         }
         if !self.absent_joints.is_empty() {
             lines.push(fact("without", self.absent_joints.join(", ")));

@@ -19,12 +19,14 @@ pub(super) struct StyleFacts {
     cadence_per_minute: f64,
     /// When the other foot leaves the ground, as a share of the left and of the right step.
     other_terminal: [f64; 2],
+    warnings: Vec<String>,
 }
 
 /// Reads a style.
 pub(super) fn inspect(path: &Path) -> Result<StyleFacts> {
     let style: GaitStyle = read_style(path)?;
     Ok(StyleFacts {
+        warnings: style.thin_warning().into_iter().collect(),
         file: FileFacts::of(path)?,
         name: style.name,
         base_fingerprint: format!("{:08x}", style.base_fingerprint),
@@ -54,6 +56,8 @@ impl StyleFacts {
                 self.speed_mps, self.cadence_per_minute
             ),
         ));
+        let warnings = self.warnings.iter();
+        lines.extend(warnings.map(|warning| fact("warning", warning)));
         lines
     }
 }

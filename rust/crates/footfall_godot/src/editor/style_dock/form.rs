@@ -52,12 +52,12 @@ impl Form {
         files.set_custom_minimum_size(Vector2::new(0.0, 60.0));
         files.set_v_size_flags(control::SizeFlags::EXPAND_FILL);
         files.set_tooltip_text(
-            "BVH files of someone who walks in the style; six to twelve steps are enough",
+            "BVH files of someone who walks in the style, or walk animations of characters (glTF, or whatever Godot imported). Six to twelve steps are enough",
         );
         rows.add_child(&files);
         let add = button(
             "Add\u{2026}",
-            "Choose BVH files, in the project or anywhere else",
+            "Choose BVH and glTF files, in the project or anywhere else, or scenes and animations of the project",
         );
         let remove = button("Remove", "Remove the recording that is selected, or all");
         rows.add_child(&row(&[&add.clone().upcast(), &remove.clone().upcast()]));
@@ -110,7 +110,9 @@ impl Form {
         let mut dialog = FileDialog::new_alloc();
         dialog.set_access(file_dialog::Access::FILESYSTEM);
         dialog.set_file_mode(file_dialog::FileMode::OPEN_FILES);
-        dialog.add_filter("*.bvh");
+        dialog.add_filter(
+            "*.bvh, *.glb, *.gltf, *.fbx, *.blend, *.tscn, *.scn, *.tres, *.res, *.anim",
+        );
         // A dock that needs height takes it from its neighbours.
         let mut scroll = ScrollContainer::new_alloc();
         scroll.set_horizontal_scroll_mode(scroll_container::ScrollMode::DISABLED);
