@@ -96,6 +96,13 @@ impl StepOffset {
     /// How many numbers an offset has.
     pub const LEN: usize = STATES_PER_STEP * OBSERVATION_COUNT + STATES_PER_STEP + 1;
 
+    /// The parts of a [row](Self::to_row), each in units of its own: means, log-durations, terminal contact.
+    pub const fn parts() -> [core::ops::Range<usize>; 3] {
+        let means = STATES_PER_STEP * OBSERVATION_COUNT;
+        let durations = means + STATES_PER_STEP;
+        [0..means, means..durations, durations..Self::LEN]
+    }
+
     /// No offset.
     pub fn zero() -> Self {
         Self {

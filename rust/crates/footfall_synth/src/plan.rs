@@ -155,8 +155,8 @@ pub(crate) struct Planner {
     variation: f64,
     /// How this walker differs from the average: weights of the model's walker components.
     walker: [f64; MAX_COMPONENTS],
-    /// The last step's weights, per side.
-    weights: [[f64; MAX_COMPONENTS]; 2],
+    /// The last stride's weights.
+    weights: [f64; MAX_COMPONENTS],
 }
 
 impl Planner {
@@ -167,15 +167,13 @@ impl Planner {
             rng: ChaCha8Rng::seed_from_u64(seed),
             variation,
             walker: [0.0; MAX_COMPONENTS],
-            weights: [[0.0; MAX_COMPONENTS]; 2],
+            weights: [0.0; MAX_COMPONENTS],
         };
         for component in 0..model.variation.walker.len().min(MAX_COMPONENTS) {
             planner.walker[component] = planner.normal(MAX_WALKER_WEIGHT);
         }
-        for side in 0..2 {
-            for component in 0..MAX_COMPONENTS {
-                planner.weights[side][component] = planner.normal(MAX_STEP_WEIGHT);
-            }
+        for component in 0..MAX_COMPONENTS {
+            planner.weights[component] = planner.normal(MAX_STEP_WEIGHT);
         }
         planner
     }
@@ -213,23 +211,27 @@ impl Planner {
     /// Takes chance up where [`chance_position`](Self::chance_position) was, after these steps.
     pub(crate) fn resume(&mut self, chance_position: u64, last: &[StepDraw]) {
         self.rng.set_word_pos(u128::from(chance_position));
-        for draw in last {
-            self.weights[draw.side.index()] = draw.weights;
+        if let Some(draw) = last.last() {
+            self.weights = draw.weights;
         }
     }
 
-    /// Draws the next step that begins with this foot's initial contact.
+    /// Draws the next step that begins with this foot's initial contact. A stride begins with the left foot's, and both its steps have
+    /// the same weights: drawn one by one, a slow step would be followed by a fast one as often as not, and the walker limp.
     pub(crate) fn draw(&mut self, side: Side) -> StepDraw {
-        let memory = self.model.variation.step_correlation.clamp(0.0, 0.99);
-        let news = (1.0 - memory * memory).sqrt();
-        for component in 0..MAX_COMPONENTS {
-            let fresh = self.normal(MAX_STEP_WEIGHT);
-            let weight = &mut self.weights[side.index()][component];
-            *weight = (memory * *weight + news * fresh).clamp(-MAX_STEP_WEIGHT, MAX_STEP_WEIGHT);
+        if side == Side::Left {
+            let memory = self.model.variation.step_correlation.clamp(0.0, 0.99);
+            let news = (1.0 - memory * memory).sqrt();
+            for component in 0..MAX_COMPONENTS {
+                let fresh = self.normal(MAX_STEP_WEIGHT);
+                let weight = &mut self.weights[component];
+                *weight =
+                    (memory * *weight + news * fresh).clamp(-MAX_STEP_WEIGHT, MAX_STEP_WEIGHT);
+            }
         }
         StepDraw {
             side,
-            weights: self.weights[side.index()],
+            weights: self.weights,
         }
     }
 

@@ -6,6 +6,7 @@
 //! generated rotations and planted feet disagree about is spread over the swing.
 
 mod support;
+mod surge;
 mod swing;
 mod travel;
 

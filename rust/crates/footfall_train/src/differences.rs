@@ -19,6 +19,9 @@ const WALKER_PRIOR_STEPS: f64 = 3.0;
 /// Least spread of speeds (variance in (m/s)² times steps) below which speed explains nothing.
 const SPEED_PRIOR: f64 = 0.05;
 
+/// Logarithm of the ratio of durations beyond which a step among others of its walk is no whole step.
+const MAX_TEMPO: f64 = 0.35;
+
 /// How one step of the corpus differs from the mean step.
 struct Difference {
     walker: usize,
@@ -26,6 +29,14 @@ struct Difference {
     side: Side,
     speed_mps: f64,
     row: Vec<f64>,
+}
+
+impl Difference {
+    /// Logarithm of the step's duration over the mean step's.
+    fn tempo(&self) -> f64 {
+        let [_, durations, _] = StepOffset::parts();
+        self.row[durations.start]
+    }
 }
 
 /// Estimates the response to speed and the variation that remains. `aligned` is the corpus as the walk was trained on it:
@@ -43,7 +54,9 @@ pub fn estimate(
     let mut differences = Vec::new();
     for (index, (sequence, aligned)) in corpus.iter().zip(aligned).enumerate() {
         let boundaries = walk.align(aligned)?;
-        differences.extend(sequence_differences(&boundaries, steps, sequence, index));
+        let mut own = sequence_differences(&boundaries, steps, sequence, index);
+        keep_whole_steps(&mut own);
+        differences.append(&mut own);
     }
     let speed = speed_response(&mut differences, corpus, frame_rate_hz);
     let walker = walker_components(&mut differences);
@@ -95,6 +108,16 @@ fn sequence_differences(
         }
     });
     differences.collect()
+}
+
+/// Leaves out steps of another length than the walk's others: half a step, or two, that the contacts were taken for. One of them would teach
+/// more variation than a hundred good ones.
+fn keep_whole_steps(walk: &mut Vec<Difference>) {
+    let mut tempos: Vec<f64> = walk.iter().map(Difference::tempo).collect();
+    tempos.sort_by(f64::total_cmp);
+    if let Some(median) = tempos.get(tempos.len() / 2) {
+        walk.retain(|step| (step.tempo() - median).abs() < MAX_TEMPO);
+    }
 }
 
 /// Regresses the differences on speed and leaves the residuals behind.
@@ -180,36 +203,70 @@ fn walker_components(differences: &mut [Difference]) -> Vec<[StepOffset; 2]> {
         .collect()
 }
 
-/// Principal components of what is left of each step, and their correlation between a foot's consecutive steps.
+/// Principal components of what is left of each stride, a left step and the right one after it, and their correlation between consecutive
+/// strides.
 fn step_components(differences: &[Difference]) -> (Vec<[StepOffset; 2]>, f64) {
-    let of_side = |side: Side| {
-        let rows: Vec<Vec<f64>> = differences
-            .iter()
-            .filter(|d| d.side == side)
-            .map(|d| d.row.clone())
-            .collect();
-        let mut components = principal_components(&rows, STEP_COMPONENTS);
-        let scale = lost_spread(&rows, &components);
-        for value in components.iter_mut().flatten() {
-            *value *= scale;
+    let strides: Vec<(usize, Vec<f64>)> = differences
+        .windows(2)
+        .filter(|pair| {
+            [pair[0].side, pair[1].side] == Side::BOTH && pair[0].sequence == pair[1].sequence
+        })
+        .map(|pair| (pair[0].sequence, [&pair[0].row[..], &pair[1].row].concat()))
+        .collect();
+    let rows = within_walks(&strides);
+    let mut components = principal_components(&rows, STEP_COMPONENTS);
+    let correlation = consecutive_correlation(&strides, &components);
+    for begin in [0, StepOffset::LEN] {
+        for part in StepOffset::parts() {
+            let part = begin + part.start..begin + part.end;
+            let energy = |row: &[f64]| dot(&row[part.clone()], &row[part.clone()]);
+            let scale = lost_spread(&rows, &components, energy);
+            for component in &mut components {
+                component[part.clone()]
+                    .iter_mut()
+                    .for_each(|value| *value *= scale);
+            }
         }
-        components
-    };
-    let [left, right] = Side::BOTH.map(of_side);
-    let correlation = consecutive_correlation(differences, [&left, &right]);
-    let components = left
+    }
+    let components = components
         .into_iter()
-        .zip(right)
-        .map(|(left, right)| [offset_from(&left), offset_from(&right)])
+        .map(|component| {
+            let (left, right) = component.split_at(StepOffset::LEN);
+            [offset_from(left), offset_from(right)]
+        })
         .collect();
     (components, correlation)
 }
 
+/// Strides without the mean of their walk, and scaled for what the mean took from their spread. One clip's mean differs from its walker's,
+/// but stays the same from step to step.
+fn within_walks(strides: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>> {
+    let mut rows = Vec::with_capacity(strides.len());
+    for walk in strides.chunk_by(|one, next| one.0 == next.0) {
+        let count = walk.len() as f64;
+        if walk.len() < 2 {
+            continue;
+        }
+        let mut mean = vec![0.0; 2 * StepOffset::LEN];
+        for (_, row) in walk {
+            for (mean, value) in mean.iter_mut().zip(row) {
+                *mean += value / count;
+            }
+        }
+        let scale = (count / (count - 1.0)).sqrt();
+        rows.extend(walk.iter().map(|(_, row)| -> Vec<f64> {
+            let pairs = row.iter().zip(&mean);
+            pairs.map(|(value, mean)| scale * (value - mean)).collect()
+        }));
+    }
+    rows
+}
+
 /// The factor on components that gives them the spread of all that the rows vary by: the few that are kept stand for the many
-/// that are not, or generated steps would be more alike than people's.
-fn lost_spread(rows: &[Vec<f64>], components: &[Vec<f64>]) -> f64 {
-    let total: f64 = rows.iter().map(|row| dot(row, row)).sum::<f64>() / rows.len().max(1) as f64;
-    let kept: f64 = components.iter().map(|row| dot(row, row)).sum();
+/// that are not, or generated steps would be more alike than people's. `energy` is that of the part that is scaled.
+fn lost_spread(rows: &[Vec<f64>], components: &[Vec<f64>], energy: impl Fn(&[f64]) -> f64) -> f64 {
+    let total = rows.iter().map(|row| energy(row)).sum::<f64>() / rows.len().max(1) as f64;
+    let kept: f64 = components.iter().map(|row| energy(row)).sum();
     if kept > 0.0 {
         (total / kept).sqrt()
     } else {
@@ -217,17 +274,17 @@ fn lost_spread(rows: &[Vec<f64>], components: &[Vec<f64>]) -> f64 {
     }
 }
 
-/// Correlation of a foot's consecutive steps along the components, in [0, 0.95].
-fn consecutive_correlation(differences: &[Difference], components: [&Vec<Vec<f64>>; 2]) -> f64 {
+/// Correlation of consecutive strides along the components, in [0, 0.95].
+fn consecutive_correlation(strides: &[(usize, Vec<f64>)], components: &[Vec<f64>]) -> f64 {
     let (mut together, mut apart) = (0.0, 1e-12);
-    for pair in differences.windows(3) {
-        let (first, next) = (&pair[0], &pair[2]);
-        if first.sequence != next.sequence || first.side != next.side {
+    for pair in strides.windows(2) {
+        let [(sequence, first), (next_sequence, next)] = [&pair[0], &pair[1]];
+        if sequence != next_sequence {
             continue;
         }
-        for component in components[first.side.index()] {
+        for component in components {
             let weight = |row: &[f64]| dot(row, component) / dot(component, component).max(1e-12);
-            let (a, b) = (weight(&first.row), weight(&next.row));
+            let (a, b) = (weight(first), weight(next));
             together += a * b;
             apart += 0.5 * (a * a + b * b);
         }
@@ -296,8 +353,9 @@ mod tests {
         assert_eq!(components.len(), 2);
         assert!((components[0][0].abs() - 3.0).abs() < 1e-9);
         assert!((components[1][2].abs() - 0.1).abs() < 1e-9);
-        assert!((lost_spread(&rows, &components) - 1.0).abs() < 1e-9);
-        let alone = lost_spread(&rows, &components[..1]);
+        let energy = |row: &[f64]| dot(row, row);
+        assert!((lost_spread(&rows, &components, energy) - 1.0).abs() < 1e-9);
+        let alone = lost_spread(&rows, &components[..1], energy);
         assert!((alone - (9.01_f64 / 9.0).sqrt()).abs() < 1e-9);
     }
 }

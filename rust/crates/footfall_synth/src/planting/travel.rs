@@ -61,6 +61,7 @@ impl Planter {
                 frame.pose.rotations[Joint::Hips.index()] = hips_rotation.lane(lane);
             }
         }
+        self.even(timing, out);
         self.glide(timing, out);
     }
 

@@ -1,0 +1,87 @@
+//! Even travel: people's hips speed up and slow down once a step, whatever the angles of the standing leg say.
+//!
+//! The way above the standing foot follows from angles that were generated one by one, and every error of an angle becomes a surge of
+//! the whole body. So a step's way along its direction keeps the harmonics of the step's frequency that people have, and the legs are
+//! solved to the feet from there.
+
+use super::{PlantedFrame, Planter, StepTiming};
+use core::f32::consts::TAU;
+use footfall_core::ease::smooth_step;
+use glam::{Vec2, Vec3};
+
+/// Shares of the first harmonics of a step's frequency in the hips' way that are kept. Higher ones are surge: chosen so that harmonics 3 to
+/// 8 of the stride's frequency are not stronger than in captured walks.
+const KEPT: [f32; 2] = [1.0, 0.7];
+
+/// Time constant with which the speed of the step before passes into this one's, seconds.
+const PASSING_SECS: f32 = 0.15;
+
+/// Travel in a step, as a share of the leg's length, from which on the way is evened, and that from which on it is wholly.
+const EVENED: [f32; 2] = [0.1, 0.5];
+
+impl Planter {
+    /// Evens the hips' way over a step; it begins and ends where it did.
+    pub(super) fn even(&self, timing: &StepTiming, out: &mut [PlantedFrame]) {
+        let frames = timing.frames as f32;
+        let begin = out[0].pose.root_position;
+        let way = (out[timing.frames].pose.root_position - begin) * Vec3::new(1.0, 0.0, 1.0);
+        let length = way.length();
+        let share = length / self.leg_lengths[timing.leading.index()];
+        let weight = smooth_step((share - EVENED[0]) / (EVENED[1] - EVENED[0]));
+        if weight <= 0.0 {
+            return;
+        }
+        let along = way / length;
+        let pace = length / frames;
+        // How far the hips are ahead of who goes at an even speed.
+        let ahead = |hips: Vec3, frame: usize| along.dot(hips - begin) - pace * frame as f32;
+
+        let mut waves = [Wave::default(); KEPT.len()];
+        for (index, (wave, kept)) in waves.iter_mut().zip(KEPT).enumerate() {
+            let turn = Vec2::from_angle(TAU * (index + 1) as f32 / frames);
+            let mut angle = Vec2::X;
+            let mut sum = Vec2::ZERO;
+            for (frame, planted) in out[..timing.frames].iter().enumerate() {
+                sum += angle * ahead(planted.pose.root_position, frame);
+                angle = turn.rotate(angle);
+            }
+            wave.turn = turn;
+            wave.amplitude = sum * (2.0 * kept / frames);
+        }
+        let begins_at = waves
+            .iter()
+            .fold(pace, |speed, wave| speed + wave.first_speed());
+        let news = self.state.hips_velocity.map_or(0.0, |velocity| {
+            along.dot(velocity) * self.frame_secs - begins_at
+        });
+        let decay = -self.frame_secs / PASSING_SECS;
+        let left = (frames * decay).exp();
+        let mut angles = [Vec2::X; KEPT.len()];
+        for (frame, planted) in out[..=timing.frames].iter_mut().enumerate() {
+            let time = frame as f32;
+            let mut evened = news * time * ((time * decay).exp() - left);
+            for (wave, angle) in waves.iter().zip(&mut angles) {
+                evened += wave.amplitude.dot(*angle - Vec2::X);
+                *angle = wave.turn.rotate(*angle);
+            }
+            let hips = &mut planted.pose.root_position;
+            *hips += along * (weight * (evened - ahead(*hips, frame)));
+        }
+    }
+}
+
+/// One harmonic of a way.
+#[derive(Clone, Copy, Default)]
+struct Wave {
+    /// The turn from a frame to the next, as a unit vector.
+    turn: Vec2,
+    /// Of its cosine and its sine, metres.
+    amplitude: Vec2,
+}
+
+impl Wave {
+    /// Its speed in the first frame, metres a frame.
+    fn first_speed(&self) -> f32 {
+        self.amplitude.y * self.turn.to_angle()
+    }
+}
