@@ -272,8 +272,8 @@ mod tests {
                 .collect()
         };
         let mut kernel = vec![0.0; 2 * FINE_REACH + 1];
+        kernel[FINE_REACH - 1] = 0.6;
         kernel[FINE_REACH] = 0.8;
-        kernel[FINE_REACH + 1] = 0.6;
         let direction = |first: usize, value: f32| {
             let mut row = vec![0.0; FEATURE_COUNT];
             row[first] = value;
