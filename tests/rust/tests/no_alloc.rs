@@ -186,8 +186,15 @@ fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Worksh
 
 #[test]
 fn a_step_of_the_generator_allocates_nothing() {
+    // Without fine motion and with it.
+    for name in ["v1.footfall", "v3.footfall"] {
+        assert_generators_allocate_nothing(name);
+    }
+}
+
+fn assert_generators_allocate_nothing(name: &str) {
     let read = |name: &str| std::fs::read(repository().join("tests/model_versions").join(name));
-    let model = Arc::new(GaitModel::from_bytes(&read("v1.footfall").unwrap()).unwrap());
+    let model = Arc::new(GaitModel::from_bytes(&read(name).unwrap()).unwrap());
     let switching = Arc::new(DynamicsModel::from_bytes(&read("v1.footdyn").unwrap()).unwrap());
     let skeleton = model.skeleton.clone();
     let space = Arc::new(StyleSpace::new(&model, &[]).unwrap());

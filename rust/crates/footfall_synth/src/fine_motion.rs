@@ -4,7 +4,7 @@
 //! so that steps join without a jump. Noise needs no memory: every step has a number of its own, from which its points' independent
 //! numbers follow, and a point's noise is a weighted sum of those around it.
 
-use crate::plan::{MAX_COMPONENTS, StepDraw, StepPlan, Sum};
+use crate::plan::{MAX_COMPONENTS, StepDraw, StepPlan, Sum as _};
 use footfall_core::Side;
 use footfall_core::ease::{catmull_rom, smooth_step};
 use footfall_model::{
@@ -127,7 +127,7 @@ fn number_of(draw: &StepDraw, components: usize) -> u64 {
         .fold(0, |number, weight| mixed(number ^ weight.to_bits()))
 }
 
-/// The finaliser of SplitMix64 (Steele, Lea and Flood 2014): every bit depends on every bit.
+/// The finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every bit depends on every bit.
 fn mixed(number: u64) -> u64 {
     let mut bits = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -336,7 +336,9 @@ mod tests {
             for point in 0..FINE_POINTS {
                 let mut features = at(&bench, point as f32 / FINE_POINTS as f32);
                 let shared = tables.tables[side.index()][0][(point + 1) * FEATURE_COUNT];
-                features.iter_mut().for_each(|value| *value -= shared);
+                for value in &mut features {
+                    *value -= shared;
+                }
                 noise.push(features);
             }
         }

@@ -268,7 +268,7 @@ mod tests {
 
     /// Numbers of a second-order process that swings with a period of five points.
     fn captured(lag: usize) -> f64 {
-        0.8_f64.powi(lag as i32) * (core::f64::consts::TAU * lag as f64 / 5.0).cos()
+        0.8_f64.powf(lag as f64) * (core::f64::consts::TAU * lag as f64 / 5.0).cos()
     }
 
     #[test]
