@@ -186,35 +186,40 @@ fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Worksh
 
 #[test]
 fn a_step_of_the_generator_allocates_nothing() {
-    let read = |name: &str| std::fs::read(repository().join("tests/model_versions").join(name));
-    let model = Arc::new(GaitModel::from_bytes(&read("v1.footfall").unwrap()).unwrap());
-    let switching = Arc::new(DynamicsModel::from_bytes(&read("v1.footdyn").unwrap()).unwrap());
-    let skeleton = model.skeleton.clone();
-    let space = Arc::new(StyleSpace::new(&model, &[]).unwrap());
-    for seed in 0..24 {
-        let config = GeneratorConfig {
-            seed,
-            phase: 0.3,
-            variation: 1.0,
-        };
-        let styled = GaitGenerator::new(&space, &[], &skeleton, &config).unwrap();
-        assert_no_allocation(styled, seed);
-        let walker = GaitGenerator::switching(&switching, &skeleton, &config).unwrap();
-        // One that goes on from a state too.
-        let mut other = GaitGenerator::switching(&switching, &skeleton, &config).unwrap();
-        other.restore(&walker.state()).unwrap();
-        assert_no_allocation(walker, seed);
-        assert_no_allocation(other, seed);
+    // Without fine motion and with it.
+    for name in ["v1.footfall", "v3.footfall"] {
+        let read = |name: &str| std::fs::read(repository().join("tests/model_versions").join(name));
+        let model = Arc::new(GaitModel::from_bytes(&read(name).unwrap()).unwrap());
+        let switching = Arc::new(DynamicsModel::from_bytes(&read("v1.footdyn").unwrap()).unwrap());
+        let skeleton = model.skeleton.clone();
+        let space = Arc::new(StyleSpace::new(&model, &[]).unwrap());
+        for seed in 0..24 {
+            let config = GeneratorConfig {
+                seed,
+                phase: 0.3,
+                variation: 1.0,
+            };
+            let styled = GaitGenerator::new(&space, &[], &skeleton, &config).unwrap();
+            assert_no_allocation(styled, seed);
+            let walker = GaitGenerator::switching(&switching, &skeleton, &config).unwrap();
+            // One that goes on from a state too.
+            let mut other = GaitGenerator::switching(&switching, &skeleton, &config).unwrap();
+            other.restore(&walker.state()).unwrap();
+            assert_no_allocation(walker, seed);
+            assert_no_allocation(other, seed);
+        }
+        assert_placing_allocates_nothing(
+            GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap(),
+        );
+        assert_going_over_allocates_nothing(
+            GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap(),
+            &skeleton,
+        );
+        let styled = StyledBody::new(&space, &[], &skeleton).unwrap();
+        let mut workshop = Workshop::new(&styled);
+        let walker = CrowdWalker::new(&styled, &CONFIG, false, &mut workshop).unwrap();
+        assert_crowds_allocate_nothing(walker, &mut workshop);
     }
-    assert_placing_allocates_nothing(GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap());
-    assert_going_over_allocates_nothing(
-        GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap(),
-        &skeleton,
-    );
-    let styled = StyledBody::new(&space, &[], &skeleton).unwrap();
-    let mut workshop = Workshop::new(&styled);
-    let walker = CrowdWalker::new(&styled, &CONFIG, false, &mut workshop).unwrap();
-    assert_crowds_allocate_nothing(walker, &mut workshop);
     // The counter counts.
     let before = allocations();
     drop(std::hint::black_box(vec![0_u8; 100]));

@@ -19,3 +19,14 @@ where
         + to * (3.0 * s2 - 2.0 * s3)
         + arrival * (s3 - s2)
 }
+
+/// Weights of four values in a row on the curve between the two in the middle, at `s` in 0..1 (Catmull-Rom).
+pub fn catmull_rom(s: f32) -> [f32; 4] {
+    let (s2, s3) = (s * s, s * s * s);
+    [
+        0.5 * (-s3 + 2.0 * s2 - s),
+        0.5 * (3.0 * s3 - 5.0 * s2 + 2.0),
+        0.5 * (-3.0 * s3 + 4.0 * s2 + s),
+        0.5 * (s3 - s2),
+    ]
+}

@@ -7,7 +7,7 @@
 //! | 4 | length of the header in bytes |
 //! | … | header: JSON with `kind`, `written_by` and `provenance`; readable in every version |
 //! | 8 | length of the payload in bytes |
-//! | … | payload: postcard encoding of the version's own types (`v1`, `v2`) |
+//! | … | payload: postcard encoding of the version's own types (`v1`, `v2`, `v3`) |
 //! | 4 | CRC-32 of all that precedes |
 
 mod dynamics_v1;
@@ -16,6 +16,7 @@ mod style_v1;
 mod style_v2;
 mod v1;
 mod v2;
+mod v3;
 
 use crate::dynamics::DynamicsModel;
 use crate::gait_model::{GaitModel, ModelError};
@@ -27,10 +28,13 @@ use std::sync::Arc;
 
 /// The latest version that this build writes; it reads all versions up to this one. A file has the earliest version that
 /// can hold its content.
-pub const FORMAT_VERSION: u32 = 2;
+pub const FORMAT_VERSION: u32 = 3;
 
 /// The version without [`GaitModel::contexts`].
 const FORMAT_1: u32 = 1;
+
+/// The version without [`GaitModel::fine`].
+const FORMAT_2: u32 = 2;
 
 const MAGIC: &[u8; 8] = b"FOOTFALL";
 const GAIT_KIND: &str = "gait";
@@ -102,10 +106,12 @@ impl GaitModel {
     /// [`ModelFileError::Content`] when the model would not load again.
     pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
         self.check()?;
-        let (version, payload) = if self.contexts.is_empty() {
+        let (version, payload) = if let Some(fine) = &self.fine {
+            (FORMAT_VERSION, v3::encode(self, fine)?)
+        } else if self.contexts.is_empty() {
             (FORMAT_1, v1::encode(self)?)
         } else {
-            (FORMAT_VERSION, v2::encode(self)?)
+            (FORMAT_2, v2::encode(self)?)
         };
         write_container(version, GAIT_KIND, &self.provenance, &payload)
     }
@@ -117,17 +123,17 @@ impl GaitModel {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ModelFileError> {
         let (version, header, payload) = read_container(bytes)?;
         check_kind(&header, GAIT_KIND)?;
-        let model = if version == FORMAT_1 {
-            v1::decode(payload, header.provenance)?
-        } else {
-            v2::decode(payload, header.provenance)?
+        let model = match version {
+            FORMAT_1 => v1::decode(payload, header.provenance)?,
+            FORMAT_2 => v2::decode(payload, header.provenance)?,
+            _ => v3::decode(payload, header.provenance)?,
         };
         model.check()?;
         Ok(model)
     }
 
     /// A number that tells this model from others: the CRC-32 of its payload in format version 1. It says nothing of the
-    /// provenance nor of the steps at the ends of a walk, and is the same before writing and after reading.
+    /// provenance, of the steps at the ends of a walk nor of the fine motion, and is the same before writing and after reading.
     ///
     /// # Errors
     /// [`ModelError::Value`] when the model cannot be encoded.
@@ -144,7 +150,7 @@ impl GaitStyle {
     pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
         self.check()?;
         let payload = style_v2::encode(self)?;
-        write_container(FORMAT_VERSION, STYLE_KIND, &self.provenance, &payload)
+        write_container(FORMAT_2, STYLE_KIND, &self.provenance, &payload)
     }
 
     /// The style in the bytes of a `.footstyle` file.

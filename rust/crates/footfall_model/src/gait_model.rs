@@ -1,5 +1,6 @@
 //! The average walk: two step models of five states each, how they follow speed, and how walkers and steps differ.
 
+use crate::fine_motion::FineMotion;
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 use crate::provenance::Provenance;
 use footfall_core::{Side, Skeleton, StepPosition};
@@ -31,6 +32,8 @@ pub struct GaitModel {
     pub variation: Variation,
     /// How steps at the ends of a walk differ from those inside it; none where they do not.
     pub contexts: Vec<StepContext>,
+    /// What steps have beyond the trajectories of their states; nothing in models of earlier versions.
+    pub fine: Option<FineMotion>,
     /// Where the model comes from.
     pub provenance: Provenance,
 }
@@ -267,6 +270,9 @@ impl GaitModel {
                 STATES_PER_STEP,
             )?;
             check_finite("step offset", &offset.to_row())?;
+        }
+        if let Some(fine) = &self.fine {
+            fine.check(self.variation.walker.len())?;
         }
         Ok(())
     }

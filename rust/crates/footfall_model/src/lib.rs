@@ -7,6 +7,7 @@
 
 pub mod dynamics;
 pub mod file;
+pub mod fine_motion;
 pub mod gait_model;
 pub mod imu_model;
 pub mod layout;
@@ -15,6 +16,9 @@ pub mod style;
 
 pub use dynamics::{DynamicsModel, Regime, SEGMENT_SLACK};
 pub use file::{FORMAT_VERSION, ModelFileError, WalkModel};
+pub use fine_motion::{
+    FINE_POINTS, FINE_REACH, FineChance, FineMotion, FineTable, MAX_FINE_DIRECTIONS,
+};
 pub use gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,
     StepContext, StepModel, StepOffset, Variation,

@@ -95,6 +95,10 @@ const LOG_MARGIN: f64 = 0.5;
 /// Fewer steps than this make a style that hangs on chance.
 const FEW_STEPS: usize = 6;
 
+/// Fine motion is scaled with the swing of its joint in a style, within these bounds.
+const LEAST_FINE_SCALE: f64 = 0.5;
+const MOST_FINE_SCALE: f64 = 2.0;
+
 impl GaitStyle {
     /// A warning for a style of so few steps that what is chance in them is in the style.
     pub fn thin_warning(&self) -> Option<String> {
@@ -236,6 +240,15 @@ impl GaitModel {
             target.variance[dim] = mixture.logarithmic(target.variance[dim], |style| {
                 style.global_variance.variance[dim]
             });
+        }
+        if let Some(fine) = &mut mixed.fine {
+            let swings = mixed.global_variance.mean.iter();
+            let pairs = swings.zip(&self.global_variance.mean);
+            for (scale, (swing, base)) in fine.scale.iter_mut().zip(pairs) {
+                *scale *= (swing / base)
+                    .sqrt()
+                    .clamp(LEAST_FINE_SCALE, MOST_FINE_SCALE);
+            }
         }
         let factors: Vec<f64> = (0..FEATURE_COUNT)
             .map(|dim| mixture.logarithmic(1.0, |style| style.step_spread.features[dim]))

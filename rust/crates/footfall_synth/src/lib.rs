@@ -8,6 +8,7 @@
 mod crowd;
 mod detail;
 mod error;
+mod fine_motion;
 mod footing;
 mod generator;
 mod looped;

@@ -3,6 +3,7 @@
 mod offsets;
 
 use crate::detail::Detail;
+use crate::fine_motion::FineDraw;
 use crate::planting::StepTiming;
 use crate::standing::{Amplitude, START_TERMINAL};
 use crate::statistics::{Part, STEP_MEANS, Statistics};
@@ -85,6 +86,8 @@ pub(crate) struct StepPlan<R> {
     pub(crate) state_frames: [usize; STATES_PER_STEP],
     /// The means of every state, state by state.
     pub(crate) means: Vec<R>,
+    /// What is added after its trajectory is solved.
+    pub(crate) fine: FineDraw,
 }
 
 impl StepShape {
@@ -143,6 +146,7 @@ impl<R: Real> StepPlan<R> {
             shape: StepShape::of_walk(Side::Left, 1, 0.0, 1.0, Detail::Full),
             state_frames: [0; STATES_PER_STEP],
             means: vec![R::default(); STEP_MEANS],
+            fine: FineDraw::default(),
         }
     }
 }
@@ -314,6 +318,7 @@ impl Planner {
         plan.state_frames[STATES_PER_STEP - 1] += whole - passed;
         let terminal = step.other_terminal + offsets.other_terminal();
         plan.shape = StepShape::of_walk(draw.side, whole, terminal, pace.stride, detail);
+        plan.fine = FineDraw::new(model, &self.walker, draw, self.variation);
     }
 
     fn normal(&mut self, most: f64) -> f64 {

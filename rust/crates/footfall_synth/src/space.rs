@@ -1,6 +1,7 @@
 //! A model and the styles that its walkers can wear: what costs time is prepared once, mixtures are quick.
 
 use crate::error::SynthError;
+use crate::fine_motion::{FineTables, Scale};
 use crate::standing::standing_features;
 use crate::statistics::Statistics;
 use crate::variance;
@@ -17,6 +18,7 @@ pub struct StyleSpace {
     /// Per feature, the pull that keeps the variance of the base walk and of each style.
     base_pull: Vec<f64>,
     style_pulls: Vec<Vec<f64>>,
+    fine: Option<Arc<FineTables>>,
     /// Mixtures that somebody wears.
     blends: Mutex<Vec<Weak<Blend>>>,
     benches: Workbenches,
@@ -30,6 +32,9 @@ pub(crate) struct Blend {
     pub(crate) model: Arc<GaitModel>,
     pub(crate) statistics: Statistics<f32>,
     pub(crate) standing: [f32; FEATURE_COUNT],
+    pub(crate) fine: Option<Arc<FineTables>>,
+    /// Factors on the features of the fine motion.
+    pub(crate) fine_scale: Scale,
 }
 
 impl StyleSpace {
@@ -49,6 +54,7 @@ impl StyleSpace {
             fingerprint: model.fingerprint()?,
             base_pull: variance::pull(model)?,
             style_pulls,
+            fine: FineTables::of(model).map(Arc::new),
             model: Arc::clone(model),
             styles: styles.to_vec(),
             blends: Mutex::default(),
@@ -110,6 +116,11 @@ impl StyleSpace {
         statistics.set_pull(&self.pull(&weights));
         Blend {
             standing: standing_features(&model),
+            fine: self.fine.clone(),
+            fine_scale: model
+                .fine
+                .as_ref()
+                .map_or([1.0; FEATURE_COUNT], FineTables::scale),
             model,
             statistics,
             weights,

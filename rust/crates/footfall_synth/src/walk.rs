@@ -1,6 +1,7 @@
 //! A whole walk at once.
 
 use crate::error::SynthError;
+use crate::fine_motion::{FineBench, FineTables, neighbours};
 use crate::pace::PaceTable;
 use crate::plan::{Manner, Planner, StepDraw, StepPlan};
 use crate::planting::{Course, PlantedFrame, Planter};
@@ -128,7 +129,7 @@ pub fn synthesize(
         .collect();
     let trajectory = variance::solve_walk(model, &statistics, &plans)?;
     Ok(put_on_ground(
-        model.frame_rate_hz,
+        model,
         skeleton,
         config,
         &plans,
@@ -139,14 +140,21 @@ pub fn synthesize(
 
 /// Puts planned steps on the ground; the first and the last [`LEAD_STEPS`] are not shown.
 pub(crate) fn put_on_ground(
-    model_rate_hz: f64,
+    model: &GaitModel,
     skeleton: &Skeleton,
     config: &WalkConfig,
     plans: &[StepPlan<f64>],
     trajectory: &[f64],
     facing: f32,
 ) -> SynthesizedWalk {
+    let model_rate_hz = model.frame_rate_hz;
     let frame_secs = 1.0 / model_rate_hz;
+    let fine = model
+        .fine
+        .as_ref()
+        .zip(FineTables::of(model))
+        .map(|(fine, tables)| (tables, FineTables::scale(fine)));
+    let mut bench = FineBench::new();
     let mut planter: Option<Planter> = None;
     let course = Course {
         turn_rate: config.turn_rate_radps,
@@ -164,10 +172,20 @@ pub(crate) fn put_on_ground(
         let stride = plan.shape.stride as f32;
         let rows = trajectory[begin * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let mut frames = vec![PlantedFrame::default(); timing.frames + 1];
-        for (frame, features) in frames.iter_mut().zip(rows) {
+        if let Some((tables, _)) = &fine {
+            bench.prepare(tables, timing.leading, &neighbours(plans, index));
+        }
+        for (number, (frame, features)) in frames.iter_mut().zip(rows).enumerate() {
             let mut narrow = [0.0; FEATURE_COUNT];
             for (narrow, feature) in narrow.iter_mut().zip(features) {
                 *narrow = *feature as f32;
+            }
+            if let Some((_, scale)) = &fine {
+                bench.add(
+                    number as f32 / timing.frames as f32,
+                    [scale; 2],
+                    &mut narrow,
+                );
             }
             layout::decode(&narrow, &mut frame.pose.rotations);
         }

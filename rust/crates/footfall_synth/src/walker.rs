@@ -1,6 +1,7 @@
 //! One walker, step after step: planning, trajectory and planting in a row.
 
 use crate::error::SynthError;
+use crate::fine_motion::neighbours;
 use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan, StepShape};
 use crate::planting::PlanterState;
 use crate::space::Blend;
@@ -304,9 +305,27 @@ impl Walker {
             velocity_mps: self.origin.request.velocity_mps,
         };
         let Workbench {
-            trajectory, raw, ..
+            trajectory,
+            raw,
+            fine,
+            shown,
+            ..
         } = bench;
-        let rows = trajectory[first * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
-        self.stage.put(rows, &placing, raw);
+        let trajectory = &trajectory[first * FEATURE_COUNT..];
+        let Some(tables) = &self.blend.fine else {
+            let rows = trajectory.chunks_exact(FEATURE_COUNT);
+            return self.stage.put(rows, &placing, raw);
+        };
+        fine.prepare(tables, shape.timing.leading, &neighbours(&self.plans, step));
+        let scales = [&self.blend_before.fine_scale, &self.blend.fine_scale];
+        let length = (shape.timing.frames + 1) * FEATURE_COUNT;
+        let shown = &mut shown[..length];
+        shown.copy_from_slice(&trajectory[..length]);
+        let rows = shown.chunks_exact_mut(FEATURE_COUNT).enumerate();
+        for (frame, row) in rows.step_by(shape.detail.stride()) {
+            fine.add(frame as f32 / shape.timing.frames as f32, scales, row);
+        }
+        self.stage
+            .put(shown.chunks_exact(FEATURE_COUNT), &placing, raw);
     }
 }

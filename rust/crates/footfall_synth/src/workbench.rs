@@ -1,6 +1,7 @@
 //! Buffers in which steps are solved: nobody needs them between two steps, so all walkers share them.
 
 use crate::error::SynthError;
+use crate::fine_motion::FineBench;
 use crate::plan::{Planner, StepPlan};
 use crate::raw::RawFrame;
 use crate::stage::Stage;
@@ -21,6 +22,9 @@ pub(crate) struct Workbench {
     solver: TrajectorySolver<f32>,
     /// Features of the window that was solved last.
     pub(crate) trajectory: Vec<f32>,
+    pub(crate) fine: FineBench,
+    /// Features of the step that is put on the ground, with its fine motion.
+    pub(crate) shown: Vec<f32>,
     pub(crate) raw: Vec<RawFrame>,
 }
 
@@ -32,6 +36,8 @@ impl Workbench {
         Self {
             solver: TrajectorySolver::new(WINDOW, room),
             trajectory: Vec::with_capacity(room * FEATURE_COUNT),
+            fine: FineBench::new(),
+            shown: vec![0.0; (longest + 1) * FEATURE_COUNT],
             raw: Stage::raw(longest),
         }
     }

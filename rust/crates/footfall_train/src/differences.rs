@@ -1,7 +1,5 @@
 //! How steps differ from the mean step: with speed, between walkers, and from step to step.
 
-use crate::average::AverageWalk;
-use crate::error::TrainError;
 use crate::sequence::Sequence;
 use footfall_core::Side;
 use footfall_model::{
@@ -9,8 +7,9 @@ use footfall_model::{
 };
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Components of a walker and of a step that a model holds at most.
-const WALKER_COMPONENTS: usize = 6;
+/// Components of a walker and of a step that a model holds at most. With six of a walker, generated people are told from others by lying in
+/// the plane of the few (by shape 0.85 of the time, with twelve 0.81); sixteen change nothing more.
+const WALKER_COMPONENTS: usize = 12;
 const STEP_COMPONENTS: usize = 6;
 
 /// Steps that a walker's mean must outweigh: with few steps it is drawn towards the corpus mean.
@@ -39,34 +38,43 @@ impl Difference {
     }
 }
 
-/// Estimates the response to speed and the variation that remains. `aligned` is the corpus as the walk was trained on it:
-/// it tells which frames belong to which state.
-///
-/// # Errors
-/// [`TrainError`] when a sequence cannot be aligned.
+/// How steps differ.
+pub struct Differences {
+    /// With speed.
+    pub speed: SpeedResponse,
+    /// Between walkers and from step to step.
+    pub variation: Variation,
+    /// The weight of every walker in each component of the variation between walkers.
+    pub walker_weights: Vec<Vec<f64>>,
+}
+
+/// Estimates the response to speed and the variation that remains; the boundaries between each sequence's states are those of
+/// [`AverageWalk::align`](crate::average::AverageWalk::align).
 pub fn estimate(
-    walk: &AverageWalk,
     steps: &[StepModel; 2],
     corpus: &[Sequence],
-    aligned: &[Sequence],
+    boundaries: &[Vec<usize>],
     frame_rate_hz: f64,
-) -> Result<(SpeedResponse, Variation), TrainError> {
+) -> Differences {
     let mut differences = Vec::new();
-    for (index, (sequence, aligned)) in corpus.iter().zip(aligned).enumerate() {
-        let boundaries = walk.align(aligned)?;
-        let mut own = sequence_differences(&boundaries, steps, sequence, index);
+    for (index, (sequence, boundaries)) in corpus.iter().zip(boundaries).enumerate() {
+        let mut own = sequence_differences(boundaries, steps, sequence, index);
         keep_whole_steps(&mut own);
         differences.append(&mut own);
     }
     let speed = speed_response(&mut differences, corpus, frame_rate_hz);
-    let walker = walker_components(&mut differences);
+    let (walker, walker_weights) = walker_components(&mut differences);
     let (step, step_correlation) = step_components(&differences);
     let variation = Variation {
         walker,
         step,
         step_correlation,
     };
-    Ok((speed, variation))
+    Differences {
+        speed,
+        variation,
+        walker_weights,
+    }
 }
 
 fn sequence_differences(
@@ -164,8 +172,8 @@ fn speed_response(
     }
 }
 
-/// Principal components of the walkers' mean steps; subtracts each walker's mean from its steps.
-fn walker_components(differences: &mut [Difference]) -> Vec<[StepOffset; 2]> {
+/// Principal components of the walkers' mean steps, and every walker's weights in them; subtracts each walker's mean from its steps.
+fn walker_components(differences: &mut [Difference]) -> (Vec<[StepOffset; 2]>, Vec<Vec<f64>>) {
     let walkers = differences.iter().map(|d| d.walker + 1).max().unwrap_or(0);
     let mut rows = vec![vec![0.0; 2 * StepOffset::LEN]; walkers];
     let mut counts = vec![[WALKER_PRIOR_STEPS; 2]; walkers];
@@ -194,13 +202,18 @@ fn walker_components(differences: &mut [Difference]) -> Vec<[StepOffset; 2]> {
             *value -= mean;
         }
     }
-    principal_components(&rows, WALKER_COMPONENTS)
-        .into_iter()
-        .map(|component| {
-            let (left, right) = component.split_at(StepOffset::LEN);
-            [offset_from(left), offset_from(right)]
-        })
-        .collect()
+    let components = principal_components(&rows, WALKER_COMPONENTS);
+    let weights = |row: &Vec<f64>| -> Vec<f64> {
+        let each = components.iter();
+        each.map(|component| dot(row, component) / dot(component, component))
+            .collect()
+    };
+    let weights = rows.iter().map(weights).collect();
+    let offsets = components.iter().map(|component| {
+        let (left, right) = component.split_at(StepOffset::LEN);
+        [offset_from(left), offset_from(right)]
+    });
+    (offsets.collect(), weights)
 }
 
 /// Principal components of what is left of each stride, a left step and the right one after it, and their correlation between consecutive

@@ -12,6 +12,7 @@ pub mod differences;
 pub mod dynamics;
 pub mod error;
 pub mod evaluate;
+pub mod fine_motion;
 pub mod imu;
 pub mod job;
 pub mod normalise;

@@ -5,6 +5,7 @@ use crate::contexts::{self, ContextReport};
 use crate::dataset::{EncodeConfig, encode_clip};
 use crate::differences;
 use crate::error::TrainError;
+use crate::fine_motion;
 use crate::progress::{Progress, advance};
 use crate::sequence::Sequence;
 use crate::walker_adaptive::{self, WalkerAdaptive, WalkerTransform};
@@ -111,14 +112,18 @@ pub fn train_average(
     };
     let steps = [step(Side::Left)?, step(Side::Right)?];
     advance(progress, "differences between walkers", 0, 0)?;
-    let (speed, variation) =
-        differences::estimate(&walk, &steps, &corpus, &aligned, config.frame_rate_hz)?;
+    let boundaries: Vec<Vec<usize>> = aligned
+        .iter()
+        .map(|sequence| walk.align(sequence))
+        .collect::<Result<_, _>>()?;
+    let differences = differences::estimate(&steps, &corpus, &boundaries, config.frame_rate_hz);
+    let (speed, variation) = (differences.speed, differences.variation);
     let (whole, counts) = encode_all(clips, config, Clone::clone)?;
     let (middles, _) = encode_all(clips, config, steady_part)?;
     let whole = as_average_walkers(&walk, &transforms, &corpus, &middles, &whole)?;
     advance(progress, "ends of walks", 0, 0)?;
     let (contexts, context_report) = contexts::estimate(&walk, &steps, &speed, &whole)?;
-    let model = GaitModel {
+    let mut model = GaitModel {
         frame_rate_hz: config.frame_rate_hz,
         skeleton: Skeleton::standard(),
         windows: config.windows,
@@ -127,6 +132,7 @@ pub fn train_average(
         speed,
         variation,
         contexts,
+        fine: None,
         provenance: Provenance {
             clips: counts.clips,
             subjects: counts.subjects,
@@ -134,6 +140,8 @@ pub fn train_average(
             ..provenance
         },
     };
+    advance(progress, "fine motion", 0, 0)?;
+    model.fine = fine_motion::estimate(&model, &corpus, &boundaries, &differences.walker_weights)?;
     Ok(Trained {
         model,
         log_likelihoods: walk.log_likelihoods.clone(),

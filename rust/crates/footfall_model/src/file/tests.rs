@@ -1,4 +1,5 @@
 use super::*;
+use crate::fine_motion::{FINE_POINTS, FINE_REACH, FineChance, FineMotion};
 use crate::gait_model::{
     GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepContext, StepModel,
     StepOffset, Variation,
@@ -45,6 +46,7 @@ pub(crate) fn sample() -> GaitModel {
             step_correlation: 0.5,
         },
         contexts: Vec::new(),
+        fine: None,
         provenance: Provenance {
             corpus: "made by a test".to_owned(),
             clips: 3,
@@ -62,6 +64,56 @@ fn a_model_survives_the_round_trip() {
     assert_eq!((version, header.kind.as_str()), (FORMAT_1, "gait"));
 }
 
+/// Fine motion of numbers that are all different and exact in f32.
+fn fine() -> FineMotion {
+    let row = |scale: f64, len: usize| (0..len).map(|i| scale * (i + 1) as f64).collect::<Vec<_>>();
+    let table = |scale: f64| [scale, -scale].map(|scale| row(scale, FINE_POINTS * FEATURE_COUNT));
+    FineMotion {
+        shared: table(0.5),
+        walker: vec![table(0.25)],
+        chance: FineChance {
+            kernel: row(0.125, 2 * FINE_REACH + 1),
+            directions: vec![row(2.0, FEATURE_COUNT), row(-0.5, FEATURE_COUNT)],
+            walker_strength: vec![0.375],
+        },
+        scale: row(0.5, FEATURE_COUNT),
+    }
+}
+
+#[test]
+fn fine_motion_survives_and_leaves_the_fingerprint_alone() {
+    let plain = sample();
+    let model = GaitModel {
+        fine: Some(fine()),
+        ..plain.clone()
+    };
+    let bytes = model.to_bytes().unwrap();
+    assert_eq!(read_header(&bytes).unwrap().0, FORMAT_VERSION);
+    assert_eq!(GaitModel::from_bytes(&bytes).unwrap(), model);
+    assert_eq!(model.fingerprint().unwrap(), plain.fingerprint().unwrap());
+}
+
+#[test]
+fn fine_motion_of_another_shape_is_refused() {
+    let refused = |change: &dyn Fn(&mut FineMotion)| {
+        let mut fine = fine();
+        change(&mut fine);
+        let model = GaitModel {
+            fine: Some(fine),
+            ..sample()
+        };
+        model.to_bytes().unwrap_err().to_string()
+    };
+    let said = refused(&|fine| fine.walker.clear());
+    assert!(said.contains("fine motion"), "{said}");
+    let said = refused(&|fine| fine.shared[1].truncate(7));
+    assert!(said.contains("fine motion"), "{said}");
+    let said = refused(&|fine| fine.chance.kernel[2] = f64::NAN);
+    assert!(said.contains("kernel"), "{said}");
+    let said = refused(&|fine| fine.scale[0] = 0.0);
+    assert!(said.contains("scale"), "{said}");
+}
+
 #[test]
 fn steps_at_the_ends_of_a_walk_survive_and_leave_the_fingerprint_alone() {
     let plain = sample();
@@ -73,7 +125,7 @@ fn steps_at_the_ends_of_a_walk_survive_and_leave_the_fingerprint_alone() {
         offset,
     }];
     let bytes = model.to_bytes().unwrap();
-    assert_eq!(read_header(&bytes).unwrap().0, FORMAT_VERSION);
+    assert_eq!(read_header(&bytes).unwrap().0, FORMAT_2);
     let again = GaitModel::from_bytes(&bytes).unwrap();
     assert_eq!(again, model);
     assert_eq!(again.context(StepPosition::Last, Side::Right), Some(0));

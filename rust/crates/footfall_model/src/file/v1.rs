@@ -120,6 +120,7 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitModel
             step_correlation: f64::from(dto.step_correlation),
         },
         contexts: Vec::new(),
+        fine: None,
         provenance,
     })
 }

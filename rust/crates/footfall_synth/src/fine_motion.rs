@@ -1,0 +1,367 @@
+//! The detail that trajectories of states lack, added to a step that is solved: what steps have in common, and noise.
+//!
+//! Both are known at points of the step's phase and smooth between them. Points before and after the step are those of its neighbours,
+//! so that steps join without a jump. Noise needs no memory: every step has a number of its own, from which its points' independent
+//! numbers follow, and a point's noise is a weighted sum of those around it.
+
+use crate::plan::{MAX_COMPONENTS, StepDraw, StepPlan, Sum as _};
+use footfall_core::Side;
+use footfall_core::ease::{catmull_rom, smooth_step};
+use footfall_model::{
+    FEATURE_COUNT, FINE_POINTS, FINE_REACH, FineMotion, GaitModel, MAX_FINE_DIRECTIONS,
+};
+use multiversion::multiversion;
+
+/// Points that a step's curves go through: its own, one before and two after.
+const KNOTS: usize = FINE_POINTS + 3;
+
+/// Points whose independent numbers matter to them.
+const SOURCES: usize = KNOTS + 2 * FINE_REACH;
+
+/// Independent numbers that come out of the generator at once.
+const AT_ONCE: usize = 4;
+
+/// Strength of a walker's noise stays within this factor of the average's.
+const MAX_STRENGTH: f64 = 1.6;
+
+/// A factor a feature.
+pub(crate) type Scale = [f32; FEATURE_COUNT];
+
+/// The fine motion of a model, ready to be added.
+#[derive(Debug)]
+pub(crate) struct FineTables {
+    /// Per side, rows of the [`KNOTS`] of a step: what steps have in common, then each walker component.
+    tables: [Vec<Vec<f32>>; 2],
+    kernel: Vec<f32>,
+    directions: Vec<Vec<f32>>,
+}
+
+/// What a step needs to know about its fine motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct FineDraw {
+    /// The weights of the model's walker components.
+    walker: [f32; MAX_COMPONENTS],
+    /// Factor on the noise.
+    strength: f32,
+    /// What the step's noise follows from.
+    number: u64,
+}
+
+/// Three steps in a row: the one that is shown is in the middle. One that is not there has no noise.
+pub(crate) type Neighbours = [FineDraw; 3];
+
+/// Where a step's fine motion is worked out.
+#[derive(Debug)]
+pub(crate) struct FineBench {
+    sources: Vec<[f32; MAX_FINE_DIRECTIONS]>,
+    knots: Vec<f32>,
+}
+
+impl FineTables {
+    /// Those of a model; `None` where it has none.
+    pub(crate) fn of(model: &GaitModel) -> Option<Self> {
+        let fine = model.fine.as_ref()?;
+        let all = core::iter::once(&fine.shared).chain(&fine.walker);
+        let tables = Side::BOTH.map(|side| {
+            let knots = |table: &[Vec<f64>; 2]| -> Vec<f32> {
+                (0..KNOTS)
+                    .flat_map(|knot| {
+                        let point = knot + FINE_POINTS - 1;
+                        let of = (side.index() + point / FINE_POINTS + 1) % 2;
+                        let row = point % FINE_POINTS * FEATURE_COUNT;
+                        table[of][row..row + FEATURE_COUNT].iter()
+                    })
+                    .map(|value| *value as f32)
+                    .collect()
+            };
+            all.clone().map(knots).collect()
+        });
+        let narrow = |row: &Vec<f64>| row.iter().map(|value| *value as f32).collect();
+        Some(Self {
+            tables,
+            kernel: narrow(&fine.chance.kernel),
+            directions: fine.chance.directions.iter().map(narrow).collect(),
+        })
+    }
+
+    /// Factors on the features in a mixture of styles.
+    pub(crate) fn scale(fine: &FineMotion) -> Scale {
+        core::array::from_fn(|feature| fine.scale[feature] as f32)
+    }
+}
+
+impl FineDraw {
+    /// That of a step of a walker; `variation` scales how far both stray.
+    pub(crate) fn new(
+        model: &GaitModel,
+        walker: &[f64; MAX_COMPONENTS],
+        draw: &StepDraw,
+        variation: f64,
+    ) -> Self {
+        let Some(fine) = &model.fine else {
+            return Self::default();
+        };
+        let weights = walker.map(|weight| variation * weight);
+        let slopes = fine.chance.walker_strength.iter().zip(&weights);
+        let log: f64 = slopes.map(|(slope, weight)| slope * weight).sum();
+        let most = MAX_STRENGTH.ln();
+        let number = number_of(draw, model.variation.step.len());
+        let strength = variation * log.clamp(-most, most).exp();
+        Self {
+            walker: weights.map(|weight| weight as f32),
+            strength: if number == 0 { 0.0 } else { strength as f32 },
+            number,
+        }
+    }
+}
+
+/// A number that no other step has, made of what chance decided about it; 0 for a step without chance.
+fn number_of(draw: &StepDraw, components: usize) -> u64 {
+    let used = components.clamp(1, MAX_COMPONENTS);
+    let weights = &draw.weights[..used];
+    if weights.iter().all(|weight| weight.abs() <= 0.0) {
+        return 0;
+    }
+    weights
+        .iter()
+        .fold(0, |number, weight| mixed(number ^ weight.to_bits()))
+}
+
+/// The finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every bit depends on every bit.
+fn mixed(number: u64) -> u64 {
+    let mut bits = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    bits ^ (bits >> 31)
+}
+
+impl FineBench {
+    /// With room for any step.
+    pub(crate) fn new() -> Self {
+        Self {
+            sources: vec![[0.0; MAX_FINE_DIRECTIONS]; SOURCES],
+            knots: vec![0.0; KNOTS * FEATURE_COUNT],
+        }
+    }
+
+    /// Writes the knots of the step in the middle, which `side` begins.
+    pub(crate) fn prepare(&mut self, tables: &FineTables, side: Side, steps: &Neighbours) {
+        let [_, step, _] = steps;
+        let rows = &tables.tables[side.index()];
+        self.knots.copy_from_slice(&rows[0]);
+        let pairs = rows[1..].iter().zip(step.walker);
+        add_all(
+            &mut self.knots,
+            pairs.map(|(row, weight)| (row.as_slice(), weight)),
+        );
+        if steps.iter().all(|step| step.strength <= 0.0) {
+            return;
+        }
+        let directions = tables.directions.len();
+        for (index, source) in self.sources.iter_mut().enumerate() {
+            // Counted from the first point of the step before.
+            let point = index + FINE_POINTS - 1 - FINE_REACH;
+            let own = &steps[point / FINE_POINTS];
+            fill(source, own, point % FINE_POINTS, directions);
+        }
+        for (knot, row) in self.knots.chunks_exact_mut(FEATURE_COUNT).enumerate() {
+            let along = weighted_sum(&self.sources[knot..], &tables.kernel);
+            let pairs = tables.directions.iter().zip(along);
+            add_all(row, pairs.map(|(row, weight)| (row.as_slice(), weight)));
+        }
+    }
+
+    /// Adds the prepared step's motion to the features of the frame at part `s` of it. Scales are those before the step and after it.
+    pub(crate) fn add(&self, s: f32, scales: [&Scale; 2], features: &mut [f32]) {
+        let at = s * FINE_POINTS as f32;
+        let cell = (at.floor() as usize).min(FINE_POINTS - 1);
+        let weights = catmull_rom(at - cell as f32);
+        let knots = &self.knots[cell * FEATURE_COUNT..][..4 * FEATURE_COUNT];
+        add_between(features, knots, weights, scales, smooth_step(s));
+    }
+}
+
+#[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
+fn add_between(
+    features: &mut [f32],
+    knots: &[f32],
+    weights: [f32; 4],
+    scales: [&Scale; 2],
+    change: f32,
+) {
+    let (first, rest) = knots.split_at(FEATURE_COUNT);
+    let (second, rest) = rest.split_at(FEATURE_COUNT);
+    let (third, fourth) = rest.split_at(FEATURE_COUNT);
+    let knots = first.iter().zip(second).zip(third.iter().zip(fourth));
+    let scales = scales[0].iter().zip(scales[1]);
+    for ((feature, ((a, b), (c, d))), (before, after)) in features.iter_mut().zip(knots).zip(scales)
+    {
+        let value = (weights[0] * a + weights[1] * b) + (weights[2] * c + weights[3] * d);
+        *feature += (before + change * (after - before)) * value;
+    }
+}
+
+/// The weighted sum of the first sources.
+#[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
+fn weighted_sum(
+    sources: &[[f32; MAX_FINE_DIRECTIONS]],
+    kernel: &[f32],
+) -> [f32; MAX_FINE_DIRECTIONS] {
+    let mut sums = [0.0; MAX_FINE_DIRECTIONS];
+    for (source, weight) in sources.iter().zip(kernel) {
+        for (sum, value) in sums.iter_mut().zip(source) {
+            *sum += weight * value;
+        }
+    }
+    sums
+}
+
+/// Independent numbers of variance 1 at a point of a step.
+fn fill(source: &mut [f32], step: &FineDraw, point: usize, directions: usize) {
+    // Evenly spread over an interval: sums of many of them are normal all the same.
+    let width = step.strength * 12.0_f32.sqrt();
+    for (index, values) in source[..directions.next_multiple_of(AT_ONCE)]
+        .chunks_exact_mut(AT_ONCE)
+        .enumerate()
+    {
+        let bits = mixed(step.number ^ mixed((point * MAX_FINE_DIRECTIONS + index) as u64));
+        for (part, value) in values.iter_mut().enumerate() {
+            let sixteen = (bits >> (16 * part)) as u16;
+            *value = width * ((f32::from(sixteen) + 0.5) / 65536.0 - 0.5);
+        }
+    }
+}
+
+/// Adds weighted rows, four at a time.
+fn add_all<'a>(sums: &mut [f32], rows: impl Iterator<Item = (&'a [f32], f32)>) {
+    let mut rows = rows.peekable();
+    while let Some(first) = rows.peek().map(|(row, _)| *row) {
+        let four: [(&[f32], f32); 4] =
+            core::array::from_fn(|_| rows.next().unwrap_or((first, 0.0)));
+        f32::add_rows(sums, four);
+    }
+}
+
+/// The fine motion of a plan and of its neighbours, of which the first and the last may be missing.
+pub(crate) fn neighbours<R>(plans: &[StepPlan<R>], index: usize) -> Neighbours {
+    let draw = |index: Option<usize>| {
+        let plan = index.and_then(|index| plans.get(index));
+        plan.map_or_else(FineDraw::default, |plan| plan.fine)
+    };
+    [
+        draw(index.checked_sub(1)),
+        draw(Some(index)),
+        draw(Some(index + 1)),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCALE: Scale = [1.0; FEATURE_COUNT];
+
+    /// Two directions, a kernel of two taps, and a wave that all steps share.
+    fn tables() -> FineTables {
+        let wave = |side: f32| -> Vec<f32> {
+            (0..KNOTS * FEATURE_COUNT)
+                .map(|index| {
+                    let point = side * FINE_POINTS as f32 + (index / FEATURE_COUNT) as f32 - 1.0;
+                    (core::f32::consts::PI * point / FINE_POINTS as f32).sin()
+                })
+                .collect()
+        };
+        let mut kernel = vec![0.0; 2 * FINE_REACH + 1];
+        kernel[FINE_REACH - 1] = 0.6;
+        kernel[FINE_REACH] = 0.8;
+        let direction = |first: usize, value: f32| {
+            let mut row = vec![0.0; FEATURE_COUNT];
+            row[first] = value;
+            row[first + 1] = -value;
+            row
+        };
+        FineTables {
+            tables: [0.0, 1.0].map(|side| vec![wave(side)]),
+            kernel,
+            directions: vec![direction(0, 0.5), direction(10, 0.25)],
+        }
+    }
+
+    fn draw(number: u64) -> FineDraw {
+        FineDraw {
+            strength: 1.0,
+            number,
+            ..FineDraw::default()
+        }
+    }
+
+    fn at(bench: &FineBench, s: f32) -> [f32; FEATURE_COUNT] {
+        let mut features = [0.0; FEATURE_COUNT];
+        bench.add(s, [&SCALE; 2], &mut features);
+        features
+    }
+
+    #[test]
+    fn a_step_begins_where_and_as_fast_as_the_one_before_ends() {
+        let (tables, mut bench) = (tables(), FineBench::new());
+        let steps = [3, 8, 2, 11].map(draw);
+        bench.prepare(&tables, Side::Left, &[steps[0], steps[1], steps[2]]);
+        let (last, end) = (at(&bench, 0.999), at(&bench, 1.0));
+        bench.prepare(&tables, Side::Right, &[steps[1], steps[2], steps[3]]);
+        let (start, second) = (at(&bench, 0.0), at(&bench, 0.001));
+        for feature in 0..FEATURE_COUNT {
+            assert!((start[feature] - end[feature]).abs() < 1e-6);
+            let speeds = [
+                end[feature] - last[feature],
+                second[feature] - start[feature],
+            ];
+            assert!((speeds[1] - speeds[0]).abs() < 2e-3, "{speeds:?}");
+        }
+        // With another neighbour there is a jump, so the join is no accident.
+        bench.prepare(&tables, Side::Right, &[steps[0], steps[2], steps[3]]);
+        assert!((at(&bench, 0.0)[0] - end[0]).abs() > 1e-3);
+    }
+
+    #[test]
+    fn noise_has_the_covariance_and_the_correlation_it_was_given() {
+        let (tables, mut bench) = (tables(), FineBench::new());
+        let mut noise: Vec<[f32; FEATURE_COUNT]> = Vec::new();
+        for step in 1..4000_u64 {
+            let side = if step % 2 == 0 {
+                Side::Left
+            } else {
+                Side::Right
+            };
+            bench.prepare(&tables, side, &[draw(step - 1), draw(step), draw(step + 1)]);
+            for point in 0..FINE_POINTS {
+                let mut features = at(&bench, point as f32 / FINE_POINTS as f32);
+                let shared = tables.tables[side.index()][0][(point + 1) * FEATURE_COUNT];
+                for value in &mut features {
+                    *value -= shared;
+                }
+                noise.push(features);
+            }
+        }
+        let mean = |of: &dyn Fn(usize) -> f32| {
+            let pairs = (0..noise.len() - 1).map(of);
+            pairs.sum::<f32>() / (noise.len() - 1) as f32
+        };
+        let variance = mean(&|n| noise[n][0] * noise[n][0]);
+        assert!((variance - 0.25).abs() < 0.01, "{variance}");
+        let across = mean(&|n| noise[n][0] * noise[n][1]);
+        assert!((across + 0.25).abs() < 0.01, "{across}");
+        let apart = mean(&|n| noise[n][0] * noise[n][10]);
+        assert!(apart.abs() < 0.005, "{apart}");
+        let along = mean(&|n| noise[n][0] * noise[n + 1][0]);
+        assert!((along - 0.48 * 0.25).abs() < 0.01, "{along}");
+        assert!(noise.iter().all(|row| row[30].abs() < 1e-6));
+    }
+
+    #[test]
+    fn a_step_without_chance_has_what_all_share() {
+        let (tables, mut bench) = (tables(), FineBench::new());
+        bench.prepare(&tables, Side::Left, &[FineDraw::default(); 3]);
+        let middle = at(&bench, 0.5);
+        assert!(middle.iter().all(|value| (value - 1.0).abs() < 1e-3));
+    }
+}

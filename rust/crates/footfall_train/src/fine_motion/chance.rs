@@ -1,0 +1,314 @@
+//! Noise with the covariance and the spectrum of what steps do not have in common.
+
+use super::MissingStep;
+use footfall_core::Joint;
+use footfall_model::layout::feature_offset;
+use footfall_model::{FEATURE_COUNT, FINE_REACH, FineChance, MAX_FINE_DIRECTIONS};
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Directions that are kept.
+const DIRECTIONS: usize = 12;
+
+/// Joints that chance leaves alone. Hips are where the standing leg carries them, so that an error of an angle would become a surge of
+/// the body, and in legs nearly all detail repeats.
+const LEGS: [[Joint; 4]; 2] = [
+    [
+        Joint::LeftUpperLeg,
+        Joint::LeftLowerLeg,
+        Joint::LeftFoot,
+        Joint::LeftToes,
+    ],
+    [
+        Joint::RightUpperLeg,
+        Joint::RightLowerLeg,
+        Joint::RightFoot,
+        Joint::RightToes,
+    ],
+];
+
+/// Lags of the correlation that the spectrum is taken from, points.
+const LAGS: usize = 2 * FINE_REACH;
+
+/// Frequencies at which the spectrum is taken.
+const FREQUENCIES: usize = 128;
+
+/// Features that hardly move count as moving by this much, radians.
+const LEAST_DEVIATION: f64 = 1e-4;
+
+/// Deviation of a feature that the axes hold at least, as a share of its own: less is not blown up.
+const LEAST_KEPT: f64 = 0.1;
+
+/// Steps that a walker's strength must outweigh.
+const PRIOR_STEPS: f64 = 6.0;
+
+/// Rows of consecutive points of one walk, of one walker.
+struct Run {
+    walker: usize,
+    rows: Vec<f64>,
+}
+
+/// Fits the noise to what is left of steps without the mean of their walker.
+pub(super) fn estimate(
+    steps: &[MissingStep],
+    walkers: usize,
+    walker_weights: &[Vec<f64>],
+    components: usize,
+) -> FineChance {
+    let mut runs: Vec<Run> = Vec::new();
+    let mut freed = 0.0;
+    let mut counts = vec![0.0; walkers];
+    for step in steps {
+        if !step.follows || runs.is_empty() {
+            runs.push(Run {
+                walker: step.walker,
+                rows: Vec::new(),
+            });
+        }
+        if let Some(run) = runs.last_mut() {
+            run.rows.extend_from_slice(&step.rows);
+        }
+        counts[step.walker] += 1.0;
+    }
+    // The two means of each walker took their share of what chance did.
+    for count in &counts {
+        freed += if *count > 2.0 { 2.0 } else { *count };
+    }
+    let correction = (steps.len() as f64 / (steps.len() as f64 - freed).max(1.0)).sqrt();
+    for row in runs
+        .iter_mut()
+        .flat_map(|run| run.rows.chunks_exact_mut(FEATURE_COUNT))
+    {
+        for joint in LEGS.into_iter().flatten() {
+            row[feature_offset(joint)..][..3].fill(0.0);
+        }
+    }
+    let deviations: Vec<f64> = deviations(&runs);
+    for run in &mut runs {
+        for row in run.rows.chunks_exact_mut(FEATURE_COUNT) {
+            for (value, deviation) in row.iter_mut().zip(&deviations) {
+                *value /= deviation;
+            }
+        }
+    }
+    let axes = principal_axes(&runs);
+    let kernel = kernel(&correlation(&runs, &axes));
+    // The axes that are kept stand for all: every feature gets its whole deviation.
+    let kept: Vec<f64> = (0..FEATURE_COUNT)
+        .map(|feature| axes.iter().map(|axis| axis[feature].powi(2)).sum::<f64>())
+        .collect();
+    let directions = axes
+        .iter()
+        .map(|axis| {
+            let features = axis.iter().zip(&deviations).zip(&kept);
+            let offsets = features.map(|((value, deviation), kept)| {
+                correction * value * deviation / kept.sqrt().max(LEAST_KEPT)
+            });
+            let mut direction: Vec<f64> = offsets.collect();
+            hold_legs(&mut direction);
+            direction
+        })
+        .collect();
+    FineChance {
+        kernel,
+        directions,
+        walker_strength: walker_strength(&runs, &counts, walker_weights, components),
+    }
+}
+
+/// Turns the thighs against the hips, so that they point where they did.
+fn hold_legs(direction: &mut [f64]) {
+    let hips = feature_offset(Joint::Hips);
+    for [thigh, ..] in LEGS {
+        for axis in 0..3 {
+            direction[feature_offset(thigh) + axis] = -direction[hips + axis];
+        }
+    }
+}
+
+fn deviations(runs: &[Run]) -> Vec<f64> {
+    let mut sums = vec![0.0; FEATURE_COUNT];
+    let mut count = 0.0;
+    for row in runs
+        .iter()
+        .flat_map(|run| run.rows.chunks_exact(FEATURE_COUNT))
+    {
+        count += 1.0;
+        for (sum, value) in sums.iter_mut().zip(row) {
+            *sum += value * value;
+        }
+    }
+    sums.into_iter()
+        .map(|sum| f64::max((sum / f64::max(count, 1.0)).sqrt(), LEAST_DEVIATION))
+        .collect()
+}
+
+/// The strongest axes of rows whose features all vary by 1, each as long as the deviation along it.
+fn principal_axes(runs: &[Run]) -> Vec<Vec<f64>> {
+    let mut covariance = DMatrix::<f64>::zeros(FEATURE_COUNT, FEATURE_COUNT);
+    let mut count = 0.0;
+    for row in runs
+        .iter()
+        .flat_map(|run| run.rows.chunks_exact(FEATURE_COUNT))
+    {
+        count += 1.0;
+        for a in 0..FEATURE_COUNT {
+            for b in 0..FEATURE_COUNT {
+                covariance[(a, b)] += row[a] * row[b];
+            }
+        }
+    }
+    covariance /= f64::max(count, 1.0);
+    let eigen = SymmetricEigen::new(covariance);
+    let mut order: Vec<usize> = (0..FEATURE_COUNT).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    order
+        .into_iter()
+        .take(DIRECTIONS.min(MAX_FINE_DIRECTIONS))
+        .filter(|index| eigen.eigenvalues[*index] > 1e-6)
+        .map(|index| {
+            let deviation = eigen.eigenvalues[index].sqrt();
+            let axis = eigen.eigenvectors.column(index);
+            axis.iter().map(|value| deviation * value).collect()
+        })
+        .collect()
+}
+
+/// Correlation along the axes between points that are 0, 1, 2 … apart.
+fn correlation(runs: &[Run], axes: &[Vec<f64>]) -> Vec<f64> {
+    let mut sums = vec![0.0; LAGS + 1];
+    for run in runs {
+        for axis in axes {
+            let along: Vec<f64> = run
+                .rows
+                .chunks_exact(FEATURE_COUNT)
+                .map(|row| row.iter().zip(axis).map(|(a, b)| a * b).sum())
+                .collect();
+            for (lag, sum) in sums.iter_mut().enumerate() {
+                let pairs = along.iter().zip(along.iter().skip(lag));
+                *sum += pairs.map(|(a, b)| a * b).sum::<f64>();
+            }
+        }
+    }
+    let whole = sums[0].max(f64::MIN_POSITIVE);
+    sums.into_iter().map(|sum| sum / whole).collect()
+}
+
+/// Weights that give independent numbers this correlation: the root of its spectrum, as far as it reaches.
+pub(super) fn kernel(correlation: &[f64]) -> Vec<f64> {
+    let lags = correlation.len() as f64;
+    let amplitudes: Vec<f64> = (0..FREQUENCIES)
+        .map(|n| {
+            let angle = frequency(n);
+            let terms = correlation.iter().enumerate().skip(1).map(|(lag, value)| {
+                // Distant lags fade out, as the window that makes the spectrum smooth.
+                let fade = 0.5 + 0.5 * (core::f64::consts::PI * lag as f64 / lags).cos();
+                2.0 * fade * value * (angle * lag as f64).cos()
+            });
+            (correlation[0] + terms.sum::<f64>()).max(0.0).sqrt()
+        })
+        .collect();
+    let mut weights: Vec<f64> = (0..=2 * FINE_REACH)
+        .map(|tap| {
+            let lag = tap as f64 - FINE_REACH as f64;
+            let waves = amplitudes.iter().enumerate();
+            waves
+                .map(|(n, amplitude)| amplitude * (frequency(n) * lag).cos())
+                .sum()
+        })
+        .collect();
+    let length = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
+    for weight in &mut weights {
+        *weight /= length.max(f64::MIN_POSITIVE);
+    }
+    weights
+}
+
+fn frequency(index: usize) -> f64 {
+    core::f64::consts::PI * (index as f64 + 0.5) / FREQUENCIES as f64
+}
+
+/// How the logarithm of a walker's noise goes with its weights.
+fn walker_strength(
+    runs: &[Run],
+    counts: &[f64],
+    walker_weights: &[Vec<f64>],
+    components: usize,
+) -> Vec<f64> {
+    let mut energies = vec![(0.0, 0.0); counts.len()];
+    for run in runs {
+        let energy = &mut energies[run.walker];
+        energy.0 += run.rows.iter().map(|value| value * value).sum::<f64>();
+        energy.1 += run.rows.len() as f64;
+    }
+    let logs: Vec<(usize, f64)> = energies
+        .iter()
+        .enumerate()
+        .filter(|(_, (energy, points))| *energy > 0.0 && *points > 0.0)
+        .map(|(walker, (energy, points))| {
+            let share = counts[walker] / (counts[walker] + PRIOR_STEPS);
+            (walker, share * 0.5 * (energy / points).ln())
+        })
+        .collect();
+    let mean = logs.iter().map(|(_, log)| log).sum::<f64>() / logs.len().max(1) as f64;
+    let slope = |component: usize| {
+        let (mut together, mut power) = (0.0, 1e-9);
+        for (walker, log) in &logs {
+            let weight = walker_weights[*walker][component];
+            together += weight * (log - mean);
+            power += weight * weight;
+        }
+        together / power
+    };
+    (0..components).map(slope).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers of a second-order process that swings with a period of five points.
+    fn captured(lag: usize) -> f64 {
+        0.8_f64.powf(lag as f64) * (core::f64::consts::TAU * lag as f64 / 5.0).cos()
+    }
+
+    #[test]
+    fn the_kernel_has_the_correlation_that_it_was_made_of() {
+        let correlation: Vec<f64> = (0..=LAGS).map(captured).collect();
+        let weights = kernel(&correlation);
+        for lag in 0..4 {
+            let pairs = weights.iter().zip(&weights[lag..]);
+            let found: f64 = pairs.map(|(a, b)| a * b).sum();
+            let apart = (found - captured(lag)).abs();
+            assert!(apart < 0.12, "{found} at lag {lag} of {}", captured(lag));
+        }
+    }
+
+    #[test]
+    fn thighs_point_where_they_did_and_legs_take_no_chance() {
+        let rows: Vec<f64> = (0..600)
+            .map(|index| f64::from((index * 7919 + 13) % 101) / 101.0 - 0.5)
+            .cycle()
+            .take(60 * FEATURE_COUNT)
+            .collect();
+        let steps: Vec<MissingStep> = rows
+            .chunks_exact(12 * FEATURE_COUNT)
+            .map(|rows| MissingStep {
+                walker: 0,
+                side: 0,
+                follows: true,
+                rows: rows.to_vec(),
+            })
+            .collect();
+        let chance = estimate(&steps, 1, &[vec![1.0]], 1);
+        assert!(!chance.directions.is_empty());
+        for direction in &chance.directions {
+            let hips = &direction[feature_offset(Joint::Hips)..][..3];
+            let thigh = &direction[feature_offset(Joint::LeftUpperLeg)..][..3];
+            let knee = &direction[feature_offset(Joint::LeftLowerLeg)..][..3];
+            for axis in 0..3 {
+                assert!((hips[axis] + thigh[axis]).abs() < 1e-12);
+                assert!(knee[axis].abs() < 1e-2);
+            }
+        }
+    }
+}
