@@ -265,8 +265,7 @@ impl States {
         let mut log_emissions = Vec::new();
         for sequence in corpus {
             for step in &sequence.steps {
-                let frames = step.first * OBSERVATION_COUNT..step.end * OBSERVATION_COUNT;
-                let observations = &sequence.observations[frames];
+                let observations = sequence.rows_of(step);
                 log_densities(&self.gaussians, observations, &mut log_emissions)?;
                 let chain = chain(core::slice::from_ref(step));
                 let posterior = hsmm_forward_backward(

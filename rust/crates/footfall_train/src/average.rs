@@ -133,18 +133,9 @@ impl AverageWalk {
     /// # Errors
     /// [`TrainError::Inference`] when the sequence cannot be explained.
     pub fn align(&self, sequence: &Sequence) -> Result<Vec<usize>, TrainError> {
-        let mut log_emissions = Vec::new();
-        log_densities(&self.gaussians, &sequence.observations, &mut log_emissions)?;
         let durations = self.discretised()?;
-        let chain = chain(&sequence.steps);
-        let path = hsmm_viterbi(
-            &log_emissions,
-            STATES,
-            &chain,
-            &durations,
-            Boundary::default(),
-        )?;
-        Ok(path.boundaries)
+        let chain = |step: &LabelledStep| chain(core::slice::from_ref(step));
+        cut_steps(sequence, &self.gaussians, &durations, chain)
     }
 
     /// The longest duration of a state, frames.
@@ -188,17 +179,19 @@ impl AverageWalk {
         durations: &[DurationDist],
     ) -> Result<HsmmStats, TrainError> {
         let mut log_emissions = Vec::new();
-        log_densities(&self.gaussians, &sequence.observations, &mut log_emissions)?;
-        let chain = chain(&sequence.steps);
-        let posterior = hsmm_forward_backward(
-            &log_emissions,
-            STATES,
-            &chain,
-            durations,
-            Boundary::default(),
-        )?;
         let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
-        stats.add(&chain, &posterior, &seen.observations)?;
+        for step in &sequence.steps {
+            log_densities(&self.gaussians, sequence.rows_of(step), &mut log_emissions)?;
+            let chain = chain(core::slice::from_ref(step));
+            let posterior = hsmm_forward_backward(
+                &log_emissions,
+                STATES,
+                &chain,
+                durations,
+                Boundary::default(),
+            )?;
+            stats.add(&chain, &posterior, seen.rows_of(step))?;
+        }
         Ok(stats)
     }
 
@@ -244,6 +237,33 @@ pub(crate) fn chain(steps: &[LabelledStep]) -> Vec<ChainState> {
             duration: index,
         })
         .collect()
+}
+
+/// The most probable boundaries between the states of a sequence's steps, plus the end.
+///
+/// Step by step, not the whole walk: free boundaries between steps settle a few frames off the initial contacts, where the likelihood is
+/// best, and the generator puts a foot down where its step begins.
+pub(crate) fn cut_steps(
+    sequence: &Sequence,
+    gaussians: &[DiagonalGaussian],
+    durations: &[DurationDist],
+    chain: impl Fn(&LabelledStep) -> Vec<ChainState>,
+) -> Result<Vec<usize>, TrainError> {
+    let mut log_emissions = Vec::new();
+    let mut boundaries = vec![0];
+    for step in &sequence.steps {
+        log_densities(gaussians, sequence.rows_of(step), &mut log_emissions)?;
+        let path = hsmm_viterbi(
+            &log_emissions,
+            gaussians.len(),
+            &chain(step),
+            durations,
+            Boundary::default(),
+        )?;
+        boundaries.pop();
+        boundaries.extend(path.boundaries.iter().map(|frame| step.first + frame));
+    }
+    Ok(boundaries)
 }
 
 /// Statistics of the corpus with every step cut into states of equal length.

@@ -37,6 +37,11 @@ impl Sequence {
         self.observations.len() / OBSERVATION_COUNT
     }
 
+    /// Observations of one of its steps.
+    pub(crate) fn rows_of(&self, step: &LabelledStep) -> &[f64] {
+        &self.observations[step.first * OBSERVATION_COUNT..step.end * OBSERVATION_COUNT]
+    }
+
     /// Mean speed, m/s.
     pub fn speed_mps(&self) -> f64 {
         let travel: f64 = self

@@ -3,14 +3,14 @@
 use super::moments::Moments;
 use super::trees::{Trees, pool};
 use super::{CONTEXTS, context};
-use crate::average::{AverageWalk, DURATION_VARIANCE_FLOOR, STATES, state_index};
+use crate::average::{AverageWalk, DURATION_VARIANCE_FLOOR, STATES, cut_steps, state_index};
 use crate::error::TrainError;
 use crate::sequence::{LabelledStep, Sequence};
 use footfall_core::{Side, StepPosition};
 use footfall_model::STATES_PER_STEP;
 use footfall_prob::duration::{DurationDist, DurationStats, GaussianDuration};
-use footfall_prob::gaussian::{DiagonalGaussian, log_densities};
-use footfall_prob::hsmm::{Boundary, ChainState, hsmm_viterbi};
+use footfall_prob::gaussian::DiagonalGaussian;
+use footfall_prob::hsmm::ChainState;
 
 /// The parameters that a chain of steps is cut by, and which of them each context uses.
 pub(super) struct Tied {
@@ -92,17 +92,7 @@ impl Tied {
         sequence: &Sequence,
         durations: &[DurationDist],
     ) -> Result<Vec<usize>, TrainError> {
-        let mut log_emissions = Vec::new();
-        log_densities(&self.gaussians, &sequence.observations, &mut log_emissions)?;
-        let of_step = |step: &LabelledStep| self.states[context(step.position, step.side)];
-        let chain: Vec<ChainState> = sequence.steps.iter().flat_map(of_step).collect();
-        let path = hsmm_viterbi(
-            &log_emissions,
-            self.gaussians.len(),
-            &chain,
-            durations,
-            Boundary::default(),
-        )?;
-        Ok(path.boundaries)
+        let chain = |step: &LabelledStep| self.states[context(step.position, step.side)].to_vec();
+        cut_steps(sequence, &self.gaussians, durations, chain)
     }
 }
