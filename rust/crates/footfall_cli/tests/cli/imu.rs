@@ -207,8 +207,8 @@ landing = -25
 lift = 10
 "#;
 
-#[test]
-fn a_player_who_steps_on_the_spot_walks() {
+/// A live body from the thigh of a walker of this seed who steps on the spot: seconds of walking, of anything, and metres of its way.
+fn on_the_spot(seed: &str) -> (f64, f64, f32) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let shipped = |name: &str| {
@@ -224,7 +224,7 @@ fn a_player_who_steps_on_the_spot_walks() {
         assert_eq!(run.code, 0, "{arguments:?}: {}", run.stderr);
     };
     run(&[
-        "synth", "--model", &walk, "--steps", "24", "--seed", "3", "--fps", "60", "-o", "walk.bvh",
+        "synth", "--model", &walk, "--steps", "24", "--seed", seed, "--fps", "60", "-o", "walk.bvh",
     ]);
     run(&[
         "design",
@@ -268,13 +268,30 @@ fn a_player_who_steps_on_the_spot_walks() {
             .map(|span| span[1].as_f64().expect("seconds"))
             .sum()
     };
-    assert!(secs("walk") > 0.85 * secs(""), "{report}");
-    // The player's own way is a third of a metre a second.
     let clip = canonical(&folder.join("body.bvh"));
     let way = clip.poses[clip.poses.len() - 1]
         .root_position
         .distance(clip.poses[0].root_position);
-    assert!(way > 0.5 * secs("") as f32, "{way} m in {} s", secs(""));
+    (secs("walk"), secs(""), way)
+}
+
+/// Players differ: stamping is taken for jumps now and then, but for none of them most of the time.
+#[test]
+fn players_who_step_on_the_spot_walk() {
+    let players = ["1", "2", "3", "4"].map(on_the_spot);
+    let shares = players.map(|(walking, all, _)| walking / all);
+    assert!(shares.iter().all(|share| *share > 0.6), "{shares:?}");
+    assert!(
+        shares.iter().sum::<f64>() > 0.72 * shares.len() as f64,
+        "{shares:?}"
+    );
+    // Their own way is a third of a metre a second.
+    let (secs, way) = players
+        .iter()
+        .fold((0.0, 0.0), |(all, whole), (_, secs, way)| {
+            (all + secs, whole + way)
+        });
+    assert!(way > 0.5 * secs as f32, "{way} m in {secs} s");
 }
 
 #[test]

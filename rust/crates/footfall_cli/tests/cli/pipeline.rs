@@ -63,7 +63,7 @@ fn a_corpus_becomes_a_model_that_walks() {
 
     let facts = footfall(folder.path(), &["inspect", "walk.footfall", "--json"]).json();
     assert_eq!(facts["kind"], "gait_model");
-    assert_eq!(facts["format_version"], 1);
+    assert_eq!(facts["format_version"], 3);
     assert_eq!(facts["provenance"]["subjects"], 2);
     let command = facts["provenance"]["command"].as_str().unwrap();
     assert!(

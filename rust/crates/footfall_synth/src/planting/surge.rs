@@ -1,7 +1,7 @@
 //! Even travel: people's hips speed up and slow down once a step, whatever the angles of the standing leg say.
 //!
 //! The way above the standing foot follows from angles that were generated one by one, and every error of an angle becomes a surge of
-//! the whole body. So a step's way along its direction keeps the harmonics of the step's frequency that people have, and the legs are
+//! the whole body. So a step's way along its direction keeps as much of the step's frequency as people have, and the legs are
 //! solved to the feet from there.
 
 use super::{PlantedFrame, Planter, StepTiming};
@@ -9,9 +9,9 @@ use core::f32::consts::TAU;
 use footfall_core::ease::smooth_step;
 use glam::{Vec2, Vec3};
 
-/// Shares of the first harmonics of a step's frequency in the hips' way that are kept. Higher ones are surge: chosen so that harmonics 3 to
-/// 8 of the stride's frequency are not stronger than in captured walks.
-const KEPT: [f32; 2] = [1.0, 0.7];
+/// How far the speed rises above the mean and falls below it with the first harmonics of a step's frequency at most, as shares of the mean:
+/// in captured walks 0.13 and 0.05 do. Higher harmonics are surge.
+const MOST: [f32; 2] = [0.15, 0.06];
 
 /// Time constant with which the speed of the step before passes into this one's, seconds.
 const PASSING_SECS: f32 = 0.15;
@@ -36,8 +36,8 @@ impl Planter {
         // How far the hips are ahead of who goes at an even speed.
         let ahead = |hips: Vec3, frame: usize| along.dot(hips - begin) - pace * frame as f32;
 
-        let mut waves = [Wave::default(); KEPT.len()];
-        for (index, (wave, kept)) in waves.iter_mut().zip(KEPT).enumerate() {
+        let mut waves = [Wave::default(); MOST.len()];
+        for (index, (wave, most)) in waves.iter_mut().zip(MOST).enumerate() {
             let turn = Vec2::from_angle(TAU * (index + 1) as f32 / frames);
             let mut angle = Vec2::X;
             let mut sum = Vec2::ZERO;
@@ -46,7 +46,7 @@ impl Planter {
                 angle = turn.rotate(angle);
             }
             wave.turn = turn;
-            wave.amplitude = sum * (2.0 * kept / frames);
+            wave.amplitude = (sum * (2.0 / frames)).clamp_length_max(most * pace / turn.to_angle());
         }
         let begins_at = waves
             .iter()
@@ -56,7 +56,7 @@ impl Planter {
         });
         let decay = -self.frame_secs / PASSING_SECS;
         let left = (frames * decay).exp();
-        let mut angles = [Vec2::X; KEPT.len()];
+        let mut angles = [Vec2::X; MOST.len()];
         for (frame, planted) in out[..=timing.frames].iter_mut().enumerate() {
             let time = frame as f32;
             let mut evened = news * time * ((time * decay).exp() - left);
