@@ -9,7 +9,14 @@ use anyhow::Result;
 /// When a result differs.
 pub(crate) fn command(update: bool) -> Result<()> {
     let mut cargo = process::cargo();
-    cargo.args(["test", "--locked", "--package", "footfall_tests", "golden"]);
+    cargo.args([
+        "test",
+        "--locked",
+        "--package",
+        "footfall_tests",
+        "--test",
+        "golden",
+    ]);
     if update {
         cargo.env("FOOTFALL_UPDATE_GOLDEN", "1");
     }
