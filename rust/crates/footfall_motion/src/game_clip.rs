@@ -1,7 +1,7 @@
 //! Clips as games have them: they walk in place, and they loop after two steps.
 //!
-//! Learning needs the way that the body travels and steps that begin and end within the clip. The way comes [from the standing
-//! foot](in_place), and loops are [unrolled](cycle). Repeated steps say nothing about how steps differ: [`Retargeted::report`] keeps how often
+//! Learning needs the way that the body travels and steps that begin and end within the clip. The way comes from the standing
+//! foot, and loops are unrolled. Repeated steps say nothing about how steps differ: [`Retargeted::report`] keeps how often
 //! the clip was repeated.
 
 mod cycle;
