@@ -160,7 +160,8 @@ func test_below_a_new_body_that_one_travels() -> void:
 	walker.reparent(body)
 	var start := body.global_position
 	walker.step(1.0 / RATE)
-	check_below(_apart(_pose(walker), pose), 0.2, "the step goes on")
+	check_below(_apart(_pose(walker), pose), 0.1, "the step goes on")
+	check_near(walker.gait.get_time(), 78.0 / RATE, 1e-3, "the time goes on")
 	walker.walk(60)
 	check(body.global_position.distance_to(start) > 0.5, "the body travels: %s" % body.global_position)
 	check_below(walker.position.length(), 1e-3, "and what it carries does not")

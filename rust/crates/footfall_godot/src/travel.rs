@@ -189,17 +189,28 @@ impl Traveller {
         if travel.turn != 0.0 {
             // Rebuilt from rotation and scale, so that rounding cannot add up over a long walk.
             let turned = (frame * delta.basis).orthonormalized();
-            let scale = before.basis.get_scale();
             after.basis = Basis::from_cols(
-                turned.col_a() * scale.x,
-                turned.col_b() * scale.y,
-                turned.col_c() * scale.z,
+                as_long(turned.col_a(), before.basis.col_a()),
+                as_long(turned.col_b(), before.basis.col_b()),
+                as_long(turned.col_c(), before.basis.col_c()),
             );
         }
         if after != before {
             self.character.set_global_transform(after);
         }
     }
+}
+
+/// A direction with another vector's length, in double precision: single rounds the same way every frame.
+fn as_long(direction: Vector3, other: Vector3) -> Vector3 {
+    let length = |vector: Vector3| {
+        let [x, y, z] = [vector.x, vector.y, vector.z].map(f64::from);
+        (x * x + y * y + z * z).sqrt()
+    };
+    let factor = length(other) / length(direction).max(f64::MIN_POSITIVE);
+    let [x, y, z] =
+        [direction.x, direction.y, direction.z].map(|part| (f64::from(part) * factor) as f32);
+    Vector3::new(x, y, z)
 }
 
 fn affine(transform: &GroundTransform) -> Affine3A {

@@ -15,10 +15,13 @@ impl GaitGenerator3D {
     /// The walk under way, or a new one where there is none, the model was replaced or the body changed.
     pub(super) fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
         let source = self.take_source()?;
-        if let Some(mut session) = self.session.take()
-            && session.is_for(&source, skeleton)
-        {
-            return Ok(session);
+        if let Some(mut session) = self.session.take() {
+            if session.is_for(&source, skeleton) {
+                return Ok(session);
+            }
+            // A character that is being reparented is seen on its way, too: its walk goes on from wherever that ends.
+            self.session = Some(session);
+            self.put_aside();
         }
         self.new_session(skeleton)
     }
