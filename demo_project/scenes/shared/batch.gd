@@ -59,8 +59,6 @@ func _save(path: String) -> void:
 
 
 func _run_frames(count: int) -> void:
-	# The scene is ready after the nodes in it.
-	await _frames(1)
 	await _until_ready()
 	_scene.begin_check()
 	await _frames(count)
@@ -74,6 +72,8 @@ func _run_frames(count: int) -> void:
 
 ## Time that runs by frames does not wait for what is made on other threads.
 func _until_ready() -> void:
+	# The scene is ready after the nodes in it.
+	await _frames(1)
 	while _scene.has_method(&"is_getting_ready") and _scene.is_getting_ready():
 		await _frames(1)
 
