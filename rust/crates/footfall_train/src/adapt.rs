@@ -9,7 +9,7 @@ mod spread;
 mod transforms;
 
 use crate::EmConfig;
-use crate::average::{DURATION_VARIANCE_FLOOR, STATES, chain};
+use crate::average::{DURATION_VARIANCE_FLOOR, STATES, expect_steps};
 use crate::error::TrainError;
 use crate::progress::Progress;
 use crate::sequence::Sequence;
@@ -21,8 +21,8 @@ use footfall_model::{
 };
 use footfall_motion::steps::Walk;
 use footfall_prob::duration::{DurationDist, GaussianDuration};
-use footfall_prob::gaussian::{DiagonalGaussian, log_densities};
-use footfall_prob::hsmm::{Boundary, HsmmStats, hsmm_forward_backward};
+use footfall_prob::gaussian::DiagonalGaussian;
+use footfall_prob::hsmm::HsmmStats;
 use footfall_prob::regression::map_estimate;
 use transforms::Adapting;
 
@@ -257,26 +257,11 @@ impl States {
         }
     }
 
-    /// Aligns step by step, not whole walks: free boundaries settle a few frames off the initial contacts in slow styles, and
-    /// the generator puts a foot down where its step begins.
     fn expect(&self, corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
         let durations = self.discretised()?;
         let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
-        let mut log_emissions = Vec::new();
         for sequence in corpus {
-            for step in &sequence.steps {
-                let observations = sequence.rows_of(step);
-                log_densities(&self.gaussians, observations, &mut log_emissions)?;
-                let chain = chain(core::slice::from_ref(step));
-                let posterior = hsmm_forward_backward(
-                    &log_emissions,
-                    STATES,
-                    &chain,
-                    &durations,
-                    Boundary::default(),
-                )?;
-                stats.add(&chain, &posterior, observations)?;
-            }
+            expect_steps(sequence, sequence, &self.gaussians, &durations, &mut stats)?;
         }
         Ok(stats)
     }

@@ -178,20 +178,8 @@ impl AverageWalk {
         seen: &Sequence,
         durations: &[DurationDist],
     ) -> Result<HsmmStats, TrainError> {
-        let mut log_emissions = Vec::new();
         let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
-        for step in &sequence.steps {
-            log_densities(&self.gaussians, sequence.rows_of(step), &mut log_emissions)?;
-            let chain = chain(core::slice::from_ref(step));
-            let posterior = hsmm_forward_backward(
-                &log_emissions,
-                STATES,
-                &chain,
-                durations,
-                Boundary::default(),
-            )?;
-            stats.add(&chain, &posterior, seen.rows_of(step))?;
-        }
+        expect_steps(sequence, seen, &self.gaussians, durations, &mut stats)?;
         Ok(stats)
     }
 
@@ -264,6 +252,30 @@ pub(crate) fn cut_steps(
         boundaries.extend(path.boundaries.iter().map(|frame| step.first + frame));
     }
     Ok(boundaries)
+}
+
+/// Adds what `seen`, frame by frame the same walk, shows in the states of a sequence, cut step by step as by [`cut_steps`].
+pub(crate) fn expect_steps(
+    sequence: &Sequence,
+    seen: &Sequence,
+    gaussians: &[DiagonalGaussian],
+    durations: &[DurationDist],
+    stats: &mut HsmmStats,
+) -> Result<(), TrainError> {
+    let mut log_emissions = Vec::new();
+    for step in &sequence.steps {
+        log_densities(gaussians, sequence.rows_of(step), &mut log_emissions)?;
+        let chain = chain(core::slice::from_ref(step));
+        let posterior = hsmm_forward_backward(
+            &log_emissions,
+            gaussians.len(),
+            &chain,
+            durations,
+            Boundary::default(),
+        )?;
+        stats.add(&chain, &posterior, seen.rows_of(step))?;
+    }
+    Ok(())
 }
 
 /// Statistics of the corpus with every step cut into states of equal length.
