@@ -45,7 +45,7 @@ impl EvaluateKind {
             Self::Style => "Styles: recognition, naturalness",
             Self::Imu => "Bodies from a sensor",
             Self::Dynamics => "Switching systems against one",
-            Self::Contacts => "Contacts from joint angles",
+            Self::Contacts => "Contacts, person by person",
             Self::Training => "Walker-adaptive training",
         }
     }
@@ -62,7 +62,7 @@ impl EvaluateKind {
                 "Prediction errors of two switching linear systems and of a single one."
             }
             Self::Contacts => {
-                "Initial contacts by hip and knee angles alone, against those of the feet's heights and speeds."
+                "Contacts by the feet's heights and speeds against a published detector (Zeni et al. 2008), and initial contacts by hip and knee angles alone against those."
             }
             Self::Training => {
                 "How much the average model's variance falls, and how well it explains a walker it has not seen."

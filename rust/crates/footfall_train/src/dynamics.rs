@@ -16,7 +16,7 @@ use crate::train::{TrainingClip, mean_terminal};
 use footfall_core::Side;
 use footfall_model::{DynamicsModel, FEATURE_COUNT, OBSERVATION_COUNT, Provenance, Regime};
 use footfall_motion::steps::Walk;
-use footfall_motion::switches::{detect_switches, walks};
+use footfall_motion::switches::{Landing, detect_switches_by, walks};
 use footfall_prob::subspace::{
     AffineSystem, IdentifyConfig, Refinement, identify, initial_states, refine,
 };
@@ -262,7 +262,9 @@ impl Recordings {
 /// The steps of a clip as its switches cut them; when the other foot leaves the ground is taken from the kinematic steps.
 fn switch_walks(clip: &TrainingClip) -> Result<Vec<Walk>, TrainError> {
     let rate = clip.clip.frame_rate_hz;
-    let mut walks = walks(&detect_switches(&clip.clip, clip.skip_frames)?, rate);
+    // A model is cut where the dynamics change, within a frame of the landing.
+    let switches = detect_switches_by(&clip.clip, clip.skip_frames, Landing::LegsAndResidual)?;
+    let mut walks = walks(&switches, rate);
     for step in walks.iter_mut().flat_map(|walk| &mut walk.steps) {
         let mut kinematic = clip.walks.iter().flat_map(|walk| &walk.steps);
         let same = kinematic.find(|known| {

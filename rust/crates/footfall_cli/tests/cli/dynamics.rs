@@ -133,12 +133,31 @@ fn switching_predicts_better_than_a_single_system_on_our_own_walks() {
         plot.starts_with("<svg") && plot.contains("polyline"),
         "{plot}"
     );
-    let arguments = ["evaluate", "contacts", "--corpus", "index.csv", "--json"];
+    let arguments = [
+        "evaluate",
+        "contacts",
+        "--corpus",
+        "index.csv",
+        "--leave-one-out",
+        "--ablate",
+        "--json",
+    ];
     let report = footfall(folder.path(), &arguments).json();
     assert!(
         report["categories"]["walk"]["f1"].as_f64().unwrap() > 0.8,
         "{report}"
     );
+    let people = report["people"].as_object().unwrap();
+    assert!(!people.is_empty(), "{report}");
+    for person in people.values() {
+        for kind in ["initial_contact", "terminal_contact"] {
+            assert!(person[kind]["known"].as_u64().unwrap() > 4, "{report}");
+            assert!(person[kind]["f1"].as_f64().unwrap() > 0.9, "{report}");
+        }
+        assert!(person["limits"]["toe_speed_off"].is_number(), "{report}");
+    }
+    let f1 = |landing: &str| report["ablation"][landing]["all"]["f1"].as_f64().unwrap();
+    assert!(f1("half cycles, legs") > f1("half cycles"), "{report}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::signals::PointSignal;
 use footfall_core::FrameSpan;
 
-/// Limits of one point.
+/// Limits of one point: heights in metres, speeds as shares of the swing's.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gate {
     pub(super) height_on: f32,
@@ -12,18 +12,19 @@ pub(super) struct Gate {
     pub(super) speed_off: f32,
 }
 
-/// On from a frame below both lower limits, off from one above either upper limit.
-pub(super) fn gate(signal: &PointSignal, limits: &Gate) -> Vec<bool> {
+/// On from a frame below both lower limits, off from one above either upper limit; `swing_speed` is that around each frame.
+pub(super) fn gate(signal: &PointSignal, swing_speed: &[f32], limits: &Gate) -> Vec<bool> {
     let mut is_on = false;
     signal
         .height
         .iter()
         .zip(signal.speed.iter().zip(&signal.settling))
-        .map(|(&height, (&speed, &settling))| {
+        .zip(swing_speed)
+        .map(|((&height, (&speed, &settling)), swing)| {
             is_on = if is_on {
-                height < limits.height_off && speed < limits.speed_off
+                height < limits.height_off && speed < limits.speed_off * swing
             } else {
-                height < limits.height_on && settling < limits.speed_on
+                height < limits.height_on && settling < limits.speed_on * swing
             };
             is_on
         })

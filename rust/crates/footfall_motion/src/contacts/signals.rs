@@ -1,11 +1,29 @@
 //! Height and speed of the points on which a foot can stand.
 
+use super::levels::Levels;
 use crate::figure::sole_points;
 use footfall_core::{Clip, ModelPose, Side, forward_kinematics};
 use glam::Vec3;
 
-/// A foot that swings at less than this, metres a second, does not swing.
-pub(super) const LEAST_SWING_SPEED: f32 = 1.5;
+/// Leg of the canonical body, metres. Heights and speeds of other bodies are as much greater or less as their legs are longer or shorter.
+const CANONICAL_LEG_M: f32 = 0.84;
+
+/// A foot that swings at less than this, metres a second on the canonical body, does not swing.
+const LEAST_SWING_SPEED: f32 = 1.5;
+
+/// A stance begins and ends within this time of the fastest moment of a swing, seconds.
+const SWING_REACH_SECS: f32 = 0.5;
+
+/// A swing keeps its speed for this long, seconds; what is shorter is a glitch of capture.
+const SWING_PEAK_SECS: f32 = 0.05;
+
+/// Speed of a swing, from its fastest moment: what a tenth of the frames of a steady walk exceed.
+const SWING_SHARE: f32 = 0.93;
+
+/// How large a clip's body is: 1 for the canonical one.
+pub(super) fn body_size(clip: &Clip) -> f32 {
+    (clip.skeleton.mean_leg_length() / CANONICAL_LEG_M).max(f32::MIN_POSITIVE)
+}
 
 /// One point over time.
 #[derive(Clone, Debug)]
@@ -22,10 +40,8 @@ pub(super) struct PointSignal {
 #[derive(Clone, Debug)]
 pub(super) struct FootSignals {
     pub(super) heel: PointSignal,
-    /// Ball or toe tip, whichever can bear: the lower height and the lesser speed of the two.
+    /// Ball or toe tip, whichever can bear: the lower height, and of forward and upward speed the lesser each.
     pub(super) toe: PointSignal,
-    /// What the heel's speed reaches in a swing of this clip.
-    pub(super) swing_speed: f32,
 }
 
 impl FootSignals {
@@ -42,43 +58,84 @@ impl FootSignals {
             }
         }
         let rate = clip.frame_rate_hz as f32;
-        let [heel, ball, tip] = points.map(|track| point_signal(&track, rate));
-        let mut sorted = heel.speed.clone();
-        sorted.sort_by(f32::total_cmp);
-        let swing_speed = sorted.get(sorted.len() * 9 / 10).copied().unwrap_or(0.0);
+        let size = body_size(clip);
+        let toe_speed = forefoot_speeds(&points[1], &points[2], rate);
+        let levels = Levels::of(&points, rate, size);
+        let [heel, ball, tip] =
+            [0, 1, 2].map(|n| point_signal(&points[n], &levels.points[n], rate));
         let lesser = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a.min(*b)).collect();
         Self {
             heel,
             toe: PointSignal {
                 height: lesser(&ball.height, &tip.height),
-                speed: lesser(&ball.speed, &tip.speed),
+                speed: toe_speed,
                 settling: lesser(&ball.settling, &tip.settling),
             },
-            swing_speed,
         }
     }
 }
 
-fn point_signal(track: &[Vec3], rate: f32) -> PointSignal {
-    let speed = speeds(track, rate);
-    let level = resting_level(track, &speed);
+/// How fast feet swing around each frame, metres a second: the fastest swing of either heel nearby.
+///
+/// Of the swings nearby, for a clip may hold standing, walking and running. Of either foot, for both swing alike, and at the ends
+/// of a clip one of them is not seen to.
+pub(super) fn swing_speeds(heels: [&PointSignal; 2], rate: f32, size: f32) -> Vec<f32> {
+    let frames = |secs: f32| (secs * rate).round() as usize;
+    let [left, right] = heels.map(|heel| sustained(&heel.speed, frames(0.5 * SWING_PEAK_SECS)));
+    let faster: Vec<f32> = left.iter().zip(&right).map(|(a, b)| a.max(*b)).collect();
+    extremes(&faster, frames(SWING_REACH_SECS), f32::max)
+        .into_iter()
+        .map(|fastest| (SWING_SHARE * fastest).max(LEAST_SWING_SPEED * size))
+        .collect()
+}
+
+/// What a signal keeps for longer than `reach` frames before and after some moment nearby.
+fn sustained(values: &[f32], reach: usize) -> Vec<f32> {
+    extremes(&extremes(values, reach, f32::min), reach, f32::max)
+}
+
+/// The greatest or the least of so many values before and after each, and itself.
+fn extremes(values: &[f32], reach: usize, better: fn(f32, f32) -> f32) -> Vec<f32> {
+    (0..values.len())
+        .map(|at| {
+            let window = at.saturating_sub(reach)..=(at + reach).min(values.len() - 1);
+            values[window].iter().copied().fold(values[at], better)
+        })
+        .collect()
+}
+
+/// How fast the front of a foot leaves its place: the lesser forward speed and the lesser upward speed of ball and toe tip.
+///
+/// While a foot rolls over its toes the ball rises and the tip stays down, and neither goes forward. In bodies whose toes do not bend as
+/// the person's did, the tip slides back meanwhile as fast as the ball rises: the speed of either is no sign that the foot has lifted.
+fn forefoot_speeds(ball: &[Vec3], tip: &[Vec3], rate: f32) -> Vec<f32> {
+    velocities(ball, rate)
+        .zip(velocities(tip, rate))
+        .map(|(ball, tip)| {
+            let along = |velocity: Vec3| velocity.with_y(0.0).length();
+            let upward = ball.y.abs().min(tip.y.abs());
+            along(ball).min(along(tip)).hypot(upward)
+        })
+        .collect()
+}
+
+fn point_signal(track: &[Vec3], levels: &[f32], rate: f32) -> PointSignal {
+    let above = |(point, level): (&Vec3, &f32)| point.y - level;
     PointSignal {
-        height: track.iter().map(|point| point.y - level).collect(),
-        speed,
+        height: track.iter().zip(levels).map(above).collect(),
+        speed: velocities(track, rate).map(Vec3::length).collect(),
         settling: settling_speeds(track, rate),
     }
 }
 
-/// Speed from some frames before to as many after each frame. At high rates over 33 ms, for one frame of noise is no speed.
-fn speeds(track: &[Vec3], rate: f32) -> Vec<f32> {
+/// Velocity from some frames before to as many after each frame. At high rates over 33 ms, for one frame of noise is no speed.
+pub(super) fn velocities(track: &[Vec3], rate: f32) -> impl Iterator<Item = Vec3> {
     let reach = reach(rate);
     let last = track.len().saturating_sub(1);
-    (0..track.len())
-        .map(|frame| {
-            let (from, to) = (frame.saturating_sub(reach), (frame + reach).min(last));
-            track[to].distance(track[from]) * rate / (to - from).max(1) as f32
-        })
-        .collect()
+    (0..track.len()).map(move |frame| {
+        let (from, to) = (frame.saturating_sub(reach), (frame + reach).min(last));
+        (track[to] - track[from]) * rate / (to - from).max(1) as f32
+    })
 }
 
 fn reach(rate: f32) -> usize {
@@ -102,23 +159,49 @@ fn settling_speeds(track: &[Vec3], rate: f32) -> Vec<f32> {
         .collect()
 }
 
-/// The height at which a point rests: the median over the frames in which it is slow and low.
-fn resting_level(track: &[Vec3], speed: &[f32]) -> f32 {
-    let mut order: Vec<usize> = (0..track.len()).collect();
-    order.sort_by(|&a, &b| speed[a].total_cmp(&speed[b]));
-    let limit = order
-        .get(order.len() / 8)
-        .map_or(0.3, |&frame| (1.5 * speed[frame]).clamp(0.25, 1.0));
-    let mut heights: Vec<f32> = order
-        .iter()
-        .take_while(|&&frame| speed[frame] <= limit)
-        .map(|&frame| track[frame].y)
-        .collect();
-    heights.sort_by(f32::total_cmp);
-    let Some(&low) = heights.get(heights.len() / 10) else {
-        return 0.0;
-    };
-    heights.retain(|height| *height <= low + 0.04);
-    // A point that never comes near the ground of the clip rests on the ground, not in the air.
-    heights[heights.len() / 2].clamp(-0.05, 0.05)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A track that moves by `step` a frame.
+    fn track(step: Vec3) -> Vec<Vec3> {
+        (0..20).map(|frame| step * frame as f32).collect()
+    }
+
+    #[test]
+    fn a_foot_that_rolls_over_sliding_toes_has_not_left_its_place() {
+        // At 60 frames a second: the ball rises at 1.2 m/s while the tip slides back as fast.
+        let rises = track(Vec3::new(0.0, 0.02, 0.0));
+        let slides = track(Vec3::new(0.0, 0.0, -0.02));
+        let rolls = forefoot_speeds(&rises, &slides, 60.0);
+        assert!(rolls.iter().all(|speed| *speed < 1e-3), "{rolls:?}");
+        // What goes forward, or rises as a whole, has.
+        let forward = track(Vec3::new(0.0, 0.01, 0.02));
+        for (ball, tip, speed) in [(&forward, &slides, 1.2), (&rises, &rises, 1.2)] {
+            let leaves = forefoot_speeds(ball, tip, 60.0);
+            assert!((leaves[10] - speed).abs() < 1e-3, "{leaves:?}");
+        }
+    }
+
+    #[test]
+    fn one_frame_of_noise_is_no_swing() {
+        let signal = |speed: Vec<f32>| PointSignal {
+            height: vec![0.0; speed.len()],
+            settling: speed.clone(),
+            speed,
+        };
+        let mut swings: Vec<f32> = (0..240)
+            .map(|frame| 3.0 * (0.05 * frame as f32).sin().abs())
+            .collect();
+        let clean = signal(swings.clone());
+        swings[100] = 40.0;
+        let noisy = signal(swings);
+        let still = signal(vec![0.0; 240]);
+        let of = |left: &PointSignal| swing_speeds([left, &still], 120.0, 1.0);
+        let (clean, noisy) = (of(&clean), of(&noisy));
+        for (clean, noisy) in clean.iter().zip(&noisy) {
+            assert!((clean - noisy).abs() < 0.15, "{clean} {noisy}");
+        }
+        assert!((2.5..3.0).contains(&clean[120]), "{}", clean[120]);
+    }
 }

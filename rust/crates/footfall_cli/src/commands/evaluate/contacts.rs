@@ -1,26 +1,31 @@
 //! `footfall evaluate contacts`: the contact detectors beside each other.
 
+mod people;
 mod sensors;
 
+use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_core::{EventKind, Side};
-use footfall_motion::corpus::{Corpus, CorpusClip, Where};
-use footfall_motion::switches::detect_switches;
+use footfall_motion::corpus::{CorpusClip, Where};
+use footfall_motion::switches::{Landing, detect_switches_by};
+use footfall_prob::switching::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Contacts found by the switching method against others
+/// Contacts of people's feet, found in three ways, against others
 ///
-/// On motion: takes the initial contacts that `footfall contacts` finds as the truth and matches the switches of hip and knee angles
-/// to them, foot by foot, within a tolerance. An event so near an end of the recording that its other half is not seen is left out.
+/// On motion, person by person (column `subject`): the contacts that `footfall contacts` finds against those of Zeni et al. 2008 within
+/// 50 ms, where the person walks straight ahead; and the switches of hip and knee angles against the initial contacts that `footfall
+/// contacts` finds, foot by foot, within a tolerance. An event so near an end of the recording that its other half is not seen is left out.
 ///
 /// On sensors: each row of the index is a recording of one sensor on a foot (`path`, an IMU .csv) with its known events
 /// (`events`, a .json like `footfall imu events` prints); initial and terminal contacts are matched apart.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall evaluate contacts --corpus index.csv --where category=neutral_walk\n  \
+    footfall evaluate contacts --corpus index.csv --where category=neutral_walk --leave-one-out --ablate\n  \
     footfall evaluate contacts --sensors sensors.csv")]
 #[group(id = "truth", required = true, multiple = true, args = ["corpus", "sensors"])]
 pub(crate) struct ContactsArgs {
@@ -33,7 +38,15 @@ pub(crate) struct ContactsArgs {
     /// Condition on a column of the corpus, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE", requires = "corpus")]
     conditions: Vec<Where>,
-    /// How far apart two events may be to count as one, milliseconds
+    /// Choose the detector's limits on the other people for each person who is judged
+    #[arg(long, requires = "corpus")]
+    leave_one_out: bool,
+    /// Switches without the parts that place them, and with the projection residual, beside them
+    #[arg(long, requires = "corpus")]
+    ablate: bool,
+    #[command(flatten)]
+    knees: KneesArgs,
+    /// How far apart switches or events of sensors and others may be to count as one, milliseconds
     #[arg(long, default_value_t = 33.4)]
     tolerance: f64,
     /// Print one JSON object on stdout
@@ -45,17 +58,18 @@ pub(crate) struct ContactsArgs {
 const EDGE_SECS: f64 = 0.1;
 
 /// Agreement of one category.
-#[derive(Default, Serialize)]
+#[derive(Clone, Default, Serialize)]
 pub(super) struct Agreement {
     pub(super) recordings: usize,
-    /// Kinematic contacts, or the events of the reference.
+    /// Events of the reference.
     known: usize,
-    /// By the switching method.
+    /// Events of what is judged.
     found: usize,
     matched: usize,
     f1: f64,
-    /// Mean and standard deviation of found less known time over matched events.
+    /// Mean, median and standard deviation of found less known time over matched events.
     bias_ms: f64,
+    median_ms: f64,
     spread_ms: f64,
     #[serde(skip)]
     delays_ms: Vec<f64>,
@@ -64,8 +78,13 @@ pub(super) struct Agreement {
 #[derive(Serialize)]
 pub(super) struct Report {
     tolerance_ms: f64,
-    /// Of motion, by category.
+    /// Of motion, by person.
+    people: BTreeMap<String, people::Person>,
+    /// Switches of motion against contacts, by category.
     categories: BTreeMap<String, Agreement>,
+    /// The same by what places a switch, with `--ablate`.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    ablation: BTreeMap<&'static str, people::Ablated>,
     /// Of sensors, by category and kind of contact.
     sensors: BTreeMap<String, Agreement>,
 }
@@ -74,16 +93,21 @@ pub(super) struct Report {
 pub(super) fn evaluate(args: &ContactsArgs) -> Result<Report> {
     let mut report = Report {
         tolerance_ms: args.tolerance,
+        people: BTreeMap::new(),
         categories: BTreeMap::new(),
+        ablation: BTreeMap::new(),
         sensors: BTreeMap::new(),
     };
     if let Some(index) = &args.corpus {
-        for clip in &Corpus::read(index, &args.conditions)?.clips {
+        let clips = args.knees.read_corpus(index, &args.conditions)?.clips;
+        for clip in &clips {
             let category = clip.row.category().to_owned();
             let agreement = report.categories.entry(category).or_default();
-            agreement
-                .add_motion(clip, args.tolerance)
-                .with_context(|| clip.row.path.display().to_string())?;
+            agreement.add_switches(clip, Landing::default(), args.tolerance)?;
+        }
+        report.people = people::judge(&clips, args.tolerance, args.leave_one_out)?;
+        if args.ablate {
+            report.ablation = people::ablate(&clips, args.tolerance)?;
         }
     }
     if let Some(index) = &args.sensors {
@@ -101,7 +125,9 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
     if args.json {
         return output::print_json(&report);
     }
-    let mut lines = vec![
+    let mut lines = people::table(&report.people, args.tolerance);
+    lines.extend(people::ablation_table(&report.ablation));
+    lines.extend([
         format!(
             "Contacts within {} ms; bias and spread of found less known, ms",
             args.tolerance
@@ -110,7 +136,7 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
             "{:36} {:>10} {:>6} {:>6} {:>5} {:>7} {:>7}",
             "known by", "recordings", "known", "found", "F1", "bias", "spread"
         ),
-    ];
+    ]);
     for (known, agreements) in [
         ("kinematics", &report.categories),
         ("sensors' reference", &report.sensors),
@@ -132,13 +158,20 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
 }
 
 impl Agreement {
-    fn add_motion(&mut self, clip: &CorpusClip, tolerance_ms: f64) -> Result<()> {
+    /// Switches of a clip against its initial contacts.
+    fn add_switches(
+        &mut self,
+        clip: &CorpusClip,
+        landing: Landing,
+        tolerance_ms: f64,
+    ) -> Result<()> {
         let motion = &clip.retargeted;
         let rate = motion.clip.frame_rate_hz;
         let secs = |frame: usize| frame as f64 / rate;
         let (first, last) = (secs(motion.first_frame), secs(motion.clip.poses.len() - 1));
         let inside = |time: &f64| (first + EDGE_SECS..=last - EDGE_SECS).contains(time);
-        let switches = detect_switches(&motion.clip, motion.first_frame)?;
+        let switches = detect_switches_by(&motion.clip, motion.first_frame, landing)
+            .with_context(|| clip.row.path.display().to_string())?;
         let events = clip.contacts.events();
         self.recordings += 1;
         for side in Side::BOTH {
@@ -181,6 +214,7 @@ impl Agreement {
         let count = self.matched.max(1) as f64;
         self.f1 = 2.0 * self.matched as f64 / (self.known + self.found).max(1) as f64;
         self.bias_ms = self.delays_ms.iter().sum::<f64>() / count;
+        self.median_ms = median(&self.delays_ms);
         let squares = self.delays_ms.iter().map(|d| (d - self.bias_ms).powi(2));
         self.spread_ms = (squares.sum::<f64>() / count).sqrt();
     }

@@ -1,9 +1,10 @@
 //! `footfall evaluate dynamics`: systems that switch against one that does not.
 
 use crate::commands::dynamics::SizeArgs;
+use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
-use footfall_motion::corpus::{Corpus, Where};
+use footfall_motion::corpus::Where;
 use footfall_train::dynamics::{DynamicsComparison, compare_dynamics};
 use plotters::prelude::*;
 use rayon::prelude::*;
@@ -25,6 +26,8 @@ pub(crate) struct DynamicsArgs {
     /// Condition on a column, for example `category=running`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
     #[command(flatten)]
     size: SizeArgs,
     /// Where to draw the errors of the first recording over time
@@ -57,7 +60,7 @@ pub(super) struct Report {
 /// What is printed as JSON; draws the errors of the first recording if that was asked for.
 pub(super) fn evaluate(args: &DynamicsArgs) -> Result<Report> {
     let config = args.size.config()?;
-    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
+    let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
     let compared: Vec<Option<DynamicsComparison>> = corpus
         .clips
         .par_iter()

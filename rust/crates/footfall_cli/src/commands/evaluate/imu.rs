@@ -1,10 +1,11 @@
 //! `footfall evaluate imu`: bodies from sensors against the recorded ones.
 
 use crate::commands::imu::{KeptArgs, imu_clip, parse_site};
+use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_core::Site;
-use footfall_motion::corpus::{Corpus, Where};
+use footfall_motion::corpus::Where;
 use footfall_train::imu::evaluate::{HeldOut, ImuTrial, evaluate_imu};
 use footfall_train::imu::{ImuClip, ImuTrainConfig};
 use serde::Serialize;
@@ -37,6 +38,8 @@ pub(crate) struct ImuArgs {
     /// Condition on a column, for example `category=running`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
     /// Where the sensor sits, twice for two sensors; the foot, foot and hand, and the sites of the paper's figure 10 one by one when absent
     #[arg(long = "site", value_parser = parse_site)]
     sites: Vec<Site>,
@@ -96,7 +99,7 @@ pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
     for config in &asked {
         config.check()?;
     }
-    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
+    let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
     let clips: Vec<ImuClip<'_>> = corpus.clips.iter().map(imu_clip).collect();
     let categories: Vec<&str> = corpus
         .clips

@@ -3,6 +3,7 @@
 mod report;
 
 use crate::commands::synth::{StyleArg, dressed};
+use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result, bail};
 use footfall_model::GaitModel;
@@ -39,6 +40,8 @@ pub(crate) struct NaturalnessArgs {
     /// Condition on a column, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
     /// How many walks are generated, each at the mean speed of one of the recordings
     #[arg(long, default_value_t = 48, value_parser = clap::value_parser!(u32).range(8..=1000))]
     seeds: u32,
@@ -64,7 +67,7 @@ pub(super) fn evaluate(args: &NaturalnessArgs) -> Result<Report> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
     let (model, _) = dressed(&args.model, &args.styles)?;
-    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
+    let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
     let (captured, speeds) = people(&corpus);
     if speeds.is_empty() {
         bail!(

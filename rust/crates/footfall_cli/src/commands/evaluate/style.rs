@@ -2,6 +2,7 @@
 
 use super::style_report::{Report, tables};
 use crate::corpus_pair::{CorpusPair, styled_clips};
+use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
@@ -19,6 +20,8 @@ use footfall_train::evaluate::{Split, StyleEvaluation, evaluate_styles};
 pub(crate) struct StyleArgs {
     #[command(flatten)]
     corpora: CorpusPair,
+    #[command(flatten)]
+    knees: KneesArgs,
     /// How real strides are kept unseen: each take in turn, or each half of every recording; takes when every style has two
     #[arg(long, value_enum)]
     split: Option<SplitArg>,
@@ -56,7 +59,7 @@ pub(super) fn evaluate(args: &StyleArgs) -> Result<Report> {
 fn judge(args: &StyleArgs) -> Result<(StyleEvaluation, Vec<String>)> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
-    let corpora = args.corpora.read()?;
+    let corpora = args.corpora.read(args.knees)?;
     let real = styled_clips(&corpora.real);
     let synthesised = corpora.synthesised.as_ref().map(styled_clips);
     progress.stage("judging", 0);

@@ -1,9 +1,10 @@
 //! `footfall evaluate training`: what taking walkers out of the average walk gains.
 
 use crate::commands::train::{TrainingProgress, skipped};
+use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
-use footfall_motion::corpus::{Corpus, Where};
+use footfall_motion::corpus::Where;
 use footfall_prob::windows::Windows;
 use footfall_train::{EmConfig, TrainConfig, TrainingClip, TrainingComparison, compare_training};
 use serde::Serialize;
@@ -24,6 +25,8 @@ pub(crate) struct TrainingArgs {
     /// Condition on a column, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
     /// Frames per second of the models
     #[arg(long, default_value_t = 60.0)]
     fps: f64,
@@ -69,7 +72,7 @@ pub(crate) fn run(args: &TrainingArgs) -> Result<()> {
 pub(super) fn evaluate(args: &TrainingArgs) -> Result<Report> {
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
-    let corpus = Corpus::read(&args.corpus, &args.conditions)?;
+    let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let config = TrainConfig {
         frame_rate_hz: args.fps,

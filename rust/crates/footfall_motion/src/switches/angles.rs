@@ -1,0 +1,194 @@
+//! Hip and knee angles, the half cycles in them, and where they put the ankles.
+
+use super::ANGLE_RATE_HZ;
+use footfall_core::rotation::log_map;
+use footfall_core::{Clip, Side};
+use footfall_prob::switching::median;
+
+/// Hip and knee of both legs.
+pub(super) const CHANNELS: usize = 4;
+
+/// A half cycle is at least so long, frames.
+const LEAST_HALF_CYCLE: usize = 8;
+
+/// And its hips swing at least this share of the usual way apart: less is standing.
+const LEAST_SWING: f64 = 0.35;
+
+/// And at least so far, radians.
+const LEAST_SWING_RAD: f64 = 0.08;
+
+/// Standard deviation of the window under which half cycles are looked for, frames.
+const CYCLE_SMOOTHING: f64 = 2.0;
+
+/// The same for the extremes of ankle and knee.
+const LEG_SMOOTHING: f64 = 1.0;
+
+/// The ankle is farthest ahead within so many frames of where the hips are farthest apart.
+const ANKLE_REACH: usize = 12;
+
+/// The landing knee is straightest from so many frames before until so many after that. A straight knee at other times is that of a
+/// leg that stands.
+const KNEE_REACH: [usize; 2] = [5, 3];
+
+/// Sagittal angles of hips and knees, radians, at [`ANGLE_RATE_HZ`].
+pub(super) struct LegAngles {
+    /// Frame by frame: hip left and right, positive when the thigh is behind; knee left and right, positive when bent.
+    pub(super) frames: Vec<[f64; CHANNELS]>,
+    /// Lengths of left and right thigh and shank, metres.
+    bones: [[f64; 2]; 2],
+}
+
+/// A half cycle: one leg is ahead.
+#[derive(Clone, Copy)]
+pub(super) struct HalfCycle {
+    /// The frame in which the thighs are farthest apart.
+    pub(super) frame: usize,
+    /// The leg that is ahead.
+    pub(super) side: Side,
+}
+
+impl LegAngles {
+    pub(super) fn of(clip: &Clip, first_frame: usize) -> Self {
+        let moving = Clip {
+            poses: clip.poses.get(first_frame..).unwrap_or_default().to_vec(),
+            ..clip.clone()
+        };
+        let frames = moving.resampled(ANGLE_RATE_HZ).poses;
+        let frames = frames.iter().map(|pose| {
+            let angle = |joint| f64::from(log_map(pose.rotation(joint)).x);
+            [
+                angle(Side::Left.upper_leg()),
+                angle(Side::Right.upper_leg()),
+                angle(Side::Left.lower_leg()),
+                angle(Side::Right.lower_leg()),
+            ]
+        });
+        Self {
+            frames: frames.collect(),
+            bones: Side::BOTH.map(|side| {
+                [side.lower_leg(), side.foot()]
+                    .map(|joint| f64::from(clip.skeleton.offset(joint).length()))
+            }),
+        }
+    }
+
+    /// How far the right thigh is behind the left one: positive when the left leg is ahead.
+    fn lead(&self, frame: usize) -> f64 {
+        self.frames[frame][1] - self.frames[frame][0]
+    }
+
+    /// How far the ankle is ahead of its hip in the plane of the angles, metres.
+    fn ankle_ahead(&self, frame: usize, side: Side) -> f64 {
+        let angles = self.frames[frame];
+        let (hip, knee) = (angles[side.index()], angles[2 + side.index()]);
+        let [thigh, shank] = self.bones[side.index()];
+        -(thigh * hip.sin() + shank * (hip + knee).sin())
+    }
+
+    /// The runs of frames in which one leg is ahead, each where it is farthest ahead.
+    pub(super) fn half_cycles(&self) -> Vec<HalfCycle> {
+        let leads: Vec<f64> = (0..self.frames.len())
+            .map(|frame| self.lead(frame))
+            .collect();
+        let leads = smoothed(&leads, CYCLE_SMOOTHING);
+        let mut runs: Vec<(usize, usize)> = Vec::new();
+        for frame in 0..leads.len() {
+            match runs.last_mut() {
+                Some((_, last)) if leads[*last].signum() == leads[frame].signum() => *last = frame,
+                _ => runs.push((frame, frame)),
+            }
+        }
+        let peaks: Vec<usize> = runs
+            .iter()
+            .filter(|(first, last)| last - first + 1 >= LEAST_HALF_CYCLE)
+            .map(|&(first, last)| {
+                (first..=last).fold(first, |best, frame| {
+                    if leads[frame].abs() > leads[best].abs() {
+                        frame
+                    } else {
+                        best
+                    }
+                })
+            })
+            .collect();
+        let swings: Vec<f64> = peaks.iter().map(|peak| leads[*peak].abs()).collect();
+        let least = (LEAST_SWING * median(&swings)).max(LEAST_SWING_RAD);
+        // A leg that is still moving ahead when the clip ends has not landed in it.
+        let seen = |frame: &usize| *frame > 0 && frame + 1 < leads.len();
+        peaks
+            .into_iter()
+            .filter(seen)
+            .filter(|peak| leads[*peak].abs() > least)
+            .map(|frame| HalfCycle {
+                frame,
+                side: if leads[frame] > 0.0 {
+                    Side::Left
+                } else {
+                    Side::Right
+                },
+            })
+            .collect()
+    }
+
+    /// When each half cycle's leg is stretched ahead, in frames: halfway between its ankle farthest ahead and its knee straightest.
+    pub(super) fn stretched_ahead(&self, steps: &[HalfCycle]) -> Vec<f64> {
+        let legs = Side::BOTH.map(|side| {
+            let over = |signal: &dyn Fn(usize) -> f64| {
+                let values: Vec<f64> = (0..self.frames.len()).map(signal).collect();
+                smoothed(&values, LEG_SMOOTHING)
+            };
+            let ahead = over(&|frame| self.ankle_ahead(frame, side));
+            let straight = over(&|frame| -self.frames[frame][2 + side.index()]);
+            (ahead, straight)
+        });
+        steps
+            .iter()
+            .map(|step| {
+                let (ahead, straight) = &legs[step.side.index()];
+                let farthest = greatest(ahead, step.frame, [ANKLE_REACH; 2]);
+                let straightest = greatest(straight, farthest.round() as usize, KNEE_REACH);
+                0.5 * (farthest + straightest)
+            })
+            .collect()
+    }
+}
+
+/// Where a signal is greatest from so many frames before a frame until so many after it, between frames by a parabola.
+fn greatest(signal: &[f64], around: usize, [before, after]: [usize; 2]) -> f64 {
+    let first = around.saturating_sub(before);
+    let last = (around + after).min(signal.len() - 1);
+    let at = (first..=last).fold(first, |best, frame| {
+        if signal[frame] > signal[best] {
+            frame
+        } else {
+            best
+        }
+    });
+    if at == first || at == last {
+        return at as f64;
+    }
+    let [left, top, right] = [signal[at - 1], signal[at], signal[at + 1]];
+    let curvature = left - 2.0 * top + right;
+    let beyond = if curvature < 0.0 {
+        0.5 * (left - right) / curvature
+    } else {
+        0.0
+    };
+    at as f64 + beyond
+}
+
+/// Values under a Gaussian window, the ends repeated.
+pub(super) fn smoothed(values: &[f64], deviation: f64) -> Vec<f64> {
+    let reach = (3.0 * deviation).ceil() as isize;
+    let last = values.len().cast_signed() - 1;
+    let weight = |offset: isize| (-0.5 * (offset as f64 / deviation).powi(2)).exp();
+    let total: f64 = (-reach..=reach).map(weight).sum();
+    (0..=last)
+        .map(|at| {
+            let sum: f64 = (-reach..=reach)
+                .map(|offset| weight(offset) * values[(at + offset).clamp(0, last) as usize])
+                .sum();
+            sum / total
+        })
+        .collect()
+}
