@@ -1,5 +1,6 @@
 //! Two corpora on one command line, each with conditions of its own.
 
+use crate::motion_input::KneesArgs;
 use anyhow::{Context as _, Result};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use footfall_motion::corpus::{Corpus, CorpusClip, Where};
@@ -17,8 +18,8 @@ pub(crate) struct CorpusChoice {
 
 impl CorpusChoice {
     /// Reads the recordings.
-    pub(crate) fn read(&self) -> Result<Corpus> {
-        Ok(Corpus::read(&self.index, &self.conditions)?)
+    pub(crate) fn read(&self, knees: KneesArgs) -> Result<Corpus> {
+        knees.read_corpus(&self.index, &self.conditions)
     }
 }
 
@@ -134,12 +135,12 @@ pub(crate) struct ReadPair {
 
 impl CorpusPair {
     /// Reads both.
-    pub(crate) fn read(&self) -> Result<ReadPair> {
-        let real = self.real.read().context("the real recordings")?;
+    pub(crate) fn read(&self, knees: KneesArgs) -> Result<ReadPair> {
+        let real = self.real.read(knees).context("the real recordings")?;
         let synthesised = self
             .synthesised
             .as_ref()
-            .map(CorpusChoice::read)
+            .map(|choice| choice.read(knees))
             .transpose();
         Ok(ReadPair {
             real,

@@ -1,26 +1,82 @@
 //! A motion file as every command needs it: read, placed on the canonical body, with its contacts.
 
+use crate::hip_facts::note_people;
 use anyhow::{Context as _, Result};
 use footfall_core::Clip;
 use footfall_motion::bvh::BvhFile;
 use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
+use footfall_motion::corpus::{Corpus, Where};
 use footfall_motion::recording::read_motion;
-use footfall_motion::retarget::{JointMap, RetargetOptions, Retargeted, parse_joint_map};
+use footfall_motion::retarget::{
+    HipCentres, JointMap, RetargetOptions, Retargeted, parse_joint_map,
+};
 use footfall_motion::steps::{Step, Walk, segment_walks};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Which joint is which, for skeletons that are not known by name.
+/// How a recording's skeleton is read.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct MapArgs {
     /// Names of an unknown skeleton's joints: a TOML file of lines such as `Hips = "pelvis"`
     #[arg(long, value_name = "NAMES.toml")]
     map: Option<PathBuf>,
+    #[command(flatten)]
+    knees: KneesArgs,
+}
+
+/// What becomes of hip joints that a recording misplaces.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+pub(crate) struct KneesArgs {
+    /// Move hip joints that the recording misplaces
+    ///
+    /// Skeletons fitted to markers misplace hip joints by centimetres, so that people crouch who did not. With this the joints
+    /// are moved, where a person's walking shows it, and the legs are solved anew.
+    #[arg(long)]
+    pub(crate) correct_hips: bool,
+}
+
+impl KneesArgs {
+    /// Source of the hip joints' places.
+    pub(crate) const fn hip_centres(self) -> HipCentres {
+        if self.correct_hips {
+            HipCentres::FromRecording
+        } else {
+            HipCentres::AsRecorded
+        }
+    }
+
+    /// Options under which a recording is read.
+    pub(crate) fn options(self) -> RetargetOptions {
+        RetargetOptions {
+            hip_centres: self.hip_centres(),
+            ..RetargetOptions::default()
+        }
+    }
+
+    /// Reads the chosen recordings of an index, and says whose hip joints moved.
+    pub(crate) fn read_corpus(self, index: &Path, conditions: &[Where]) -> Result<Corpus> {
+        let corpus = Corpus::read_with(index, conditions, &self.options())?;
+        note_people(&corpus.report.people);
+        Ok(corpus)
+    }
+
+    /// The option as it was given, for the command that a model's file states.
+    pub(crate) fn words(self) -> Option<String> {
+        self.correct_hips.then(|| "--correct-hips".to_owned())
+    }
 }
 
 impl MapArgs {
-    /// The joint map that was given, read.
-    pub(crate) fn read(&self) -> Result<Option<JointMap>> {
+    /// What was asked, with the joint map that was given, read; the recording's own rate unless another is given.
+    pub(crate) fn read(&self, frame_rate_hz: Option<f64>) -> Result<RetargetOptions> {
+        Ok(RetargetOptions {
+            map: self.read_map()?,
+            frame_rate_hz,
+            hip_centres: self.knees.hip_centres(),
+        })
+    }
+
+    fn read_map(&self) -> Result<Option<JointMap>> {
         let Some(path) = &self.map else {
             return Ok(None);
         };
@@ -40,16 +96,11 @@ pub(crate) struct MotionInput {
 }
 
 impl MotionInput {
-    /// Reads a file and retargets it, at its own rate unless another is given.
-    pub(crate) fn read(
-        path: &Path,
-        map: Option<JointMap>,
-        frame_rate_hz: Option<f64>,
-    ) -> Result<Self> {
-        let options = RetargetOptions { map, frame_rate_hz };
+    /// Reads a file and retargets it.
+    pub(crate) fn read(path: &Path, options: &RetargetOptions) -> Result<Self> {
         // The error's own text has all that its source says.
         let (file, retargeted) =
-            read_motion(path, &options).map_err(|error| anyhow::anyhow!(error.to_string()))?;
+            read_motion(path, options).map_err(|error| anyhow::anyhow!(error.to_string()))?;
         Ok(Self { file, retargeted })
     }
 }

@@ -85,6 +85,26 @@ impl Skeleton {
         }
     }
 
+    /// The canonical body on soles of its own: the directions from the ankles to the toe joints of flat feet, left and right, of which the part
+    /// across the foot is left out.
+    pub fn with_feet(directions: [Vec3; 2]) -> Self {
+        let mut skeleton = Self::standard();
+        let mut lowered = 0.0;
+        for side in Side::BOTH {
+            let standard = skeleton.offset(side.toes());
+            let direction = directions[side.index()]
+                .with_x(0.0)
+                .normalize_or(standard.normalize());
+            let offset = direction * standard.length();
+            let rise = standard.y - offset.y;
+            skeleton.offsets[side.toes().index()] = offset;
+            skeleton.feet[side.index()].heel.y -= rise;
+            lowered += 0.5 * rise;
+        }
+        skeleton.offsets[Joint::Hips.index()].y += lowered;
+        skeleton
+    }
+
     /// `parent_from_joint` translation of one joint.
     pub fn offset(&self, joint: Joint) -> Vec3 {
         self.offsets[joint.index()]

@@ -1,14 +1,17 @@
-//! Many recordings at once, chosen from an index by what its columns say.
+//! Many recordings at once, chosen from an index by what its columns say; hip joints are found person by person.
 
+mod people;
 mod selection;
 
+pub use people::{Person, PersonFile, find_people, options_of};
 pub use selection::{IndexRow, Where, read_index};
 
 use crate::contacts::Contacts;
 use crate::recording::Recording;
-use crate::retarget::{RetargetOptions, Retargeted};
+use crate::retarget::{HipCentres, RetargetOptions, Retargeted};
 use crate::steps::Walk;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A recording, ready for training.
@@ -36,12 +39,14 @@ pub struct SkippedClip {
 }
 
 /// What became of the rows that were chosen.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CorpusReport {
     /// Rows that meet all conditions.
     pub selected: usize,
     /// Those among them that could not be used, in the order of the index.
     pub skipped: Vec<SkippedClip>,
+    /// The people and the findings about their hip joints; empty where the caller said where these are.
+    pub people: Vec<Person>,
 }
 
 /// Recordings chosen from an index.
@@ -138,18 +143,37 @@ impl Corpus {
     ) -> Result<Self, CorpusError> {
         let index = index.as_ref();
         let rows = read_index(index)?;
-        let chosen = selection::select(index, rows, conditions)?;
+        let chosen = selection::select(index, rows.clone(), conditions)?;
         let selected = chosen.len();
+        let (people, mut motions) = match options.hip_centres {
+            HipCentres::FromRecording => {
+                let files = people::rows_of_same_people(&rows, &chosen);
+                let paths: BTreeSet<&Path> = chosen.iter().map(|row| row.path.as_path()).collect();
+                people::read_people(&files, options, |path| paths.contains(path))
+            }
+            HipCentres::AsRecorded | HipCentres::Known(_) => Default::default(),
+        };
+        let chosen: Vec<_> = chosen
+            .into_iter()
+            .map(|row| {
+                let motion = motions.remove(&row.path);
+                (row, motion)
+            })
+            .collect();
         // In parallel, but collected in order: the same corpus every time.
         let results: Vec<Result<CorpusClip, SkippedClip>> = chosen
             .into_par_iter()
-            .map(|row| read_clip(row, options))
+            .map(|(row, motion)| {
+                let options = options_of(&people, &row.path, options);
+                read_clip(row, motion, &options)
+            })
             .collect();
         let mut corpus = Self {
             clips: Vec::with_capacity(selected),
             report: CorpusReport {
                 selected,
                 skipped: Vec::new(),
+                people,
             },
         };
         for result in results {
@@ -169,14 +193,27 @@ impl Corpus {
     }
 }
 
-fn read_clip(row: IndexRow, options: &RetargetOptions) -> Result<CorpusClip, SkippedClip> {
+/// Reads a clip; its motion as recorded may be at hand already.
+fn read_clip(
+    row: IndexRow,
+    motion: Option<Retargeted>,
+    options: &RetargetOptions,
+) -> Result<CorpusClip, SkippedClip> {
     let skipped = |reason: String| SkippedClip {
         path: row.path.clone(),
         line: row.line,
         reason,
     };
-    let recording =
-        Recording::read(&row.path, options).map_err(|error| skipped(error.to_string()))?;
+    let recording = match (motion, options.hip_centres) {
+        (Some(mut motion), HipCentres::Known(finding))
+            if finding.verdict.correction().is_none() =>
+        {
+            motion.report.hip_centres = finding;
+            Recording::of_file(&row.path, options, motion)
+        }
+        _ => Recording::read(&row.path, options),
+    };
+    let recording = recording.map_err(|error| skipped(error.to_string()))?;
     Ok(CorpusClip {
         row,
         retargeted: recording.retargeted,

@@ -8,6 +8,7 @@ mod cycle;
 mod in_place;
 
 use crate::bvh::BvhFile;
+use crate::hip_centres::WalkingEvidence;
 use crate::retarget::{RetargetError, RetargetOptions, Retargeted, retarget_with_way};
 
 /// Puts a clip of a game on the canonical body: one that walks in place travels, and loops are found. Frames are the file's.
@@ -18,6 +19,17 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
     let mut motion = retarget_with_way(file, options, in_place::way_of_feet)?;
     motion.report.cycle_frames = cycle::find(&motion.clip, motion.first_frame);
     Ok(motion)
+}
+
+/// The same with hip joints as the file has them, and its evidence about them.
+pub(crate) fn retarget_as_recorded(
+    file: &BvhFile,
+    options: &RetargetOptions,
+) -> Result<(Retargeted, WalkingEvidence), RetargetError> {
+    let (mut motion, evidence) =
+        crate::retarget::retarget_as_recorded(file, options, in_place::way_of_feet)?;
+    motion.report.cycle_frames = cycle::find(&motion.clip, motion.first_frame);
+    Ok((motion, evidence))
 }
 
 /// Repeats a clip that is a loop until it shows a walk; others stay as they are.

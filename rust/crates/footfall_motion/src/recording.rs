@@ -5,7 +5,8 @@ use crate::contact_file::{ContactFile, ContactFileError};
 use crate::contacts::{ContactConfig, Contacts, detect_contacts};
 use crate::game_clip;
 use crate::gltf::{self, GltfError};
-use crate::retarget::{RetargetError, RetargetOptions, Retargeted, retarget};
+use crate::hip_centres::WalkingEvidence;
+use crate::retarget::{RetargetError, RetargetOptions, Retargeted, retarget, retarget_as_recorded};
 use crate::skeletal::SkeletalMotion;
 use crate::steps::{Walk, segment_walks};
 use std::path::{Path, PathBuf};
@@ -74,13 +75,38 @@ pub fn read_motion(
     Ok((file, retargeted))
 }
 
+/// The same with hip joints as the file has them, and its evidence about them.
+pub(crate) fn read_as_recorded(
+    path: &Path,
+    options: &RetargetOptions,
+) -> Result<(Retargeted, WalkingEvidence), RecordingError> {
+    let read = if gltf::is_gltf(path) {
+        game_clip::retarget_as_recorded(&gltf::read(path)?, options)
+    } else {
+        retarget_as_recorded(&bvh::read(path)?, options, |_, _| None)
+    };
+    read.map_err(|source| RecordingError::Retarget {
+        path: path.to_owned(),
+        source,
+    })
+}
+
 impl Recording {
     /// Reads a file and what was corrected about it. Loops are [unrolled](game_clip::unroll).
     ///
     /// # Errors
     /// [`RecordingError`] names the file.
     pub fn read(path: &Path, options: &RetargetOptions) -> Result<Self, RecordingError> {
-        let (_, mut retargeted) = read_motion(path, options)?;
+        let (_, retargeted) = read_motion(path, options)?;
+        Self::of_file(path, options, retargeted)
+    }
+
+    /// The motion of a file that was read under these options.
+    pub(crate) fn of_file(
+        path: &Path,
+        options: &RetargetOptions,
+        mut retargeted: Retargeted,
+    ) -> Result<Self, RecordingError> {
         game_clip::unroll(&mut retargeted);
         let mut recording = Self::detected(retargeted);
         // Frame numbers of the corrections are the file's.

@@ -5,9 +5,11 @@
 //! length, so the file's unit need not be known. The foot alone keeps the source's slope from ankle to ball (see
 //! [`footfall_core::FootShape`]), so that a zero rotation is a flat sole and yet the foot points as in the source.
 
+mod evidence;
 mod feet;
 mod floor;
 mod joint_map;
+mod legs;
 mod rest;
 mod source;
 
@@ -15,9 +17,9 @@ pub use footfall_core::rig::{JointMap, Placement};
 pub use joint_map::parse_joint_map;
 
 use crate::bvh::BvhFile;
-use feet::FlatFoot;
+use crate::hip_centres::{HipFinding, HipVerdict, Origin, WalkingEvidence, find_hip_centres};
 use footfall_core::rotation::{from_heading, heading, shortest_arc};
-use footfall_core::{Clip, JOINT_COUNT, Joint, Pose, Side, Skeleton};
+use footfall_core::{Clip, JOINT_COUNT, Joint, Pose, Skeleton};
 use glam::{Quat, Vec3};
 use rest::{RestRotations, canonical_direction};
 use source::{SourceFrame, SourceMotion};
@@ -29,6 +31,21 @@ pub struct RetargetOptions {
     pub map: Option<JointMap>,
     /// Rate of the clip, frames per second; the file's own when absent.
     pub frame_rate_hz: Option<f64>,
+    /// Source of the hip joints' places.
+    pub hip_centres: HipCentres,
+}
+
+/// Source of the hip joints' places.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum HipCentres {
+    /// The walking of the recording itself, where it shows that the file misplaces them; the file where it does not. See
+    /// [`hip_centres`](crate::hip_centres).
+    FromRecording,
+    /// The file.
+    #[default]
+    AsRecorded,
+    /// A finding from several recordings of the person.
+    Known(HipFinding),
 }
 
 /// A clip on the canonical body, and how it came about.
@@ -60,6 +77,8 @@ pub struct RetargetReport {
     pub cycle_frames: Option<usize>,
     /// How often the clip shows the same steps: more than once for a loop that was unrolled.
     pub repeats: usize,
+    /// The finding about the hip joints.
+    pub hip_centres: HipFinding,
 }
 
 /// Why a file cannot be retargeted.
@@ -129,51 +148,120 @@ pub(crate) fn retarget_with_way(
     options: &RetargetOptions,
     way: impl Fn(&Clip, usize) -> Option<Vec<Vec3>>,
 ) -> Result<Retargeted, RetargetError> {
-    if let Some(rate) = options.frame_rate_hz
-        && !(rate.is_finite() && rate > 0.0)
-    {
-        return Err(RetargetError::FrameRate(rate));
+    check_rate(options)?;
+    let placed = Placed::new(file, options.map.as_ref(), way)?;
+    let hip_centres = match options.hip_centres {
+        HipCentres::FromRecording => find_hip_centres(&[&placed.evidence()]),
+        HipCentres::AsRecorded => HipFinding::without_evidence(HipVerdict::AsRecorded),
+        HipCentres::Known(finding) => finding,
+    };
+    placed.with_hip_centres(hip_centres, options.frame_rate_hz)
+}
+
+/// As [`retarget_with_way`], with the joints as the file has them, and the file's evidence about its skeleton's legs: of all files of a
+/// person, [`find_hip_centres`] tells whether the joints are to be corrected.
+pub(crate) fn retarget_as_recorded(
+    file: &BvhFile,
+    options: &RetargetOptions,
+    way: impl Fn(&Clip, usize) -> Option<Vec<Vec3>>,
+) -> Result<(Retargeted, WalkingEvidence), RetargetError> {
+    check_rate(options)?;
+    let placed = Placed::new(file, options.map.as_ref(), way)?;
+    let evidence = placed.evidence();
+    let finding = HipFinding::without_evidence(HipVerdict::AsRecorded);
+    let retargeted = placed.with_hip_centres(finding, options.frame_rate_hz)?;
+    Ok((retargeted, evidence))
+}
+
+fn check_rate(options: &RetargetOptions) -> Result<(), RetargetError> {
+    match options.frame_rate_hz {
+        Some(rate) if !(rate.is_finite() && rate > 0.0) => Err(RetargetError::FrameRate(rate)),
+        _ => Ok(()),
     }
-    let (map, placement) = joint_map::place(file, options.map.as_ref())?;
-    let name_of = |joint: Joint| placement.joint(joint).map(|n| file.joints[n].name.clone());
-    let mut source = SourceMotion::new(file, &placement);
-    if !(source.leg_length.is_finite() && source.leg_length > 1e-6) {
-        return Err(RetargetError::NoLegs {
-            length: source.leg_length,
-            knee: name_of(Joint::LeftLowerLeg).unwrap_or_default(),
-            ankle: name_of(Joint::LeftFoot).unwrap_or_default(),
-        });
-    }
-    let mut embodied = embody(&source)?;
-    let way = way(&embodied.clip, source.first_motion_frame);
-    if let Some(way) = &way {
-        source.travel(way, embodied.scale);
-        embodied = embody(&source)?;
-    }
-    let Embodied {
-        mut clip,
-        scale,
-        flat_foot_frames,
-    } = embodied;
-    let mut first_frame = source.first_motion_frame;
-    if let Some(rate) = options.frame_rate_hz {
-        first_frame = (first_frame as f64 / clip.frame_rate_hz * rate).ceil() as usize;
-        clip = clip.resampled(rate);
-        first_frame = first_frame.min(clip.poses.len().saturating_sub(1));
-    }
-    Ok(Retargeted {
-        clip,
-        first_frame,
-        report: RetargetReport {
+}
+
+/// A motion with its joints as the file has them, as they are there and on the canonical body.
+struct Placed {
+    map: String,
+    source_joints: [Option<String>; JOINT_COUNT],
+    origin: Origin,
+    source: SourceMotion,
+    body: Embodied,
+    in_place: bool,
+}
+
+impl Placed {
+    fn new(
+        file: &BvhFile,
+        map: Option<&JointMap>,
+        way: impl Fn(&Clip, usize) -> Option<Vec<Vec3>>,
+    ) -> Result<Self, RetargetError> {
+        let (map, placement) = joint_map::place(file, map)?;
+        let name_of = |joint: Joint| placement.joint(joint).map(|n| file.joints[n].name.clone());
+        let mut source = SourceMotion::new(file, &placement);
+        if !(source.leg_length.is_finite() && source.leg_length > 1e-6) {
+            return Err(RetargetError::NoLegs {
+                length: source.leg_length,
+                knee: name_of(Joint::LeftLowerLeg).unwrap_or_default(),
+                ankle: name_of(Joint::LeftFoot).unwrap_or_default(),
+            });
+        }
+        let mut body = embody(&source)?;
+        let way = way(&body.clip, source.first_motion_frame);
+        if let Some(way) = &way {
+            source.travel(way, body.scale);
+            body = embody(&source)?;
+        }
+        Ok(Self {
             map,
             source_joints: Joint::ALL.map(name_of),
+            origin: Origin::of(&file.joints.iter().map(|joint| joint.name.as_str())),
+            source,
+            body,
+            in_place: way.is_some(),
+        })
+    }
+
+    fn evidence(&self) -> WalkingEvidence {
+        evidence::walking_evidence(&self.source, &self.body.clip, self.origin)
+    }
+
+    /// The motion with its legs corrected as found, at the file's rate or another.
+    fn with_hip_centres(
+        mut self,
+        hip_centres: HipFinding,
+        frame_rate_hz: Option<f64>,
+    ) -> Result<Retargeted, RetargetError> {
+        if let Some(correction) = hip_centres.verdict.correction() {
+            legs::correct_legs(&mut self.source, correction);
+            self.body = embody(&self.source)?;
+        }
+        let Embodied {
+            mut clip,
             scale,
             flat_foot_frames,
-            in_place: way.is_some(),
-            cycle_frames: None,
-            repeats: 1,
-        },
-    })
+        } = self.body;
+        let mut first_frame = self.source.first_motion_frame;
+        if let Some(rate) = frame_rate_hz {
+            first_frame = (first_frame as f64 / clip.frame_rate_hz * rate).ceil() as usize;
+            clip = clip.resampled(rate);
+            first_frame = first_frame.min(clip.poses.len().saturating_sub(1));
+        }
+        Ok(Retargeted {
+            clip,
+            first_frame,
+            report: RetargetReport {
+                map: self.map,
+                source_joints: self.source_joints,
+                scale,
+                flat_foot_frames,
+                in_place: self.in_place,
+                cycle_frames: None,
+                repeats: 1,
+                hip_centres,
+            },
+        })
+    }
 }
 
 /// A motion on the canonical body, on its ground, at the file's rate.
@@ -186,8 +274,8 @@ struct Embodied {
 fn embody(source: &SourceMotion) -> Result<Embodied, RetargetError> {
     let mut rest = rest::rest_rotations(source);
     let flat = feet::flat_feet(source, &mut rest);
-    let skeleton = skeleton_with_feet(&flat);
-    let scale = skeleton.mean_leg_length() / source.leg_length;
+    let skeleton = Skeleton::with_feet([flat[0].direction, flat[1].direction]);
+    let scale = skeleton.mean_leg_length() / (source.leg_length * source.leg_factor);
     let poses: Vec<Pose> = source
         .frames
         .iter()
@@ -211,26 +299,6 @@ fn embody(source: &SourceMotion) -> Result<Embodied, RetargetError> {
             flat_foot_frames: flat.map(|foot| foot.frames),
         }),
     }
-}
-
-/// The canonical body with the source's slope from ankle to ball, standing on its soles.
-fn skeleton_with_feet(flat: &[FlatFoot; 2]) -> Skeleton {
-    let mut skeleton = Skeleton::standard();
-    let mut lowered = 0.0;
-    for side in Side::BOTH {
-        let standard = skeleton.offset(side.toes());
-        let direction = flat[side.index()]
-            .direction
-            .with_x(0.0)
-            .normalize_or(standard);
-        let offset = direction * standard.length();
-        let rise = standard.y - offset.y;
-        skeleton.offsets[side.toes().index()] = offset;
-        skeleton.feet[side.index()].heel.y -= rise;
-        lowered += 0.5 * rise;
-    }
-    skeleton.offsets[Joint::Hips.index()].y += lowered;
-    skeleton
 }
 
 /// One frame on the canonical body.

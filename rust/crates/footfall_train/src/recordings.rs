@@ -5,6 +5,7 @@ use crate::error::TrainError;
 use crate::progress::{Progress, advance};
 use crate::train::TrainingClip;
 use footfall_model::{GaitModel, Provenance};
+use footfall_motion::corpus::{PersonFile, find_people, options_of};
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::RetargetOptions;
 use std::path::PathBuf;
@@ -14,7 +15,7 @@ use std::path::PathBuf;
 pub struct Recordings(pub Vec<(String, Recording)>);
 
 impl Recordings {
-    /// Reads files; each comes with the name of who walks in it.
+    /// Reads files; each comes with the name of who walks in it. [Hip joints](footfall_motion::hip_centres) are found person by person.
     ///
     /// # Errors
     /// [`TrainError::Recording`] names the file; [`TrainError::NoRecordings`] where there is none.
@@ -26,9 +27,19 @@ impl Recordings {
             return Err(TrainError::NoRecordings);
         }
         let mut read = Vec::with_capacity(chosen.len());
+        let options = RetargetOptions::default();
+        let files: Vec<PersonFile<'_>> = chosen
+            .iter()
+            .map(|(path, subject)| PersonFile {
+                path,
+                subject,
+                is_plain: true,
+            })
+            .collect();
+        let people = find_people(&files, &options);
         for (done, (path, subject)) in chosen.iter().enumerate() {
             advance(progress, "reading", done, chosen.len())?;
-            let recording = Recording::read(path, &RetargetOptions::default())?;
+            let recording = Recording::read(path, &options_of(&people, path, &options))?;
             read.push((subject.clone(), recording));
         }
         Ok(Self(read))

@@ -2,6 +2,7 @@
 
 use super::train::{self, provenance};
 use crate::model_file::read_model;
+use crate::motion_input::KneesArgs;
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
@@ -32,6 +33,8 @@ pub(crate) struct AdaptArgs {
     /// Condition on a column, for example `style=sad`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
     /// What the style is called
     #[arg(long)]
     name: String,
@@ -95,7 +98,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     let base = read_model(&args.base)?;
     let mut progress = train::TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
-    let corpus = train::read_corpus(&args.corpus, &args.conditions, &args.output)?;
+    let corpus = train::read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let still = without_steps(&corpus);
     ensure!(
@@ -166,6 +169,7 @@ fn made_from(corpus: &Corpus, args: &AdaptArgs) -> Provenance {
             .iter()
             .map(|condition| format!("--where '{condition}'")),
     );
+    words.extend(args.knees.words());
     words.push(format!("--name '{}'", args.name.trim()));
     words.extend(args.steps.map(|steps| format!("--steps {steps}")));
     words.push(match args.method {

@@ -42,7 +42,7 @@ enum Method {
 }
 
 pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
-    let motion = MotionInput::read(&args.input, args.map.read()?, None)?.retargeted;
+    let motion = MotionInput::read(&args.input, &args.map.read(None)?)?.retargeted;
     let report = match args.method {
         Method::Kinematic => {
             let walking = Walking::of(&motion);

@@ -3,7 +3,7 @@
 mod corpus_run;
 mod reference;
 
-use crate::motion_input::{MotionInput, Walking};
+use crate::motion_input::{KneesArgs, MotionInput, Walking};
 use crate::output;
 use anyhow::{Context as _, Result, bail};
 use footfall_core::Clip;
@@ -42,6 +42,8 @@ pub(crate) struct DesignArgs {
     /// Condition on a column, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
     /// How many steps the clips of a corpus are to have at least
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
@@ -95,7 +97,7 @@ pub(crate) fn run(args: &DesignArgs) -> Result<()> {
 
 fn run_single(args: &DesignArgs, sheet: &StyleSheet, input: &Path, target: &Path) -> Result<()> {
     output::refuse_overwrite(&[input], target)?;
-    let motion = MotionInput::read(input, None, None)?;
+    let motion = MotionInput::read(input, &args.knees.options())?;
     let walking = Walking::of(&motion.retargeted);
     let clip = design(
         &motion.retargeted.clip,

@@ -63,7 +63,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
         Kind::Imu => Finding::ImuModel(imu::inspect_model(&args.input)?),
         Kind::ImuRecording => Finding::ImuRecording(imu::inspect_recording(&args.input)?),
         Kind::Index => Finding::CorpusIndex(corpus_index::inspect(&args.input)?),
-        Kind::Motion => Finding::Motion(motion::inspect(&args.input, args.map.read()?)?),
+        Kind::Motion => Finding::Motion(motion::inspect(&args.input, &args.map.read(None)?)?),
     };
     if args.json {
         return output::print_json(&finding);

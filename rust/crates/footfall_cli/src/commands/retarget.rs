@@ -1,5 +1,6 @@
 //! `footfall retarget`: any body to the canonical body.
 
+use crate::hip_facts::HipFacts;
 use crate::motion_input::{MapArgs, MotionInput};
 use crate::output;
 use anyhow::Result;
@@ -47,11 +48,14 @@ struct Report {
     metres_per_unit: f32,
     /// Canonical joints that the file does not have.
     absent_joints: Vec<&'static str>,
+    /// The finding about the hip joints; absent without --correct-hips.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hip_joints: Option<HipFacts>,
 }
 
 pub(crate) fn run(args: &RetargetArgs) -> Result<()> {
     output::refuse_overwrite(&[&args.input], &args.output)?;
-    let input = MotionInput::read(&args.input, args.map.read()?, args.fps)?;
+    let input = MotionInput::read(&args.input, &args.map.read(args.fps)?)?;
     let retargeted = &input.retargeted;
     let clip = normalised_start(&retargeted.clip, retargeted.first_frame);
     output::write_atomic(&args.output, bvh::write(&clip_to_bvh(&clip)).as_bytes())?;
@@ -67,6 +71,7 @@ pub(crate) fn run(args: &RetargetArgs) -> Result<()> {
             .filter(|joint| retargeted.report.source_joints[joint.index()].is_none())
             .map(Joint::name)
             .collect(),
+        hip_joints: HipFacts::of(&retargeted.report.hip_centres),
     };
     if args.json {
         return output::print_json(&report);
@@ -79,5 +84,8 @@ pub(crate) fn run(args: &RetargetArgs) -> Result<()> {
         report.skeleton,
         report.metres_per_unit
     ));
+    if let Some(hip_joints) = &report.hip_joints {
+        output::note(&format!("hip joints {}", hip_joints.line()));
+    }
     Ok(())
 }

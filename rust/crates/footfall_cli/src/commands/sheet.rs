@@ -68,7 +68,7 @@ pub(crate) fn run(args: &SheetArgs) -> Result<()> {
         args.inputs.len(),
         args.contacts.len()
     );
-    let map = args.map.read()?;
+    let reading = args.map.read(None)?;
     let mut options = SheetOptions {
         start_secs: args.start.unwrap_or(0.0),
         seconds: args.seconds,
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &SheetArgs) -> Result<()> {
     };
     let mut subjects = Vec::new();
     for (index, input) in inputs.into_iter().enumerate() {
-        let motion = MotionInput::read(input, map.clone(), None)?.retargeted;
+        let motion = MotionInput::read(input, &reading)?.retargeted;
         let walking = Walking::of(&motion);
         let stances = match args.contacts.get(index) {
             Some(path) => ContactFile::read(path, &motion.clip)?.stances(),

@@ -1,6 +1,7 @@
 //! `footfall study`: ask people.
 
 use crate::corpus_pair::{CorpusPair, styled_clips};
+use crate::motion_input::KneesArgs;
 use crate::output;
 use crate::study::{Excerpt, StudyOptions, excerpts, page};
 use anyhow::{Context as _, Result, ensure};
@@ -20,6 +21,8 @@ use std::path::{Path, PathBuf};
 pub(crate) struct StudyArgs {
     #[command(flatten)]
     corpora: CorpusPair,
+    #[command(flatten)]
+    knees: KneesArgs,
     /// Where to write the page
     #[arg(short, long, value_name = "STUDY.html")]
     output: PathBuf,
@@ -63,7 +66,7 @@ pub(crate) fn run(args: &StudyArgs) -> Result<()> {
     output::refuse_overwrite(&[&args.corpora.real.index, &choice.index], &args.output)?;
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
-    let corpora = args.corpora.read()?;
+    let corpora = args.corpora.read(args.knees)?;
     let synthesised = corpora
         .synthesised
         .as_ref()

@@ -2,6 +2,7 @@
 
 pub(super) mod provenance;
 
+use crate::motion_input::KneesArgs;
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
@@ -31,6 +32,8 @@ pub(crate) struct TrainArgs {
     /// Condition on a column, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
     /// Where to write the model
     #[arg(short, long, value_name = "WALK.footfall")]
     output: PathBuf,
@@ -127,7 +130,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     );
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
-    let corpus = read_corpus(&args.corpus, &args.conditions, &args.output)?;
+    let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let trained = train_average(
         &clips,
@@ -158,8 +161,13 @@ fn config(args: &TrainArgs) -> TrainConfig {
 }
 
 /// Reads what a model is to be made of; nothing of it may be overwritten by the model.
-pub(super) fn read_corpus(index: &Path, conditions: &[Where], model: &Path) -> Result<Corpus> {
-    let corpus = Corpus::read(index, conditions)?;
+pub(super) fn read_corpus(
+    index: &Path,
+    conditions: &[Where],
+    knees: KneesArgs,
+    model: &Path,
+) -> Result<Corpus> {
+    let corpus = knees.read_corpus(index, conditions)?;
     for clip in &corpus.clips {
         output::refuse_overwrite(&[&clip.row.path], model)?;
     }

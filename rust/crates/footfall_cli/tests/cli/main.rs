@@ -8,6 +8,7 @@ mod dynamics;
 mod evaluate;
 mod game_clips;
 mod imu;
+mod knees;
 mod monitor;
 mod pipeline;
 mod recordings;

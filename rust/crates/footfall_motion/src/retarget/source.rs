@@ -51,8 +51,10 @@ pub(super) struct SourceMotion {
     pub(super) rest: SourceFrame,
     /// Which canonical joints the file has.
     pub(super) has: [bool; JOINT_COUNT],
-    /// Thigh plus shank, mean of both legs, in the file's unit.
+    /// Thigh plus shank in the file, mean of both legs, in the file's unit.
     pub(super) leg_length: f32,
+    /// Factor by which the legs have become longer than the file's.
+    pub(super) leg_factor: f32,
     /// Frames before this one are not part of the motion (a T-pose that an exporter put in front).
     pub(super) first_motion_frame: usize,
     pub(super) frame_rate_hz: f64,
@@ -102,6 +104,7 @@ impl SourceMotion {
         let mut motion = Self {
             rest: view(&rest_raw),
             leg_length: 0.0,
+            leg_factor: 1.0,
             first_motion_frame: 0,
             frame_rate_hz: file.frame_rate_hz(),
             has,
@@ -142,6 +145,17 @@ impl SourceMotion {
                     + frame.segment(side.lower_leg()).length();
                 count += 1.0;
             }
+        }
+        if count > 0.0 { sum / count } else { 0.0 }
+    }
+
+    /// Mean length of a joint's segment, in the file's unit.
+    pub(super) fn mean_length(&self, joint: Joint) -> f32 {
+        let mut sum = 0.0;
+        let mut count = 0.0;
+        for frame in self.sampled() {
+            sum += frame.segment(joint).length();
+            count += 1.0;
         }
         if count > 0.0 { sum / count } else { 0.0 }
     }

@@ -7,6 +7,7 @@
     reason = "each test binary uses a part of this"
 )]
 
+pub(crate) mod natural;
 pub(crate) mod walker;
 
 use std::path::{Path, PathBuf};

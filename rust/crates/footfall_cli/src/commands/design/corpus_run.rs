@@ -4,7 +4,7 @@ use super::{DesignArgs, Designed, describe, write_clip};
 use crate::output;
 use anyhow::{Context as _, Result, bail};
 use footfall_design::{StyleSheet, design};
-use footfall_motion::corpus::{Corpus, CorpusClip};
+use footfall_motion::corpus::CorpusClip;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs;
@@ -32,7 +32,7 @@ pub(super) fn run(
     index: &Path,
     folder: &Path,
 ) -> Result<()> {
-    let corpus = Corpus::read(index, &args.conditions)?;
+    let corpus = args.knees.read_corpus(index, &args.conditions)?;
     fs::create_dir_all(folder)
         .with_context(|| format!("cannot make the folder {}", folder.display()))?;
     let mut report = Report {

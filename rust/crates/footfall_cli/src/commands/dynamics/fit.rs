@@ -2,6 +2,7 @@
 
 use crate::commands::train::provenance::{describe, name_of};
 use crate::commands::train::{read_corpus, skipped};
+use crate::motion_input::KneesArgs;
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
 use footfall_motion::corpus::Where;
@@ -25,6 +26,8 @@ pub(crate) struct FitArgs {
     /// Condition on a column, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
     /// Where to write the model
     #[arg(short, long, value_name = "GAIT.footdyn")]
     output: PathBuf,
@@ -89,12 +92,13 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
     let begun = Instant::now();
     output::refuse_overwrite(&[&args.corpus], &args.output)?;
     let config = args.size.config()?;
-    let corpus = read_corpus(&args.corpus, &args.conditions, &args.output)?;
+    let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let conditions: Vec<String> = args
         .conditions
         .iter()
         .map(|condition| format!("--where '{condition}' "))
+        .chain(args.knees.words().map(|word| format!("{word} ")))
         .collect();
     let command = format!(
         "footfall dynamics fit --corpus {} {}--fps {} --components {} --order {} -o {}",

@@ -42,7 +42,7 @@ struct Entry {
 }
 
 pub(crate) fn run(args: &SwitchesArgs) -> Result<()> {
-    let motion = MotionInput::read(&args.input, args.map.read()?, None)?.retargeted;
+    let motion = MotionInput::read(&args.input, &args.map.read(None)?)?.retargeted;
     let fps = motion.clip.frame_rate_hz;
     let switches = detect_switches(&motion.clip, motion.first_frame)
         .with_context(|| args.input.display().to_string())?;

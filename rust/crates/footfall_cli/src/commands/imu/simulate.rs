@@ -84,7 +84,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<()> {
         "--noise {} is no factor of a sensor's errors; give a number from 0 to 100",
         args.noise
     );
-    let motion = MotionInput::read(&args.input, args.map.read()?, None)?.retargeted;
+    let motion = MotionInput::read(&args.input, &args.map.read(None)?)?.retargeted;
     let Angles([x, y, z]) = args.mounting;
     let config = VirtualImuConfig {
         mounting: Quat::from_euler(EulerRot::ZYXEx, z, y, x),

@@ -3,6 +3,7 @@
 use super::{parse_site, synchronous};
 use crate::commands::train::provenance::{describe, name_of};
 use crate::commands::train::{read_corpus, skipped};
+use crate::motion_input::KneesArgs;
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result};
 use footfall_core::Site;
@@ -29,6 +30,8 @@ pub(crate) struct ImuTrainArgs {
     /// Condition on a column, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
     #[command(flatten)]
     model: ModelArgs,
     /// Where to write the model
@@ -118,7 +121,7 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
     let begun = Instant::now();
     output::refuse_overwrite(&[&args.corpus], &args.output)?;
     let config = args.model.config()?;
-    let corpus = read_corpus(&args.corpus, &args.conditions, &args.output)?;
+    let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
     let real: Vec<Vec<ImuRecording>> = corpus
         .clips
         .iter()
@@ -186,6 +189,7 @@ fn command(args: &ImuTrainArgs) -> String {
         name_of(&args.corpus)
     )];
     words.extend(args.conditions.iter().map(|c| format!("--where '{c}'")));
+    words.extend(args.knees.words());
     words.extend(
         args.model
             .sites

@@ -1,11 +1,12 @@
 //! Facts of a recording.
 
 use super::fact;
+use crate::hip_facts::HipFacts;
 use crate::motion_input::{MotionInput, Walking};
 use anyhow::Result;
 use footfall_core::{Joint, Side};
 use footfall_motion::game_clip;
-use footfall_motion::retarget::JointMap;
+use footfall_motion::retarget::RetargetOptions;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -41,11 +42,13 @@ pub(super) struct MotionFacts {
     /// Frames of one round, if it is a loop.
     cycle_frames: Option<usize>,
     warnings: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hip_joints: Option<HipFacts>,
 }
 
 /// Reads a recording.
-pub(super) fn inspect(path: &Path, map: Option<JointMap>) -> Result<MotionFacts> {
-    let input = MotionInput::read(path, map, None)?;
+pub(super) fn inspect(path: &Path, options: &RetargetOptions) -> Result<MotionFacts> {
+    let input = MotionInput::read(path, options)?;
     let motion = &input.retargeted;
     let report = &motion.report;
     let mut unrolled = motion.clone();
@@ -99,6 +102,7 @@ pub(super) fn inspect(path: &Path, map: Option<JointMap>) -> Result<MotionFacts>
             })
             .into_iter()
             .collect(),
+        hip_joints: HipFacts::of(&motion.report.hip_centres),
     })
 }
 
@@ -146,6 +150,9 @@ impl MotionFacts {
                 },
             ),
         ];
+        if let Some(hip_joints) = &self.hip_joints {
+            lines.push(fact("hip joints", hip_joints.line()));
+        }
         if self.first_motion_frame > 0 {
             lines.push(fact(
                 "motion from",

@@ -62,6 +62,7 @@ fn command(args: &TrainArgs, index: &str, conditions: &[String]) -> String {
     for condition in conditions {
         words.push(format!("--where '{condition}'"));
     }
+    words.extend(args.knees.words());
     words.push(format!("--fps {}", args.fps));
     words.push(format!(
         "--windows {}",

@@ -1,0 +1,258 @@
+//! A person's true hip joints, from knees that bend as people's do.
+//!
+//! Skeletons are fitted to markers, and a hip joint has no marker of its own: fits misplace it by centimetres, the same way
+//! in all recordings of a person. The ankle stays where it was seen, so the error shows in the knee: a hip that is 1 cm too
+//! low bends a nearly straight leg by 8°, and one too far forward bends it more at heel strike than at push-off. This
+//! module turns that round: it moves the hip joints of a person and stretches the legs, once for all recordings, to where
+//! they make the knees over stance most probable under [normal gait](reference) with its spread between people.
+//!
+//! The correction is of the skeleton, never of the motion: who crouches still does. It is made where the knees are more
+//! probable on misplaced joints than on joints that are where they belong, of people who walk plainly or in a manner of
+//! their own; [`Origin`] says how much more, and [`HipVerdict`] names every other case.
+
+mod fit;
+mod leg;
+pub mod reference;
+mod stances;
+
+pub use reference::{FARTHEST, PHASES, STRIDE_SHARES};
+
+use footfall_core::Side;
+use glam::{Vec2, Vec3};
+use reference::Gait;
+use stances::{Legs, Parameters};
+
+/// Moves of the hip joints to where they belong, in the axes of the pelvis; lengths as shares of the recorded leg (hip joint to ankle).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HipCorrection {
+    /// Way up (x) and forwards (y) of the left and of the right hip joint.
+    pub offsets: [Vec2; 2],
+    /// Factor on the lengths of thighs and shanks.
+    pub leg_factor: f32,
+}
+
+impl HipCorrection {
+    /// The move of one hip joint: left, up, forwards.
+    pub fn offset(&self, side: Side) -> Vec3 {
+        let [up, forward] = self.offsets[side.index()].to_array();
+        Vec3::new(0.0, up, forward)
+    }
+
+    /// Whether the correction can be that of a recording: whether no leg of it would have to be longer than it is, in the mean of its
+    /// strides.
+    pub(crate) fn suits(&self, recording: &WalkingEvidence) -> bool {
+        Side::BOTH.iter().all(|&side| {
+            let stances = || recording.stances.iter().filter(|s| s.side == side);
+            let reaches = stances().map(|stance| {
+                let hips = stance.hip_from_ankle.iter();
+                hips.map(|hip| (*hip + self.offset(side)).length())
+                    .fold(0.0, f32::max)
+            });
+            let mean = reaches.sum::<f32>() / stances().count().max(1) as f32;
+            let [thigh, shank] = recording.segments[side.index()];
+            mean < (thigh + shank) * self.leg_factor + MOST_OVERSTRETCHED
+        })
+    }
+}
+
+/// One stance of a walk: the hip joint's place over the ankle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stance {
+    /// The leg that stands.
+    pub side: Side,
+    /// From ankle to hip joint in the axes of the pelvis, in leg lengths, at each of [`STRIDE_SHARES`].
+    pub hip_from_ankle: [Vec3; PHASES],
+}
+
+/// Source of a skeleton, as far as its joints tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Origin {
+    /// A skeleton that may have been made in any way: only strong evidence moves its joints.
+    #[default]
+    Unknown,
+    /// A skeleton of the family of the CMU library's, fitted to markers by a procedure that is known to misplace hip
+    /// joints of everybody: only strong evidence leaves them.
+    MarkerFit,
+}
+
+impl Origin {
+    /// The origin of a skeleton with joints of these names. The family has joints between pelvis and thighs of its own.
+    pub fn of<'a>(names: &(impl Iterator<Item = &'a str> + Clone)) -> Self {
+        let has = |own: &str| names.clone().any(|name| name.eq_ignore_ascii_case(own));
+        let is_of_family = has("LHipJoint") && has("RHipJoint");
+        if is_of_family {
+            Self::MarkerFit
+        } else {
+            Self::Unknown
+        }
+    }
+
+    /// Logarithm of the odds that hip joints are misplaced, before the knees are seen.
+    const fn ln_prior_odds(self) -> f64 {
+        match self {
+            Self::Unknown => -4.0,
+            Self::MarkerFit => 7.0,
+        }
+    }
+
+    /// Fewer strides, or none of one leg, tell nothing.
+    const fn least_strides(self) -> usize {
+        match self {
+            Self::Unknown => 3,
+            Self::MarkerFit => 2,
+        }
+    }
+}
+
+/// A skeleton's legs and stances, as a recording shows them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WalkingEvidence {
+    /// Thigh and shank of the left and of the right leg, in leg lengths.
+    pub segments: [[f32; 2]; 2],
+    /// Lengths of all bones in leg lengths: persons differ in them.
+    pub bones: Vec<f32>,
+    /// Whether the body is the canonical one, which carries corrected or generated motion.
+    pub is_own_body: bool,
+    /// Source of the skeleton.
+    pub origin: Origin,
+    /// Stances of plain walking straight ahead.
+    pub stances: Vec<Stance>,
+}
+
+impl WalkingEvidence {
+    /// Whether two recordings have one skeleton, at whatever scale.
+    pub fn shares_skeleton_with(&self, other: &Self) -> bool {
+        const SAME: f32 = 0.004;
+        self.bones.len() == other.bones.len()
+            && self
+                .bones
+                .iter()
+                .zip(&other.bones)
+                .all(|(a, b)| (a - b).abs() < SAME)
+    }
+}
+
+/// Decision about a person's hip joints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HipVerdict {
+    /// They move.
+    Corrected(HipCorrection),
+    /// They stay as recorded, since no correction was asked for.
+    AsRecorded,
+    /// The body is the canonical one; there is nothing to fit.
+    OwnBody,
+    /// Too few strides of plain walking to tell.
+    TooLittleWalking,
+    /// The knees bend as people's do, or nearly so.
+    Natural,
+    /// The knees bend otherwise than people's do, and in a way that a manner of walking explains better than a misplaced
+    /// joint.
+    OwnManner,
+}
+
+impl HipVerdict {
+    /// The correction, if there is one.
+    pub const fn correction(&self) -> Option<&HipCorrection> {
+        match self {
+            Self::Corrected(correction) => Some(correction),
+            _ => None,
+        }
+    }
+}
+
+/// A verdict and the evidence for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HipFinding {
+    /// The decision.
+    pub verdict: HipVerdict,
+    /// Strides that it was learned from.
+    pub strides: usize,
+    /// Probability that the joints are misplaced; absent without strides.
+    pub probability: Option<f32>,
+    /// Flexion of the knee at heel strike, at its first peak and before push-off, degrees, as recorded; absent without strides.
+    pub recorded_knee: Option<[f32; 3]>,
+    /// The same after the correction.
+    pub knee: Option<[f32; 3]>,
+}
+
+impl HipFinding {
+    /// A verdict that needs no evidence.
+    pub const fn without_evidence(verdict: HipVerdict) -> Self {
+        Self {
+            verdict,
+            strides: 0,
+            probability: None,
+            recorded_knee: None,
+            knee: None,
+        }
+    }
+}
+
+/// Logarithm of the odds that somebody who is said to walk plainly has a manner of walking all the same.
+const LN_MANNER_ODDS: f64 = -2.0;
+/// No fit of a skeleton is farther off: up and forwards, in leg lengths, and the factor on the legs.
+const MOST_UP: f32 = 0.05;
+const MOST_FORWARD: f32 = 0.1;
+const MOST_LENGTHENED: f32 = 0.035;
+/// By so many leg lengths the ankles of a person's own recordings lie out of reach at most: noise of markers.
+const MOST_OVERSTRETCHED: f32 = 0.008;
+
+/// Finds one person's hip joints from all recordings of one skeleton.
+pub fn find_hip_centres(recordings: &[&WalkingEvidence]) -> HipFinding {
+    if recordings.iter().any(|recording| recording.is_own_body) {
+        return HipFinding::without_evidence(HipVerdict::OwnBody);
+    }
+    let legs = Legs::new(recordings);
+    let strides = legs.strides();
+    let count = strides.iter().sum();
+    let too_little = HipFinding {
+        strides: count,
+        ..HipFinding::without_evidence(HipVerdict::TooLittleWalking)
+    };
+    let origin = recordings.first().map_or(Origin::Unknown, |r| r.origin);
+    if count < origin.least_strides() || strides.contains(&0) {
+        return too_little;
+    }
+    let (Some(plain), Some(manner), Some(misplaced), Some(places)) = (
+        fit::as_recorded(&legs, Gait::Plain),
+        fit::as_recorded(&legs, Gait::Manner).map(|evidence| evidence + LN_MANNER_ODDS),
+        fit::misplaced(&legs),
+        fit::places(&legs),
+    ) else {
+        return too_little;
+    };
+    let most = plain.max(manner);
+    let either = most + ((plain - most).exp() + (manner - most).exp()).ln();
+    let ln_odds = origin.ln_prior_odds() + misplaced - either;
+    let correction = places.correction();
+    let verdict = if ln_odds > 0.0 && is_plausible(&correction) {
+        HipVerdict::Corrected(correction)
+    } else if plain >= manner {
+        HipVerdict::Natural
+    } else {
+        HipVerdict::OwnManner
+    };
+    let recorded = legs.mean_knee(&Parameters::default());
+    let knee = match verdict {
+        HipVerdict::Corrected(_) => legs.mean_knee(&places),
+        _ => recorded,
+    };
+    HipFinding {
+        verdict,
+        strides: count,
+        probability: Some((1.0 / (1.0 + (-ln_odds).exp())) as f32),
+        recorded_knee: Some(reference::landmarks(&recorded)),
+        knee: Some(reference::landmarks(&knee)),
+    }
+}
+
+fn is_plausible(correction: &HipCorrection) -> bool {
+    (correction.leg_factor - 1.0).abs() <= MOST_LENGTHENED
+        && correction
+            .offsets
+            .iter()
+            .all(|offset| offset.x.abs() <= MOST_UP && offset.y.abs() <= MOST_FORWARD)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,146 @@
+//! Evidence of a file about its skeleton's legs: the stances of its walking, seen from the pelvis.
+
+use super::rest::rest_rotations;
+use super::source::{SourceFrame, SourceMotion};
+use crate::contacts::{ContactConfig, detect_contacts};
+use crate::hip_centres::{FARTHEST, Origin, PHASES, STRIDE_SHARES, Stance, WalkingEvidence};
+use crate::steps::segment_walks;
+use footfall_core::rotation::{heading, wrap_angle};
+use footfall_core::{Clip, Joint, Side, Skeleton, StepPosition};
+use glam::{Quat, Vec3};
+
+/// Plain walking: seconds a stride, metres a second of the canonical body; the most that the way may lead aside and the body
+/// may turn within a stride, radians.
+const STRIDE_SECS: core::ops::RangeInclusive<f64> = 0.75..=1.7;
+const SPEED_MPS: core::ops::RangeInclusive<f32> = 0.5..=2.0;
+const MOST_ASIDE: f32 = 0.5;
+const MOST_TURNED: f32 = 0.5;
+/// A walker's foot stands for more than half of a stride, a runner's for less.
+const LEAST_STANCE: f64 = 0.54;
+/// Shares of the stride before and after the landing in which the leg reaches farthest.
+const BEFORE_LANDING: f32 = 0.12;
+const AFTER_LANDING: f32 = 0.03;
+/// Bones of the canonical body differ from its own files' by rounding alone.
+const OWN_BONES: f32 = 2e-3;
+
+/// Collects the evidence of a motion that is finite, and on the canonical body in `clip`.
+pub(super) fn walking_evidence(
+    source: &SourceMotion,
+    clip: &Clip,
+    origin: Origin,
+) -> WalkingEvidence {
+    let is_own_body = is_canonical(source);
+    WalkingEvidence {
+        segments: Side::BOTH.map(|side| {
+            [side.upper_leg(), side.lower_leg()]
+                .map(|joint| source.mean_length(joint) / source.leg_length)
+        }),
+        bones: bones(|joint| source.rest.position(joint), source.leg_length),
+        is_own_body,
+        origin,
+        stances: if is_own_body {
+            Vec::new()
+        } else {
+            stances(source, clip)
+        },
+    }
+}
+
+/// Lengths of all bones below the hips joint in leg lengths.
+fn bones(position: impl Fn(Joint) -> Vec3, leg_length: f32) -> Vec<f32> {
+    let length = |joint: Joint| {
+        let parent = joint.parent()?;
+        Some(position(joint).distance(position(parent)) / leg_length)
+    };
+    Joint::ALL.into_iter().filter_map(length).collect()
+}
+
+fn is_canonical(source: &SourceMotion) -> bool {
+    let standard = Skeleton::standard();
+    let own = Joint::ALL
+        .into_iter()
+        .filter(|joint| joint.parent().is_some())
+        .map(|joint| standard.offset(joint).length() / standard.mean_leg_length());
+    source.has.iter().all(|has| *has)
+        && bones(|joint| source.rest.position(joint), source.leg_length)
+            .iter()
+            .zip(own)
+            .all(|(bone, own)| (bone - own).abs() < OWN_BONES)
+}
+
+fn stances(source: &SourceMotion, clip: &Clip) -> Vec<Stance> {
+    let contacts = detect_contacts(clip, &ContactConfig::from_frame(source.first_motion_frame));
+    let pelvis = rest_rotations(source)[Joint::Hips.index()].inverse();
+    let mut stances = Vec::new();
+    for walk in segment_walks(clip, &contacts) {
+        for pair in walk.steps.windows(2) {
+            let is_inside = pair
+                .iter()
+                .all(|step| step.position == StepPosition::Inside);
+            let (side, first, end) = (pair[0].side, pair[0].first, pair[1].end);
+            let stood = contacts
+                .foot(side)
+                .stances
+                .iter()
+                .find(|s| s.first == first);
+            let stood = stood.map_or(0, |stance| stance.last + 1 - first);
+            let is_walking = stood as f64 >= LEAST_STANCE * (end - first) as f64;
+            if is_inside && is_walking && goes_ahead(clip, first, end) {
+                stances.push(Stance {
+                    side,
+                    hip_from_ankle: hips_over_stance(source, pelvis, side, first, end),
+                });
+            }
+        }
+    }
+    stances
+}
+
+/// Whether a stride is plain walking straight ahead.
+fn goes_ahead(clip: &Clip, first: usize, end: usize) -> bool {
+    let secs = (end - first) as f64 / clip.frame_rate_hz;
+    let [from, to] = [first, end].map(|frame| &clip.poses[frame.min(clip.poses.len() - 1)]);
+    let way = (to.root_position - from.root_position).with_y(0.0);
+    let [before, after] = [from, to].map(|pose| heading(pose.rotation(Joint::Hips)));
+    let turned = wrap_angle(after - before);
+    let aside = wrap_angle(way.x.atan2(way.z) - before - 0.5 * turned);
+    STRIDE_SECS.contains(&secs)
+        && SPEED_MPS.contains(&(way.length() / secs as f32))
+        && turned.abs() < MOST_TURNED
+        && aside.abs() < MOST_ASIDE
+}
+
+/// The hip joint over the ankle at the phases of a stance.
+fn hips_over_stance(
+    source: &SourceMotion,
+    pelvis: Quat,
+    side: Side,
+    first: usize,
+    end: usize,
+) -> [Vec3; PHASES] {
+    let frames = (end - first) as f32;
+    let mut hips =
+        STRIDE_SHARES.map(|share| hip_at(source, pelvis, side, first as f32 + share * frames));
+    let before = (BEFORE_LANDING * frames) as usize;
+    let after = (AFTER_LANDING * frames) as usize;
+    for frame in first.saturating_sub(before)..=first + after {
+        let hip = hip_at(source, pelvis, side, frame as f32);
+        if hip.length_squared() > hips[FARTHEST].length_squared() {
+            hips[FARTHEST] = hip;
+        }
+    }
+    hips
+}
+
+/// From ankle to hip joint in the pelvis' axes between two frames, in leg lengths.
+fn hip_at(source: &SourceMotion, pelvis: Quat, side: Side, at: f32) -> Vec3 {
+    let place = |frame: &SourceFrame| {
+        let world_from_pelvis = frame.rotation(Joint::Hips) * pelvis;
+        let hip = frame.position(side.upper_leg()) - frame.position(side.foot());
+        world_from_pelvis.inverse() * hip / source.leg_length
+    };
+    let last = source.frames.len() - 1;
+    let frame = (at as usize).min(last);
+    let next = (frame + 1).min(last);
+    place(&source.frames[frame]).lerp(place(&source.frames[next]), at.fract())
+}
