@@ -83,6 +83,30 @@ static func scene(animations: Dictionary) -> PackedScene:
 	return packed(root)
 
 
+## Writes a character with its animations as glTF, with a mesh, or as FBX in text, as the file is named. Something of it is below `host`
+## meanwhile, which is in the tree.
+static func write_file(host: Node, animations: Dictionary, file: String) -> Error:
+	var root := scene(animations).instantiate()
+	host.add_child(root)
+	var skeleton: Skeleton3D = root.get_node(SKELETON)
+	var error := OK
+	if file.ends_with(".fbx"):
+		var written := FileAccess.open(file, FileAccess.WRITE)
+		error = FileAccess.get_open_error()
+		if written:
+			written.store_string(FbxText.of(skeleton, animations))
+			written.close()
+	else:
+		Skinned.clothe(skeleton, 0.03 * CENTIMETRES).owner = root
+		var document := GLTFDocument.new()
+		var state := GLTFState.new()
+		error = document.append_from_scene(root, state)
+		if error == OK:
+			error = document.write_to_filesystem(state, ProjectSettings.globalize_path(file))
+	root.free()
+	return error
+
+
 ## Packs a scene and frees its root.
 static func packed(root: Node) -> PackedScene:
 	for node: Node in root.find_children("*", "", true, false):

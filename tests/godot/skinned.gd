@@ -19,12 +19,7 @@ static func packed(walker: Walker) -> PackedScene:
 	root.add_child(skeleton)
 	skeleton.owner = root
 	skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_IDLE
-	var mesh := MeshInstance3D.new()
-	mesh.mesh = _triangles(skeleton)
-	skeleton.add_child(mesh)
-	mesh.skin = skeleton.create_skin_from_rest_transforms()
-	mesh.skeleton = ^".."
-	mesh.owner = root
+	clothe(skeleton, 0.03).owner = root
 	var scene := PackedScene.new()
 	scene.pack(root)
 	root.free()
@@ -32,8 +27,17 @@ static func packed(walker: Walker) -> PackedScene:
 	return scene
 
 
-## A small triangle at every bone.
-static func _triangles(skeleton: Skeleton3D) -> ArrayMesh:
+## Hangs a mesh from all bones of a skeleton: a triangle of this size, in the skeleton's own units, at every one.
+static func clothe(skeleton: Skeleton3D, size: float) -> MeshInstance3D:
+	var mesh := MeshInstance3D.new()
+	mesh.mesh = _triangles(skeleton, size)
+	skeleton.add_child(mesh)
+	mesh.skin = skeleton.create_skin_from_rest_transforms()
+	mesh.skeleton = ^".."
+	return mesh
+
+
+static func _triangles(skeleton: Skeleton3D, size: float) -> ArrayMesh:
 	var vertices := PackedVector3Array()
 	var normals := PackedVector3Array()
 	var bones := PackedInt32Array()
@@ -44,7 +48,7 @@ static func _triangles(skeleton: Skeleton3D) -> ArrayMesh:
 		while above >= 0:
 			place = skeleton.get_bone_rest(above) * place
 			above = skeleton.get_bone_parent(above)
-		for corner: Vector3 in [Vector3.ZERO, Vector3(0.03, 0, 0), Vector3(0, 0.03, 0)]:
+		for corner: Vector3 in [Vector3.ZERO, size * Vector3.RIGHT, size * Vector3.UP]:
 			vertices.append(place + corner)
 			normals.append(Vector3.BACK)
 			bones.append_array([bone, 0, 0, 0])

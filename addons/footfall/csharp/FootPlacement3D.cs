@@ -133,7 +133,7 @@ namespace Footfall
             set => Native.Set(PropertyName.MaxTwist, value);
         }
 
-        /// <summary>Whether a foot that would stand across an edge, as on stairs, is put ahead of it or behind it. A <see cref="GaitGenerator3D"/> beside this node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.</summary>
+        /// <summary>Whether a foot that would stand across an edge, as on stairs, is put ahead of it, behind it or beside it. A <see cref="GaitGenerator3D"/> beside this node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.</summary>
         public bool AdjustFootholds
         {
             get => Native.Get(PropertyName.AdjustFootholds).AsBool();

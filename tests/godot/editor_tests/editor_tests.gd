@@ -8,6 +8,7 @@ const SCENE := SCRATCH + "/walker.tscn"
 const RECORDING := "res://../data/walker_1_fast.bvh"
 const STYLE := "res://styles/dock_test.footstyle"
 const HERO := SCRATCH + "/hero.tscn"
+const HERO_FILES: Array[String] = [SCRATCH + "/hero_file.glb", SCRATCH + "/hero_file.fbx"]
 const LONE_ANIMATION := SCRATCH + "/walk.res"
 const PATIENCE_SECS := 60.0
 
@@ -28,12 +29,17 @@ func _run() -> void:
 	if dock:
 		await _test_dock(dock)
 		await _test_dock_takes_animations(dock)
+		for file: String in HERO_FILES:
+			await _test_dock_takes_an_imported_file(dock, file)
 		await _test_scene(dock)
 		await _test_controller()
 		await _test_hot_reload()
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE + ".uid"))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(STYLE.get_base_dir()))
+	for file: String in HERO_FILES:
+		DirAccess.remove_absolute(ProjectSettings.globalize_path(file))
+		DirAccess.remove_absolute(ProjectSettings.globalize_path(file + ".import"))
 	for file: String in [SCENE, HERO, LONE_ANIMATION]:
 		DirAccess.remove_absolute(ProjectSettings.globalize_path(file))
 	DirAccess.remove_absolute(ProjectSettings.globalize_path(SCRATCH))
@@ -110,6 +116,32 @@ func _test_dock_takes_animations(dock: Node) -> void:
 	var message: String = dock.call(&"get_message")
 	_check(message.contains("4 steps at 1.0"), "the style has the loops' speed: " + message)
 	_check(message.contains("A thin style") and message.contains("hero.tscn#Idle"), "it is told to be thin: " + message)
+	dock.call(&"remove_selected")
+
+
+## A character in a file, as it is bought or downloaded: the editor imports it, and the dock takes what became of it.
+func _test_dock_takes_an_imported_file(dock: Node, file: String) -> void:
+	var walk := GameClip.loop(self, 1.05)
+	var error := GameClip.write_file(self, {Walk = walk, Idle = GameClip.still(walk)}, file)
+	_check(error == OK, "%s is written: %s" % [file, error_string(error)])
+	var files := EditorInterface.get_resource_filesystem()
+	files.scan()
+	await _until(func() -> bool: return not files.is_scanning() and files.get_filesystem_path(SCRATCH) != null, "the scan that finds the folder")
+	if not ResourceLoader.exists(file):
+		files.update_file(file)
+		files.reimport_files([file])
+	_check(ResourceLoader.exists(file) and load(file) is PackedScene, "the editor imports " + file)
+	var list: ItemList = dock.find_children("*", "ItemList", true, false)[0]
+	dock.call(&"add_recordings", PackedStringArray([file]))
+	_check(dock.call(&"get_message").is_empty(), "it is taken: " + dock.call(&"get_message"))
+	var items := range(list.item_count).map(func(item: int) -> String: return list.get_item_text(item))
+	var shown := file.get_file()
+	_check(items == [shown + "#Idle", shown + "#Walk"], "its animations are listed: %s" % [items])
+	dock.call(&"make")
+	await _until(func() -> bool: return not dock.call(&"is_working"), "making a style of an imported file")
+	var message: String = dock.call(&"get_message")
+	_check(message.contains("2 steps at 1.0"), "the style has the loop's speed: " + message)
+	_check(message.contains("A thin style") and message.contains(shown + "#Idle"), "it is told to be thin, and who only stands is named: " + message)
 	dock.call(&"remove_selected")
 
 

@@ -327,16 +327,17 @@ impl Watcher {
             if above > 0.0 {
                 self.fault(Failure::FootAboveHip, frame, walker, above);
             }
-            let inside = soles[index]
-                .map(|point| depth(terrain, point))
-                .into_iter()
+            let rim = walker.rim(side);
+            let whole = || soles[index].iter().chain(rim.as_flattened());
+            let inside = whole()
+                .map(|point| depth(terrain, *point))
                 .fold(0.0, f32::max);
             if inside > INSIDE_M {
                 self.fault(Failure::Inside, frame, walker, inside);
             }
             if placed.locked {
-                let off = soles[index].map(|point| point.y - terrain.at(point).position.y);
-                let off = off.into_iter().fold(f32::MAX, f32::min);
+                let off = whole().map(|point| point.y - terrain.at(*point).position.y);
+                let off = off.fold(f32::MAX, f32::min);
                 if off > OFF_M {
                     self.fault(Failure::OffGround, frame, walker, off);
                 }

@@ -2,6 +2,7 @@
 
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_ik::RockerFoot;
 use footfall_ik::placement::{
     FootPlacer, Frame, Ground, PlacementConfig, PlacementInput, SupportId, Terrain,
 };
@@ -224,6 +225,20 @@ impl PlacedWalker {
             self.world.point(side.toes(), shape.ball),
             self.world.point(side.toes(), shape.toe_tip),
         ]
+    }
+
+    /// The rim of a foot's sole in the world: left and right of heel, ball and toe tip.
+    pub fn rim(&self, side: Side) -> [[Vec3; 2]; 3] {
+        let shape = self.skeleton.foot(side);
+        let [heel, ball, tip] = RockerFoot::new(&self.skeleton, side).half_breadths();
+        [
+            (side.foot(), shape.heel, heel),
+            (side.toes(), shape.ball, ball),
+            (side.toes(), shape.toe_tip, tip),
+        ]
+        .map(|(joint, point, half)| {
+            [Vec3::X, Vec3::NEG_X].map(|way| self.world.point(joint, point + half * way))
+        })
     }
 
     /// How far a knee is bent, radians.

@@ -241,3 +241,32 @@ fn nothing_is_left_of_a_motion_that_is_the_same() {
         }
     }
 }
+
+/// Feet that lie far from the hips on the ground are no reason to pull the hips down to them.
+#[test]
+fn a_body_that_lies_gets_up_without_its_hips_dropping() {
+    let mut lies = standing();
+    for (turn, height) in [(-1.5, 0.13), (1.5, 0.13), (-1.3, 0.25)] {
+        for begin in (0..40).step_by(4) {
+            let mut walk = walker(3);
+            for _ in 0..60 + begin {
+                lies.root_position = step(&mut walk, &walking(1.3)).0.root_position;
+            }
+            lies.root_position.y = height;
+            lies.rotations[0] = Quat::from_rotation_x(turn);
+            let to = || {
+                let (pose, stands) = step(&mut walk, &walking(1.3));
+                (pose, stands, false)
+            };
+            let (shown, _) = go_over([&lies, &lies], [true; 2], to, 0.8, 90);
+            for frames in shown.windows(3) {
+                let [a, b, c] = [0, 1, 2].map(|frame: usize| frames[frame][0]);
+                let bend = (a - 2.0 * b + c).length() / (DT * DT);
+                assert!(
+                    bend < MOST_ACCELERATION,
+                    "{bend} m/s² from {turn}, frame {begin}: {a} {b} {c}"
+                );
+            }
+        }
+    }
+}

@@ -80,7 +80,7 @@ pub(crate) struct FootPlacement3D {
     #[init(val = 0.6)]
     max_twist: f64,
 
-    /// Whether a foot that would stand across an edge, as on stairs, is put ahead of it or behind it. A `GaitGenerator3D` beside this
+    /// Whether a foot that would stand across an edge, as on stairs, is put ahead of it, behind it or beside it. A `GaitGenerator3D` beside this
     /// node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.
     #[export]
     #[init(val = true)]

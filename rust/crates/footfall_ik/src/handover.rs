@@ -23,6 +23,11 @@ const MAX_EXTENSION: f32 = 0.999;
 const YIELD_M: f32 = 0.04;
 /// It does so from the first part of the way on: by one through this.
 const YIELD_RATE: f32 = 3.0;
+/// A leg that lies does not pull the pelvis down to its foot: the nearer its foot is to its whole length to the side, the less it does, from
+/// this share of the length on.
+const UPRIGHT_SHARE: f32 = 0.25;
+/// Nor does any leg pull it down or let it go faster than this, m/s.
+const MOST_YIELD_MPS: f32 = 0.8;
 /// Speeds beyond these are no body's: a clip that jumped, or a character that was put elsewhere. Metres and radians a second.
 const MAX_SPEED_MPS: f32 = 6.0;
 const MAX_TURN_RADPS: f32 = 25.0;
@@ -44,6 +49,8 @@ pub struct Handover {
     hips: Fading,
     turns: [Fading; JOINT_COUNT],
     feet: [HeldFoot; 2],
+    /// How far the pelvis gives way to the feet, metres.
+    yielded_m: f32,
     frame: BodyFrame,
 }
 
@@ -96,6 +103,7 @@ impl Handover {
             hips: Fading::new(hips, per_sec(hips - hips_before, MAX_SPEED_MPS), secs),
             turns,
             feet,
+            yielded_m: 0.0,
             frame,
         }
     }
@@ -123,6 +131,8 @@ impl Handover {
         }
         let hips_rotation = pose.rotations[Joint::Hips.index()];
         let begun = smooth_step(YIELD_RATE * self.hips.share());
+        let height = pose.root_position.y;
+        let mut lowest = height;
         for (index, target) in targets.iter().enumerate() {
             let hip = hips_rotation * self.frame.hip_offsets[index];
             let length = self.frame.leg_lengths[index];
@@ -130,9 +140,16 @@ impl Handover {
                 reach_height(pose.root_position, hip, target.ankle, length, MAX_EXTENSION);
             if let Some(highest) = highest {
                 let give = begun * self.feet[index].parted_m().min(YIELD_M);
-                pose.root_position.y = below(pose.root_position.y, highest, give);
+                let way = target.ankle - pose.root_position - hip;
+                let aside = way.with_y(0.0).length() / length;
+                let upright = smooth_step((1.0 - aside) / UPRIGHT_SHARE);
+                lowest -= upright * (lowest - below(lowest, highest, give));
             }
         }
+        let most = MOST_YIELD_MPS * dt_secs;
+        let lacks = height - lowest;
+        self.yielded_m = lacks.clamp(self.yielded_m - most, self.yielded_m + most);
+        pose.root_position.y -= self.yielded_m;
         for (leg, target) in self.frame.legs.iter().zip(&targets) {
             leg.solve(pose.root_position, hips_rotation, target, pose);
         }

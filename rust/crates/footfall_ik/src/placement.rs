@@ -4,8 +4,8 @@
 //! carries a swinging foot from one foothold to the next, moves the pelvis so that both legs reach, and solves the legs. Whatever
 //! supports a foot may move: its foothold moves along.
 //!
-//! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `foothold`, `profile`, `aim`, `told`, `contact`,
-//! `foot`, `swing`, `pelvis`, `carry`.
+//! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `lie`, `foothold`, `profile`, `aim`, `told`,
+//! `contact`, `foot`, `swing`, `pelvis`, `carry`.
 
 mod aim;
 mod carry;
@@ -16,6 +16,7 @@ mod effort;
 mod foot;
 mod foothold;
 mod frame;
+mod lie;
 mod pelvis;
 mod profile;
 mod swing;

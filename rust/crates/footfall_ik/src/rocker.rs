@@ -19,6 +19,10 @@ const MAX_TOE_FLEXION: f32 = 0.9 * FRAC_PI_3;
 /// Pitches much smaller than this count as flat, radians: captured soles are not level to a degree.
 const FLAT_PITCH: f32 = 0.09;
 
+/// Half the breadth of a sole under its heel, ball and toe tip, as shares of its length. Adults' feet are 0.27 of their length broad at the
+/// heel and 0.38 at the ball (ANSUR II, Gordon et al. 2014); toes taper.
+const HALF_BREADTHS: [f32; 3] = [0.135, 0.19, 0.12];
+
 /// Where a foot was put.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plant {
@@ -128,6 +132,27 @@ impl RockerFoot {
         ]
     }
 
+    /// Half the breadth of the sole at its [points](Self::sole_points), metres.
+    pub fn half_breadths(&self) -> [f32; 3] {
+        let [heel, _, tip] = self.sole_points();
+        HALF_BREADTHS.map(|share| share * (tip.z - heel.z))
+    }
+
+    /// The rim of a flat sole to the left and to the right of its [points](Self::sole_points), in the same axes.
+    pub fn sole_rim(&self) -> [[Vec3; 2]; 3] {
+        beside(self.sole_points(), self.half_breadths(), [Vec3::X; 3])
+    }
+
+    /// [That rim](Self::sole_rim) of a foot that does not lie flat, to the left and to the right of its [points](Self::points).
+    pub fn rim(&self, target: &FootTarget) -> [[Vec3; 2]; 3] {
+        let [foot, toes] = [target.foot, target.toes].map(|rotation| rotation * Vec3::X);
+        beside(
+            self.points(target),
+            self.half_breadths(),
+            [foot, toes, toes],
+        )
+    }
+
     /// The middle of a flat sole, ahead of the ankle.
     pub fn sole_middle(&self) -> Vec3 {
         let [heel, _, tip] = self.sole_points();
@@ -155,6 +180,14 @@ impl RockerFoot {
     pub fn footprint(plant: &Plant) -> Vec3 {
         Vec3::new(plant.flat_ankle.x, 0.0, plant.flat_ankle.z)
     }
+}
+
+/// The places so far to the left and to the right of points.
+fn beside(points: [Vec3; 3], breadths: [f32; 3], left: [Vec3; 3]) -> [[Vec3; 2]; 3] {
+    core::array::from_fn(|index| {
+        let aside = left[index] * breadths[index];
+        [points[index] + aside, points[index] - aside]
+    })
 }
 
 /// A point of the foot, turned about +X.

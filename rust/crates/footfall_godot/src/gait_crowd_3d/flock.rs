@@ -54,7 +54,14 @@ impl Flock {
     ) -> Option<Self> {
         let width = convert::count(ROW_TEXELS);
         let height = poses.div_ceil(POSES_PER_ROW).max(1);
-        let image = Image::create_empty(width, convert::count(height), false, Format::RGBAH)?;
+        let zeros = |_| {
+            let mut zeros = PackedByteArray::new();
+            zeros.resize(height * POSES_PER_ROW * POSE_BYTES);
+            zeros
+        };
+        let poses = [0, 1].map(zeros);
+        let rows = convert::count(height);
+        let image = Image::create_from_data(width, rows, false, Format::RGBAH, &poses[0])?;
         let texture = ImageTexture::create_from_image(&image)?;
         let shown = give_poses(&mesh.meshes[level], &mesh.rest, &texture, material);
         let mut multimesh = MultiMesh::new_gd();
@@ -70,26 +77,22 @@ impl Flock {
             .add_child_ex(&instance)
             .internal(godot::classes::node::InternalMode::BACK)
             .done();
-        let bytes = height * POSES_PER_ROW * POSE_BYTES;
         let numbers = room * INSTANCE_NUMBERS;
         Some(Self {
             instance,
             multimesh,
             image,
             texture,
-            poses: [(); 2].map(|()| {
-                let mut zeros = PackedByteArray::new();
-                zeros.resize(bytes);
-                zeros
-            }),
+            poses,
             instances: [(); 2].map(|()| {
                 let mut zeros = PackedFloat32Array::new();
                 zeros.resize(numbers);
                 zeros
             }),
             room,
-            turn: [0; 2],
-            height: convert::count(height),
+            // The image holds the first poses already.
+            turn: [1, 0],
+            height: rows,
         })
     }
 

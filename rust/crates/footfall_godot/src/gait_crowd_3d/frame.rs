@@ -37,7 +37,7 @@ impl GaitCrowd3D {
         ground::find(&mut walkers, &host, mask);
         let scene = scene.or_else(|| {
             let _released = self.base_mut();
-            CrowdScene::new(&host, &walkers, &limits, &look)
+            CrowdScene::new(&host, &walkers, &look)
         });
         let drawn = scene.map(|mut scene| {
             let _released = self.base_mut();

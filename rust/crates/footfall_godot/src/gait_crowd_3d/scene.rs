@@ -23,7 +23,7 @@ pub(super) struct Look {
     pub(super) character: Option<Gd<PackedScene>>,
     pub(super) material: Option<Gd<ShaderMaterial>>,
     pub(super) culls: bool,
-    /// Whole scenes that are made in one frame at most: each takes the engine a millisecond or more.
+    /// Whole scenes that are made in one frame at most, and flocks that get more room: each takes the engine a millisecond or more.
     pub(super) most_made: usize,
 }
 
@@ -50,17 +50,12 @@ pub(super) struct CrowdScene {
 }
 
 impl CrowdScene {
-    pub(super) fn new(
-        host: &Gd<Node3D>,
-        walkers: &Walkers,
-        limits: &Limits,
-        look: &Look,
-    ) -> Option<Self> {
-        let (room, each) = rooms(walkers, limits);
+    /// Without room for anybody yet.
+    pub(super) fn new(host: &Gd<Node3D>, walkers: &Walkers, look: &Look) -> Option<Self> {
         Some(Self {
-            near: near(host, walkers, room, look)?,
+            near: near(host, walkers, 1, look)?,
             far: (0..GROUPS)
-                .map(|_| far(host, walkers, each, look))
+                .map(|_| far(host, walkers, 1, look))
                 .collect::<Option<Vec<_>>>()?,
             actors: Actors::default(),
             chooser: Chooser::default(),
@@ -74,24 +69,32 @@ impl CrowdScene {
         })
     }
 
-    /// Gives it room for everybody.
+    /// Gives it room for everybody; where many come at once, within some frames.
     fn fit(&mut self, host: &Gd<Node3D>, walkers: &Walkers, limits: &Limits, look: &Look) {
         let (room, each) = rooms(walkers, limits);
         let places = walkers.agents.len();
         self.shown.reserve(room.saturating_sub(self.shown.len()));
         self.ticks.resize(places, 0);
+        let mut left = look.most_made;
         if room > self.near.room
             && let Some(made) = near(host, walkers, room, look)
         {
             core::mem::replace(&mut self.near, made).free();
+            left -= 1;
         }
-        for (flock, unwritten) in self.far.iter_mut().zip(&mut self.unwritten) {
+        for (group, flock) in self.far.iter_mut().enumerate() {
             // Half as much again, so that it seldom happens.
-            if each > flock.room
+            if left > 0
+                && each > flock.room
                 && let Some(made) = far(host, walkers, each.max(flock.room * 3 / 2), look)
             {
                 core::mem::replace(flock, made).free();
-                *unwritten = true;
+                left -= 1;
+                self.unwritten[group] = true;
+                // Nobody's pose is in it yet.
+                for tick in self.ticks.iter_mut().skip(group).step_by(GROUPS) {
+                    *tick = 0;
+                }
             }
         }
     }
@@ -251,7 +254,7 @@ impl CrowdScene {
             let unwritten = core::mem::take(&mut self.unwritten[group]);
             if since == 0 || unwritten {
                 write_far(flock, group, walkers, planes, &self.ticks);
-                for index in (group..drawn.len()).step_by(GROUPS) {
+                for index in (group..drawn.len()).step_by(GROUPS).take(flock.room) {
                     if is_far(tiers[index], &agents[index], planes) {
                         self.ticks[index] = frame;
                     }
@@ -261,8 +264,10 @@ impl CrowdScene {
             let share = (since + 1) as f32 / GROUPS as f32;
             let mut bounds = Bounds::default();
             let mut count = 0;
+            let room = flock.room;
             let mut rows = flock.instances().chunks_exact_mut(INSTANCE_NUMBERS);
-            for (slot, index) in (group..drawn.len()).step_by(GROUPS).enumerate() {
+            let members = (group..drawn.len()).step_by(GROUPS).take(room);
+            for (slot, index) in members.enumerate() {
                 if tiers[index] != Tier::Far || frame - self.ticks[index] >= GROUPS as u64 {
                     continue;
                 }

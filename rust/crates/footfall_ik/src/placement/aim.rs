@@ -1,7 +1,7 @@
 //! Where the step that has just begun is to land.
 
 use crate::placement::foot::{Landing, Scene};
-use crate::placement::foothold::{Foothold, SHIFT_COST, Search};
+use crate::placement::foothold::{ASKEW_COST, Foothold, MOST_ASIDE_M, SHIFT_COST, Search};
 use crate::placement::frame::Frame;
 use crate::placement::profile::Profile;
 use crate::placement::terrain::Terrain;
@@ -16,6 +16,8 @@ const MORE_SHARE: f32 = 0.3;
 const MOST_MORE_M: f32 = 0.16;
 /// Distance between the places that are tried, metres.
 const TRIAL_M: f32 = 0.01;
+/// Footprints are no nearer to each other to the side for an edge's sake, metres.
+const LEAST_BASE_M: f32 = 0.06;
 /// Rises and falls of a step that are no effort and those that are out of reach, in lengths of the leg; what a metre of effort costs.
 const EASY_RISE: f32 = 0.28;
 const MOST_RISE: f32 = 0.6;
@@ -47,6 +49,18 @@ pub(super) struct Step<'a> {
     pub(super) may_stretch: bool,
 }
 
+/// The ground along it, and what is asked of it.
+struct Way {
+    profile: Profile,
+    /// The sole where the animation puts it, in the world, and how far that is from the standing foot, metres.
+    flat: Frame,
+    length: f32,
+    /// Height of the standing foot, metres.
+    standing: f32,
+    /// How far the foot may be put short of where it would land and beyond, metres.
+    bounds: (f32, f32),
+}
+
 impl Step<'_> {
     /// Chooses where it lands; `None` where there is no ground within reach.
     pub(super) fn aim<T: Terrain>(&self, scene: &mut Scene<'_, T>) -> Option<Aim> {
@@ -71,10 +85,35 @@ impl Step<'_> {
         let search = Search {
             above_m: max_step,
             below_m: max_step,
+            aside_m: self.room_aside(&flat),
             ..scene.search()
         };
-        let (least, most) = self.bounds(length, search.may_shift);
-        let standing = self.standing.position.dot(up);
+        let way = Way {
+            profile,
+            flat,
+            length,
+            standing: self.standing.position.dot(up),
+            bounds: self.bounds(length, search.may_shift),
+        };
+        let best = self.search(scene, &way, &search);
+        let best = best.filter(|(cost, _)| *cost < ASKEW_COST).or_else(|| {
+            let thorough = Search {
+                thorough: true,
+                ..search
+            };
+            self.search(scene, &way, &thorough)
+        });
+        best.map(|(_, aim)| aim)
+    }
+
+    /// The best place on the way, and its cost.
+    fn search<T: Terrain>(
+        &self,
+        scene: &mut Scene<'_, T>,
+        way: &Way,
+        search: &Search,
+    ) -> Option<(f32, Aim)> {
+        let (least, most) = way.bounds;
         let mut best: Option<(f32, Aim)> = None;
         for trial in 0..=((least.max(most) / TRIAL_M) as i32) {
             let shift = TRIAL_M * trial as f32;
@@ -86,42 +125,50 @@ impl Step<'_> {
                 if shift > most || -shift > least {
                     continue;
                 }
-                let Some(height) = profile.height(length + shift) else {
-                    continue;
-                };
-                let place = Frame {
-                    position: profile.at(length + shift, height),
-                    ..flat
-                };
-                let Some((lie, cost)) = search.judge(scene.terrain, &place, self.rocker) else {
-                    continue;
-                };
-                let rise = (lie.sole.position.dot(up) - standing) / self.leg_m;
-                if rise.abs() > MOST_RISE {
-                    continue;
-                }
-                let effort = RISE_COST * self.leg_m * (rise.abs() - EASY_RISE).max(0.0);
-                let farther = if shift > 0.0 { LONGER_COST } else { 1.0 };
-                let cost = cost + farther * SHIFT_COST * shift.abs() + effort;
-                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                    let height = |along_m: f32| profile.height(along_m);
-                    let sole = lie.sole.position.dot(up);
-                    let next = height(2.0 * length + shift).or(height(1.5 * length + shift));
-                    let easy = EASY_RISE * self.leg_m;
-                    let ahead = next.map_or(0.0, |next| next - standing);
-                    best = Some((
-                        cost,
-                        Aim {
-                            foothold: lie.foothold(scene.terrain)?,
-                            share: (length + shift) / length,
-                            next_rise_m: next.map_or(0.0, |next| (next - sole).clamp(-easy, easy)),
-                            grade: (ahead / (2.0 * length)).clamp(-1.0, 1.0),
-                        },
-                    ));
+                let least = best.map_or(f32::MAX, |(cost, _)| cost);
+                if let Some(better) = self.weigh(scene, way, search, shift, least) {
+                    best = Some(better);
                 }
             }
         }
-        best.map(|(_, aim)| aim)
+        best
+    }
+
+    /// A place so much farther or nearer, and its cost, where that is less than `most`.
+    fn weigh<T: Terrain>(
+        &self,
+        scene: &mut Scene<'_, T>,
+        way: &Way,
+        search: &Search,
+        shift: f32,
+        most: f32,
+    ) -> Option<(f32, Aim)> {
+        let (length, profile) = (way.length, &way.profile);
+        let place = Frame {
+            position: profile.at(length + shift, profile.height(length + shift)?),
+            ..way.flat
+        };
+        let farther = if shift > 0.0 { LONGER_COST } else { 1.0 };
+        let shifted = farther * SHIFT_COST * shift.abs();
+        let (lie, cost) = search.judge(scene.terrain, &place, self.rocker, most - shifted)?;
+        let sole = lie.sole.position.dot(search.up);
+        let rise = (sole - way.standing) / self.leg_m;
+        let effort = RISE_COST * self.leg_m * (rise.abs() - EASY_RISE).max(0.0);
+        let cost = cost + shifted + effort;
+        if rise.abs() > MOST_RISE || cost >= most {
+            return None;
+        }
+        let height = |along_m: f32| profile.height(along_m);
+        let next = height(2.0 * length + shift).or(height(1.5 * length + shift));
+        let easy = EASY_RISE * self.leg_m;
+        let ahead = next.map_or(0.0, |next| next - way.standing);
+        let aim = Aim {
+            foothold: lie.foothold(scene.terrain)?,
+            share: (length + shift) / length,
+            next_rise_m: next.map_or(0.0, |next| (next - sole).clamp(-easy, easy)),
+            grade: (ahead / (2.0 * length)).clamp(-1.0, 1.0),
+        };
+        Some((cost, aim))
     }
 
     /// How far the foot may be put short of where it would land and beyond, metres.
@@ -133,6 +180,18 @@ impl Step<'_> {
             (MOST_MORE_M, more)
         } else {
             (0.0, 0.0)
+        }
+    }
+
+    /// How far the foot may be put to the left and to the right: not in the way of the other, metres.
+    fn room_aside(&self, flat: &Frame) -> [f32; 2] {
+        let left = flat.rotation * Vec3::X;
+        let apart = (flat.position - self.standing.position).dot(left);
+        let inwards = (apart.abs() - LEAST_BASE_M).clamp(0.0, MOST_ASIDE_M);
+        if apart > 0.0 {
+            [MOST_ASIDE_M, inwards]
+        } else {
+            [inwards, MOST_ASIDE_M]
         }
     }
 

@@ -20,7 +20,7 @@ pub struct PlacementConfig {
     pub max_drift_m: f32,
     /// A foot that the animation turns this far from where it is locked is put anew, radians.
     pub max_twist: f32,
-    /// Whether a foot that would stand across an edge is put ahead of it or behind it.
+    /// Whether a foot that would stand across an edge is put ahead of it, behind it or beside it.
     pub adjust_footholds: bool,
     /// When a foot stands, for animations that do not tell.
     pub contact: ContactThresholds,

@@ -3,7 +3,7 @@
 use crate::leg::FootTarget;
 use crate::placement::PlacementConfig;
 use crate::placement::correction::{Correction, Residual};
-use crate::placement::foothold::{Foothold, Search};
+use crate::placement::foothold::{Foothold, MOST_ASIDE_M, Search};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::Follower;
 use crate::placement::swing::Plan;
@@ -120,6 +120,8 @@ impl<T: Terrain> Scene<'_, T> {
             below_m: self.config.max_step_m - self.soles_m[0].min(0.0),
             max_tilt: self.config.max_tilt,
             may_shift: self.config.adjust_footholds,
+            aside_m: [MOST_ASIDE_M; 2],
+            thorough: false,
         }
     }
 

@@ -1,29 +1,23 @@
 //! Where on the ground a sole can lie.
 
 use crate::placement::frame::Frame;
+use crate::placement::lie::Lie;
 use crate::placement::terrain::{Ground, SupportId, Terrain};
 use crate::rocker::RockerFoot;
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
 /// A flat sole is on the ground as long as none of its points is farther from it than this, metres.
-const FLAT_M: f32 = 0.008;
-
-/// What is looked at reaches so much beyond heel and toes: a sole whose very edge is over the edge of a step stands badly.
-const MARGIN_M: f32 = 0.005;
-
-/// Heel and toes keep so far from ground that is higher, where they can, metres: the foot comes from above.
-const CLEAR_M: f32 = 0.05;
-/// Ground that is higher by less is stepped over.
-const HIGHER_M: f32 = 0.03;
-
-/// A sole follows heel and toes rather than the ground under its ball by so much at most, radians.
-const MAX_BRIDGE: f32 = 0.3;
+pub(super) const FLAT_M: f32 = 0.008;
 
 /// A foot that would stand across an edge is put so much farther ahead or back, in the order of trial, metres.
 const SHIFTS_M: [f32; 17] = [
     0.0, 0.02, -0.02, 0.04, -0.04, 0.06, -0.06, 0.08, -0.08, 0.1, -0.1, 0.12, -0.12, 0.14, -0.14,
     0.16, -0.16,
 ];
+
+/// A sole whose rim lies across an edge is put so far to the left or to the right at most, metres, and places so far apart are tried.
+pub(crate) const MOST_ASIDE_M: f32 = 0.1;
+const ASIDE_M: f32 = 0.02;
 
 /// A place for a sole, on something that may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,20 +47,14 @@ impl Foothold {
 pub(crate) const SHIFT_COST: f32 = 1.0;
 const TIGHT_COST: f32 = 0.08;
 const OVERHANG_COST: f32 = 0.3;
-
-/// A sole on the ground.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lie {
-    /// In the world.
-    pub(crate) sole: Frame,
-    support: SupportId,
-    /// How far from the ground its farthest point is, and its ball with the nearer end, metres.
-    gap: f32,
-    borne_gap: f32,
-    heel_hangs: bool,
-}
+/// A sole that does not lie costs so much at least.
+pub(crate) const ASKEW_COST: f32 = 1.0;
+/// What a metre to the side costs, and each point of the rim with nothing under it.
+const ASIDE_COST: f32 = 1.0;
+const RIM_COST: f32 = 0.05;
 
 impl Lie {
+    /// As a place on what it lies on; `None` when that is gone.
     pub(crate) fn foothold(&self, terrain: &mut impl Terrain) -> Option<Foothold> {
         Some(Foothold {
             heel_hangs: self.heel_hangs,
@@ -88,6 +76,10 @@ pub(crate) struct Search {
     pub(crate) max_tilt: f32,
     /// Whether the sole may move ahead or back, out of the way of an edge.
     pub(crate) may_shift: bool,
+    /// How far it may move to the left and to the right, metres.
+    pub(crate) aside_m: [f32; 2],
+    /// Whether it does so also where its middle lies across an edge. Most edges lie across the way, and moving to the side is in vain.
+    pub(crate) thorough: bool,
 }
 
 impl Search {
@@ -120,10 +112,12 @@ impl Search {
                 position: world_from_flat.position + forward * *shift,
                 ..*world_from_flat
             };
-            let Some((lie, cost)) = self.judge(terrain, &flat, foot) else {
+            let way = SHIFT_COST * shift.abs();
+            let most = best.map_or(f32::MAX, |(least, ..)| least) - way;
+            let Some((lie, cost)) = self.judge(terrain, &flat, foot, most) else {
                 continue;
             };
-            let cost = cost + SHIFT_COST * shift.abs();
+            let cost = cost + way;
             if best.is_none_or(|(least, ..)| cost < least) {
                 best = Some((cost, lie));
             }
@@ -131,16 +125,55 @@ impl Search {
         best?.1.foothold(terrain)
     }
 
-    /// How a sole lies in this place and what that costs, beyond the way to it; `None` where there is no ground.
+    /// How a sole lies in this place, or a little to the side of it, and what that costs, beyond the way to it; `None` where there is no
+    /// ground, or where it would cost `most` and more.
     pub(crate) fn judge(
         &self,
         terrain: &mut impl Terrain,
         flat: &Frame,
         foot: &RockerFoot,
+        most: f32,
     ) -> Option<(Lie, f32)> {
-        let lie = self.lay(terrain, flat, foot)?;
-        let cost = if lie.borne_gap > FLAT_M {
-            1.0 + lie.gap
+        let here = self.weigh(terrain, flat, foot, most)?;
+        let rests = here.0.rim_rests() && (!self.thorough || here.0.borne_gap <= FLAT_M);
+        let mut best = Some(here).filter(|(_, cost)| *cost < most);
+        if !self.may_shift || rests {
+            return best;
+        }
+        let left = flat.rotation * Vec3::X;
+        for trial in 1..=(MOST_ASIDE_M / ASIDE_M) as i32 {
+            let aside = ASIDE_M * trial as f32;
+            let way = ASIDE_COST * aside;
+            for (aside, room) in [(aside, self.aside_m[0]), (-aside, self.aside_m[1])] {
+                let least = best.map_or(most, |(_, cost)| cost);
+                if aside.abs() > room || way >= least {
+                    continue;
+                }
+                let flat = Frame {
+                    position: flat.position + left * aside,
+                    ..*flat
+                };
+                let there = self.weigh(terrain, &flat, foot, least - way);
+                if let Some((lie, cost)) = there.filter(|(_, cost)| cost + way < least) {
+                    best = Some((lie, cost + way));
+                }
+            }
+        }
+        best
+    }
+
+    /// How a sole lies in this very place and what that costs; infinitely much, where its rim need not be looked at for it to cost
+    /// `most` and more.
+    fn weigh(
+        &self,
+        terrain: &mut impl Terrain,
+        flat: &Frame,
+        foot: &RockerFoot,
+        most: f32,
+    ) -> Option<(Lie, f32)> {
+        let mut lie = self.lay(terrain, flat, foot)?;
+        let mut cost = if lie.borne_gap > FLAT_M {
+            ASKEW_COST + lie.gap
         } else if lie.gap > FLAT_M {
             OVERHANG_COST
         } else if self.is_tight(terrain, &lie.sole, foot) {
@@ -148,87 +181,101 @@ impl Search {
         } else {
             0.0
         };
-        Some((lie, cost))
-    }
-
-    /// Whether higher ground stands close behind the heel or before the toes of a sole.
-    fn is_tight(&self, terrain: &mut impl Terrain, sole: &Frame, foot: &RockerFoot) -> bool {
-        let [heel, _, tip] = foot.sole_points();
-        [heel - Vec3::Z * CLEAR_M, tip + Vec3::Z * CLEAR_M]
-            .into_iter()
-            .any(|point| {
-                let ground = self.cast(terrain, sole.point(point));
-                ground.is_some_and(|ground| sole.local_point(ground.position).y > HIGHER_M)
-            })
-    }
-
-    /// A sole laid on the ground here.
-    fn lay(&self, terrain: &mut impl Terrain, flat: &Frame, foot: &RockerFoot) -> Option<Lie> {
-        let [heel, ball, tip] = foot.sole_points();
-        let margin = Vec3::Z * MARGIN_M;
-        let [heel, ball, tip] =
-            [heel - margin, ball, tip + margin].map(|point| self.cast(terrain, flat.point(point)));
-        let ball = ball.or(heel).or(tip)?;
-        let across = ball.normal;
-        let along_ground = match (heel, tip) {
-            (Some(heel), Some(tip)) => (tip.position - heel.position).normalize_or(flat.forward()),
-            _ => flat.forward(),
-        };
-        let on_plane = |normal: Vec3| {
-            let normal = self.limited(normal);
-            let rotation = laid(normal, flat.forward());
-            // The plane goes through the highest point of the ground under the sole.
-            let rise = [heel, Some(ball), tip]
-                .into_iter()
-                .flatten()
-                .map(|ground| (ground.position - ball.position).dot(normal))
-                .fold(f32::NEG_INFINITY, f32::max);
-            let [heel_gap, ball_gap, tip_gap] = [heel, Some(ball), tip].map(|ground| {
-                ground.map_or(self.above_m, |ground| {
-                    rise - (ground.position - ball.position).dot(normal)
-                })
-            });
-            let on_plane = ball.position + normal * rise - flat.position;
-            let height = on_plane.dot(normal) / self.up.dot(normal);
-            let sole = Frame {
-                position: flat.position + self.up * height,
-                rotation,
-            };
-            Lie {
-                sole,
-                support: ball.support,
-                gap: heel_gap.max(ball_gap).max(tip_gap),
-                borne_gap: ball_gap.max(heel_gap.min(tip_gap)),
-                heel_hangs: heel_gap > FLAT_M,
-            }
-        };
-        let by_normal = on_plane(across);
-        // Over a crest or through a dip the line from heel to toes lies better than the normal under the ball.
-        let by_line =
-            on_plane((across - along_ground * across.dot(along_ground)).normalize_or(across));
-        // Nor does a sole lie from edge to edge of a staircase.
-        let bridges = by_line.sole.up().angle_between(self.limited(across)) > MAX_BRIDGE;
-        Some(if bridges || by_normal.gap <= by_line.gap.max(FLAT_M) {
-            by_normal
-        } else {
-            by_line
-        })
-    }
-
-    /// A normal that is not tilted too far.
-    fn limited(&self, normal: Vec3) -> Vec3 {
-        let angle = self.up.angle_between(normal);
-        if angle <= self.max_tilt {
-            return normal;
+        if cost >= most {
+            return Some((lie, f32::INFINITY));
         }
-        let tilt = Quat::from_rotation_arc(self.up, normal);
-        Quat::IDENTITY.slerp(tilt, self.max_tilt / angle) * self.up
+        self.widen(terrain, &mut lie, foot);
+        cost = if lie.rim_cut > FLAT_M {
+            ASKEW_COST + lie.gap.max(lie.rim_cut)
+        } else {
+            cost + RIM_COST * lie.rim_hangs as f32
+        };
+        Some((lie, cost))
     }
 }
 
-/// The axes of a sole on a plane with this normal, pointing as near to `forward` as the plane lets it.
-fn laid(normal: Vec3, forward: Vec3) -> Quat {
-    let along =
-        (forward - normal * normal.dot(forward)).normalize_or(normal.any_orthonormal_vector());
-    Quat::from_mat3(&glam::Mat3::from_cols(normal.cross(along), normal, along))
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use footfall_core::{Side, Skeleton};
+
+    /// Ground whose height is a formula of x and z.
+    struct Formula<F>(F);
+
+    impl<F: Fn(f32, f32) -> f32> Terrain for Formula<F> {
+        fn cast(&mut self, from: Vec3, way: Vec3) -> Option<Ground> {
+            let height = (self.0)(from.x, from.z);
+            (from.y + way.y..=from.y)
+                .contains(&height)
+                .then_some(Ground {
+                    position: Vec3::new(from.x, height, from.z),
+                    normal: Vec3::Y,
+                    support: 0,
+                })
+        }
+
+        fn support(&mut self, _: SupportId) -> Option<Frame> {
+            Some(Frame::IDENTITY)
+        }
+    }
+
+    const SEARCH: Search = Search {
+        up: Vec3::Y,
+        above_m: 0.5,
+        below_m: 0.5,
+        max_tilt: 0.6,
+        may_shift: true,
+        aside_m: [MOST_ASIDE_M; 2],
+        thorough: false,
+    };
+
+    /// Where the sole of a foot at the origin is put, and the heights of its rim above the ground.
+    fn put(search: &Search, height: impl Fn(f32, f32) -> f32) -> (Vec3, Vec<f32>) {
+        let foot = RockerFoot::new(&Skeleton::standard(), Side::Left);
+        let mut ground = Formula(&height);
+        let hold = search.find(&mut ground, &Frame::IDENTITY, &foot);
+        let sole = hold.and_then(|hold| hold.world_from_sole(&mut ground));
+        let sole = sole.expect("there is ground everywhere");
+        let rim = foot.sole_rim();
+        let above = rim.as_flattened().iter().map(|point| {
+            let point = sole.point(*point);
+            point.y - height(point.x, point.z)
+        });
+        (sole.position, above.collect())
+    }
+
+    #[test]
+    fn a_sole_goes_aside_until_its_whole_breadth_lies() {
+        for (edge, higher) in [(0.03, 0.1), (-0.03, 0.1), (0.01, -0.1), (-0.01, -0.1)] {
+            let step = |x: f32, _: f32| if x > edge { higher } else { 0.0 };
+            let (place, above) = put(&SEARCH, step);
+            assert!(place.x != 0.0 && place.z == 0.0, "{place} beside {edge}");
+            assert!(place.x.abs() < 0.07, "{place} beside {edge}");
+            assert!(
+                above.iter().all(|above| above.abs() < FLAT_M),
+                "{above:?} beside {edge}"
+            );
+        }
+    }
+
+    #[test]
+    fn nothing_cuts_into_a_sole_that_cannot_go_aside() {
+        let fixed = Search {
+            may_shift: false,
+            ..SEARCH
+        };
+        let (_, above) = put(&fixed, |x, _| if x > 0.03 { 0.1 } else { 0.0 });
+        assert!(above.iter().all(|above| *above > -FLAT_M), "{above:?}");
+        assert!(above.iter().any(|above| above.abs() < FLAT_M), "{above:?}");
+    }
+
+    #[test]
+    fn a_wall_beside_a_sole_is_not_stood_on() {
+        let fixed = Search {
+            may_shift: false,
+            ..SEARCH
+        };
+        let (place, _) = put(&fixed, |x, _| if x > 0.03 { 0.4 } else { 0.0 });
+        assert!(place.y.abs() < 1e-6, "{place}");
+    }
 }

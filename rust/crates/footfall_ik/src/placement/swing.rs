@@ -314,21 +314,21 @@ impl Foot {
         self.passed = Some(place);
         let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS) * (1.0 - self.held);
         let ahead = way * Vec3::new(1.0, 0.0, 1.0) * (left / scene.dt_secs.max(1e-3));
-        let points = rocker.points(target);
-        let free = rocker.points(&animated.foot);
+        let soles = [target, &animated.foot].map(|foot| rocker.rim(foot));
+        let [points, free] = soles.each_ref().map(|rim| rim.as_flattened());
         let mut short = 0.0_f32;
         let mut inside = 0.0_f32;
-        for (point, free) in points.into_iter().zip(free) {
+        for (point, free) in points.iter().zip(free) {
             // No more room than the animation leaves over its own floor.
             let room = free.y.clamp(0.0, GUARD_M);
-            let Some((height, normal)) = scene.ground(point) else {
+            let Some((height, normal)) = scene.ground(*point) else {
                 continue;
             };
             short = short.max(height + room - point.y);
             inside = inside.max(height - point.y);
             // An edge ahead, as far as it is not the slope on which the foot goes anyway.
             let slope = -normal.dot(ahead) / normal.y.max(0.5);
-            if let Some((edge, _)) = scene.ground(point + ahead) {
+            if let Some((edge, _)) = scene.ground(*point + ahead) {
                 short = short.max(edge - slope + room - point.y);
             }
         }
