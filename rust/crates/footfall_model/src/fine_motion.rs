@@ -13,6 +13,9 @@ pub const FINE_POINTS: usize = 12;
 /// Points before and after one that the noise there is made of.
 pub const FINE_REACH: usize = 6;
 
+/// Points that the noise of one is made of.
+pub const FINE_TAPS: usize = 2 * FINE_REACH + 1;
+
 /// Directions in which the noise can go.
 pub const MAX_FINE_DIRECTIONS: usize = 16;
 
@@ -36,8 +39,9 @@ pub struct FineMotion {
 /// Noise that has the covariance and the spectrum of what captured steps do not have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FineChance {
-    /// Weights of independent numbers at the points from [`FINE_REACH`] before to as many after: their squares add up to 1.
-    pub kernel: Vec<f64>,
+    /// For each direction, weights of independent numbers at the points from [`FINE_REACH`] before to as many after: their squares add up
+    /// to 1. Arms sway slowly, head and trunk tremble.
+    pub kernels: Vec<Vec<f64>>,
     /// Directions of [`FEATURE_COUNT`] offsets, each with the standard deviation of its noise as its length.
     pub directions: Vec<Vec<f64>>,
     /// By how much the weight of each walker component adds to the logarithm of the noise's strength.
@@ -54,22 +58,34 @@ impl FineMotion {
         check_len("scale of fine motion", &self.scale, FEATURE_COUNT)?;
         check_positive("scale of fine motion", &self.scale)?;
         let chance = &self.chance;
-        check_len("kernel of fine motion", &chance.kernel, 2 * FINE_REACH + 1)?;
-        check_finite("kernel of fine motion", &chance.kernel)?;
+        for kernel in &chance.kernels {
+            check_len("kernel of fine motion", kernel, FINE_TAPS)?;
+            check_finite("kernel of fine motion", kernel)?;
+        }
         for direction in &chance.directions {
             check_len("direction of fine motion", direction, FEATURE_COUNT)?;
             check_finite("direction of fine motion", direction)?;
         }
         check_finite("strength of fine motion", &chance.walker_strength)?;
+        let walkers = walker_components;
         let counts = [
-            ("walkers' fine motion", self.walker.len()),
-            ("strengths of fine motion", chance.walker_strength.len()),
+            ("walkers' fine motion", walkers, self.walker.len()),
+            (
+                "strengths of fine motion",
+                walkers,
+                chance.walker_strength.len(),
+            ),
+            (
+                "kernels of fine motion",
+                chance.directions.len(),
+                chance.kernels.len(),
+            ),
         ];
-        for (part, found) in counts {
-            if found != walker_components {
+        for (part, expected, found) in counts {
+            if found != expected {
                 return Err(ModelError::Shape {
                     part: part.to_owned(),
-                    expected: walker_components,
+                    expected,
                     found,
                 });
             }

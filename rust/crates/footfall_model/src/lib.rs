@@ -17,7 +17,7 @@ pub mod style;
 pub use dynamics::{DynamicsModel, Regime, SEGMENT_SLACK};
 pub use file::{FORMAT_VERSION, ModelFileError, WalkModel};
 pub use fine_motion::{
-    FINE_POINTS, FINE_REACH, FineChance, FineMotion, FineTable, MAX_FINE_DIRECTIONS,
+    FINE_POINTS, FINE_REACH, FINE_TAPS, FineChance, FineMotion, FineTable, MAX_FINE_DIRECTIONS,
 };
 pub use gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,

@@ -8,7 +8,7 @@ use crate::plan::{MAX_COMPONENTS, StepDraw, StepPlan, Sum as _};
 use footfall_core::Side;
 use footfall_core::ease::{catmull_rom, smooth_step};
 use footfall_model::{
-    FEATURE_COUNT, FINE_POINTS, FINE_REACH, FineMotion, GaitModel, MAX_FINE_DIRECTIONS,
+    FEATURE_COUNT, FINE_POINTS, FINE_REACH, FINE_TAPS, FineMotion, GaitModel, MAX_FINE_DIRECTIONS,
 };
 use multiversion::multiversion;
 
@@ -32,7 +32,8 @@ pub(crate) type Scale = [f32; FEATURE_COUNT];
 pub(crate) struct FineTables {
     /// Per side, rows of the [`KNOTS`] of a step: what steps have in common, then each walker component.
     tables: [Vec<Vec<f32>>; 2],
-    kernel: Vec<f32>,
+    /// For each tap the weights of all directions.
+    kernels: [[f32; MAX_FINE_DIRECTIONS]; FINE_TAPS],
     directions: Vec<Vec<f32>>,
 }
 
@@ -79,7 +80,7 @@ impl FineTables {
         let narrow = |row: &Vec<f64>| row.iter().map(|value| *value as f32).collect();
         Some(Self {
             tables,
-            kernel: narrow(&fine.chance.kernel),
+            kernels: by_tap(&fine.chance.kernels),
             directions: fine.chance.directions.iter().map(narrow).collect(),
         })
     }
@@ -115,7 +116,7 @@ impl FineDraw {
     }
 }
 
-/// A number that no other step has, made of what chance decided about it; 0 for a step without chance.
+/// A number that no other step has, made of its side and of what chance decided about its stride; 0 for a step without chance.
 fn number_of(draw: &StepDraw, components: usize) -> u64 {
     let used = components.clamp(1, MAX_COMPONENTS);
     let weights = &draw.weights[..used];
@@ -124,7 +125,9 @@ fn number_of(draw: &StepDraw, components: usize) -> u64 {
     }
     weights
         .iter()
-        .fold(0, |number, weight| mixed(number ^ weight.to_bits()))
+        .fold(draw.side.index() as u64, |number, weight| {
+            mixed(number ^ weight.to_bits())
+        })
 }
 
 /// The finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every bit depends on every bit.
@@ -165,7 +168,7 @@ impl FineBench {
             fill(source, own, point % FINE_POINTS, directions);
         }
         for (knot, row) in self.knots.chunks_exact_mut(FEATURE_COUNT).enumerate() {
-            let along = weighted_sum(&self.sources[knot..], &tables.kernel);
+            let along = weighted_sum(&self.sources[knot..], &tables.kernels);
             let pairs = tables.directions.iter().zip(along);
             add_all(row, pairs.map(|(row, weight)| (row.as_slice(), weight)));
         }
@@ -201,15 +204,22 @@ fn add_between(
     }
 }
 
+/// Kernels with all directions' weights at a tap side by side.
+fn by_tap(kernels: &[Vec<f64>]) -> [[f32; MAX_FINE_DIRECTIONS]; FINE_TAPS] {
+    core::array::from_fn(|tap| {
+        core::array::from_fn(|direction| kernels.get(direction).map_or(0.0, |k| k[tap] as f32))
+    })
+}
+
 /// The weighted sum of the first sources.
 #[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
 fn weighted_sum(
     sources: &[[f32; MAX_FINE_DIRECTIONS]],
-    kernel: &[f32],
+    kernels: &[[f32; MAX_FINE_DIRECTIONS]; FINE_TAPS],
 ) -> [f32; MAX_FINE_DIRECTIONS] {
     let mut sums = [0.0; MAX_FINE_DIRECTIONS];
-    for (source, weight) in sources.iter().zip(kernel) {
-        for (sum, value) in sums.iter_mut().zip(source) {
+    for (source, weights) in sources.iter().zip(kernels) {
+        for ((sum, value), weight) in sums.iter_mut().zip(source).zip(weights) {
             *sum += weight * value;
         }
     }
@@ -271,7 +281,7 @@ mod tests {
                 })
                 .collect()
         };
-        let mut kernel = vec![0.0; 2 * FINE_REACH + 1];
+        let mut kernel = vec![0.0; FINE_TAPS];
         kernel[FINE_REACH - 1] = 0.6;
         kernel[FINE_REACH] = 0.8;
         let direction = |first: usize, value: f32| {
@@ -282,7 +292,7 @@ mod tests {
         };
         FineTables {
             tables: [0.0, 1.0].map(|side| vec![wave(side)]),
-            kernel,
+            kernels: by_tap(&[kernel.clone(), kernel]),
             directions: vec![direction(0, 0.5), direction(10, 0.25)],
         }
     }

@@ -6,6 +6,7 @@
 
 pub mod adapt;
 pub mod average;
+mod average_body;
 pub mod contexts;
 pub mod dataset;
 pub mod differences;

@@ -1,6 +1,7 @@
 //! The average walk from labelled clips, as one function.
 
 use crate::average::{AverageWalk, EmConfig};
+use crate::average_body::average_body;
 use crate::contexts::{self, ContextReport};
 use crate::dataset::{EncodeConfig, encode_clip};
 use crate::differences;
@@ -9,7 +10,7 @@ use crate::fine_motion;
 use crate::progress::{Progress, advance};
 use crate::sequence::Sequence;
 use crate::walker_adaptive::{self, WalkerAdaptive, WalkerTransform};
-use footfall_core::{Clip, Side, Skeleton, StepPosition};
+use footfall_core::{Clip, Side, StepPosition};
 use footfall_model::{FEATURE_COUNT, GaitModel, GlobalVarianceModel, Provenance, StepModel};
 use footfall_motion::corpus::CorpusClip;
 use footfall_motion::retarget::Retargeted;
@@ -125,7 +126,7 @@ pub fn train_average(
     let (contexts, context_report) = contexts::estimate(&walk, &steps, &speed, &whole)?;
     let mut model = GaitModel {
         frame_rate_hz: config.frame_rate_hz,
-        skeleton: Skeleton::standard(),
+        skeleton: average_body(clips, config.mirror),
         windows: config.windows,
         steps,
         global_variance: global_variance(&corpus),
@@ -288,13 +289,14 @@ pub(crate) fn mean_terminal(corpus: &[Sequence], side: Side) -> f64 {
     fractions.iter().sum::<f64>() / fractions.len() as f64
 }
 
+/// The average walk swings as far as walks do on average: a mean of variances would be that of the few who swing farthest.
 fn global_variance(corpus: &[Sequence]) -> GlobalVarianceModel {
     let rows: Vec<Vec<f64>> = corpus.iter().map(Sequence::variance).collect();
     let count = rows.len() as f64;
     let mean: Vec<f64> = (0..FEATURE_COUNT)
         .map(|dim| {
-            let sum: f64 = rows.iter().map(|row| row[dim]).sum();
-            (sum / count).max(GLOBAL_VARIANCE_FLOOR)
+            let sum: f64 = rows.iter().map(|row| row[dim].sqrt()).sum();
+            (sum / count).powi(2).max(GLOBAL_VARIANCE_FLOOR)
         })
         .collect();
     let variance = (0..FEATURE_COUNT)

@@ -1,5 +1,5 @@
 use super::*;
-use crate::fine_motion::{FINE_POINTS, FINE_REACH, FineChance, FineMotion};
+use crate::fine_motion::{FINE_POINTS, FINE_TAPS, FineChance, FineMotion};
 use crate::gait_model::{
     GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepContext, StepModel,
     StepOffset, Variation,
@@ -72,7 +72,7 @@ fn fine() -> FineMotion {
         shared: table(0.5),
         walker: vec![table(0.25)],
         chance: FineChance {
-            kernel: row(0.125, 2 * FINE_REACH + 1),
+            kernels: vec![row(0.125, FINE_TAPS); 2],
             directions: vec![row(2.0, FEATURE_COUNT), row(-0.5, FEATURE_COUNT)],
             walker_strength: vec![0.375],
         },
@@ -108,7 +108,7 @@ fn fine_motion_of_another_shape_is_refused() {
     assert!(said.contains("fine motion"), "{said}");
     let said = refused(&|fine| fine.shared[1].truncate(7));
     assert!(said.contains("fine motion"), "{said}");
-    let said = refused(&|fine| fine.chance.kernel[2] = f64::NAN);
+    let said = refused(&|fine| fine.chance.kernels[1][2] = f64::NAN);
     assert!(said.contains("kernel"), "{said}");
     let said = refused(&|fine| fine.scale[0] = 0.0);
     assert!(said.contains("scale"), "{said}");

@@ -2,7 +2,7 @@
 
 use super::v1::{narrow, widen};
 use super::{ModelFileError, undecodable, v2};
-use crate::fine_motion::{FineChance, FineMotion, FineTable};
+use crate::fine_motion::{FINE_TAPS, FineChance, FineMotion, FineTable};
 use crate::gait_model::GaitModel;
 use crate::provenance::Provenance;
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ pub(super) fn encode(model: &GaitModel, fine: &FineMotion) -> Result<Vec<u8>, Mo
         fine: FineV3 {
             shared: table(&fine.shared),
             walker: fine.walker.iter().map(table).collect(),
-            kernel: narrow(&fine.chance.kernel),
+            kernel: narrow(&fine.chance.kernels.concat()),
             directions: fine
                 .chance
                 .directions
@@ -56,7 +56,7 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitModel
             shared: table(&fine.shared),
             walker: fine.walker.iter().map(table).collect(),
             chance: FineChance {
-                kernel: widen(&fine.kernel),
+                kernels: kernels(&fine.kernel, fine.directions.len()),
                 directions: fine.directions.iter().map(|row| widen(row)).collect(),
                 walker_strength: widen(&fine.walker_strength),
             },
@@ -64,4 +64,27 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitModel
         }),
         ..v2::decode(&dto.trajectories, provenance)?
     })
+}
+
+/// Kernels one after the other. A file with a single one means it for every direction.
+fn kernels(weights: &[f32], directions: usize) -> Vec<Vec<f64>> {
+    if weights.len() == FINE_TAPS {
+        return vec![widen(weights); directions];
+    }
+    weights.chunks(FINE_TAPS).map(widen).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_kernel_serves_every_direction() {
+        let one: Vec<f32> = (0..FINE_TAPS).map(|tap| tap as f32).collect();
+        assert_eq!(kernels(&one, 3), vec![widen(&one); 3]);
+        let two: Vec<f32> = (0..2 * FINE_TAPS).map(|tap| tap as f32).collect();
+        let found = kernels(&two, 2);
+        assert_eq!(found.len(), 2);
+        assert_eq!(found[1], widen(&two[FINE_TAPS..]));
+    }
 }

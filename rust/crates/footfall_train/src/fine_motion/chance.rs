@@ -7,7 +7,11 @@ use footfall_model::{FEATURE_COUNT, FINE_REACH, FineChance, MAX_FINE_DIRECTIONS}
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Directions that are kept.
-const DIRECTIONS: usize = 12;
+const DIRECTIONS: usize = MAX_FINE_DIRECTIONS;
+
+/// By how much what the trunk and the head do counts for more than what arms do, in the choice of directions: arms move farther, but all
+/// that hangs from the trunk moves with it.
+const TRUNK_WEIGHT: f64 = 3.0;
 
 /// Joints that chance leaves alone. Hips are where the standing leg carries them, so that an error of an angle would become a surge of
 /// the body, and in legs nearly all detail repeats.
@@ -32,11 +36,8 @@ const LAGS: usize = 2 * FINE_REACH;
 /// Frequencies at which the spectrum is taken.
 const FREQUENCIES: usize = 128;
 
-/// Features that hardly move count as moving by this much, radians.
-const LEAST_DEVIATION: f64 = 1e-4;
-
-/// Deviation of a feature that the axes hold at least, as a share of its own: less is not blown up.
-const LEAST_KEPT: f64 = 0.1;
+/// Axes with less of the energy are left out.
+const LEAST_SHARE: f64 = 1e-6;
 
 /// Steps that a walker's strength must outweigh.
 const PRIOR_STEPS: f64 = 6.0;
@@ -82,34 +83,16 @@ pub(super) fn estimate(
             row[feature_offset(joint)..][..3].fill(0.0);
         }
     }
-    let deviations: Vec<f64> = deviations(&runs);
-    for run in &mut runs {
-        for row in run.rows.chunks_exact_mut(FEATURE_COUNT) {
-            for (value, deviation) in row.iter_mut().zip(&deviations) {
-                *value /= deviation;
-            }
-        }
+    let mut kernels = Vec::new();
+    let mut directions = Vec::new();
+    for axis in principal_axes(&runs) {
+        kernels.push(kernel(&correlation(&runs, &axis)));
+        let mut direction: Vec<f64> = axis.iter().map(|value| correction * value).collect();
+        hold_legs(&mut direction);
+        directions.push(direction);
     }
-    let axes = principal_axes(&runs);
-    let kernel = kernel(&correlation(&runs, &axes));
-    // The axes that are kept stand for all: every feature gets its whole deviation.
-    let kept: Vec<f64> = (0..FEATURE_COUNT)
-        .map(|feature| axes.iter().map(|axis| axis[feature].powi(2)).sum::<f64>())
-        .collect();
-    let directions = axes
-        .iter()
-        .map(|axis| {
-            let features = axis.iter().zip(&deviations).zip(&kept);
-            let offsets = features.map(|((value, deviation), kept)| {
-                correction * value * deviation / kept.sqrt().max(LEAST_KEPT)
-            });
-            let mut direction: Vec<f64> = offsets.collect();
-            hold_legs(&mut direction);
-            direction
-        })
-        .collect();
     FineChance {
-        kernel,
+        kernels,
         directions,
         walker_strength: walker_strength(&runs, &counts, walker_weights, components),
     }
@@ -125,24 +108,16 @@ fn hold_legs(direction: &mut [f64]) {
     }
 }
 
-fn deviations(runs: &[Run]) -> Vec<f64> {
-    let mut sums = vec![0.0; FEATURE_COUNT];
-    let mut count = 0.0;
-    for row in runs
-        .iter()
-        .flat_map(|run| run.rows.chunks_exact(FEATURE_COUNT))
-    {
-        count += 1.0;
-        for (sum, value) in sums.iter_mut().zip(row) {
-            *sum += value * value;
-        }
+/// How much a feature counts in the choice of directions.
+fn weight(feature: usize) -> f64 {
+    if feature < feature_offset(Joint::LeftShoulder) {
+        TRUNK_WEIGHT
+    } else {
+        1.0
     }
-    sums.into_iter()
-        .map(|sum| f64::max((sum / f64::max(count, 1.0)).sqrt(), LEAST_DEVIATION))
-        .collect()
 }
 
-/// The strongest axes of rows whose features all vary by 1, each as long as the deviation along it.
+/// The strongest axes, each as long as the deviation along it. The axes that are kept stand for all: together they have the energy of all.
 fn principal_axes(runs: &[Run]) -> Vec<Vec<f64>> {
     let mut covariance = DMatrix::<f64>::zeros(FEATURE_COUNT, FEATURE_COUNT);
     let mut count = 0.0;
@@ -153,40 +128,46 @@ fn principal_axes(runs: &[Run]) -> Vec<Vec<f64>> {
         count += 1.0;
         for a in 0..FEATURE_COUNT {
             for b in 0..FEATURE_COUNT {
-                covariance[(a, b)] += row[a] * row[b];
+                covariance[(a, b)] += weight(a) * row[a] * weight(b) * row[b];
             }
         }
     }
     covariance /= f64::max(count, 1.0);
+    let whole = covariance.trace();
     let eigen = SymmetricEigen::new(covariance);
     let mut order: Vec<usize> = (0..FEATURE_COUNT).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    order.truncate(DIRECTIONS);
+    order.retain(|index| eigen.eigenvalues[*index] > LEAST_SHARE * whole);
+    let kept: f64 = order.iter().map(|index| eigen.eigenvalues[*index]).sum();
     order
         .into_iter()
-        .take(DIRECTIONS.min(MAX_FINE_DIRECTIONS))
-        .filter(|index| eigen.eigenvalues[*index] > 1e-6)
         .map(|index| {
-            let deviation = eigen.eigenvalues[index].sqrt();
+            let length = (eigen.eigenvalues[index] * whole / kept).sqrt();
             let axis = eigen.eigenvectors.column(index);
-            axis.iter().map(|value| deviation * value).collect()
+            axis.iter()
+                .enumerate()
+                .map(|(feature, value)| length * value / weight(feature))
+                .collect()
         })
         .collect()
 }
 
-/// Correlation along the axes between points that are 0, 1, 2 … apart.
-fn correlation(runs: &[Run], axes: &[Vec<f64>]) -> Vec<f64> {
+/// Correlation along an axis between points that are 0, 1, 2 … apart.
+fn correlation(runs: &[Run], axis: &[f64]) -> Vec<f64> {
     let mut sums = vec![0.0; LAGS + 1];
     for run in runs {
-        for axis in axes {
-            let along: Vec<f64> = run
-                .rows
-                .chunks_exact(FEATURE_COUNT)
-                .map(|row| row.iter().zip(axis).map(|(a, b)| a * b).sum())
-                .collect();
-            for (lag, sum) in sums.iter_mut().enumerate() {
-                let pairs = along.iter().zip(along.iter().skip(lag));
-                *sum += pairs.map(|(a, b)| a * b).sum::<f64>();
-            }
+        let along: Vec<f64> = run
+            .rows
+            .chunks_exact(FEATURE_COUNT)
+            .map(|row| {
+                let pairs = row.iter().zip(axis).enumerate();
+                pairs.map(|(n, (a, b))| weight(n).powi(2) * a * b).sum()
+            })
+            .collect();
+        for (lag, sum) in sums.iter_mut().enumerate() {
+            let pairs = along.iter().zip(along.iter().skip(lag));
+            *sum += pairs.map(|(a, b)| a * b).sum::<f64>();
         }
     }
     let whole = sums[0].max(f64::MIN_POSITIVE);
