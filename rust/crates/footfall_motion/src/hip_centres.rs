@@ -4,7 +4,7 @@
 //! in all recordings of a person. The ankle stays where it was seen, so the error shows in the knee: a hip that is 1 cm too
 //! low bends a nearly straight leg by 8°, and one too far forward bends it more at heel strike than at push-off. This
 //! module turns that round: it moves the hip joints of a person and stretches the legs, once for all recordings, to where
-//! they make the knees over stance most probable under [normal gait](reference) with its spread between people.
+//! they make the knees over stance most probable under normal gait with its spread between people.
 //!
 //! The correction is of the skeleton, never of the motion: who crouches still does. It is made where the knees are more
 //! probable on misplaced joints than on joints that are where they belong, of people who walk plainly or in a manner of
