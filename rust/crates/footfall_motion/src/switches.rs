@@ -38,7 +38,7 @@ pub const ANGLE_RATE_HZ: f64 = 60.0;
 /// How long a foot lands after the moment halfway between its ankle farthest ahead and its knee straightest, seconds.
 ///
 /// From 12 to 17 ms agree equally well with the kinematic contacts of the CMU and Bandai people, on all of whom it was chosen.
-const LANDING_SECS: f64 = 0.015;
+const LANDING_SECS: f64 = 0.012;
 
 /// How far the residual is looked for from where the hips are farthest apart, frames at [`ANGLE_RATE_HZ`].
 const RESIDUAL_REACH: f64 = 12.0;

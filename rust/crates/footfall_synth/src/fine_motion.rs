@@ -116,7 +116,7 @@ impl FineDraw {
     }
 }
 
-/// A number that no other step has, made of its side and of what chance decided about its stride; 0 for a step without chance.
+/// A number that no other step has, made of what chance decided about it; 0 for a step without chance.
 fn number_of(draw: &StepDraw, components: usize) -> u64 {
     let used = components.clamp(1, MAX_COMPONENTS);
     let weights = &draw.weights[..used];
@@ -125,9 +125,7 @@ fn number_of(draw: &StepDraw, components: usize) -> u64 {
     }
     weights
         .iter()
-        .fold(draw.side.index() as u64, |number, weight| {
-            mixed(number ^ weight.to_bits())
-        })
+        .fold(0, |number, weight| mixed(number ^ weight.to_bits()))
 }
 
 /// The finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every bit depends on every bit.

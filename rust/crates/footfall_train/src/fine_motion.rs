@@ -20,7 +20,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 /// What moves faster is noise of markers, hertz. A filter's edge is soft, and what counts lies below 6 Hz.
-const CUT_OFF_HZ: f64 = 12.0;
+const CUT_OFF_HZ: f64 = 8.0;
 
 /// Steps that a walker's mean must outweigh: with few steps it is drawn towards the mean of all.
 const WALKER_PRIOR_STEPS: f64 = 3.0;

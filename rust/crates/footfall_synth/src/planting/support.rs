@@ -10,7 +10,7 @@ use glam::Vec3;
 const MAX_STANCE_EXTENSION: f32 = 0.997;
 
 /// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
-const LET_GO_EXTENSION: f32 = 0.995;
+const LET_GO_EXTENSION: f32 = 0.992;
 
 /// Over how many metres the pelvis yields to that limit.
 const REACH_SOFTNESS_M: f32 = 0.005;
