@@ -24,7 +24,7 @@ pub(crate) struct MapArgs {
     knees: KneesArgs,
 }
 
-/// What becomes of hip joints that a recording misplaces.
+/// Treatment of hip joints that a recording misplaces.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub(crate) struct KneesArgs {
     /// Move hip joints that the recording misplaces

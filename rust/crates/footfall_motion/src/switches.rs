@@ -28,7 +28,7 @@ mod residual;
 
 use crate::steps::{LONGEST_STEP_SECS, SHORTEST_STEP_SECS, Step, Walk};
 use angles::LegAngles;
-use footfall_core::{Clip, FrameSpan, Side, StepPosition};
+use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Side, StepPosition};
 use footfall_prob::ProbError;
 use residual::Residual;
 
@@ -84,6 +84,17 @@ pub struct Switch {
     pub frame: usize,
     /// The leg that lands and carries the body from here on.
     pub side: Side,
+}
+
+impl Switch {
+    /// The initial contact that it stands for.
+    pub const fn event(self) -> GaitEvent {
+        GaitEvent {
+            frame: self.frame,
+            side: self.side,
+            kind: EventKind::InitialContact,
+        }
+    }
 }
 
 /// Finds the switches of a clip from its frame `first_frame` on. A clip that is too short, or in which nobody walks, has none.

@@ -247,14 +247,7 @@ fn switches_of_every_person_are_the_contacts() {
             let motion = &clip.retargeted;
             let rate = motion.clip.frame_rate_hz;
             let switches = detect_switches_by(&motion.clip, motion.first_frame, landing).unwrap();
-            let switches: Vec<GaitEvent> = switches
-                .iter()
-                .map(|switch| GaitEvent {
-                    frame: switch.frame,
-                    side: switch.side,
-                    kind: EventKind::InitialContact,
-                })
-                .collect();
+            let switches: Vec<GaitEvent> = switches.iter().map(|switch| switch.event()).collect();
             let (known, inside) = (detected(clip), inside(clip, 0.1));
             let person = people.entry(clip.row.subject().to_owned()).or_default();
             for side in Side::BOTH {

@@ -4,7 +4,7 @@ use crate::motion_input::{MapArgs, MotionInput, Walking};
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
-use footfall_core::{EventKind, GaitEvent};
+use footfall_core::GaitEvent;
 use footfall_motion::contact_file::ContactFile;
 use footfall_motion::retarget::Retargeted;
 use footfall_motion::switches::{detect_switches, stances, walks};
@@ -84,14 +84,7 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
 fn switching(motion: &Retargeted) -> Result<ContactFile> {
     let frames = motion.clip.poses.len();
     let switches = detect_switches(&motion.clip, motion.first_frame)?;
-    let events: Vec<GaitEvent> = switches
-        .iter()
-        .map(|switch| GaitEvent {
-            frame: switch.frame,
-            side: switch.side,
-            kind: EventKind::InitialContact,
-        })
-        .collect();
+    let events: Vec<GaitEvent> = switches.iter().map(|switch| switch.event()).collect();
     let stances = stances(&switches, frames);
     let [left, right] = stances.each_ref().map(Vec::as_slice);
     let rate = motion.clip.frame_rate_hz;

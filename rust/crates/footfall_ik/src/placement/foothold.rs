@@ -49,7 +49,7 @@ const TIGHT_COST: f32 = 0.08;
 const OVERHANG_COST: f32 = 0.3;
 /// A sole that does not lie costs so much at least.
 pub(crate) const ASKEW_COST: f32 = 1.0;
-/// What a metre to the side costs, and each point of the rim with nothing under it.
+/// Costs of a metre to the side, and of each point of the rim with nothing under it.
 const ASIDE_COST: f32 = 1.0;
 const RIM_COST: f32 = 0.05;
 
@@ -229,7 +229,13 @@ mod tests {
         thorough: false,
     };
 
-    /// Where the sole of a foot at the origin is put, and the heights of its rim above the ground.
+    /// The same for a foot that stays where it comes down.
+    const FIXED: Search = Search {
+        may_shift: false,
+        ..SEARCH
+    };
+
+    /// Place of the sole of a foot at the origin, and heights of its rim above the ground.
     fn put(search: &Search, height: impl Fn(f32, f32) -> f32) -> (Vec3, Vec<f32>) {
         let foot = RockerFoot::new(&Skeleton::standard(), Side::Left);
         let mut ground = Formula(&height);
@@ -260,22 +266,14 @@ mod tests {
 
     #[test]
     fn nothing_cuts_into_a_sole_that_cannot_go_aside() {
-        let fixed = Search {
-            may_shift: false,
-            ..SEARCH
-        };
-        let (_, above) = put(&fixed, |x, _| if x > 0.03 { 0.1 } else { 0.0 });
+        let (_, above) = put(&FIXED, |x, _| if x > 0.03 { 0.1 } else { 0.0 });
         assert!(above.iter().all(|above| *above > -FLAT_M), "{above:?}");
         assert!(above.iter().any(|above| above.abs() < FLAT_M), "{above:?}");
     }
 
     #[test]
     fn a_wall_beside_a_sole_is_not_stood_on() {
-        let fixed = Search {
-            may_shift: false,
-            ..SEARCH
-        };
-        let (place, _) = put(&fixed, |x, _| if x > 0.03 { 0.4 } else { 0.0 });
+        let (place, _) = put(&FIXED, |x, _| if x > 0.03 { 0.4 } else { 0.0 });
         assert!(place.y.abs() < 1e-6, "{place}");
     }
 }

@@ -6,7 +6,7 @@ use crate::placement::terrain::{SupportId, Terrain};
 use crate::rocker::RockerFoot;
 use glam::{Quat, Vec3};
 
-/// What is looked at reaches so much beyond heel and toes: a sole whose very edge is over the edge of a step stands badly.
+/// Distance by which the search reaches beyond heel and toes: a sole whose very edge is over the edge of a step stands badly.
 const MARGIN_M: f32 = 0.005;
 
 /// Heel and toes keep so far from ground that is higher, where they can, metres: the foot comes from above.
@@ -17,7 +17,7 @@ const HIGHER_M: f32 = 0.03;
 /// A sole follows heel and toes rather than the ground under its ball by so much at most, radians.
 const MAX_BRIDGE: f32 = 0.3;
 
-/// What stands higher beside a sole is a wall: it is not stood on, metres.
+/// Height above a sole, metres, from which on ground beside it is a wall: nobody stands on it.
 const WALL_M: f32 = 0.25;
 
 /// A sole on the ground.

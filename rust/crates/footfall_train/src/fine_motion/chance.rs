@@ -3,11 +3,8 @@
 use super::MissingStep;
 use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
-use footfall_model::{FEATURE_COUNT, FINE_REACH, FineChance, MAX_FINE_DIRECTIONS};
+use footfall_model::{FEATURE_COUNT, FINE_REACH, FINE_TAPS, FineChance, MAX_FINE_DIRECTIONS};
 use nalgebra::{DMatrix, SymmetricEigen};
-
-/// Directions that are kept.
-const DIRECTIONS: usize = MAX_FINE_DIRECTIONS;
 
 /// By how much what the trunk and the head do counts for more than what arms do, in the choice of directions: arms move farther, but all
 /// that hangs from the trunk moves with it.
@@ -137,7 +134,7 @@ fn principal_axes(runs: &[Run]) -> Vec<Vec<f64>> {
     let eigen = SymmetricEigen::new(covariance);
     let mut order: Vec<usize> = (0..FEATURE_COUNT).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-    order.truncate(DIRECTIONS);
+    order.truncate(MAX_FINE_DIRECTIONS);
     order.retain(|index| eigen.eigenvalues[*index] > LEAST_SHARE * whole);
     let kept: f64 = order.iter().map(|index| eigen.eigenvalues[*index]).sum();
     order
@@ -188,7 +185,7 @@ pub(super) fn kernel(correlation: &[f64]) -> Vec<f64> {
             (correlation[0] + terms.sum::<f64>()).max(0.0).sqrt()
         })
         .collect();
-    let mut weights: Vec<f64> = (0..=2 * FINE_REACH)
+    let mut weights: Vec<f64> = (0..FINE_TAPS)
         .map(|tap| {
             let lag = tap as f64 - FINE_REACH as f64;
             let waves = amplitudes.iter().enumerate();
