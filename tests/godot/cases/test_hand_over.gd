@@ -73,7 +73,10 @@ func test_a_walk_begins_from_a_stand_and_feet_stay() -> void:
 
 
 func test_a_walk_takes_over_what_moves() -> void:
-	# A dash by the game: the character travels at 1.5 m/s while another walk poses it, as a clip would.
+	# A dash by the game: the character travels at 1.5 m/s while another walk poses it, as a clip would. Nothing is jerked more than in a
+	# walk that goes on.
+	var own: float = _watch(_walker(), 240).acceleration
+	check_below(own, 110.0, "a walk that goes on")
 	for begin: int in [60, 67, 74, 81, 88]:
 		var clip := _walker()
 		clip.gait.speed = 1.5
@@ -95,10 +98,10 @@ func test_a_walk_takes_over_what_moves() -> void:
 		check(first.length() / DT > 0.8, "the clip moved: %.2f m/s" % (first.length() / DT))
 		# A foot in the air lands within the time of the hand-over; until then the other one may have left.
 		var seen := _watch(walker, 18)
-		check_below(seen.acceleration, 90.0, "acceleration (%s) from frame %d" % [seen.worst, begin])
+		check_below(seen.acceleration, 1.1 * own, "acceleration (%s) from frame %d" % [seen.worst, begin])
 		check_below(seen.slip, 0.8, "the slower foot, from frame %d" % begin)
 		seen = _watch(walker, 72)
-		check_below(seen.acceleration, 90.0, "later acceleration (%s) from frame %d" % [seen.worst, begin])
+		check_below(seen.acceleration, 1.02 * own, "later acceleration (%s) from frame %d" % [seen.worst, begin])
 		check_below(seen.slip, 0.3, "the foot that stands stays, from frame %d" % begin)
 
 

@@ -96,18 +96,15 @@ func test_a_bone_map_names_foreign_bones() -> void:
 func test_optional_bones_are_folded_in() -> void:
 	var walker := _walker(func(made: Walker) -> void: made.missing = OPTIONAL)
 	check_equal(walker.gait.get_problems(), PackedStringArray(), "no problem")
-	var reference := _walker()
-	# Feet without toes make other steps: what chance adds to them would add to the difference.
-	walker.gait.variation = 0.0
-	reference.gait.variation = 0.0
+	# Feet without toes make other steps: the reference has none either.
+	var reference := _walker(func(made: Walker) -> void: made.missing = ["LeftToes", "RightToes"])
 	var trunk_bends := 0.0
 	for frame: int in 240:
 		walker.step(1.0 / 60.0)
 		reference.step(1.0 / 60.0)
 		# The one trunk bone has the whole trunk's rotation, the arms and the head their own.
 		for pair: Array in [["Spine", "UpperChest"], ["Head", "Head"], ["LeftUpperArm", "LeftUpperArm"], ["LeftHand", "LeftHand"]]:
-			# Feet without toes make steps a little different, so not all is equal to the last digit.
-			check_below(walker.turn_of(pair[0]).angle_to(reference.turn_of(pair[1])), 0.025, "turn of %s" % pair[0])
+			check_below(walker.turn_of(pair[0]).angle_to(reference.turn_of(pair[1])), 1e-3, "turn of %s" % pair[0])
 		trunk_bends = maxf(trunk_bends, reference.turn_of("Spine").angle_to(reference.turn_of("UpperChest")))
 		for point: Vector3 in walker.sole(&"left"):
 			check(point.y > -0.015, "a foot without toes stays above the floor: %.4f" % point.y)

@@ -2,6 +2,7 @@
 
 mod actors;
 mod agent;
+mod avoidance;
 mod batch;
 mod begin;
 mod crowd_mesh;

@@ -23,6 +23,8 @@ const MAX_EXTENSION: f32 = 0.999;
 const YIELD_M: f32 = 0.04;
 /// It does so from the first part of the way on: by one through this.
 const YIELD_RATE: f32 = 3.0;
+/// A foot that would pull it down by more makes a step of its own to its new place, metres.
+const MOST_YIELD_M: f32 = 0.1;
 /// A leg that lies does not pull the pelvis down to its foot: the nearer its foot is to its whole length to the side, the less it does, from
 /// this share of the length on.
 const UPRIGHT_SHARE: f32 = 0.25;
@@ -143,6 +145,9 @@ impl Handover {
                 let way = target.ankle - pose.root_position - hip;
                 let aside = way.with_y(0.0).length() / length;
                 let upright = smooth_step((1.0 - aside) / UPRIGHT_SHARE);
+                if upright * (height - highest) > MOST_YIELD_M && self.feet[index].is_held_apart() {
+                    self.feet[index].step_over();
+                }
                 lowest -= upright * (lowest - below(lowest, highest, give));
             }
         }
@@ -171,7 +176,7 @@ impl Handover {
         } else {
             right
         };
-        if farther.distance() > 0.0 {
+        if farther.is_held_apart() {
             farther.step_over();
         }
     }

@@ -116,16 +116,17 @@ impl FineDraw {
     }
 }
 
-/// A number that no other step has, made of what chance decided about it; 0 for a step without chance.
+/// A number that no other step has, made of what chance decided about its stride and of its side; 0 for a step without chance.
 fn number_of(draw: &StepDraw, components: usize) -> u64 {
     let used = components.clamp(1, MAX_COMPONENTS);
     let weights = &draw.weights[..used];
     if weights.iter().all(|weight| weight.abs() <= 0.0) {
         return 0;
     }
+    let side = mixed(draw.side.index() as u64);
     weights
         .iter()
-        .fold(0, |number, weight| mixed(number ^ weight.to_bits()))
+        .fold(side, |number, weight| mixed(number ^ weight.to_bits()))
 }
 
 /// The finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every bit depends on every bit.

@@ -1,5 +1,6 @@
 //! One walker of a crowd: where it is, where it wants to go, and how it gets there. Nothing here knows the engine.
 
+use super::avoidance::Wayfarer;
 use super::kit::Outfit;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop};
@@ -10,12 +11,8 @@ const ARRIVED_M: f32 = 1.0;
 /// How fast somebody turns towards where it wants to go: rad/s for each radian that is missing, and at most.
 const TURN_GAIN: f32 = 1.6;
 const MAX_TURN_RADPS: f32 = 1.3;
-/// Others are seen this far, metres, and avoided when they would come this close within this time, seconds.
+/// Others are seen this far, metres.
 pub(super) const SIGHT_M: f32 = 6.0;
-const PERSONAL_M: f32 = 1.0;
-const FORESIGHT_SECS: f32 = 4.0;
-/// By how much who will meet somebody turns away at once, radians.
-const AVOIDING_TURN: f32 = 0.9;
 /// Time constant with which a walker rises and falls with the ground, seconds.
 const RISE_SECS: f32 = 0.15;
 
@@ -156,10 +153,16 @@ impl Agent {
                     speed = 0.0;
                 }
                 let mut off = wrap_angle(way.x.atan2(way.y) - self.heading);
-                let (aside, slower) = self.avoid(others);
-                off += aside;
+                let wayfarer = Wayfarer {
+                    place: self.level(),
+                    heading: self.heading,
+                    off,
+                    speed_mps: self.speed_mps,
+                };
+                let detour = wayfarer.detour(others);
+                off += detour.aside;
                 // Who has to turn far does so first.
-                speed *= slower * (1.2 - off.abs()).clamp(0.25, 1.0);
+                speed *= detour.speed * (1.2 - off.abs()).clamp(0.25, 1.0);
                 if speed <= 0.0 {
                     0.0
                 } else {
@@ -174,39 +177,6 @@ impl Agent {
             turn_rate_radps: turn * froude,
             ..Controls::STAND
         };
-    }
-
-    /// By how much to turn for the sake of others, and which share of the speed to keep.
-    fn avoid<'a>(&self, others: impl Iterator<Item = &'a Seen>) -> (f32, f32) {
-        let forward = Vec2::from_angle(core::f32::consts::FRAC_PI_2 - self.heading);
-        let velocity = forward * self.speed_mps;
-        let (mut aside, mut slower) = (0.0, 1.0_f32);
-        for other in others {
-            let way = other.place - self.level();
-            let far = way.length();
-            if !(1e-3..SIGHT_M).contains(&far) || way.dot(forward) < 0.0 {
-                continue;
-            }
-            let approach = velocity - other.velocity;
-            let secs = (way.dot(approach) / approach.length_squared().max(1e-3))
-                .clamp(0.0, FORESIGHT_SECS);
-            let nearest = way - approach * secs;
-            let close = 1.0 - nearest.length() / PERSONAL_M;
-            if close <= 0.0 {
-                continue;
-            }
-            let urgent = close.sqrt() * (1.0 - secs / FORESIGHT_SECS);
-            // To the side that the other is not on; straight ahead, to the right.
-            let to_left = Vec2::new(forward.y, -forward.x).dot(nearest);
-            let side = if to_left > 0.05 { -1.0 } else { 1.0 };
-            aside += if to_left.abs() < 0.05 {
-                -urgent
-            } else {
-                side * urgent
-            };
-            slower = slower.min(1.0 - 0.7 * urgent * (1.0 - far / SIGHT_M));
-        }
-        (AVOIDING_TURN * aside.clamp(-1.0, 1.0), slower.max(0.3))
     }
 
     /// Lets time pass.

@@ -15,6 +15,8 @@ const MOST_LOOKS: usize = 75;
 const SPEED_SECS: f32 = 0.12;
 /// A foot that stands in one motion and not in the other counts as so far away, metres.
 const CONTACT_M: f32 = 0.15;
+/// The distance of feet that stand in both counts so many times: such a foot stays where it is, and the body has to come along.
+const STANDING_WEIGHT: f32 = 4.0;
 /// From standing, the foot that is lifted by then goes first, seconds.
 const LIFTED_SECS: f32 = 0.4;
 
@@ -170,12 +172,12 @@ impl Look {
             .map(|side| {
                 let place = self.feet[side].distance_squared(other.feet[side]);
                 let speed = self.speeds[side].distance(other.speeds[side]) * SPEED_SECS;
-                let stands = if self.stands[side] == other.stands[side] {
-                    0.0
-                } else {
-                    CONTACT_M
+                let differs = match (self.stands[side], other.stands[side]) {
+                    (true, true) => STANDING_WEIGHT * place,
+                    (false, false) => place,
+                    _ => place + CONTACT_M.powi(2),
                 };
-                place + speed.powi(2) + stands.powi(2)
+                differs + speed.powi(2)
             })
             .sum();
         let hips = self.hips_m - other.hips_m;

@@ -161,6 +161,11 @@ impl HeldFoot {
         self.parted_m() + METRES_A_RADIAN * self.parted.y.abs()
     }
 
+    /// Whether it is held elsewhere than where it should stand.
+    pub(super) fn is_held_apart(&self) -> bool {
+        self.distance() > 0.0
+    }
+
     /// How far over the ground it is from where the motion that goes on has it, metres.
     pub(super) fn parted_m(&self) -> f32 {
         level(self.parted).length()

@@ -1,13 +1,16 @@
 //! How much the steps of a style differ from each other, beside those of the base's walkers.
 
 use crate::sequence::Sequence;
-use footfall_core::Side;
+use footfall_core::{Joint, Side};
 use footfall_model::{
     FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, STATES_PER_STEP, StepOffset, StepSpread,
 };
 
-/// How many steps count for a feature's spread being that of all features, and for that of all being the base's.
+/// How many steps count for a limb's spread being that of the body, and for the body's being the base's.
 const PRIOR_STEPS: f64 = 1.0;
+
+/// Parts of the body with a factor each.
+const LIMBS: usize = 3;
 
 /// A style's steps differ by at least and at most so much as the base's.
 const LIMITS: [f64; 2] = [0.4, 4.0];
@@ -15,22 +18,21 @@ const LIMITS: [f64; 2] = [0.4, 4.0];
 /// Least variance of a feature, rad²: what does not move has no spread to compare.
 const VARIANCE_FLOOR: f64 = 1e-6;
 
-/// The spread of the corpus' steps about the mean of each side's, per feature.
+/// The spread of the corpus' steps, per feature: about the mean of each side's in the recording that they are from. Recordings differ by who
+/// walks and how, and one walker's steps by far less.
 pub(super) fn step_spread(base: &GaitModel, corpus: &[Sequence]) -> StepSpread {
-    let mut steps: [Vec<Step>; 2] = [vec![], vec![]];
-    for sequence in corpus {
-        for step in observed(sequence) {
-            steps[step.side.index()].push(step);
-        }
-    }
     let mut own = Variances::default();
     let mut freedom = 0.0;
-    for steps in &steps {
-        if steps.len() < 2 {
-            continue;
+    for sequence in corpus {
+        let (left, right): (Vec<Step>, Vec<Step>) =
+            observed(sequence).partition(|step| step.side == Side::Left);
+        for steps in [left, right] {
+            if steps.len() < 2 {
+                continue;
+            }
+            freedom += (steps.len() - 1) as f64;
+            own.add_scatter(&steps);
         }
-        freedom += (steps.len() - 1) as f64;
-        own.add_scatter(steps);
     }
     if freedom <= 0.0 {
         return StepSpread::default();
@@ -38,20 +40,36 @@ pub(super) fn step_spread(base: &GaitModel, corpus: &[Sequence]) -> StepSpread {
     own.scale(1.0 / freedom);
     let base = Variances::of(base);
     let ratio = |own: f64, base: f64| (own + VARIANCE_FLOOR) / (base + VARIANCE_FLOOR);
-    let pairs = || own.features.iter().zip(&base.features);
-    let ratios: Vec<f64> = pairs().map(|(own, base)| ratio(*own, *base)).collect();
-    let mut sorted = ratios.clone();
-    sorted.sort_by(f64::total_cmp);
     let towards =
         |found: f64, prior: f64| (freedom * found + PRIOR_STEPS * prior) / (freedom + PRIOR_STEPS);
-    let overall = towards(sorted[sorted.len() / 2], 1.0);
     let bounded = |variance: f64| variance.sqrt().clamp(LIMITS[0], LIMITS[1]);
+    let (own_limbs, base_limbs) = (own.by_limb(), base.by_limb());
+    let total = |limbs: [f64; LIMBS]| limbs.iter().sum::<f64>();
+    let overall = towards(ratio(total(own_limbs), total(base_limbs)), 1.0);
+    let factors: [f64; LIMBS] = core::array::from_fn(|limb| {
+        bounded(towards(ratio(own_limbs[limb], base_limbs[limb]), overall))
+    });
     StepSpread {
-        features: ratios
-            .iter()
-            .map(|ratio| bounded(towards(*ratio, overall)))
+        features: (0..FEATURE_COUNT)
+            .map(|feature| factors[limb_of(feature)])
             .collect(),
         timing: bounded(towards(ratio(own.timing, base.timing), 1.0)),
+    }
+}
+
+/// The part of the body whose factor a feature has: 0 the legs and the hips above them, 1 the trunk and the head, 2 the arms. The joints of
+/// a limb vary together: with factors of their own a foot that the base's steps put down flat would not come down.
+fn limb_of(feature: usize) -> usize {
+    use Joint::{Chest, Head, Hips, Neck, Spine, UpperChest};
+    let joint = Joint::ALL[feature / 3];
+    let leg = Side::BOTH.into_iter().any(|side| {
+        [side.upper_leg(), side.lower_leg(), side.foot(), side.toes()].contains(&joint)
+    });
+    match joint {
+        Hips => 0,
+        _ if leg => 0,
+        Spine | Chest | UpperChest | Neck | Head => 1,
+        _ => 2,
     }
 }
 
@@ -139,6 +157,15 @@ impl Variances {
         self.timing += squares.sum::<f64>();
     }
 
+    /// Sums over the features of each limb.
+    fn by_limb(&self) -> [f64; LIMBS] {
+        let mut limbs = [0.0; LIMBS];
+        for (feature, variance) in self.features.iter().enumerate() {
+            limbs[limb_of(feature)] += variance;
+        }
+        limbs
+    }
+
     fn scale(&mut self, factor: f64) {
         for value in self.features.iter_mut().chain([&mut self.timing]) {
             *value *= factor;
@@ -222,6 +249,38 @@ mod tests {
             spread.timing
         );
         assert!(spread.features.iter().all(|factor| *factor < 0.5));
+    }
+
+    #[test]
+    fn people_who_differ_do_not_make_steps_differ() {
+        let people = [walk(|_| 0.3, |_| 10), walk(|_| -0.3, |_| 14)];
+        let spread = step_spread(&base(), &people);
+        assert!(spread.features.iter().all(|factor| *factor < 0.5));
+        assert!(spread.timing < 0.5, "{}", spread.timing);
+    }
+
+    #[test]
+    fn joints_of_a_limb_share_a_factor() {
+        let mut one = walk(|_| 0.0, |_| 10);
+        // One foot's angle strays by three times what the base's legs do altogether, one arm's not at all.
+        let foot = 3 * Joint::LeftFoot.index();
+        for (number, step) in one.steps.iter().enumerate() {
+            let sign = if (number / 2).is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            };
+            for frame in step.first..step.end {
+                one.observations[frame * OBSERVATION_COUNT + foot] = 0.9 * sign;
+            }
+        }
+        let spread = step_spread(&base(), &[one]);
+        let factor = |joint: Joint| spread.features[3 * joint.index()];
+        assert!(factor(Joint::LeftFoot) > 1.0);
+        for leg in [Joint::Hips, Joint::RightLowerLeg] {
+            assert!((factor(leg) - factor(Joint::LeftFoot)).abs() < 1e-12);
+        }
+        assert!(factor(Joint::LeftHand) < factor(Joint::LeftFoot));
     }
 
     #[test]

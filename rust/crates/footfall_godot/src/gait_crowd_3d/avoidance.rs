@@ -1,0 +1,213 @@
+//! Steering around others: the direction and the speed, of a few, that cost least.
+//!
+//! Each is judged by the detour that it is and by whom it would meet when, as in Moussaïd, Helbing and Theraulaz, "How simple rules determine
+//! pedestrian behavior and crowd disasters", PNAS 2011, with others going on as they do. Nothing here knows the engine.
+
+use super::agent::{SIGHT_M, Seen};
+use glam::Vec2;
+
+/// Others are avoided when they would come this close within this time: metres and seconds.
+const PERSONAL_M: f32 = 1.0;
+const FORESIGHT_SECS: f32 = 4.0;
+/// Closer than this two bodies touch, metres.
+const BODIES_M: f32 = 0.5;
+/// The trouble of turning by a radian and of standing, beside coming as near as bodies are and walking into somebody. Chosen by how near
+/// walkers come in crowds of two rows that pass through each other.
+const TURNING: f32 = 0.15;
+const SLOWING: f32 = 0.4;
+const CLOSENESS: f32 = 0.6;
+const TOUCHING: f32 = 2.0;
+/// So many others are looked at, the most urgent ones.
+const MOST_OTHERS: usize = 8;
+/// Directions beside the one that is wanted, radians to the left.
+const ASIDES: [f32; 9] = [0.0, -0.2, 0.2, -0.4, 0.4, -0.7, 0.7, -1.0, 1.0];
+/// Shares of the speed that is wanted.
+const SPEEDS: [f32; 4] = [1.0, 0.75, 0.5, 0.3];
+
+/// Somebody who wants to go somewhere.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wayfarer {
+    pub(super) place: Vec2,
+    /// Where it faces: 0 along +Z (`y` of the plane), positive to the left, radians.
+    pub(super) heading: f32,
+    /// Where it wants to go from there, radians to the left.
+    pub(super) off: f32,
+    /// What it would like to walk, m/s.
+    pub(super) speed_mps: f32,
+}
+
+/// A way round others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Detour {
+    /// Radians to the left of where it wants to go.
+    pub(super) aside: f32,
+    /// Share of the speed that it would like.
+    pub(super) speed: f32,
+}
+
+impl Detour {
+    /// Straight on.
+    const NONE: Self = Self {
+        aside: 0.0,
+        speed: 1.0,
+    };
+}
+
+impl Wayfarer {
+    /// The detour that costs least.
+    pub(super) fn detour<'a>(&self, others: impl Iterator<Item = &'a Seen>) -> Detour {
+        let mut near = Near::default();
+        for other in others {
+            near.take(self, other);
+        }
+        if near.len == 0 {
+            return Detour::NONE;
+        }
+        let mut best = (f32::INFINITY, Detour::NONE);
+        for aside in ASIDES {
+            let direction = direction(self.heading + self.off + aside);
+            for speed in SPEEDS {
+                let velocity = direction * (speed * self.speed_mps);
+                let cost = detour_cost(aside, speed) + near.cost(velocity);
+                if cost < best.0 {
+                    best = (cost, Detour { aside, speed });
+                }
+            }
+        }
+        best.1
+    }
+}
+
+/// The unit vector of a heading.
+fn direction(heading: f32) -> Vec2 {
+    Vec2::new(heading.sin(), heading.cos())
+}
+
+/// The trouble of a detour; to the right is a little less than to the left, so that two who meet face to face agree.
+fn detour_cost(aside: f32, speed: f32) -> f32 {
+    let turned = if aside > 0.0 { 1.1 * aside } else { aside };
+    TURNING * turned * turned + SLOWING * (1.0 - speed)
+}
+
+/// The others that matter: where they are from here, and how fast they go.
+#[derive(Debug, Default)]
+struct Near {
+    others: [(f32, Vec2, Vec2); MOST_OTHERS],
+    len: usize,
+}
+
+impl Near {
+    /// Takes somebody in, in the place of who is least urgent if there are too many.
+    fn take(&mut self, own: &Wayfarer, other: &Seen) {
+        let way = other.place - own.place;
+        let far = way.length();
+        // Nobody minds who walks behind.
+        if !(1e-3..SIGHT_M).contains(&far) || way.dot(direction(own.heading)) < -0.2 * far {
+            return;
+        }
+        let velocity = direction(own.heading + own.off) * own.speed_mps;
+        let closing = (velocity - other.velocity).dot(way) / far;
+        let urgency = (closing + 0.5) / far;
+        let entry = (urgency, way, other.velocity);
+        if self.len < MOST_OTHERS {
+            self.others[self.len] = entry;
+            self.len += 1;
+            return;
+        }
+        let least = self.others.iter_mut().min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some(least) = least.filter(|least| least.0 < urgency) {
+            *least = entry;
+        }
+    }
+
+    /// What it costs to meet them at this velocity.
+    fn cost(&self, velocity: Vec2) -> f32 {
+        let others = self.others[..self.len].iter();
+        others
+            .map(|(_, way, other)| meeting_cost(*way, velocity - *other))
+            .sum()
+    }
+}
+
+/// What it costs to approach somebody who is there at this velocity.
+fn meeting_cost(way: Vec2, approach: Vec2) -> f32 {
+    let secs = (way.dot(approach) / approach.length_squared().max(1e-3)).clamp(0.0, FORESIGHT_SECS);
+    let nearest = (way - approach * secs).length();
+    if nearest >= PERSONAL_M {
+        return 0.0;
+    }
+    let soon = 1.0 - secs / FORESIGHT_SECS;
+    let close = ((PERSONAL_M - nearest) / (PERSONAL_M - BODIES_M)).min(1.0);
+    let touching = (1.0 - nearest / BODIES_M).max(0.0);
+    soon * (CLOSENESS * close + TOUCHING * touching)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AHEAD: Wayfarer = Wayfarer {
+        place: Vec2::ZERO,
+        heading: 0.0,
+        off: 0.0,
+        speed_mps: 1.3,
+    };
+
+    fn somebody(x: f32, z: f32, velocity: Vec2) -> Seen {
+        Seen {
+            place: Vec2::new(x, z),
+            velocity,
+        }
+    }
+
+    /// How near the two come when one takes a detour and the other goes on.
+    fn nearest(detour: Detour, other: &Seen) -> f32 {
+        let velocity = direction(detour.aside) * (1.3 * detour.speed);
+        (0..80)
+            .map(|tenth| 0.1 * tenth as f32)
+            .map(|secs| (other.place + (other.velocity - velocity) * secs).length())
+            .fold(f32::INFINITY, f32::min)
+    }
+
+    #[test]
+    fn nobody_in_the_way_means_straight_on() {
+        assert_eq!(AHEAD.detour([].iter()), Detour::NONE);
+        let away = [
+            somebody(0.0, -1.5, Vec2::ZERO),
+            somebody(3.0, 4.0, Vec2::ZERO),
+            somebody(0.2, 3.0, 1.3 * Vec2::Y),
+        ];
+        assert_eq!(AHEAD.detour(away.iter()), Detour::NONE);
+    }
+
+    #[test]
+    fn two_who_meet_face_to_face_both_go_to_their_right() {
+        let other = somebody(0.0, 5.0, -1.3 * Vec2::Y);
+        let detour = AHEAD.detour([other].iter());
+        assert!(detour.aside < 0.0, "{detour:?}");
+        assert!(nearest(detour, &other) > BODIES_M);
+    }
+
+    #[test]
+    fn one_who_stands_or_crosses_is_not_walked_into() {
+        let crowd = [
+            somebody(0.1, 2.0, Vec2::ZERO),
+            somebody(-0.1, 3.0, Vec2::ZERO),
+            somebody(3.0, 3.0, Vec2::new(-1.3, 0.0)),
+            somebody(-3.0, 3.2, Vec2::new(1.2, 0.0)),
+        ];
+        for other in crowd {
+            assert!(nearest(Detour::NONE, &other) < BODIES_M);
+            let detour = AHEAD.detour([other].iter());
+            assert!(nearest(detour, &other) > BODIES_M, "{other:?}: {detour:?}");
+        }
+    }
+
+    #[test]
+    fn of_too_many_the_urgent_count() {
+        let aside = (0..40).map(|index| somebody(4.0, 0.1 * index as f32, Vec2::ZERO));
+        let urgent = somebody(0.0, 1.5, Vec2::ZERO);
+        let everybody: Vec<Seen> = aside.chain([urgent]).collect();
+        assert!(nearest(AHEAD.detour(everybody.iter()), &urgent) > BODIES_M);
+    }
+}
