@@ -263,18 +263,11 @@ fn ramps_are_no_stairs() {
     Survey::of(&climbs).expect_no_fault();
 }
 
-/// Blocks have edges on all sides: whole soles find ground, and swinging ones keep clear of what is beside them. A heel that comes down may
-/// brush the edge behind it for a moment, now and then.
+/// Blocks have edges on all sides: whole soles find ground, and swinging ones keep clear of what is beside them.
 #[test]
 fn nobody_is_lost_on_rough_ground() {
     let climbs = BODIES.into_iter().flat_map(|body| ground(body, ROUGH, 10));
-    let climbs: Vec<Climb> = climbs.collect();
-    let mut survey = Survey::of(&climbs);
-    survey.show();
-    let brushed = survey.failures.remove(&Failure::Inside).unwrap_or(0);
-    assert!(survey.failures.is_empty(), "{}", survey.line());
-    assert!(brushed <= climbs.len() / 25, "{}", survey.line());
-    assert!(survey.slip < SLIP_MPS, "{}", survey.line());
+    Survey::of(&climbs.collect::<Vec<Climb>>()).expect_no_fault();
 }
 
 /// Of everybody, from a stroll to a hurry.
