@@ -37,8 +37,9 @@ class Complaints:
 
 var _complaints := Complaints.new()
 var _problems := PackedStringArray()
-## For every frame of a lap, how long it took in each of them, microseconds.
-var _times: Array[PackedInt64Array] = []
+## For every frame of a lap, how long it took in the lap in which it was fastest, microseconds: of half an hour's frames all would be
+## memory that grows.
+var _least := PackedInt64Array()
 var _frame_began := 0
 
 
@@ -48,13 +49,17 @@ func _ready() -> void:
 	var flag := arguments.find("--minutes")
 	var minutes := arguments[flag + 1].to_float() if flag >= 0 else USUAL_MINUTES
 	var laps := maxi(ceili(minutes * 60.0 * FRAMES_PER_SECOND / LAP), WARM_UP + 3)
-	_times.resize(LAP)
-	var ledgers: Array[Dictionary] = []
+	_least.resize(LAP)
+	_least.fill(1 << 62)
+	var early: Dictionary[StringName, int] = {}
+	var late: Dictionary[StringName, int] = {}
 	for lap: int in laps:
 		await _lap()
-		ledgers.append(_ledger())
-		print("lap %d of %d: %s" % [lap + 1, laps, ledgers[-1]])
-	_judge_growth(ledgers[WARM_UP], ledgers[-1])
+		late = _ledger()
+		if lap == WARM_UP:
+			early = late
+		print("lap %d of %d: %s" % [lap + 1, laps, late])
+	_judge_growth(early, late)
 	_judge_frames()
 	OS.remove_logger(_complaints)
 	for text: String in _complaints.texts.slice(0, 10):
@@ -113,7 +118,7 @@ func _settle() -> void:
 
 func _note(frame: int) -> void:
 	var now := _clock()
-	_times[frame].append(now - _frame_began)
+	_least[frame] = mini(_least[frame], now - _frame_began)
 	_frame_began = now
 
 
@@ -146,7 +151,7 @@ func _judge_growth(early: Dictionary, late: Dictionary) -> void:
 func _judge_frames() -> void:
 	var lasted: Array[Vector2i] = []
 	for frame: int in LAP:
-		lasted.append(Vector2i(Array(_times[frame]).min(), frame))
+		lasted.append(Vector2i(_least[frame], frame))
 	lasted.sort()
 	print("the usual frame: %.1f ms" % (lasted[LAP / 2].x / 1000.0))
 	for slow: Vector2i in lasted.slice(-SLOW_SHOWN):

@@ -263,31 +263,31 @@ fn ramps_are_no_stairs() {
     Survey::of(&climbs).expect_no_fault();
 }
 
-/// Blocks have edges on all sides: whole soles find ground, and swinging ones keep clear of what is beside them. A heel that comes down may
-/// brush the edge behind it for a moment, now and then.
+/// Blocks have edges on all sides: whole soles find ground, and swinging ones keep clear of what is beside them.
 #[test]
 fn nobody_is_lost_on_rough_ground() {
     let climbs = BODIES.into_iter().flat_map(|body| ground(body, ROUGH, 10));
-    let climbs: Vec<Climb> = climbs.collect();
-    let mut survey = Survey::of(&climbs);
-    survey.show();
-    let brushed = survey.failures.remove(&Failure::Inside).unwrap_or(0);
-    assert!(survey.failures.is_empty(), "{}", survey.line());
-    assert!(brushed <= climbs.len() / 25, "{}", survey.line());
-    assert!(survey.slip < SLIP_MPS, "{}", survey.line());
+    Survey::of(&climbs.collect::<Vec<Climb>>()).expect_no_fault();
 }
 
-/// At the speeds of walks; who hurries at 2 m/s jerks on level ground, too.
+/// Of everybody, from a stroll to a hurry.
 #[test]
 fn hips_go_smoothly_over_rough_ground() {
-    let mut climbs = ground(1.0, ROUGH, 12);
-    climbs.retain(|climb| climb.speed_mps < 2.0);
-    let survey = Survey::of(&climbs);
-    assert!(
-        percentile(&survey.lift, 0.99) <= HIPS_99,
-        "{}",
-        survey.line()
-    );
+    for body in BODIES {
+        let survey = Survey::of(&ground(body, ROUGH, 12));
+        let most = percentile(&survey.lift, 0.99);
+        assert!(most <= HIPS_99, "body {body}: {}", survey.line());
+    }
+}
+
+/// On level ground, too, where a step's end is what jolts.
+#[test]
+fn hips_go_smoothly_over_level_ground() {
+    for body in BODIES {
+        let survey = Survey::of(&ground(body, Way::Level, 6));
+        let most = percentile(&survey.lift, 0.99);
+        assert!(most <= HIPS_99, "body {body}: {}", survey.line());
+    }
 }
 
 /// Nobody tells the placer where a foot will land: it comes down late, but never to nothing.

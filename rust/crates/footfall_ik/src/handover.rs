@@ -17,7 +17,10 @@ use footfall_core::rotation::{exp_map, log_map};
 use footfall_core::{JOINT_COUNT, Joint, Pose, Side, Skeleton};
 use glam::Vec3;
 
-/// A leg is stretched to this share of its length at most while its foot is held.
+/// A leg is stretched to this share of its length at most while its foot is held, unless the new motion stretches it more: the knee of a
+/// straight leg snaps when its foot leaves.
+const EASY_EXTENSION: f32 = 0.985;
+/// It is never stretched more than to this share.
 const MAX_EXTENSION: f32 = 0.999;
 /// The pelvis begins to give way so far before that, metres, for a foot that is held farther away than it; else sooner than not at all.
 const YIELD_M: f32 = 0.04;
@@ -117,8 +120,11 @@ impl Handover {
         if rests {
             self.step_over();
         }
+        let mut extensions = [EASY_EXTENSION; 2];
         let targets = Side::BOTH.map(|side| {
             let to = self.frame.foot(side, pose);
+            let own = self.frame.extension(side, pose, &to);
+            extensions[side.index()] = own.clamp(EASY_EXTENSION, MAX_EXTENSION);
             self.feet[side.index()].step(dt_secs, &to, stands[side.index()])
         });
         for (turn, rotation) in self.turns.iter_mut().zip(&mut pose.rotations) {
@@ -138,8 +144,8 @@ impl Handover {
         for (index, target) in targets.iter().enumerate() {
             let hip = hips_rotation * self.frame.hip_offsets[index];
             let length = self.frame.leg_lengths[index];
-            let highest =
-                reach_height(pose.root_position, hip, target.ankle, length, MAX_EXTENSION);
+            let extension = extensions[index];
+            let highest = reach_height(pose.root_position, hip, target.ankle, length, extension);
             if let Some(highest) = highest {
                 let give = begun * self.feet[index].parted_m().min(YIELD_M);
                 let way = target.ankle - pose.root_position - hip;
@@ -227,6 +233,13 @@ impl BodyFrame {
             hip_offsets: Side::BOTH.map(|side| skeleton.offset(side.upper_leg())),
             leg_lengths: Side::BOTH.map(|side| skeleton.leg_length(side)),
         }
+    }
+
+    /// How far a leg of a pose reaches to its foot, as a share of its length.
+    fn extension(&self, side: Side, pose: &Pose, foot: &FootTarget) -> f32 {
+        let hip = pose.rotations[Joint::Hips.index()] * self.hip_offsets[side.index()];
+        let reach = foot.ankle - pose.root_position - hip;
+        reach.length() / self.leg_lengths[side.index()]
     }
 
     /// A foot of a pose.

@@ -169,9 +169,10 @@ impl FootPlacer {
         if self.memory.as_ref().is_some_and(teleported) {
             self.reset();
         }
-        let animated = self.animated(dt_secs, input, pose, terrain);
+        let mut animated = self.animated(dt_secs, input, pose, terrain);
         let config = self.config;
         let mut scene = self.scene(dt_secs, input, terrain, &config);
+        self.let_go(&mut scene, &mut animated, pose);
         if !input.airborne {
             let mut feet = self.feet;
             for (index, foot) in feet.iter_mut().enumerate() {

@@ -5,6 +5,7 @@
 //! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
 //! generated rotations and planted feet disagree about is spread over the swing.
 
+mod lift;
 mod support;
 mod surge;
 mod swing;
@@ -240,11 +241,11 @@ impl Planter {
             terminal: self.release(raw, timing, out),
             ..*timing
         };
-        // The next step takes the hips over as they were before the legs' reach lowered them: it lowers them again.
+        self.bear(raw, timing, out);
+        self.even_height(raw, timing, out);
         let [before, last] = [timing.frames - 1, timing.frames].map(|f| out[f].pose.root_position);
         self.state.hips = last;
         self.state.hips_velocity = Some((last - before) / self.frame_secs);
-        self.bear(raw, timing, out);
         let timing = &StepTiming {
             terminal: self.let_go(raw, timing, out),
             ..*timing

@@ -59,8 +59,8 @@ impl Drawn {
 /// One walker in the space of the crowd: +Y up.
 #[derive(Debug)]
 pub(super) struct Agent {
-    /// Its walk; none before it is made, and for places that nobody has.
-    pub(super) walker: Option<CrowdWalker>,
+    /// Its walk, in memory that the thread that made it asked for; none before it is made, and for places that nobody has.
+    pub(super) walker: Option<Box<CrowdWalker>>,
     /// Tells it from others who had its place or will have it.
     pub(super) ticket: u64,
     /// Whether it is one of the node's `count`, not one that a script added.
@@ -129,7 +129,7 @@ impl Agent {
     }
 
     /// Begins to walk, at this time of the crowd.
-    pub(super) fn begin(&mut self, walker: CrowdWalker, now_secs: f64) {
+    pub(super) fn begin(&mut self, walker: Box<CrowdWalker>, now_secs: f64) {
         self.walked = walker.start_from_character();
         self.clock_secs = now_secs;
         self.walker = Some(walker);
@@ -138,7 +138,7 @@ impl Agent {
     /// Share of its stride that is behind it.
     pub(super) fn phase(&self) -> f32 {
         let walker = self.walker.as_ref();
-        walker.map_or(self.start_phase, CrowdWalker::phase)
+        walker.map_or(self.start_phase, |walker| walker.phase())
     }
 
     /// Decides what to do next; what it decides is taken up with the next step.

@@ -61,7 +61,7 @@ impl GaitCrowd3D {
         &mut self,
         #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
     ) -> PackedByteArray {
-        self.make();
+        self.make_whole();
         let tier = |place: Option<usize>| {
             let walkers = self.walkers.as_ref();
             let tier = walkers.and_then(|walkers| walkers.tiers.get(place?));
@@ -163,7 +163,7 @@ impl GaitCrowd3D {
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_agent_style(&mut self, agent: i32, weights: PackedFloat32Array) {
-        self.make();
+        self.make_whole();
         if let Some(walkers) = &mut self.walkers
             && let Some(place) = walkers.roster.place(agent)
         {
@@ -196,7 +196,7 @@ impl GaitCrowd3D {
         nobody: T,
         of: impl Fn(&Agent) -> T,
     ) -> C {
-        self.make();
+        self.make_whole();
         let places = self.places(agents);
         let agent = |place: Option<usize>| self.walkers.as_ref()?.agents.get(place?);
         places
@@ -211,7 +211,7 @@ impl GaitCrowd3D {
         agents: &PackedInt32Array,
         mut set: impl FnMut(&mut Agent, &T),
     ) {
-        self.make();
+        self.make_whole();
         let places = self.places(agents);
         let Some(walkers) = &mut self.walkers else {
             return;

@@ -8,11 +8,13 @@ use std::sync::Arc;
 
 /// Walkers that begin in one frame at most.
 const MOST_BEGIN: usize = 512;
+/// Walkers that get their rows in one frame at most.
+const MOST_COME_IN: usize = 512;
 
 impl Walkers {
     /// Whether walkers are still being made.
     pub(super) fn is_making(&self) -> bool {
-        self.maker.is_busy()
+        self.maker.is_busy() || self.are_coming()
     }
 
     /// Lets those begin who were made meanwhile, a few hundred at most; returns what they are made with when that has just come.
@@ -21,6 +23,7 @@ impl Walkers {
     /// Why nobody can walk, for the user.
     pub(super) fn begin_some(&mut self) -> Result<Option<Arc<StyleSpace>>, String> {
         self.began.clear();
+        self.come_in(MOST_COME_IN);
         let mut come = None;
         if self.kit.is_none() {
             let Some(kit) = self.maker.kit() else {
@@ -39,6 +42,7 @@ impl Walkers {
     /// # Errors
     /// Why nobody can walk, for the user.
     pub(super) fn begin_all(&mut self) -> Result<Option<Arc<StyleSpace>>, String> {
+        self.come_in(usize::MAX);
         self.maker.finish();
         let come = self.begin_some()?;
         // Who was given another outfit meanwhile is dressed in a second round.

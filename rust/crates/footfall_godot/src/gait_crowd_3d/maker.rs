@@ -29,12 +29,14 @@ pub(super) struct Order {
 pub(super) struct Made {
     pub(super) order: Order,
     pub(super) styled: StyledBody,
-    pub(super) walker: Option<CrowdWalker>,
+    pub(super) walker: Option<Box<CrowdWalker>>,
 }
 
 #[derive(Debug, Default)]
 struct Queue {
     orders: VecDeque<Order>,
+    /// Walkers who left: ten thousand of them take longer to be forgotten than a frame lasts.
+    left: Vec<Box<CrowdWalker>>,
     /// Threads that will look here again.
     working: usize,
 }
@@ -110,6 +112,19 @@ impl Maker {
         }
     }
 
+    /// Forgets walkers who left.
+    pub(super) fn forget(&mut self, left: Vec<Box<CrowdWalker>>) {
+        if left.len() <= FEW {
+            return;
+        }
+        locked(&self.shared.queue).left.extend(left);
+        self.hire(1);
+        let mut queue = locked(&self.shared.queue);
+        if queue.working == 0 {
+            queue.left.clear();
+        }
+    }
+
     /// Forgets all orders.
     pub(super) fn cancel(&mut self) {
         let left = core::mem::take(&mut locked(&self.shared.queue).orders);
@@ -133,10 +148,6 @@ impl Maker {
         for made in made.drain(..count) {
             self.waiting -= 1;
             take(made);
-        }
-        drop(made);
-        if !self.is_busy() {
-            self.join();
         }
     }
 
@@ -196,6 +207,12 @@ impl Shared {
         let mut workshop = Workshop::new(&kit.plain);
         loop {
             let mut queue = locked(&self.queue);
+            let left = core::mem::take(&mut queue.left);
+            if !left.is_empty() {
+                drop(queue);
+                drop(left);
+                continue;
+            }
             let Some(order) = queue.orders.pop_front() else {
                 queue.working -= 1;
                 return;
@@ -225,7 +242,8 @@ fn make(kit: &Kit, order: Order, workshop: &mut Workshop) -> Made {
     let styled = kit.tailor(&order.outfit);
     let walker = order.config.and_then(|config| {
         // A walker is of the plain walk when it begins, and dresses with its first step.
-        let mut walker = CrowdWalker::new(&kit.plain, &config, false, workshop).ok()?;
+        let walker = CrowdWalker::new(&kit.plain, &config, false, workshop);
+        let mut walker = Box::new(walker.ok()?);
         walker.wear(&styled);
         Some(walker)
     });

@@ -77,6 +77,15 @@ impl GaitCrowd3D {
         self.walkers.is_some()
     }
 
+    /// As [`make`](Self::make), with a row for everybody who was added.
+    pub(super) fn make_whole(&mut self) -> bool {
+        let made = self.make();
+        if let Some(walkers) = &mut self.walkers {
+            walkers.come_in(usize::MAX);
+        }
+        made
+    }
+
     /// There is no crowd, for this reason, until something changes.
     pub(super) fn fail(&mut self, problem: String) {
         self.forget();

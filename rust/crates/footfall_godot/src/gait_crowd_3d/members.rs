@@ -13,7 +13,9 @@ impl GaitCrowd3D {
     /// Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns their
     /// ids, in the same order, without those for whom there was no finite place; none when the crowd cannot be made.
     ///
-    /// They stand in all arrays at once, and appear as soon as they are made, on other threads: see `agents_ready`.
+    /// They have their ids at once and appear as soon as they are made, on other threads: see `agents_ready`. Five hundred a frame join the
+    /// arrays, so that adding many holds no frame. Whoever reads or sets something of walkers before has all of them join in that call,
+    /// and finds them where they were put.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn add_agents(
@@ -44,7 +46,7 @@ impl GaitCrowd3D {
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn remove_agents(&mut self, agents: PackedInt32Array) {
-        self.make();
+        self.make_whole();
         let Some(walkers) = &mut self.walkers else {
             return;
         };
@@ -113,7 +115,7 @@ impl GaitCrowd3D {
     /// `Camera3D.project_ray_normal()` have it: from one point to another. Bodies count as capsules.
     #[func]
     fn pick(&mut self, from: Vector3, to: Vector3) -> i32 {
-        self.make();
+        self.make_whole();
         let crowd_from_world = self.base().get_global_transform().affine_inverse();
         let [from, to] = [from, to].map(|point| convert::vec3(crowd_from_world * point));
         let walkers = self.walkers.as_ref();
@@ -128,7 +130,7 @@ impl GaitCrowd3D {
         position: Vector3,
         #[opt(default = f64::INFINITY)] max_distance: f64,
     ) -> i32 {
-        self.make();
+        self.make_whole();
         let world = self.base().get_global_transform();
         let near = convert::vec3(world.affine_inverse() * position);
         let scale = world.basis.get_scale().x.abs().max(1e-6);
@@ -160,7 +162,7 @@ impl GaitCrowd3D {
     /// the same walkers at the same places; their next steps are drawn anew.
     #[func]
     fn get_state(&mut self) -> PackedByteArray {
-        self.make();
+        self.make_whole();
         let walkers = self.walkers.as_ref();
         let bytes = walkers.map(super::walkers::Walkers::save);
         bytes.unwrap_or_default().into()
@@ -171,7 +173,7 @@ impl GaitCrowd3D {
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_state(&mut self, state: PackedByteArray) {
         match save::read(state.as_slice()) {
-            Ok(saved) if self.make() => {
+            Ok(saved) if self.make_whole() => {
                 if let Some(walkers) = &mut self.walkers {
                     let everybody = walkers.clear();
                     walkers.restore(&saved);
@@ -199,7 +201,7 @@ impl GaitCrowd3D {
     #[func]
     fn get_problems(&mut self) -> PackedStringArray {
         if self.problems().is_empty() {
-            self.make();
+            self.make_whole();
         }
         self.problems()
     }

@@ -11,6 +11,7 @@ use super::tiers::Tier;
 use super::way::Way;
 use footfall_synth::GeneratorConfig;
 use glam::{Vec2, Vec3};
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// The golden ratio spreads phases evenly, and the plastic number places in a rectangle, however many there are.
@@ -50,6 +51,15 @@ pub(super) struct Walkers {
     /// How many walkers there ever were: the number of the next, which says who it is.
     made: u64,
     tickets: u64,
+    /// Walkers who have names and no rows yet, in the order in which they came.
+    coming: VecDeque<Coming>,
+}
+
+/// A walker with a name and no row yet: where it will stand, and its heading.
+struct Coming {
+    place: usize,
+    start: Vec3,
+    heading: f32,
 }
 
 impl Walkers {
@@ -73,6 +83,7 @@ impl Walkers {
             settings,
             made: 0,
             tickets: 0,
+            coming: VecDeque::new(),
         }
     }
 
@@ -85,6 +96,7 @@ impl Walkers {
     /// Makes the crowd's own walkers, those that no script added, so many. Who is too much leaves, the last first; returns their
     /// places.
     pub(super) fn set_count(&mut self, count: usize) -> Vec<usize> {
+        self.come_in(usize::MAX);
         let own = |place: &u32| self.agents[*place as usize].counted;
         let there = self
             .roster
@@ -141,18 +153,48 @@ impl Walkers {
         order
     }
 
-    /// Adds walkers at these places under these headings; returns their names.
+    /// Adds walkers at these places under these headings; returns their names. Their rows come with [`come_in`](Self::come_in).
     pub(super) fn add(&mut self, starts: impl ExactSizeIterator<Item = (Vec3, f32)>) -> Vec<i32> {
-        self.reserve(starts.len());
-        let mut orders = Vec::with_capacity(starts.len());
-        let mut names = Vec::with_capacity(starts.len());
-        for (place, heading) in starts {
-            let (place, order) = self.enter(place, heading);
-            orders.push(order);
-            names.push(self.roster.name(place));
+        self.roster.reserve(starts.len());
+        self.coming.reserve(starts.len());
+        starts
+            .map(|(start, heading)| {
+                let place = self.roster.enter();
+                self.coming.push_back(Coming {
+                    place,
+                    start,
+                    heading,
+                });
+                self.roster.name(place)
+            })
+            .collect()
+    }
+
+    /// Whether there are walkers without rows.
+    pub(super) fn are_coming(&self) -> bool {
+        !self.coming.is_empty()
+    }
+
+    /// Gives so many of those who were added their rows, and orders them to be made. The memory of ten thousand rows takes the system
+    /// longer than a frame to come by.
+    pub(super) fn come_in(&mut self, most: usize) {
+        let count = self.coming.len().min(most);
+        if count == 0 {
+            return;
+        }
+        self.reserve(self.coming.len());
+        let mut orders = Vec::with_capacity(count);
+        for _ in 0..count {
+            if let Some(Coming {
+                place,
+                start,
+                heading,
+            }) = self.coming.pop_front()
+            {
+                orders.push(self.put_next(place, start, heading));
+            }
         }
         self.maker.take(orders.into_iter());
-        names
     }
 
     /// Goes on with those who were saved, when nobody is there.
@@ -165,7 +207,7 @@ impl Walkers {
                 self.roster.enter();
             }
         }
-        self.make_room();
+        self.make_room(self.roster.places());
         let places: Vec<usize> = self
             .roster
             .order()
@@ -185,15 +227,19 @@ impl Walkers {
     /// Removes those who have these places.
     pub(super) fn leave(&mut self, places: &[usize]) {
         self.roster.leave(places);
+        let mut left = Vec::new();
         for place in places {
-            self.agents[*place] = Agent::absent();
+            let agent = core::mem::replace(&mut self.agents[*place], Agent::absent());
+            left.extend(agent.walker);
             self.tiers[*place] = Tier::Far;
             self.drawn[*place] = Drawn::default();
         }
+        self.maker.forget(left);
     }
 
     /// Removes everybody; returns the places that they had.
     pub(super) fn clear(&mut self) -> Vec<usize> {
+        self.come_in(usize::MAX);
         self.maker.cancel();
         let everybody: Vec<usize> = self
             .roster
@@ -218,15 +264,14 @@ impl Walkers {
     }
 
     fn reserve(&mut self, more: usize) {
-        self.roster.reserve(more);
         self.agents.reserve(more);
         self.tiers.reserve(more);
         self.drawn.reserve(more);
     }
 
-    /// Gives every place of the roster its row.
-    fn make_room(&mut self) {
-        let places = self.roster.places();
+    /// Gives every one of the first so many places its row.
+    fn make_room(&mut self, places: usize) {
+        let places = places.max(self.agents.len());
         self.agents.resize_with(places, Agent::absent);
         self.tiers.resize(places, Tier::Far);
         self.drawn.resize(places, Drawn::default());
@@ -235,11 +280,15 @@ impl Walkers {
     /// Adds one walker; returns its place, and the order to make it.
     fn enter(&mut self, start: Vec3, heading: f32) -> (usize, Order) {
         let place = self.roster.enter();
-        self.make_room();
+        (place, self.put_next(place, start, heading))
+    }
+
+    /// Puts the next walker into its row; returns the order to make it.
+    fn put_next(&mut self, place: usize, start: Vec3, heading: f32) -> Order {
+        self.make_room(place + 1);
         let number = self.made;
         self.made += 1;
-        let order = self.put(place, number, (start, heading), None);
-        (place, order)
+        self.put(place, number, (start, heading), None)
     }
 
     /// Puts a walker into its row, as it was saved or as its number has it.

@@ -2,7 +2,7 @@
 
 use crate::leg::{FootTarget, reach_height};
 use crate::placement::correction::Correction;
-use crate::placement::foot::{Animated, Foot, MAX_PITCH, Mode};
+use crate::placement::foot::{Animated, Foot, MAX_PITCH, Mode, Scene};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::plane_height;
 use crate::placement::terrain::Terrain;
@@ -92,8 +92,39 @@ impl FootPlacer {
             let reach = stretch.clamp(firm, MAX_EXTENSION) * self.leg_lengths[index];
             let rocker = &self.rockers[index];
             self.feet[index].rise(rocker, &animated[index], hip, reach, target);
+            if self.feet[index].mode != Mode::Locked {
+                let easy = stretch.max(EASY_EXTENSION) * self.leg_lengths[index];
+                let most = MAX_EXTENSION * self.leg_lengths[index];
+                target.ankle = hip + yielded(target.ankle - hip, easy, most);
+            }
         }
         pose.root_position = hips;
+    }
+
+    /// Ends the contact of a foot behind the body that cannot stay where it stands, heel up, unless it pulls the pelvis down, once the
+    /// other foot stands.
+    pub(super) fn let_go<T: Terrain>(
+        &mut self,
+        scene: &mut Scene<'_, T>,
+        animated: &mut [Animated; 2],
+        pose: &Pose,
+    ) {
+        let hips_rotation = pose.rotations[Joint::Hips.index()];
+        let hips = pose.root_position + Vec3::Y * (self.pelvis.value - scene.floor_m());
+        let stand =
+            [0, 1].map(|index| self.feet[index].mode == Mode::Locked && animated[index].contact);
+        for (index, animated) in animated.iter_mut().enumerate() {
+            let foot = &self.feet[index];
+            let reach = FIRM_EXTENSION * self.leg_lengths[index];
+            let hip = hips + hips_rotation * self.hips_from_hip[index];
+            let short = stand == [true; 2]
+                && foot
+                    .highest_ankle(scene, &self.rockers[index], animated.pitch)
+                    .is_some_and(|ankle| ankle.distance(hip) > reach);
+            let foot = &mut self.feet[index];
+            foot.let_go_early = animated.contact && (foot.let_go_early || short);
+            animated.contact &= !foot.let_go_early;
+        }
     }
 
     /// Height of the ground under a place between the soles, above the animation's floor; 0 where there is none.
@@ -265,6 +296,16 @@ impl FootPlacer {
         }
         sum / count.max(1.0)
     }
+}
+
+/// A leg that gets ever harder to stretch from an easy length on, and never reaches the most: one that is straightened all at once
+/// snaps its knee.
+fn yielded(leg: Vec3, easy: f32, most: f32) -> Vec3 {
+    let (beyond, room) = (leg.length() - easy, most - easy);
+    if beyond <= 0.0 || room <= 0.0 {
+        return leg;
+    }
+    leg.normalize() * (easy + room * (1.0 - (-beyond / room).exp()))
 }
 
 /// Whether there is ground under a foot that looks for it.

@@ -94,6 +94,8 @@ pub(super) struct Foot {
     /// What a lock makes of the animated foot, beyond its correction.
     pub(super) at_lock: Residual,
     pub(super) begun: bool,
+    /// Whether it was let go before the animation lifts it.
+    pub(super) let_go_early: bool,
 }
 
 /// The floor of the animation, the ground, and how a foot meets it.
@@ -166,6 +168,7 @@ impl Default for Foot {
             residual: Residual::NONE,
             at_lock: Residual::NONE,
             begun: false,
+            let_go_early: false,
         }
     }
 }
@@ -366,6 +369,19 @@ impl Foot {
     /// The ankle of a locked foot at this pitch.
     pub(super) fn ankle_at(&self, rocker: &RockerFoot, pitch: f32) -> Vec3 {
         self.residual.apply(&self.standing(rocker, pitch)).ankle
+    }
+
+    /// Where the ankle of a locked foot is with its heel as high as it goes; `None` for a foot that stands on nothing, or on its heel.
+    pub(super) fn highest_ankle<T: Terrain>(
+        &self,
+        scene: &mut Scene<'_, T>,
+        rocker: &RockerFoot,
+        pitch: f32,
+    ) -> Option<Vec3> {
+        let hold = self.hold.filter(|_| pitch >= 0.0)?;
+        let sole = scene.sole(&hold)?;
+        let risen = Self { sole, ..*self };
+        Some(risen.ankle_at(rocker, MAX_PITCH.max(pitch)))
     }
 
     /// In the air a foot is where the animation has it.

@@ -325,7 +325,9 @@ impl Foot {
                 continue;
             };
             short = short.max(height + room - point.y);
-            inside = inside.max(height - point.y);
+            if height - point.y > inside && !scene.beside(*point, TOUCH_M) {
+                inside = height - point.y;
+            }
             // An edge ahead, as far as it is not the slope on which the foot goes anyway.
             let slope = -normal.dot(ahead) / normal.y.max(0.5);
             if let Some((edge, _)) = scene.ground(*point + ahead) {
@@ -338,11 +340,19 @@ impl Foot {
         self.guard
             .follow(short, GUARD_HALF_LIFE_SECS, scene.dt_secs);
         let share = secs_left.map_or(1.0, |secs| smooth_step(secs / COMING_DOWN_SECS));
-        let guard = self
-            .guard
-            .value
-            .max(inside.min(scene.config.max_step_m) - TOUCH_M);
-        target.ankle.y += share * guard.max(0.0);
+        let touched = inside.min(scene.config.max_step_m) - TOUCH_M;
+        target.ankle.y += (share * self.guard.value).max(touched).max(0.0);
+    }
+}
+
+impl<T: Terrain> Scene<'_, T> {
+    /// Whether a point that is below the ground is no farther than this from a wall that it could leave it through.
+    fn beside(&mut self, point: Vec3, distance_m: f32) -> bool {
+        let ways = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
+        ways.into_iter().any(|way| {
+            let ground = self.ground(point + way * distance_m);
+            ground.is_none_or(|(height, _)| height <= point.y)
+        })
     }
 }
 

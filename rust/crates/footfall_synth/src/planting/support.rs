@@ -7,7 +7,7 @@ use footfall_ik::reach_height;
 use glam::Vec3;
 
 /// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
-const MAX_STANCE_EXTENSION: f32 = 0.997;
+const MAX_STANCE_EXTENSION: f32 = 0.992;
 
 /// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
 const LET_GO_EXTENSION: f32 = 0.992;
@@ -89,7 +89,7 @@ impl Planter {
 
     /// How high the hips may be for this leg to reach where its foot stands; `None` when it is out of reach sideways at any
     /// height: then the solver stretches the leg, and the pelvis stays human.
-    fn reach_limit(
+    pub(super) fn reach_limit(
         &self,
         side: Side,
         hips: Vec3,

@@ -1,0 +1,249 @@
+//! Even height: hips rise and fall without a jolt where a foot rolls off its heel, a leg's reach ends, or another foot takes over.
+
+use super::{PlantedFrame, Planter, StepTiming};
+use crate::raw::RawFrame;
+
+/// Changes of the hips' height that last shorter are smoothed out, seconds.
+const SMOOTHED_SECS: f32 = 0.035;
+/// Hips are lowest so long after a foot has landed, about, seconds.
+const TURN_SECS: f32 = 0.05;
+/// The height is looked at beyond that for so long, seconds.
+const SEEN_SECS: f32 = 0.1;
+/// What a leg's reach allows counts so many times as much as what was generated.
+const REACH_WEIGHT: f64 = 16.0;
+/// Steps of more frames, those to come included, stay as they are: models at 60 frames a second have none.
+const MOST_FRAMES: usize = 256;
+/// Coefficients of a third difference: jerk.
+const JERK: [f64; 4] = [-1.0, 3.0, -3.0, 1.0];
+/// Frames on either side that the jerks of a frame reach to.
+const BAND: usize = JERK.len() - 1;
+
+impl Planter {
+    /// Smooths the hips' height over a step, which goes on from the height and the speed that the one before ended with.
+    pub(super) fn even_height(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        out: &mut [PlantedFrame],
+    ) {
+        let frames = &mut out[..=timing.frames];
+        let Some(mut asked) = Asked::new(timing.frames, self.frame_secs) else {
+            return;
+        };
+        for (index, frame) in frames.iter().enumerate() {
+            asked.set(index, f64::from(frame.pose.root_position.y), 1.0);
+        }
+        let begin = f64::from(self.state.hips.y);
+        let rise = self.state.hips_velocity;
+        let rise = rise.map(|velocity| f64::from(velocity.y * self.frame_secs));
+        let mut heights = asked.smoothed(begin, rise);
+        let mut beyond = false;
+        for (index, frame) in frames.iter().enumerate() {
+            let limit = self.bearing_limit(&raw[index], timing, index, frame);
+            if heights[index] > limit {
+                beyond = true;
+                asked.set(index, asked.heights[index].min(limit), REACH_WEIGHT);
+            }
+        }
+        if beyond {
+            heights = asked.smoothed(begin, rise);
+        }
+        for (height, frame) in heights.iter().zip(frames) {
+            frame.pose.root_position.y = *height as f32;
+        }
+    }
+
+    /// How high the legs that bear the body let the hips be.
+    fn bearing_limit(
+        &self,
+        raw: &RawFrame,
+        timing: &StepTiming,
+        index: usize,
+        frame: &PlantedFrame,
+    ) -> f64 {
+        let leading = timing.leading;
+        let bearing = [(leading, true), (leading.other(), index <= timing.terminal)];
+        let limits = bearing.into_iter().filter_map(|(side, bears)| {
+            let hips = frame.pose.root_position;
+            bears.then(|| self.reach_limit(side, hips, raw, frame))?
+        });
+        f64::from(limits.fold(f32::MAX, f32::min))
+    }
+}
+
+/// Heights that are asked for, and how much each counts. Nobody knows the next step yet: hips turn round at its beginning and rise
+/// about as they fell, so those of this step are seen again, backwards, beyond its end.
+struct Asked {
+    heights: [f64; MOST_FRAMES],
+    weights: [f64; MOST_FRAMES],
+    /// The last frame of the step, the one about which it is mirrored, and how many there are in all.
+    last: usize,
+    turn: usize,
+    count: usize,
+    /// How many times as much a squared jerk counts as a squared distance.
+    stiffness: f64,
+}
+
+impl Asked {
+    /// Of a step that ends with this frame, nothing asked yet; none for steps of too few frames or too many.
+    fn new(last: usize, frame_secs: f32) -> Option<Self> {
+        let frames = |secs: f32| secs / frame_secs;
+        let turn = last + frames(TURN_SECS).round() as usize;
+        let seen = (frames(SEEN_SECS).ceil() as usize).clamp(BAND, last.max(BAND));
+        let count = 2 * turn - last + seen;
+        (last >= BAND && count <= MOST_FRAMES).then(|| Self {
+            heights: [0.0; MOST_FRAMES],
+            weights: [0.0; MOST_FRAMES],
+            last,
+            turn,
+            count,
+            stiffness: f64::from(frames(SMOOTHED_SECS)).powi(6),
+        })
+    }
+
+    /// Asks for a height in a frame of the step, and in its image.
+    fn set(&mut self, index: usize, height: f64, weight: f64) {
+        self.heights[index] = height;
+        self.weights[index] = weight;
+        let image = 2 * self.turn - index;
+        if (self.last + 1..self.count).contains(&image) {
+            self.heights[image] = height;
+            self.weights[image] = weight;
+        }
+    }
+
+    /// Smooth heights, the first of them given and, if that is known, how much higher the second is.
+    fn smoothed(&self, begin: f64, rise: Option<f64>) -> [f64; MOST_FRAMES] {
+        let mut heights = self.heights;
+        heights[0] = begin;
+        if let Some(rise) = rise {
+            heights[1] = begin + rise;
+        }
+        let fixed = if rise.is_some() { 2 } else { 1 };
+        let (heights_asked, weights) = (&mut heights[..self.count], &self.weights[..self.count]);
+        smooth(heights_asked, weights, fixed, self.stiffness);
+        heights
+    }
+}
+
+/// Changes values, all but the first `fixed`, to those that are nearest to them in the weighted sum of squares, where every squared
+/// jerk counts `stiffness` times. There are more values than [`BAND`], and no more than [`MOST_FRAMES`].
+///
+/// Whittaker's smoother (On a new method of graduation, 1923): a symmetric system with [`BAND`] bands on either side of its diagonal,
+/// solved by LDLᵀ factors.
+fn smooth(values: &mut [f64], weights: &[f64], fixed: usize, stiffness: f64) {
+    let count = values.len();
+    let system = System { weights, stiffness };
+    for (value, weight) in values.iter_mut().zip(weights).skip(fixed) {
+        *value *= weight;
+    }
+    for row in fixed..count.min(fixed + BAND) {
+        for aside in row - fixed + 1..=BAND.min(row) {
+            values[row] -= system.entry(row - aside, aside) * values[row - aside];
+        }
+    }
+    let mut diagonal = [0.0; MOST_FRAMES];
+    // What of the unknown so many rows before is in a row, times its diagonal while the row is worked out.
+    let mut below = [[0.0; BAND]; MOST_FRAMES];
+    for row in fixed..count {
+        let before = BAND.min(row - fixed);
+        let mut factors = [0.0; BAND];
+        let mut pivot = system.entry(row, 0);
+        for aside in (1..=before).rev() {
+            let column = row - aside;
+            let mut scaled = system.entry(column, aside);
+            for far in aside + 1..=before {
+                scaled -= factors[far - 1] * diagonal[row - far] * below[column][far - aside - 1];
+            }
+            let factor = scaled / diagonal[column];
+            factors[aside - 1] = factor;
+            pivot -= factor * scaled;
+            values[row] -= factor * values[column];
+        }
+        diagonal[row] = pivot;
+        below[row] = factors;
+    }
+    for row in (fixed..count).rev() {
+        values[row] /= diagonal[row];
+        for aside in 1..=BAND.min(count - 1 - row) {
+            values[row] -= below[row + aside][aside - 1] * values[row + aside];
+        }
+    }
+}
+
+/// The smoother's system of equations.
+struct System<'a> {
+    weights: &'a [f64],
+    stiffness: f64,
+}
+
+impl System<'_> {
+    /// The entry so far to the right of the diagonal.
+    fn entry(&self, row: usize, aside: usize) -> f64 {
+        let first = (row + aside).saturating_sub(BAND);
+        let last = row.min(self.weights.len() - 1 - BAND);
+        let mut sum = 0.0;
+        for jerk in first..=last {
+            sum += JERK[row - jerk] * JERK[row + aside - jerk];
+        }
+        let own = if aside == 0 { self.weights[row] } else { 0.0 };
+        own + self.stiffness * sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wavy(count: usize) -> Vec<f64> {
+        let value = |index: usize| (0.7 * index as f64).sin() + 0.1 * (index % 3) as f64;
+        (0..count).map(value).collect()
+    }
+
+    /// Where a sum of squares is least, it has no slope.
+    #[test]
+    fn nothing_else_is_nearer_and_smoother() {
+        for (count, fixed, weight) in [(4, 1, 2.0), (5, 2, 3e3), (9, 0, 0.5), (40, 2, 729.0)] {
+            let given = wavy(count);
+            let mut smoothed = given.clone();
+            smooth(&mut smoothed, &vec![1.0; count], fixed, weight);
+            assert_eq!(smoothed[..fixed], given[..fixed]);
+            let mut slopes: Vec<f64> = smoothed.iter().zip(&given).map(|(s, g)| s - g).collect();
+            for (first, at) in smoothed.windows(JERK.len()).enumerate() {
+                let jerk: f64 = JERK
+                    .iter()
+                    .zip(at)
+                    .map(|(share, value)| share * value)
+                    .sum();
+                for (aside, share) in JERK.iter().enumerate() {
+                    slopes[first + aside] += weight * share * jerk;
+                }
+            }
+            for slope in &slopes[fixed..] {
+                assert!(slope.abs() < 1e-8, "{slope} of {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_jerk_stays_and_a_corner_is_rounded() {
+        let parabola: Vec<f64> = (0..30).map(|at| 0.01 * f64::from(at * at)).collect();
+        let mut smoothed = parabola.clone();
+        smooth(&mut smoothed, &[1.0; 30], 2, 1e4);
+        for (smoothed, given) in smoothed.iter().zip(&parabola) {
+            assert!((smoothed - given).abs() < 1e-8);
+        }
+        let corner: Vec<f64> = (0..31).map(|at| f64::from((at - 15_i32).abs())).collect();
+        let mut smoothed = corner.clone();
+        smooth(&mut smoothed, &[1.0; 31], 2, 729.0);
+        let bend = |values: &[f64]| {
+            let bends = values.windows(3).map(|at| at[0] - 2.0 * at[1] + at[2]);
+            bends.fold(0.0, |most: f64, bend| most.max(bend.abs()))
+        };
+        assert!(
+            bend(&smoothed) < 0.25 * bend(&corner),
+            "{}",
+            bend(&smoothed)
+        );
+    }
+}
