@@ -27,12 +27,14 @@ const YIELD_M: f32 = 0.04;
 /// It does so from the first part of the way on: by one through this.
 const YIELD_RATE: f32 = 3.0;
 /// A foot that would pull it down by more makes a step of its own to its new place, metres.
-const MOST_YIELD_M: f32 = 0.1;
+const MOST_YIELD_M: f32 = 0.15;
 /// A leg that lies does not pull the pelvis down to its foot: the nearer its foot is to its whole length to the side, the less it does, from
 /// this share of the length on.
 const UPRIGHT_SHARE: f32 = 0.25;
 /// Nor does any leg pull it down or let it go faster than this, m/s.
 const MOST_YIELD_MPS: f32 = 0.8;
+/// Nor does that begin or end at once, m/s².
+const MOST_YIELD_MPS2: f32 = 40.0;
 /// Speeds beyond these are no body's: a clip that jumped, or a character that was put elsewhere. Metres and radians a second.
 const MAX_SPEED_MPS: f32 = 6.0;
 const MAX_TURN_RADPS: f32 = 25.0;
@@ -56,6 +58,7 @@ pub struct Handover {
     feet: [HeldFoot; 2],
     /// How far the pelvis gives way to the feet, metres.
     yielded_m: f32,
+    yielding_mps: f32,
     frame: BodyFrame,
 }
 
@@ -109,6 +112,7 @@ impl Handover {
             turns,
             feet,
             yielded_m: 0.0,
+            yielding_mps: 0.0,
             frame,
         }
     }
@@ -157,9 +161,7 @@ impl Handover {
                 lowest -= upright * (lowest - below(lowest, highest, give));
             }
         }
-        let most = MOST_YIELD_MPS * dt_secs;
-        let lacks = height - lowest;
-        self.yielded_m = lacks.clamp(self.yielded_m - most, self.yielded_m + most);
+        self.yield_to(height - lowest, dt_secs);
         pose.root_position.y -= self.yielded_m;
         for (leg, target) in self.frame.legs.iter().zip(&targets) {
             leg.solve(pose.root_position, hips_rotation, target, pose);
@@ -169,6 +171,18 @@ impl Handover {
     /// Whether nothing is left of the motion that ended.
     pub fn is_over(&self) -> bool {
         self.hips.is_over() && self.feet.iter().all(HeldFoot::is_over)
+    }
+
+    /// Has the pelvis give way by so much, as far as it can within this time.
+    fn yield_to(&mut self, lacks_m: f32, dt_secs: f32) {
+        if dt_secs <= 0.0 {
+            return;
+        }
+        let wanted = (lacks_m - self.yielded_m) / dt_secs;
+        let wanted = wanted.clamp(-MOST_YIELD_MPS, MOST_YIELD_MPS);
+        let most = MOST_YIELD_MPS2 * dt_secs;
+        self.yielding_mps = wanted.clamp(self.yielding_mps - most, self.yielding_mps + most);
+        self.yielded_m += self.yielding_mps * dt_secs;
     }
 
     /// Has the foot that stands farther from its place go there, if both stand.
