@@ -292,7 +292,7 @@ namespace Footfall
         }
 
         /// <summary>Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns their ids, in the same order, without those for whom there was no finite place; none when the crowd cannot be made.</summary>
-        /// <remarks>They stand in all arrays at once, and appear as soon as they are made, on other threads: see <see cref="AgentsReady"/>.</remarks>
+        /// <remarks>They have their ids at once and appear as soon as they are made, on other threads: see <see cref="AgentsReady"/>. Five hundred a frame join the arrays, so that adding many holds no frame. Whoever reads or sets something of walkers before has all of them join in that call, and finds them where they were put.</remarks>
         public int[] AddAgents(Vector3[] positions, float[] headings) => Native.Call(MethodName.AddAgents, positions, headings).AsInt32Array();
 
         /// <summary>Lets time pass at once, in seconds, whatever <see cref="Playing"/> says: for tests, and for games with a clock of their own. It waits for walkers that are still being made, so that equal calls give equal crowds.</summary>

@@ -36,6 +36,10 @@ pub(super) struct Made {
 struct Queue {
     orders: VecDeque<Order>,
     /// Walkers who left: ten thousand of them take longer to be forgotten than a frame lasts.
+    #[expect(
+        clippy::vec_box,
+        reason = "handed on as they are: to unbox them takes the time that is to be saved"
+    )]
     left: Vec<Box<CrowdWalker>>,
     /// Threads that will look here again.
     working: usize,
@@ -113,6 +117,10 @@ impl Maker {
     }
 
     /// Forgets walkers who left.
+    #[expect(
+        clippy::vec_box,
+        reason = "handed on as they are: to unbox them takes the time that is to be saved"
+    )]
     pub(super) fn forget(&mut self, left: Vec<Box<CrowdWalker>>) {
         if left.len() <= FEW {
             return;

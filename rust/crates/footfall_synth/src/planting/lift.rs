@@ -130,7 +130,7 @@ impl Asked {
 /// jerk counts `stiffness` times. There are more values than [`BAND`], and no more than [`MOST_FRAMES`].
 ///
 /// Whittaker's smoother (On a new method of graduation, 1923): a symmetric system with [`BAND`] bands on either side of its diagonal,
-/// solved by LDLᵀ factors.
+/// solved by a square-root-free Cholesky decomposition.
 fn smooth(values: &mut [f64], weights: &[f64], fixed: usize, stiffness: f64) {
     let count = values.len();
     let system = System { weights, stiffness };
