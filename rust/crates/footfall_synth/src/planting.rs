@@ -24,6 +24,9 @@ use swing::Swing;
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
 const MAX_LANDING_EXTENSION: f32 = 0.985;
 
+/// By how much less a foot that goes backwards does: it lands on its toes, over a bent knee.
+const BACKWARDS_FLEXION: f32 = 0.005;
+
 /// Share of the straight leg by which a swinging leg can be stretched beyond that.
 const SWING_ROOM: f32 = 0.0145;
 
@@ -334,7 +337,9 @@ impl Planter {
         let foot = &self.feet[side.index()];
         let mut plant = foot.plant_under(ankle, heading + lead + leg.heading(), leg.pitch);
         let hip = hips + from_heading(heading) * leg.hip;
-        let reach = MAX_LANDING_EXTENSION * self.leg_lengths[side.index()];
+        let backwards = (-self.state.strafe.forwardness).max(0.0);
+        let extension = MAX_LANDING_EXTENSION - backwards * BACKWARDS_FLEXION;
+        let reach = extension * self.leg_lengths[side.index()];
         plant.flat_ankle += within_reach(foot.stand(&plant, leg.pitch).ankle - hip, reach);
         plant
     }

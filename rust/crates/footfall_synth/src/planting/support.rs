@@ -7,10 +7,10 @@ use footfall_ik::reach_height;
 use glam::Vec3;
 
 /// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
-const MAX_STANCE_EXTENSION: f32 = 0.992;
+const MAX_STANCE_EXTENSION: f32 = 0.995;
 
 /// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
-const LET_GO_EXTENSION: f32 = 0.992;
+const LET_GO_EXTENSION: f32 = 0.994;
 
 /// Over how many metres the pelvis yields to that limit.
 const REACH_SOFTNESS_M: f32 = 0.005;
