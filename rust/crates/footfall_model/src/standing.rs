@@ -17,7 +17,7 @@ pub const SWAY_COUNT: usize = FEATURE_COUNT + 2;
 pub const MAX_SWAY_OCTAVES: usize = 8;
 
 /// Directions of an octave at most.
-pub const MAX_SWAY_DIRECTIONS: usize = 4;
+pub const MAX_SWAY_DIRECTIONS: usize = 8;
 
 /// Directions in which people look: to the side, and up or down.
 pub const LOOK_DIRECTIONS: usize = 2;
