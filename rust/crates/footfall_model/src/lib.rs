@@ -28,7 +28,7 @@ pub use imu_model::ImuModel;
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;
 pub use standing::{
-    Breath, LOOK_DIRECTIONS, Looks, MAX_SWAY_DIRECTIONS, MAX_SWAY_OCTAVES, SWAY_COUNT, StandingModel,
-    SwayOctave,
+    Breath, LOOK_DIRECTIONS, Looks, MAX_SWAY_DIRECTIONS, MAX_SWAY_OCTAVES, SWAY_COUNT,
+    StandingModel, SwayOctave,
 };
 pub use style::{GaitStyle, StepSpread, StyleError};

@@ -100,14 +100,21 @@ impl StandingModel {
     /// Takes over what a walk changes in the posture of another: both are features, means over whole strides. Legs go on standing as
     /// they do.
     pub(crate) fn restyle(&mut self, base: &[f64], styled: &[f64]) {
-        let mut change: Vec<f64> = styled.iter().zip(base).map(|(to, from)| to - from).collect();
+        let mut change: Vec<f64> = styled
+            .iter()
+            .zip(base)
+            .map(|(to, from)| to - from)
+            .collect();
         let mut mirrored = change.clone();
         mirror(&mut mirrored);
         for (change, mirrored) in change.iter_mut().zip(mirrored) {
             *change = 0.5 * (*change + mirrored);
         }
         let hips_before = self.rotation(Joint::Hips);
-        for joint in Joint::ALL.into_iter().filter(|joint| *joint < Joint::LeftUpperLeg) {
+        for joint in Joint::ALL
+            .into_iter()
+            .filter(|joint| *joint < Joint::LeftUpperLeg)
+        {
             let offset = feature_offset(joint);
             let values = self.posture[offset..].iter_mut().zip(&change[offset..]);
             for (value, change) in values.take(3) {

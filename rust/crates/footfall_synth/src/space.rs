@@ -57,7 +57,11 @@ impl StyleSpace {
             base_pull: variance::pull(model)?,
             style_pulls,
             fine: FineTables::of(model).map(Arc::new),
-            standing: model.standing.as_ref().map(StandingTables::of).map(Arc::new),
+            standing: model
+                .standing
+                .as_ref()
+                .map(StandingTables::of)
+                .map(Arc::new),
             model: Arc::clone(model),
             styles: styles.to_vec(),
             blends: Mutex::default(),

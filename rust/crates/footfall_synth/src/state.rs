@@ -186,7 +186,11 @@ impl GaitGenerator {
                 Steps::Switching(steps) => Source::of_switching(steps),
             },
         };
-        let moment = self.life.as_ref().map(|life| life.moment).unwrap_or_default();
+        let moment = self
+            .life
+            .as_ref()
+            .map(|life| life.moment)
+            .unwrap_or_default();
         let alive = Alive {
             secs: moment.secs,
             share: moment.share,

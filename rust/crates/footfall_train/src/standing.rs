@@ -146,7 +146,7 @@ fn people(clips: &[StandingClip]) -> Vec<Person> {
 /// Features of the mean posture, the same left and right, on flat feet; and how far the hips are ahead of the ankles, leg lengths.
 fn posture(people: &[Person]) -> (Vec<f64>, f64) {
     let mut mean = vec![0.0; FEATURE_COUNT];
-    let (mut ahead, mut turned_out, mut total) = (0.0, 0.0, 0.0);
+    let (mut ahead, mut turned_out, mut bent, mut total) = (0.0, 0.0, 0.0, 0.0);
     for person in people {
         let frames: usize = person.stretches.iter().map(Stretch::frames).sum();
         let share = person.weight / frames as f64;
@@ -157,6 +157,8 @@ fn posture(people: &[Person]) -> (Vec<f64>, f64) {
                 for (mean, value) in mean.iter_mut().zip(row) {
                     *mean += share * value;
                 }
+                let knees = Side::BOTH.map(|side| angle(rotation(row, side.lower_leg())));
+                bent += share * 0.5 * (knees[0] + knees[1]);
             }
             ahead += share * stretch.hips.iter().map(|[_, ahead]| ahead).sum::<f64>();
         }
@@ -169,8 +171,43 @@ fn posture(people: &[Person]) -> (Vec<f64>, f64) {
     for (mean, mirrored) in mean.iter_mut().zip(mirrored) {
         *mean = 0.5 * (*mean + mirrored);
     }
+    bend_knees(&mut mean, bent / total);
     stand_flat(&mut mean, turned_out / total);
+    level_gaze(&mut mean);
     (mean, ahead / total)
+}
+
+/// Bends the knees of a posture by so much, and nothing but bends them: directions of small angles cancel out in a mean. Feet stay below the hips as they
+/// were.
+fn bend_knees(posture: &mut [f64], bent: f64) {
+    for side in Side::BOTH {
+        let before = rotation(posture, side.lower_leg()).to_scaled_axis().x;
+        let rest = Quat::from_rotation_x(0.5 * (before - bent as f32));
+        let thigh = rotation(posture, side.upper_leg()) * rest;
+        set(posture, side.upper_leg(), thigh);
+        set(
+            posture,
+            side.lower_leg(),
+            Quat::from_rotation_x(bent as f32),
+        );
+    }
+}
+
+/// Raises the face of a posture to the horizon. Which way of a recording's head is ahead is a matter of its skeleton: people's means lie 10 to
+/// 20 degrees apart.
+fn level_gaze(posture: &mut [f64]) {
+    let below = [Joint::Hips, Joint::Spine, Joint::Chest, Joint::UpperChest];
+    let head = |posture: &[f64]| {
+        let joints = below.into_iter().chain([Joint::Neck, Joint::Head]);
+        joints
+            .map(|joint| rotation(posture, joint))
+            .product::<Quat>()
+    };
+    let down = -(head(posture) * Vec3::Z).y.asin();
+    for joint in [Joint::Neck, Joint::Head] {
+        let turned = rotation(posture, joint) * Quat::from_rotation_x(-0.5 * down);
+        set(posture, joint, turned);
+    }
 }
 
 /// Turns the feet of a posture so that they are flat and point outwards by this angle.
@@ -179,10 +216,18 @@ fn stand_flat(posture: &mut [f64], turned_out: f64) {
         let thigh = rotation(posture, Joint::Hips) * rotation(posture, side.upper_leg());
         let shank = thigh * rotation(posture, side.lower_leg());
         let foot = Quat::from_rotation_y(side.sign() * turned_out as f32);
-        let vector = log_map(shank.inverse() * foot).as_dvec3().to_array();
-        posture[feature_offset(side.foot())..][..3].copy_from_slice(&vector);
-        posture[feature_offset(side.toes())..][..3].fill(0.0);
+        set(posture, side.foot(), shank.inverse() * foot);
+        set(posture, side.toes(), Quat::IDENTITY);
     }
+}
+
+fn angle(rotation: Quat) -> f64 {
+    f64::from(log_map(rotation).length())
+}
+
+fn set(features: &mut [f64], joint: Joint, rotation: Quat) {
+    let vector = log_map(rotation).as_dvec3().to_array();
+    features[feature_offset(joint)..][..3].copy_from_slice(&vector);
 }
 
 /// The rotation of a joint in a row of features.
@@ -199,7 +244,10 @@ fn offsets(stretch: &Stretch, posture: &[f64], ahead: f64) -> Offsets {
     let rows = stretch.features.iter().zip(&stretch.hips);
     rows.map(|(features, hips)| {
         let mut row = [0.0; SWAY_COUNT];
-        for joint in Joint::ALL.into_iter().filter(|joint| *joint < Joint::LeftUpperLeg) {
+        for joint in Joint::ALL
+            .into_iter()
+            .filter(|joint| *joint < Joint::LeftUpperLeg)
+        {
             let turn = rotation(posture, joint).inverse() * rotation(features, joint);
             let vector = log_map(turn).as_dvec3().to_array();
             row[feature_offset(joint)..][..3].copy_from_slice(&vector);

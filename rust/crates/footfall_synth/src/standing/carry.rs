@@ -7,14 +7,11 @@ use footfall_ik::{FootTarget, Leg, reach_height};
 use footfall_model::FEATURE_COUNT;
 use glam::{Quat, Vec3};
 
-/// Fraction of the straight leg at which a leg counts as stretched: a knee of 6°.
-const STRETCHED: f32 = 0.9986;
-
 /// Beyond this no leg goes: its foot would leave its place.
 const MOST_STRETCHED: f32 = 0.9993;
 
 /// Over how many metres the pelvis goes from the one leg's reach to the other's.
-const REACH_SOFTNESS_M: f32 = 0.008;
+const REACH_SOFTNESS_M: f32 = 0.001;
 
 /// One body's legs, ready to carry it.
 #[derive(Clone, Debug)]
@@ -22,6 +19,8 @@ pub(crate) struct Carrier {
     legs: [Leg; 2],
     hip_from_hips: [Vec3; 2],
     lengths: [f32; 2],
+    /// Fraction of the straight leg that the leg which carries more uses.
+    extension: f32,
 }
 
 /// One foot, and how the hip joint is to it.
@@ -32,19 +31,20 @@ struct Foot {
 }
 
 impl Carrier {
-    pub(crate) fn new(skeleton: &Skeleton) -> Self {
+    /// For a body whose knees are bent by `knee` radians when it stands.
+    pub(crate) fn new(skeleton: &Skeleton, knee: f32) -> Self {
         Self {
+            extension: (0.5 * knee).cos().min(MOST_STRETCHED),
             legs: Side::BOTH.map(|side| Leg::new(skeleton, side)),
             hip_from_hips: Side::BOTH.map(|side| skeleton.offset(side.upper_leg())),
             lengths: Side::BOTH.map(|side| skeleton.leg_length(side)),
         }
     }
 
-    /// Moves a pose by a sway: joints turn, the hips go over the ground as seen under the rotation `level`, and both feet stay as they are. The
-    /// hips keep the height that the longer leg lets them have.
-    pub(crate) fn carry(&self, sway: &Sway, level: Quat, pose: &mut Pose) {
+    /// Moves a pose by a sway: joints turn, the hips go over the ground as seen under the rotation `level`, and both feet stay as they are. By `upright`
+    /// (0 to 1) the hips go to the height at which the leg that is longer is bent as a standing one.
+    pub(crate) fn carry(&self, sway: &Sway, upright: f32, level: Quat, pose: &mut Pose) {
         let feet = Side::BOTH.map(|side| self.foot(pose, side));
-        let before = self.reach(pose.root_position, &feet);
         let mut turns = [Quat::IDENTITY; JOINT_COUNT];
         exp_maps(&sway[..FEATURE_COUNT], &mut turns);
         let upper = Joint::LeftUpperLeg.index();
@@ -59,8 +59,8 @@ impl Carrier {
             target: feet[side.index()].target,
             hip: hips_rotation * self.hip_from_hips[side.index()],
         });
-        if let (Some(before), Some(after)) = (before, self.reach(hips, &feet)) {
-            hips.y += after - before;
+        if let Some(height) = self.reach(hips, &feet) {
+            hips.y += upright * (height - hips.y);
         }
         for side in Side::BOTH {
             if let Some(limit) = self.height(hips, side, &feet[side.index()], MOST_STRETCHED) {
@@ -93,8 +93,8 @@ impl Carrier {
 
     /// How high the hips are when the legs carry them: the lower of what each leg allows, rounded off. `None` where no leg reaches its foot.
     fn reach(&self, hips: Vec3, feet: &[Foot; 2]) -> Option<f32> {
-        let heights = Side::BOTH
-            .map(|side| self.height(hips, side, &feet[side.index()], STRETCHED));
+        let heights =
+            Side::BOTH.map(|side| self.height(hips, side, &feet[side.index()], self.extension));
         match heights {
             [Some(left), Some(right)] => {
                 let apart = (left - right).abs() / REACH_SOFTNESS_M;
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn feet_stay_and_knees_hardly_bend() {
         let skeleton = Skeleton::standard();
-        let carrier = Carrier::new(&skeleton);
+        let carrier = Carrier::new(&skeleton, 0.1);
         let still = standing(&skeleton);
         let mut before = ModelPose::default();
         forward_kinematics(&skeleton, &still, &mut before);
@@ -142,7 +142,7 @@ mod tests {
             sway[FEATURE_COUNT + 1] = forwards;
             for level in [Quat::IDENTITY, Quat::from_rotation_y(0.8)] {
                 let mut pose = still.clone();
-                carrier.carry(&sway, level, &mut pose);
+                carrier.carry(&sway, 1.0, level, &mut pose);
                 let mut after = ModelPose::default();
                 forward_kinematics(&skeleton, &pose, &mut after);
                 for side in Side::BOTH {
@@ -153,11 +153,31 @@ mod tests {
                         assert!(turned < 2e-3, "{joint:?} by {turned}");
                     }
                     let knee = pose.rotation(side.lower_leg()).to_scaled_axis().length();
-                    assert!(knee < 0.3, "{knee}");
+                    assert!(knee < 0.2, "{knee}");
                 }
                 let way = level.inverse() * (pose.root_position - still.root_position);
-                assert!((way.x - 0.84 * left).abs() < 1e-4 && (way.z - 0.84 * forwards).abs() < 1e-4);
+                assert!(
+                    (way.x - 0.84 * left).abs() < 1e-4 && (way.z - 0.84 * forwards).abs() < 1e-4
+                );
             }
+        }
+    }
+
+    #[test]
+    fn a_crouched_body_stands_up() {
+        let skeleton = Skeleton::standard();
+        let mut pose = standing(&skeleton);
+        pose.root_position.y -= 0.03;
+        let carrier = Carrier::new(&skeleton, 0.1);
+        let feet = Side::BOTH.map(|side| carrier.foot(&standing(&skeleton), side));
+        for side in Side::BOTH {
+            let (hips, rotation) = (pose.root_position, pose.rotations[0]);
+            carrier.legs[side.index()].solve(hips, rotation, &feet[side.index()].target, &mut pose);
+        }
+        carrier.carry(&[0.0; SWAY_COUNT], 1.0, Quat::IDENTITY, &mut pose);
+        for side in Side::BOTH {
+            let knee = pose.rotation(side.lower_leg()).to_scaled_axis().length();
+            assert!((0.09..0.15).contains(&knee), "{knee}");
         }
     }
 
@@ -165,7 +185,7 @@ mod tests {
     fn no_sway_changes_nothing() {
         let skeleton = Skeleton::standard();
         let mut pose = standing(&skeleton);
-        Carrier::new(&skeleton).carry(&[0.0; SWAY_COUNT], Quat::IDENTITY, &mut pose);
+        Carrier::new(&skeleton, 0.1).carry(&[0.0; SWAY_COUNT], 0.0, Quat::IDENTITY, &mut pose);
         let still = standing(&skeleton);
         assert!(pose.root_position.distance(still.root_position) < 1e-5);
         for (now, then) in pose.rotations.iter().zip(still.rotations) {

@@ -41,7 +41,11 @@ pub(crate) struct Life {
 impl Moment {
     /// So much later, for one who stands all the while, or walks.
     pub(crate) fn after(self, secs: f32, stands: bool) -> Self {
-        let (target, rate) = if stands { (1.0, RISE_RATE) } else { (0.0, FALL_RATE) };
+        let (target, rate) = if stands {
+            (1.0, RISE_RATE)
+        } else {
+            (0.0, FALL_RATE)
+        };
         let missing = self.share - target;
         let impulse = self.speed + rate * missing;
         let fade = (-rate * secs).exp();
@@ -72,7 +76,7 @@ impl Life {
         Some(Self {
             stander: tables.stander(config.seed, config.variation.clamp(0.0, 2.0)),
             tables: Arc::clone(tables),
-            carrier: Carrier::new(skeleton),
+            carrier: Carrier::new(skeleton, tables.knee),
             amount: 1.0,
             moment: Moment::default(),
         })
@@ -119,7 +123,7 @@ impl Life {
         }
         let sway = self.tables.at(&self.stander, moment.secs);
         let sway: Sway = sway.map(|value| share * value);
-        self.carrier.carry(&sway, level, pose);
+        self.carrier.carry(&sway, moment.share, level, pose);
     }
 }
 

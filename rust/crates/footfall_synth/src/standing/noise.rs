@@ -107,6 +107,9 @@ mod tests {
         seen.sort_unstable();
         seen.dedup();
         assert!(seen.len() > 4900, "{}", seen.len());
-        assert_eq!(normal(key(3, 1), 5).to_bits(), normal(key(3, 1), 5).to_bits());
+        assert_eq!(
+            normal(key(3, 1), 5).to_bits(),
+            normal(key(3, 1), 5).to_bits()
+        );
     }
 }

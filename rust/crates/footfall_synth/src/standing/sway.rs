@@ -3,6 +3,8 @@
 use super::noise::{AT_ONCE, Curves, key, normal, share};
 use crate::plan::Sum as _;
 use core::f32::consts::TAU;
+use footfall_core::Joint;
+use footfall_model::layout::feature_offset;
 use footfall_model::{LOOK_DIRECTIONS, SWAY_COUNT, StandingModel};
 
 /// Offsets of a body from its posture, as [`SWAY_COUNT`] has them.
@@ -46,6 +48,8 @@ pub(crate) struct StandingTables {
     breath: Sway,
     breath_rate_hz: f64,
     strength_spread: f32,
+    /// How far knees are bent, radians.
+    pub(crate) knee: f32,
 }
 
 #[derive(Debug)]
@@ -87,6 +91,10 @@ impl StandingTables {
             breath: narrow(&model.breath.direction),
             breath_rate_hz: model.breath.rate_hz,
             strength_spread: model.strength_spread as f32,
+            knee: {
+                let knee = &model.posture[feature_offset(Joint::LeftLowerLeg)..][..3];
+                knee.iter().map(|value| value * value).sum::<f64>().sqrt() as f32
+            },
         }
     }
 
@@ -114,7 +122,10 @@ impl StandingTables {
                 let part = OCTAVES + ROWS_AN_OCTAVE * index + row;
                 let values = curves.values(key(stander.number, part));
                 let weighted = |n: usize| (rows[n].as_slice(), stander.strength * values[n]);
-                f32::add_rows(&mut sway, [weighted(0), weighted(1), weighted(2), weighted(3)]);
+                f32::add_rows(
+                    &mut sway,
+                    [weighted(0), weighted(1), weighted(2), weighted(3)],
+                );
             }
         }
         let [side, down] = self.look(stander, secs);
@@ -131,10 +142,13 @@ impl StandingTables {
     /// Where the gaze is, in standard deviations of where it rests.
     fn look(&self, stander: &Stander, secs: f64) -> [f32; LOOK_DIRECTIONS] {
         let times = key(stander.number, LOOK_TIMES);
-        let jumps = |cell: i64| cell.rem_euclid(LOOK_CELLS) == 0 || share(times, cell) < self.look_chance;
+        let jumps =
+            |cell: i64| cell.rem_euclid(LOOK_CELLS) == 0 || share(times, cell) < self.look_chance;
         let rest = |cell: i64| {
             // At most a whole round of cells back there is one.
-            let cell = (0..LOOK_CELLS).map(|back| cell - back).find(|cell| jumps(*cell));
+            let cell = (0..LOOK_CELLS)
+                .map(|back| cell - back)
+                .find(|cell| jumps(*cell));
             let cell = cell.unwrap_or(0);
             core::array::from_fn(|axis| {
                 let level = normal(key(stander.number, LOOKS + axis as u64), cell);
@@ -230,7 +244,10 @@ pub(super) mod tests {
         let found = deviation(&series(4, FEATURE_COUNT));
         assert!((found / 0.02 - 1.0).abs() < 0.1, "{found}");
         let found = deviation(&series(4, 3));
-        assert!((found / (0.004 * 5.0_f32.sqrt()) - 1.0).abs() < 0.1, "{found}");
+        assert!(
+            (found / (0.004 * 5.0_f32.sqrt()) - 1.0).abs() < 0.1,
+            "{found}"
+        );
         // Looks rest where a normal number has them, cut off at two deviations.
         let found = deviation(&series(4, 16));
         assert!((0.15..0.21).contains(&found), "{found}");
@@ -239,7 +256,9 @@ pub(super) mod tests {
     #[test]
     fn a_gaze_rests_and_jumps() {
         let yaw = series(11, 16);
-        let still = yaw.windows(2).filter(|pair| (pair[1] - pair[0]).abs() < 1e-5);
+        let still = yaw
+            .windows(2)
+            .filter(|pair| (pair[1] - pair[0]).abs() < 1e-5);
         let resting = still.count() as f32 / yaw.len() as f32;
         assert!((0.7..0.95).contains(&resting), "{resting}");
         // No jump within a frame: a radian in a second goes no faster than its least jerk.
@@ -250,11 +269,16 @@ pub(super) mod tests {
     #[test]
     fn breaths_come_at_their_rate_and_never_quite_alike() {
         let full = series(5, 9);
-        let rises = full.windows(2).filter(|pair| pair[0] > 0.0 && pair[1] <= 0.0);
+        let rises = full
+            .windows(2)
+            .filter(|pair| pair[0] > 0.0 && pair[1] <= 0.0);
         let rate = rises.count() as f32 / (40_000.0 * 0.05);
         assert!((rate - 0.25).abs() < 0.02, "{rate}");
         let seconds = |from: usize| &full[from..from + 400];
-        let apart = seconds(0).iter().zip(seconds(4000)).map(|(a, b)| (a - b).abs());
+        let apart = seconds(0)
+            .iter()
+            .zip(seconds(4000))
+            .map(|(a, b)| (a - b).abs());
         assert!(apart.fold(0.0, f32::max) > 2e-3);
     }
 
@@ -268,7 +292,10 @@ pub(super) mod tests {
             pairs.map(|(a, b)| a * b).sum::<f32>() / power
         };
         assert!(with_itself(5) > 0.9);
-        let most = (400..20_000).step_by(7).map(with_itself).fold(0.0, f32::max);
+        let most = (400..20_000)
+            .step_by(7)
+            .map(with_itself)
+            .fold(0.0, f32::max);
         assert!(most < 0.25, "{most}");
     }
 
@@ -277,7 +304,10 @@ pub(super) mod tests {
         let tables = StandingTables::of(&model());
         let [one, other] = [1, 2].map(|seed| tables.stander(seed, 1.0));
         assert!(one.strength.ln().abs() <= 0.4 && one != other);
-        assert_eq!(tables.at(&one, 12.5), tables.at(&tables.stander(1, 1.0), 12.5));
+        assert_eq!(
+            tables.at(&one, 12.5),
+            tables.at(&tables.stander(1, 1.0), 12.5)
+        );
         assert_ne!(tables.at(&one, 12.5), tables.at(&other, 12.5));
     }
 }

@@ -60,7 +60,10 @@ pub(super) fn take_out(people: &[Person], offsets: &mut [Vec<Offsets>]) -> Looks
 /// Jumps of the gaze to the side.
 fn jumps(stretch: &Stretch) -> Vec<Jump> {
     let yaw: Vec<f64> = smooth(&stretch.gaze).iter().map(|gaze| gaze[0]).collect();
-    let speed: Vec<f64> = yaw.windows(2).map(|pair| (pair[1] - pair[0]) * RATE_HZ).collect();
+    let speed: Vec<f64> = yaw
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]) * RATE_HZ)
+        .collect();
     let mut jumps: Vec<Jump> = Vec::new();
     let mut frame = 0;
     while frame < speed.len() {
@@ -70,7 +73,11 @@ fn jumps(stretch: &Stretch) -> Vec<Jump> {
         }
         let moves = |other: &usize| speed[*other] * speed[frame].signum() > STILL_RADPS;
         let from = (0..frame).rev().take_while(moves).last().unwrap_or(frame);
-        let to = (frame..speed.len()).take_while(moves).last().unwrap_or(frame) + 1;
+        let to = (frame..speed.len())
+            .take_while(moves)
+            .last()
+            .unwrap_or(frame)
+            + 1;
         if (yaw[to] - yaw[from]).abs() > LEAST_JUMP {
             jumps.push(Jump { from, to });
         }
@@ -110,14 +117,20 @@ fn path(stretch: &Stretch) -> Vec<[f64; 2]> {
             let part = (frame - jump.from) as f64 / (jump.to - jump.from) as f64;
             let part = part.min(1.0);
             let share = part * part * (3.0 - 2.0 * part);
-            *gaze = core::array::from_fn(|axis| pair[0][axis] + share * (pair[1][axis] - pair[0][axis]));
+            *gaze = core::array::from_fn(|axis| {
+                pair[0][axis] + share * (pair[1][axis] - pair[0][axis])
+            });
         }
     }
     path
 }
 
 /// What the body does, a radian of gaze, by a regression within stretches.
-fn regress(people: &[Person], paths: &[Vec<Vec<[f64; 2]>>], offsets: &[Vec<Offsets>]) -> Vec<Vec<f64>> {
+fn regress(
+    people: &[Person],
+    paths: &[Vec<Vec<[f64; 2]>>],
+    offsets: &[Vec<Offsets>],
+) -> Vec<Vec<f64>> {
     let mut energy = DMatrix::<f64>::identity(LOOK_DIRECTIONS, LOOK_DIRECTIONS) * LEAST_ENERGY;
     let mut together = DMatrix::<f64>::zeros(LOOK_DIRECTIONS, SWAY_COUNT);
     for ((person, paths), offsets) in people.iter().zip(paths).zip(offsets) {
@@ -127,7 +140,8 @@ fn regress(people: &[Person], paths: &[Vec<Vec<[f64; 2]>>], offsets: &[Vec<Offse
             let mean_gaze: [f64; 2] = mean(path);
             let mean_row: [f64; SWAY_COUNT] = mean(rows);
             for (gaze, row) in path.iter().zip(rows) {
-                let gaze = DVector::from_fn(LOOK_DIRECTIONS, |axis, _| gaze[axis] - mean_gaze[axis]);
+                let gaze =
+                    DVector::from_fn(LOOK_DIRECTIONS, |axis, _| gaze[axis] - mean_gaze[axis]);
                 let row: [f64; SWAY_COUNT] = core::array::from_fn(|n| row[n] - mean_row[n]);
                 // The mirrored body looks to the other side.
                 let other = DVector::from_vec(vec![-gaze[0], gaze[1]]);
@@ -138,9 +152,10 @@ fn regress(people: &[Person], paths: &[Vec<Vec<[f64; 2]>>], offsets: &[Vec<Offse
             }
         }
     }
-    let slopes = energy
-        .try_inverse()
-        .map_or_else(|| DMatrix::zeros(LOOK_DIRECTIONS, SWAY_COUNT), |inverse| inverse * together);
+    let slopes = energy.try_inverse().map_or_else(
+        || DMatrix::zeros(LOOK_DIRECTIONS, SWAY_COUNT),
+        |inverse| inverse * together,
+    );
     let rows = slopes.row_iter();
     rows.map(|row| row.iter().copied().collect()).collect()
 }
@@ -153,7 +168,11 @@ fn mean<const N: usize>(rows: &[[f64; N]]) -> [f64; N] {
 fn spread(people: &[Person], paths: &[Vec<Vec<[f64; 2]>>]) -> [f64; LOOK_DIRECTIONS] {
     let (mut sums, mut total) = ([0.0; LOOK_DIRECTIONS], 0.0);
     for (person, paths) in people.iter().zip(paths) {
-        if person.stretches.iter().all(|stretch| jumps(stretch).is_empty()) {
+        if person
+            .stretches
+            .iter()
+            .all(|stretch| jumps(stretch).is_empty())
+        {
             continue;
         }
         let all: Vec<[f64; 2]> = paths.concat();
@@ -176,7 +195,11 @@ fn rhythm(people: &[Person]) -> (f64, f64) {
         let frames: usize = person.stretches.iter().map(Stretch::frames).sum();
         rate += person.weight * found.len() as f64 * RATE_HZ / frames as f64;
         total += person.weight;
-        lengths.extend(found.iter().map(|jump| (jump.to - jump.from) as f64 / RATE_HZ));
+        lengths.extend(
+            found
+                .iter()
+                .map(|jump| (jump.to - jump.from) as f64 / RATE_HZ),
+        );
     }
     lengths.sort_by(f64::total_cmp);
     let middle = lengths.get(lengths.len() / 2).copied();
@@ -230,13 +253,23 @@ mod tests {
         let mut offsets = vec![vec![rows]];
         let looks = take_out(&[person], &mut offsets);
         assert!((looks.rate_hz - 0.25).abs() < 0.02, "{}", looks.rate_hz);
-        assert!((0.6..1.3).contains(&looks.shift_secs), "{}", looks.shift_secs);
+        assert!(
+            (0.6..1.3).contains(&looks.shift_secs),
+            "{}",
+            looks.shift_secs
+        );
         let [yaw, _] = [&looks.directions[0], &looks.directions[1]];
         assert!((yaw[4] - 0.25 * 0.27).abs() < 0.02, "{}", yaw[4]);
         // What is left are the sway and half a degree.
-        let left = offsets[0][0].iter().map(|row| row[4].abs()).fold(0.0, f64::max);
+        let left = offsets[0][0]
+            .iter()
+            .map(|row| row[4].abs())
+            .fold(0.0, f64::max);
         assert!(left < 0.1, "{left}");
-        let kept = offsets[0][0].iter().map(|row| row[40].abs()).fold(0.0, f64::max);
+        let kept = offsets[0][0]
+            .iter()
+            .map(|row| row[40].abs())
+            .fold(0.0, f64::max);
         assert!((kept - 0.02).abs() < 5e-3, "{kept}");
     }
 }

@@ -72,10 +72,15 @@ pub(super) fn estimate(people: &[Vec<Offsets>], weights: &[f64]) -> Swayed {
     }
     let covariances = fit(&bands);
     let mut octaves = vec![stance(people, weights, &covariances)];
-    octaves.extend(covariances.iter().zip(KNOTS_SECS).map(|(covariance, knot_secs)| SwayOctave {
-        knot_secs,
-        directions: directions(covariance),
-    }));
+    octaves.extend(
+        covariances
+            .iter()
+            .zip(KNOTS_SECS)
+            .map(|(covariance, knot_secs)| SwayOctave {
+                knot_secs,
+                directions: directions(covariance),
+            }),
+    );
     Swayed {
         octaves,
         strength_spread: (freed * mean(&squares)).sqrt(),
@@ -98,9 +103,14 @@ fn log_strength(bands: &Bands) -> f64 {
     let energies = bands.iter().map(|band| {
         let diagonal = band.diagonal();
         let parts = diagonal.iter().enumerate();
-        parts.map(|(n, value)| weight(n).powi(2) * value).sum::<f64>()
+        parts
+            .map(|(n, value)| weight(n).powi(2) * value)
+            .sum::<f64>()
     });
-    energies.map(|energy| 0.5 * energy.max(1e-12).ln()).sum::<f64>() / OCTAVES as f64
+    energies
+        .map(|energy| 0.5 * energy.max(1e-12).ln())
+        .sum::<f64>()
+        / OCTAVES as f64
 }
 
 /// Covariances of the bands of one person's offsets about the mean, mirrored ones included.
@@ -216,7 +226,9 @@ fn positive(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 fn directions(covariance: &DMatrix<f64>) -> Vec<Vec<f64>> {
     let energy = |direction: &Vec<f64>| {
         let parts = direction.iter().enumerate();
-        parts.map(|(n, part)| (weight(n) * part).powi(2)).sum::<f64>()
+        parts
+            .map(|(n, part)| (weight(n) * part).powi(2))
+            .sum::<f64>()
     };
     let mut all = principal(covariance);
     let whole: f64 = all.iter().map(energy).sum();
@@ -274,7 +286,12 @@ fn stance(people: &[Vec<Offsets>], weights: &[f64], octaves: &Bands) -> SwayOcta
     let variance = slow[(side, side)].max(1e-12);
     SwayOctave {
         knot_secs: STANCE_KNOT_SECS,
-        directions: vec![slow.column(side).iter().map(|value| spread * value / variance).collect()],
+        directions: vec![
+            slow.column(side)
+                .iter()
+                .map(|value| spread * value / variance)
+                .collect(),
+        ],
     }
 }
 
@@ -360,8 +377,13 @@ mod tests {
             })
             .collect();
         let swayed = estimate(&people, &[1.0; 3]);
-        let rows = swayed.octaves[1..].iter().flat_map(|octave| &octave.directions);
-        let deviation = rows.map(|row| row[FEATURE_COUNT + 1].powi(2)).sum::<f64>().sqrt();
+        let rows = swayed.octaves[1..]
+            .iter()
+            .flat_map(|octave| &octave.directions);
+        let deviation = rows
+            .map(|row| row[FEATURE_COUNT + 1].powi(2))
+            .sum::<f64>()
+            .sqrt();
         assert!((deviation / 0.02 - 1.0).abs() < 0.2, "{deviation}");
         // Factors of two: a deviation of ln 2.
         assert!((swayed.strength_spread / 2_f64.ln() - 1.0).abs() < 0.25);

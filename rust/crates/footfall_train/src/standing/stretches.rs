@@ -94,7 +94,10 @@ fn standing_frames(clip: &Clip, bodies: &[ModelPose]) -> Vec<bool> {
                 && apart.with_y(0.0).length() < MOST_STRIDE * leg
         })
         .collect();
-    for joint in Side::BOTH.into_iter().flat_map(|side| [side.foot(), side.toes()]) {
+    for joint in Side::BOTH
+        .into_iter()
+        .flat_map(|side| [side.foot(), side.toes()])
+    {
         let places: Vec<Vec3> = bodies.iter().map(|body| body.position(joint)).collect();
         let places = low_pass(&places, RATE_HZ, FOOT_CUT_OFF_HZ);
         for frame in 0..stands.len() {
@@ -139,7 +142,9 @@ fn seen(clip: &Clip, bodies: &[ModelPose], poses: &[Pose]) -> Stretch {
         stretch.hips.push([f64::from(hips.x), f64::from(hips.z)]);
         let head = level * body.rotation(Joint::Head);
         let down = -(head * Vec3::Z).y.clamp(-1.0, 1.0).asin();
-        stretch.gaze.push([f64::from(heading(head)), f64::from(down)]);
+        stretch
+            .gaze
+            .push([f64::from(heading(head)), f64::from(down)]);
     }
     stretch
 }
