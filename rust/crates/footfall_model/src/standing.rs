@@ -25,15 +25,19 @@ pub const LOOK_DIRECTIONS: usize = 2;
 /// How people stand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandingModel {
-    /// Features ([`FEATURE_COUNT`]) of the upright posture, the same left and right.
+    /// Features ([`FEATURE_COUNT`]) of the upright posture, the same left and right, with ankles straight below the hip joints.
     pub posture: Vec<f64>,
+    /// How far the hips of somebody who stands at ease are ahead of that, leg lengths.
+    pub hips_ahead: f64,
+    /// Weight on one leg for long. All people have as much of it.
+    pub stance: SwayOctave,
     /// Sway and shifts of weight, slowest first.
     pub octaves: Vec<SwayOctave>,
     /// Where they look.
     pub looks: Looks,
     /// How they breathe.
     pub breath: Breath,
-    /// Standard deviation, between people, of the logarithm of how far they move.
+    /// Standard deviation, between people, of the logarithm of how far they sway and look about.
     pub strength_spread: f64,
 }
 
@@ -72,8 +76,9 @@ impl StandingModel {
     pub(crate) fn check(&self) -> Result<(), ModelError> {
         check_len("standing posture", &self.posture, FEATURE_COUNT)?;
         check_finite("standing posture", &self.posture)?;
+        check_finite("standing posture", &[self.hips_ahead])?;
         check_count("octaves of standing", self.octaves.len(), MAX_SWAY_OCTAVES)?;
-        for octave in &self.octaves {
+        for octave in self.octaves.iter().chain([&self.stance]) {
             check_positive("octave of standing", &[octave.knot_secs])?;
             check_count(
                 "directions of standing",
@@ -88,7 +93,8 @@ impl StandingModel {
         check_positive("looks", &[looks.shift_secs, 1.0 + looks.rate_hz])?;
         check_positive("breath", &[self.breath.rate_hz])?;
         check_finite("spread of standing", &[self.strength_spread])?;
-        let octaves = self.octaves.iter().flat_map(|octave| &octave.directions);
+        let octaves = self.octaves.iter().chain([&self.stance]);
+        let octaves = octaves.flat_map(|octave| &octave.directions);
         let all = octaves.chain(&looks.directions);
         for direction in all.chain([&self.breath.direction]) {
             check_len("direction of standing", direction, SWAY_COUNT)?;
@@ -165,6 +171,11 @@ mod tests {
         posture[feature_offset(Joint::RightUpperLeg)] = -0.15;
         StandingModel {
             posture,
+            hips_ahead: 0.05,
+            stance: SwayOctave {
+                knot_secs: 24.0,
+                directions: Vec::new(),
+            },
             octaves: Vec::new(),
             looks: Looks {
                 rate_hz: 0.1,

@@ -113,6 +113,8 @@ pub fn learn(clips: &[StandingClip]) -> Option<LearnedStanding> {
     Some(LearnedStanding {
         model: StandingModel {
             posture,
+            hips_ahead: ahead,
+            stance: swayed.stance,
             octaves: swayed.octaves,
             looks,
             breath: breath(),
@@ -143,7 +145,7 @@ fn people(clips: &[StandingClip]) -> Vec<Person> {
     people
 }
 
-/// Features of the mean posture, the same left and right, on flat feet; and how far the hips are ahead of the ankles, leg lengths.
+/// Features of the mean posture, the same left and right, on flat feet below the hip joints; and how far the hips are ahead of the ankles, leg lengths.
 fn posture(people: &[Person]) -> (Vec<f64>, f64) {
     let mut mean = vec![0.0; FEATURE_COUNT];
     let (mut ahead, mut turned_out, mut bent, mut total) = (0.0, 0.0, 0.0, 0.0);
@@ -171,25 +173,23 @@ fn posture(people: &[Person]) -> (Vec<f64>, f64) {
     for (mean, mirrored) in mean.iter_mut().zip(mirrored) {
         *mean = 0.5 * (*mean + mirrored);
     }
-    bend_knees(&mut mean, bent / total);
-    stand_flat(&mut mean, turned_out / total);
+    stand_flat(&mut mean, bent / total, turned_out / total);
     level_gaze(&mut mean);
     (mean, ahead / total)
 }
 
-/// Bends the knees of a posture by so much, and nothing but bends them: directions of small angles cancel out in a mean. Feet stay below the hips as they
-/// were.
-fn bend_knees(posture: &mut [f64], bent: f64) {
+/// Puts the feet of a posture flat below the hip joints, pointing outwards by `turned_out`, with knees that are bent by `bent` and nothing but bent:
+/// directions of small angles cancel out in a mean.
+fn stand_flat(posture: &mut [f64], bent: f64, turned_out: f64) {
+    let tilt = rotation(posture, Joint::Hips);
     for side in Side::BOTH {
-        let before = rotation(posture, side.lower_leg()).to_scaled_axis().x;
-        let rest = Quat::from_rotation_x(0.5 * (before - bent as f32));
-        let thigh = rotation(posture, side.upper_leg()) * rest;
-        set(posture, side.upper_leg(), thigh);
-        set(
-            posture,
-            side.lower_leg(),
-            Quat::from_rotation_x(bent as f32),
-        );
+        let thigh = Quat::from_rotation_x(-0.5 * bent as f32);
+        let knee = Quat::from_rotation_x(bent as f32);
+        let foot = Quat::from_rotation_y(side.sign() * turned_out as f32);
+        set(posture, side.upper_leg(), tilt.inverse() * thigh);
+        set(posture, side.lower_leg(), knee);
+        set(posture, side.foot(), (thigh * knee).inverse() * foot);
+        set(posture, side.toes(), Quat::IDENTITY);
     }
 }
 
@@ -207,17 +207,6 @@ fn level_gaze(posture: &mut [f64]) {
     for joint in [Joint::Neck, Joint::Head] {
         let turned = rotation(posture, joint) * Quat::from_rotation_x(-0.5 * down);
         set(posture, joint, turned);
-    }
-}
-
-/// Turns the feet of a posture so that they are flat and point outwards by this angle.
-fn stand_flat(posture: &mut [f64], turned_out: f64) {
-    for side in Side::BOTH {
-        let thigh = rotation(posture, Joint::Hips) * rotation(posture, side.upper_leg());
-        let shank = thigh * rotation(posture, side.lower_leg());
-        let foot = Quat::from_rotation_y(side.sign() * turned_out as f32);
-        set(posture, side.foot(), shank.inverse() * foot);
-        set(posture, side.toes(), Quat::IDENTITY);
     }
 }
 

@@ -101,6 +101,11 @@ fn standing_survives_beside_every_version_of_the_walk() {
     let row = |scale: f64, len: usize| (0..len).map(|i| scale * (i + 1) as f64).collect::<Vec<_>>();
     let standing = StandingModel {
         posture: row(0.25, FEATURE_COUNT),
+        hips_ahead: 0.0625,
+        stance: SwayOctave {
+            knot_secs: 24.0,
+            directions: vec![row(0.375, SWAY_COUNT)],
+        },
         octaves: vec![
             SwayOctave {
                 knot_secs: 8.0,

@@ -18,6 +18,8 @@ struct ModelV4 {
 #[derive(Serialize, Deserialize)]
 struct StandingV4 {
     posture: Vec<f32>,
+    hips_ahead: f32,
+    stance: OctaveV4,
     octaves: Vec<OctaveV4>,
     look_rate_hz: f32,
     look_shift_secs: f32,
@@ -39,16 +41,18 @@ pub(super) fn encode(
     standing: &StandingModel,
 ) -> Result<Vec<u8>, ModelFileError> {
     let rows = |rows: &[Vec<f64>]| rows.iter().map(|row| narrow(row)).collect();
-    let octaves = standing.octaves.iter().map(|octave| OctaveV4 {
+    let octave = |octave: &SwayOctave| OctaveV4 {
         knot_secs: octave.knot_secs as f32,
         directions: rows(&octave.directions),
-    });
+    };
     let dto = ModelV4 {
         walk_version,
         walk,
         standing: StandingV4 {
             posture: narrow(&standing.posture),
-            octaves: octaves.collect(),
+            hips_ahead: standing.hips_ahead as f32,
+            stance: octave(&standing.stance),
+            octaves: standing.octaves.iter().map(octave).collect(),
             look_rate_hz: standing.looks.rate_hz as f32,
             look_shift_secs: standing.looks.shift_secs as f32,
             looks: rows(&standing.looks.directions),
@@ -65,14 +69,16 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitModel
         postcard::from_bytes(payload).map_err(|error| undecodable("payload", &error))?;
     let rows = |rows: &[Vec<f32>]| rows.iter().map(|row| widen(row)).collect();
     let standing = dto.standing;
-    let octaves = standing.octaves.iter().map(|octave| SwayOctave {
+    let octave = |octave: &OctaveV4| SwayOctave {
         knot_secs: f64::from(octave.knot_secs),
         directions: rows(&octave.directions),
-    });
+    };
     Ok(GaitModel {
         standing: Some(StandingModel {
             posture: widen(&standing.posture),
-            octaves: octaves.collect(),
+            hips_ahead: f64::from(standing.hips_ahead),
+            stance: octave(&standing.stance),
+            octaves: standing.octaves.iter().map(octave).collect(),
             looks: Looks {
                 rate_hz: f64::from(standing.look_rate_hz),
                 shift_secs: f64::from(standing.look_shift_secs),

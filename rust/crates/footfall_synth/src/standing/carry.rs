@@ -10,6 +10,9 @@ use glam::{Quat, Vec3};
 /// Beyond this no leg goes: its foot would leave its place.
 const MOST_STRETCHED: f32 = 0.9993;
 
+/// The pelvis tilts to the side by so much at most where one leg has farther to its foot, radians.
+const MOST_TILT: f32 = 0.06;
+
 /// Over how many metres the pelvis goes from the one leg's reach to the other's.
 const REACH_SOFTNESS_M: f32 = 0.001;
 
@@ -42,7 +45,7 @@ impl Carrier {
     }
 
     /// Moves a pose by a sway: joints turn, the hips go over the ground as seen under the rotation `level`, and both feet stay as they are. By `upright`
-    /// (0 to 1) the hips go to the height at which the leg that is longer is bent as a standing one.
+    /// (0 to 1) the hips go to the height at which legs are bent as standing ones, and tilt to the side on which the way to the foot is longer.
     pub(crate) fn carry(&self, sway: &Sway, upright: f32, level: Quat, pose: &mut Pose) {
         let feet = Side::BOTH.map(|side| self.foot(pose, side));
         let mut turns = [Quat::IDENTITY; JOINT_COUNT];
@@ -54,11 +57,14 @@ impl Carrier {
         let leg = 0.5 * (self.lengths[0] + self.lengths[1]);
         let way = leg * Vec3::new(sway[FEATURE_COUNT], 0.0, sway[FEATURE_COUNT + 1]);
         let mut hips = pose.root_position + level * way;
+        let mut feet = feet;
+        self.hang(pose.rotation(Joint::Hips), &mut feet);
+        let tilt = Quat::from_rotation_z(upright * self.tilt(hips, &feet));
+        pose.rotations[Joint::Hips.index()] *= tilt;
+        let spine = &mut pose.rotations[Joint::Spine.index()];
+        *spine = tilt.conjugate() * *spine;
         let hips_rotation = pose.rotation(Joint::Hips);
-        let feet = Side::BOTH.map(|side| Foot {
-            target: feet[side.index()].target,
-            hip: hips_rotation * self.hip_from_hips[side.index()],
-        });
+        self.hang(hips_rotation, &mut feet);
         if let Some(height) = self.reach(hips, &feet) {
             hips.y += upright * (height - hips.y);
         }
@@ -72,6 +78,25 @@ impl Carrier {
             let target = &feet[side.index()].target;
             self.legs[side.index()].solve(hips, hips_rotation, target, pose);
         }
+    }
+
+    /// Puts the hip joints where the hips have them.
+    fn hang(&self, hips: Quat, feet: &mut [Foot; 2]) {
+        for (foot, hip) in feet.iter_mut().zip(self.hip_from_hips) {
+            foot.hip = hips * hip;
+        }
+    }
+
+    /// By how much the pelvis has to tilt for both legs to reach their feet alike, positive with the left side up, radians.
+    fn tilt(&self, hips: Vec3, feet: &[Foot; 2]) -> f32 {
+        let [left, right] =
+            Side::BOTH.map(|side| self.height(hips, side, &feet[side.index()], self.extension));
+        let (Some(left), Some(right)) = (left, right) else {
+            return 0.0;
+        };
+        let apart = self.hip_from_hips[0].distance(self.hip_from_hips[1]);
+        let tilt = (left - right) / apart.max(f32::MIN_POSITIVE);
+        MOST_TILT * (tilt / MOST_TILT).tanh()
     }
 
     fn foot(&self, pose: &Pose, side: Side) -> Foot {

@@ -5,7 +5,7 @@ use crate::plan::Sum as _;
 use core::f32::consts::TAU;
 use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
-use footfall_model::{LOOK_DIRECTIONS, SWAY_COUNT, StandingModel};
+use footfall_model::{FEATURE_COUNT, LOOK_DIRECTIONS, SWAY_COUNT, StandingModel, SwayOctave};
 
 /// Offsets of a body from its posture, as [`SWAY_COUNT`] has them.
 pub(crate) type Sway = [f32; SWAY_COUNT];
@@ -15,7 +15,8 @@ const STRENGTH: u64 = 0;
 const BREATH: u64 = 1;
 const LOOK_TIMES: u64 = 2;
 const LOOKS: u64 = 3;
-const OCTAVES: u64 = LOOKS + LOOK_DIRECTIONS as u64;
+const STANCE: u64 = LOOKS + LOOK_DIRECTIONS as u64;
+const OCTAVES: u64 = STANCE + ROWS_AN_OCTAVE;
 
 /// Rows of curves that an octave has room for.
 const ROWS_AN_OCTAVE: u64 = 4;
@@ -40,7 +41,10 @@ const BREATH_SKEW: f32 = 0.35;
 /// How people of a model stand, ready for many walkers.
 #[derive(Debug)]
 pub(crate) struct StandingTables {
+    /// Moves everybody alike.
+    stance: Octave,
     octaves: Vec<Octave>,
+    hips_ahead: f32,
     looks: [Sway; LOOK_DIRECTIONS],
     /// The chance of a jump in a cell, and the share of the cell that a jump takes.
     look_chance: f32,
@@ -70,18 +74,10 @@ pub(crate) struct Stander {
 
 impl StandingTables {
     pub(crate) fn of(model: &StandingModel) -> Self {
-        let octaves = model.octaves.iter().map(|octave| {
-            let rows: Vec<Sway> = octave.directions.iter().map(|row| narrow(row)).collect();
-            let fours = rows.chunks(AT_ONCE).map(|rows| {
-                core::array::from_fn(|row| rows.get(row).copied().unwrap_or([0.0; SWAY_COUNT]))
-            });
-            Octave {
-                knots_hz: octave.knot_secs.recip(),
-                directions: fours.collect(),
-            }
-        });
         Self {
-            octaves: octaves.collect(),
+            stance: Octave::of(&model.stance),
+            octaves: model.octaves.iter().map(Octave::of).collect(),
+            hips_ahead: model.hips_ahead as f32,
             looks: core::array::from_fn(|axis| {
                 let row = model.looks.directions.get(axis);
                 row.map_or([0.0; SWAY_COUNT], |row| narrow(row))
@@ -116,17 +112,11 @@ impl StandingTables {
     /// Where the body is so many seconds from the beginning.
     pub(crate) fn at(&self, stander: &Stander, secs: f64) -> Sway {
         let mut sway = [0.0; SWAY_COUNT];
+        self.stance
+            .add(stander.number, STANCE, 1.0, secs, &mut sway);
         for (octave, index) in self.octaves.iter().zip(0_u64..) {
-            let curves = Curves::at(secs * octave.knots_hz);
-            for (rows, row) in octave.directions.iter().zip(0_u64..) {
-                let part = OCTAVES + ROWS_AN_OCTAVE * index + row;
-                let values = curves.values(key(stander.number, part));
-                let weighted = |n: usize| (rows[n].as_slice(), stander.strength * values[n]);
-                f32::add_rows(
-                    &mut sway,
-                    [weighted(0), weighted(1), weighted(2), weighted(3)],
-                );
-            }
+            let part = OCTAVES + ROWS_AN_OCTAVE * index;
+            octave.add(stander.number, part, stander.strength, secs, &mut sway);
         }
         let [side, down] = self.look(stander, secs);
         let rows = [
@@ -136,6 +126,7 @@ impl StandingTables {
             (self.breath.as_slice(), 0.0),
         ];
         f32::add_rows(&mut sway, rows);
+        sway[FEATURE_COUNT + 1] += self.hips_ahead;
         sway
     }
 
@@ -169,6 +160,29 @@ impl StandingTables {
     }
 }
 
+impl Octave {
+    fn of(model: &SwayOctave) -> Self {
+        let rows: Vec<Sway> = model.directions.iter().map(|row| narrow(row)).collect();
+        let fours = rows.chunks(AT_ONCE).map(|rows| {
+            core::array::from_fn(|row| rows.get(row).copied().unwrap_or([0.0; SWAY_COUNT]))
+        });
+        Self {
+            knots_hz: model.knot_secs.recip(),
+            directions: fours.collect(),
+        }
+    }
+
+    /// Adds what a walker's curves make of it at a moment; the first rows of them are those of `part`.
+    fn add(&self, number: u64, part: u64, strength: f32, secs: f64, sway: &mut Sway) {
+        let curves = Curves::at(secs * self.knots_hz);
+        for (rows, row) in self.directions.iter().zip(0_u64..) {
+            let values = curves.values(key(number, part + row));
+            let weighted = |n: usize| (rows[n].as_slice(), strength * values[n]);
+            f32::add_rows(sway, [weighted(0), weighted(1), weighted(2), weighted(3)]);
+        }
+    }
+}
+
 /// From 0 at 0 to 1 at 1 with the least jerk (Flash and Hogan 1985).
 fn least_jerk(s: f32) -> f32 {
     let s = s.clamp(0.0, 1.0);
@@ -191,7 +205,7 @@ fn narrow(row: &[f64]) -> Sway {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use footfall_model::{Breath, FEATURE_COUNT, Looks, SwayOctave};
+    use footfall_model::{Breath, Looks};
 
     /// Weight that goes from leg to leg, a trunk that trembles, and a head that looks about.
     pub(in crate::standing) fn model() -> StandingModel {
@@ -204,6 +218,11 @@ pub(super) mod tests {
         };
         StandingModel {
             posture: vec![0.0; FEATURE_COUNT],
+            hips_ahead: 0.05,
+            stance: SwayOctave {
+                knot_secs: 24.0,
+                directions: vec![row(&[(0, 0.01)])],
+            },
             octaves: vec![
                 SwayOctave {
                     knot_secs: 3.0,

@@ -41,6 +41,8 @@ const MOST_HZ: f64 = 12.0;
 
 /// What was found.
 pub(super) struct Swayed {
+    /// Weight on one leg for long.
+    pub(super) stance: SwayOctave,
     /// Slowest first.
     pub(super) octaves: Vec<SwayOctave>,
     /// Standard deviation of the logarithm of people's strength.
@@ -71,18 +73,14 @@ pub(super) fn estimate(people: &[Vec<Offsets>], weights: &[f64]) -> Swayed {
         }
     }
     let covariances = fit(&bands);
-    let mut octaves = vec![stance(people, weights, &covariances)];
-    octaves.extend(
-        covariances
-            .iter()
-            .zip(KNOTS_SECS)
-            .map(|(covariance, knot_secs)| SwayOctave {
-                knot_secs,
-                directions: directions(covariance),
-            }),
-    );
+    let octaves = covariances.iter().zip(KNOTS_SECS);
+    let octaves = octaves.map(|(covariance, knot_secs)| SwayOctave {
+        knot_secs,
+        directions: directions(covariance),
+    });
     Swayed {
-        octaves,
+        stance: stance(people, weights, &covariances),
+        octaves: octaves.collect(),
         strength_spread: (freed * mean(&squares)).sqrt(),
     }
 }
@@ -336,7 +334,7 @@ mod tests {
             })
             .collect();
         let swayed = estimate(&people, &[1.0; 4]);
-        let octaves = &swayed.octaves[1..];
+        let octaves = &swayed.octaves[..];
         let variance = |n: usize, octaves: &[SwayOctave]| {
             let rows = octaves.iter().flat_map(|octave| &octave.directions);
             rows.map(|row| row[n] * row[n]).sum::<f64>()
@@ -377,9 +375,7 @@ mod tests {
             })
             .collect();
         let swayed = estimate(&people, &[1.0; 3]);
-        let rows = swayed.octaves[1..]
-            .iter()
-            .flat_map(|octave| &octave.directions);
+        let rows = swayed.octaves.iter().flat_map(|octave| &octave.directions);
         let deviation = rows
             .map(|row| row[FEATURE_COUNT + 1].powi(2))
             .sum::<f64>()
