@@ -13,6 +13,9 @@ const MOST_STRETCHED: f32 = 0.9993;
 /// The pelvis tilts to the side by so much at most where one leg has farther to its foot, radians.
 const MOST_TILT: f32 = 0.06;
 
+/// It evens out this share of that: who has less to carry bends a little.
+const TILT_SHARE: f32 = 0.8;
+
 /// Over how many metres the pelvis goes from the one leg's reach to the other's.
 const REACH_SOFTNESS_M: f32 = 0.001;
 
@@ -95,7 +98,7 @@ impl Carrier {
             return 0.0;
         };
         let apart = self.hip_from_hips[0].distance(self.hip_from_hips[1]);
-        let tilt = (left - right) / apart.max(f32::MIN_POSITIVE);
+        let tilt = TILT_SHARE * (left - right) / apart.max(f32::MIN_POSITIVE);
         MOST_TILT * (tilt / MOST_TILT).tanh()
     }
 

@@ -225,6 +225,7 @@ mod tests {
             begin_secs: 0.0,
             features: vec![vec![0.0; FEATURE_COUNT]; frames],
             hips: vec![[0.0; 2]; frames],
+            head: vec![[0.0; 2]; frames],
             gaze: gaze.collect(),
             turned_out: 0.0,
         }

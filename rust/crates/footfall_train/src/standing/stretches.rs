@@ -31,6 +31,8 @@ pub struct Stretch {
     pub features: Vec<Vec<f64>>,
     /// The hips from the middle of the ankles, to the left and forwards, leg lengths.
     pub hips: Vec<[f64; 2]>,
+    /// The head's joint from there, likewise.
+    pub head: Vec<[f64; 2]>,
     /// Where the face points: to the left and down, radians.
     pub gaze: Vec<[f64; 2]>,
     /// By how much the feet point outwards, radians.
@@ -128,6 +130,7 @@ fn seen(clip: &Clip, bodies: &[ModelPose], poses: &[Pose]) -> Stretch {
         begin_secs: 0.0,
         features: Vec::with_capacity(poses.len()),
         hips: Vec::with_capacity(poses.len()),
+        head: Vec::with_capacity(poses.len()),
         gaze: Vec::with_capacity(poses.len()),
         turned_out: f64::from(0.5 * apart),
     };
@@ -140,6 +143,8 @@ fn seen(clip: &Clip, bodies: &[ModelPose], poses: &[Pose]) -> Stretch {
         let middle = 0.5 * (ankles[0] + ankles[1]);
         let hips = level * (body.position(Joint::Hips) - middle) / leg;
         stretch.hips.push([f64::from(hips.x), f64::from(hips.z)]);
+        let place = level * (body.position(Joint::Head) - middle) / leg;
+        stretch.head.push([f64::from(place.x), f64::from(place.z)]);
         let head = level * body.rotation(Joint::Head);
         let down = -(head * Vec3::Z).y.clamp(-1.0, 1.0).asin();
         stretch
