@@ -164,7 +164,7 @@ fn mean<const N: usize>(rows: &[[f64; N]]) -> [f64; N] {
     core::array::from_fn(|n| rows.iter().map(|row| row[n]).sum::<f64>() / rows.len().max(1) as f64)
 }
 
-/// Standard deviation of where the gaze rests, about each person's own mean, radians to the side and down. Who never looks about has none.
+/// Standard deviation of where the gaze rests, about each person's own mean, radians to the side and down: the mean of those who look about.
 fn spread(people: &[Person], paths: &[Vec<Vec<[f64; 2]>>]) -> [f64; LOOK_DIRECTIONS] {
     let (mut sums, mut total) = ([0.0; LOOK_DIRECTIONS], 0.0);
     for (person, paths) in people.iter().zip(paths) {
@@ -180,10 +180,10 @@ fn spread(people: &[Person], paths: &[Vec<Vec<[f64; 2]>>]) -> [f64; LOOK_DIRECTI
         total += person.weight;
         for (axis, sum) in sums.iter_mut().enumerate() {
             let squares = all.iter().map(|gaze| (gaze[axis] - mean[axis]).powi(2));
-            *sum += person.weight * squares.sum::<f64>() / all.len() as f64;
+            *sum += person.weight * (squares.sum::<f64>() / all.len() as f64).sqrt();
         }
     }
-    sums.map(|sum| (sum / f64::max(total, f64::MIN_POSITIVE)).sqrt())
+    sums.map(|sum| sum / f64::max(total, f64::MIN_POSITIVE))
 }
 
 /// Jumps a second of the mean person, and how long one lasts.

@@ -15,15 +15,15 @@ const KNOTS_SECS: [f64; OCTAVES] = [8.0, 3.2, 1.28, 0.5, 0.2];
 const OCTAVES: usize = 5;
 
 /// Time between the knots of what tells one leg from the other for long.
-const STANCE_KNOT_SECS: f64 = 24.0;
+const STANCE_KNOT_SECS: f64 = 40.0;
 
 /// The deviation of the Gaussian that leaves an octave and all slower ones, by the time between its knots.
 const SMOOTHING: f64 = 0.35;
 
 /// The choice of directions weighs radians of the trunk and the head twice, for what hangs from them moves with them, and the hips' way as if it
-/// turned a lever of 0.3 m.
+/// turned a lever of 0.15 m.
 const TRUNK_WEIGHT: f64 = 2.0;
-const HIPS_WEIGHT: f64 = 2.8;
+const HIPS_WEIGHT: f64 = 5.6;
 
 /// Directions of an octave that is not the stance's, and the share of the energy that is enough.
 const DIRECTIONS: usize = 6;
@@ -60,18 +60,23 @@ pub(super) fn estimate(people: &[Vec<Offsets>], weights: &[f64]) -> Swayed {
         let pairs = values.iter().zip(weights);
         pairs.map(|(value, weight)| value * weight).sum::<f64>() / total
     };
-    let strengths: Vec<f64> = own.iter().map(log_strength).collect();
-    let usual = mean(&strengths);
-    let squares: Vec<f64> = strengths.iter().map(|s| (s - usual).powi(2)).collect();
+    let strengths: Vec<[f64; OCTAVES]> = own.iter().map(log_strengths).collect();
+    let whole = |strengths: &[f64; OCTAVES]| strengths.iter().sum::<f64>() / OCTAVES as f64;
+    let wholes: Vec<f64> = strengths.iter().map(whole).collect();
+    let usual = mean(&wholes);
+    let squares: Vec<f64> = wholes.iter().map(|s| (s - usual).powi(2)).collect();
     let count = people.len() as f64;
     let freed = count / (count - 1.0).max(1.0);
-    let mut bands: Bands = core::array::from_fn(|_| DMatrix::zeros(SWAY_COUNT, SWAY_COUNT));
-    for ((own, strength), weight) in own.iter().zip(&strengths).zip(weights) {
-        let share = weight / total * (2.0 * (usual - strength)).exp();
-        for (sum, band) in bands.iter_mut().zip(own) {
-            *sum += share * band;
+    let bands: Bands = core::array::from_fn(|band| {
+        // Everybody as strong as the geometric mean: who fidgets would be all that is seen otherwise.
+        let own_strengths: Vec<f64> = strengths.iter().map(|own| own[band]).collect();
+        let usual = mean(&own_strengths);
+        let mut sum = DMatrix::zeros(SWAY_COUNT, SWAY_COUNT);
+        for ((own, strength), weight) in own.iter().zip(&own_strengths).zip(weights) {
+            sum += weight / total * (2.0 * (usual - strength)).exp() * &own[band];
         }
-    }
+        sum
+    });
     let covariances = fit(&bands);
     let octaves = covariances.iter().zip(KNOTS_SECS);
     let octaves = octaves.map(|(covariance, knot_secs)| SwayOctave {
@@ -96,19 +101,14 @@ fn weight(number: usize) -> f64 {
     }
 }
 
-/// Mean over bands of the logarithm of the deviation.
-fn log_strength(bands: &Bands) -> f64 {
-    let energies = bands.iter().map(|band| {
+/// The logarithm of the deviation in each band.
+fn log_strengths(bands: &Bands) -> [f64; OCTAVES] {
+    bands.each_ref().map(|band| {
         let diagonal = band.diagonal();
         let parts = diagonal.iter().enumerate();
-        parts
-            .map(|(n, value)| weight(n).powi(2) * value)
-            .sum::<f64>()
-    });
-    energies
-        .map(|energy| 0.5 * energy.max(1e-12).ln())
-        .sum::<f64>()
-        / OCTAVES as f64
+        let energy: f64 = parts.map(|(n, value)| weight(n).powi(2) * value).sum();
+        0.5 * energy.max(1e-12).ln()
+    })
 }
 
 /// Covariances of the bands of one person's offsets about the mean, mirrored ones included.
