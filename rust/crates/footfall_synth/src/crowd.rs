@@ -91,7 +91,7 @@ impl Workshop {
             planner: Planner::new(&blend.model, 0, 0.0),
             walker: Walker::new(&styled.0.skeleton, blend),
             bench: Workbench::new(&blend.model),
-            rest: RestBench::default(),
+            rest: RestBench::new(Planner::longest_step(&blend.model)),
         }
     }
 }

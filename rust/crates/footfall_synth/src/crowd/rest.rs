@@ -22,11 +22,22 @@ pub(super) struct Rest {
 }
 
 /// What poses are worked out in.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct RestBench {
     pub(super) planted: Vec<PlantedFrame>,
     pub(super) pose: Pose,
     pub(super) model_pose: ModelPose,
+}
+
+impl RestBench {
+    /// With room for steps of at most `longest` frames.
+    pub(super) fn new(longest: usize) -> Self {
+        Self {
+            planted: Vec::with_capacity(Detail::ground_room(longest) + 1),
+            pose: Pose::default(),
+            model_pose: ModelPose::default(),
+        }
+    }
 }
 
 impl Rest {
