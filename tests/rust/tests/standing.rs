@@ -27,19 +27,23 @@ fn config(seed: u64) -> GeneratorConfig {
 /// The model of a format version.
 fn model(version: u32) -> Arc<GaitModel> {
     let path = repository().join(format!("tests/model_versions/v{version}.footfall"));
-    Arc::new(GaitModel::from_bytes(&fs::read(path).unwrap()).unwrap())
+    let bytes = fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let model = GaitModel::from_bytes(&bytes);
+    Arc::new(model.unwrap_or_else(|error| panic!("{}: {error}", path.display())))
 }
 
 /// A model that learned how people stand.
 fn alive() -> Arc<StyleSpace> {
     let model = model(FORMAT_VERSION);
     assert!(model.standing.is_some());
-    Arc::new(StyleSpace::new(&model, &[]).unwrap())
+    let space = StyleSpace::new(&model, &[]);
+    Arc::new(space.unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn walker(space: &Arc<StyleSpace>, seed: u64) -> GaitGenerator {
     let skeleton = Skeleton::standard();
-    GaitGenerator::new(space, &[], &skeleton, &config(seed)).unwrap()
+    let generator = GaitGenerator::new(space, &[], &skeleton, &config(seed));
+    generator.unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn standing(space: &Arc<StyleSpace>, seed: u64) -> GaitGenerator {

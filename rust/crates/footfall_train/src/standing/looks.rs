@@ -217,7 +217,7 @@ mod tests {
             let secs = frame as f64 / RATE_HZ;
             let part = ((secs % 4.0) / 1.0).min(1.0);
             let share = part * part * (3.0 - 2.0 * part);
-            let up = (secs / 4.0) as usize % 2 == 0;
+            let up = ((secs / 4.0) as usize).is_multiple_of(2);
             let yaw = if up { 0.6 * share } else { 0.6 * (1.0 - share) };
             [yaw + 0.009 * (0.7 * secs).sin(), 0.1]
         });

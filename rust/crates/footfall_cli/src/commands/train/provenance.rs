@@ -23,8 +23,8 @@ pub(super) fn of(corpus: &Corpus, standing: Option<&Corpus>, args: &TrainArgs) -
     if let Some(standing) = standing {
         let conditions: Vec<String> = args.standing.iter().map(ToString::to_string).collect();
         if args.describe.is_none() {
-            let chosen = conditions.join(" and ");
-            described.corpus += &format!("; standing where {chosen}");
+            described.corpus.push_str("; standing where ");
+            described.corpus.push_str(&conditions.join(" and "));
         }
         let both = corpus.clips.iter().chain(&standing.clips);
         described.terms = terms(both.filter_map(|clip| clip.row.column(LICENSE_COLUMN)));

@@ -205,27 +205,21 @@ impl Report {
             .map(|[low, high]| format!("{low} to {high} Hz"))
             .collect();
         line(&mut table, "");
-        line(
-            &mut table,
-            &format!(
-                "{:20}{}",
-                "captured, generated",
-                bands
-                    .iter()
-                    .map(|band| format!("{band:>18}"))
-                    .collect::<String>()
-            ),
-        );
+        let mut heading = format!("{:20}", "captured, generated");
+        for band in bands {
+            let _written = write!(heading, "{band:>18}");
+        }
+        line(&mut table, &heading);
         for part in PARTS {
             let (captured, generated) = (
                 &self.captured_spectrum[part],
                 &self.generated_spectrum[part],
             );
-            let pairs = captured.iter().zip(generated);
-            let cells: String = pairs
-                .map(|(a, b)| format!("{:>18}", format!("{a:.2}, {b:.2}")))
-                .collect();
-            line(&mut table, &format!("{part:20}{cells}"));
+            let mut row = format!("{part:20}");
+            for (a, b) in captured.iter().zip(generated) {
+                let _written = write!(row, "{:>18}", format!("{a:.2}, {b:.2}"));
+            }
+            line(&mut table, &row);
         }
         if !self.leave_one_out.is_empty() {
             line(&mut table, "");
