@@ -34,6 +34,7 @@ namespace Footfall
             public static readonly StringName SizeRange = "size_range";
             public static readonly StringName Colours = "colours";
             public static readonly StringName Seed = "seed";
+            public static readonly StringName StandingMotion = "standing_motion";
             public static readonly StringName Avoidance = "avoidance";
             public static readonly StringName Playing = "playing";
             public static readonly StringName GroundMask = "ground_mask";
@@ -203,6 +204,13 @@ namespace Footfall
         {
             get => Native.Get(PropertyName.Seed).AsInt64();
             set => Native.Set(PropertyName.Seed, value);
+        }
+
+        /// <summary>Motion of walkers who stand: 0 rests in a still pose, 1 sways, breathes, shifts weight and looks about as people do, up to 2. A model that knows nothing of standing rests in a still pose.</summary>
+        public double StandingMotion
+        {
+            get => Native.Get(PropertyName.StandingMotion).AsDouble();
+            set => Native.Set(PropertyName.StandingMotion, value);
         }
 
         /// <summary>Whether walkers with a goal keep out of each other's way.</summary>

@@ -33,6 +33,7 @@ namespace Footfall
             public static readonly StringName Seed = "seed";
             public static readonly StringName Phase = "phase";
             public static readonly StringName Variation = "variation";
+            public static readonly StringName StandingMotion = "standing_motion";
             public static readonly StringName Detail = "detail";
             public static readonly StringName Playing = "playing";
             public static readonly StringName RootMotion = "root_motion";
@@ -189,6 +190,14 @@ namespace Footfall
             set => Native.Set(PropertyName.Variation, value);
         }
 
+        /// <summary>Motion of the character as it stands: 0 rests in a still pose, 1 sways, breathes, shifts its weight and looks about as people do, up to 2.</summary>
+        /// <remarks>Feet stay planted. Seeds differ, and nothing comes back in a loop. It comes up as the character comes to rest and dies away with the first step. A model that knows nothing of standing, as those of earlier versions and every <c>.footdyn</c>, rests in a still pose.</remarks>
+        public double StandingMotion
+        {
+            get => Native.Get(PropertyName.StandingMotion).AsDouble();
+            set => Native.Set(PropertyName.StandingMotion, value);
+        }
+
         /// <summary>How finely the walk is worked out: every frame of the model, every second (half) or every fourth (quarter).</summary>
         /// <remarks>Lower it for characters far from the camera. The walk is the same, but feet slip a little between frames. Taken up with the next step.</remarks>
         public GaitDetail Detail
@@ -261,7 +270,7 @@ namespace Footfall
 
         /// <summary>Makes animations of this character's walk, which an <c>AnimationPlayer</c> or <c>AnimationTree</c> plays without the add-on: for a platform that the add-on is not built for, for another tool, or for a crowd of one's own. Returns <c>null</c> where the character cannot walk; the log says why.</summary>
         /// <remarks>
-        /// <para><c>seconds</c> is how long a clip is about: whole strides are taken, from one touching down of the left foot to another. <see cref="Styles"/> names some of the node's <see cref="Styles"/>, and <c>neutral</c> the walk without one; empty are all of them. <c>speeds</c> are in metres per second. The clips are <c>walk_&lt;style&gt;_&lt;speed&gt;</c>, such as <c>walk_sad_1.2</c>, and <c>idle_&lt;style&gt;</c>; all of them loop, and are made of <see cref="Seed"/> and <see cref="Variation"/>.</para>
+        /// <para><c>seconds</c> is how long a clip is about: whole strides are taken, from one touching down of the left foot to another. <see cref="Styles"/> names some of the node's <see cref="Styles"/>, and <c>neutral</c> the walk without one; empty are all of them. <c>speeds</c> are in metres per second. The clips are <c>walk_&lt;style&gt;_&lt;speed&gt;</c>, such as <c>walk_sad_1.2</c>, and <c>idle_&lt;style&gt;</c>; all of them loop, and are made of <see cref="Seed"/>, <see cref="Variation"/> and <see cref="StandingMotion"/>.</para>
         /// <para>The root moves evenly, exactly at the speed that the clip is named for. Its track is the topmost bone above the hips, or the <c>Skeleton3D</c> itself where hips are topmost. Tell it to whoever plays the clips: <c>player.root_motion_track = library.get_meta(&quot;root_motion_track&quot;)</c>. Paths begin at the root of the scene that the skeleton came in, where an imported character has its <c>AnimationPlayer</c>.</para>
         /// <para>A clip takes some tens of milliseconds to make. Nothing of the node changes.</para>
         /// </remarks>

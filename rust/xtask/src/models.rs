@@ -42,6 +42,9 @@ const WALKS_WITH_ENDS: [&str; 6] = [
     "subject!=cmu131",
 ];
 
+/// People who stand: idles of eight people and what one actor stands between walks.
+const STANDING: [&str; 2] = ["--standing", "license=*MIT*"];
+
 /// Trains every shipped model and style anew.
 ///
 /// # Errors
@@ -60,9 +63,10 @@ pub(crate) fn command() -> Result<()> {
         .arg("--corpus")
         .arg(&data.index)
         .args(WALKS_WITH_ENDS)
+        .args(STANDING)
         .args([
             "--describe",
-            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), walks and how they begin and end",
+            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), walks and how they begin and end; standing from ReActIdle (github.com/Enekoassets/ReActIdle) and the O3DE Motion Matching gem",
             "-o",
             WALK,
         ]);

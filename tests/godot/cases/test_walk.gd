@@ -35,7 +35,9 @@ func test_arms_hang_and_the_head_stays_up() -> void:
 
 
 func test_without_speed_it_stands_and_with_speed_it_walks_off() -> void:
-	var walker := _walker(func(made: Walker) -> void: made.gait.speed = 0.0)
+	var walker := _walker(func(made: Walker) -> void:
+		made.gait.speed = 0.0
+		made.gait.standing_motion = 0.0)
 	walker.walk(2)
 	var hand := walker.joint("LeftHand")
 	walker.walk(60)

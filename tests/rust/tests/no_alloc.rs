@@ -164,7 +164,7 @@ fn assert_going_over_allocates_nothing(mut generator: GaitGenerator, skeleton: &
     }
 }
 
-/// A walker of a crowd allocates only for a step that is longer than any before: slow ones in full detail come first.
+/// A walker of a crowd allocates only for a step that is longer than any before and for its first rest: slow ones in full detail come first.
 fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Workshop) {
     for frame in 0..3000 {
         walker.set_repeating(frame % 1000 > 700);
@@ -172,7 +172,11 @@ fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Worksh
             walker.set_detail(Detail::Quarter);
         }
         let controls = Controls {
-            speed_mps: if frame < 600 { 0.4 } else { 1.3 },
+            speed_mps: match frame {
+                200..330 | 1500..1900 => 0.0,
+                0..600 => 0.4,
+                _ => 1.3,
+            },
             turn_rate_radps: 0.2,
             ..Controls::STAND
         };
@@ -186,8 +190,8 @@ fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Worksh
 
 #[test]
 fn a_step_of_the_generator_allocates_nothing() {
-    // Without fine motion and with it.
-    for name in ["v1.footfall", "v3.footfall"] {
+    // Without fine motion, with it, and with standing that lives.
+    for name in ["v1.footfall", "v3.footfall", "v4.footfall"] {
         let read = |name: &str| std::fs::read(repository().join("tests/model_versions").join(name));
         let model = Arc::new(GaitModel::from_bytes(&read(name).unwrap()).unwrap());
         let switching = Arc::new(DynamicsModel::from_bytes(&read("v1.footdyn").unwrap()).unwrap());

@@ -145,6 +145,12 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_seed)]
     seed: i64,
 
+    /// Motion of walkers who stand: 0 rests in a still pose, 1 sways, breathes, shifts weight and looks about as people do, up to 2. A model that knows
+    /// nothing of standing rests in a still pose.
+    #[export(range = (0.0, 2.0, 0.01))]
+    #[init(val = 1.0)]
+    standing_motion: f64,
+
     /// Whether walkers with a goal keep out of each other's way.
     #[export]
     #[init(val = true)]

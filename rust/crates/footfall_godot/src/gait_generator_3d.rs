@@ -144,6 +144,14 @@ pub(crate) struct GaitGenerator3D {
     #[init(val = 1.0)]
     variation: f64,
 
+    /// Motion of the character as it stands: 0 rests in a still pose, 1 sways, breathes, shifts its weight and looks about as people do, up to 2.
+    ///
+    /// Feet stay planted. Seeds differ, and nothing comes back in a loop. It comes up as the character comes to rest and dies away with the first
+    /// step. A model that knows nothing of standing, as those of earlier versions and every `.footdyn`, rests in a still pose.
+    #[export(range = (0.0, 2.0, 0.01))]
+    #[init(val = 1.0)]
+    standing_motion: f64,
+
     /// How finely the walk is worked out: every frame of the model, every second (half) or every fourth (quarter).
     ///
     /// Lower it for characters far from the camera. The walk is the same, but feet slip a little between frames. Taken up with

@@ -7,7 +7,7 @@
 //! | 4 | length of the header in bytes |
 //! | … | header: JSON with `kind`, `written_by` and `provenance`; readable in every version |
 //! | 8 | length of the payload in bytes |
-//! | … | payload: postcard encoding of the version's own types (`v1`, `v2`, `v3`) |
+//! | … | payload: postcard encoding of the version's own types (`v1`, `v2`, `v3`, `v4`) |
 //! | 4 | CRC-32 of all that precedes |
 
 mod dynamics_v1;
@@ -17,6 +17,7 @@ mod style_v2;
 mod v1;
 mod v2;
 mod v3;
+mod v4;
 
 use crate::dynamics::DynamicsModel;
 use crate::gait_model::{GaitModel, ModelError};
@@ -28,13 +29,16 @@ use std::sync::Arc;
 
 /// The latest version that this build writes; it reads all versions up to this one. A file has the earliest version that
 /// can hold its content.
-pub const FORMAT_VERSION: u32 = 3;
+pub const FORMAT_VERSION: u32 = 4;
 
 /// The version without [`GaitModel::contexts`].
 const FORMAT_1: u32 = 1;
 
 /// The version without [`GaitModel::fine`].
 const FORMAT_2: u32 = 2;
+
+/// The version without [`GaitModel::standing`].
+const FORMAT_3: u32 = 3;
 
 const MAGIC: &[u8; 8] = b"FOOTFALL";
 const GAIT_KIND: &str = "gait";
@@ -106,12 +110,10 @@ impl GaitModel {
     /// [`ModelFileError::Content`] when the model would not load again.
     pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
         self.check()?;
-        let (version, payload) = if let Some(fine) = &self.fine {
-            (FORMAT_VERSION, v3::encode(self, fine)?)
-        } else if self.contexts.is_empty() {
-            (FORMAT_1, v1::encode(self)?)
-        } else {
-            (FORMAT_2, v2::encode(self)?)
+        let walk = self.encode_walk()?;
+        let (version, payload) = match &self.standing {
+            Some(standing) => (FORMAT_VERSION, v4::encode(walk, standing)?),
+            None => walk,
         };
         write_container(version, GAIT_KIND, &self.provenance, &payload)
     }
@@ -124,16 +126,26 @@ impl GaitModel {
         let (version, header, payload) = read_container(bytes)?;
         check_kind(&header, GAIT_KIND)?;
         let model = match version {
-            FORMAT_1 => v1::decode(payload, header.provenance)?,
-            FORMAT_2 => v2::decode(payload, header.provenance)?,
-            _ => v3::decode(payload, header.provenance)?,
+            FORMAT_1..=FORMAT_3 => decode_walk(version, payload, header.provenance)?,
+            _ => v4::decode(payload, header.provenance)?,
         };
         model.check()?;
         Ok(model)
     }
 
+    /// The earliest version that can hold the walk, and its payload.
+    fn encode_walk(&self) -> Result<(u32, Vec<u8>), ModelFileError> {
+        Ok(if let Some(fine) = &self.fine {
+            (FORMAT_3, v3::encode(self, fine)?)
+        } else if self.contexts.is_empty() {
+            (FORMAT_1, v1::encode(self)?)
+        } else {
+            (FORMAT_2, v2::encode(self)?)
+        })
+    }
+
     /// A number that tells this model from others: the CRC-32 of its payload in format version 1. It says nothing of the
-    /// provenance, of the steps at the ends of a walk nor of the fine motion, and is the same before writing and after reading.
+    /// provenance, of the steps at the ends of a walk, of the fine motion nor of standing, and is the same before writing and after reading.
     ///
     /// # Errors
     /// [`ModelError::Value`] when the model cannot be encoded.
@@ -253,6 +265,23 @@ impl WalkModel {
             Self::Gait(model) => &model.provenance,
             Self::Dynamics(model) => &model.provenance,
         }
+    }
+}
+
+/// The model in a payload of a version that knows no standing.
+fn decode_walk(
+    version: u32,
+    payload: &[u8],
+    provenance: Provenance,
+) -> Result<GaitModel, ModelFileError> {
+    match version {
+        FORMAT_1 => v1::decode(payload, provenance),
+        FORMAT_2 => v2::decode(payload, provenance),
+        FORMAT_3 => v3::decode(payload, provenance),
+        _ => Err(undecodable(
+            "payload",
+            &format!("a walk of version {version} in one of version {FORMAT_VERSION}"),
+        )),
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::fine_motion::FineMotion;
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 use crate::provenance::Provenance;
+use crate::standing::StandingModel;
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_prob::windows::Windows;
 
@@ -34,6 +35,8 @@ pub struct GaitModel {
     pub contexts: Vec<StepContext>,
     /// What steps have beyond the trajectories of their states; nothing in models of earlier versions.
     pub fine: Option<FineMotion>,
+    /// How people stand; nothing in models of earlier versions, which stand still.
+    pub standing: Option<StandingModel>,
     /// Where the model comes from.
     pub provenance: Provenance,
 }
@@ -212,6 +215,19 @@ impl GaitModel {
         contexts.position(|context| context.position == position && context.side == side)
     }
 
+    /// Mean features of a whole stride ([`FEATURE_COUNT`]).
+    pub fn mean_features(&self) -> Vec<f64> {
+        let states = self.steps.iter().flat_map(|step| &step.states);
+        let total: f64 = states.clone().map(|state| state.duration_mean).sum();
+        let mut mean = vec![0.0; FEATURE_COUNT];
+        for state in states {
+            for (mean, value) in mean.iter_mut().zip(&state.mean) {
+                *mean += value * state.duration_mean / total;
+            }
+        }
+        mean
+    }
+
     /// Slowest and fastest walk of the corpus, m/s on the model's body.
     pub fn speed_range(&self) -> [f64; 2] {
         [self.speed.min_mps, self.speed.max_mps]
@@ -273,6 +289,9 @@ impl GaitModel {
         }
         if let Some(fine) = &self.fine {
             fine.check(self.variation.walker.len())?;
+        }
+        if let Some(standing) = &self.standing {
+            standing.check()?;
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 //! Probability is in f64 and poses are in f32; the two meet in [`layout`]. The crate works on bytes: it reads and
 //! writes no file.
 //!
-//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`imu_model`], [`provenance`], [`mod@file`].
+//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`imu_model`], [`standing`], [`provenance`], [`mod@file`].
 
 pub mod dynamics;
 pub mod file;
@@ -12,6 +12,7 @@ pub mod gait_model;
 pub mod imu_model;
 pub mod layout;
 pub mod provenance;
+pub mod standing;
 pub mod style;
 
 pub use dynamics::{DynamicsModel, Regime, SEGMENT_SLACK};
@@ -26,4 +27,8 @@ pub use gait_model::{
 pub use imu_model::ImuModel;
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;
+pub use standing::{
+    Breath, LOOK_DIRECTIONS, Looks, MAX_SWAY_DIRECTIONS, MAX_SWAY_OCTAVES, SWAY_COUNT,
+    StandingModel, SwayOctave,
+};
 pub use style::{GaitStyle, StepSpread, StyleError};

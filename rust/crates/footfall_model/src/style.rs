@@ -250,6 +250,12 @@ impl GaitModel {
                     .clamp(LEAST_FINE_SCALE, MOST_FINE_SCALE);
             }
         }
+        if self.standing.is_some() {
+            let styled = mixed.mean_features();
+            if let Some(standing) = &mut mixed.standing {
+                standing.restyle(&self.mean_features(), &styled);
+            }
+        }
         let factors: Vec<f64> = (0..FEATURE_COUNT)
             .map(|dim| mixture.logarithmic(1.0, |style| style.step_spread.features[dim]))
             .collect();

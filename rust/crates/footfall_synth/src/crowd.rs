@@ -5,6 +5,7 @@
 //! joint is in each frame of its step. In between it costs an interpolation.
 
 mod frames;
+mod rest;
 
 use crate::detail::Detail;
 use crate::error::SynthError;
@@ -14,17 +15,18 @@ use crate::pace::PaceTable;
 use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape};
 use crate::space::{Blend, StyleSpace};
 use crate::stage::Arrival;
-use crate::standing::Amplitude;
+use crate::standing::{Amplitude, Life};
 use crate::steps::Ask;
 use crate::styled::Worn;
 use crate::walker::{Origin, WINDOW, Walker};
 use crate::workbench::Workbench;
+use footfall_core::Skeleton;
 use footfall_core::rotation::from_heading;
-use footfall_core::{ModelPose, Pose, Skeleton};
 use footfall_ik::placement::Landing;
 use frames::CrowdFrames;
 pub use frames::CrowdPose;
 use glam::Vec2;
+use rest::{Rest, RestBench, leave};
 use std::sync::Arc;
 
 /// A mixture of styles on a body, measured once for all walkers of a crowd that share it.
@@ -78,8 +80,7 @@ pub struct Workshop {
     planner: Planner,
     walker: Walker,
     bench: Workbench,
-    pose: Pose,
-    model_pose: ModelPose,
+    rest: RestBench,
 }
 
 impl Workshop {
@@ -90,8 +91,7 @@ impl Workshop {
             planner: Planner::new(&blend.model, 0, 0.0),
             walker: Walker::new(&styled.0.skeleton, blend),
             bench: Workbench::new(&blend.model),
-            pose: Pose::default(),
-            model_pose: ModelPose::default(),
+            rest: RestBench::new(Planner::longest_step(&blend.model)),
         }
     }
 }
@@ -147,6 +147,10 @@ pub struct CrowdWalker {
     footstep: Option<Footstep>,
     /// Where the body is when the current step ends.
     arrival: Arrival,
+    /// How it is alive as it stands; nothing where the model stands still.
+    life: Option<Life>,
+    /// Where it rests; nothing before it first came to a stand.
+    rest: Option<Box<Rest>>,
 }
 
 impl CrowdWalker {
@@ -199,7 +203,12 @@ impl CrowdWalker {
             start_from_character: GroundTransform::default(),
             footstep: None,
             arrival: Arrival::default(),
+            life: Life::new(&styled.0.space, &styled.0.skeleton, config),
+            rest: None,
         };
+        if let Some(life) = made.life.as_mut().filter(|_| standing) {
+            life.stand();
+        }
         made.take_over(workshop);
         let frames = made.shape.timing.frames as f32;
         made.position = if standing {
@@ -208,7 +217,15 @@ impl CrowdWalker {
             (2.0 * config.phase.rem_euclid(1.0)).fract() * frames
         };
         made.plan_from_start = made.plan_from_character();
+        made.live(0.0, workshop);
         Ok(made)
+    }
+
+    /// How much it moves as it stands, as of [`GaitGenerator::set_standing_motion`](crate::GaitGenerator::set_standing_motion). Shows within a second.
+    pub fn set_standing_motion(&mut self, amount: f32) {
+        if let Some(life) = &mut self.life {
+            life.set_amount(amount);
+        }
     }
 
     /// Wears other styles from the next step on. They must be of the same model and body.
@@ -227,7 +244,7 @@ impl CrowdWalker {
         self.repeating = repeating;
     }
 
-    /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before.
+    /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before and for the first rest.
     pub fn step(&mut self, dt_secs: f32, controls: Controls, workshop: &mut Workshop) {
         self.footstep = None;
         if dt_secs > 0.0 {
@@ -243,6 +260,9 @@ impl CrowdWalker {
             if !self.repeat_step(controls) {
                 self.next_step(controls, workshop);
             }
+        }
+        if dt_secs > 0.0 {
+            self.live(dt_secs.min(MAX_DT_SECS), workshop);
         }
         self.start_from_character = self.plan_from_start.local(&self.plan_from_character());
     }
@@ -314,8 +334,25 @@ impl CrowdWalker {
 
     /// Writes how it is posed in its own space.
     pub fn pose(&self, out: &mut CrowdPose) {
+        if let (Some(life), Some(rest)) = (&self.life, &self.rest)
+            && self.is_standing()
+            && rest.pose(&life.moment, out)
+        {
+            return;
+        }
         let (frame, weight) = self.frame_at(self.position);
         self.frames.blend(frame, weight, out);
+    }
+
+    /// Lets time pass for someone who stands, or has just begun to walk.
+    fn live(&mut self, dt_secs: f32, workshop: &mut Workshop) {
+        let stands = self.is_standing();
+        let Some(life) = &mut self.life else { return };
+        life.step(dt_secs, stands);
+        if let Some(rest) = self.rest.as_mut().filter(|_| stands && !life.is_still()) {
+            let skeleton = &self.styled.0.skeleton;
+            rest.reach(life, self.detail, skeleton, &mut workshop.rest);
+        }
     }
 
     /// Walks the step before the current one again, if that is wanted and can be.
@@ -408,9 +445,29 @@ impl CrowdWalker {
         self.arrival = workshop.walker.stage().arrival;
         let timing = self.shape.ground_timing();
         let stage = &workshop.walker.stage().frames[..=timing.frames];
-        let (pose, model_pose) = (&mut workshop.pose, &mut workshop.model_pose);
+        let RestBench {
+            planted,
+            pose,
+            model_pose,
+        } = &mut workshop.rest;
+        let mut shown = stage;
+        if let Some(life) = &self.life {
+            if let (true, Some(last)) = (self.shape.amplitude.to < 1.0, stage.last()) {
+                match &mut self.rest {
+                    Some(rest) => rest.begin(last),
+                    none => *none = Some(Box::new(Rest::new(last))),
+                }
+            }
+            if !life.is_still() && self.shape.amplitude != Amplitude::STAND {
+                planted.clear();
+                planted.extend_from_slice(stage);
+                let apart = self.shape.detail.stride() as f32 / self.frame_rate_hz;
+                leave(life, planted, apart);
+                shown = planted;
+            }
+        }
         self.frames
-            .set(stage, &self.styled.0.skeleton, pose, model_pose);
+            .set(shown, &self.styled.0.skeleton, pose, model_pose);
     }
 
     /// The frame before a time of the step, and the weight of the one after it.

@@ -5,6 +5,7 @@ use crate::error::SynthError;
 use crate::plan::StepShape;
 use crate::planting::PlantedFrame;
 use crate::space::StyleSpace;
+use crate::standing::Life;
 use crate::steps::{Ask, Steps};
 use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
@@ -12,7 +13,7 @@ use footfall_core::rotation::{blend_near, from_heading, wrap_angle};
 use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::{Plant, RockerFoot};
 use footfall_model::DynamicsModel;
-use glam::{Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use std::sync::Arc;
 
 /// Initial contacts that one call of [`GaitGenerator::step`] reports at most.
@@ -152,6 +153,8 @@ pub struct GaitGenerator {
     /// Frames since the current step began.
     pub(crate) position: f32,
     pub(crate) plan_from_start: GroundTransform,
+    /// How it is alive as it stands; nothing where the model stands still.
+    pub(crate) life: Option<Life>,
     footsteps: Vec<Footstep>,
     /// The speed forwards that was asked for last, m/s.
     pub(crate) asked_mps: f32,
@@ -174,12 +177,10 @@ impl GaitGenerator {
         let first = check(skeleton, config)?;
         let steps = StyledSteps::new(space, style_weights, skeleton, config, first)?;
         let rate = space.model().frame_rate_hz;
-        Ok(Self::begin(
-            Steps::Styled(Box::new(steps)),
-            rate,
-            skeleton,
-            config,
-        ))
+        let steps = Steps::Styled(Box::new(steps));
+        let mut generator = Self::begin(steps, rate, skeleton, config);
+        generator.life = Life::new(space, skeleton, config);
+        Ok(generator)
     }
 
     /// A walker with the proportions of `skeleton`, at the origin and facing +Z, whose steps two linear systems put out. It
@@ -218,6 +219,7 @@ impl GaitGenerator {
             detail: Detail::Full,
             position: (2.0 * config.phase.rem_euclid(1.0)).fract() * frames,
             plan_from_start: GroundTransform::default(),
+            life: None,
             footsteps: Vec::with_capacity(MAX_FOOTSTEPS),
             asked_mps: 0.0,
             start_from_character: GroundTransform::default(),
@@ -232,6 +234,17 @@ impl GaitGenerator {
         if self.steps.source_mut().stand(self.detail) {
             self.position = self.steps.source().shape().timing.frames as f32;
             self.plan_from_start = self.plan_from_character();
+            if let Some(life) = &mut self.life {
+                life.stand();
+            }
+        }
+    }
+
+    /// How much it moves as it stands: 0 is a still pose, 1 as the model's people move, 2 at most. Where the model knows nothing of standing it is
+    /// still.
+    pub fn set_standing_motion(&mut self, amount: f32) {
+        if let Some(life) = &mut self.life {
+            life.set_amount(amount);
         }
     }
 
@@ -305,8 +318,21 @@ impl GaitGenerator {
             character_from_plan * (out.root_position - plan_from_character.position);
         let root = Joint::Hips.index();
         out.rotations[root] = character_from_plan * out.rotations[root];
+        self.live(dt_secs, out);
         self.contact = contact;
         self.start_from_character = self.plan_from_start.local(&plan_from_character);
+    }
+
+    /// Moves the pose of someone who stands, or has just begun to walk.
+    fn live(&mut self, dt_secs: f32, out: &mut Pose) {
+        let stands = self.is_standing();
+        let Some(life) = &mut self.life else { return };
+        if dt_secs > 0.0 {
+            life.step(dt_secs.min(MAX_DT_SECS), stands);
+        }
+        if !life.is_still() {
+            life.move_pose(&life.moment, Quat::IDENTITY, out);
+        }
     }
 
     /// Tells where the character is now, as after a step of no time.

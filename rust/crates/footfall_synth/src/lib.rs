@@ -39,7 +39,7 @@ pub use detail::Detail;
 pub use error::SynthError;
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};
 pub use looped::LoopedWalk;
-pub use recording::{SwitchingWalkConfig, synthesize_switching};
+pub use recording::{StandConfig, SwitchingWalkConfig, synthesize_standing, synthesize_switching};
 pub use space::StyleSpace;
 pub use state::StateError;
 pub use walk::{SynthesizedWalk, WalkConfig, synthesize};

@@ -21,6 +21,8 @@ const MOST_STRETCH: f32 = 0.03;
 const VELOCITY_SECS: f32 = 0.1;
 /// For this long before the end, trunk and arms go over to how they came to the beginning, seconds.
 const FADE_SECS: f32 = 0.4;
+/// For this long before the end, somebody who stands goes over to how they came to the beginning, seconds.
+const STANDING_FADE_SECS: f32 = 2.0;
 /// A mismatch of a leg's joints counts as much as this many of others': arms that drift are not seen, feet that do are.
 const LEG_WEIGHT: f32 = 6.0;
 /// A relative error of speed counts as a mismatch of this many metres.
@@ -74,9 +76,13 @@ impl LoopedWalk {
     /// Somebody who stands, for this long.
     pub fn standing(mut generator: GaitGenerator, secs: f32) -> Self {
         generator.stand();
-        let recording = Recording::of(generator, &Controls::STAND, secs.clamp(0.0, MOST_SECS));
+        let secs = secs.clamp(0.0, MOST_SECS);
+        let fade = STANDING_FADE_SECS.min(0.5 * secs);
+        let mut recording = Recording::of(generator, &Controls::STAND, secs + fade);
+        let first = (fade / recording.frame_secs).round() as usize;
+        recording.meet(first);
         let last = recording.poses.len() - 1;
-        recording.closed(0, last, 0.0)
+        recording.closed(first, last, 0.0)
     }
 }
 
@@ -225,6 +231,18 @@ impl Recording {
             poses,
             speed_mps: walked / stretch,
             seam_m,
+        }
+    }
+
+    /// Lets somebody who stands go over, as the end comes, to how they came to the frame `first`. All that lies between two poses on the same feet stands
+    /// on them, too.
+    fn meet(&mut self, first: usize) {
+        let last = self.poses.len() - 1;
+        for left in 0..first {
+            let share = smooth_step(1.0 - left as f32 / first as f32);
+            let before = self.poses[first - left].clone();
+            let pose = &mut self.poses[last - left];
+            *pose = pose.interpolate(&before, share);
         }
     }
 

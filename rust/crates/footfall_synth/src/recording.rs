@@ -62,6 +62,55 @@ pub(crate) fn from_standing(
     Ok(recording.into_walk(skeleton))
 }
 
+/// What standing to make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandConfig {
+    /// How long.
+    pub seconds: f64,
+    /// Who stands.
+    pub seed: u64,
+    /// How far people differ: 0 not at all, 1 as in the recordings.
+    pub variation: f32,
+    /// How much they move, as of [`GaitGenerator::set_standing_motion`].
+    pub motion: f32,
+    /// Frames per second of the clip; the model's when absent.
+    pub frame_rate_hz: Option<f64>,
+}
+
+/// Generates somebody who stands.
+///
+/// # Errors
+/// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
+pub fn synthesize_standing(
+    model: &Arc<GaitModel>,
+    skeleton: &Skeleton,
+    config: &StandConfig,
+) -> Result<SynthesizedWalk, SynthError> {
+    let rate = config.frame_rate_hz.unwrap_or(model.frame_rate_hz);
+    for (setting, value) in [
+        ("seconds", config.seconds as f32),
+        ("frame rate", rate as f32),
+    ] {
+        if !value.is_finite() {
+            return Err(SynthError::Setting { setting, value });
+        }
+    }
+    let space = Arc::new(StyleSpace::new(model, &[])?);
+    let stander = GeneratorConfig {
+        seed: config.seed,
+        phase: 0.0,
+        variation: config.variation,
+    };
+    let mut generator = GaitGenerator::new(&space, &[], skeleton, &stander)?;
+    generator.set_standing_motion(config.motion);
+    generator.stand();
+    let mut recording = Recording::new(generator, rate);
+    for _ in 0..=(config.seconds.max(0.0) * rate).round() as usize {
+        recording.step(Controls::STAND);
+    }
+    Ok(recording.into_walk(skeleton))
+}
+
 /// What walk of a switching model to make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwitchingWalkConfig {

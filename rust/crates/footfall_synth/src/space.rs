@@ -2,7 +2,7 @@
 
 use crate::error::SynthError;
 use crate::fine_motion::{FineTables, Scale};
-use crate::standing::standing_features;
+use crate::standing::{StandingTables, standing_features};
 use crate::statistics::Statistics;
 use crate::variance;
 use crate::workbench::{Workbench, Workbenches};
@@ -19,6 +19,8 @@ pub struct StyleSpace {
     base_pull: Vec<f64>,
     style_pulls: Vec<Vec<f64>>,
     fine: Option<Arc<FineTables>>,
+    /// How people of the model stand; nothing where it stands still.
+    standing: Option<Arc<StandingTables>>,
     /// Mixtures that somebody wears.
     blends: Mutex<Vec<Weak<Blend>>>,
     benches: Workbenches,
@@ -55,6 +57,11 @@ impl StyleSpace {
             base_pull: variance::pull(model)?,
             style_pulls,
             fine: FineTables::of(model).map(Arc::new),
+            standing: model
+                .standing
+                .as_ref()
+                .map(StandingTables::of)
+                .map(Arc::new),
             model: Arc::clone(model),
             styles: styles.to_vec(),
             blends: Mutex::default(),
@@ -75,6 +82,11 @@ impl StyleSpace {
     /// The styles, in the order of their weights.
     pub fn styles(&self) -> &[Arc<GaitStyle>] {
         &self.styles
+    }
+
+    /// How people of the model stand; `None` where it stands still.
+    pub(crate) fn standing(&self) -> Option<&Arc<StandingTables>> {
+        self.standing.as_ref()
     }
 
     /// The weights as they are used: one a style, 0 for what is missing or not finite.

@@ -1,7 +1,13 @@
-//! Standing still, and the steps between standing and walking.
+//! Standing, and the steps between standing and walking.
 //!
-//! The model knows walking only. Standing is its mean posture over a straight pair of legs, and a step that starts or
-//! ends a walk grows out of it or shrinks into it: features between the two, with the same planted feet.
+//! A model that was trained on people who stand has their posture; of one that knows walking only it is the mean of a walk over a straight pair of legs. A
+//! step that starts or ends a walk grows out of it or shrinks into it: features between the two, with the same planted feet. Whoever rests there lives:
+//! [`sway`] says where the body is beside its posture at a moment, [`carry`] moves it there on feet that stay, [`life`] says how much of that there is.
+
+mod carry;
+mod life;
+mod noise;
+mod sway;
 
 use crate::stage::Posture;
 use footfall_core::ease::smooth_step;
@@ -10,6 +16,8 @@ use footfall_core::{Joint, Side};
 use footfall_model::layout::{feature_offset, mirror};
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use glam::Quat;
+pub(crate) use life::{Life, Moment};
+pub(crate) use sway::StandingTables;
 
 /// How far the knees of a standing walker are bent, radians.
 const KNEE_FLEXION: f32 = 0.1;
@@ -47,15 +55,11 @@ impl Amplitude {
 
 /// Features of the standing walker of a model.
 pub(crate) fn standing_features(model: &GaitModel) -> Posture {
-    let mut mean = [0.0; FEATURE_COUNT];
-    let states = model.steps.iter().flat_map(|step| &step.states);
-    let total: f64 = states.clone().map(|state| state.duration_mean).sum();
-    for state in states {
-        for (mean, value) in mean.iter_mut().zip(&state.mean) {
-            *mean += value * state.duration_mean / total;
-        }
+    let row = |features: &[f64]| core::array::from_fn(|n| features[n]);
+    if let Some(standing) = &model.standing {
+        return row(&standing.posture).map(|value| value as f32);
     }
-    standing_posture(mean)
+    standing_posture(row(&model.mean_features()))
 }
 
 /// Features of the standing walker: the mean of a walk, the same left and right, on straight legs.

@@ -10,7 +10,7 @@ use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
 use crate::planting::PlanterState;
-use crate::standing::Amplitude;
+use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
 use crate::strafe::Strafe;
 use footfall_core::StepPosition;
@@ -18,8 +18,9 @@ use footfall_ik::Plant;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// The version of the layout that this build writes and reads.
-const VERSION: u8 = 4;
+/// The version of the layout that this build writes; it reads the one before, too, which knew no life in standing.
+const VERSION: u8 = 5;
+const STILL_VERSION: u8 = 4;
 
 /// Nothing that a state holds is larger than this: metres, radians, frames and factors are not.
 const MAX_VALUE: f64 = 1e7;
@@ -105,6 +106,14 @@ enum Source {
     },
 }
 
+/// How far a walker's life is, behind a [`State`].
+#[derive(Default, Serialize, Deserialize)]
+struct Alive {
+    secs: f64,
+    share: f32,
+    speed: f32,
+}
+
 /// What a step takes over from the one before.
 #[derive(Serialize, Deserialize)]
 struct Feet {
@@ -177,8 +186,18 @@ impl GaitGenerator {
                 Steps::Switching(steps) => Source::of_switching(steps),
             },
         };
+        let moment = self
+            .life
+            .as_ref()
+            .map(|life| life.moment)
+            .unwrap_or_default();
+        let alive = Alive {
+            secs: moment.secs,
+            share: moment.share,
+            speed: moment.speed,
+        };
         // Writing to memory does not fail; an empty state is refused like any other that is not one.
-        postcard::to_stdvec(&state).unwrap_or_default()
+        postcard::to_stdvec(&(state, alive)).unwrap_or_default()
     }
 
     /// Goes on from a [`state`](Self::state) of a walker with the same model, styles and body; the seed is the state's.
@@ -186,11 +205,13 @@ impl GaitGenerator {
     /// # Errors
     /// [`StateError`]; the walker then walks on as before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
-        let state: State = postcard::from_bytes(bytes)?;
-        if state.version != VERSION {
-            return Err(StateError::Version(state.version));
-        }
-        if !state.is_sensible() {
+        let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
+        let alive: Alive = match state.version {
+            VERSION => postcard::from_bytes(rest)?,
+            STILL_VERSION => Alive::default(),
+            other => return Err(StateError::Version(other)),
+        };
+        if !state.is_sensible() || !alive.is_sensible() {
             return Err(StateError::Damaged);
         }
         let config = GeneratorConfig {
@@ -203,6 +224,14 @@ impl GaitGenerator {
             Steps::Switching(steps) => state.resume(steps, &config)?,
         }
         self.config = config;
+        if let Some(life) = &mut self.life {
+            life.become_walker(&config);
+            life.moment = Moment {
+                secs: alive.secs,
+                share: alive.share,
+                speed: alive.speed,
+            };
+        }
         self.detail = detail_of(state.detail);
         let [x, y, z, heading] = state.plan_from_start;
         self.plan_from_start = GroundTransform {
@@ -236,6 +265,13 @@ impl State {
             .chain(self.velocity_mps)
             .chain(feet);
         narrow.map(f64::from).all(is_reasonable) && self.steps.is_sensible()
+    }
+}
+
+impl Alive {
+    fn is_sensible(&self) -> bool {
+        let narrow = [self.share, self.speed].map(f64::from);
+        narrow.into_iter().chain([self.secs]).all(is_reasonable)
     }
 }
 

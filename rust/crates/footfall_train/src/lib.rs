@@ -2,7 +2,7 @@
 //!
 //! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
 //! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps), [`contexts`] (the ends of a walk);
-//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); [`recordings`] and [`job`] (for tools with windows); and [`evaluate`], which judges what comes out.
+//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); [`standing`] (how people stand); [`recordings`] and [`job`] (for tools with windows); and [`evaluate`], which judges what comes out.
 
 pub mod adapt;
 pub mod average;
@@ -20,6 +20,7 @@ pub mod normalise;
 pub mod progress;
 pub mod recordings;
 pub mod sequence;
+pub mod standing;
 pub mod train;
 pub mod training_comparison;
 pub mod walker_adaptive;

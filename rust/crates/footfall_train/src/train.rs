@@ -134,6 +134,7 @@ pub fn train_average(
         variation,
         contexts,
         fine: None,
+        standing: None,
         provenance: Provenance {
             clips: counts.clips,
             subjects: counts.subjects,

@@ -4,6 +4,7 @@ mod contacts;
 mod dynamics;
 mod imu;
 mod naturalness;
+mod standing;
 mod style;
 mod style_report;
 mod training;
@@ -28,6 +29,7 @@ enum What {
     Dynamics(dynamics::DynamicsArgs),
     Imu(imu::ImuArgs),
     Naturalness(naturalness::NaturalnessArgs),
+    Standing(standing::StandingArgs),
     Style(style::StyleArgs),
     Training(training::TrainingArgs),
 }
@@ -38,6 +40,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<()> {
         What::Dynamics(args) => dynamics::run(args),
         What::Imu(args) => imu::run(args),
         What::Naturalness(args) => naturalness::run(args),
+        What::Standing(args) => standing::run(args),
         What::Style(args) => style::run(args),
         What::Training(args) => training::run(args),
     }
@@ -71,6 +74,7 @@ pub(crate) fn report(request: &EvaluateRequest) -> Result<Value> {
         What::Dynamics(args) => value(&dynamics::evaluate(&args)?),
         What::Imu(args) => value(&imu::evaluate(&args)?),
         What::Naturalness(args) => value(&naturalness::evaluate(&args)?),
+        What::Standing(args) => value(&standing::evaluate(&args)?),
         What::Style(args) => value(&style::evaluate(&args)?),
         What::Training(args) => value(&training::evaluate(&args)?),
     }

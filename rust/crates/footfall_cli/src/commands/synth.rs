@@ -3,13 +3,16 @@
 use crate::commands::walk_output::{WalkArgs, WalkFacts};
 use crate::model_file::{read_model, read_style};
 use crate::output;
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, bail, ensure};
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_synth::{SynthesizedWalk, WalkConfig, synthesize};
+use footfall_synth::{StandConfig, SynthesizedWalk, WalkConfig, synthesize, synthesize_standing};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
+
+/// Longer recordings of somebody who stands are of no use.
+const LONGEST_STAND_SECS: f64 = 3600.0;
 
 /// Make a walk from a model
 ///
@@ -18,7 +21,8 @@ use std::sync::Arc;
 #[command(after_help = "Examples:\n  \
     footfall synth --model walk.footfall --steps 20 --seed 1 -o out.bvh\n  \
     footfall synth --model walk.footfall --style sad.footstyle:0.7 --style old.footstyle:0.3 -o out.bvh\n  \
-    footfall synth --model walk.footfall --steps 40 --speed 1.5 --turn 10 -o out.bvh --contacts out.json")]
+    footfall synth --model walk.footfall --steps 40 --speed 1.5 --turn 10 -o out.bvh --contacts out.json\n  \
+    footfall synth --model walk.footfall --speed 0 --seconds 60 --seed 4 -o standing.bvh")]
 pub(crate) struct SynthArgs {
     /// The model
     #[arg(long, value_name = "WALK.footfall")]
@@ -32,6 +36,12 @@ pub(crate) struct SynthArgs {
     /// Begin and end standing; otherwise the walk is cut out of a longer one
     #[arg(long)]
     standing: bool,
+    /// How long to stand, with `--speed 0`
+    #[arg(long, default_value_t = 20.0, value_name = "SECONDS")]
+    seconds: f64,
+    /// How much it moves as it stands, with `--speed 0`: 0 not at all, 1 as in the recordings
+    #[arg(long, default_value_t = 1.0, value_name = "AMOUNT")]
+    standing_motion: f32,
     #[command(flatten)]
     walk: WalkArgs,
     /// Print one JSON object on stdout
@@ -89,9 +99,16 @@ struct Report<'a> {
 pub(crate) fn run(args: &SynthArgs) -> Result<()> {
     let styles = args.styles.iter().map(|style| style.path.as_path());
     let inputs: Vec<&Path> = styles.chain([args.model.as_path()]).collect();
+    let stands = args.walk.speed == Some(0.0);
+    if !stands {
+        args.walk.check_speed()?;
+    }
     args.walk.check(&inputs)?;
     let (model, styles) = dressed(&args.model, &args.styles)?;
     let model = Arc::new(model);
+    if stands {
+        return stand(args, &model, styles);
+    }
     let mut warnings = Vec::new();
     let [slowest, fastest] = model.speed_range();
     if let Some(speed) = args.walk.speed
@@ -113,7 +130,33 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
     };
     let walk = synthesize(&model, &model.skeleton, &config)
         .with_context(|| args.model.display().to_string())?;
-    report(args, &walk, styles, warnings)
+    report(args, args.steps, &walk, styles, warnings)
+}
+
+/// Somebody who stands, as long as is asked for.
+fn stand(args: &SynthArgs, model: &Arc<GaitModel>, styles: Vec<StyleReport>) -> Result<()> {
+    ensure!(
+        (0.0..=LONGEST_STAND_SECS).contains(&args.seconds),
+        "nobody stands for {} seconds; give --seconds a number up to {LONGEST_STAND_SECS}",
+        args.seconds
+    );
+    let config = StandConfig {
+        seconds: args.seconds,
+        seed: args.walk.seed,
+        variation: args.walk.variation,
+        motion: args.standing_motion,
+        frame_rate_hz: args.walk.fps,
+    };
+    let standing = synthesize_standing(model, &model.skeleton, &config)
+        .with_context(|| args.model.display().to_string())?;
+    let mut warnings = Vec::new();
+    if model.standing.is_none() {
+        warnings.push(format!(
+            "{} knows nothing of standing: the pose is still; train it with --standing",
+            args.model.display()
+        ));
+    }
+    report(args, 0, &standing, styles, warnings)
 }
 
 /// The model in the given styles.
@@ -146,15 +189,16 @@ pub(crate) fn dressed(path: &Path, styles: &[StyleArg]) -> Result<(GaitModel, Ve
 
 fn report(
     args: &SynthArgs,
+    steps: u32,
     walk: &SynthesizedWalk,
     styles: Vec<StyleReport>,
     warnings: Vec<String>,
 ) -> Result<()> {
     let facts = args.walk.write(walk)?;
     let report = Report {
-        cadence_per_minute: 60.0 * f64::from(args.steps) / facts.seconds,
+        cadence_per_minute: 60.0 * f64::from(steps) / facts.seconds.max(f64::MIN_POSITIVE),
         walk: facts,
-        steps: args.steps,
+        steps,
         styles,
         warnings,
     };

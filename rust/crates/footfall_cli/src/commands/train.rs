@@ -9,6 +9,7 @@ use clap::ValueEnum;
 use footfall_core::StepPosition;
 use footfall_motion::corpus::{Corpus, Where};
 use footfall_prob::windows::Windows;
+use footfall_train::standing::{self, LearnedStanding, StandingClip};
 use footfall_train::{ContextReport, EmConfig, TrainConfig, Trained, TrainingClip, train_average};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -24,7 +25,8 @@ use std::time::Instant;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall train --corpus index.csv --where category=neutral_walk -o walk.footfall\n  \
-    footfall train --corpus index.csv --where category=neutral_walk --where 'path=cmu/*' -o walk.footfall")]
+    footfall train --corpus index.csv --where category=neutral_walk --where 'path=cmu/*' -o walk.footfall\n  \
+    footfall train --corpus index.csv --where category=neutral_walk --standing category=idle -o walk.footfall")]
 pub(crate) struct TrainArgs {
     /// Table of the recordings
     #[arg(long, value_name = "INDEX.csv")]
@@ -32,6 +34,10 @@ pub(crate) struct TrainArgs {
     /// Condition on a column, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
+    /// Condition on recordings of people who stand, for example `category=idle`; may repeat. The model learns from them how to stand;
+    /// without, it stands still
+    #[arg(long = "standing", value_name = "COLUMN=VALUE")]
+    standing: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
     /// Where to write the model
@@ -76,6 +82,8 @@ struct Report<'a> {
     contexts: Contexts<'a>,
     speed_range_mps: [f64; 2],
     cadence_range_per_minute: [f64; 2],
+    /// Seconds in which people stand, by person; nothing where the model stands still.
+    standing_seconds: BTreeMap<String, f64>,
     /// Recordings that could not be used, and why.
     skipped: Vec<Skipped>,
     warnings: Vec<String>,
@@ -132,17 +140,51 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     progress.0.stage("reading the corpus", 0);
     let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
-    let trained = train_average(
+    let standing = standing_corpus(args)?;
+    let mut trained = train_average(
         &clips,
         &config(args),
-        provenance::of(&corpus, args),
+        provenance::of(&corpus, standing.as_ref(), args),
         &mut progress,
     )
     .with_context(|| args.corpus.display().to_string())?;
+    let standing = match standing {
+        Some(standing) => Some(learn_standing(&standing, args)?),
+        None => None,
+    };
+    trained.model.standing = standing.as_ref().map(|learned| learned.model.clone());
     let bytes = trained.model.to_bytes().context("the trained model")?;
     write_atomic(&args.output, &bytes)?;
     progress.0.finish();
-    report(args, &corpus, &trained, begun.elapsed().as_secs_f64())
+    report(
+        args,
+        &corpus,
+        &trained,
+        standing.as_ref(),
+        begun.elapsed().as_secs_f64(),
+    )
+}
+
+/// The recordings of people who stand, if some are asked for.
+fn standing_corpus(args: &TrainArgs) -> Result<Option<Corpus>> {
+    if args.standing.is_empty() {
+        return Ok(None);
+    }
+    read_corpus(&args.corpus, &args.standing, args.knees, &args.output).map(Some)
+}
+
+fn learn_standing(corpus: &Corpus, args: &TrainArgs) -> Result<LearnedStanding> {
+    let clips: Vec<StandingClip> = corpus
+        .clips
+        .iter()
+        .map(|clip| StandingClip::new(clip.row.subject(), &clip.retargeted))
+        .collect();
+    standing::learn(&clips).with_context(|| {
+        format!(
+            "{}: nobody stands upright with hanging arms for some seconds in what --standing chooses; widen it",
+            args.corpus.display()
+        )
+    })
 }
 
 fn config(args: &TrainArgs) -> TrainConfig {
@@ -185,7 +227,13 @@ pub(super) fn skipped(corpus: &Corpus) -> Vec<Skipped> {
         .collect()
 }
 
-fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) -> Result<()> {
+fn report(
+    args: &TrainArgs,
+    corpus: &Corpus,
+    trained: &Trained,
+    standing: Option<&LearnedStanding>,
+    seconds: f64,
+) -> Result<()> {
     let made_from = &trained.model.provenance;
     let mut warnings = Vec::new();
     if made_from.subjects == 1 {
@@ -205,6 +253,9 @@ fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) ->
         contexts: Contexts::of(&trained.contexts),
         speed_range_mps: trained.model.speed_range(),
         cadence_range_per_minute: trained.model.speed.cadence_range_hz.map(|hz| 60.0 * hz),
+        standing_seconds: standing
+            .map(|learned| learned.people.iter().cloned().collect())
+            .unwrap_or_default(),
         skipped: skipped(corpus),
         warnings,
         seconds,
@@ -228,6 +279,13 @@ fn report(args: &TrainArgs, corpus: &Corpus, trained: &Trained, seconds: f64) ->
         report.log_likelihoods.len(),
         report.seconds
     ));
+    if !report.standing_seconds.is_empty() {
+        output::note(&format!(
+            "standing: {:.0} s of {} people",
+            report.standing_seconds.values().sum::<f64>(),
+            report.standing_seconds.len()
+        ));
+    }
     let contexts = &report.contexts;
     output::note(&format!(
         "{} step models for ten contexts: leaves of the trees of outputs {:?}, of durations {}",

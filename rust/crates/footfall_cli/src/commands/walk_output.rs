@@ -80,6 +80,11 @@ impl WalkArgs {
             "{} frames per second cannot be written; give --fps a number from 1 to 1000",
             self.fps.unwrap_or_default()
         );
+        Ok(())
+    }
+
+    /// Checks that a walk goes somewhere.
+    pub(super) fn check_speed(&self) -> Result<()> {
         ensure!(
             self.speed
                 .is_none_or(|speed| speed > 0.0 && speed.is_finite()),
@@ -111,7 +116,7 @@ impl WalkArgs {
             frames: clip.poses.len(),
             seconds,
             seed: self.seed,
-            speed_mps: way / seconds as f32,
+            speed_mps: way / (seconds as f32).max(f32::MIN_POSITIVE),
         })
     }
 }

@@ -384,7 +384,9 @@ fn settings_out_of_range_say_what_to_give() {
         arguments.extend(extra);
         footfall(folder.path(), &arguments)
     };
-    synth(&["--speed=0"]).fails_with(&["--speed"]);
+    synth(&["--speed=-1"]).fails_with(&["--speed"]);
+    // At 0 somebody stands.
+    synth(&["--speed=0", "--seconds=-1"]).fails_with(&["--seconds"]);
     synth(&["--fps=0"]).fails_with(&["--fps"]);
     synth(&["--turn=NaN"]).fails_with(&["turn rate"]);
     synth(&["--contacts", "out.bvh"]).fails_with(&["--contacts"]);

@@ -17,6 +17,7 @@ impl GaitCrowd3D {
         }
         let limits = self.limits();
         let (avoidance, repeat_far, mask) = (self.avoidance, self.repeat_far, self.ground_mask);
+        let standing_motion = self.standing_motion as f32;
         let look = Look {
             character: self.character.clone(),
             material: self.material.clone(),
@@ -28,6 +29,7 @@ impl GaitCrowd3D {
             return;
         };
         walkers.repeats = repeat_far;
+        walkers.standing_motion = standing_motion;
         if walkers.is_navigated()
             && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)
         {

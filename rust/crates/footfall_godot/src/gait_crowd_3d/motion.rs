@@ -44,11 +44,13 @@ impl Walkers {
             neighbours,
             way,
             repeats,
+            standing_motion,
             time_secs,
             ..
         } = self;
         let (workshops, neighbours, way) = (&kit.workshops, &*neighbours, &*way);
         let (repeats, now_secs) = (*repeats, *time_secs);
+        let standing_motion = *standing_motion;
         let chunks = agents
             .par_chunks_mut(CHUNK)
             .zip(tiers.par_chunks(CHUNK))
@@ -79,6 +81,7 @@ impl Walkers {
                     Tier::Near | Tier::Far => Detail::Quarter,
                 });
                 walker.set_repeating(repeats && *tier == Tier::Far);
+                walker.set_standing_motion(standing_motion);
                 let secs = (now_secs - agent.clock_secs) as f32;
                 agent.clock_secs = now_secs;
                 if agent.is_about_to_step(secs) {

@@ -46,6 +46,8 @@ pub(super) struct Walkers {
     pub(super) neighbours: Neighbours,
     pub(super) way: Way,
     pub(super) repeats: bool,
+    /// How much those move who stand.
+    pub(super) standing_motion: f32,
     pub(super) maker: Maker,
     settings: Settings,
     /// How many walkers there ever were: the number of the next, which says who it is.
@@ -79,6 +81,7 @@ impl Walkers {
             neighbours: Neighbours::default(),
             way,
             repeats: true,
+            standing_motion: 1.0,
             maker: Maker::new(recipe),
             settings,
             made: 0,

@@ -22,7 +22,8 @@ impl GaitGenerator3D {
     ///
     /// `seconds` is how long a clip is about: whole strides are taken, from one touching down of the left foot to another. `styles` names some of
     /// the node's `styles`, and `neutral` the walk without one; empty are all of them. `speeds` are in metres per second. The clips are
-    /// `walk_<style>_<speed>`, such as `walk_sad_1.2`, and `idle_<style>`; all of them loop, and are made of `seed` and `variation`.
+    /// `walk_<style>_<speed>`, such as `walk_sad_1.2`, and `idle_<style>`; all of them loop, and are made of `seed`,
+    /// `variation` and `standing_motion`.
     ///
     /// The root moves evenly, exactly at the speed that the clip is named for. Its track is the topmost bone above the hips, or the `Skeleton3D`
     /// itself where hips are topmost. Tell it to whoever plays the clips: `player.root_motion_track = library.get_meta("root_motion_track")`.
@@ -76,7 +77,8 @@ impl GaitGenerator3D {
         let mut clips = Clips::of(&skeleton, &character, binding);
         let mut library = AnimationLibrary::new_gd();
         for (name, weights) in worn(&source, styles)? {
-            let standing = self.generator(&source, &weights, clips.binding())?;
+            let mut standing = self.generator(&source, &weights, clips.binding())?;
+            standing.set_standing_motion(self.standing_motion as f32);
             let still = LoopedWalk::standing(standing, seconds as f32);
             add(
                 &mut library,

@@ -89,6 +89,9 @@ impl GaitGenerator3D {
             .generator
             .set_style_weights(self.style_weights.as_slice());
         session.generator.set_detail(self.detail.into());
+        session
+            .generator
+            .set_standing_motion(self.standing_motion as f32);
         if let Some(state) = self.pending_state.take()
             && let Err(problem) = session.restore(state.as_slice())
         {

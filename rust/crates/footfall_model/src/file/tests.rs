@@ -5,6 +5,7 @@ use crate::gait_model::{
     StepOffset, Variation,
 };
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
+use crate::standing::{Breath, Looks, SWAY_COUNT, StandingModel, SwayOctave};
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_prob::windows::Windows;
 use proptest::prelude::*;
@@ -47,6 +48,7 @@ pub(crate) fn sample() -> GaitModel {
         },
         contexts: Vec::new(),
         fine: None,
+        standing: None,
         provenance: Provenance {
             corpus: "made by a test".to_owned(),
             clips: 3,
@@ -88,9 +90,61 @@ fn fine_motion_survives_and_leaves_the_fingerprint_alone() {
         ..plain.clone()
     };
     let bytes = model.to_bytes().unwrap();
-    assert_eq!(read_header(&bytes).unwrap().0, FORMAT_VERSION);
+    assert_eq!(read_header(&bytes).unwrap().0, FORMAT_3);
     assert_eq!(GaitModel::from_bytes(&bytes).unwrap(), model);
     assert_eq!(model.fingerprint().unwrap(), plain.fingerprint().unwrap());
+}
+
+/// A walk of any version gets a standing: everything survives, and styles fit as before.
+#[test]
+fn standing_survives_beside_every_version_of_the_walk() {
+    let row = |scale: f64, len: usize| (0..len).map(|i| scale * (i + 1) as f64).collect::<Vec<_>>();
+    let standing = StandingModel {
+        posture: row(0.25, FEATURE_COUNT),
+        hips_ahead: 0.0625,
+        stance: SwayOctave {
+            knot_secs: 24.0,
+            directions: vec![row(0.375, SWAY_COUNT)],
+        },
+        octaves: vec![
+            SwayOctave {
+                knot_secs: 8.0,
+                directions: vec![row(0.5, SWAY_COUNT), row(-0.5, SWAY_COUNT)],
+            },
+            SwayOctave {
+                knot_secs: 0.5,
+                directions: vec![row(0.125, SWAY_COUNT)],
+            },
+        ],
+        looks: Looks {
+            rate_hz: 0.125,
+            shift_secs: 1.25,
+            directions: vec![row(2.0, SWAY_COUNT), row(4.0, SWAY_COUNT)],
+        },
+        breath: Breath {
+            rate_hz: 0.25,
+            direction: row(-2.0, SWAY_COUNT),
+        },
+        strength_spread: 0.375,
+    };
+    let plain = sample();
+    for (fine, contexts) in [(None, 0), (None, 1), (Some(fine()), 1)] {
+        let context = StepContext {
+            position: StepPosition::Last,
+            side: Side::Right,
+            offset: plain.speed.slopes[0].clone(),
+        };
+        let model = GaitModel {
+            fine,
+            contexts: vec![context; contexts],
+            standing: Some(standing.clone()),
+            ..plain.clone()
+        };
+        let bytes = model.to_bytes().unwrap();
+        assert_eq!(read_header(&bytes).unwrap().0, FORMAT_VERSION);
+        assert_eq!(GaitModel::from_bytes(&bytes).unwrap(), model);
+        assert_eq!(model.fingerprint().unwrap(), plain.fingerprint().unwrap());
+    }
 }
 
 #[test]

@@ -65,7 +65,7 @@ pub(super) struct CrowdFrames {
 }
 
 impl CrowdFrames {
-    /// Takes over a step on the ground; `pose` and `model` are room to work in.
+    /// Takes over frames on the ground; `pose` and `model` are room to work in.
     pub(super) fn set(
         &mut self,
         frames: &[PlantedFrame],

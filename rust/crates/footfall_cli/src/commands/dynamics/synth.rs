@@ -29,6 +29,7 @@ pub(crate) struct DynamicsSynthArgs {
 }
 
 pub(crate) fn run(args: &DynamicsSynthArgs) -> Result<()> {
+    args.walk.check_speed()?;
     args.walk.check(&[&args.model])?;
     ensure!(
         (0.1..=7200.0).contains(&args.seconds),

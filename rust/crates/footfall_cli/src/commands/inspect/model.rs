@@ -3,8 +3,9 @@
 use super::{FileFacts, fact};
 use crate::model_file::read_model;
 use anyhow::Result;
-use footfall_core::Side;
-use footfall_model::{GaitModel, OBSERVATION_COUNT};
+use footfall_core::{Joint, Side};
+use footfall_model::layout::feature_offset;
+use footfall_model::{GaitModel, OBSERVATION_COUNT, StandingModel};
 use serde::Serialize;
 use std::path::Path;
 
@@ -28,6 +29,19 @@ pub(super) struct ModelFacts {
     step_components: usize,
     /// Places in a walk whose steps have models of their own.
     ends: Vec<String>,
+    /// How its people stand; nothing where it stands still.
+    standing: Option<StandingFacts>,
+}
+
+#[derive(Serialize)]
+struct StandingFacts {
+    knees_deg: f64,
+    octaves: usize,
+    directions: usize,
+    looks_per_minute: f64,
+    breaths_per_minute: f64,
+    /// Standard deviation of how far people move, as a factor.
+    strength_factor: f64,
 }
 
 #[derive(Serialize)]
@@ -87,7 +101,24 @@ pub(super) fn inspect(path: &Path) -> Result<ModelFacts> {
             .iter()
             .map(|context| format!("{} {}", context.position.name(), context.side.name()))
             .collect(),
+        standing: model.standing.as_ref().map(standing_facts),
     })
+}
+
+fn standing_facts(standing: &StandingModel) -> StandingFacts {
+    let knee = &standing.posture[feature_offset(Joint::LeftLowerLeg)..][..3];
+    let directions = standing
+        .octaves
+        .iter()
+        .map(|octave| octave.directions.len());
+    StandingFacts {
+        knees_deg: knee.iter().map(|v| v * v).sum::<f64>().sqrt().to_degrees(),
+        octaves: standing.octaves.len(),
+        directions: directions.sum(),
+        looks_per_minute: 60.0 * standing.looks.rate_hz,
+        breaths_per_minute: 60.0 * standing.breath.rate_hz,
+        strength_factor: standing.strength_spread.exp(),
+    }
 }
 
 impl ModelFacts {
@@ -148,6 +179,21 @@ impl ModelFacts {
             self.ends.join(", ")
         };
         lines.push(fact("ends of walks", ends));
+        let standing = self.standing.as_ref().map_or_else(
+            || "still".to_owned(),
+            |standing| {
+                format!(
+                    "knees of {:.0}°, sway in {} directions of {} octaves, {:.1} looks and {:.0} breaths a minute; people differ by a factor of {:.1}",
+                    standing.knees_deg,
+                    standing.directions,
+                    standing.octaves,
+                    standing.looks_per_minute,
+                    standing.breaths_per_minute,
+                    standing.strength_factor
+                )
+            },
+        );
+        lines.push(fact("standing", standing));
         lines
     }
 }

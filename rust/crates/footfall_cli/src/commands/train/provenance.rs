@@ -10,16 +10,35 @@ use std::path::Path;
 const LICENSE_COLUMN: &str = "license";
 
 /// Corpus, terms and command; the trainer fills in the counts.
-pub(super) fn of(corpus: &Corpus, args: &TrainArgs) -> Provenance {
+pub(super) fn of(corpus: &Corpus, standing: Option<&Corpus>, args: &TrainArgs) -> Provenance {
     let conditions: Vec<String> = args.conditions.iter().map(ToString::to_string).collect();
     let command = command(args, &name_of(&args.corpus), &conditions);
-    describe(
+    let mut described = describe(
         corpus,
         &args.corpus,
         &args.conditions,
         args.describe.as_deref(),
         command,
-    )
+    );
+    if let Some(standing) = standing {
+        let conditions: Vec<String> = args.standing.iter().map(ToString::to_string).collect();
+        if args.describe.is_none() {
+            described.corpus.push_str("; standing where ");
+            described.corpus.push_str(&conditions.join(" and "));
+        }
+        let both = corpus.clips.iter().chain(&standing.clips);
+        described.terms = terms(both.filter_map(|clip| clip.row.column(LICENSE_COLUMN)));
+    }
+    described
+}
+
+/// The terms that recordings come under, each once.
+fn terms<'a>(stated: impl Iterator<Item = &'a str>) -> String {
+    let terms: BTreeSet<&str> = stated.filter(|terms| !terms.is_empty()).collect();
+    if terms.is_empty() {
+        return "not stated by the index".to_owned();
+    }
+    terms.into_iter().collect::<Vec<_>>().join("; ")
 }
 
 /// What is chosen from an index, in the user's words if there are some, and on which terms. Names of files without their
@@ -38,19 +57,10 @@ pub(in crate::commands) fn describe(
         (None, true) => format!("all of {index}"),
         (None, false) => format!("{index} where {}", conditions.join(" and ")),
     };
-    let terms: BTreeSet<&str> = corpus
-        .clips
-        .iter()
-        .filter_map(|clip| clip.row.column(LICENSE_COLUMN))
-        .filter(|terms| !terms.is_empty())
-        .collect();
+    let clips = corpus.clips.iter();
     Provenance {
         corpus: described,
-        terms: if terms.is_empty() {
-            "not stated by the index".to_owned()
-        } else {
-            terms.into_iter().collect::<Vec<_>>().join("; ")
-        },
+        terms: terms(clips.filter_map(|clip| clip.row.column(LICENSE_COLUMN))),
         command,
         commit: std::env::var("FOOTFALL_COMMIT").unwrap_or_default(),
         ..Provenance::default()
@@ -61,6 +71,9 @@ fn command(args: &TrainArgs, index: &str, conditions: &[String]) -> String {
     let mut words = vec!["footfall train --corpus".to_owned(), index.to_owned()];
     for condition in conditions {
         words.push(format!("--where '{condition}'"));
+    }
+    for condition in &args.standing {
+        words.push(format!("--standing '{condition}'"));
     }
     words.extend(args.knees.words());
     words.push(format!("--fps {}", args.fps));

@@ -1,0 +1,223 @@
+//! A standing body goes where its sway takes it, on feet that stay.
+
+use super::sway::Sway;
+use footfall_core::rotation::exp_maps;
+use footfall_core::{JOINT_COUNT, Joint, Pose, Side, Skeleton};
+use footfall_ik::{FootTarget, Leg, reach_height};
+use footfall_model::FEATURE_COUNT;
+use glam::{Quat, Vec3};
+
+/// Beyond this no leg goes: its foot would leave its place.
+const MOST_STRETCHED: f32 = 0.9993;
+
+/// The pelvis tilts to the side by so much at most where one leg has farther to its foot, radians.
+const MOST_TILT: f32 = 0.06;
+
+/// It evens out this share of that: who has less to carry bends a little.
+const TILT_SHARE: f32 = 0.8;
+
+/// Over how many metres the pelvis goes from the one leg's reach to the other's.
+const REACH_SOFTNESS_M: f32 = 0.001;
+
+/// One body's legs, ready to carry it.
+#[derive(Clone, Debug)]
+pub(crate) struct Carrier {
+    legs: [Leg; 2],
+    hip_from_hips: [Vec3; 2],
+    lengths: [f32; 2],
+    /// Fraction of the straight leg that the leg which carries more uses.
+    extension: f32,
+}
+
+/// One foot, and how the hip joint is to it.
+struct Foot {
+    target: FootTarget,
+    /// The hip joint from the hips, in the pose's space.
+    hip: Vec3,
+}
+
+impl Carrier {
+    /// For a body whose knees are bent by `knee` radians when it stands.
+    pub(crate) fn new(skeleton: &Skeleton, knee: f32) -> Self {
+        Self {
+            extension: (0.5 * knee).cos().min(MOST_STRETCHED),
+            legs: Side::BOTH.map(|side| Leg::new(skeleton, side)),
+            hip_from_hips: Side::BOTH.map(|side| skeleton.offset(side.upper_leg())),
+            lengths: Side::BOTH.map(|side| skeleton.leg_length(side)),
+        }
+    }
+
+    /// Moves a pose by a sway: joints turn, the hips go over the ground as seen under the rotation `level`, and both feet stay as they are. By `upright`
+    /// (0 to 1) the hips go to the height at which legs are bent as standing ones, and tilt to the side on which the way to the foot is longer.
+    pub(crate) fn carry(&self, sway: &Sway, upright: f32, level: Quat, pose: &mut Pose) {
+        let feet = Side::BOTH.map(|side| self.foot(pose, side));
+        let mut turns = [Quat::IDENTITY; JOINT_COUNT];
+        exp_maps(&sway[..FEATURE_COUNT], &mut turns);
+        let upper = Joint::LeftUpperLeg.index();
+        for (rotation, turn) in pose.rotations[..upper].iter_mut().zip(turns) {
+            *rotation *= turn;
+        }
+        let leg = 0.5 * (self.lengths[0] + self.lengths[1]);
+        let way = leg * Vec3::new(sway[FEATURE_COUNT], 0.0, sway[FEATURE_COUNT + 1]);
+        let mut hips = pose.root_position + level * way;
+        let mut feet = feet;
+        self.hang(pose.rotation(Joint::Hips), &mut feet);
+        let tilt = Quat::from_rotation_z(upright * self.tilt(hips, &feet));
+        pose.rotations[Joint::Hips.index()] *= tilt;
+        let spine = &mut pose.rotations[Joint::Spine.index()];
+        *spine = tilt.conjugate() * *spine;
+        let hips_rotation = pose.rotation(Joint::Hips);
+        self.hang(hips_rotation, &mut feet);
+        if let Some(height) = self.reach(hips, &feet) {
+            hips.y += upright * (height - hips.y);
+        }
+        for side in Side::BOTH {
+            if let Some(limit) = self.height(hips, side, &feet[side.index()], MOST_STRETCHED) {
+                hips.y = hips.y.min(limit.max(pose.root_position.y));
+            }
+        }
+        pose.root_position = hips;
+        for side in Side::BOTH {
+            let target = &feet[side.index()].target;
+            self.legs[side.index()].solve(hips, hips_rotation, target, pose);
+        }
+    }
+
+    /// Puts the hip joints where the hips have them.
+    fn hang(&self, hips: Quat, feet: &mut [Foot; 2]) {
+        for (foot, hip) in feet.iter_mut().zip(self.hip_from_hips) {
+            foot.hip = hips * hip;
+        }
+    }
+
+    /// By how much the pelvis has to tilt for both legs to reach their feet alike, positive with the left side up, radians.
+    fn tilt(&self, hips: Vec3, feet: &[Foot; 2]) -> f32 {
+        let [left, right] =
+            Side::BOTH.map(|side| self.height(hips, side, &feet[side.index()], self.extension));
+        let (Some(left), Some(right)) = (left, right) else {
+            return 0.0;
+        };
+        let apart = self.hip_from_hips[0].distance(self.hip_from_hips[1]);
+        let tilt = TILT_SHARE * (left - right) / apart.max(f32::MIN_POSITIVE);
+        MOST_TILT * (tilt / MOST_TILT).tanh()
+    }
+
+    fn foot(&self, pose: &Pose, side: Side) -> Foot {
+        let hips = pose.rotation(Joint::Hips);
+        let thigh = hips * pose.rotation(side.upper_leg());
+        let shank = thigh * pose.rotation(side.lower_leg());
+        let foot = shank * pose.rotation(side.foot());
+        let hip = hips * self.hip_from_hips[side.index()];
+        let reach = self.legs[side.index()].ankle_from_hip(thigh, shank);
+        Foot {
+            target: FootTarget {
+                ankle: pose.root_position + hip + reach,
+                foot,
+                toes: foot * pose.rotation(side.toes()),
+            },
+            hip,
+        }
+    }
+
+    /// How high the hips are when the legs carry them: the lower of what each leg allows, rounded off. `None` where no leg reaches its foot.
+    fn reach(&self, hips: Vec3, feet: &[Foot; 2]) -> Option<f32> {
+        let heights =
+            Side::BOTH.map(|side| self.height(hips, side, &feet[side.index()], self.extension));
+        match heights {
+            [Some(left), Some(right)] => {
+                let apart = (left - right).abs() / REACH_SOFTNESS_M;
+                Some(left.min(right) - REACH_SOFTNESS_M * (-apart).exp().ln_1p())
+            }
+            [one, other] => one.or(other),
+        }
+    }
+
+    fn height(&self, hips: Vec3, side: Side, foot: &Foot, extension: f32) -> Option<f32> {
+        let length = self.lengths[side.index()];
+        reach_height(hips, foot.hip, foot.target.ankle, length, extension)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use footfall_core::{ModelPose, forward_kinematics};
+    use footfall_model::SWAY_COUNT;
+
+    fn standing(skeleton: &Skeleton) -> Pose {
+        let mut pose = Pose::rest(skeleton);
+        pose.root_position.y -= 0.0012;
+        for side in Side::BOTH {
+            pose.rotations[side.upper_leg().index()] = Quat::from_rotation_x(-0.05);
+            pose.rotations[side.lower_leg().index()] = Quat::from_rotation_x(0.1);
+            pose.rotations[side.foot().index()] = Quat::from_rotation_x(-0.05);
+        }
+        pose
+    }
+
+    #[test]
+    fn feet_stay_and_knees_hardly_bend() {
+        let skeleton = Skeleton::standard();
+        let carrier = Carrier::new(&skeleton, 0.1);
+        let still = standing(&skeleton);
+        let mut before = ModelPose::default();
+        forward_kinematics(&skeleton, &still, &mut before);
+        for (left, forwards, turn) in [(0.06, 0.0, 0.1), (-0.08, 0.03, 0.0), (0.0, -0.04, -0.2)] {
+            let mut sway = [0.0; SWAY_COUNT];
+            sway[1] = turn;
+            sway[3] = 0.05;
+            sway[FEATURE_COUNT] = left;
+            sway[FEATURE_COUNT + 1] = forwards;
+            for level in [Quat::IDENTITY, Quat::from_rotation_y(0.8)] {
+                let mut pose = still.clone();
+                carrier.carry(&sway, 1.0, level, &mut pose);
+                let mut after = ModelPose::default();
+                forward_kinematics(&skeleton, &pose, &mut after);
+                for side in Side::BOTH {
+                    for joint in [side.foot(), side.toes()] {
+                        let moved = after.position(joint).distance(before.position(joint));
+                        assert!(moved < 1e-4, "{joint:?} by {moved} m");
+                        let turned = after.rotation(joint).angle_between(before.rotation(joint));
+                        assert!(turned < 2e-3, "{joint:?} by {turned}");
+                    }
+                    let knee = pose.rotation(side.lower_leg()).to_scaled_axis().length();
+                    assert!(knee < 0.2, "{knee}");
+                }
+                let way = level.inverse() * (pose.root_position - still.root_position);
+                assert!(
+                    (way.x - 0.84 * left).abs() < 1e-4 && (way.z - 0.84 * forwards).abs() < 1e-4
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_crouched_body_stands_up() {
+        let skeleton = Skeleton::standard();
+        let mut pose = standing(&skeleton);
+        pose.root_position.y -= 0.03;
+        let carrier = Carrier::new(&skeleton, 0.1);
+        let feet = Side::BOTH.map(|side| carrier.foot(&standing(&skeleton), side));
+        for side in Side::BOTH {
+            let (hips, rotation) = (pose.root_position, pose.rotations[0]);
+            carrier.legs[side.index()].solve(hips, rotation, &feet[side.index()].target, &mut pose);
+        }
+        carrier.carry(&[0.0; SWAY_COUNT], 1.0, Quat::IDENTITY, &mut pose);
+        for side in Side::BOTH {
+            let knee = pose.rotation(side.lower_leg()).to_scaled_axis().length();
+            assert!((0.09..0.15).contains(&knee), "{knee}");
+        }
+    }
+
+    #[test]
+    fn no_sway_changes_nothing() {
+        let skeleton = Skeleton::standard();
+        let mut pose = standing(&skeleton);
+        Carrier::new(&skeleton, 0.1).carry(&[0.0; SWAY_COUNT], 0.0, Quat::IDENTITY, &mut pose);
+        let still = standing(&skeleton);
+        assert!(pose.root_position.distance(still.root_position) < 1e-5);
+        for (now, then) in pose.rotations.iter().zip(still.rotations) {
+            assert!(now.angle_between(then) < 2e-3);
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! How much one walker is alive as it stands: it comes up at rest and dies away as a step begins.
+
+use super::carry::Carrier;
+use super::sway::{Stander, StandingTables, Sway};
+use crate::generator::GeneratorConfig;
+use crate::space::StyleSpace;
+use footfall_core::{Pose, Skeleton};
+use glam::Quat;
+use std::sync::Arc;
+
+/// How quickly it comes up and dies away: the rate of a critically damped spring, a second.
+const RISE_RATE: f32 = 2.4;
+const FALL_RATE: f32 = 9.0;
+
+/// Less is nothing: a tenth of a millimetre.
+const LEAST_SHARE: f32 = 2e-3;
+
+/// More of it than this is no standing any more.
+const MOST_AMOUNT: f32 = 2.0;
+
+/// The moment of a walker's life that a state holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Moment {
+    /// Time that it has been alive, seconds.
+    pub(crate) secs: f64,
+    /// How much of it there is, 0 to 1, and by how much more a second.
+    pub(crate) share: f32,
+    pub(crate) speed: f32,
+}
+
+/// One walker's life as it stands.
+#[derive(Clone, Debug)]
+pub(crate) struct Life {
+    tables: Arc<StandingTables>,
+    stander: Stander,
+    carrier: Carrier,
+    amount: f32,
+    pub(crate) moment: Moment,
+}
+
+impl Moment {
+    /// So much later, for one who stands all the while, or walks.
+    pub(crate) fn after(self, secs: f32, stands: bool) -> Self {
+        let (target, rate) = if stands {
+            (1.0, RISE_RATE)
+        } else {
+            (0.0, FALL_RATE)
+        };
+        let missing = self.share - target;
+        let impulse = self.speed + rate * missing;
+        let fade = (-rate * secs).exp();
+        let later = Self {
+            secs: self.secs + f64::from(secs),
+            share: target + (missing + impulse * secs) * fade,
+            speed: (self.speed - rate * impulse * secs) * fade,
+        };
+        if !stands && later.share < LEAST_SHARE {
+            // Who walks does not grow older.
+            return Self {
+                secs: self.secs,
+                ..Self::default()
+            };
+        }
+        later
+    }
+}
+
+impl Life {
+    /// That of a walker of this space; `None` where the model stands still.
+    pub(crate) fn new(
+        space: &StyleSpace,
+        skeleton: &Skeleton,
+        config: &GeneratorConfig,
+    ) -> Option<Self> {
+        let tables = space.standing()?;
+        Some(Self {
+            stander: tables.stander(config.seed, config.variation.clamp(0.0, 2.0)),
+            tables: Arc::clone(tables),
+            carrier: Carrier::new(skeleton, tables.knee),
+            amount: 1.0,
+            moment: Moment::default(),
+        })
+    }
+
+    /// Another seed's, at the same moment.
+    pub(crate) fn become_walker(&mut self, config: &GeneratorConfig) {
+        let variation = config.variation.clamp(0.0, 2.0);
+        self.stander = self.tables.stander(config.seed, variation);
+    }
+
+    /// How much of it shows: 0 nothing, 1 as in people.
+    pub(crate) fn set_amount(&mut self, amount: f32) {
+        self.amount = if amount.is_finite() {
+            amount.clamp(0.0, MOST_AMOUNT)
+        } else {
+            0.0
+        };
+    }
+
+    /// Begins anew with somebody who has stood for a while.
+    pub(crate) fn stand(&mut self) {
+        self.moment = Moment {
+            share: 1.0,
+            ..Moment::default()
+        };
+    }
+
+    /// Lets time pass.
+    pub(crate) fn step(&mut self, secs: f32, stands: bool) {
+        self.moment = self.moment.after(secs, stands);
+    }
+
+    /// Whether nothing of it shows now.
+    pub(crate) fn is_still(&self) -> bool {
+        self.amount <= 0.0 || self.moment.share <= 0.0
+    }
+
+    /// Moves the pose of somebody who stands still to where life has it at a moment. `level` is the rotation under which the walker faces +Z.
+    pub(crate) fn move_pose(&self, moment: &Moment, level: Quat, pose: &mut Pose) {
+        let share = self.amount * moment.share;
+        if share.abs() <= 0.0 {
+            return;
+        }
+        let sway = self.tables.at(&self.stander, moment.secs);
+        let sway: Sway = sway.map(|value| share * value);
+        self.carrier.carry(&sway, moment.share, level, pose);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn life_comes_and_goes_smoothly_however_time_is_cut() {
+        let mut moment = Moment::default();
+        let dt = 1.0 / 60.0;
+        let (mut before, mut fastest) = (moment.speed, 0.0_f32);
+        for frame in 0..600 {
+            // Interrupted as it comes up, and again as it dies away.
+            let stands = !(70..90).contains(&frame) && frame < 400;
+            moment = moment.after(dt, stands);
+            fastest = fastest.max((moment.speed - before).abs() / dt);
+            before = moment.speed;
+            assert!((0.0..=1.0).contains(&moment.share));
+            if frame == 399 {
+                assert!(moment.share > 0.99);
+            }
+        }
+        assert_eq!((moment.share, moment.speed), (0.0, 0.0));
+        // Of 2 cm this is at most 1.7 m/s².
+        assert!(fastest < FALL_RATE * FALL_RATE + 5.0, "{fastest}");
+        let halves = Moment::default().after(0.3, true).after(0.3, true);
+        let whole = Moment::default().after(0.6, true);
+        assert!((halves.share - whole.share).abs() < 1e-5);
+    }
+}
