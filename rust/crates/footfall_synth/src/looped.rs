@@ -9,7 +9,7 @@ use glam::{Quat, Vec3};
 /// Walked before anything is kept, seconds: speed and style have settled.
 const SETTLING_SECS: f32 = 4.0;
 /// Walked beyond the wanted length to choose a beginning and an end from, seconds.
-const CHOICE_SECS: f32 = 60.0;
+const CHOICE_SECS: f32 = 120.0;
 /// A loop is at most this long, seconds.
 const MOST_SECS: f32 = 120.0;
 /// How often the asked speed is corrected, and the relative error at which it is good enough.
