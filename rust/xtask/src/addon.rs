@@ -92,6 +92,13 @@ fn third_party() -> Result<String> {
     Ok(notices(&tree))
 }
 
+/// The recordings that shipped models learned from.
+const DATA: &str = "The models in `models/` are trained on recordings under these terms; none of the recordings is in this archive.\n\n\
+    | recordings | terms | source |\n| --- | --- | --- |\n\
+    | CMU Graphics Lab Motion Capture Database | free for any use; created with funding from NSF EIA-0196217 | mocap.cs.cmu.edu |\n\
+    | O3DE Motion Matching gem | Apache-2.0 OR MIT | github.com/o3de/o3de |\n\
+    | ReActIdle | MIT, Copyright (c) 2025 RSAIT | github.com/Enekoassets/ReActIdle |\n";
+
 /// A table of crates from `cargo tree`, each once; those without a source of their own are this project's.
 fn notices(tree: &str) -> String {
     let rows: BTreeSet<String> = tree
@@ -108,7 +115,7 @@ fn notices(tree: &str) -> String {
     format!(
         "# Third-party notices\n\n\
          The library in `bin/` contains these crates. Each may be used under the terms beside it; their texts are at the sources.\n\n\
-         | crate | terms | source |\n| --- | --- | --- |\n{}\n",
+         | crate | terms | source |\n| --- | --- | --- |\n{}\n\n{DATA}",
         rows.join("\n")
     )
 }
@@ -218,6 +225,7 @@ mod tests {
         let tree = "footfall_core v0.1.0 (/somewhere)|MIT OR Apache-2.0|\nglam v0.32.1|MIT OR Apache-2.0|https://a\n\
                     glam v0.32.1|MIT OR Apache-2.0|https://a (*)\nserde_derive v1.0.0 (proc-macro)|MIT|https://b\n";
         let text = notices(tree);
+        assert!(text.contains("ReActIdle"), "the recordings are named");
         assert_eq!(text.matches("glam").count(), 1);
         assert!(text.contains("| serde_derive v1.0.0 | MIT | https://b |"));
         assert!(!text.contains("footfall_core"));
