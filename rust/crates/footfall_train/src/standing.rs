@@ -1,7 +1,7 @@
 //! How people stand, from recordings of them standing.
 //!
-//! Of every recording the [stretches](stretches) count in which somebody stands upright on planted feet with arms that hang. Their mean is the posture.
-//! What moves about it is split into looks, which jump and hold ([`looks`]), and the rest, a Gaussian process of octaves ([`octaves`]).
+//! Of every recording the [stretches] count in which somebody stands upright on planted feet with arms that hang. Their mean is the posture.
+//! What moves about it is split into looks, which jump and hold (`looks`), and the rest, a Gaussian process of octaves (`octaves`).
 //! People who fidget and people who hardly move weigh the same.
 
 mod looks;
