@@ -7,9 +7,9 @@ use footfall_synth::{Detail, StyleSpace};
 use std::sync::Arc;
 
 /// Walkers that begin in one frame at most.
-const MOST_BEGIN: usize = 512;
+const MOST_BEGIN: usize = 256;
 /// Walkers that get their rows in one frame at most.
-const MOST_COME_IN: usize = 512;
+const MOST_COME_IN: usize = 256;
 
 impl Walkers {
     /// Whether walkers are still being made.
