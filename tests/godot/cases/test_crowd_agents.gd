@@ -186,6 +186,12 @@ func _clock_ms() -> float:
 	return Time.get_ticks_usec() / 1000.0 - waited
 
 
+func _styled_crowd() -> GaitCrowd3D:
+	return _crowd(0, func(made: GaitCrowd3D) -> void:
+		made.playing = true
+		made.styles = [PROUD, SAD] as Array[GaitStyle])
+
+
 ## Lets a crowd be made; returns by how much the longest work of a frame until then exceeds what a frame takes once they all walk.
 func _making_ms(crowd: GaitCrowd3D) -> float:
 	var frames := 0
@@ -207,9 +213,7 @@ func _making_ms(crowd: GaitCrowd3D) -> float:
 
 
 func test_ten_thousand_are_made_in_the_background() -> void:
-	var crowd := _crowd(0, func(made: GaitCrowd3D) -> void:
-		made.playing = true
-		made.styles = [PROUD, SAD] as Array[GaitStyle])
+	var crowd := _styled_crowd()
 	var came := {}
 	crowd.agents_ready.connect(func(agents: PackedInt32Array) -> void:
 		for id: int in agents:
@@ -230,9 +234,7 @@ func test_ten_thousand_are_made_in_the_background() -> void:
 	for attempt: int in 4:
 		if most_ms < FRAME_SHARE_MS:
 			break
-		var other := _crowd(0, func(made: GaitCrowd3D) -> void:
-			made.playing = true
-			made.styles = [PROUD, SAD] as Array[GaitStyle])
+		var other := _styled_crowd()
 		other.add_agents(places, [])
 		most_ms = minf(most_ms, await _making_ms(other))
 		other.free()

@@ -3,6 +3,7 @@
 mod contacts;
 mod dynamics;
 mod imu;
+mod judged;
 mod naturalness;
 mod standing;
 mod style;

@@ -36,7 +36,7 @@ pub(crate) struct SynthArgs {
     /// Begin and end standing; otherwise the walk is cut out of a longer one
     #[arg(long)]
     standing: bool,
-    /// How long to stand, with `--speed 0`
+    /// Seconds to stand, with `--speed 0`
     #[arg(long, default_value_t = 20.0, value_name = "SECONDS")]
     seconds: f64,
     /// How much it moves as it stands, with `--speed 0`: 0 not at all, 1 as in the recordings

@@ -28,11 +28,11 @@ const SPEEDS: [f32; 4] = [1.0, 0.75, 0.5, 0.3];
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wayfarer {
     pub(super) place: Vec2,
-    /// Where it faces: 0 along +Z (`y` of the plane), positive to the left, radians.
+    /// Direction it faces: 0 along +Z (`y` of the plane), positive to the left, radians.
     pub(super) heading: f32,
-    /// Where it wants to go from there, radians to the left.
+    /// Direction it wants to go in, from that one, radians to the left.
     pub(super) off: f32,
-    /// What it would like to walk, m/s.
+    /// Speed that it would like, m/s.
     pub(super) speed_mps: f32,
 }
 
@@ -56,9 +56,17 @@ impl Detour {
 impl Wayfarer {
     /// The detour that costs least.
     pub(super) fn detour<'a>(&self, others: impl Iterator<Item = &'a Seen>) -> Detour {
+        let facing = direction(self.heading);
+        let velocity = direction(self.heading + self.off) * self.speed_mps;
         let mut near = Near::default();
         for other in others {
-            near.take(self, other);
+            let way = other.place - self.place;
+            let far = way.length();
+            // Nobody minds who walks behind.
+            if (1e-3..SIGHT_M).contains(&far) && way.dot(facing) >= -0.2 * far {
+                let closing = (velocity - other.velocity).dot(way) / far;
+                near.take((closing + 0.5) / far, way, other.velocity);
+            }
         }
         if near.len == 0 {
             return Detour::NONE;
@@ -89,7 +97,7 @@ fn detour_cost(aside: f32, speed: f32) -> f32 {
     TURNING * turned * turned + SLOWING * (1.0 - speed)
 }
 
-/// The others that matter: where they are from here, and how fast they go.
+/// The others that matter: how urgent they are, where from here, and how fast.
 #[derive(Debug, Default)]
 struct Near {
     others: [(f32, Vec2, Vec2); MOST_OTHERS],
@@ -98,17 +106,8 @@ struct Near {
 
 impl Near {
     /// Takes somebody in, in the place of who is least urgent if there are too many.
-    fn take(&mut self, own: &Wayfarer, other: &Seen) {
-        let way = other.place - own.place;
-        let far = way.length();
-        // Nobody minds who walks behind.
-        if !(1e-3..SIGHT_M).contains(&far) || way.dot(direction(own.heading)) < -0.2 * far {
-            return;
-        }
-        let velocity = direction(own.heading + own.off) * own.speed_mps;
-        let closing = (velocity - other.velocity).dot(way) / far;
-        let urgency = (closing + 0.5) / far;
-        let entry = (urgency, way, other.velocity);
+    fn take(&mut self, urgency: f32, way: Vec2, velocity: Vec2) {
+        let entry = (urgency, way, velocity);
         if self.len < MOST_OTHERS {
             self.others[self.len] = entry;
             self.len += 1;
@@ -120,7 +119,7 @@ impl Near {
         }
     }
 
-    /// What it costs to meet them at this velocity.
+    /// Cost of meeting them at this velocity.
     fn cost(&self, velocity: Vec2) -> f32 {
         let others = self.others[..self.len].iter();
         others
@@ -129,7 +128,7 @@ impl Near {
     }
 }
 
-/// What it costs to approach somebody who is there at this velocity.
+/// Cost of approaching somebody who is there at this velocity.
 fn meeting_cost(way: Vec2, approach: Vec2) -> f32 {
     let secs = (way.dot(approach) / approach.length_squared().max(1e-3)).clamp(0.0, FORESIGHT_SECS);
     let nearest = (way - approach * secs).length();

@@ -2,19 +2,17 @@
 
 mod report;
 
-use crate::commands::synth::{StyleArg, dressed};
-use crate::motion_input::KneesArgs;
+use super::judged::JudgedArgs;
 use crate::output;
 use anyhow::{Context as _, Result, bail};
 use footfall_model::GaitModel;
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
-use footfall_motion::corpus::{Corpus, Where};
+use footfall_motion::corpus::Corpus;
 use footfall_motion::steps::segment_walks;
 use footfall_synth::{WalkConfig, synthesize};
 use footfall_train::evaluate::told_apart::{Walker, compare};
 use rayon::prelude::*;
 use report::Report;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Generated walks beside captured ones
@@ -28,20 +26,8 @@ use std::sync::Arc;
     footfall evaluate naturalness --model walk.footfall --corpus index.csv --where category=neutral_walk --where 'path=cmu/*'\n  \
     footfall evaluate naturalness --model walk.footfall --style sad.footstyle --corpus index.csv --where style=sad --json")]
 pub(crate) struct NaturalnessArgs {
-    /// The model that walks
-    #[arg(long, value_name = "WALK.footfall")]
-    model: PathBuf,
-    /// A style to walk in and its weight, 1 when absent; may repeat
-    #[arg(long = "style", value_name = "STYLE.footstyle[:WEIGHT]")]
-    styles: Vec<StyleArg>,
-    /// Table of the captured recordings; its column `subject` names the people
-    #[arg(long, value_name = "INDEX.csv")]
-    corpus: PathBuf,
-    /// Condition on a column, for example `category=neutral_walk`; may repeat
-    #[arg(long = "where", value_name = "COLUMN=VALUE")]
-    conditions: Vec<Where>,
     #[command(flatten)]
-    knees: KneesArgs,
+    judged: JudgedArgs,
     /// How many walks are generated, each at the mean speed of one of the recordings
     #[arg(long, default_value_t = 48, value_parser = clap::value_parser!(u32).range(8..=1000))]
     seeds: u32,
@@ -62,24 +48,23 @@ pub(crate) fn run(args: &NaturalnessArgs) -> Result<()> {
     output::print_text(&report.table())
 }
 
-/// What is printed as JSON.
+/// The report, as JSON has it.
 pub(super) fn evaluate(args: &NaturalnessArgs) -> Result<Report> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
-    let (model, _) = dressed(&args.model, &args.styles)?;
-    let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
+    let (model, corpus) = args.judged.read()?;
     let (captured, speeds) = people(&corpus);
     if speeds.is_empty() {
         bail!(
             "{}: the chosen recordings show no walk of two steps; widen --where",
-            args.corpus.display()
+            args.judged.corpus.display()
         );
     }
     progress.stage("generating walks", 0);
     let generated = seeds(&Arc::new(model), args, &speeds)?;
     progress.stage("judging", 0);
     let comparison =
-        compare(&captured, &generated).with_context(|| args.corpus.display().to_string())?;
+        compare(&captured, &generated).with_context(|| args.judged.corpus.display().to_string())?;
     progress.finish();
     let skipped = corpus.report.skipped.into_iter();
     Ok(Report::new(
@@ -131,7 +116,7 @@ fn seeds(model: &Arc<GaitModel>, args: &NaturalnessArgs, speeds: &[f32]) -> Resu
                 from_standing: false,
             };
             let walk = synthesize(model, &model.skeleton, &config)
-                .with_context(|| args.model.display().to_string())?;
+                .with_context(|| args.judged.model.display().to_string())?;
             let contacts = detect_contacts(&walk.clip, &ContactConfig::from_frame(0));
             let walks = segment_walks(&walk.clip, &contacts);
             Ok(Walker {

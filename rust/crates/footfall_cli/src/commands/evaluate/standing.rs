@@ -2,18 +2,16 @@
 
 mod report;
 
-use crate::commands::synth::{StyleArg, dressed};
-use crate::motion_input::KneesArgs;
+use super::judged::JudgedArgs;
 use crate::output;
 use anyhow::{Context as _, Result, bail};
 use footfall_model::GaitModel;
-use footfall_motion::corpus::{Corpus, Where};
+use footfall_motion::corpus::Corpus;
 use footfall_synth::{StandConfig, synthesize_standing};
 use footfall_train::evaluate::standing::{StandingMeasures, measure};
 use footfall_train::standing::{StandingClip, learn, stretches};
 use rayon::prelude::*;
 use report::{HeldOut, Report};
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Generated standing beside captured
@@ -25,24 +23,12 @@ use std::sync::Arc;
 #[command(after_help = "Example:\n  \
     footfall evaluate standing --model walk.footfall --corpus index.csv --where category=idle --leave-one-out")]
 pub(crate) struct StandingArgs {
-    /// The model that stands
-    #[arg(long, value_name = "WALK.footfall")]
-    model: PathBuf,
-    /// A style to stand in and its weight, 1 when absent; may repeat
-    #[arg(long = "style", value_name = "STYLE.footstyle[:WEIGHT]")]
-    styles: Vec<StyleArg>,
-    /// Table of the captured recordings; its column `subject` names the people
-    #[arg(long, value_name = "INDEX.csv")]
-    corpus: PathBuf,
-    /// Condition on a column, for example `category=idle`; may repeat
-    #[arg(long = "where", value_name = "COLUMN=VALUE")]
-    conditions: Vec<Where>,
     #[command(flatten)]
-    knees: KneesArgs,
+    judged: JudgedArgs,
     /// How many people are generated
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(2..=1000))]
     seeds: u32,
-    /// How long each stands
+    /// Seconds that each stands
     #[arg(long, default_value_t = 100, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(30..=3600))]
     seconds: u32,
     /// Compare every person with a model of the others
@@ -67,18 +53,17 @@ pub(crate) fn run(args: &StandingArgs) -> Result<()> {
     output::print_text(&report.table())
 }
 
-/// What is printed as JSON.
+/// The report, as JSON has it.
 pub(super) fn evaluate(args: &StandingArgs) -> Result<Report> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
-    let (model, _) = dressed(&args.model, &args.styles)?;
-    let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
+    let (model, corpus) = args.judged.read()?;
     let clips = standing_clips(&corpus);
     let captured = people(&clips);
     if captured.is_empty() {
         bail!(
             "{}: nobody stands at ease for 20 seconds in the chosen recordings; widen --where",
-            args.corpus.display()
+            args.judged.corpus.display()
         );
     }
     progress.stage("generating", 0);
@@ -142,7 +127,7 @@ fn seeds(
                 frame_rate_hz: None,
             };
             let standing = synthesize_standing(model, &model.skeleton, &config)
-                .with_context(|| args.model.display().to_string())?;
+                .with_context(|| args.judged.model.display().to_string())?;
             let leg_m = f64::from(model.skeleton.mean_leg_length());
             let measures = measure(&stretches(&standing.clip, 0), leg_m);
             Ok::<_, anyhow::Error>(measures.map(|measures| Person {
@@ -155,7 +140,7 @@ fn seeds(
     if made.is_empty() {
         bail!(
             "{}: none of the generated people stands at ease by the measures that recordings are judged by; use fewer --style",
-            args.model.display()
+            args.judged.model.display()
         );
     }
     Ok(made)

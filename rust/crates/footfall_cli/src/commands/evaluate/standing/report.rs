@@ -24,7 +24,7 @@ pub(crate) struct Report {
     leave_one_out: Vec<HeldOut>,
 }
 
-/// What sway is described by; means over people.
+/// Measures of sway, means over people.
 #[derive(Clone, Copy, Serialize)]
 struct Measures {
     hips_sway_cm: f64,

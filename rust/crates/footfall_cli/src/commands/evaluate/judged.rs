@@ -1,0 +1,39 @@
+//! A model, dressed in styles, and the captured recordings that it is judged beside.
+
+use crate::commands::synth::{StyleArg, dressed};
+use crate::motion_input::KneesArgs;
+use anyhow::Result;
+use footfall_model::GaitModel;
+use footfall_motion::corpus::{Corpus, Where};
+use std::path::PathBuf;
+
+/// Arguments that name them.
+#[derive(Debug, clap::Args)]
+pub(super) struct JudgedArgs {
+    /// The model that is judged
+    #[arg(long, value_name = "WALK.footfall")]
+    pub(super) model: PathBuf,
+    /// A style to wear and its weight, 1 when absent; may repeat
+    #[arg(long = "style", value_name = "STYLE.footstyle[:WEIGHT]")]
+    styles: Vec<StyleArg>,
+    /// Table of the captured recordings; its column `subject` names the people
+    #[arg(long, value_name = "INDEX.csv")]
+    pub(super) corpus: PathBuf,
+    /// Condition on a column, for example `category=neutral_walk`; may repeat
+    #[arg(long = "where", value_name = "COLUMN=VALUE")]
+    conditions: Vec<Where>,
+    #[command(flatten)]
+    knees: KneesArgs,
+}
+
+impl JudgedArgs {
+    /// Reads both.
+    ///
+    /// # Errors
+    /// Which file cannot be read and why, or that no recording fulfils the conditions.
+    pub(super) fn read(&self) -> Result<(GaitModel, Corpus)> {
+        let (model, _) = dressed(&self.model, &self.styles)?;
+        let corpus = self.knees.read_corpus(&self.corpus, &self.conditions)?;
+        Ok((model, corpus))
+    }
+}
