@@ -55,6 +55,8 @@ fn a_synthesised_walk() {
         direction_rad: 0.0,
         frame_rate_hz: None,
         from_standing: false,
+        gait: footfall_synth::GaitChoice::Auto,
+
     };
     let walk = synthesize(&model, &model.skeleton, &config).unwrap();
     let rows: Vec<_> = walk

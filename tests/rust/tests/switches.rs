@@ -71,6 +71,8 @@ fn steps_of_generated_walks_are_found_at_any_rate() {
             direction_rad: 0.0,
             frame_rate_hz: Some(rate),
             from_standing: false,
+            gait: footfall_synth::GaitChoice::Auto,
+
         };
         let walk = synthesize(&model, &Skeleton::standard(), &config).unwrap();
         let switches = detect_switches(&walk.clip, 0).unwrap();

@@ -7,7 +7,7 @@
 //! | 4 | length of the header in bytes |
 //! | … | header: JSON with `kind`, `written_by` and `provenance`; readable in every version |
 //! | 8 | length of the payload in bytes |
-//! | … | payload: postcard encoding of the version's own types (`v1`, `v2`, `v3`, `v4`) |
+//! | … | payload: postcard encoding of the version's own types (`v1` to `v5`) |
 //! | 4 | CRC-32 of all that precedes |
 
 mod dynamics_v1;
@@ -18,6 +18,7 @@ mod v1;
 mod v2;
 mod v3;
 mod v4;
+mod v5;
 
 use crate::dynamics::DynamicsModel;
 use crate::gait_model::{GaitModel, ModelError};
@@ -29,7 +30,7 @@ use std::sync::Arc;
 
 /// The latest version that this build writes; it reads all versions up to this one. A file has the earliest version that
 /// can hold its content.
-pub const FORMAT_VERSION: u32 = 4;
+pub const FORMAT_VERSION: u32 = 5;
 
 /// The version without [`GaitModel::contexts`].
 const FORMAT_1: u32 = 1;
@@ -39,6 +40,9 @@ const FORMAT_2: u32 = 2;
 
 /// The version without [`GaitModel::standing`].
 const FORMAT_3: u32 = 3;
+
+/// The version without [`GaitModel::running`].
+const FORMAT_4: u32 = 4;
 
 const MAGIC: &[u8; 8] = b"FOOTFALL";
 const GAIT_KIND: &str = "gait";
@@ -111,9 +115,13 @@ impl GaitModel {
     pub fn to_bytes(&self) -> Result<Vec<u8>, ModelFileError> {
         self.check()?;
         let walk = self.encode_walk()?;
-        let (version, payload) = match &self.standing {
-            Some(standing) => (FORMAT_VERSION, v4::encode(walk, standing)?),
+        let model = match &self.standing {
+            Some(standing) => (FORMAT_4, v4::encode(walk, standing)?),
             None => walk,
+        };
+        let (version, payload) = match &self.running {
+            Some(running) => (FORMAT_VERSION, v5::encode(model, running.encode_walk()?, &running.provenance)?),
+            None => model,
         };
         write_container(version, GAIT_KIND, &self.provenance, &payload)
     }
@@ -126,8 +134,8 @@ impl GaitModel {
         let (version, header, payload) = read_container(bytes)?;
         check_kind(&header, GAIT_KIND)?;
         let model = match version {
-            FORMAT_1..=FORMAT_3 => decode_walk(version, payload, header.provenance)?,
-            _ => v4::decode(payload, header.provenance)?,
+            FORMAT_1..=FORMAT_4 => decode_standing(version, payload, header.provenance)?,
+            _ => v5::decode(payload, header.provenance)?,
         };
         model.check()?;
         Ok(model)
@@ -145,7 +153,7 @@ impl GaitModel {
     }
 
     /// A number that tells this model from others: the CRC-32 of its payload in format version 1. It says nothing of the
-    /// provenance, of the steps at the ends of a walk, of the fine motion nor of standing, and is the same before writing and after reading.
+    /// provenance, of the steps at the ends of a walk, of the fine motion, of standing nor of running, and is the same before writing and after reading.
     ///
     /// # Errors
     /// [`ModelError::Value`] when the model cannot be encoded.
@@ -265,6 +273,18 @@ impl WalkModel {
             Self::Gait(model) => &model.provenance,
             Self::Dynamics(model) => &model.provenance,
         }
+    }
+}
+
+/// The model in a payload of a version that knows no running.
+fn decode_standing(
+    version: u32,
+    payload: &[u8],
+    provenance: Provenance,
+) -> Result<GaitModel, ModelFileError> {
+    match version {
+        FORMAT_4 => v4::decode(payload, provenance),
+        _ => decode_walk(version, payload, provenance),
     }
 }
 

@@ -28,7 +28,7 @@ pub type FineTable = [Vec<f64>; 2];
 pub struct FineMotion {
     /// What steps have in common.
     pub shared: FineTable,
-    /// What each component of [`Variation::walker`](crate::Variation::walker) adds by its weight.
+    /// What each component of [`Variation::walker`](crate::Variation::walker) adds by its weight; empty where all walkers have the same.
     pub walker: Vec<FineTable>,
     /// What differs from step to step.
     pub chance: FineChance,
@@ -67,7 +67,8 @@ impl FineMotion {
             check_finite("direction of fine motion", direction)?;
         }
         check_finite("strength of fine motion", &chance.walker_strength)?;
-        let walkers = walker_components;
+        // Without any, all walkers have the same.
+        let walkers = if self.walker.is_empty() { 0 } else { walker_components };
         let counts = [
             ("walkers' fine motion", walkers, self.walker.len()),
             (

@@ -37,6 +37,9 @@ pub struct GaitModel {
     pub fine: Option<FineMotion>,
     /// How people stand; nothing in models of earlier versions, which stand still.
     pub standing: Option<StandingModel>,
+    /// How people run: steps of the same features and frame rate that end with a flight ([`StepModel::other_terminal`] is negative), and with no
+    /// standing and running of their own. Nothing in models of earlier versions, which only walk.
+    pub running: Option<Box<GaitModel>>,
     /// Where the model comes from.
     pub provenance: Provenance,
 }
@@ -60,7 +63,8 @@ pub struct StepContext {
 pub struct StepModel {
     /// The states in order.
     pub states: Vec<StateModel>,
-    /// When the other foot's terminal contact falls, as a fraction of the step's duration.
+    /// When the other foot's terminal contact falls, as a fraction of the step's duration; negative in a run: the step ends with a flight of
+    /// this share, as did the one before.
     pub other_terminal: f64,
 }
 
@@ -293,7 +297,26 @@ impl GaitModel {
         if let Some(standing) = &self.standing {
             standing.check()?;
         }
-        Ok(())
+        match &self.running {
+            Some(running) => running.check_running(self.frame_rate_hz),
+            None => Ok(()),
+        }
+    }
+
+    /// Checks this as the running of a model of this frame rate.
+    fn check_running(&self, frame_rate_hz: f64) -> Result<(), ModelError> {
+        let bad = |part: &str| {
+            Err(ModelError::Value {
+                part: format!("{part} of the run"),
+            })
+        };
+        if (self.frame_rate_hz - frame_rate_hz).abs() > f64::EPSILON * frame_rate_hz {
+            return bad("frame rate");
+        }
+        if self.running.is_some() || self.standing.is_some() {
+            return bad("running or standing");
+        }
+        self.check()
     }
 }
 

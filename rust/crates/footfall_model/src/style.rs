@@ -1,5 +1,7 @@
 //! A style: how someone walks differently, and walks between and beyond styles.
 
+mod running;
+
 use crate::gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, StateModel, StepModel, check_len,
     check_positive,
@@ -277,6 +279,9 @@ impl GaitModel {
         mixed.speed.max_mps *= ratio;
         let cadence = mixed.cadence_hz() / self.cadence_hz();
         mixed.speed.cadence_range_hz = mixed.speed.cadence_range_hz.map(|hz| hz * cadence);
+        if let Some(running) = &self.running {
+            mixed.running = Some(Box::new(running.in_style_of(self, &mixed)));
+        }
         mixed
     }
 

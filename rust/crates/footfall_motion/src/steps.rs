@@ -3,6 +3,10 @@
 //! A step runs from one foot's initial contact to the other's (Tilmanne et al. 2012, section 4: left and right steps
 //! alternate, and a step's place in the walk matters for the first two and the last two).
 
+mod running;
+
+pub use running::running_parts;
+
 use crate::contacts::Contacts;
 use footfall_core::{Clip, ModelPose, Side, StepPosition, forward_kinematics};
 use glam::Vec3;
@@ -23,6 +27,8 @@ pub struct Step {
     pub other_terminal: Option<usize>,
     /// First frame within the step in which this foot's heel has left the ground for good.
     pub heel_rise: Option<usize>,
+    /// Last frame in which this foot bears before the body flies until the step ends: a running step.
+    pub take_off: Option<usize>,
 }
 
 impl Step {
@@ -164,6 +170,7 @@ impl Motion<'_> {
             position: StepPosition::Inside,
             other_terminal,
             heel_rise,
+            take_off: running::take_off(self.clip, first, end),
         }
     }
 

@@ -255,6 +255,7 @@ pub fn walks(switches: &[Switch], frame_rate_hz: f64) -> Vec<Walk> {
             position: StepPosition::Inside,
             other_terminal: None,
             heel_rise: None,
+            take_off: None,
         };
         match walks.last_mut() {
             Some(walk) if last_end == Some(first) => walk.steps.push(step),

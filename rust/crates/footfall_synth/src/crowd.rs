@@ -11,13 +11,12 @@ use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footing;
 use crate::generator::{Controls, Footstep, GeneratorConfig, GroundTransform, MAX_DT_SECS, check};
-use crate::pace::PaceTable;
 use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape};
 use crate::space::{Blend, StyleSpace};
 use crate::stage::Arrival;
 use crate::standing::{Amplitude, Life};
 use crate::steps::Ask;
-use crate::styled::Worn;
+use crate::worn::Worn;
 use crate::walker::{Origin, WINDOW, Walker};
 use crate::workbench::Workbench;
 use footfall_core::Skeleton;
@@ -54,12 +53,11 @@ impl StyledBody {
         skeleton.check()?;
         let blend = space.blend(style_weights);
         let average = Planner::new(&blend.model, 0, 0.0);
-        let paces =
-            space.at_bench(|bench| PaceTable::measure(&average, skeleton, &blend, bench))?;
+        let worn = space.at_bench(|bench| Worn::measure(&average, skeleton, blend, bench))?;
         Ok(Self(Arc::new(Styled {
             space: Arc::clone(space),
             skeleton: skeleton.clone(),
-            worn: Worn { blend, paces },
+            worn,
         })))
     }
 
@@ -382,11 +380,13 @@ impl CrowdWalker {
         let end = self.end();
         let styled = Arc::clone(&self.styled.0);
         let worn = &styled.worn;
-        let ask = Ask::after(&self.shape, controls, self.detail);
+        let ask = Ask::after(&self.shape, controls, worn.fastest_mps(), self.detail);
         let leading = self.shape.timing.leading;
-        let before = self.next.request.manner.position;
         let model = styled.space.model();
-        let request = worn.request(&ask, model, before, leading.other(), &mut self.velocity_mps);
+        let velocity = &mut self.velocity_mps;
+        let (before, gait) = (&self.next.request, self.blend.gait);
+        let (request, gait) = worn.request(&ask, model, before, gait, leading.other(), velocity);
+        let blend = worn.dress(gait);
         let mut origin = Origin {
             request,
             ..(*self.next).clone()
@@ -412,7 +412,7 @@ impl CrowdWalker {
         let mut draws = (*self.draws).clone();
         draws.rotate_left(1);
         draws[WINDOW - 1] = planner.draw(leading);
-        let blends = [&self.blend, &worn.blend];
+        let blends = [&self.blend, blend];
         // The model gave a trajectory when the walker was made, so it gives one now.
         if walker
             .restore(planner, blends, draws, origin, bench)
@@ -428,7 +428,7 @@ impl CrowdWalker {
             shape: self.shape,
         });
         self.base = Base::default();
-        self.blend = Arc::clone(&worn.blend);
+        self.blend = Arc::clone(blend);
         (*self.draws).clone_from(walker.draws());
         *self.next = walker.next_origin(request);
         self.shape = *walker.step();

@@ -2,6 +2,7 @@
 
 use crate::detail::Detail;
 use crate::error::SynthError;
+use crate::gait::{FASTEST_RUN_MPS, Gait, GaitChoice};
 use crate::plan::StepShape;
 use crate::planting::PlantedFrame;
 use crate::space::StyleSpace;
@@ -26,8 +27,7 @@ pub(crate) const MAX_DT_SECS: f32 = 10.0;
 pub(crate) const STANDING_SPEED_MPS: f32 = 0.1;
 const STANDING_TURN_RATE_RADPS: f32 = 0.05;
 
-/// Fastest speed and turning that are walked.
-const MAX_SPEED_MPS: f32 = 3.0;
+/// Fastest turning that is walked.
 const MAX_TURN_RATE_RADPS: f32 = 2.0;
 
 /// Closer than this share of a frame counts as on it: time adds up with rounding.
@@ -57,6 +57,8 @@ pub struct Controls {
     /// Where the travel goes, seen from where the walker faces: 0 forwards, π/2 to the left, ±π backwards. Steps to the side and backwards
     /// are shorter than those forwards: an adult reaches about 0.65 m/s sideways and 1 m/s backwards, whatever speed is asked for.
     pub direction_rad: f32,
+    /// Walking or running, where the model knows both.
+    pub gait: GaitChoice,
 }
 
 impl Controls {
@@ -65,6 +67,7 @@ impl Controls {
         speed_mps: 0.0,
         turn_rate_radps: 0.0,
         direction_rad: 0.0,
+        gait: GaitChoice::Auto,
     };
 
     /// The velocity that is walked, to the left and forwards from where the walker faces.
@@ -83,7 +86,7 @@ impl Controls {
 
     /// The speed that is walked.
     pub(crate) fn speed(self) -> f32 {
-        finite_or(self.speed_mps, 0.0).clamp(0.0, MAX_SPEED_MPS)
+        finite_or(self.speed_mps, 0.0).clamp(0.0, FASTEST_RUN_MPS)
     }
 
     /// Whether this asks for neither travel nor turning, so that the walker stands.
@@ -371,7 +374,12 @@ impl GaitGenerator {
         step.amplitude.to < 1.0 && self.position >= step.timing.frames as f32
     }
 
-    /// Whether the left and the right foot bear on the ground.
+    /// The gait of the current step.
+    pub fn gait(&self) -> Gait {
+        self.steps.source().gait()
+    }
+
+    /// Whether the left and the right foot bear on the ground; neither does in the flight of a run.
     pub fn feet_in_contact(&self) -> [bool; 2] {
         self.contact
     }
@@ -381,7 +389,8 @@ impl GaitGenerator {
     }
 
     fn next_step(&mut self, controls: &Controls) {
-        let ask = Ask::after(self.shape(), *controls, self.detail);
+        let fastest = self.steps.source().fastest_mps();
+        let ask = Ask::after(self.shape(), *controls, fastest, self.detail);
         self.steps.source_mut().advance(&ask);
         let side = self.shape().timing.leading;
         if let Some(plant) = self.steps.source().stage().plant(side)

@@ -10,6 +10,7 @@ mod detail;
 mod error;
 mod fine_motion;
 mod footing;
+mod gait;
 mod generator;
 mod looped;
 mod pace;
@@ -31,12 +32,14 @@ mod variance;
 mod walk;
 mod walker;
 mod workbench;
+mod worn;
 #[doc(hidden)]
 pub mod workload;
 
 pub use crowd::{CrowdPose, CrowdWalker, StyledBody, Workshop};
 pub use detail::Detail;
 pub use error::SynthError;
+pub use gait::{Gait, GaitChoice};
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};
 pub use looped::LoopedWalk;
 pub use recording::{StandConfig, SwitchingWalkConfig, synthesize_standing, synthesize_switching};

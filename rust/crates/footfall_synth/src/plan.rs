@@ -26,6 +26,12 @@ const MAX_WALKER_WEIGHT: f64 = 2.0;
 /// The same for steps, which are many: cut off closer, they would be too alike.
 const MAX_STEP_WEIGHT: f64 = 2.5;
 
+/// Share of a running step that is spent in the air at most.
+const LONGEST_FLIGHT: f64 = 0.6;
+
+/// When the other foot leaves the ground in a running step that follows a walking one, as a fraction of it.
+const RUN_TERMINAL: f64 = 0.15;
+
 /// A step lasts at most this long, seconds.
 pub(crate) const MAX_STEP_SECS: f64 = 3.0;
 
@@ -91,7 +97,8 @@ pub(crate) struct StepPlan<R> {
 }
 
 impl StepShape {
-    /// A step of the walk of so many frames; `terminal` is when the other foot leaves the ground, as a fraction of it.
+    /// A step of so many frames; `terminal` is when the other foot leaves the ground, as a fraction of it. Where that is before the step, it is one of
+    /// a run, and ends with a flight as long as that.
     ///
     /// Frames become a whole number of those that are put on the ground.
     pub(crate) fn of_walk(
@@ -103,12 +110,21 @@ impl StepShape {
     ) -> Self {
         let detail = detail.holding(frames);
         let frames = detail.whole_frames(frames);
-        let terminal = (terminal.clamp(0.02, 0.6) * frames as f64).round() as usize;
+        let of_step = |share: f64| (share * frames as f64).round() as usize;
+        let take_off = (terminal < 0.0)
+            .then(|| of_step(1.0 + terminal.max(-LONGEST_FLIGHT)).clamp(2, frames - 1));
+        let terminal = if take_off.is_some() {
+            of_step(RUN_TERMINAL)
+        } else {
+            of_step(terminal.clamp(0.02, 0.6))
+        };
         Self {
             timing: StepTiming {
                 leading,
                 frames,
                 terminal: terminal.clamp(1, frames - 2),
+                take_off,
+                airborne: false,
                 rests: false,
             },
             stride,
@@ -124,6 +140,7 @@ impl StepShape {
         StepTiming {
             frames,
             terminal: (self.timing.terminal / stride).clamp(1, frames - 2),
+            take_off: self.timing.take_off.map(|last| (last / stride).clamp(2, frames - 1)),
             ..self.timing
         }
     }

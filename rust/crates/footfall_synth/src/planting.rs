@@ -5,6 +5,7 @@
 //! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
 //! generated rotations and planted feet disagree about is spread over the swing.
 
+mod flight;
 mod lift;
 mod support;
 mod surge;
@@ -14,11 +15,13 @@ mod travel;
 use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
 use crate::strafe::{Strafe, Turner};
+use core::ops::Range;
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
 use glam::{Quat, Vec3};
+pub(crate) use flight::Airborne;
 use swing::Swing;
 
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
@@ -56,8 +59,24 @@ pub(crate) struct StepTiming {
     pub(crate) frames: usize,
     /// The last frame in which the other foot is still on the ground from its step before.
     pub(crate) terminal: usize,
+    /// In a run the last frame in which the leading foot bears: from then until the step ends both are in the air.
+    pub(crate) take_off: Option<usize>,
+    /// Whether the other foot is in the air as the step begins: it took off in the step before.
+    pub(crate) airborne: bool,
     /// Whether both feet bear the body from its end on.
     pub(crate) rests: bool,
+}
+
+impl StepTiming {
+    /// Whether the foot that begins the step bears in a frame of it.
+    pub(crate) fn leading_bears(&self, frame: usize) -> bool {
+        self.take_off.is_none_or(|last| frame <= last)
+    }
+
+    /// Whether the other foot still bears in a frame of it.
+    pub(crate) fn trailing_bears(&self, frame: usize) -> bool {
+        !self.airborne && frame <= self.terminal
+    }
 }
 
 /// Carries plants, hips and heading from step to step.
@@ -85,6 +104,8 @@ pub(crate) struct PlanterState {
     pub(crate) stride: f32,
     /// How the last step was turned under the body.
     pub(crate) strafe: Strafe,
+    /// The foot that took off in the last step, if that was one of a run.
+    pub(crate) airborne: Option<Airborne>,
 }
 
 impl AsRef<Pose> for PlantedFrame {
@@ -118,6 +139,7 @@ impl PlanterState {
             ground_velocity: self.ground_velocity.map(|velocity| rotation * velocity),
             stride: self.stride,
             strafe: self.strafe,
+            airborne: self.airborne.map(|foot| foot.moved(from, to)),
         }
     }
 }
@@ -132,12 +154,13 @@ pub(crate) struct Course {
 }
 
 impl Planter {
-    /// Puts the first frame on the ground: both feet down, hips above the origin, under this heading.
+    /// Puts the first frame on the ground: both feet down, hips above the origin, under this heading. The hips are as high as the leg has them that bears
+    /// the body: in a run the one that lands.
     pub(crate) fn new(
         skeleton: &Skeleton,
         frame_secs: f32,
         first: &RawFrame,
-        leading: Side,
+        timing: &StepTiming,
         heading: f32,
     ) -> Self {
         let level = from_heading(heading);
@@ -157,9 +180,13 @@ impl Planter {
             ground_velocity: None,
             stride: 1.0,
             strafe: Strafe::NONE,
+            airborne: None,
         };
         let mut planter = Self::resume(skeleton, frame_secs, state);
-        let standing = leading.other();
+        let standing = match timing.take_off {
+            Some(_) => timing.leading,
+            None => timing.leading.other(),
+        };
         let foot = planter.feet[standing.index()]
             .stand(planter.plant(standing), first.legs[standing.index()].pitch);
         let hips = foot.ankle - level * first.legs[standing.index()].ankle;
@@ -229,15 +256,22 @@ impl Planter {
     /// Puts a step on the ground. `raw` and `out` have one frame more than the step: the next initial contact, which is the
     /// first frame of the next step. The poses in `out` hold the generated local rotations.
     ///
-    /// The trailing foot leaves the ground at `timing.terminal`, or earlier when the generated leg takes it away; returns
-    /// when it does.
+    /// The trailing foot leaves the ground at `timing.terminal`, or earlier when the generated leg takes it away, and in a run the leading foot at
+    /// `timing.take_off`; returns the timing as it came out.
     pub(crate) fn plant_step(
         &mut self,
         raw: &mut [RawFrame],
         timing: &StepTiming,
         course: Course,
         out: &mut [PlantedFrame],
-    ) -> usize {
+    ) -> StepTiming {
+        let airborne = self.state.airborne.take();
+        let timing = &StepTiming {
+            terminal: if airborne.is_some() { 0 } else { timing.terminal },
+            airborne: airborne.is_some(),
+            ..*timing
+        };
+        if std::env::var_os("DBG").is_some() { for (i,r) in raw.iter().enumerate() { let k=|s:Side|{let l=&r.legs[s.index()];let d=l.ankle.distance(l.hip)/self.leg_lengths[s.index()];2.0*d.min(1.0).acos().to_degrees()}; eprintln!("{i} to {:?} lead knee {:.0} pitch {:.0} ay {:.3} az {:.3}| trail knee {:.0} pitch {:.0} ay {:.3} az {:.3}",timing.take_off,k(timing.leading),r.legs[timing.leading.index()].free_pitch.to_degrees(),r.legs[timing.leading.index()].ankle.y,r.legs[timing.leading.index()].ankle.z,k(timing.leading.other()),r.legs[timing.leading.other().index()].free_pitch.to_degrees(),r.legs[timing.leading.other().index()].ankle.y,r.legs[timing.leading.other().index()].ankle.z);}}
         self.fill_stances(raw, timing);
         self.travel(raw, timing, course, out);
         let timing = &StepTiming {
@@ -245,37 +279,52 @@ impl Planter {
             ..*timing
         };
         self.bear(raw, timing, out);
-        self.even_height(raw, timing, out);
+        if timing.take_off.is_some() {
+            self.fly(raw, timing, out);
+        } else {
+            self.even_height(raw, timing, out);
+        }
         let [before, last] = [timing.frames - 1, timing.frames].map(|f| out[f].pose.root_position);
         self.state.hips = last;
         self.state.hips_velocity = Some((last - before) / self.frame_secs);
         let timing = &StepTiming {
             terminal: self.let_go(raw, timing, out),
+            take_off: self.leave(raw, timing, out),
             ..*timing
         };
         let last = &out[timing.frames];
         let (hips, heading) = (last.pose.root_position, last.heading);
         let trailing = timing.leading.other();
         let next_plant = self.next_plant(raw, timing, hips, heading, course.turn_rate);
-        let ends = self.swing_ends(raw, timing, out, &next_plant);
+        let mut ends = self.swing_ends(raw, timing, out, &next_plant);
+        if let Some(airborne) = &airborne {
+            [ends[0], ends[1]] = self.airborne_ends(airborne, raw, timing, out);
+        }
         let before = timing.frames - 1;
         let (hips, level) = (out[before].pose.root_position, out[before].level);
         let arrival = free_foot(&raw[before], trailing, hips, level).ankle;
         let swing = Swing::new(&ends, arrival, timing, self.frame_secs);
-        self.fill_swing(raw, timing, &swing, out);
+        let first = if timing.airborne { 0 } else { timing.terminal + 1 };
+        self.fill_swing(raw, trailing, first..timing.frames, &swing, out);
+        self.depart(raw, timing, out);
         raw[timing.frames].legs[trailing.index()].target = ends[2].0;
         for side in Side::BOTH {
             let target = |index: usize| &raw[index].legs[side.index()].target;
             self.legs[side.index()].solve_many(out, target);
         }
         self.state.plants[trailing.index()] = next_plant;
-        timing.terminal
+        *timing
     }
 
     /// Fills where each foot stands while it may: on its plant, under the plant's heading, at the generated pitch.
     fn fill_stances(&self, raw: &mut [RawFrame], timing: &StepTiming) {
         let trailing = timing.leading.other();
-        for (side, last) in [(timing.leading, timing.frames), (trailing, timing.terminal)] {
+        let stances = [
+            (timing.leading, Some(timing.frames)),
+            (trailing, (!timing.airborne).then_some(timing.terminal)),
+        ];
+        for (side, last) in stances {
+            let Some(last) = last else { continue };
             let plant = self.plant(side);
             let level = from_heading(plant.heading);
             for frames in raw[..=last].chunks_mut(LANES) {
@@ -289,17 +338,19 @@ impl Planter {
         }
     }
 
-    /// Fills where the trailing foot is on its way, eight frames at a time.
+    /// Fills where a foot is on its way in some frames, eight at a time.
     fn fill_swing(
         &self,
         raw: &mut [RawFrame],
-        timing: &StepTiming,
+        side: Side,
+        within: Range<usize>,
         swing: &Swing,
         frames: &[PlantedFrame],
     ) {
-        let side = timing.leading.other().index();
-        for index in (timing.terminal + 1..timing.frames).step_by(LANES) {
-            let at = |lane: usize| (index + lane).min(timing.frames - 1);
+        let side = side.index();
+        let end = within.end;
+        for index in within.step_by(LANES) {
+            let at = |lane: usize| (index + lane).min(end - 1);
             let level = Quatx8::gather(|lane| frames[at(lane)].level);
             let hips = Vec3x8::gather(|lane| frames[at(lane)].pose.root_position);
             let leg = |lane: usize| &raw[at(lane)].legs[side];
@@ -314,7 +365,7 @@ impl Planter {
             let ankle = target.ankle - hip;
             let yielded = ankle * yielding(ankle.length(), self.leg_lengths[side]);
             target.ankle = hip + ankle + (yielded - ankle) * swing.freed(index);
-            for lane in 0..LANES.min(timing.frames - index) {
+            for lane in 0..LANES.min(end - index) {
                 raw[index + lane].legs[side].target = target.lane(lane);
             }
         }

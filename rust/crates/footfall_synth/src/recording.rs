@@ -37,6 +37,7 @@ pub(crate) fn from_standing(
         speed_mps: config.speed_mps.unwrap_or(model.speed.reference_mps as f32),
         turn_rate_radps: config.turn_rate_radps,
         direction_rad: config.direction_rad,
+        gait: config.gait,
     };
     for _ in 0..=rest {
         recording.step(Controls::STAND);
@@ -163,6 +164,7 @@ pub fn synthesize_switching(
         speed_mps: config.speed_mps.unwrap_or(generator.usual_speed_mps()),
         turn_rate_radps: config.turn_rate_radps,
         direction_rad: config.direction_rad,
+        ..Controls::STAND
     };
     let mut recording = Recording::new(generator, rate);
     for _ in 0..=(config.seconds.max(0.0) * rate).round() as usize {

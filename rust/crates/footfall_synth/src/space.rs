@@ -2,6 +2,7 @@
 
 use crate::error::SynthError;
 use crate::fine_motion::{FineTables, Scale};
+use crate::gait::Gait;
 use crate::standing::{StandingTables, standing_features};
 use crate::statistics::Statistics;
 use crate::variance;
@@ -18,12 +19,21 @@ pub struct StyleSpace {
     /// Per feature, the pull that keeps the variance of the base walk and of each style.
     base_pull: Vec<f64>,
     style_pulls: Vec<Vec<f64>>,
+    /// What the run of the model has of its own; nothing where it only walks.
+    running: Option<RunningParts>,
     fine: Option<Arc<FineTables>>,
     /// How people of the model stand; nothing where it stands still.
     standing: Option<Arc<StandingTables>>,
     /// Mixtures that somebody wears.
     blends: Mutex<Vec<Weak<Blend>>>,
     benches: Workbenches,
+}
+
+/// What all runs of a model share.
+#[derive(Debug)]
+struct RunningParts {
+    pull: Vec<f64>,
+    fine: Option<Arc<FineTables>>,
 }
 
 /// One mixture of styles, ready to be walked.
@@ -37,6 +47,20 @@ pub(crate) struct Blend {
     pub(crate) fine: Option<Arc<FineTables>>,
     /// Factors on the features of the fine motion.
     pub(crate) fine_scale: Scale,
+    /// The gait that its steps are of.
+    pub(crate) gait: Gait,
+    /// The same mixture, run; nothing in a run, and where the model only walks.
+    pub(crate) running: Option<Arc<Self>>,
+}
+
+impl Blend {
+    /// The mixture of a walk, or its run.
+    pub(crate) fn of_gait<'a>(self: &'a Arc<Self>, gait: Gait) -> &'a Arc<Self> {
+        match (gait, &self.running) {
+            (Gait::Run, Some(running)) => running,
+            _ => self,
+        }
+    }
 }
 
 impl StyleSpace {
@@ -56,6 +80,10 @@ impl StyleSpace {
             fingerprint: model.fingerprint()?,
             base_pull: variance::pull(model)?,
             style_pulls,
+            running: match &model.running {
+                Some(running) => Some(RunningParts::of(running)?),
+                None => None,
+            },
             fine: FineTables::of(model).map(Arc::new),
             standing: model
                 .standing
@@ -126,8 +154,14 @@ impl StyleSpace {
         let model = Arc::new(self.model.mixture(&parts));
         let mut statistics = Statistics::new(&model);
         statistics.set_pull(&self.pull(&weights));
+        let standing = standing_features(&model);
+        let parts = self.running.as_ref().zip(model.running.as_ref());
+        let running =
+            parts.map(|(parts, running)| Arc::new(parts.mix(running, standing, &weights)));
         Blend {
-            standing: standing_features(&model),
+            gait: Gait::Walk,
+            running,
+            standing,
             fine: self.fine.clone(),
             fine_scale: model
                 .fine
@@ -153,5 +187,33 @@ impl StyleSpace {
             (base + ways.sum::<f64>()).clamp(low, high)
         };
         self.base_pull.iter().enumerate().map(mix).collect()
+    }
+}
+
+impl RunningParts {
+    fn of(model: &GaitModel) -> Result<Self, SynthError> {
+        Ok(Self {
+            pull: variance::pull(&Arc::new(model.clone()))?,
+            fine: FineTables::of(model).map(Arc::new),
+        })
+    }
+
+    /// The run of a mixture of styles by these weights, of somebody who stands like this.
+    fn mix(&self, model: &GaitModel, standing: [f32; FEATURE_COUNT], weights: &[f32]) -> Blend {
+        let mut statistics = Statistics::new(model);
+        statistics.set_pull(&self.pull);
+        Blend {
+            weights: weights.to_vec(),
+            statistics,
+            standing,
+            fine: self.fine.clone(),
+            fine_scale: model
+                .fine
+                .as_ref()
+                .map_or([1.0; FEATURE_COUNT], FineTables::scale),
+            model: Arc::new(model.clone()),
+            gait: Gait::Run,
+            running: None,
+        }
     }
 }

@@ -133,7 +133,7 @@ impl Stage {
         });
         let [_, facing] = placing.facing;
         let planter = self.planter.get_or_insert_with(|| {
-            Planter::new(&self.skeleton, frame_secs, &raw[0], timing.leading, facing)
+            Planter::new(&self.skeleton, frame_secs, &raw[0], &timing, facing)
         });
         let course = Course {
             turn_rate: placing.turn_rate,

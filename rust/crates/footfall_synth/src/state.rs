@@ -9,17 +9,19 @@ mod source;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
-use crate::planting::PlanterState;
+use crate::gait::Gait;
+use crate::planting::{Airborne, PlanterState};
 use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
 use crate::strafe::Strafe;
 use footfall_core::StepPosition;
-use footfall_ik::Plant;
-use glam::Vec3;
+use footfall_ik::{FootTarget, Plant};
+use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// The version of the layout that this build writes; it reads the one before, too, which knew no life in standing.
-const VERSION: u8 = 5;
+/// The version of the layout that this build writes; it reads those before, too, which knew no running and no life in standing.
+const VERSION: u8 = 6;
+const WALKING_VERSION: u8 = 5;
 const STILL_VERSION: u8 = 4;
 
 /// Nothing that a state holds is larger than this: metres, radians, frames and factors are not.
@@ -114,6 +116,15 @@ struct Alive {
     speed: f32,
 }
 
+/// What a runner has beyond that.
+#[derive(Default, Serialize, Deserialize)]
+struct Running {
+    /// Whether the step before and this one are of a run.
+    runs: [bool; 2],
+    /// The foot in the air as the step begins: ankle, rotation of foot and toes, then and a frame earlier; and the time between.
+    airborne: Option<([f32; 11], [f32; 11], f32)>,
+}
+
 /// What a step takes over from the one before.
 #[derive(Serialize, Deserialize)]
 struct Feet {
@@ -197,7 +208,7 @@ impl GaitGenerator {
             speed: moment.speed,
         };
         // Writing to memory does not fail; an empty state is refused like any other that is not one.
-        postcard::to_stdvec(&(state, alive)).unwrap_or_default()
+        postcard::to_stdvec(&(state, alive, self.running())).unwrap_or_default()
     }
 
     /// Goes on from a [`state`](Self::state) of a walker with the same model, styles and body; the seed is the state's.
@@ -206,12 +217,13 @@ impl GaitGenerator {
     /// [`StateError`]; the walker then walks on as before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
-        let alive: Alive = match state.version {
+        let (alive, running): (Alive, Running) = match state.version {
             VERSION => postcard::from_bytes(rest)?,
-            STILL_VERSION => Alive::default(),
+            WALKING_VERSION => (postcard::from_bytes(rest)?, Running::default()),
+            STILL_VERSION => Default::default(),
             other => return Err(StateError::Version(other)),
         };
-        if !state.is_sensible() || !alive.is_sensible() {
+        if !state.is_sensible() || !alive.is_sensible() || !running.is_sensible() {
             return Err(StateError::Damaged);
         }
         let config = GeneratorConfig {
@@ -220,7 +232,7 @@ impl GaitGenerator {
             variation: state.variation,
         };
         match &mut self.steps {
-            Steps::Styled(steps) => **steps = state.styled(steps, &self.skeleton, &config)?,
+            Steps::Styled(steps) => **steps = state.styled(steps, &running, &self.skeleton, &config)?,
             Steps::Switching(steps) => state.resume(steps, &config)?,
         }
         self.config = config;
@@ -242,6 +254,58 @@ impl GaitGenerator {
         self.position = state.position.clamp(0.0, frames);
         self.tell_place();
         Ok(())
+    }
+}
+
+impl GaitGenerator {
+    fn running(&self) -> Running {
+        let Steps::Styled(steps) = &self.steps else {
+            return Running::default();
+        };
+        let feet = steps.walker.origin().planter;
+        let airborne = feet.and_then(|feet| feet.airborne);
+        Running {
+            runs: steps.walker.blends().map(|blend| blend.gait == Gait::Run),
+            airborne: airborne
+                .map(|foot| (numbers_of(&foot.now), numbers_of(&foot.before), foot.frame_secs)),
+        }
+    }
+}
+
+impl Running {
+    fn gaits(&self) -> [Gait; 2] {
+        self.runs.map(|runs| if runs { Gait::Run } else { Gait::Walk })
+    }
+
+    fn airborne(&self) -> Option<Airborne> {
+        self.airborne.map(|(now, before, frame_secs)| Airborne {
+            now: foot_of(now),
+            before: foot_of(before),
+            frame_secs,
+        })
+    }
+
+    fn is_sensible(&self) -> bool {
+        self.airborne.is_none_or(|(now, before, secs)| {
+            let numbers = now.into_iter().chain(before).chain([secs]);
+            secs > 0.0 && numbers.map(f64::from).all(is_reasonable)
+        })
+    }
+}
+
+/// A foot's numbers: ankle, rotation of the foot, rotation of the toes.
+fn numbers_of(foot: &FootTarget) -> [f32; 11] {
+    let [x, y, z] = foot.ankle.to_array();
+    let [a, b, c, d] = foot.foot.to_array();
+    let [e, f, g, h] = foot.toes.to_array();
+    [x, y, z, a, b, c, d, e, f, g, h]
+}
+
+fn foot_of([x, y, z, a, b, c, d, e, f, g, h]: [f32; 11]) -> FootTarget {
+    FootTarget {
+        ankle: Vec3::new(x, y, z),
+        foot: Quat::from_xyzw(a, b, c, d),
+        toes: Quat::from_xyzw(e, f, g, h),
     }
 }
 
@@ -342,6 +406,7 @@ impl Feet {
             ground_velocity: self.ground_velocity.map(Vec3::from),
             stride: self.stride,
             strafe: self.strafe,
+            airborne: None,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Where a walker's steps come from.
 
 use crate::detail::Detail;
+use crate::gait::{Gait, GaitChoice};
 use crate::generator::Controls;
 use crate::plan::StepShape;
 use crate::stage::Stage;
@@ -9,9 +10,6 @@ use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
 use glam::Vec2;
 
-/// A step's velocity differs by at most this much from that of the step before, m/s: nobody brakes faster.
-const MAX_VELOCITY_CHANGE_MPS: f32 = 0.5;
-
 /// What the next step is asked to be.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ask {
@@ -19,27 +17,34 @@ pub(crate) struct Ask {
     pub(crate) velocity_mps: Vec2,
     pub(crate) turn_rate: f32,
     pub(crate) amplitude: Amplitude,
+    pub(crate) gait: GaitChoice,
     pub(crate) detail: Detail,
 }
 
 impl Ask {
     /// What the controls make of the step after one like this.
-    pub(crate) fn after(shape: &StepShape, controls: Controls, detail: Detail) -> Self {
+    pub(crate) fn after(
+        shape: &StepShape,
+        controls: Controls,
+        fastest_mps: f32,
+        detail: Detail,
+    ) -> Self {
         Self {
-            velocity_mps: controls.velocity(),
+            velocity_mps: controls.velocity().clamp_length_max(fastest_mps),
             turn_rate: controls.turn_rate(),
             amplitude: Amplitude {
                 from: shape.amplitude.to,
                 to: if controls.is_standing() { 0.0 } else { 1.0 },
             },
+            gait: controls.gait,
             detail,
         }
     }
 
-    /// The velocity of the next step, after one of this velocity.
-    pub(crate) fn velocity_after(&self, velocity_mps: Vec2) -> Vec2 {
+    /// The velocity of the next step, after one of this velocity and gait.
+    pub(crate) fn velocity_after(&self, velocity_mps: Vec2, gait: Gait) -> Vec2 {
         let change = self.velocity_mps - velocity_mps;
-        velocity_mps + change.clamp_length_max(MAX_VELOCITY_CHANGE_MPS)
+        velocity_mps + change.clamp_length_max(gait.most_change_mps())
     }
 }
 
@@ -56,6 +61,12 @@ pub(crate) trait StepSource {
 
     /// Headings under which the walk goes along +Z, before the current step and after it, radians.
     fn facing(&self) -> [f32; 2];
+
+    /// Fastest speed that it goes at, m/s.
+    fn fastest_mps(&self) -> f32;
+
+    /// The gait of the step that is on the ground now.
+    fn gait(&self) -> Gait;
 
     /// Starts over, standing; whether it could.
     fn stand(&mut self, detail: Detail) -> bool;

@@ -4,6 +4,7 @@
 mod source;
 mod system;
 
+use crate::gait::GaitChoice;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
@@ -176,6 +177,7 @@ impl SwitchingSteps {
     fn travel(&mut self, ratio: f64) -> (Vec3, usize) {
         let speed = ratio * self.own_speed_mps;
         let ask = Ask {
+            gait: GaitChoice::Walk,
             velocity_mps: speed as f32 * Vec2::Y,
             turn_rate: 0.0,
             amplitude: Amplitude::WALK,

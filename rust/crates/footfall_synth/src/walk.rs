@@ -1,6 +1,7 @@
 //! A whole walk at once.
 
 use crate::error::SynthError;
+use crate::gait::{Gait, GaitChoice};
 use crate::fine_motion::{FineBench, FineTables, neighbours};
 use crate::pace::PaceTable;
 use crate::plan::{Manner, Planner, StepDraw, StepPlan};
@@ -14,7 +15,7 @@ use footfall_core::lanes::f32x8;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton};
 use footfall_model::{FEATURE_COUNT, GaitModel, layout};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
 /// Steps at either end of the sentence that are solved but not shown.
@@ -43,6 +44,8 @@ pub struct WalkConfig {
     pub frame_rate_hz: Option<f64>,
     /// Where the travel goes, seen from where the walker faces, as of [`Controls::direction_rad`](crate::Controls::direction_rad).
     pub direction_rad: f32,
+    /// Walking or running, where the model knows both.
+    pub gait: GaitChoice,
     /// Whether the walk begins and ends standing, as one that does not go forwards does in any case; otherwise it is cut out of a longer
     /// one.
     pub from_standing: bool,
@@ -99,6 +102,10 @@ pub fn synthesize(
     if config.from_standing || config.direction_rad != 0.0 {
         return recording::from_standing(model, skeleton, config);
     }
+    let space = StyleSpace::new(model, &[])?;
+    let blend = space.blend(&[]);
+    let blend = blend.of_gait(gait_of(model, skeleton, config));
+    let model = &blend.model;
     let mut planner = Planner::new(
         model,
         config.seed,
@@ -107,9 +114,7 @@ pub fn synthesize(
     let speed = config
         .speed_mps
         .map_or(model.speed.reference_mps, f64::from);
-    let space = StyleSpace::new(model, &[])?;
-    let paces =
-        space.at_bench(|bench| PaceTable::measure(&planner, skeleton, &space.blend(&[]), bench))?;
+    let paces = space.at_bench(|bench| PaceTable::measure(&planner, skeleton, blend, bench))?;
     let pace = paces.pace(speed.max(MIN_SPEED_MPS));
 
     let mut side = if LEAD_STEPS.is_multiple_of(2) {
@@ -136,6 +141,19 @@ pub fn synthesize(
         &trajectory,
         paces.facing,
     ))
+}
+
+/// The gait of a whole walk.
+fn gait_of(model: &GaitModel, skeleton: &Skeleton, config: &WalkConfig) -> Gait {
+    if model.running.is_none() {
+        return Gait::Walk;
+    }
+    let speed = config
+        .speed_mps
+        .unwrap_or(model.speed.reference_mps as f32);
+    let leg_length = skeleton.mean_leg_length();
+    let gait = config.gait;
+    gait.of_step(Gait::Walk, speed * Vec2::Y, leg_length, false)
 }
 
 /// Puts planned steps on the ground; the first and the last [`LEAD_STEPS`] are not shown.
@@ -191,9 +209,9 @@ pub(crate) fn put_on_ground(
         }
         RawFrame::fill(&mut raw, &frames, skeleton, |_| f32x8::splat(stride));
         begin += timing.frames;
-        let terminal = planter
+        let timing = planter
             .get_or_insert_with(|| {
-                Planter::new(skeleton, frame_secs as f32, &raw[0], timing.leading, facing)
+                Planter::new(skeleton, frame_secs as f32, &raw[0], timing, facing)
             })
             .plant_step(&mut raw, timing, course, &mut frames);
         if index < shown.start {
@@ -204,12 +222,15 @@ pub(crate) fn put_on_ground(
         }
         poses.truncate(poses.len().saturating_sub(1));
         poses.extend(frames.iter().map(|frame| frame.pose.clone()));
-        let leaves = elapsed + terminal as f64 * frame_secs;
-        match stances[timing.leading.other().index()].last_mut() {
-            Some(stance) => stance[1] = leaves,
-            None => stances[timing.leading.other().index()].push([0.0, leaves]),
+        if !timing.airborne {
+            let leaves = elapsed + timing.terminal as f64 * frame_secs;
+            match stances[timing.leading.other().index()].last_mut() {
+                Some(stance) => stance[1] = leaves,
+                None => stances[timing.leading.other().index()].push([0.0, leaves]),
+            }
         }
-        stances[timing.leading.index()].push([elapsed, f64::INFINITY]);
+        let leaves = timing.take_off.map(|last| elapsed + last as f64 * frame_secs);
+        stances[timing.leading.index()].push([elapsed, leaves.unwrap_or(f64::INFINITY)]);
         elapsed += timing.frames as f64 * frame_secs;
     }
     let shown = &plans[shown];

@@ -1,7 +1,7 @@
 //! One walker, step after step: planning, trajectory and planting in a row.
 
 use crate::error::SynthError;
-use crate::fine_motion::neighbours;
+use crate::fine_motion::{Scale, neighbours};
 use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan, StepShape};
 use crate::planting::PlanterState;
 use crate::space::Blend;
@@ -23,6 +23,9 @@ pub(crate) const TIE: usize = 4;
 
 /// The state of a step in which its last frames are at the earliest: each lasts a frame at least.
 const TIE_FROM_STATE: usize = STATES_PER_STEP - TIE;
+
+/// No fine motion.
+const NO_SCALE: Scale = [0.0; FEATURE_COUNT];
 
 /// Numbers that tie a window to the one before.
 pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;
@@ -312,18 +315,21 @@ impl Walker {
             ..
         } = bench;
         let trajectory = &trajectory[first * FEATURE_COUNT..];
-        let Some(tables) = &self.blend.fine else {
-            let rows = trajectory.chunks_exact(FEATURE_COUNT);
-            return self.stage.put(rows, &placing, raw);
-        };
-        fine.prepare(tables, shape.timing.leading, &neighbours(&self.plans, step));
-        let scales = [&self.blend_before.fine_scale, &self.blend.fine_scale];
+        let [before, now] = [&self.blend_before, &self.blend];
+        // A gait has a fine motion of its own: that of the one before goes as that of the other comes.
+        let fading = (before.gait != now.gait).then_some((before, [&before.fine_scale, &NO_SCALE]));
+        let scale_before = if fading.is_some() { &NO_SCALE } else { &before.fine_scale };
+        let motions = fading.into_iter().chain([(now, [scale_before, &now.fine_scale])]);
         let length = (shape.timing.frames + 1) * FEATURE_COUNT;
         let shown = &mut shown[..length];
         shown.copy_from_slice(&trajectory[..length]);
-        let rows = shown.chunks_exact_mut(FEATURE_COUNT).enumerate();
-        for (frame, row) in rows.step_by(shape.detail.stride()) {
-            fine.add(frame as f32 / shape.timing.frames as f32, scales, row);
+        for (blend, scales) in motions {
+            let Some(tables) = &blend.fine else { continue };
+            fine.prepare(tables, shape.timing.leading, &neighbours(&self.plans, step));
+            let rows = shown.chunks_exact_mut(FEATURE_COUNT).enumerate();
+            for (frame, row) in rows.step_by(shape.detail.stride()) {
+                fine.add(frame as f32 / shape.timing.frames as f32, scales, row);
+            }
         }
         self.stage
             .put(shown.chunks_exact(FEATURE_COUNT), &placing, raw);

@@ -49,6 +49,7 @@ impl StyledClip {
             (step.first, step.end) = (shift(step.first), shift(step.end));
             step.other_terminal = step.other_terminal.map(shift);
             step.heel_rise = step.heel_rise.map(shift);
+            step.take_off = step.take_off.map(shift);
         }
         Self {
             style: style.to_owned(),

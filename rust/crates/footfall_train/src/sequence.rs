@@ -23,7 +23,7 @@ pub struct LabelledStep {
     pub first: usize,
     /// The frame after the last: the other foot's initial contact.
     pub end: usize,
-    /// When the other foot leaves the ground, as a fraction of the step.
+    /// When the other foot leaves the ground, as a fraction of the step; negative in a run, where it did so before the step began.
     pub other_terminal: Option<f64>,
     /// Place in the walk.
     pub position: StepPosition,

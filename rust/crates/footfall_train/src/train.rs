@@ -14,7 +14,7 @@ use footfall_core::{Clip, Side, StepPosition};
 use footfall_model::{FEATURE_COUNT, GaitModel, GlobalVarianceModel, Provenance, StepModel};
 use footfall_motion::corpus::CorpusClip;
 use footfall_motion::retarget::Retargeted;
-use footfall_motion::steps::Walk;
+use footfall_motion::steps::{Walk, running_parts};
 use footfall_prob::windows::Windows;
 
 /// Least spread (relative to the mean, squared) of the global variance: a corpus of few walks knows it badly.
@@ -48,6 +48,13 @@ impl TrainingClip {
             walks: walks.to_vec(),
             repeats: motion.report.repeats,
         }
+    }
+
+    /// The same recording for who learns from it how people run.
+    #[must_use]
+    pub fn running(mut self) -> Self {
+        self.walks = running_parts(&self.clip, &self.walks);
+        self
     }
 }
 
@@ -135,6 +142,7 @@ pub fn train_average(
         contexts,
         fine: None,
         standing: None,
+        running: None,
         provenance: Provenance {
             clips: counts.clips,
             subjects: counts.subjects,

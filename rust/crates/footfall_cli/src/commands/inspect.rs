@@ -3,7 +3,7 @@
 mod corpus_index;
 mod dynamics;
 mod imu;
-mod model;
+pub(super) mod model;
 mod motion;
 mod style;
 

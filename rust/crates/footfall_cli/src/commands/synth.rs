@@ -5,7 +5,7 @@ use crate::model_file::{read_model, read_style};
 use crate::output;
 use anyhow::{Context as _, Result, bail, ensure};
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_synth::{StandConfig, SynthesizedWalk, WalkConfig, synthesize, synthesize_standing};
+use footfall_synth::{GaitChoice, StandConfig, SynthesizedWalk, WalkConfig, synthesize, synthesize_standing};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -36,6 +36,9 @@ pub(crate) struct SynthArgs {
     /// Begin and end standing; otherwise the walk is cut out of a longer one
     #[arg(long)]
     standing: bool,
+    /// Walk or run; auto runs from about 2 m/s on, if the model knows how
+    #[arg(long, value_enum, default_value_t = GaitArg::Auto)]
+    gait: GaitArg,
     /// Seconds to stand, with `--speed 0`
     #[arg(long, default_value_t = 20.0, value_name = "SECONDS")]
     seconds: f64,
@@ -47,6 +50,24 @@ pub(crate) struct SynthArgs {
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
+}
+
+/// The gait that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum GaitArg {
+    Auto,
+    Walk,
+    Run,
+}
+
+impl From<GaitArg> for GaitChoice {
+    fn from(gait: GaitArg) -> Self {
+        match gait {
+            GaitArg::Auto => Self::Auto,
+            GaitArg::Walk => Self::Walk,
+            GaitArg::Run => Self::Run,
+        }
+    }
 }
 
 /// A `.footstyle` file and how much of it.
@@ -127,6 +148,8 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
         direction_rad: args.walk.direction.to_radians(),
         frame_rate_hz: args.walk.fps,
         from_standing: args.standing,
+        gait: args.gait.into(),
+
     };
     let walk = synthesize(&model, &model.skeleton, &config)
         .with_context(|| args.model.display().to_string())?;

@@ -2,15 +2,19 @@
 
 pub(super) mod provenance;
 
+use crate::commands::inspect::model::RunningFacts;
 use crate::motion_input::KneesArgs;
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
 use footfall_core::StepPosition;
 use footfall_motion::corpus::{Corpus, Where};
+use footfall_model::GaitModel;
 use footfall_prob::windows::Windows;
 use footfall_train::standing::{self, LearnedStanding, StandingClip};
-use footfall_train::{ContextReport, EmConfig, TrainConfig, Trained, TrainingClip, train_average};
+use footfall_train::{
+    ContextReport, EmConfig, TrainConfig, Trained, TrainingClip, learn_running, train_average,
+};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -26,7 +30,8 @@ use std::time::Instant;
 #[command(after_help = "Examples:\n  \
     footfall train --corpus index.csv --where category=neutral_walk -o walk.footfall\n  \
     footfall train --corpus index.csv --where category=neutral_walk --where 'path=cmu/*' -o walk.footfall\n  \
-    footfall train --corpus index.csv --where category=neutral_walk --standing category=idle -o walk.footfall")]
+    footfall train --corpus index.csv --where category=neutral_walk --standing category=idle -o walk.footfall\n  \
+    footfall train --corpus index.csv --where category=neutral_walk --running category=running -o locomotion.footfall")]
 pub(crate) struct TrainArgs {
     /// Table of the recordings
     #[arg(long, value_name = "INDEX.csv")]
@@ -38,6 +43,10 @@ pub(crate) struct TrainArgs {
     /// without, it stands still
     #[arg(long = "standing", value_name = "COLUMN=VALUE")]
     standing: Vec<Where>,
+    /// Condition on recordings in which people run, for example `category=running`; may repeat. The model learns from the runs in them how to
+    /// run; without, it only walks
+    #[arg(long = "running", value_name = "COLUMN=VALUE")]
+    running: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
     /// Where to write the model
@@ -84,6 +93,8 @@ struct Report<'a> {
     cadence_range_per_minute: [f64; 2],
     /// Seconds in which people stand, by person; nothing where the model stands still.
     standing_seconds: BTreeMap<String, f64>,
+    /// How people run; nothing where the model only walks.
+    running: Option<RunningFacts>,
     /// Recordings that could not be used, and why.
     skipped: Vec<Skipped>,
     warnings: Vec<String>,
@@ -140,11 +151,12 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     progress.0.stage("reading the corpus", 0);
     let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
-    let standing = standing_corpus(args)?;
+    let standing = further_corpus(args, &args.standing)?;
+    let running = further_corpus(args, &args.running)?;
     let mut trained = train_average(
         &clips,
         &config(args),
-        provenance::of(&corpus, standing.as_ref(), args),
+        provenance::of(&corpus, &[standing.as_ref(), running.as_ref()], args),
         &mut progress,
     )
     .with_context(|| args.corpus.display().to_string())?;
@@ -153,6 +165,13 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
         None => None,
     };
     trained.model.standing = standing.as_ref().map(|learned| learned.model.clone());
+    trained.model.running = match &running {
+        Some(running) => {
+            let walk = &trained.model;
+            Some(Box::new(running_of(walk, running, args, &mut progress)?))
+        }
+        None => None,
+    };
     let bytes = trained.model.to_bytes().context("the trained model")?;
     write_atomic(&args.output, &bytes)?;
     progress.0.finish();
@@ -165,12 +184,28 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     )
 }
 
-/// The recordings of people who stand, if some are asked for.
-fn standing_corpus(args: &TrainArgs) -> Result<Option<Corpus>> {
-    if args.standing.is_empty() {
+/// The recordings that meet conditions of their own, if some are given.
+fn further_corpus(args: &TrainArgs, conditions: &[Where]) -> Result<Option<Corpus>> {
+    if conditions.is_empty() {
         return Ok(None);
     }
-    read_corpus(&args.corpus, &args.standing, args.knees, &args.output).map(Some)
+    read_corpus(&args.corpus, conditions, args.knees, &args.output).map(Some)
+}
+
+fn running_of(
+    walk: &GaitModel,
+    corpus: &Corpus,
+    args: &TrainArgs,
+    progress: &mut TrainingProgress,
+) -> Result<GaitModel> {
+    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
+    let provenance = provenance::of(corpus, &[], args);
+    learn_running(walk, &clips, &config(args), provenance, progress).with_context(|| {
+        format!(
+            "{}: nobody runs for some steps in what --running chooses; widen it",
+            args.corpus.display()
+        )
+    })
 }
 
 fn learn_standing(corpus: &Corpus, args: &TrainArgs) -> Result<LearnedStanding> {
@@ -256,6 +291,7 @@ fn report(
         standing_seconds: standing
             .map(|learned| learned.people.iter().cloned().collect())
             .unwrap_or_default(),
+        running: trained.model.running.as_deref().map(RunningFacts::of),
         skipped: skipped(corpus),
         warnings,
         seconds,
@@ -285,6 +321,9 @@ fn report(
             report.standing_seconds.values().sum::<f64>(),
             report.standing_seconds.len()
         ));
+    }
+    if let Some(running) = &report.running {
+        output::note(&format!("running: {}", running.line()));
     }
     let contexts = &report.contexts;
     output::note(&format!(

@@ -147,6 +147,7 @@ mod tests {
             position: StepPosition::Inside,
             other_terminal: None,
             heel_rise: None,
+            take_off: None,
         });
         StyledClip {
             style: "sad".to_owned(),

@@ -49,6 +49,7 @@ pub(crate) fn sample() -> GaitModel {
         contexts: Vec::new(),
         fine: None,
         standing: None,
+        running: None,
         provenance: Provenance {
             corpus: "made by a test".to_owned(),
             clips: 3,

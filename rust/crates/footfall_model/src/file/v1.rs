@@ -122,6 +122,7 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitModel
         contexts: Vec::new(),
         fine: None,
         standing: None,
+        running: None,
         provenance,
     })
 }

@@ -10,7 +10,7 @@ use glam::Vec3;
 const MAX_STANCE_EXTENSION: f32 = 0.995;
 
 /// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
-const LET_GO_EXTENSION: f32 = 0.994;
+pub(super) const LET_GO_EXTENSION: f32 = 0.994;
 
 /// Over how many metres the pelvis yields to that limit.
 const REACH_SOFTNESS_M: f32 = 0.005;
@@ -59,8 +59,8 @@ impl Planter {
         let mut drop = 0.0_f32;
         for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
             let hips = frame.pose.root_position;
-            let bears = index <= timing.terminal;
-            frame.contact[timing.leading.index()] = true;
+            let bears = timing.trailing_bears(index);
+            frame.contact[timing.leading.index()] = timing.leading_bears(index);
             frame.contact[trailing.index()] = bears || index == timing.frames;
             // A leg that lets go of the pelvis does so smoothly, also when its contact is all but over as the step begins.
             drop *= release;
@@ -77,7 +77,9 @@ impl Planter {
                 drop = drop.max(hips.y - yielding);
             }
             frame.pose.root_position.y -= drop;
-            if let Some(limit) = self.reach_limit(timing.leading, hips, raw, frame) {
+            if timing.leading_bears(index)
+                && let Some(limit) = self.reach_limit(timing.leading, hips, raw, frame)
+            {
                 let height = &mut frame.pose.root_position.y;
                 *height = soft_min(*height, limit);
             }

@@ -36,6 +36,8 @@ pub(super) struct Swing {
     /// By how much the foot would land too fast, metres a frame, and over how many frames it is braked.
     excess: Vec3,
     braking: f32,
+    /// Frames of the swing after which the foot is free of how it stood.
+    freed_after: f32,
 }
 
 /// A correction at both ends of the swing, and how fast it changes when the foot leaves the ground (per swing).
@@ -65,29 +67,59 @@ impl Swing {
     ) -> Self {
         let first = timing.terminal;
         let frames = (timing.frames - first).max(1) as f32;
+        // The corrections have come to rest by then.
+        let landing = ends[2].1.ankle - arrival;
+        Self {
+            freed_after: if timing.airborne { 0.0 } else { FREED_BY * frames },
+            excess: landing - landing.clamp_length_max(MAX_LANDING_MPS * frame_secs),
+            braking: (BRAKING_SECS / frame_secs).min(frames),
+            ..Self::between(&[ends[0], ends[1]], Some(&ends[2]), first, frames)
+        }
+    }
+
+    /// The beginning of a swing that the next step ends: `ends` are the planted and the free foot one frame before it takes off and then.
+    pub(super) fn departing(
+        ends: &[(FootTarget, FootTarget); 2],
+        timing: &StepTiming,
+        take_off: usize,
+    ) -> Self {
+        let flight = timing.frames - take_off;
+        // The next step is about as long as this one.
+        let frames = (flight + timing.frames) as f32;
+        Self {
+            freed_after: flight as f32,
+            ..Self::between(ends, None, take_off, frames)
+        }
+    }
+
+    /// A swing of so many frames from the frame `first` on; without a landing it goes where the free foot goes.
+    fn between(
+        starts: &[(FootTarget, FootTarget); 2],
+        landing: Option<&(FootTarget, FootTarget)>,
+        first: usize,
+        frames: f32,
+    ) -> Self {
         let correction = |difference: &dyn Fn(&FootTarget, &FootTarget) -> Vec3| {
-            let [before, start, end] = ends
+            let [before, start] = starts
                 .each_ref()
                 .map(|(planted, free)| difference(planted, free));
             Correction {
                 start,
                 departure: (start - before) * frames,
-                end,
+                end: landing.map_or(Vec3::ZERO, |(planted, free)| difference(planted, free)),
             }
         };
-        // Captured toes are too noisy to follow, as most marker sets guess them: from their bend at the end of the stance
-        // they go to that of the landing, which is none where the heel lands first.
-        let toes = correction(&|planted, _| log_map(planted.foot.inverse() * planted.toes));
-        // The corrections have come to rest by then.
-        let landing = ends[2].1.ankle - arrival;
         Self {
             first,
             frames,
-            excess: landing - landing.clamp_length_max(MAX_LANDING_MPS * frame_secs),
-            braking: (BRAKING_SECS / frame_secs).min(frames),
             position: correction(&|planted, free| planted.ankle - free.ankle),
             rotation: correction(&|planted, free| log_map(planted.foot * free.foot.inverse())),
-            toes,
+            // Captured toes are too noisy to follow, as most marker sets guess them: from their bend at the end of the stance
+            // they go to that of the landing, which is none where the heel lands first.
+            toes: correction(&|planted, _| log_map(planted.foot.inverse() * planted.toes)),
+            excess: Vec3::ZERO,
+            braking: frames,
+            freed_after: FREED_BY * frames,
         }
     }
 
@@ -120,7 +152,10 @@ impl Swing {
 
     /// How far the feet have come away from how they stood in eight frames from `index` on, from 0 to 1.
     pub(super) fn freed(&self, index: usize) -> f32x8 {
-        smooth_step(self.passed(index) * (FREED_BY * self.frames).recip())
+        if self.freed_after <= 0.0 {
+            return f32x8::ONE;
+        }
+        smooth_step(self.passed(index) * self.freed_after.recip())
     }
 
     /// Frames of the swing that have passed in eight frames of the step from `index` on.

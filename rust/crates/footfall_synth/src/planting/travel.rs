@@ -61,6 +61,7 @@ impl Planter {
                 frame.pose.rotations[Joint::Hips.index()] = hips_rotation.lane(lane);
             }
         }
+        Self::drift(timing, out);
         self.even(timing, out);
         self.glide(timing, out);
     }
@@ -76,7 +77,11 @@ impl Planter {
                 velocity * self.frame_secs - (follow - start)
             }),
             decay: self.frame_secs / self.settle_secs(),
-            meeting: MEETING_SHARE * self.landing_height_gap(raw, timing),
+            // Who flies falls onto the foot that lands.
+            meeting: match timing.take_off {
+                Some(_) => 0.0,
+                None => MEETING_SHARE * self.landing_height_gap(raw, timing),
+            },
             frames: timing.frames as f32,
         }
     }
@@ -112,10 +117,7 @@ impl Planter {
     fn landing_height_gap(&self, raw: &[RawFrame], timing: &StepTiming) -> f32 {
         let last = &raw[timing.frames];
         let landing = timing.leading.other();
-        let leg = &last.legs[landing.index()];
-        let foot = &self.feet[landing.index()];
-        let above_landing = foot.ankle_height() + foot.roll(leg.pitch).y - leg.ankle.y;
-        above_landing - hips_above(last, timing.leading, Quat::IDENTITY).y
+        self.landing_height(last, landing) - hips_above(last, timing.leading, Quat::IDENTITY).y
     }
 
     /// The walker's place on the ground: a cubic path through the hips' places at initial contacts.

@@ -1,19 +1,21 @@
 //! What each kind of steps adds to a state, and how it goes on from one.
 
-use super::{Feet, Source, State, StateError, detail_of};
+use super::{Feet, Running, Source, State, StateError, detail_of};
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
-use crate::pace::PaceTable;
+use crate::planting::PlanterState;
 use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
-use crate::styled::{StyledSteps, Worn, walker_of};
+use crate::styled::{StyledSteps, walker_of};
+use crate::worn::Worn;
 use crate::switching::{SwitchingOrigin, SwitchingSteps};
 use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
 use footfall_core::{Side, Skeleton, StepPosition};
+use footfall_model::GaitModel;
 
 impl Source {
     pub(super) fn of_styled(steps: &StyledSteps) -> Self {
         let origin = steps.walker.origin();
-        let components = steps.space.model().variation.step.len();
+        let components = components_of(steps.space.model());
         let draws = steps.walker.draws();
         let used = draws.iter().flat_map(|draw| {
             let used = draw.weights.len().min(components);
@@ -54,6 +56,7 @@ impl State {
     pub(super) fn styled(
         &self,
         current: &StyledSteps,
+        running: &Running,
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<StyledSteps, StateError> {
@@ -78,7 +81,7 @@ impl State {
             let expected = weights.len();
             return Err(StateError::OtherStyles { expected, found });
         }
-        let components = space.model().variation.step.len().min(MAX_COMPONENTS);
+        let components = components_of(space.model()).min(MAX_COMPONENTS);
         let ties = self.feet.is_none() || tie.len() == TIE_LEN;
         if draws.len() != WINDOW * components || !ties {
             return Err(StateError::Damaged);
@@ -113,7 +116,10 @@ impl State {
             },
             manner_before: manner(0),
             facing_before: self.facing[0],
-            planter: self.feet.as_ref().map(Feet::planter),
+            planter: self.feet.as_ref().map(|feet| PlanterState {
+                airborne: running.airborne(),
+                ..feet.planter()
+            }),
             tie: [0.0; TIE_LEN],
         };
         if tie.len() == TIE_LEN {
@@ -121,14 +127,15 @@ impl State {
         }
         let mut planner = walker_of(space, config);
         let [before, now, next] = weights.each_ref().map(|w| space.blend(w));
+        let [gait_before, gait] = running.gaits();
         planner.resume(self.chance_position, &draws);
         let mut walker = Walker::new(skeleton, &now);
-        let paces = space.at_bench(|bench| {
-            let paces = PaceTable::measure(&planner, skeleton, &next, bench)?;
-            walker.restore(&mut planner, [&before, &now], draws, origin, bench)?;
-            Ok::<_, SynthError>(paces)
+        let worn = space.at_bench(|bench| {
+            let worn = Worn::measure(&planner, skeleton, next, bench)?;
+            let blends = [before.of_gait(gait_before), now.of_gait(gait)];
+            walker.restore(&mut planner, blends, draws, origin, bench)?;
+            Ok::<_, SynthError>(worn)
         })?;
-        let worn = Worn { blend: next, paces };
         Ok(StyledSteps::resumed(
             space,
             planner,
@@ -174,4 +181,11 @@ impl State {
         steps.resume(config, origin, self.velocity_mps.into());
         Ok(())
     }
+}
+
+/// Components of the variation that a step has at most, walked or run.
+fn components_of(model: &GaitModel) -> usize {
+    let own = model.variation.step.len();
+    let running = model.running.as_ref();
+    running.map_or(own, |running| own.max(running.variation.step.len()))
 }

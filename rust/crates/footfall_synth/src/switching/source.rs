@@ -1,5 +1,6 @@
 //! The steps of a switching model, one after the other.
 
+use crate::gait::{FASTEST_WALK_MPS, Gait};
 use super::SwitchingSteps;
 use crate::detail::Detail;
 use crate::generator::STANDING_SPEED_MPS;
@@ -11,6 +12,14 @@ use crate::strafe::pelvis_turn;
 use glam::Vec2;
 
 impl StepSource for SwitchingSteps {
+    fn fastest_mps(&self) -> f32 {
+        FASTEST_WALK_MPS
+    }
+
+    fn gait(&self) -> Gait {
+        Gait::Walk
+    }
+
     fn shape(&self) -> &StepShape {
         &self.shape
     }
@@ -32,7 +41,7 @@ impl StepSource for SwitchingSteps {
     }
 
     fn advance(&mut self, ask: &Ask) {
-        self.velocity_mps = ask.velocity_after(self.velocity_mps);
+        self.velocity_mps = ask.velocity_after(self.velocity_mps, Gait::Walk);
         self.take_over(self.origin.leading.other());
         self.set_pace();
         self.origin.turn_rate = ask.turn_rate;

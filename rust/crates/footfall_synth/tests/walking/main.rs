@@ -368,6 +368,8 @@ fn a_whole_walk_has_its_steps_its_speed_and_its_contacts() {
             direction_rad: 0.0,
             frame_rate_hz,
             from_standing: false,
+            gait: footfall_synth::GaitChoice::Auto,
+
         };
         synthesize(&model(), &Skeleton::standard(), &settings).unwrap()
     };

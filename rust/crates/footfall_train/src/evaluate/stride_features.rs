@@ -286,6 +286,7 @@ mod tests {
                 position: StepPosition::Inside,
                 other_terminal: None,
                 heel_rise: None,
+                take_off: None,
             })
             .collect();
         (clip, vec![Walk { steps }])

@@ -34,6 +34,7 @@ fn walk(style: &str, stoop: f32, seed: u32, steps: usize) -> StyledClip {
             position: StepPosition::Inside,
             other_terminal: None,
             heel_rise: None,
+            take_off: None,
         })
         .collect();
     StyledClip {

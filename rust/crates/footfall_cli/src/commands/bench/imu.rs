@@ -71,6 +71,8 @@ impl ReconstructorBench {
                 direction_rad: 0.0,
                 frame_rate_hz: Some(60.0),
                 from_standing: false,
+                gait: footfall_synth::GaitChoice::Auto,
+
             };
             synthesize(gait, &gait.skeleton, &config).map(|walk| walk.clip)
         };

@@ -114,6 +114,8 @@ fn seeds(model: &Arc<GaitModel>, args: &NaturalnessArgs, speeds: &[f32]) -> Resu
                 direction_rad: 0.0,
                 frame_rate_hz: None,
                 from_standing: false,
+                gait: footfall_synth::GaitChoice::Auto,
+
             };
             let walk = synthesize(model, &model.skeleton, &config)
                 .with_context(|| args.judged.model.display().to_string())?;

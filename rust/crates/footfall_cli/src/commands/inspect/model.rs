@@ -31,6 +31,8 @@ pub(super) struct ModelFacts {
     ends: Vec<String>,
     /// How its people stand; nothing where it stands still.
     standing: Option<StandingFacts>,
+    /// How its people run; nothing where it only walks.
+    running: Option<RunningFacts>,
 }
 
 #[derive(Serialize)]
@@ -42,6 +44,44 @@ struct StandingFacts {
     breaths_per_minute: f64,
     /// Standard deviation of how far people move, as a factor.
     strength_factor: f64,
+}
+
+/// How a model's people run.
+#[derive(Serialize)]
+pub(in crate::commands) struct RunningFacts {
+    subjects: usize,
+    steps: usize,
+    speed_range_mps: [f64; 2],
+    mean_speed_mps: f64,
+    cadence_range_per_minute: [f64; 2],
+    /// Share of a step that is spent in the air.
+    flight: f64,
+}
+
+impl RunningFacts {
+    pub(in crate::commands) fn of(model: &GaitModel) -> Self {
+        let counts = &model.provenance;
+        Self {
+            subjects: counts.subjects,
+            steps: counts.steps,
+            speed_range_mps: model.speed_range(),
+            mean_speed_mps: model.speed.reference_mps,
+            cadence_range_per_minute: model.speed.cadence_range_hz.map(|hz| 60.0 * hz),
+            flight: -model.step(Side::Left).other_terminal,
+        }
+    }
+
+    pub(in crate::commands) fn line(&self) -> String {
+        let [slowest, fastest] = self.speed_range_mps;
+        let [fewest, most] = self.cadence_range_per_minute;
+        format!(
+            "{} steps of {} subjects, {slowest:.2} to {fastest:.2} m/s, mean {:.2}, {fewest:.0} to {most:.0} steps a minute, in the air {:.0} %",
+            self.steps,
+            self.subjects,
+            self.mean_speed_mps,
+            100.0 * self.flight
+        )
+    }
 }
 
 #[derive(Serialize)]
@@ -102,6 +142,7 @@ pub(super) fn inspect(path: &Path) -> Result<ModelFacts> {
             .map(|context| format!("{} {}", context.position.name(), context.side.name()))
             .collect(),
         standing: model.standing.as_ref().map(standing_facts),
+        running: model.running.as_deref().map(RunningFacts::of),
     })
 }
 
@@ -194,6 +235,8 @@ impl ModelFacts {
             },
         );
         lines.push(fact("standing", standing));
+        let running = self.running.as_ref().map(RunningFacts::line);
+        lines.push(fact("running", running.unwrap_or_else(|| "no".to_owned())));
         lines
     }
 }

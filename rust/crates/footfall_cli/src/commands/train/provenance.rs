@@ -9,8 +9,8 @@ use std::path::Path;
 /// The column of an index that states the terms of each recording.
 const LICENSE_COLUMN: &str = "license";
 
-/// Corpus, terms and command; the trainer fills in the counts.
-pub(super) fn of(corpus: &Corpus, standing: Option<&Corpus>, args: &TrainArgs) -> Provenance {
+/// Corpus, terms and command; the trainer fills in the counts. `others` are the recordings of what the model knows beside the walk.
+pub(super) fn of(corpus: &Corpus, others: &[Option<&Corpus>], args: &TrainArgs) -> Provenance {
     let conditions: Vec<String> = args.conditions.iter().map(ToString::to_string).collect();
     let command = command(args, &name_of(&args.corpus), &conditions);
     let mut described = describe(
@@ -20,15 +20,18 @@ pub(super) fn of(corpus: &Corpus, standing: Option<&Corpus>, args: &TrainArgs) -
         args.describe.as_deref(),
         command,
     );
-    if let Some(standing) = standing {
-        let conditions: Vec<String> = args.standing.iter().map(ToString::to_string).collect();
-        if args.describe.is_none() {
-            described.corpus.push_str("; standing where ");
-            described.corpus.push_str(&conditions.join(" and "));
+    if args.describe.is_none() {
+        for (behaviour, conditions) in [("standing", &args.standing), ("running", &args.running)] {
+            if !conditions.is_empty() {
+                let conditions: Vec<String> = conditions.iter().map(ToString::to_string).collect();
+                let conditions = conditions.join(" and ");
+                described.corpus += &format!("; {behaviour} where {conditions}");
+            }
         }
-        let both = corpus.clips.iter().chain(&standing.clips);
-        described.terms = terms(both.filter_map(|clip| clip.row.column(LICENSE_COLUMN)));
     }
+    let others = others.iter().copied().flatten();
+    let all = others.flat_map(|corpus| &corpus.clips).chain(&corpus.clips);
+    described.terms = terms(all.filter_map(|clip| clip.row.column(LICENSE_COLUMN)));
     described
 }
 
@@ -74,6 +77,9 @@ fn command(args: &TrainArgs, index: &str, conditions: &[String]) -> String {
     }
     for condition in &args.standing {
         words.push(format!("--standing '{condition}'"));
+    }
+    for condition in &args.running {
+        words.push(format!("--running '{condition}'"));
     }
     words.extend(args.knees.words());
     words.push(format!("--fps {}", args.fps));

@@ -292,6 +292,8 @@ impl MixPage {
             direction_rad: 0.0,
             frame_rate_hz: None,
             from_standing: false,
+            gait: footfall_synth::GaitChoice::Auto,
+
         };
         let walk = base
             .styled(&weighted)

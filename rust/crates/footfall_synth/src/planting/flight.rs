@@ -1,0 +1,184 @@
+//! Flight: the part of a running step in which no foot bears the body.
+//!
+//! Nothing but gravity acts then, so the hips go on at an even speed over the ground and on a parabola above it, from where the foot takes off to
+//! where the generated leg of the other foot has them as it lands. The foot that took off is on its swing; the next step brings it down.
+
+use super::swing::Swing;
+use super::support::LET_GO_EXTENSION;
+use super::{PlantedFrame, Planter, StepTiming, free_foot};
+use crate::generator::GroundTransform;
+use crate::raw::RawFrame;
+use footfall_core::rotation::from_heading;
+use footfall_ik::FootTarget;
+use glam::Quat;
+
+const GRAVITY_MPS2: f32 = 9.81;
+
+/// Speed upwards at which the hips leave the ground at least and at most, m/s, beyond that which brings them back to the same height. Legs that
+/// disagree more about where a short flight ends are bent or stretched.
+const MOST_LIFT_MPS: f32 = 0.3;
+
+/// A foot in the air between two steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Airborne {
+    /// Where it is as the step begins, and where it was a frame earlier.
+    pub(crate) now: FootTarget,
+    pub(crate) before: FootTarget,
+    /// Time between the two, seconds.
+    pub(crate) frame_secs: f32,
+}
+
+impl Airborne {
+    /// The same foot of a walker who is at `to` instead of at `from`.
+    pub(crate) fn moved(&self, from: &GroundTransform, to: &GroundTransform) -> Self {
+        let rotation = from_heading(to.heading - from.heading);
+        let moved = |foot: &FootTarget| FootTarget {
+            ankle: to.position + rotation * (foot.ankle - from.position),
+            foot: rotation * foot.foot,
+            toes: rotation * foot.toes,
+        };
+        Self {
+            now: moved(&self.now),
+            before: moved(&self.before),
+            frame_secs: self.frame_secs,
+        }
+    }
+
+    /// Where it was so long ago.
+    fn earlier(&self, secs: f32) -> FootTarget {
+        let share = secs / self.frame_secs;
+        if (share - 1.0).abs() < 1e-3 {
+            return self.before;
+        }
+        let turned = |now: Quat, before: Quat| now.slerp(before, share);
+        FootTarget {
+            ankle: self.now.ankle + share * (self.before.ankle - self.now.ankle),
+            foot: turned(self.now.foot, self.before.foot),
+            toes: turned(self.now.toes, self.before.toes),
+        }
+    }
+}
+
+impl Planter {
+    /// Lets the hips go on over the ground as they did above the foot, in the frames after it has taken off.
+    pub(super) fn drift(timing: &StepTiming, out: &mut [PlantedFrame]) {
+        let Some(take_off) = timing.take_off else {
+            return;
+        };
+        let [begin, leaves] = [0, take_off].map(|frame| out[frame].pose.root_position);
+        let pace = (leaves - begin) / take_off as f32;
+        for (passed, frame) in out[take_off..=timing.frames].iter_mut().enumerate() {
+            frame.pose.root_position = leaves + passed as f32 * pace;
+        }
+    }
+
+    /// Puts the hips on their parabola, and lets the standing leg push them off at its speed.
+    pub(super) fn fly(&self, raw: &[RawFrame], timing: &StepTiming, out: &mut [PlantedFrame]) {
+        let Some(take_off) = timing.take_off else {
+            return;
+        };
+        let height = |frame: usize| out[frame].pose.root_position.y;
+        let secs = (timing.frames - take_off) as f32 * self.frame_secs;
+        let even = 0.5 * GRAVITY_MPS2 * secs;
+        let landing = self.landing_height(&raw[timing.frames], timing.leading.other());
+        let lift = (landing - height(take_off)) / secs;
+        let rise = even + lift.clamp(-MOST_LIFT_MPS, MOST_LIFT_MPS);
+        // The generated leg pushes off nearly as fast; what is missing is added over the stance.
+        let pushed = (height(take_off) - height(take_off - 1)) / self.frame_secs;
+        let stance_secs = take_off as f32 * self.frame_secs;
+        // Between two frames the leg's speed is that of half a frame earlier.
+        let missing = rise + 0.5 * GRAVITY_MPS2 * self.frame_secs * 0.5 - pushed;
+        let begin = height(take_off);
+        for (index, frame) in out[..=timing.frames].iter_mut().enumerate() {
+            let height = &mut frame.pose.root_position.y;
+            if index <= take_off {
+                let s = index as f32 / take_off as f32;
+                *height += missing * stance_secs * s * s * (s - 1.0);
+            } else {
+                let t = (index - take_off) as f32 * self.frame_secs;
+                *height = begin + rise * t - 0.5 * GRAVITY_MPS2 * t * t;
+            }
+        }
+    }
+
+    /// Lets the foot take off earlier where its leg, stretched, does not reach any more; returns its last frame on the ground.
+    pub(super) fn leave(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &mut [PlantedFrame],
+    ) -> Option<usize> {
+        let take_off = timing.take_off?;
+        let side = timing.leading.index();
+        let reach = LET_GO_EXTENSION * self.leg_lengths[side];
+        let beyond = (2..=take_off).find(|index| {
+            let frame = &frames[*index];
+            let leg = &raw[*index].legs[side];
+            let hip = frame.pose.root_position + frame.level * leg.hip;
+            hip.distance(leg.target.ankle) > reach
+        });
+        let last = beyond.map_or(take_off, |beyond| beyond - 1);
+        for frame in &mut frames[last + 1..=take_off] {
+            frame.contact[side] = false;
+        }
+        Some(last)
+    }
+
+    /// Fills where the foot that took off is until the step ends, and keeps it for the next.
+    pub(super) fn depart(
+        &mut self,
+        raw: &mut [RawFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+    ) {
+        let side = timing.leading;
+        self.state.airborne = timing.take_off.map(|take_off| {
+            let ends = [take_off - 1, take_off].map(|index| {
+                let frame = &frames[index];
+                let hips = frame.pose.root_position;
+                let free = free_foot(&raw[index], side, hips, frame.level);
+                (raw[index].legs[side.index()].target, free)
+            });
+            let swing = Swing::departing(&ends, timing, take_off);
+            self.fill_swing(raw, side, take_off + 1..timing.frames + 1, &swing, frames);
+            let at = |frame: usize| raw[frame].legs[side.index()].target;
+            Airborne {
+                now: at(timing.frames),
+                before: at(timing.frames - 1),
+                frame_secs: self.frame_secs,
+            }
+        });
+    }
+
+    /// Where a foot that was in the air as the step began is planned and where it would be free, a frame earlier and then.
+    pub(super) fn airborne_ends(
+        &self,
+        airborne: &Airborne,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+    ) -> [(FootTarget, FootTarget); 2] {
+        let side = timing.leading.other();
+        let [now, next] = [0, 1].map(|index: usize| {
+            let frame = &frames[index];
+            free_foot(&raw[index], side, frame.pose.root_position, frame.level)
+        });
+        let back = |now: Quat, next: Quat| (now * next.inverse() * now).normalize();
+        let earlier = FootTarget {
+            ankle: 2.0 * now.ankle - next.ankle,
+            foot: back(now.foot, next.foot),
+            toes: back(now.toes, next.toes),
+        };
+        [
+            (airborne.earlier(self.frame_secs), earlier),
+            (airborne.now, now),
+        ]
+    }
+
+    /// How high the leg of a foot that lands has the hips, metres.
+    pub(super) fn landing_height(&self, raw: &RawFrame, side: footfall_core::Side) -> f32 {
+        let leg = &raw.legs[side.index()];
+        let foot = &self.feet[side.index()];
+        foot.ankle_height() + foot.roll(leg.pitch).y - leg.ankle.y
+    }
+}

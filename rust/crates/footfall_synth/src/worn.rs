@@ -1,0 +1,179 @@
+//! A mixture of styles on one body, and what it makes of the next step that is asked for.
+
+use crate::detail::Detail;
+use crate::error::SynthError;
+use crate::gait::{FASTEST_RUN_MPS, FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
+use crate::generator::STANDING_SPEED_MPS;
+use crate::pace::PaceTable;
+use crate::plan::{Manner, Planner};
+use crate::space::Blend;
+use crate::standing::Amplitude;
+use crate::steps::Ask;
+use crate::strafe::pelvis_turn;
+use crate::walker::Request;
+use crate::workbench::Workbench;
+use footfall_core::{Side, Skeleton, StepPosition};
+use footfall_model::GaitModel;
+use glam::Vec2;
+use std::sync::Arc;
+
+/// A mixture of styles, and how fast each of its gaits goes on this body.
+#[derive(Debug)]
+pub(crate) struct Worn {
+    /// The walk; the run is in it.
+    pub(crate) blend: Arc<Blend>,
+    walk: PaceTable,
+    /// Nothing where the model only walks.
+    run: Option<PaceTable>,
+    leg_length: f32,
+}
+
+impl Worn {
+    /// Measures a walker in a mixture of styles.
+    ///
+    /// # Errors
+    /// [`SynthError::Inference`] when the model gives no trajectory.
+    pub(crate) fn measure(
+        planner: &Planner,
+        skeleton: &Skeleton,
+        blend: Arc<Blend>,
+        bench: &mut Workbench,
+    ) -> Result<Self, SynthError> {
+        let walk = PaceTable::measure(planner, skeleton, &blend, bench)?;
+        let run = match &blend.running {
+            Some(run) => Some(PaceTable::measure(planner, skeleton, run, bench)?),
+            None => None,
+        };
+        Ok(Self {
+            blend,
+            walk,
+            run,
+            leg_length: skeleton.mean_leg_length(),
+        })
+    }
+
+    /// Fastest speed that it goes at, m/s.
+    pub(crate) const fn fastest_mps(&self) -> f32 {
+        if self.run.is_some() {
+            FASTEST_RUN_MPS
+        } else {
+            FASTEST_WALK_MPS
+        }
+    }
+
+    /// The mixture that a step of this gait wears.
+    pub(crate) fn dress(&self, gait: Gait) -> &Arc<Blend> {
+        self.blend.of_gait(gait)
+    }
+
+    /// The next step, which `side` begins, after one that came from `before`; and the gait that it is walked or run in. `velocity_mps` is the
+    /// walk's and follows.
+    pub(crate) fn request(
+        &self,
+        ask: &Ask,
+        model: &GaitModel,
+        before: &Request,
+        gait_before: Gait,
+        side: Side,
+        velocity_mps: &mut Vec2,
+    ) -> (Request, Gait) {
+        let mut amplitude = ask.amplitude;
+        let too_fast = velocity_mps.length() > self.first_mps();
+        if amplitude.to < 1.0 && amplitude.from >= 1.0 && too_fast {
+            // Who runs slows down before coming to a stand.
+            amplitude.to = 1.0;
+        }
+        let position = position_after(before.manner.position, amplitude);
+        if amplitude.to >= 1.0 && model.context(position, side).is_some() {
+            // The model knows how this step gets to the speed of the walk.
+            *velocity_mps = ask.velocity_mps.clamp_length_max(self.first_mps());
+        } else if amplitude.to >= 1.0 || model.context(position, side).is_none() {
+            *velocity_mps = ask.velocity_after(*velocity_mps, gait_before);
+        }
+        let gait = self.gait(ask, gait_before, amplitude, *velocity_mps);
+        *velocity_mps = velocity_mps.clamp_length_max(gait.fastest_mps());
+        let (pace, facing, stepped) = match (gait, &self.run) {
+            (Gait::Run, Some(run)) => {
+                let speed = velocity_mps.length();
+                // The body turns to where it runs.
+                let direction = velocity_mps.x.atan2(velocity_mps.y);
+                let facing = run.facing + direction;
+                (run.pace(f64::from(speed)), facing, speed * Vec2::Y)
+            }
+            _ => (
+                self.walk.pace_towards(*velocity_mps),
+                self.walk.facing + pelvis_turn(*velocity_mps),
+                *velocity_mps,
+            ),
+        };
+        let request = Request {
+            manner: Manner {
+                pace,
+                position,
+                detail: ask.detail,
+            },
+            amplitude,
+            turn_rate: ask.turn_rate,
+            velocity_mps: stepped,
+            facing,
+        };
+        (request, gait)
+    }
+
+    /// The gait of a step.
+    fn gait(&self, ask: &Ask, before: Gait, amplitude: Amplitude, velocity_mps: Vec2) -> Gait {
+        if self.run.is_none() {
+            return Gait::Walk;
+        }
+        let ends = amplitude != Amplitude::WALK;
+        ask.gait
+            .of_step(before, velocity_mps, self.leg_length, ends)
+    }
+
+    /// The speed that a first step reaches at most, and from which one that stops can be taken, m/s.
+    fn first_mps(&self) -> f32 {
+        if self.run.is_some() {
+            STOPPABLE_MPS
+        } else {
+            FASTEST_WALK_MPS
+        }
+    }
+
+    /// A walk under way at the speed that suits it.
+    pub(crate) fn first_request(&self, detail: Detail) -> Request {
+        let speed = self.blend.model.speed.reference_mps;
+        Request {
+            manner: Manner {
+                detail,
+                ..Manner::inside(self.walk.pace(speed))
+            },
+            amplitude: Amplitude::WALK,
+            turn_rate: 0.0,
+            velocity_mps: speed as f32 * Vec2::Y,
+            facing: self.walk.facing,
+        }
+    }
+
+    /// Someone who stands.
+    pub(crate) fn standing_request(&self, detail: Detail) -> Request {
+        Request {
+            manner: Manner {
+                detail,
+                ..Manner::inside(self.walk.pace(f64::from(STANDING_SPEED_MPS)))
+            },
+            amplitude: Amplitude::STAND,
+            velocity_mps: Vec2::ZERO,
+            ..self.first_request(detail)
+        }
+    }
+}
+
+/// The place of a step in its walk. That a step is the last but one is known only when it is over.
+fn position_after(before: StepPosition, amplitude: Amplitude) -> StepPosition {
+    match (amplitude.from < 1.0, amplitude.to < 1.0) {
+        (true, false) => StepPosition::First,
+        (false, true) => StepPosition::Last,
+        (false, false) if before == StepPosition::First => StepPosition::Second,
+        _ => StepPosition::Inside,
+    }
+}

@@ -1,0 +1,78 @@
+//! How people run, as a part of a model of how they walk.
+
+use crate::error::TrainError;
+use crate::progress::Progress;
+use crate::train::{TrainConfig, TrainingClip, train_average};
+use footfall_core::Joint;
+use footfall_model::layout::feature_offset;
+use footfall_model::{
+    FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, Provenance, STATES_PER_STEP, StepOffset,
+};
+
+/// Share of a walker's own tempo, and of the posture of their hips and legs, that is theirs in a run, too.
+const TEMPO_SHARE: f64 = 0.5;
+const LEG_POSTURE_SHARE: f64 = 0.4;
+
+/// Learns the run of a walk's model from the runs in recordings, few people's as a rule. Those who run differ as those who walk do: each of the
+/// walk's components between walkers becomes one of the run, of how the body is held and of tempo.
+///
+/// # Errors
+/// [`TrainError`] when nobody runs in the recordings, or they cannot be explained.
+pub fn learn_running(
+    walk: &GaitModel,
+    clips: &[TrainingClip],
+    config: &TrainConfig,
+    provenance: Provenance,
+    progress: &mut dyn Progress,
+) -> Result<GaitModel, TrainError> {
+    let clips: Vec<TrainingClip> = clips
+        .iter()
+        .cloned()
+        .map(TrainingClip::running)
+        .filter(|clip| !clip.walks.is_empty())
+        .collect();
+    let mut run = train_average(&clips, config, provenance, progress)?.model;
+    let components = walk.variation.walker.iter();
+    run.variation.walker = components
+        .map(|component| {
+            let carried = carried(walk, component);
+            [carried.clone(), carried]
+        })
+        .collect();
+    if let Some(fine) = &mut run.fine {
+        // Its tables belong to the components that were.
+        fine.walker.clear();
+        fine.chance.walker_strength.clear();
+    }
+    Ok(run)
+}
+
+/// What a walker's difference from the average does in every state of a run.
+fn carried(walk: &GaitModel, component: &[StepOffset; 2]) -> StepOffset {
+    let mut posture = [0.0; FEATURE_COUNT];
+    let mut tempo = 0.0;
+    let frames: f64 = walk.steps.iter().map(|step| step.mean_frames()).sum();
+    for (step, offset) in walk.steps.iter().zip(component) {
+        let rows = offset.means.chunks_exact(OBSERVATION_COUNT);
+        for (index, (state, row)) in step.states.iter().zip(rows).enumerate() {
+            let share = state.duration_mean / frames;
+            for (sum, value) in posture.iter_mut().zip(row) {
+                *sum += share * value;
+            }
+            tempo += share * offset.log_durations[index];
+        }
+    }
+    for joint in Joint::ALL {
+        if joint == Joint::Hips || joint >= Joint::LeftUpperLeg {
+            for value in &mut posture[feature_offset(joint)..][..3] {
+                *value *= LEG_POSTURE_SHARE;
+            }
+        }
+    }
+    let mut carried = StepOffset::zero();
+    for row in carried.means.chunks_exact_mut(OBSERVATION_COUNT) {
+        row[..FEATURE_COUNT].copy_from_slice(&posture);
+    }
+    carried.log_durations = vec![TEMPO_SHARE * tempo; STATES_PER_STEP];
+    carried
+}
