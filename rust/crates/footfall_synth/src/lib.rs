@@ -42,7 +42,10 @@ pub use error::SynthError;
 pub use gait::{Gait, GaitChoice};
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};
 pub use looped::LoopedWalk;
-pub use recording::{StandConfig, SwitchingWalkConfig, synthesize_standing, synthesize_switching};
+pub use recording::{
+    Move, StandConfig, SwitchingWalkConfig, synthesize_moves, synthesize_standing,
+    synthesize_switching,
+};
 pub use space::StyleSpace;
 pub use state::StateError;
 pub use walk::{SynthesizedWalk, WalkConfig, synthesize};

@@ -63,6 +63,40 @@ pub(crate) fn from_standing(
     Ok(recording.into_walk(skeleton))
 }
 
+/// What a walker is asked to do from a time on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Move {
+    /// From when, seconds.
+    pub time_secs: f64,
+    /// What.
+    pub controls: Controls,
+}
+
+/// Generates somebody who does one thing after another, out of standing; the first move begins at once, whatever its time. It is who `config` says, for
+/// as long as that says.
+///
+/// # Errors
+/// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
+pub fn synthesize_moves(
+    model: &Arc<GaitModel>,
+    skeleton: &Skeleton,
+    moves: &[Move],
+    config: &StandConfig,
+) -> Result<SynthesizedWalk, SynthError> {
+    let (mut recording, rate) = standing_recording(model, skeleton, config)?;
+    let mut next = 0;
+    let mut controls = Controls::STAND;
+    for frame in 0..=(config.seconds.max(0.0) * rate).round() as usize {
+        let time = frame as f64 / rate;
+        while let Some(begun) = moves.get(next).filter(|begun| begun.time_secs <= time) {
+            controls = begun.controls;
+            next += 1;
+        }
+        recording.step(controls);
+    }
+    Ok(recording.into_walk(skeleton))
+}
+
 /// What standing to make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandConfig {
@@ -87,6 +121,19 @@ pub fn synthesize_standing(
     skeleton: &Skeleton,
     config: &StandConfig,
 ) -> Result<SynthesizedWalk, SynthError> {
+    let (mut recording, rate) = standing_recording(model, skeleton, config)?;
+    for _ in 0..=(config.seconds.max(0.0) * rate).round() as usize {
+        recording.step(Controls::STAND);
+    }
+    Ok(recording.into_walk(skeleton))
+}
+
+/// Somebody who stands, about to be recorded at so many frames a second.
+fn standing_recording(
+    model: &Arc<GaitModel>,
+    skeleton: &Skeleton,
+    config: &StandConfig,
+) -> Result<(Recording, f64), SynthError> {
     let rate = config.frame_rate_hz.unwrap_or(model.frame_rate_hz);
     for (setting, value) in [
         ("seconds", config.seconds as f32),
@@ -105,11 +152,7 @@ pub fn synthesize_standing(
     let mut generator = GaitGenerator::new(&space, &[], skeleton, &stander)?;
     generator.set_standing_motion(config.motion);
     generator.stand();
-    let mut recording = Recording::new(generator, rate);
-    for _ in 0..=(config.seconds.max(0.0) * rate).round() as usize {
-        recording.step(Controls::STAND);
-    }
-    Ok(recording.into_walk(skeleton))
+    Ok((Recording::new(generator, rate), rate))
 }
 
 /// What walk of a switching model to make.

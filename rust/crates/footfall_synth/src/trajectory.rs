@@ -9,6 +9,8 @@ use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, Real, mlpg_part};
 /// Solves trajectories; owns every buffer that this takes.
 #[derive(Debug)]
 pub(crate) struct TrajectorySolver<R: Real> {
+    /// Whether trajectories are pulled at all.
+    pub(crate) pulls: bool,
     pull_towards: Vec<R>,
     workspace: MlpgWorkspace<R>,
     window_means: Vec<R>,
@@ -21,6 +23,7 @@ impl<R: Real> TrajectorySolver<R> {
     pub(crate) fn new(steps: usize, frames: usize) -> Self {
         let room = steps * STATES_PER_STEP * OBSERVATION_COUNT;
         Self {
+            pulls: true,
             pull_towards: vec![R::default(); FEATURE_COUNT],
             workspace: MlpgWorkspace::with_capacity(frames),
             window_means: Vec::with_capacity(room),
@@ -97,7 +100,7 @@ impl<R: Real> TrajectorySolver<R> {
     ) -> Result<(), SynthError> {
         let mut workspace = core::mem::take(&mut self.workspace);
         let problem = MlpgProblem {
-            pull: Some(Pull {
+            pull: self.pulls.then_some(Pull {
                 strength: &statistics.pull_strength,
                 towards: &self.pull_towards,
             }),

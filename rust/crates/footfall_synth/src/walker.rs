@@ -154,7 +154,7 @@ impl Walker {
         self.draws[WINDOW - 1] = draw;
         self.blend_before = core::mem::replace(&mut self.blend, Arc::clone(blend));
         self.stale = false;
-        self.realise(planner, if same { WINDOW - 1 } else { 1 });
+        self.realise(planner, if same { WINDOW - 1 } else { 1 }, bench);
         self.solve_tied(bench);
     }
 
@@ -177,7 +177,7 @@ impl Walker {
             pace.tempo *= haste;
             pace.stride /= haste;
             self.stage.resume(feet);
-            self.realise(planner, 1);
+            self.realise(planner, 1, bench);
             self.solve_tied(bench);
             solved = true;
         }
@@ -241,13 +241,24 @@ impl Walker {
         self.stage.resume(state);
         self.origin = origin;
         self.stale = false;
-        self.realise(planner, 1);
+        self.realise(planner, 1, bench);
         self.solve_tied(bench);
         Ok(())
     }
 
-    fn realise(&mut self, planner: &mut Planner, first: usize) {
+    fn realise(&mut self, planner: &mut Planner, first: usize, bench: &mut Workbench) {
         let request = self.origin.request;
+        let changes = first <= 1 && self.blend_before.gait != self.blend.gait;
+        if changes {
+            planner.wear(&self.blend_before.model);
+            let before = &self.blend_before.statistics;
+            let manner = Manner {
+                detail: request.manner.detail,
+                ..Manner::inside(self.origin.manner_before.pace)
+            };
+            planner.realise(&self.draws[1], manner, before, &mut bench.going_over);
+            planner.wear(&self.blend.model);
+        }
         // The step ahead is that of someone who walks on.
         let ahead = match request.manner.position {
             StepPosition::First => StepPosition::Second,
@@ -262,12 +273,21 @@ impl Walker {
             };
             planner.realise(draw, manner, &self.blend.statistics, plan);
         }
+        if changes {
+            self.plans[1].go_over_from(&bench.going_over);
+        }
         self.plans[1].shape.set_amplitude(request.amplitude);
     }
 
     /// Solves the current step and the one ahead, tied to the step before, and puts the current one on the ground.
     fn solve_tied(&mut self, bench: &mut Workbench) {
-        bench.go_on(&self.blend.statistics, &self.plans, &self.origin.tie);
+        let changes = self.blend_before.gait != self.blend.gait;
+        bench.go_on(
+            &self.blend.statistics,
+            &self.plans,
+            &self.origin.tie,
+            changes,
+        );
         self.put_on_ground(1, TIE - 1, bench);
     }
 

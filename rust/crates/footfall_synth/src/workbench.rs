@@ -26,6 +26,8 @@ pub(crate) struct Workbench {
     /// Features of the step that is put on the ground, with its fine motion.
     pub(crate) shown: Vec<f32>,
     pub(crate) raw: Vec<RawFrame>,
+    /// A step in the gait before, where that changes.
+    pub(crate) going_over: StepPlan<f32>,
 }
 
 impl Workbench {
@@ -39,6 +41,7 @@ impl Workbench {
             fine: FineBench::new(),
             shown: vec![0.0; (longest + 1) * FEATURE_COUNT],
             raw: Stage::raw(longest),
+            going_over: StepPlan::empty(),
         }
     }
 
@@ -57,13 +60,15 @@ impl Workbench {
             .solve(statistics, &mut self.trajectory, 0, WALKED)
     }
 
-    /// Solves a window from the last frames of its first step on, which are given.
+    /// Solves a window from the last frames of its first step on, which are given. Where the gait changes, nothing is pulled away from the mean of either.
     pub(crate) fn go_on(
         &mut self,
         statistics: &Statistics<f32>,
         plans: &[StepPlan<f32>; WINDOW],
         tie: &[f32; TIE_LEN],
+        changes_gait: bool,
     ) {
+        self.solver.pulls = !changes_gait;
         let skip = (plans[0].shape.timing.frames + 1).saturating_sub(TIE);
         let frames = self.solver.load(statistics, plans, skip);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
@@ -71,6 +76,7 @@ impl Workbench {
         let solved = self
             .solver
             .solve(statistics, &mut self.trajectory, TIE, WALKED);
+        self.solver.pulls = true;
         if solved.is_err() {
             // A checked model does not get here; were it to, a rough pose beats none.
             self.solver.fill_with_means(&mut self.trajectory, TIE);

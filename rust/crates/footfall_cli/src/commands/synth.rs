@@ -1,11 +1,14 @@
 //! `footfall synth`: a model walks.
 
+mod controls;
+
 use crate::commands::walk_output::{WalkArgs, WalkFacts};
 use crate::model_file::{read_model, read_style};
 use crate::output;
 use anyhow::{Context as _, Result, bail, ensure};
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_synth::{GaitChoice, StandConfig, SynthesizedWalk, WalkConfig, synthesize, synthesize_standing};
+use footfall_core::EventKind;
+use footfall_synth::{GaitChoice, StandConfig, synthesize_moves, SynthesizedWalk, WalkConfig, synthesize, synthesize_standing};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -36,6 +39,10 @@ pub(crate) struct SynthArgs {
     /// Begin and end standing; otherwise the walk is cut out of a longer one
     #[arg(long)]
     standing: bool,
+    /// What to do when: a table with the columns time_s, speed_mps, turn_dps, direction_deg, gait, crouch and jump_m. A row holds until the next,
+    /// the last for one second; missing columns keep their defaults. It begins standing
+    #[arg(long, value_name = "MOVES.csv", conflicts_with_all = ["steps", "standing", "seconds", "speed", "turn", "direction", "gait"])]
+    controls: Option<PathBuf>,
     /// Walk or run; auto runs from about 2 m/s on, if the model knows how
     #[arg(long, value_enum, default_value_t = GaitArg::Auto)]
     gait: GaitArg,
@@ -120,6 +127,7 @@ struct Report<'a> {
 pub(crate) fn run(args: &SynthArgs) -> Result<()> {
     let styles = args.styles.iter().map(|style| style.path.as_path());
     let inputs: Vec<&Path> = styles.chain([args.model.as_path()]).collect();
+    let inputs: Vec<&Path> = inputs.into_iter().chain(args.controls.as_deref()).collect();
     let stands = args.walk.speed == Some(0.0);
     if !stands {
         args.walk.check_speed()?;
@@ -127,6 +135,9 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
     args.walk.check(&inputs)?;
     let (model, styles) = dressed(&args.model, &args.styles)?;
     let model = Arc::new(model);
+    if let Some(table) = &args.controls {
+        return follow(args, table, &model, styles);
+    }
     if stands {
         return stand(args, &model, styles);
     }
@@ -154,6 +165,28 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
     let walk = synthesize(&model, &model.skeleton, &config)
         .with_context(|| args.model.display().to_string())?;
     report(args, args.steps, &walk, styles, warnings)
+}
+
+/// Somebody who does what a table says.
+fn follow(
+    args: &SynthArgs,
+    table: &Path,
+    model: &Arc<GaitModel>,
+    styles: Vec<StyleReport>,
+) -> Result<()> {
+    let table = controls::read(table)?;
+    let config = StandConfig {
+        seconds: table.seconds,
+        seed: args.walk.seed,
+        variation: args.walk.variation,
+        motion: args.standing_motion,
+        frame_rate_hz: args.walk.fps,
+    };
+    let walk = synthesize_moves(model, &model.skeleton, &table.moves, &config)
+        .with_context(|| args.model.display().to_string())?;
+    let landings = walk.events().into_iter();
+    let steps = landings.filter(|event| event.kind == EventKind::InitialContact);
+    report(args, steps.count() as u32, &walk, styles, table.warnings)
 }
 
 /// Somebody who stands, as long as is asked for.
