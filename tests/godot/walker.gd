@@ -28,7 +28,7 @@ const BODY := {
 	"RightToes": ["RightFoot", Vector3(-0.09, 0.02, 0.135)],
 }
 const FEET: Array[StringName] = [&"left", &"right"]
-const MODEL := "res://addons/footfall/models/walk.footfall"
+const MODEL := "res://addons/footfall/models/locomotion.footfall"
 
 ## How the body is built. Set before `build()`.
 var missing: PackedStringArray = []

@@ -2,7 +2,7 @@
 extends Node3D
 ## The visible part of a character: your scene, with the nodes that walk it, above a capsule that it follows smoothly.
 
-const MODEL := "res://addons/footfall/models/walk.footfall"
+const MODEL := "res://addons/footfall/models/locomotion.footfall"
 ## The highest bone is a head's joint or its end: a body is so much higher.
 const HEIGHT_PER_BONE := 1.08
 ## From one upper arm's joint to the other, against a body's width.

@@ -108,7 +108,7 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>The way of walking: a <c>.footfall</c> file such as <c>addons/footfall/models/walk.footfall</c>, with which the crowd walks where this is empty.</summary>
+        /// <summary>The way of walking: a <c>.footfall</c> file such as <c>addons/footfall/models/locomotion.footfall</c>, with which the crowd walks where this is empty.</summary>
         public GaitModel Model
         {
             get => GaitModel.From(Native.Get(PropertyName.Model).AsGodotObject());

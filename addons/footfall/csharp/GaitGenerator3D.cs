@@ -90,8 +90,8 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>The way of walking: a <c>.footfall</c> file such as <c>addons/footfall/models/walk.footfall</c>, or a <c>.footdyn</c> file such as <c>addons/footfall/models/walk.footdyn</c>, a switching model, which is smaller and wears no styles.</summary>
-        /// <remarks>A node that is added in the editor has <c>walk.footfall</c>; where this is empty, as after <c>GaitGenerator3D.new()</c> in a script, the character walks with the same.</remarks>
+        /// <summary>The way of walking: a <c>.footfall</c> file such as <c>addons/footfall/models/locomotion.footfall</c>, or a <c>.footdyn</c> file such as <c>addons/footfall/models/walk.footdyn</c>, a switching model, which is smaller and wears no styles.</summary>
+        /// <remarks>A node that is added in the editor has <c>locomotion.footfall</c>; where this is empty, as after <c>GaitGenerator3D.new()</c> in a script, the character walks with the same.</remarks>
         public GaitModel Model
         {
             get => GaitModel.From(Native.Get(PropertyName.Model).AsGodotObject());

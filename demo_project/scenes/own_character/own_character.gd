@@ -2,7 +2,7 @@ extends WalkingScene
 ## Any humanoid walks: drop a .glb or .gltf file onto the window, or choose one.
 
 const PLACED: PackedScene = preload("res://characters/mannequin.glb")
-const MODEL: GaitModel = preload("res://addons/footfall/models/walk.footfall")
+const MODEL: GaitModel = preload("res://addons/footfall/models/locomotion.footfall")
 ## The names of the mannequin's bones here, as in characters from Mixamo, so that there is something to recognise.
 const OTHER_NAMES: Dictionary[String, String] = {
 	"Hips": "mixamorig:Hips", "Spine": "mixamorig:Spine", "Chest": "mixamorig:Spine1", "UpperChest": "mixamorig:Spine2",

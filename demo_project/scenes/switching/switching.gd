@@ -4,7 +4,7 @@ extends WalkingScene
 ## Each column's model, its name and its colour.
 const COLUMNS: Array[Array] = [
 	[preload("res://addons/footfall/models/walk.footdyn"), "two linear systems", Color("5f8fb0")],
-	[preload("res://addons/footfall/models/walk.footfall"), "trained walk", Color("c96f53")],
+	[preload("res://addons/footfall/models/locomotion.footfall"), "trained walk", Color("c96f53")],
 ]
 const ROWS := 3
 const BETWEEN_COLUMNS_M := 2.4

@@ -16,7 +16,7 @@ const NEEDED: [&str; 6] = [
     "plugin.cfg",
     "LICENSE",
     "README.md",
-    "models/walk.footfall",
+    "models/locomotion.footfall",
     "controller/gait_character_3d.tscn",
 ];
 

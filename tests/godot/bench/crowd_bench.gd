@@ -3,7 +3,7 @@ extends Node
 ##
 ## After `--`: how many instances, and how many whole skeletons.
 
-const MODEL := preload("res://addons/footfall/models/walk.footfall")
+const MODEL := preload("res://addons/footfall/models/locomotion.footfall")
 const DT := 1.0 / 60.0
 const FRAMES := 240
 ## Frames after which every walker has taken steps of all its lengths, so that nothing grows any more.

@@ -112,7 +112,7 @@ func test_what_makes_no_style_is_named_with_what_to_do() -> void:
 		[[PackedScene.new()], ["empty scene", "Choose the scene of a character"]],
 		[[GameClip.packed(no_skeleton)], ["no Skeleton3D", "Choose"]],
 		[[GameClip.packed(GameClip.character())], ["no AnimationPlayer", "Choose"]],
-		[[load(Walker.MODEL)], ["walk.footfall is a GaitModel", "Choose"]],
+		[[load(Walker.MODEL)], ["locomotion.footfall is a GaitModel", "Choose"]],
 		[[GameClip.scene({still = GameClip.still(walk)})], ["#still", "no two steps", "Choose clips that walk"]],
 		[[GameClip.scene({short = short})], ["#short (0.5 s)", "no two steps"]],
 		[[GameClip.packed(strange)], ["#walk", "LeftFoot", "BoneMap"]],

@@ -1,7 +1,7 @@
 extends TestCase
 ## A crowd: who walks, where, how they are drawn, and what a developer may get wrong.
 
-const MODEL := preload("res://addons/footfall/models/walk.footfall")
+const MODEL := preload("res://addons/footfall/models/locomotion.footfall")
 const PROUD := preload("res://addons/footfall/models/proud.footstyle")
 const DT := 1.0 / 60.0
 

@@ -1,7 +1,7 @@
 extends TestCase
 ## Walkers of a crowd as single ones: they come and go, are named, found, saved, and made without holding a frame.
 
-const MODEL := preload("res://addons/footfall/models/walk.footfall")
+const MODEL := preload("res://addons/footfall/models/locomotion.footfall")
 const PROUD := preload("res://addons/footfall/models/proud.footstyle")
 const SAD := preload("res://addons/footfall/models/sad.footstyle")
 const DT := 1.0 / 60.0

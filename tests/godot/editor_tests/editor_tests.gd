@@ -154,7 +154,7 @@ func _test_scene(dock: Node) -> void:
 
 	var own := gait.model
 	gait.model = GaitModel.new()
-	_check(gait.model.resource_path.ends_with("walk.footfall"), "a new model is the shipped one: " + gait.model.resource_path)
+	_check(gait.model.resource_path.ends_with("locomotion.footfall"), "a new model is the shipped one: " + gait.model.resource_path)
 	gait.model = own
 
 	EditorInterface.get_selection().clear()

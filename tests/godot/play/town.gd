@@ -4,7 +4,7 @@ extends Node3D
 ## Characters arrive one a frame, as games spawn them.
 
 const CONTROLLER: PackedScene = preload("res://addons/footfall/controller/gait_character_3d.tscn")
-const MODEL: GaitModel = preload("res://addons/footfall/models/walk.footfall")
+const MODEL: GaitModel = preload("res://addons/footfall/models/locomotion.footfall")
 const STYLES: Array[GaitStyle] = [
 	preload("res://addons/footfall/models/proud.footstyle"),
 	preload("res://addons/footfall/models/sad.footstyle"),

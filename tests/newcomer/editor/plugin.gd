@@ -5,7 +5,7 @@ extends EditorPlugin
 ## Names none of the add-on's classes: there are none when this is compiled. Goes by what the project holds, for the engine compiles scripts
 ## anew when an extension comes, and what they were waiting for is lost.
 
-const MODEL := "res://addons/footfall/models/walk.footfall"
+const MODEL := "res://addons/footfall/models/locomotion.footfall"
 const PATIENCE_MSECS := 60_000
 
 

@@ -197,7 +197,7 @@ pub fn percentile(values: &[f32], share: f32) -> f32 {
 fn space() -> &'static Arc<StyleSpace> {
     static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
     SPACE.get_or_init(|| {
-        let path = repository().join("addons/footfall/models/walk.footfall");
+        let path = repository().join("addons/footfall/models/locomotion.footfall");
         let bytes = std::fs::read(path).expect("the shipped model is there");
         let model = GaitModel::from_bytes(&bytes).expect("the shipped model can be read");
         Arc::new(StyleSpace::new(&Arc::new(model), &[]).expect("the shipped model walks"))

@@ -22,7 +22,7 @@ const MOST_SLIP: f32 = 0.2;
 fn walker(seed: u64) -> GaitGenerator {
     static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
     let space = SPACE.get_or_init(|| {
-        let path = repository().join("addons/footfall/models/walk.footfall");
+        let path = repository().join("addons/footfall/models/locomotion.footfall");
         let model = GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
         Arc::new(StyleSpace::new(&Arc::new(model), &[]).unwrap())
     });

@@ -92,7 +92,7 @@ fn bytes_of_one_more(make: impl Fn(u64) -> GaitGenerator) -> [isize; 2] {
 fn a_walker_more_costs_little_memory() {
     let models = repository().join("addons/footfall/models");
     let read = |name: &str| std::fs::read(models.join(name)).unwrap();
-    let model = Arc::new(GaitModel::from_bytes(&read("walk.footfall")).unwrap());
+    let model = Arc::new(GaitModel::from_bytes(&read("locomotion.footfall")).unwrap());
     let style = Arc::new(GaitStyle::from_bytes(&read("proud.footstyle")).unwrap());
     let space = Arc::new(StyleSpace::new(&model, &[style]).unwrap());
     let new = |weights: &[f32], seed| {

@@ -16,7 +16,7 @@ const DT: f32 = 1.0 / 60.0;
 fn walker(seed: u64) -> PlacedWalker {
     static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
     let space = SPACE.get_or_init(|| {
-        let path = repository().join("addons/footfall/models/walk.footfall");
+        let path = repository().join("addons/footfall/models/locomotion.footfall");
         let model = GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
         Arc::new(StyleSpace::new(&Arc::new(model), &[]).unwrap())
     });

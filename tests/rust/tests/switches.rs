@@ -51,7 +51,7 @@ fn f1([matched, found, known]: [usize; 3]) -> f64 {
 
 #[test]
 fn steps_of_generated_walks_are_found_at_any_rate() {
-    let path = repository().join("addons/footfall/models/walk.footfall");
+    let path = repository().join("addons/footfall/models/locomotion.footfall");
     let model = Arc::new(GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap());
     let mut counts = [0; 3];
     for (seed, rate) in [

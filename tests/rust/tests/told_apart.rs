@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// Walks of the shipped model, a seed each, seen through a change of its poses.
 fn walkers(seeds: core::ops::Range<u64>, change: impl Fn(&Clip) -> Clip) -> Vec<Walker> {
-    let path = repository().join("addons/footfall/models/walk.footfall");
+    let path = repository().join("addons/footfall/models/locomotion.footfall");
     let bytes = std::fs::read(&path).expect("the shipped model");
     let model = Arc::new(GaitModel::from_bytes(&bytes).expect("the shipped model"));
     seeds

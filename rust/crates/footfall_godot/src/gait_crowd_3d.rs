@@ -67,7 +67,7 @@ pub(crate) enum CrowdBehaviour {
     reason = "the inspector shows check boxes"
 )]
 pub(crate) struct GaitCrowd3D {
-    /// The way of walking: a `.footfall` file such as `addons/footfall/models/walk.footfall`, with which the crowd walks where this is empty.
+    /// The way of walking: a `.footfall` file such as `addons/footfall/models/locomotion.footfall`, with which the crowd walks where this is empty.
     #[export]
     #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
     model: Option<Gd<GaitModel>>,

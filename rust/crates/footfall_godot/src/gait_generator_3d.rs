@@ -49,10 +49,10 @@ use session::Session;
 #[derive(GodotClass)]
 #[class(tool, init, base = SkeletonModifier3D)]
 pub(crate) struct GaitGenerator3D {
-    /// The way of walking: a `.footfall` file such as `addons/footfall/models/walk.footfall`, or a `.footdyn` file such as
+    /// The way of walking: a `.footfall` file such as `addons/footfall/models/locomotion.footfall`, or a `.footdyn` file such as
     /// `addons/footfall/models/walk.footdyn`, a switching model, which is smaller and wears no styles.
     ///
-    /// A node that is added in the editor has `walk.footfall`; where this is empty, as after `GaitGenerator3D.new()` in a script, the
+    /// A node that is added in the editor has `locomotion.footfall`; where this is empty, as after `GaitGenerator3D.new()` in a script, the
     /// character walks with the same.
     #[export]
     #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
@@ -73,11 +73,11 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_style_weights)]
     style_weights: PackedFloat32Array,
 
-    /// How fast the character walks, in metres per second. Cadence and step length follow as they do in people.
+    /// How fast the character walks or runs, in metres per second. Cadence and step length follow as they do in people, and `gait` says from where on it runs.
     ///
     /// May change at any time; the walk takes it up with the next step. `GaitModel.get_speed_range()` tells what the model was
     /// trained on. At 0 the character stops within two steps and stands, or turns in place by `turn_rate`.
-    #[export(range = (0.0, 2.5, 0.01, or_greater, suffix = "m/s"))]
+    #[export(range = (0.0, 5.0, 0.01, or_greater, suffix = "m/s"))]
     #[var(set = set_speed)]
     #[init(val = 1.3)]
     speed: f64,
@@ -95,6 +95,14 @@ pub(crate) struct GaitGenerator3D {
     #[export(range = (-180.0, 180.0, 1.0, radians_as_degrees, suffix = "°"))]
     #[var(set = set_direction)]
     direction: f64,
+
+    /// Walking or running.
+    ///
+    /// Auto changes as people do: it runs from about 2 m/s on, sooner on short legs, and walks again a little below that. Walk and Run keep to one
+    /// gait at any speed; the steps in which the character starts and stops are walked, as are those to the side and backwards. A model that only walks,
+    /// as every `.footdyn`, walks. `get_current_gait()` tells which it is.
+    #[export]
+    gait: GaitGait,
 
     /// How much of the spine's pose is the walk's: at 0 `Spine`, `Chest` and `UpperChest` are posed by what else animates the skeleton, such
     /// as an `AnimationPlayer`, an `AnimationTree` or a script. Hips and legs always walk.

@@ -14,7 +14,7 @@ use std::sync::{Arc, Weak};
 pub(crate) const NO_STYLES: &str = "A switching model (.footdyn) wears no styles and walks without them: empty Styles, or load a .footfall file into Model.";
 
 /// What to do where there is no model.
-pub(crate) const NO_MODEL: &str = "No gait model, and the add-on's own, models/walk.footfall, is gone. Load a .footfall file into Model.";
+pub(crate) const NO_MODEL: &str = "No gait model, and the add-on's own, models/locomotion.footfall, is gone. Load a .footfall file into Model.";
 
 /// A way of walking that was learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
 /// (`.footdyn`, made by `footfall dynamics fit`).

@@ -5,7 +5,7 @@ use godot::prelude::*;
 use std::cell::OnceCell;
 
 /// The walk of nodes without a `model`.
-pub(crate) const WALK: &str = "walk.footfall";
+pub(crate) const WALK: &str = "locomotion.footfall";
 /// The sensor model of nodes without one.
 pub(crate) const RIGHT_FOOT: &str = "right_foot.footimu";
 

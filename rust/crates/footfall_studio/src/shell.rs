@@ -108,7 +108,7 @@ impl Shell {
     pub(crate) fn base(&mut self) -> Option<Arc<GaitModel>> {
         if self.base.is_none() && !self.looked_for_base {
             self.looked_for_base = true;
-            if let Some(path) = shipped_model("walk.footfall") {
+            if let Some(path) = shipped_model("locomotion.footfall") {
                 self.set_base(&path);
             }
         }

@@ -271,7 +271,6 @@ impl Planter {
             airborne: airborne.is_some(),
             ..*timing
         };
-        if std::env::var_os("DBG").is_some() { for (i,r) in raw.iter().enumerate() { let k=|s:Side|{let l=&r.legs[s.index()];let d=l.ankle.distance(l.hip)/self.leg_lengths[s.index()];2.0*d.min(1.0).acos().to_degrees()}; eprintln!("{i} to {:?} lead knee {:.0} pitch {:.0} ay {:.3} az {:.3}| trail knee {:.0} pitch {:.0} ay {:.3} az {:.3}",timing.take_off,k(timing.leading),r.legs[timing.leading.index()].free_pitch.to_degrees(),r.legs[timing.leading.index()].ankle.y,r.legs[timing.leading.index()].ankle.z,k(timing.leading.other()),r.legs[timing.leading.other().index()].free_pitch.to_degrees(),r.legs[timing.leading.other().index()].ankle.y,r.legs[timing.leading.other().index()].ankle.z);}}
         self.fill_stances(raw, timing);
         self.travel(raw, timing, course, out);
         let timing = &StepTiming {

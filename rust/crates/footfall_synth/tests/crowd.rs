@@ -19,7 +19,7 @@ fn space() -> &'static Arc<StyleSpace> {
     SPACE.get_or_init(|| {
         let path = concat!(
             env!("CARGO_MANIFEST_DIR"),
-            "/../../../addons/footfall/models/walk.footfall"
+            "/../../../addons/footfall/models/locomotion.footfall"
         );
         let model = GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
         Arc::new(StyleSpace::new(&Arc::new(model), &[]).unwrap())

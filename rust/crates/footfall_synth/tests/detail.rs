@@ -21,7 +21,7 @@ fn space() -> Arc<StyleSpace> {
     let make = || {
         let path = concat!(
             env!("CARGO_MANIFEST_DIR"),
-            "/../../../addons/footfall/models/walk.footfall"
+            "/../../../addons/footfall/models/locomotion.footfall"
         );
         let model = GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
         Arc::new(StyleSpace::new(&Arc::new(model), &[]).unwrap())

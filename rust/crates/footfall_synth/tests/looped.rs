@@ -11,7 +11,7 @@ use std::sync::Arc;
 fn maker() -> impl Fn() -> Option<GaitGenerator> {
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/../../../addons/footfall/models/walk.footfall"
+        "/../../../addons/footfall/models/locomotion.footfall"
     );
     let model = GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
     let space = Arc::new(StyleSpace::new(&Arc::new(model), &[]).unwrap());

@@ -19,7 +19,7 @@ const DT: f32 = 1.0 / 60.0;
 fn model() -> Arc<GaitModel> {
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/../../../addons/footfall/models/walk.footfall"
+        "/../../../addons/footfall/models/locomotion.footfall"
     );
     Arc::new(GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap())
 }

@@ -66,12 +66,11 @@ pub fn encode_clip(
                         side: step.side,
                         first: from - first,
                         end: to - first,
-                        // The flight that ends a running step is as long as the one before it.
-                        other_terminal: match step.take_off {
-                            Some(frame) => Some((frame as f64 - step.end as f64) / length),
-                            None => step
-                                .other_terminal
-                                .map(|frame| (frame as f64 - step.first as f64) / length),
+                        other_terminal: match (step.other_terminal, step.take_off) {
+                            (Some(frame), _) => Some((frame as f64 - step.first as f64) / length),
+                            // The flight that ends a running step is as long as the one before it.
+                            (None, Some(frame)) => Some((frame as f64 - step.end as f64) / length),
+                            (None, None) => None,
                         },
                         position: step.position,
                         speed_mps: speed(clip, step.first, step.end),

@@ -204,7 +204,7 @@ fn bad_input_is_named() {
     let report = footfall(folder, &["dynamics", "switches", "short.bvh", "--json"]).json();
     assert_eq!(report["switches"].as_array().unwrap().len(), 0);
 
-    let model = repository().join("addons/footfall/models/walk.footfall");
+    let model = repository().join("addons/footfall/models/locomotion.footfall");
     let synth = |model: &str, more: &[&str]| {
         let arguments = ["dynamics", "synth", "--model", model, "-o", "out.bvh"];
         footfall(folder, &[&arguments[..], more].concat())

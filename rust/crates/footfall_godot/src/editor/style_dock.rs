@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The walk that is adapted where none was chosen.
-const USUAL_BASE: &str = "res://addons/footfall/models/walk.footfall";
+const USUAL_BASE: &str = "res://addons/footfall/models/locomotion.footfall";
 
 /// Makes a `.footstyle` of recordings and of animations of characters, shows it, and gives it to a walker.
 #[derive(GodotClass)]

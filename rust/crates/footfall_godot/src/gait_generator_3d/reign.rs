@@ -177,8 +177,7 @@ impl GaitGenerator3D {
             speed_mps: self.speed as f32 * self.slowed,
             turn_rate_radps: self.turn_rate as f32,
             direction_rad: self.direction as f32,
-            gait: footfall_synth::GaitChoice::Auto,
-
+            gait: self.gait.into(),
         }
     }
 }

@@ -14,13 +14,16 @@ const FALLING_SHARE: f64 = 0.85;
 const GRAVITY_MPS2: f64 = 9.81;
 /// A fall that lasts shorter is noise.
 const LEAST_FALL_SECS: f64 = 0.025;
+/// A fall that ends longer before the landing is noise, too.
+const LANDING_SECS: f64 = 0.06;
 /// Nobody who runs is longer in the air than this share of a step; a body that is jumps.
 const LONGEST_FLIGHT_SHARE: f64 = 0.6;
 /// Steps of one run are so alike in speed, as a share, and turn so slowly, radians a second.
 const STEADY_SPEED_SHARE: f32 = 0.06;
-const STEADY_TURN_RADPS: f32 = 0.4;
+const STEADY_TURN_RADPS: f32 = 0.25;
 
-/// The parts of walks that are runs: at least two steps in a row with flight, at an even speed and nearly straight.
+/// The parts of walks that are runs: at least two steps in a row with flight, at an even speed and nearly straight. The other foot is in the air as each begins,
+/// whatever the contacts say.
 pub fn running_parts(clip: &Clip, walks: &[Walk]) -> Vec<Walk> {
     let mut runs = Vec::new();
     for walk in walks {
@@ -33,7 +36,10 @@ pub fn running_parts(clip: &Clip, walks: &[Walk]) -> Vec<Walk> {
             if !steps.last().is_none_or(|last| is_steady(clip, last, step)) {
                 runs.push(core::mem::take(&mut steps));
             }
-            steps.push(*step);
+            steps.push(Step {
+                other_terminal: None,
+                ..*step
+            });
         }
         runs.push(steps);
     }
@@ -68,9 +74,10 @@ pub(super) fn take_off(clip: &Clip, first: usize, end: usize) -> Option<usize> {
         vertical_acceleration(clip, *frame, reach) < -FALLING_SHARE * GRAVITY_MPS2
     };
     // The foot that lands brakes the fall a little before its initial contact is seen.
-    let fall: Vec<usize> = (middle..=end).filter(falls).collect();
-    let begins = *fall.first()?;
-    let long_enough = fall.len() as f64 >= LEAST_FALL_SECS * rate;
+    let ends = (middle..=end).rev().find(falls)?;
+    let begins = (middle..=ends).rev().take_while(falls).last()?;
+    let until_landing = ((end - ends) as f64) < LANDING_SECS * rate;
+    let long_enough = until_landing && (ends + 1 - begins) as f64 >= LEAST_FALL_SECS * rate;
     let no_jump = ((end - begins) as f64) < LONGEST_FLIGHT_SHARE * (end - first) as f64;
     (long_enough && no_jump).then(|| begins.saturating_sub(1).max(first + 1))
 }

@@ -248,7 +248,7 @@ impl TrainView {
         }
         let Some(base) = base.cloned() else {
             shell.complain(
-                "choose the model to start from, such as addons/footfall/models/walk.footfall"
+                "choose the model to start from, such as addons/footfall/models/locomotion.footfall"
                     .to_owned(),
             );
             return;

@@ -32,7 +32,7 @@ pub(crate) fn shipped(name: &str) -> PathBuf {
 }
 
 pub(crate) fn base() -> Arc<GaitModel> {
-    let bytes = std::fs::read(shipped("walk.footfall")).unwrap();
+    let bytes = std::fs::read(shipped("locomotion.footfall")).unwrap();
     Arc::new(GaitModel::from_bytes(&bytes).unwrap())
 }
 

@@ -13,7 +13,7 @@ pub(crate) fn model() -> Arc<GaitModel> {
     let load = || {
         let path = concat!(
             env!("CARGO_MANIFEST_DIR"),
-            "/../../../addons/footfall/models/walk.footfall"
+            "/../../../addons/footfall/models/locomotion.footfall"
         );
         Arc::new(GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap())
     };

@@ -206,7 +206,7 @@ mod tests {
 
     /// The shipped model with one component: every feature strays by 0.1, durations by a twentieth.
     fn base() -> GaitModel {
-        let bytes = include_bytes!("../../../../../addons/footfall/models/walk.footfall");
+        let bytes = include_bytes!("../../../../../addons/footfall/models/locomotion.footfall");
         let mut base = GaitModel::from_bytes(bytes).unwrap();
         let component = StepOffset {
             means: vec![0.1; STATES_PER_STEP * OBSERVATION_COUNT],

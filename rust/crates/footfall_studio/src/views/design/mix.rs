@@ -64,7 +64,7 @@ impl MixPage {
     pub(super) fn add(&mut self, shell: &mut Shell, style: GaitStyle) {
         let Some(base) = shell.base() else {
             shell.complain(
-                "choose the model that the style was made for in Train first, such as addons/footfall/models/walk.footfall".to_owned(),
+                "choose the model that the style was made for in Train first, such as addons/footfall/models/locomotion.footfall".to_owned(),
             );
             return;
         };

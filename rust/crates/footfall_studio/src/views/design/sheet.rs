@@ -302,7 +302,7 @@ impl SheetPage {
     fn make(&mut self, context: &Context, shell: &mut Shell) {
         let Some(base) = shell.base() else {
             shell.complain(
-                "choose a base model in Train first, such as addons/footfall/models/walk.footfall"
+                "choose a base model in Train first, such as addons/footfall/models/locomotion.footfall"
                     .to_owned(),
             );
             return;
