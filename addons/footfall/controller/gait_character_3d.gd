@@ -49,7 +49,7 @@ const EYE_HEIGHT := 0.8
 ## Speed of the walk. Keep to what the model knows: [method GaitModel.get_speed_range].
 @export_range(0.0, 3.0, 0.05, "or_greater", "suffix:m/s") var walk_speed := 1.3
 ## Speed of hurrying, while the action `hurry` is pressed.
-@export_range(0.0, 3.0, 0.05, "or_greater", "suffix:m/s") var hurry_speed := 2.0
+@export_range(0.0, 5.0, 0.05, "or_greater", "suffix:m/s") var hurry_speed := 3.2
 ## Turning towards where it is asked to go, at most.
 @export_range(0.0, 360.0, 1.0, "or_greater", "radians_as_degrees", "suffix:°/s") var max_turn_rate := 2.0
 ## Higher edges than this are walls.

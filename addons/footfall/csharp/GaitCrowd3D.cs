@@ -178,7 +178,7 @@ namespace Footfall
             set => Native.Set(PropertyName.NavigationLayers, value);
         }
 
-        /// <summary>The slowest and the fastest walker.</summary>
+        /// <summary>The slowest and the fastest walker. Those faster than about 2 m/s run, where the model knows how.</summary>
         public Vector2 SpeedRange
         {
             get => Native.Get(PropertyName.SpeedRange).AsVector2();

@@ -26,6 +26,7 @@ namespace Footfall
             public static readonly StringName Speed = "speed";
             public static readonly StringName TurnRate = "turn_rate";
             public static readonly StringName Direction = "direction";
+            public static readonly StringName Gait = "gait";
             public static readonly StringName SpineWeight = "spine_weight";
             public static readonly StringName HeadWeight = "head_weight";
             public static readonly StringName LeftArmWeight = "left_arm_weight";
@@ -45,6 +46,7 @@ namespace Footfall
         public static class MethodName
         {
             public static readonly StringName Bake = "bake";
+            public static readonly StringName GetCurrentGait = "get_current_gait";
             public static readonly StringName GetEffectiveSeed = "get_effective_seed";
             public static readonly StringName GetProblems = "get_problems";
             public static readonly StringName GetRootMotionDelta = "get_root_motion_delta";
@@ -64,6 +66,7 @@ namespace Footfall
         {
             public static readonly StringName FootholdPlanned = "foothold_planned";
             public static readonly StringName Footstep = "footstep";
+            public static readonly StringName GaitChanged = "gait_changed";
             public static readonly StringName HandedOver = "handed_over";
             public static readonly StringName TakenOver = "taken_over";
         }
@@ -114,7 +117,7 @@ namespace Footfall
             set => Native.Set(PropertyName.StyleWeights, value);
         }
 
-        /// <summary>How fast the character walks, in metres per second. Cadence and step length follow as they do in people.</summary>
+        /// <summary>How fast the character walks or runs, in metres per second. Cadence and step length follow as they do in people, and <see cref="Gait"/> says from where on it runs.</summary>
         /// <remarks>May change at any time; the walk takes it up with the next step. <see cref="GaitModel.GetSpeedRange"/> tells what the model was trained on. At 0 the character stops within two steps and stands, or turns in place by <see cref="TurnRate"/>.</remarks>
         public double Speed
         {
@@ -135,6 +138,14 @@ namespace Footfall
         {
             get => Native.Get(PropertyName.Direction).AsDouble();
             set => Native.Set(PropertyName.Direction, value);
+        }
+
+        /// <summary>Walking or running.</summary>
+        /// <remarks>Auto changes as people do: it runs from about 2 m/s on, sooner on short legs, and walks again a little below that. Walk and Run keep to one gait at any speed; the steps in which the character starts and stops are walked, as are those to the side and backwards. A model that only walks, as every <c>.footdyn</c>, walks. <see cref="GetCurrentGait"/> tells which it is.</remarks>
+        public GaitMode Gait
+        {
+            get => (GaitMode)Native.Get(PropertyName.Gait).AsInt64();
+            set => Native.Set(PropertyName.Gait, (long)value);
         }
 
         /// <summary>How much of the spine's pose is the walk's: at 0 <c>Spine</c>, <c>Chest</c> and <c>UpperChest</c> are posed by what else animates the skeleton, such as an <c>AnimationPlayer</c>, an <c>AnimationTree</c> or a script. Hips and legs always walk.</summary>
@@ -254,6 +265,14 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.Footstep, Callable.From(value));
         }
 
+        /// <summary>The character begins to walk or to run: <see cref="Gait"/> is <c>walk</c> or <c>run</c>. Emitted with the first step of it, not in the editor.</summary>
+        /// <value>Handlers take <c>gait</c>.</value>
+        public event Action<StringName> GaitChanged
+        {
+            add => Native.Connect(SignalName.GaitChanged, Callable.From(value));
+            remove => Native.Disconnect(SignalName.GaitChanged, Callable.From(value));
+        }
+
         /// <summary>After <see cref="HandOver"/>: the pose is that of what else animates the skeleton.</summary>
         public event Action HandedOver
         {
@@ -275,6 +294,9 @@ namespace Footfall
         /// <para>A clip takes some tens of milliseconds to make. Nothing of the node changes.</para>
         /// </remarks>
         public AnimationLibrary Bake(double seconds, string[] styles, float[] speeds) => (AnimationLibrary)Native.Call(MethodName.Bake, seconds, styles, speeds).AsGodotObject();
+
+        /// <summary>The gait of the step that is walked now: <c>walk</c> or <c>run</c>.</summary>
+        public StringName GetCurrentGait() => Native.Call(MethodName.GetCurrentGait).AsStringName();
 
         /// <summary>The seed of the walk: <see cref="Seed"/>, or where that is 0 the node's own, or that of the state that it goes on from.</summary>
         public long GetEffectiveSeed() => Native.Call(MethodName.GetEffectiveSeed).AsInt64();

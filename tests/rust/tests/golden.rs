@@ -56,7 +56,6 @@ fn a_synthesised_walk() {
         frame_rate_hz: None,
         from_standing: false,
         gait: footfall_synth::GaitChoice::Auto,
-
     };
     let walk = synthesize(&model, &model.skeleton, &config).unwrap();
     let rows: Vec<_> = walk

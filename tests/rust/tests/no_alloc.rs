@@ -107,7 +107,6 @@ fn assert_no_allocation(mut generator: GaitGenerator, seed: u64) {
             turn_rate_radps: 2.0 * wave,
             direction_rad: 4.0 * wave,
             gait: footfall_synth::GaitChoice::Auto,
-
         };
         let dt_secs = if frame % 1000 == 999 { 3.0 } else { 1.0 / 60.0 };
         let before = allocations();

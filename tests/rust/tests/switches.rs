@@ -72,7 +72,6 @@ fn steps_of_generated_walks_are_found_at_any_rate() {
             frame_rate_hz: Some(rate),
             from_standing: false,
             gait: footfall_synth::GaitChoice::Auto,
-
         };
         let walk = synthesize(&model, &Skeleton::standard(), &config).unwrap();
         let switches = detect_switches(&walk.clip, 0).unwrap();

@@ -28,7 +28,6 @@ fn walkers(seeds: core::ops::Range<u64>, change: impl Fn(&Clip) -> Clip) -> Vec<
                 frame_rate_hz: None,
                 from_standing: false,
                 gait: footfall_synth::GaitChoice::Auto,
-
             };
             let walk = synthesize(&model, &model.skeleton, &config).expect("a walk");
             let contacts = detect_contacts(&walk.clip, &ContactConfig::from_frame(0));

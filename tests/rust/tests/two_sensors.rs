@@ -26,7 +26,6 @@ fn clip(gait: &Arc<GaitModel>, seed: u64, speed: f32) -> Clip {
         frame_rate_hz: Some(60.0),
         from_standing: false,
         gait: footfall_synth::GaitChoice::Auto,
-
     };
     synthesize(gait, &gait.skeleton, &config).unwrap().clip
 }

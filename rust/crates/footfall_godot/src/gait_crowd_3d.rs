@@ -38,6 +38,9 @@ const NO_CHARACTER: &str = "No character. Load a scene with a humanoid character
 /// More walkers than this are refused: their steps alone would take gigabytes.
 const MOST_AGENTS: i64 = 100_000;
 
+/// Nobody walks or runs faster, m/s.
+const FASTEST_MPS: f32 = 6.0;
+
 /// What the walkers of a crowd do by themselves.
 #[derive(GodotConvert, Var, Export, Default, Clone, Copy, Debug, PartialEq)]
 #[godot(via = i64)]
@@ -123,8 +126,8 @@ pub(crate) struct GaitCrowd3D {
     #[init(val = 1)]
     navigation_layers: u32,
 
-    /// The slowest and the fastest walker.
-    #[export(range = (0.4, 2.2, 0.01, or_greater, or_less, suffix = "m/s"))]
+    /// The slowest and the fastest walker. Those faster than about 2 m/s run, where the model knows how.
+    #[export(range = (0.4, 4.0, 0.01, or_greater, or_less, suffix = "m/s"))]
     #[var(set = set_speed_range)]
     #[init(val = Vector2::new(0.95, 1.55))]
     speed_range: Vector2,
@@ -341,7 +344,7 @@ impl GaitCrowd3D {
     #[func]
     fn set_speed_range(&mut self, speed_range: Vector2) {
         if speed_range.is_finite() {
-            self.speed_range = speed_range.clamp(Vector2::ZERO, Vector2::splat(3.0));
+            self.speed_range = speed_range.clamp(Vector2::ZERO, Vector2::splat(FASTEST_MPS));
             self.restart();
         }
     }

@@ -7,6 +7,7 @@ mod detail;
 mod fit;
 #[cfg(feature = "editor")]
 mod foresight;
+mod gait_choice;
 mod leaving;
 mod methods;
 mod problems;
@@ -29,6 +30,8 @@ use crate::walk_source::WalkSource;
 use absence::Absent;
 use detail::GaitDetail;
 use footfall_core::Side;
+use footfall_synth::Gait;
+use gait_choice::GaitMode;
 use glam::Vec3;
 use godot::classes::{BoneMap, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
@@ -102,7 +105,7 @@ pub(crate) struct GaitGenerator3D {
     /// gait at any speed; the steps in which the character starts and stops are walked, as are those to the side and backwards. A model that only walks,
     /// as every `.footdyn`, walks. `get_current_gait()` tells which it is.
     #[export]
-    gait: GaitGait,
+    gait: GaitMode,
 
     /// How much of the spine's pose is the walk's: at 0 `Spine`, `Chest` and `UpperChest` are posed by what else animates the skeleton, such
     /// as an `AnimationPlayer`, an `AnimationTree` or a script. Hips and legs always walk.
@@ -201,6 +204,8 @@ pub(crate) struct GaitGenerator3D {
     pending_seek: Option<f64>,
     /// Whether the editor holds the walk; `None` while `playing` says.
     preview_paused: Option<bool>,
+    /// The gait that was told last.
+    told_gait: Gait,
     /// A state that the next walk goes on from.
     pending_state: Option<PackedByteArray>,
     /// The walk under way; `None` until the next frame that can start it.
@@ -273,6 +278,10 @@ impl GaitGenerator3D {
     /// `position` is in global space, on the flat floor of the walk. Emitted once for every step, not in the editor.
     #[signal]
     fn foothold_planned(foot: StringName, position: Vector3, seconds: f64);
+
+    /// The character begins to walk or to run: `gait` is `walk` or `run`. Emitted with the first step of it, not in the editor.
+    #[signal]
+    fn gait_changed(gait: StringName);
 
     /// Emitted when the pose from before `take_over()` has faded: the pose is the walk's.
     #[signal]

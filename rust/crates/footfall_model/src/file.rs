@@ -120,7 +120,10 @@ impl GaitModel {
             None => walk,
         };
         let (version, payload) = match &self.running {
-            Some(running) => (FORMAT_VERSION, v5::encode(model, running.encode_walk()?, &running.provenance)?),
+            Some(running) => (
+                FORMAT_VERSION,
+                v5::encode(model, running.encode_walk()?, &running.provenance)?,
+            ),
             None => model,
         };
         write_container(version, GAIT_KIND, &self.provenance, &payload)

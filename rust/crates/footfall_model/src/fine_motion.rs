@@ -68,7 +68,11 @@ impl FineMotion {
         }
         check_finite("strength of fine motion", &chance.walker_strength)?;
         // Without any, all walkers have the same.
-        let walkers = if self.walker.is_empty() { 0 } else { walker_components };
+        let walkers = if self.walker.is_empty() {
+            0
+        } else {
+            walker_components
+        };
         let counts = [
             ("walkers' fine motion", walkers, self.walker.len()),
             (

@@ -22,6 +22,9 @@ pub struct ContactFile {
     pub left: Vec<[usize; 2]>,
     /// First and last frame of each stance of the right foot.
     pub right: Vec<[usize; 2]>,
+    /// First and last frame of each time in which neither foot bears; missing where one always does.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub flight: Vec<[usize; 2]>,
     /// Both ends of each stance, in order.
     pub events: Vec<EventEntry>,
     /// Steps with their place in the walk, in order.
@@ -118,6 +121,7 @@ impl ContactFile {
         Self {
             fps,
             frames,
+            flight: flights(frames, stances),
             left,
             right,
             events: events
@@ -207,5 +211,35 @@ impl ContactFile {
                 .map(|&[first, last]| FrameSpan { first, last })
                 .collect()
         })
+    }
+}
+/// The frames in which neither foot bears, in a row.
+fn flights(frames: usize, stances: [&[FrameSpan]; 2]) -> Vec<[usize; 2]> {
+    let mut flights: Vec<[usize; 2]> = Vec::new();
+    let mut spans: Vec<&FrameSpan> = stances.into_iter().flatten().collect();
+    spans.sort_by_key(|span| span.first);
+    let mut borne_until = 0;
+    for span in spans {
+        if span.first > borne_until && borne_until > 0 {
+            flights.push([borne_until, span.first - 1]);
+        }
+        borne_until = borne_until.max(span.last + 1);
+    }
+    // What comes before the first contact and after the last was not seen to end.
+    flights.retain(|flight| flight[1] < frames);
+    flights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flights_lie_between_contacts() {
+        let span = |first, last| FrameSpan { first, last };
+        let left = [span(0, 10), span(30, 40)];
+        let right = [span(8, 20), span(26, 28), span(50, 60)];
+        let flights = flights(61, [&left, &right]);
+        assert_eq!(flights, [[21, 25], [29, 29], [41, 49]]);
     }
 }

@@ -32,9 +32,9 @@ mod variance;
 mod walk;
 mod walker;
 mod workbench;
-mod worn;
 #[doc(hidden)]
 pub mod workload;
+mod worn;
 
 pub use crowd::{CrowdPose, CrowdWalker, StyledBody, Workshop};
 pub use detail::Detail;

@@ -143,7 +143,10 @@ impl StepShape {
         StepTiming {
             frames,
             terminal: (self.timing.terminal / stride).clamp(1, frames - 2),
-            take_off: self.timing.take_off.map(|last| (last / stride).clamp(2, frames - 1)),
+            take_off: self
+                .timing
+                .take_off
+                .map(|last| (last / stride).clamp(2, frames - 1)),
             ..self.timing
         }
     }

@@ -16,12 +16,12 @@ use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
 use crate::strafe::{Strafe, Turner};
 use core::ops::Range;
+pub(crate) use flight::Airborne;
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
 use glam::{Quat, Vec3};
-pub(crate) use flight::Airborne;
 use swing::Swing;
 
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
@@ -267,7 +267,11 @@ impl Planter {
     ) -> StepTiming {
         let airborne = self.state.airborne.take();
         let timing = &StepTiming {
-            terminal: if airborne.is_some() { 0 } else { timing.terminal },
+            terminal: if airborne.is_some() {
+                0
+            } else {
+                timing.terminal
+            },
             airborne: airborne.is_some(),
             ..*timing
         };
@@ -303,7 +307,11 @@ impl Planter {
         let (hips, level) = (out[before].pose.root_position, out[before].level);
         let arrival = free_foot(&raw[before], trailing, hips, level).ankle;
         let swing = Swing::new(&ends, arrival, timing, self.frame_secs);
-        let first = if timing.airborne { 0 } else { timing.terminal + 1 };
+        let first = if timing.airborne {
+            0
+        } else {
+            timing.terminal + 1
+        };
         self.fill_swing(raw, trailing, first..timing.frames, &swing, out);
         self.depart(raw, timing, out);
         raw[timing.frames].legs[trailing.index()].target = ends[2].0;

@@ -8,8 +8,8 @@ mod source;
 
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
 use crate::gait::Gait;
+use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
 use crate::planting::{Airborne, PlanterState};
 use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
@@ -232,7 +232,9 @@ impl GaitGenerator {
             variation: state.variation,
         };
         match &mut self.steps {
-            Steps::Styled(steps) => **steps = state.styled(steps, &running, &self.skeleton, &config)?,
+            Steps::Styled(steps) => {
+                **steps = state.styled(steps, &running, &self.skeleton, &config)?
+            }
             Steps::Switching(steps) => state.resume(steps, &config)?,
         }
         self.config = config;
@@ -266,15 +268,21 @@ impl GaitGenerator {
         let airborne = feet.and_then(|feet| feet.airborne);
         Running {
             runs: steps.walker.blends().map(|blend| blend.gait == Gait::Run),
-            airborne: airborne
-                .map(|foot| (numbers_of(&foot.now), numbers_of(&foot.before), foot.frame_secs)),
+            airborne: airborne.map(|foot| {
+                (
+                    numbers_of(&foot.now),
+                    numbers_of(&foot.before),
+                    foot.frame_secs,
+                )
+            }),
         }
     }
 }
 
 impl Running {
     fn gaits(&self) -> [Gait; 2] {
-        self.runs.map(|runs| if runs { Gait::Run } else { Gait::Walk })
+        self.runs
+            .map(|runs| if runs { Gait::Run } else { Gait::Walk })
     }
 
     fn airborne(&self) -> Option<Airborne> {

@@ -4,9 +4,9 @@
 mod source;
 mod system;
 
-use crate::gait::GaitChoice;
 use crate::detail::Detail;
 use crate::error::SynthError;
+use crate::gait::GaitChoice;
 use crate::generator::GeneratorConfig;
 use crate::pace::tempo_and_stride;
 use crate::plan::{MAX_STEP_SECS, StepShape};

@@ -1,8 +1,8 @@
 //! A whole walk at once.
 
 use crate::error::SynthError;
-use crate::gait::{Gait, GaitChoice};
 use crate::fine_motion::{FineBench, FineTables, neighbours};
+use crate::gait::{Gait, GaitChoice};
 use crate::pace::PaceTable;
 use crate::plan::{Manner, Planner, StepDraw, StepPlan};
 use crate::planting::{Course, PlantedFrame, Planter};
@@ -148,9 +148,7 @@ fn gait_of(model: &GaitModel, skeleton: &Skeleton, config: &WalkConfig) -> Gait 
     if model.running.is_none() {
         return Gait::Walk;
     }
-    let speed = config
-        .speed_mps
-        .unwrap_or(model.speed.reference_mps as f32);
+    let speed = config.speed_mps.unwrap_or(model.speed.reference_mps as f32);
     let leg_length = skeleton.mean_leg_length();
     let gait = config.gait;
     gait.of_step(Gait::Walk, speed * Vec2::Y, leg_length, false)
@@ -229,7 +227,9 @@ pub(crate) fn put_on_ground(
                 None => stances[timing.leading.other().index()].push([0.0, leaves]),
             }
         }
-        let leaves = timing.take_off.map(|last| elapsed + last as f64 * frame_secs);
+        let leaves = timing
+            .take_off
+            .map(|last| elapsed + last as f64 * frame_secs);
         stances[timing.leading.index()].push([elapsed, leaves.unwrap_or(f64::INFINITY)]);
         elapsed += timing.frames as f64 * frame_secs;
     }

@@ -338,8 +338,14 @@ impl Walker {
         let [before, now] = [&self.blend_before, &self.blend];
         // A gait has a fine motion of its own: that of the one before goes as that of the other comes.
         let fading = (before.gait != now.gait).then_some((before, [&before.fine_scale, &NO_SCALE]));
-        let scale_before = if fading.is_some() { &NO_SCALE } else { &before.fine_scale };
-        let motions = fading.into_iter().chain([(now, [scale_before, &now.fine_scale])]);
+        let scale_before = if fading.is_some() {
+            &NO_SCALE
+        } else {
+            &before.fine_scale
+        };
+        let motions = fading
+            .into_iter()
+            .chain([(now, [scale_before, &now.fine_scale])]);
         let length = (shape.timing.frames + 1) * FEATURE_COUNT;
         let shown = &mut shown[..length];
         shown.copy_from_slice(&trajectory[..length]);

@@ -6,9 +6,12 @@ use crate::commands::walk_output::{WalkArgs, WalkFacts};
 use crate::model_file::{read_model, read_style};
 use crate::output;
 use anyhow::{Context as _, Result, bail, ensure};
-use footfall_model::{GaitModel, GaitStyle};
 use footfall_core::EventKind;
-use footfall_synth::{GaitChoice, StandConfig, synthesize_moves, SynthesizedWalk, WalkConfig, synthesize, synthesize_standing};
+use footfall_model::{GaitModel, GaitStyle};
+use footfall_synth::{
+    GaitChoice, StandConfig, SynthesizedWalk, WalkConfig, synthesize, synthesize_moves,
+    synthesize_standing,
+};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -160,7 +163,6 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
         frame_rate_hz: args.walk.fps,
         from_standing: args.standing,
         gait: args.gait.into(),
-
     };
     let walk = synthesize(&model, &model.skeleton, &config)
         .with_context(|| args.model.display().to_string())?;

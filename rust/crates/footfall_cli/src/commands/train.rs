@@ -8,8 +8,8 @@ use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
 use footfall_core::StepPosition;
-use footfall_motion::corpus::{Corpus, Where};
 use footfall_model::GaitModel;
+use footfall_motion::corpus::{Corpus, Where};
 use footfall_prob::windows::Windows;
 use footfall_train::standing::{self, LearnedStanding, StandingClip};
 use footfall_train::{

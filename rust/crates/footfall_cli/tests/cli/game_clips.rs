@@ -21,7 +21,8 @@ use std::path::{Path, PathBuf};
 const CENTIMETRES: f32 = 100.0;
 
 fn shipped_model() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../addons/footfall/models/locomotion.footfall")
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../addons/footfall/models/locomotion.footfall")
 }
 
 /// One stride out of the middle of a walk that the shipped model makes at a speed, and how far it goes.

@@ -81,7 +81,7 @@ impl GaitCrowd3D {
     ) {
         self.set_each(speeds.as_slice(), &agents, |agent, speed| {
             if speed.is_finite() {
-                agent.speed_mps = speed.clamp(0.0, 3.0);
+                agent.speed_mps = speed.clamp(0.0, super::FASTEST_MPS);
             }
         });
     }

@@ -1,8 +1,10 @@
 //! What scripts ask of the node.
 
 use super::GaitGenerator3D;
+use super::gait_choice::name_of;
 use crate::root_motion::{Moves, Now};
 use footfall_core::Side;
+use footfall_synth::Gait;
 use godot::classes::Engine;
 use godot::prelude::*;
 
@@ -31,6 +33,13 @@ impl GaitGenerator3D {
     #[func]
     fn get_effective_seed(&self) -> i64 {
         self.effective_seed().cast_signed()
+    }
+
+    /// The gait of the step that is walked now: `walk` or `run`.
+    #[func]
+    fn get_current_gait(&self) -> StringName {
+        let session = self.session.as_ref();
+        name_of(session.map_or(Gait::Walk, |session| session.generator.gait()))
     }
 
     /// Whether any part of a foot, `left` or `right`, stands on the ground.

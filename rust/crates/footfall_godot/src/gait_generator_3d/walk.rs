@@ -1,6 +1,7 @@
 //! One frame of the walk.
 
 use super::GaitGenerator3D;
+use super::gait_choice::name_of;
 use super::reign::Reign;
 use super::session::Session;
 use crate::gait_model::NO_STYLES;
@@ -135,6 +136,7 @@ impl GaitGenerator3D {
             session.footsteps(&travel)
         };
         let foothold = session.next_foothold(&travel).filter(|_| !silent);
+        let gait = session.generator.gait();
         self.session = Some(session);
         if arrived {
             self.signals().taken_over().emit();
@@ -146,6 +148,10 @@ impl GaitGenerator3D {
         for (side, position) in footsteps {
             let foot = StringName::from(side.name());
             self.signals().footstep().emit(&foot, position);
+        }
+        if gait != self.told_gait && !silent {
+            self.told_gait = gait;
+            self.signals().gait_changed().emit(&name_of(gait));
         }
         let side = foothold.map(|(side, ..)| side);
         if side != self.announced {

@@ -57,7 +57,11 @@ impl GaitModel {
                 *mean *= factor[index % OBSERVATION_COUNT % FEATURE_COUNT];
             }
         };
-        let variation = run.variation.walker.iter_mut().chain(&mut run.variation.step);
+        let variation = run
+            .variation
+            .walker
+            .iter_mut()
+            .chain(&mut run.variation.step);
         for offset in variation.flatten().chain(&mut run.speed.slopes) {
             scaled(&mut offset.means);
         }

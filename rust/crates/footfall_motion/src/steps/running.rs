@@ -70,9 +70,8 @@ pub(super) fn take_off(clip: &Clip, first: usize, end: usize) -> Option<usize> {
     if middle < reach || end + reach >= clip.poses.len() {
         return None;
     }
-    let falls = |frame: &usize| {
-        vertical_acceleration(clip, *frame, reach) < -FALLING_SHARE * GRAVITY_MPS2
-    };
+    let falls =
+        |frame: &usize| vertical_acceleration(clip, *frame, reach) < -FALLING_SHARE * GRAVITY_MPS2;
     // The foot that lands brakes the fall a little before its initial contact is seen.
     let ends = (middle..=end).rev().find(falls)?;
     let begins = (middle..=ends).rev().take_while(falls).last()?;
@@ -114,7 +113,8 @@ mod tests {
                 speed * t + 0.5 * push * t * t
             } else {
                 let s = t - stance;
-                speed * stance + 0.5 * push * stance * stance - speed * s
+                speed * stance + 0.5 * push * stance * stance
+                    - speed * s
                     - 0.5 * GRAVITY_MPS2 * s * s
             };
             Pose {
@@ -136,7 +136,10 @@ mod tests {
             let at = |secs: f64| (secs * rate).round() as usize;
             let found = take_off(&clip, at(0.35), at(0.7));
             let secs = found.map(|frame| frame as f64 / rate);
-            assert!(secs.is_some_and(|secs| (secs - 0.6).abs() < 0.035), "{secs:?} at {rate} Hz");
+            assert!(
+                secs.is_some_and(|secs| (secs - 0.6).abs() < 0.035),
+                "{secs:?} at {rate} Hz"
+            );
         }
     }
 

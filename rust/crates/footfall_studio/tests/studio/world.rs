@@ -55,7 +55,6 @@ impl World {
                     frame_rate_hz: Some(60.0),
                     from_standing: take == 1,
                     gait: footfall_synth::GaitChoice::Auto,
-
                 };
                 let walk = synthesize(&model, &model.skeleton, &config).unwrap();
                 let text = bvh::write(&clip_to_bvh(&walk.clip));

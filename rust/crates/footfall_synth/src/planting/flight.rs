@@ -3,8 +3,8 @@
 //! Nothing but gravity acts then, so the hips go on at an even speed over the ground and on a parabola above it, from where the foot takes off to
 //! where the generated leg of the other foot has them as it lands. The foot that took off is on its swing; the next step brings it down.
 
-use super::swing::Swing;
 use super::support::LET_GO_EXTENSION;
+use super::swing::Swing;
 use super::{PlantedFrame, Planter, StepTiming, free_foot};
 use crate::generator::GroundTransform;
 use crate::raw::RawFrame;

@@ -62,7 +62,10 @@ impl Planter {
         frame: &PlantedFrame,
     ) -> f64 {
         let leading = timing.leading;
-        let bearing = [(leading, true), (leading.other(), timing.trailing_bears(index))];
+        let bearing = [
+            (leading, true),
+            (leading.other(), timing.trailing_bears(index)),
+        ];
         let limits = bearing.into_iter().filter_map(|(side, bears)| {
             let hips = frame.pose.root_position;
             bears.then(|| self.reach_limit(side, hips, raw, frame))?

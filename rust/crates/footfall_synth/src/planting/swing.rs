@@ -70,7 +70,11 @@ impl Swing {
         // The corrections have come to rest by then.
         let landing = ends[2].1.ankle - arrival;
         Self {
-            freed_after: if timing.airborne { 0.0 } else { FREED_BY * frames },
+            freed_after: if timing.airborne {
+                0.0
+            } else {
+                FREED_BY * frames
+            },
             excess: landing - landing.clamp_length_max(MAX_LANDING_MPS * frame_secs),
             braking: (BRAKING_SECS / frame_secs).min(frames),
             ..Self::between(&[ends[0], ends[1]], Some(&ends[2]), first, frames)

@@ -3,12 +3,12 @@
 use super::{Feet, Running, Source, State, StateError, detail_of};
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
-use crate::planting::PlanterState;
 use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
+use crate::planting::PlanterState;
 use crate::styled::{StyledSteps, walker_of};
-use crate::worn::Worn;
 use crate::switching::{SwitchingOrigin, SwitchingSteps};
 use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
+use crate::worn::Worn;
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::GaitModel;
 

@@ -1,8 +1,8 @@
 //! The steps of a switching model, one after the other.
 
-use crate::gait::{FASTEST_WALK_MPS, Gait};
 use super::SwitchingSteps;
 use crate::detail::Detail;
+use crate::gait::{FASTEST_WALK_MPS, Gait};
 use crate::generator::STANDING_SPEED_MPS;
 use crate::plan::StepShape;
 use crate::stage::Stage;

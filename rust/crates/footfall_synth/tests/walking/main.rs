@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 
+mod running;
 mod strafing;
 mod world;
 
@@ -369,7 +370,6 @@ fn a_whole_walk_has_its_steps_its_speed_and_its_contacts() {
             frame_rate_hz,
             from_standing: false,
             gait: footfall_synth::GaitChoice::Auto,
-
         };
         synthesize(&model(), &Skeleton::standard(), &settings).unwrap()
     };

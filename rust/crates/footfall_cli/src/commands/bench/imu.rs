@@ -72,7 +72,6 @@ impl ReconstructorBench {
                 frame_rate_hz: Some(60.0),
                 from_standing: false,
                 gait: footfall_synth::GaitChoice::Auto,
-
             };
             synthesize(gait, &gait.skeleton, &config).map(|walk| walk.clip)
         };

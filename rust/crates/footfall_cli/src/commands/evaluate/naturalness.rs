@@ -115,7 +115,6 @@ fn seeds(model: &Arc<GaitModel>, args: &NaturalnessArgs, speeds: &[f32]) -> Resu
                 frame_rate_hz: None,
                 from_standing: false,
                 gait: footfall_synth::GaitChoice::Auto,
-
             };
             let walk = synthesize(model, &model.skeleton, &config)
                 .with_context(|| args.judged.model.display().to_string())?;

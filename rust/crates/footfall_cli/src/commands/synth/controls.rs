@@ -71,7 +71,10 @@ fn parse(text: &str) -> Result<Table> {
             let value: f32 = text
                 .parse()
                 .with_context(|| format!("line {line}: {name} '{text}' is no number"))?;
-            ensure!(value.is_finite(), "line {line}: {name} {value} is not finite");
+            ensure!(
+                value.is_finite(),
+                "line {line}: {name} {value} is not finite"
+            );
             Ok(value)
         };
         let time_secs = f64::from(number("time_s")?);
@@ -129,7 +132,10 @@ mod tests {
         };
         assert_eq!(walk.controls.gait, GaitChoice::Auto);
         assert!((walk.controls.speed_mps - 1.4).abs() < 1e-6);
-        assert_eq!((run.controls.speed_mps, run.controls.gait), (0.0, GaitChoice::Run));
+        assert_eq!(
+            (run.controls.speed_mps, run.controls.gait),
+            (0.0, GaitChoice::Run)
+        );
         assert!((table.seconds - 3.5).abs() < 1e-9 && table.warnings.is_empty());
         Ok(())
     }
@@ -154,7 +160,10 @@ mod tests {
             ("time_s,speed_mps\n0,NaN\n", "line 2"),
         ] {
             let error = parse(text).map_err(|error| format!("{error:#}"));
-            assert!(error.as_ref().is_err_and(|error| error.contains(says)), "{text}: {error:?}");
+            assert!(
+                error.as_ref().is_err_and(|error| error.contains(says)),
+                "{text}: {error:?}"
+            );
         }
     }
 }

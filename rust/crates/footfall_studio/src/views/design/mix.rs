@@ -293,7 +293,6 @@ impl MixPage {
             frame_rate_hz: None,
             from_standing: false,
             gait: footfall_synth::GaitChoice::Auto,
-
         };
         let walk = base
             .styled(&weighted)
