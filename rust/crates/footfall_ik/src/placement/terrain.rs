@@ -18,6 +18,8 @@ pub struct Ground {
 }
 
 /// The ground of a scene, however it is found: by casting rays, from a height map, from a formula.
+///
+/// A closure that answers [`cast`](Self::cast) is ground on which nothing moves.
 pub trait Terrain {
     /// The first ground on the way from `from` along `way`, both of the world in metres; `None` when there is none. Ground in which
     /// `from` itself lies is not met.
@@ -25,4 +27,14 @@ pub trait Terrain {
 
     /// Where a support is in the world now: `world_from_support`. `None` when it is gone.
     fn support(&mut self, support: SupportId) -> Option<Frame>;
+}
+
+impl<F: FnMut(Vec3, Vec3) -> Option<Ground>> Terrain for F {
+    fn cast(&mut self, from: Vec3, way: Vec3) -> Option<Ground> {
+        self(from, way)
+    }
+
+    fn support(&mut self, _support: SupportId) -> Option<Frame> {
+        Some(Frame::IDENTITY)
+    }
 }
