@@ -1,9 +1,9 @@
-//! What feet can stand on.
+//! Ground queries.
 
 use crate::placement::frame::Frame;
 use glam::Vec3;
 
-/// Tells one thing to stand on from another. 0 is the world itself, which never moves.
+/// Identity of one thing to stand on. 0 is the world itself, which never moves.
 pub type SupportId = u64;
 
 /// A point of the ground.
@@ -13,7 +13,7 @@ pub struct Ground {
     pub position: Vec3,
     /// The unit normal of the ground there.
     pub normal: Vec3,
-    /// What it belongs to.
+    /// Support that it belongs to.
     pub support: SupportId,
 }
 
