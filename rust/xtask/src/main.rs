@@ -107,7 +107,7 @@ enum Command {
     Open {
         /// The project's folder, from the repository's root.
         project: PathBuf,
-        /// What Godot is given besides.
+        /// Further arguments for Godot.
         #[arg(last = true)]
         arguments: Vec<String>,
     },

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// What a package's page in a registry shows.
+/// Facts that a package's page in a registry shows.
 const FACTS: [&str; 4] = ["description", "license", "readme", "rust_version"];
 
 /// Packages, unpacks and checks.
@@ -104,7 +104,7 @@ fn is_published(package: &Value) -> bool {
         .is_none_or(|to| !to.is_empty())
 }
 
-/// What a registry would refuse, or a reader miss.
+/// A fault for which a registry would refuse a package, or a lack that its readers would notice.
 fn problem(package: &Value, kept: &[&Value]) -> Option<String> {
     let lists = ["keywords", "categories"];
     let no_fact = |fact: &&&str| package[**fact].as_str().is_none_or(str::is_empty);

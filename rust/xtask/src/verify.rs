@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result, bail};
 use std::path::Path;
 use std::time::Instant;
 
-/// How many frames the demo runs.
+/// Number of frames that the demo runs.
 const DEMO_FRAMES: &str = "300";
 
 /// One thing to check.
@@ -204,7 +204,7 @@ fn play_in_godot() -> Result<()> {
     Ok(())
 }
 
-/// What the add-on brings to the editor: dock, gizmo, preview.
+/// Checks the parts of the add-on in the editor: dock, gizmo, preview.
 fn tests_in_the_editor() -> Result<()> {
     let arguments = ["--editor", "--", "--editor-tests"];
     let said = in_godot("tests/godot", "editor_tests", &arguments)?;
