@@ -16,7 +16,7 @@ const MODEL: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../../../addons/footfall/models/right_foot.footimu"
 );
-/// What such a sensor would have measured on a walk that the project generated.
+/// Measurements of such a sensor on a walk that the project generated.
 pub(crate) const RECORDING: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../../../tests/data/walker_1_slow.right_foot.csv"

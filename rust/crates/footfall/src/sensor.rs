@@ -1,4 +1,4 @@
-//! What inertial sensors measure: samples, recordings, orientation, events of a foot, and sensors that are worn now.
+//! Inertial sensors: samples, recordings, orientation, gait events and strides of a foot, and live ports.
 //!
 //! An [`ImuSample`] is a time, a specific force in m/s² (at rest [`GRAVITY_MPS2`] along up) and an angular rate in rad/s. An [`ImuRecording`] is a row of them; the
 //! module [`csv`] reads and writes its file, with an [`ImuCsvError`] that names line and column. [`check_recording`] finds wrong units, axes and rates, each a [`RecordingFault`].
