@@ -144,7 +144,7 @@
 //!         reconstructor.push(0, *sample);
 //!     }
 //!     reconstructor.step(1.0 / 60.0, &mut pose);
-//!     // Draw `pose`: its hips are where the body has come to.
+//!     // Draw `pose`: its hips are where the body has come to. `split` divides it into a place and the pose above it.
 //! }
 //! assert!(pose.root_position.z > 2.0, "four seconds of a walk: {}", pose.root_position);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

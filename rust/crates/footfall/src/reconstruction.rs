@@ -2,9 +2,10 @@
 //!
 //! [`Prepared`] lays a model out once for all bodies. A [`Reconstructor`] takes samples as they come and writes poses; a [`ReconConfig`], with a [`TrackerConfig`] in it, has
 //! its settings, a [`SensorState`] says whether anything is heard, a [`Behaviour`] what the body does. [`reconstruct_recording`] makes a [`Reconstructed`] of a whole
-//! recording, where what comes later helps.
+//! recording, where later samples help. Poses are in the space where the body began; [`Reconstructor::split`] divides one into the character's place and the pose above it.
 //!
 //! ```
+//! use footfall::body::Pose;
 //! use footfall::model::ImuModel;
 //! use footfall::reconstruction::{
 //!     Behaviour, Prepared, ReconConfig, Reconstructed, Reconstructor, SensorState, reconstruct_recording,
@@ -23,11 +24,18 @@
 //!
 //! let mut live = Reconstructor::new(&prepared, &body, &config)?;
 //! assert_eq!(live.sensor_state(), SensorState::Waiting);
+//! let mut pose = Pose::rest(&body);
 //! for sample in &recording.samples {
 //!     live.push(0, *sample);
+//!     live.step(0.01, &mut pose); // A game does this once a frame.
 //! }
 //! assert_eq!(live.sensor_state(), SensorState::Tracking);
 //! assert_eq!(live.behaviour(), Behaviour::Walk);
+//!
+//! // For an engine: the place and heading of the character, and the pose above it.
+//! let (place, heading) = live.split(&mut pose);
+//! assert!(place.z > 3.0 && heading.abs() < 0.5, "{place} {heading}");
+//! assert!(pose.root_position.with_y(0.0).length() < 0.3, "{}", pose.root_position);
 //!
 //! let whole: Reconstructed = reconstruct_recording(&prepared, &[recording], &body, &config, false)?;
 //! let walks = whole.behaviours.iter().filter(|behaviour| **behaviour == Behaviour::Walk);
