@@ -10,7 +10,7 @@ use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 
-/// What an add-on is not complete without, from `addons/footfall`.
+/// Files without which an add-on is not complete, from `addons/footfall`.
 const NEEDED: [&str; 6] = [
     "footfall.gdextension",
     "plugin.cfg",
@@ -20,7 +20,7 @@ const NEEDED: [&str; 6] = [
     "controller/gait_character_3d.tscn",
 ];
 
-/// What the archive holds besides the add-on's own files.
+/// Files of the archive besides the add-on's own.
 const THIRD_PARTY: &str = "addons/footfall/THIRD_PARTY.md";
 const CHECKSUMS: &str = "addons/footfall/SHA256SUMS";
 
@@ -71,7 +71,7 @@ pub(crate) fn archive(archive: &Path) -> Result<usize> {
     pack(&paths::addon(), archive, &third_party()?)
 }
 
-/// What the library is built from besides this project, and under which terms.
+/// Text about the crates that the library is built from besides this project, and their terms.
 fn third_party() -> Result<String> {
     let tree = process::read(process::cargo().args([
         "tree",

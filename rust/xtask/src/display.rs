@@ -7,7 +7,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// What a virtual display needs on Debian-like systems.
+/// Packages of a virtual display on Debian-like systems.
 const PACKAGES: [&str; 3] = ["xvfb", "xauth", "libgl1-mesa-dri"];
 
 /// Where a window appears.

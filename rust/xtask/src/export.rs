@@ -49,7 +49,7 @@ pub(crate) fn export(engine: &Engine) -> Result<PathBuf> {
 /// Exports a project, as it is, to an executable in a folder of its own, which is made anew.
 ///
 /// # Errors
-/// When Godot fails or has an error to tell.
+/// When Godot fails or reports an error.
 pub(crate) fn make(engine: &Engine, project: &Path, game: &Path, log: &Path) -> Result<()> {
     let folder = game.parent().context("a game without a folder")?;
     let presets = project.join("export_presets.cfg");

@@ -21,9 +21,9 @@ const LAYOUT: &str = "footfall godot cache 2";
 /// A Godot that runs on this machine.
 #[derive(Debug, Clone)]
 pub(crate) struct Engine {
-    /// What to start.
+    /// Program to start.
     pub(crate) program: PathBuf,
-    /// What it says of itself, such as `4.6.3.stable`.
+    /// Version that it reports, such as `4.6.3.stable`.
     pub(crate) version: String,
     /// The export template for this platform's release builds, where it came along.
     pub(crate) release_template: Option<PathBuf>,
@@ -84,7 +84,7 @@ pub(crate) fn provision() -> Result<Engine> {
     Ok(engine)
 }
 
-/// What an earlier run left in the cache, when it was finished and still runs.
+/// Engine that an earlier run left in the cache, when that run was finished and the engine still starts.
 fn cached(cache: &Path) -> Option<Engine> {
     let marker = fs::read_to_string(cache.join("finished")).ok()?;
     let program = program_in_marker(&marker)?;

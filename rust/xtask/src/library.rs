@@ -15,7 +15,7 @@ use std::process::Command;
 /// The target that stands for both of macOS's architectures in one file.
 const MACOS_UNIVERSAL: &str = "universal-apple-darwin";
 
-/// What to build.
+/// Settings of a build of the library.
 #[derive(Args, Debug, Clone, Default)]
 pub(crate) struct Options {
     /// Build without optimisation, quickly.
@@ -45,7 +45,7 @@ impl Flavour {
     }
 }
 
-/// How a platform names a library, and where the add-on keeps it.
+/// Name of a library on a platform, and its place in the add-on.
 #[derive(Debug, PartialEq, Eq)]
 struct Platform {
     folder: &'static str,
@@ -89,12 +89,12 @@ impl Platform {
         })
     }
 
-    /// What cargo calls the library.
+    /// Cargo's name of the library.
     fn built(&self) -> String {
         format!("{}footfall_godot.{}", self.prefix, self.suffix)
     }
 
-    /// What the add-on calls it, from `addons/footfall`.
+    /// Its path in the add-on, from `addons/footfall`.
     fn shipped(&self, flavour: Flavour) -> PathBuf {
         let name = match flavour {
             Flavour::Editor => format!("{}footfall_godot.editor.{}", self.prefix, self.suffix),

@@ -16,6 +16,7 @@ mod csharp;
 mod demo;
 mod display;
 mod engine_run;
+mod examples;
 mod export;
 mod godot;
 mod golden;
@@ -26,6 +27,7 @@ mod models;
 mod mono;
 mod newcomer;
 mod open;
+mod package;
 mod paths;
 mod process;
 mod progress;
@@ -105,7 +107,7 @@ enum Command {
     Open {
         /// The project's folder, from the repository's root.
         project: PathBuf,
-        /// What Godot is given besides.
+        /// Further arguments for Godot.
         #[arg(last = true)]
         arguments: Vec<String>,
     },

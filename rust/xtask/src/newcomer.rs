@@ -1,4 +1,4 @@
-//! What somebody meets who unzips the add-on into a project on a machine that has never seen it: `cargo verify newcomer`.
+//! Checks of the first minutes with the add-on, unzipped into a project on a machine that has never seen it: `cargo verify newcomer`.
 
 use crate::godot::Engine;
 use crate::{addon, engine_run, export, godot, open, paths};
@@ -7,9 +7,9 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the project says when all that a newcomer does has come of it what should.
+/// Line that the project prints when everything that a newcomer does has worked.
 const DONE: &str = "NEWCOMER OK";
-/// What the editor says when the add-on works that was unzipped while it ran.
+/// Line that the editor prints when the add-on works that was unzipped while it ran.
 const DONE_IN_EDITOR: &str = "RUNNING EDITOR OK";
 /// Where the project's checks and the plugin of the running editor are.
 const SOURCES: &str = "tests/newcomer";
@@ -147,7 +147,7 @@ impl Newcomer {
         Ok(())
     }
 
-    /// Runs Godot, which must not have a single error to tell.
+    /// Runs Godot, which must not report a single error.
     fn quiet(&self, command: &mut Command, name: &str) -> Result<String> {
         eprintln!("{name} …");
         engine_run::quiet(command, &self.log(name))
@@ -158,7 +158,7 @@ impl Newcomer {
     }
 }
 
-/// What the importers of old wrote beside a model.
+/// Text that the importers of old wrote beside a model.
 fn old_import(uid: &str) -> String {
     let uid = uid.trim();
     format!(

@@ -17,7 +17,7 @@ pub(crate) struct Violation {
     file: String,
     /// The line, counted from 1; 0 for the whole file.
     line: usize,
-    /// What the rule says.
+    /// Text of the rule.
     rule: String,
 }
 

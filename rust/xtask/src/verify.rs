@@ -1,13 +1,14 @@
 //! `cargo verify`: everything that must hold before a change goes in, in the order in which it fails soonest.
 
 use crate::{
-    csharp, demo, engine_run, export, godot, library, link, newcomer, open, paths, process, tidy,
+    csharp, demo, engine_run, examples, export, godot, library, link, newcomer, open, package,
+    paths, process, tidy,
 };
 use anyhow::{Context as _, Result, bail};
 use std::path::Path;
 use std::time::Instant;
 
-/// How many frames the demo runs.
+/// Number of frames that the demo runs.
 const DEMO_FRAMES: &str = "300";
 
 /// One thing to check.
@@ -16,7 +17,7 @@ struct Step {
     check: fn() -> Result<()>,
 }
 
-const STEPS: [Step; 13] = [
+const STEPS: [Step; 15] = [
     Step {
         name: "format",
         check: format,
@@ -32,6 +33,14 @@ const STEPS: [Step; 13] = [
     Step {
         name: "tests",
         check: tests,
+    },
+    Step {
+        name: "examples",
+        check: examples::check,
+    },
+    Step {
+        name: "package",
+        check: package::check,
     },
     Step {
         name: "docs",
@@ -113,7 +122,7 @@ fn format() -> Result<()> {
 }
 
 fn clippy() -> Result<()> {
-    let features = ["--features", "footfall_godot/editor"];
+    let features = ["--features", "footfall/live,footfall_godot/editor"];
     process::run(
         process::cargo()
             .args(["clippy", "--locked", "--workspace", "--all-targets"])
@@ -131,6 +140,8 @@ fn tests() -> Result<()> {
         "--workspace",
         "--exclude",
         "footfall_godot",
+        "--features",
+        "footfall/live",
     ]);
     let status = cargo.status().context("cannot start cargo")?;
     if !status.success() {
@@ -149,7 +160,7 @@ fn docs() -> Result<()> {
                 "--workspace",
                 "--no-deps",
                 "--features",
-                "footfall_godot/editor",
+                "footfall/live,footfall_godot/editor",
             ])
             .env("RUSTDOCFLAGS", "-D warnings"),
     )
@@ -193,7 +204,7 @@ fn play_in_godot() -> Result<()> {
     Ok(())
 }
 
-/// What the add-on brings to the editor: dock, gizmo, preview.
+/// Checks the parts of the add-on in the editor: dock, gizmo, preview.
 fn tests_in_the_editor() -> Result<()> {
     let arguments = ["--editor", "--", "--editor-tests"];
     let said = in_godot("tests/godot", "editor_tests", &arguments)?;

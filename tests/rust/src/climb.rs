@@ -14,7 +14,7 @@ use std::sync::{Arc, OnceLock};
 pub const DT: f32 = 1.0 / 60.0;
 /// The walker comes out of its first pose before anything counts, frames.
 const SETTLED: usize = 60;
-/// How long the body goes on behind the last step, metres.
+/// Distance that the body goes on behind the last step, metres.
 const BEYOND_M: f32 = 1.5;
 /// A contact of the animation that is not one on the ground for longer is a lost one, seconds.
 const LOST_SECS: f32 = 0.1;
@@ -34,19 +34,19 @@ pub struct Climb {
     pub body: f32,
     /// The speed that is asked for, m/s.
     pub speed_mps: f32,
-    /// What is walked over.
+    /// Ground that is walked over.
     pub way: Way,
     /// From the start to the first edge, metres.
     pub distance_m: f32,
-    /// What holds the character's origin at the ground.
+    /// Carrier of the character's origin over the ground.
     pub origin: Origin,
-    /// Whether the placer is told of contacts and landings.
+    /// Whether the placer knows contacts and landings.
     pub told: bool,
     /// Of the walker.
     pub seed: u64,
 }
 
-/// What is walked over.
+/// Kinds of ground to walk over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way {
     /// Level ground.
@@ -107,7 +107,7 @@ impl Way {
     }
 }
 
-/// What ends a climb before its end.
+/// Failures that end a climb early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Failure {
     /// A foot that the animation puts down is locked to nothing.
@@ -133,11 +133,11 @@ pub struct Fault {
     pub secs: f32,
     /// Where the hips were.
     pub hips: Vec3,
-    /// How bad it is, in the failure's own measure.
+    /// Severity, in the failure's own measure.
     pub measure: f32,
 }
 
-/// What was seen.
+/// Observations of a climb.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     /// The first failure of every kind.
@@ -152,11 +152,11 @@ pub struct Outcome {
     pub knee: f32,
     /// Farthest that an ankle jumped beyond how it moved the frame before, metres.
     pub jump: f32,
-    /// How long it took, seconds.
+    /// Duration, seconds.
     pub secs: f32,
-    /// How many steps were taken on the way.
+    /// Number of steps on the way.
     pub steps: usize,
-    /// How fast the hips went over the ground between the first edge and the last, m/s.
+    /// Speed of the hips over the ground between the first edge and the last, m/s.
     pub pace_mps: f32,
 }
 
@@ -373,8 +373,8 @@ impl Watcher {
     }
 }
 
-/// How far a sole that rolls slid: a point on which it stood and stands moves along the ground no more than that. That one end comes
-/// down while the other rises is no slide.
+/// Slide of a sole that rolls: the least way along the ground of any point on which it stood and stands. That one end comes down while
+/// the other rises is no slide.
 fn slide(sole: &Frame, now: [Vec3; 3], then: [Vec3; 3]) -> f32 {
     let height = |point: Vec3| sole.local_point(point).y;
     let along = |now: Vec3, then: Vec3| (now - then).reject_from_normalized(sole.up()).length();
@@ -388,7 +388,7 @@ fn slide(sole: &Frame, now: [Vec3; 3], then: [Vec3; 3]) -> f32 {
     })
 }
 
-/// How far a point is from the nearest way out of the ground, up or along the way; 0 outside.
+/// Distance of a point to the nearest way out of the ground, up or along the way; 0 outside.
 fn depth(terrain: &Relief, point: Vec3) -> f32 {
     let down = |place: Vec3| terrain.at(place).position.y - point.y;
     let below = down(point);

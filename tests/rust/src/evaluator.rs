@@ -1,4 +1,4 @@
-//! How good a walk is, from its BVH file alone: contacts, slip, penetration, speed, cadence.
+//! Quality of a walk from its BVH file alone: contacts, slip, penetration, speed, cadence.
 //!
 //! Shares no code with the trainer or the generator: own kinematics, own contact rule. A foot is in contact while its
 //! sole's clearance is under 2 cm (until 3.5 cm) and its slip under 0.35 m/s (until 0.6 m/s). Slip is the least horizontal
@@ -17,11 +17,11 @@ const END_MARGIN_SECS: f64 = 0.05;
 const LEAST_CONTACT_SECS: f64 = 0.1;
 /// A foot-fixed point is at floor level when it is within this of the foot's lowest point.
 const FLOOR_LEVEL_M: f64 = 0.01;
-/// How far the heel reaches behind the ankle, of the ankle's height: a canonical foot.
+/// Length of the heel behind the ankle of a canonical foot, metres.
 const HEEL_BEHIND_M: f64 = 0.05;
 const SOLE_SAMPLES: usize = 8;
 
-/// What was measured.
+/// Measurements of a walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WalkQuality {
     /// Contacts of the left and of the right foot, first and last frame.
@@ -30,7 +30,7 @@ pub struct WalkQuality {
     pub median_slip_mps: f64,
     /// 99th percentile of the same.
     pub worst_slip_mps: f64,
-    /// How far the lowest sole point of any frame lies below the floor, metres; 0 when none does.
+    /// Depth of the lowest sole point of any frame below the floor, metres; 0 when none is below.
     pub penetration_m: f64,
     /// Mean speed of the hips along the ground from the first initial contact to the last, m/s.
     pub speed_mps: f64,
@@ -45,7 +45,7 @@ pub struct WalkQuality {
 struct FootPoints {
     /// Points that could be the pivot in this frame; foot-fixed ones first.
     points: Vec<DVec3>,
-    /// How many of them are fixed to the foot.
+    /// Number of them that are fixed to the foot.
     foot_fixed: usize,
 }
 

@@ -62,7 +62,7 @@ impl Terrain for Relief {
     }
 }
 
-/// What holds a character's origin at the ground.
+/// Ways of carrying a character's origin over the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// The ground under its feet, as `follow_ground` has it.
@@ -80,7 +80,7 @@ const RISE_SECS: f32 = 0.12;
 pub struct PlacedWalker {
     /// The walk.
     pub generator: GaitGenerator,
-    /// What puts it on the ground.
+    /// Placer that puts it on the ground.
     pub placer: FootPlacer,
     /// The body that walks.
     pub skeleton: Skeleton,
@@ -94,7 +94,7 @@ pub struct PlacedWalker {
     pub pose: Pose,
     /// Every joint in the world.
     pub world: ModelPose,
-    /// What holds its origin at the ground.
+    /// Carrier of its origin over the ground.
     pub carrier: Origin,
     height: f32,
 }
@@ -241,7 +241,7 @@ impl PlacedWalker {
         })
     }
 
-    /// How far a knee is bent, radians.
+    /// Flexion of a knee, radians.
     pub fn knee(&self, side: Side) -> f32 {
         self.pose
             .rotation(side.lower_leg())

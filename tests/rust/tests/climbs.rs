@@ -16,7 +16,7 @@ const HIPS_99: f32 = 12.0;
 /// No standing foot moves faster along the ground, m/s.
 const SLIP_MPS: f32 = 0.001;
 
-/// What was seen of many climbs.
+/// Observations of many climbs.
 #[derive(Default)]
 struct Survey {
     climbs: usize,
@@ -290,7 +290,7 @@ fn hips_go_smoothly_over_level_ground() {
     }
 }
 
-/// Nobody tells the placer where a foot will land: it comes down late, but never to nothing.
+/// Without known landings a foot comes down late, but never to nothing.
 #[test]
 fn an_animation_that_tells_nothing_does_not_lose_the_ground() {
     let mut climbs: Vec<Climb> = [0.17, -0.17]

@@ -1,4 +1,4 @@
-//! What the pipeline gives today, against what it gave when the goldens were made.
+//! Comparison of the pipeline's output with that from when the goldens were made.
 
 use footfall_core::{Joint, Pose, Side};
 use footfall_model::GaitModel;

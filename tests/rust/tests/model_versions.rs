@@ -35,7 +35,7 @@ fn every_version_loads() {
     }
 }
 
-/// What a model adds to its trajectories follows from what is saved.
+/// Fine motion and chance follow from the saved state.
 #[test]
 fn a_walker_of_every_version_goes_on_from_its_state() {
     let config = GeneratorConfig {

@@ -1,4 +1,4 @@
-//! What runs in every frame allocates nothing, whatever it is asked to do.
+//! Absence of allocation in everything that runs in every frame, whatever it is asked to do.
 #![expect(unsafe_code, reason = "counting allocations takes an allocator")]
 
 use footfall_core::{Pose, Skeleton};
@@ -117,7 +117,7 @@ fn assert_no_allocation(mut generator: GaitGenerator, seed: u64) {
     assert!(pose.root_position.is_finite());
 }
 
-/// Feet on stairs, told of footholds and not.
+/// Feet on stairs, with known footholds and without.
 fn assert_placing_allocates_nothing(generator: GaitGenerator) {
     let mut terrain = Relief::still(|_, z| (z / 0.4).floor().clamp(0.0, 20.0) * 0.15);
     let mut walker = PlacedWalker::new(generator, &PlacementConfig::default());

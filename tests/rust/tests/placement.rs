@@ -29,7 +29,7 @@ fn walker(seed: u64) -> PlacedWalker {
     PlacedWalker::new(generator, &PlacementConfig::default())
 }
 
-/// What was seen of a walk.
+/// Observations of a walk.
 #[derive(Debug, Default)]
 struct Seen {
     /// Fastest that the stillest point of a locked sole moved, m/s.
@@ -205,7 +205,7 @@ fn someone_who_stands_on_a_slope_stands() {
     seen.expect("standing", KNEE_ON_SLOPES);
 }
 
-/// Without being told of contacts and footholds the placer finds them late: feet settle after they have landed.
+/// Without known contacts and footholds the placer finds them late: feet settle after they have landed.
 #[test]
 fn an_animation_that_tells_nothing_is_placed_on_slopes() {
     let mut test = Test::walk(1.3);

@@ -28,7 +28,7 @@ impl CorpusChoice {
 pub(crate) struct CorpusPair {
     /// Captured people.
     pub(crate) real: CorpusChoice,
-    /// What is to be judged, if it was given.
+    /// Synthesised walks to judge, if they were given.
     pub(crate) synthesised: Option<CorpusChoice>,
 }
 
@@ -129,7 +129,7 @@ pub(crate) fn styled_clips(corpus: &Corpus) -> Vec<StyledClip> {
 pub(crate) struct ReadPair {
     /// Captured people.
     pub(crate) real: Corpus,
-    /// What is to be judged.
+    /// Synthesised walks to judge.
     pub(crate) synthesised: Option<Corpus>,
 }
 
@@ -150,7 +150,7 @@ impl CorpusPair {
 }
 
 impl ReadPair {
-    /// What could not be used, one line each.
+    /// Files that could not be used, one line each.
     pub(crate) fn skipped(&self) -> Vec<String> {
         [Some(&self.real), self.synthesised.as_ref()]
             .into_iter()

@@ -14,7 +14,7 @@ use footfall_motion::steps::{Step, Walk, segment_walks};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// How a recording's skeleton is read.
+/// Options for reading a recording's skeleton.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct MapArgs {
     /// Names of an unknown skeleton's joints: a TOML file of lines such as `Hips = "pelvis"`
@@ -67,7 +67,7 @@ impl KneesArgs {
 }
 
 impl MapArgs {
-    /// What was asked, with the joint map that was given, read; the recording's own rate unless another is given.
+    /// Reads the joint map that was given and returns the options, with the recording's own rate unless another is given.
     pub(crate) fn read(&self, frame_rate_hz: Option<f64>) -> Result<RetargetOptions> {
         Ok(RetargetOptions {
             map: self.read_map()?,
@@ -135,7 +135,7 @@ impl Walking {
         }
     }
 
-    /// How many steps all walks have.
+    /// Number of steps in all walks.
     pub(crate) fn step_count(&self) -> usize {
         self.walks.iter().map(|walk| walk.steps.len()).sum()
     }

@@ -1,4 +1,4 @@
-//! What leaves the program: files that appear whole or not at all, JSON on stdout, progress on stderr.
+//! Output of the program: files that appear whole or not at all, JSON on stdout, progress on stderr.
 
 use anyhow::{Context as _, Result, bail};
 use footfall_motion::files;
@@ -127,7 +127,7 @@ impl Progress {
         bar.set_message(message.to_owned());
     }
 
-    /// How many units of the stage are done.
+    /// Shows the number of units of the stage that are done.
     pub(crate) fn reach(&self, position: u64) {
         if let Some(bar) = &self.bar {
             bar.set_position(position);

@@ -29,12 +29,12 @@ pub(crate) struct Subject {
     pub(crate) stances: [Vec<FrameSpan>; 2],
 }
 
-/// What of a clip is drawn, and how large.
+/// Part of a clip that is drawn, and the size of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SheetOptions {
     /// Where to begin, seconds from frame 0.
     pub(crate) start_secs: f64,
-    /// How much to draw; to the end when `None`.
+    /// Length to draw; to the end when `None`.
     pub(crate) seconds: Option<f64>,
     /// Figures in each pose strip.
     pub(crate) poses: usize,

@@ -1,4 +1,4 @@
-//! What a body does with its feet.
+//! Behaviours: ways of using the feet.
 
 /// A way of getting about, or of staying.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

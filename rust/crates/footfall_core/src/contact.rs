@@ -32,7 +32,7 @@ impl FrameSpan {
         frame >= self.first && frame <= self.last
     }
 
-    /// How many frames the run has.
+    /// Number of frames in the run.
     pub const fn frames(self) -> usize {
         self.last - self.first + 1
     }

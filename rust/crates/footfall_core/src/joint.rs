@@ -1,6 +1,6 @@
 //! The 22 body joints of Godot's `SkeletonProfileHumanoid`.
 
-/// How many joints the canonical body has.
+/// Number of joints of the canonical body.
 pub const JOINT_COUNT: usize = 22;
 
 /// A joint of the canonical body, named as in Godot's `SkeletonProfileHumanoid`.

@@ -1,7 +1,7 @@
 //! Vectors and rotations of eight frames side by side, each component in one vector register or two.
 //!
-//! What is done to every frame of a step alike is done to eight at once here. Only what that takes is here; for one of anything there is
-//! `glam`, whose conventions these follow.
+//! Arithmetic that is the same for every frame of a step works on eight frames at once. The types have the operations that this takes and follow
+//! the conventions of `glam`, which serves for single values.
 
 mod quaternion;
 mod vector;
@@ -10,7 +10,7 @@ pub use quaternion::Quatx8;
 pub use vector::Vec3x8;
 pub use wide::f32x8;
 
-/// How many frames are worked on side by side.
+/// Number of frames that are worked on side by side.
 pub const LANES: usize = 8;
 
 /// The number of each lane.

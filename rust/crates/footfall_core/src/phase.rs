@@ -39,7 +39,7 @@ impl PhaseStart {
         Self::Interval,
     ];
 
-    /// What it is called.
+    /// Name for reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Landing => "landing",
@@ -59,10 +59,10 @@ impl PhaseStart {
     }
 }
 
-/// What a phase is.
+/// Kind of a phase: behaviour, event and foot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PhaseKind {
-    /// What the body does.
+    /// Behaviour of the body.
     pub behaviour: Behaviour,
     /// The event that begins it.
     pub start: PhaseStart,

@@ -1,8 +1,8 @@
-//! The bones of a character as they stand, and which of them are the joints of the canonical body.
+//! Rigs: the bones of a character, and recognition of the joints of the canonical body among them.
 //!
-//! Nobody's bones are named as ours are. Names alone mislead (`shoulder` is a collar bone here and an upper arm there, `root` is
-//! a pelvis or a point on the floor, twist bones and IK targets are named like the bones that they serve), so a name only proposes, and what
-//! hangs from what decides: [`recognise`]. What stays uncertain is left out and told as a [`Doubt`].
+//! Every tool names bones in its own way, and names alone mislead: `shoulder` is a collar bone here and an upper arm there, `root` is
+//! a pelvis or a point on the floor, twist bones and IK targets are named like the bones that they serve. So names propose, and structure
+//! decides: [`recognise`]. A joint that stays uncertain is left out and reported as a [`Doubt`].
 
 mod chain;
 mod families;
@@ -39,7 +39,7 @@ impl Rig {
         rig
     }
 
-    /// How many bones there are.
+    /// Number of bones.
     pub fn len(&self) -> usize {
         self.names.len()
     }
@@ -64,7 +64,7 @@ impl Rig {
         core::iter::successors(self.parent(bone), |above| self.parent(*above))
     }
 
-    /// How many bones up another one is; `None` where it is not above.
+    /// Number of links from a bone up to another; `None` where that is not above it.
     pub fn links(&self, bone: usize, above: usize) -> Option<usize> {
         self.above(bone)
             .position(|found| found == above)

@@ -25,7 +25,7 @@ pub(crate) struct MissingBones {
 
 /// The bone of each joint. Joints that may be missing are `None`.
 ///
-/// What the bone map names holds. The others have the profile's names, if all that are needed do; else the whole rig is looked at, for in many
+/// Names in the bone map hold. The others have the profile's names, if all that are needed do; else the whole rig is looked at, for in many
 /// families a `Spine` is not the profile's.
 ///
 /// # Errors

@@ -10,7 +10,7 @@ use godot::prelude::*;
 /// running or edited scene is passed over while there is a node between it and the skeleton: that root is a level, not a character.
 ///
 /// # Errors
-/// What to set, when there is no such `Node3D` above the skeleton.
+/// Property to set, when there is no such `Node3D` above the skeleton.
 pub(crate) fn find(
     node: &Gd<Node>,
     skeleton: &Gd<Skeleton3D>,

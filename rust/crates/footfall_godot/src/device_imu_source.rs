@@ -6,7 +6,7 @@ use footfall_imu::{GRAVITY_MPS2, ImuSample};
 use godot::classes::{IResource, Input, Resource};
 use godot::prelude::*;
 
-/// Platforms give gravity in m/s² or in units of itself; which, its length tells.
+/// Platforms give gravity in m/s² or in units of itself; its length decides which.
 const LEAST_MPS2: f32 = 3.0;
 
 /// Hears the phone that the game runs on, through Godot's `Input`.
@@ -31,7 +31,7 @@ impl DeviceImuSource {
     }
 }
 
-/// What this device measures now; `None` without sensors.
+/// Measurement of this device now; `None` without sensors.
 pub(crate) fn measure() -> Option<ImuSample> {
     let input = Input::singleton();
     let acceleration = input.get_accelerometer();

@@ -120,10 +120,10 @@ pub(crate) struct FootPlacement3D {
     #[export]
     debug_draw: bool,
 
-    /// What is bound to the skeleton; `None` until the next frame that can.
+    /// Session that is bound to the skeleton; `None` until the next frame that can bind one.
     session: Option<Session>,
     reported: Option<String>,
-    /// Contacts and landings that somebody told for this frame.
+    /// Contacts and landings that were given for this frame.
     fed: Option<([bool; 2], [Option<Landing>; 2])>,
     marks: Marks,
     base: Base<SkeletonModifier3D>,
@@ -202,7 +202,7 @@ impl FootPlacement3D {
 }
 
 impl FootPlacement3D {
-    /// Is told of contacts and landings for the next frame by who poses the skeleton.
+    /// Takes contacts and landings for the next frame from the node that poses the skeleton.
     pub(crate) fn feed(&mut self, contacts: [bool; 2], landings: [Option<Landing>; 2]) {
         self.fed = Some((contacts, landings));
     }
@@ -383,7 +383,7 @@ impl FootPlacement3D {
         }
     }
 
-    /// Tells the log what keeps the feet from being placed, once.
+    /// Logs what keeps the feet from being placed, once.
     fn report(&mut self, problem: String) {
         if self.reported.as_ref() == Some(&problem) {
             return;

@@ -10,7 +10,7 @@ use godot::global::Error;
 use godot::prelude::*;
 use std::sync::atomic::{AtomicI64, Ordering};
 
-/// What a file becomes.
+/// Resources that files become.
 #[derive(Clone, Copy, Debug, Default)]
 enum Kind {
     #[default]
@@ -31,7 +31,7 @@ impl Kind {
         }
     }
 
-    /// What such files are called after the dot.
+    /// Extensions of such files.
     fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Model => &["footfall", "footdyn"],

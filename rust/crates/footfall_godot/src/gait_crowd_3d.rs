@@ -32,7 +32,7 @@ use godot::prelude::*;
 use scene::CrowdScene;
 use walkers::Walkers;
 
-/// What to do where there is no character.
+/// Warning where there is no character.
 const NO_CHARACTER: &str = "No character. Load a scene with a humanoid character into Character, for example an imported .glb.";
 
 /// More walkers than this are refused: their steps alone would take gigabytes.
@@ -41,7 +41,7 @@ const MOST_AGENTS: i64 = 100_000;
 /// Nobody walks or runs faster, m/s.
 const FASTEST_MPS: f32 = 6.0;
 
-/// What the walkers of a crowd do by themselves.
+/// Behaviours of walkers by themselves.
 #[derive(GodotConvert, Var, Export, Default, Clone, Copy, Debug, PartialEq)]
 #[godot(via = i64)]
 pub(crate) enum CrowdBehaviour {

@@ -212,17 +212,17 @@ pub(crate) struct GaitGenerator3D {
     session: Option<Session>,
     /// The walk that went on before the node left the tree or its skeleton.
     absent: Option<Absent>,
-    /// What was last reported, so that it is reported once.
+    /// Problem that was last reported, so that it is reported once.
     reported: Option<String>,
     travelled: RootMotion,
-    /// How fast the character went in the last frame, on the ground: metres and radians a second.
+    /// Velocity of the character on the ground in the last frame: metres and radians a second.
     velocity: (Vec3, f32),
     reign: Reign,
     wish: Option<Wish>,
     /// Whether other animation has got the body at once.
     left: bool,
     rivals: Rivals,
-    /// What is left of the speed on the ground at hand: 1 on level ground.
+    /// Share of the speed that is left on the ground at hand: 1 on level ground.
     #[init(val = 1.0)]
     slowed: f32,
     /// The foot whose next landing was announced last.

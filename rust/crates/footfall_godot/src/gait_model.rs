@@ -10,10 +10,10 @@ use godot::prelude::*;
 use std::cell::OnceCell;
 use std::sync::{Arc, Weak};
 
-/// What a model makes of styles that cannot wear any.
+/// Problem of a model that cannot wear styles.
 pub(crate) const NO_STYLES: &str = "A switching model (.footdyn) wears no styles and walks without them: empty Styles, or load a .footfall file into Model.";
 
-/// What to do where there is no model.
+/// Warning where there is no model.
 pub(crate) const NO_MODEL: &str = "No gait model, and the add-on's own, models/locomotion.footfall, is gone. Load a .footfall file into Model.";
 
 /// A way of walking that was learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
@@ -39,7 +39,7 @@ pub(crate) struct GaitModel {
     loaded: Loaded<WalkModel>,
     /// The slowest and the fastest walk, once they were asked for: those of a switching model have to be walked.
     speeds: OnceCell<[f32; 2]>,
-    /// What characters in the same styles share.
+    /// Spaces that characters in the same styles share.
     spaces: Vec<Weak<StyleSpace>>,
     base: Base<Resource>,
 }
@@ -115,7 +115,7 @@ impl GaitModel {
     /// The model, shared with every character that walks with it.
     ///
     /// # Errors
-    /// What is wrong with the file, for the user.
+    /// Text for the user that says what is wrong with the file.
     pub(crate) fn trained(&self) -> Result<Arc<WalkModel>, String> {
         self.loaded
             .content("the gait model is empty: load a .footfall or a .footdyn file in its place")
@@ -124,7 +124,7 @@ impl GaitModel {
     /// The model with these styles, prepared once for all characters that wear the same.
     ///
     /// # Errors
-    /// What is wrong with the model or why it cannot wear the styles, for the user.
+    /// Text for the user that says what is wrong with the model, or why it cannot wear the styles.
     pub(crate) fn source(&mut self, styles: &[Arc<TrainedStyle>]) -> Result<WalkSource, String> {
         let trained = match &*self.trained()? {
             WalkModel::Gait(model) => Arc::clone(model),
@@ -145,7 +145,7 @@ impl GaitModel {
     /// The trained walk, and with these styles if some character walks so already.
     ///
     /// # Errors
-    /// What is wrong with the model, for the user.
+    /// Text for the user that says what is wrong with the model.
     pub(crate) fn prepared(
         &self,
         styles: &[Arc<TrainedStyle>],

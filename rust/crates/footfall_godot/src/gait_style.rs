@@ -84,7 +84,7 @@ impl GaitStyle {
     /// The style, shared with every character that wears it.
     ///
     /// # Errors
-    /// What is wrong with the file, for the user.
+    /// Text for the user that says what is wrong with the file.
     pub(crate) fn trained(&self) -> Result<Arc<TrainedStyle>, String> {
         self.loaded
             .content("the gait style is empty: load a .footstyle file in its place")

@@ -7,7 +7,7 @@ use godot::classes::{IResource, Resource};
 use godot::prelude::*;
 use std::sync::Arc;
 
-/// What to do where there is no model.
+/// Warning where there is no model.
 pub(crate) const NO_MODEL: &str = "No sensor model, and the add-on's own, models/right_foot.footimu, is gone. Load a .footimu file into Model.";
 
 /// Knows what one or two inertial sensors on a body mean for the whole body (`.footimu`, made by `footfall imu train`).
@@ -94,7 +94,7 @@ impl ImuModel {
     /// The model, laid out, shared with every character that it drives.
     ///
     /// # Errors
-    /// What is wrong with the file, for the user.
+    /// Text for the user that says what is wrong with the file.
     pub(crate) fn prepared(&self) -> Result<Arc<Prepared>, String> {
         self.loaded
             .content("the sensor model is empty: load a .footimu file in its place")

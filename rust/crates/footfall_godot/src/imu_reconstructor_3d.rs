@@ -77,13 +77,13 @@ pub(crate) struct ImuReconstructor3D {
     session: Option<Session>,
     /// The add-on's own sensor model, where `model` is empty.
     fallback: Fallback<ImuModel>,
-    /// What was last reported, so that it is reported once.
+    /// Problem that was last reported, so that it is reported once.
     reported: Option<String>,
     travelled: RootMotion,
     base: Base<SkeletonModifier3D>,
 }
 
-/// How a sensor is worn.
+/// Mounting of a sensor.
 #[derive(GodotConvert, Var, Export, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[godot(via = i64)]
 #[repr(i32)]
@@ -200,7 +200,7 @@ impl ImuReconstructor3D {
         problems
     }
 
-    /// What is wrong with the sources' settings.
+    /// Problems with the sources' settings.
     fn source_problems(&self) -> Vec<String> {
         let sources = [&self.source, &self.second_source];
         let sources = sources.into_iter().flatten();
@@ -261,7 +261,7 @@ impl ImuReconstructor3D {
         })
     }
 
-    /// One frame: samples are heard, the character travels, bones are posed, events are told.
+    /// One frame: samples are heard, the character travels, bones are posed, signals are emitted.
     fn drive(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
         self.reported = None;
         let in_editor = Engine::singleton().is_editor_hint();

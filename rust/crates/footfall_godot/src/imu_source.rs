@@ -1,4 +1,4 @@
-//! What drives an `ImuReconstructor3D`: any of the source resources, and the ports that live ones share.
+//! Sources of an `ImuReconstructor3D`: any of the source resources, and the ports that live ones share.
 
 use crate::convert;
 use crate::device_imu_source::{self, DeviceImuSource};
@@ -21,13 +21,13 @@ pub(crate) const CLASSES: &str =
 /// A device that says nothing for so long is silent, seconds.
 const SILENT_SECS: f64 = 0.5;
 
-/// What a source gives in a frame.
+/// Samples that a source gives in a frame.
 pub(crate) enum Heard {
     /// A recording, and whether it begins anew at its end.
     Recording(Arc<ImuRecording>, bool),
     /// A sensor that is heard live.
     Device(Device),
-    /// What the device that the game runs on measures now.
+    /// Measurement of the device that the game runs on.
     Now(ImuSample),
     /// Nothing, yet or any more.
     Nothing,
@@ -70,7 +70,7 @@ pub(crate) fn footstep(source: &Gd<Resource>) {
     }
 }
 
-/// What is wrong with a source's settings, for the node that uses it.
+/// Problem with a source's settings, for the node that uses it.
 pub(crate) fn problem(source: &Gd<Resource>) -> Option<String> {
     if let Ok(replay) = source.clone().try_cast::<ReplayImuSource>() {
         return replay.bind().recording().err();
@@ -144,7 +144,7 @@ impl Live {
         self.device(place).map(|device| device.status())
     }
 
-    /// How the source does: `closed`, `opening`, `listening`, `receiving`, `silent` or `failed`.
+    /// State of the source: `closed`, `opening`, `listening`, `receiving`, `silent` or `failed`.
     pub(crate) fn state(&self, place: usize) -> &'static str {
         if let Some(Err(_)) = &*self.opened.borrow() {
             return "failed";
@@ -167,7 +167,7 @@ impl Live {
         }
     }
 
-    /// What the player is told: empty while all is well.
+    /// Message for the player: empty while all is well.
     pub(crate) fn message(&self, place: usize) -> String {
         if let Some(Err(problem)) = &*self.opened.borrow() {
             return problem.clone();
@@ -215,7 +215,7 @@ impl<K: PartialEq, T> SharedPorts<K, T> {
     }
 }
 
-/// What scripts ask of every live source.
+/// Methods of every live source for scripts.
 macro_rules! live_source_api {
     ($class:ident) => {
         #[godot_api(secondary)]

@@ -1,4 +1,4 @@
-//! What a resource made of a file's bytes.
+//! Content of a resource: what was read from a file's bytes.
 
 use godot::prelude::*;
 use std::fmt::Display;
@@ -31,7 +31,7 @@ impl<T> Loaded<T> {
     /// The content, or what is wrong with it; `empty` when there was no file.
     ///
     /// # Errors
-    /// What is wrong, for the user.
+    /// Text for the user that says what is wrong.
     pub(crate) fn content(&self, empty: &str) -> Result<Arc<T>, String> {
         self.0.clone().unwrap_or_else(|| Err(empty.to_owned()))
     }

@@ -25,7 +25,7 @@ pub(crate) struct ReplayImuSource {
     #[init(val = true)]
     repeat: bool,
 
-    /// What was read, once it was asked for.
+    /// Recording, once it was asked for.
     read: OnceCell<Result<Arc<ImuRecording>, String>>,
     base: Base<Resource>,
 }
@@ -61,7 +61,7 @@ impl ReplayImuSource {
     /// The recording.
     ///
     /// # Errors
-    /// What is wrong with it, for the user.
+    /// Text for the user that says what is wrong with it.
     pub(crate) fn recording(&self) -> Result<Arc<ImuRecording>, String> {
         self.read.get_or_init(|| read(&self.file)).clone()
     }

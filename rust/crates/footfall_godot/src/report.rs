@@ -1,4 +1,4 @@
-//! What is wrong with a node, told to its developer.
+//! Problems of a node, reported to its developer.
 
 use godot::classes::{Engine, SkeletonModifier3D};
 use godot::prelude::*;

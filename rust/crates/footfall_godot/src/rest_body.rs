@@ -6,7 +6,7 @@
 use footfall_core::{FootShape, JOINT_COUNT, Joint, Side, Skeleton, SkeletonError, rotation};
 use glam::{Quat, Vec3};
 
-/// Shares of the leg's length (hip joint to ankle), as on [`Skeleton::standard`]: for points that no bone tells.
+/// Shares of the leg's length (hip joint to ankle), as on [`Skeleton::standard`]: for points without a bone.
 mod share {
     /// Ankle above the sole.
     pub(super) const ANKLE_HEIGHT: f32 = 0.101;
@@ -40,7 +40,7 @@ pub(crate) struct RestJoints {
 pub(crate) struct RestBody {
     /// Proportions in the T-pose.
     pub(crate) skeleton: Skeleton,
-    /// How far each joint's bone turns from the rest pose to the T-pose, in the axes of the model.
+    /// Rotation of each joint's bone from the rest pose to the T-pose, in the axes of the model.
     pub(crate) t_pose_from_rest: [Quat; JOINT_COUNT],
     /// The joint whose rotation each joint's bone takes: itself, or the last missing one that is folded into it.
     pub(crate) turned_by: [Joint; JOINT_COUNT],

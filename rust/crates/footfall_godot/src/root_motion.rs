@@ -1,10 +1,10 @@
-//! What a character travelled, for whoever asks: once a frame of the physics, once a frame that is drawn, or when it happens.
+//! Travel of a character, for callers once a frame of the physics, once a drawn frame, or when it happens.
 
 use godot::classes::skeleton_3d::ModifierCallbackModeProcess;
 use godot::classes::{Engine, Skeleton3D};
 use godot::prelude::*;
 
-/// Travel by two clocks, so that every frame's share of it is told exactly once by each.
+/// Travel by two clocks, so that each counts every frame's share of it exactly once.
 #[derive(Debug, Default)]
 pub(crate) struct RootMotion {
     physics: Tally,
@@ -12,7 +12,7 @@ pub(crate) struct RootMotion {
     last: Transform3D,
 }
 
-/// What was travelled in the latest frame of a clock that saw any.
+/// Travel in the latest frame of a clock that saw any.
 #[derive(Debug, Default)]
 struct Tally {
     frame: u64,
@@ -71,7 +71,7 @@ impl RootMotion {
         self.process.add(delta, now.process);
     }
 
-    /// What was travelled since the frame before, by the clock of who asks. In the frame that a skeleton has just moved in, that
+    /// Travel since the frame before, by the clock of the caller. In the frame that a skeleton has just moved in, that
     /// frame's.
     pub(crate) fn tell(&mut self, moves: Moves, now: Now) -> Transform3D {
         let (tally, frame) = if now.in_physics {
@@ -131,7 +131,7 @@ mod tests {
         }
     }
 
-    /// Frames of two seconds at these rates; what both clocks were told, counted in deltas.
+    /// Frames of two seconds at these rates. Returns the travel that both clocks counted, in deltas.
     fn told(moves: Moves, physics_hz: u64, drawn_hz: u64) -> [usize; 3] {
         let mut motion = RootMotion::default();
         let step = Transform3D::new(Basis::IDENTITY, Vector3::new(0.0, 0.0, 1.0));

@@ -59,7 +59,7 @@ pub(crate) struct SerialImuSource {
     base: Base<Resource>,
 }
 
-/// What a serial device speaks.
+/// Protocols of serial devices.
 #[derive(GodotConvert, Var, Export, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[godot(via = i64)]
 #[repr(i32)]

@@ -9,7 +9,7 @@ pub(crate) const WALK: &str = "locomotion.footfall";
 /// The sensor model of nodes without one.
 pub(crate) const RIGHT_FOOT: &str = "right_foot.footimu";
 
-/// What the name of the add-on's extension file ends with.
+/// End of the path of the add-on's extension file.
 const EXTENSION: &str = "/footfall.gdextension";
 /// Where the add-on usually is.
 const USUAL_FOLDER: &str = "res://addons/footfall";
@@ -39,7 +39,7 @@ fn load<T: Inherits<Resource>>(name: &str) -> Option<Gd<T>> {
     loader.load(&path)?.try_cast().ok()
 }
 
-/// What a node's property becomes. In the editor the add-on's model stands in for a new one, which nobody could fill there: that is what a
+/// Value for a node's property. In the editor the add-on's model stands in for a new one, which nobody could fill there: that is what a
 /// node gets that is added to a scene, and what *New* in the inspector gives.
 pub(crate) fn instead_of_new<T: Inherits<Resource>>(
     given: Option<Gd<T>>,

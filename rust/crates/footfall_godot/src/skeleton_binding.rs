@@ -60,7 +60,7 @@ pub(crate) struct SkeletonBinding {
     model_pose: ModelPose,
 }
 
-/// What the binding was made from. Where it differs, the binding has to be made anew.
+/// Inputs that the binding was made from. Where they differ, the binding has to be made anew.
 #[derive(Debug, Clone, Copy)]
 struct BindingKey {
     skeleton: InstanceId,
@@ -89,7 +89,7 @@ impl SkeletonBinding {
     /// Measures a skeleton that is in the tree.
     ///
     /// # Errors
-    /// What is wrong with the skeleton, for the user.
+    /// Text for the user that says what is wrong with the skeleton.
     pub(crate) fn new(
         skeleton: &Gd<Skeleton3D>,
         character: &Gd<Node3D>,
@@ -144,7 +144,7 @@ impl SkeletonBinding {
             .is_some_and(|scale| (scale - 1.0).abs() < 1e-3)
     }
 
-    /// How large this skeleton on this character is now by how large it was when it was measured; `None` for another one.
+    /// Size of this skeleton on this character relative to its size when it was measured; `None` for another one.
     pub(crate) fn scale_to(
         &self,
         skeleton: &Gd<Skeleton3D>,

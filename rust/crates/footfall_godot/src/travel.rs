@@ -9,7 +9,7 @@ use glam::{Affine3A, Quat, Vec3};
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
-/// What rounding makes of a size is no growth.
+/// Change of size that is rounding, not growth.
 const LEAST_GROWTH: f32 = 1e-3;
 
 /// A body on a skeleton, and the character that it carries along.
@@ -17,11 +17,11 @@ pub(crate) struct Traveller {
     character: Gd<Node3D>,
     pub(crate) binding: SkeletonBinding,
     start_from_ground: GroundTransform,
-    /// How large the character is now by how large it was when it was measured.
+    /// Size of the character relative to its size when it was measured.
     scale: f32,
 }
 
-/// What one frame did to the ground under the character.
+/// Motion of the ground under the character in one frame.
 pub(crate) struct Travel {
     /// `previous_from_current` of the ground under the body.
     pub(crate) ground: Affine3A,
@@ -47,7 +47,7 @@ impl Travel {
         self
     }
 
-    /// How fast that is, in the axes of the ground: metres of the body and radians a second.
+    /// Velocity of that motion, in the axes of the ground: metres of the body and radians a second.
     pub(crate) fn per_second(&self, dt_secs: f32) -> (Vec3, f32) {
         let way = Vec3::from(self.ground.translation) / self.scale;
         (way / dt_secs, self.turn / dt_secs)
@@ -96,7 +96,7 @@ impl Traveller {
         (self.scale - 1.0).abs() >= LEAST_GROWTH
     }
 
-    /// How large the character is now by how large it was when it was measured.
+    /// Size of the character relative to its size when it was measured.
     pub(crate) const fn scale(&self) -> f32 {
         self.scale
     }

@@ -1,4 +1,4 @@
-//! What a walker's steps come from, prepared once for all walkers that share it.
+//! Source of a walker's steps, prepared once for all walkers that share it.
 
 use footfall_core::Skeleton;
 use footfall_model::{DynamicsModel, GaitStyle, WalkModel};

@@ -1,6 +1,6 @@
 //! From one motion to another: the body goes over without a jump, and feet that stand stay where they are.
 //!
-//! What parts the two motions when one ends, in place and in speed, dies away while the other goes on (inertialization, after Bollo,
+//! Offsets between the two motions, in place and in speed, die away while the second goes on (inertialization, after Bollo,
 //! "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018). Feet are kept apart from that: one that stands in both
 //! keeps its place until the new motion lifts it, or makes a step of its own.
 
@@ -56,13 +56,13 @@ pub struct Handover {
     hips: Fading,
     turns: [Fading; JOINT_COUNT],
     feet: [HeldFoot; 2],
-    /// How far the pelvis gives way to the feet, metres.
+    /// Lowering of the pelvis towards the feet, metres.
     yielded_m: f32,
     yielding_mps: f32,
     frame: BodyFrame,
 }
 
-/// What a body's feet need to be known.
+/// Legs and feet of a body, as their poses are worked out from a skeleton.
 #[derive(Clone, Debug)]
 struct BodyFrame {
     legs: [Leg; 2],
@@ -211,7 +211,7 @@ fn below(height: f32, limit: f32, give: f32) -> f32 {
     limit - give * (-into / give).exp()
 }
 
-/// Which feet of a motion stand that does not tell: those that are low and slow. `stood` says which did a moment ago.
+/// Finds the feet that stand in a motion without known contacts: those that are low and slow. `stood` has those that stood in the frame before.
 pub fn standing_feet(
     skeleton: &Skeleton,
     before: &Pose,
@@ -249,7 +249,7 @@ impl BodyFrame {
         }
     }
 
-    /// How far a leg of a pose reaches to its foot, as a share of its length.
+    /// Distance from hip joint to ankle in a pose, as a share of the leg's length.
     fn extension(&self, side: Side, pose: &Pose, foot: &FootTarget) -> f32 {
         let hip = pose.rotations[Joint::Hips.index()] * self.hip_offsets[side.index()];
         let reach = foot.ankle - pose.root_position - hip;

@@ -23,7 +23,7 @@ pub struct Leg {
     shank: f32,
 }
 
-/// What a leg does to meet its target.
+/// Solution of a leg: where its joints are and how they are turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegSolution {
     /// Position of the hip joint in model space, metres.

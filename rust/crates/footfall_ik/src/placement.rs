@@ -40,7 +40,7 @@ pub use terrain::{Ground, SupportId, Terrain};
 /// A character that moved farther than this in a frame was put somewhere else, metres.
 const TELEPORT_M: f32 = 1.0;
 
-/// What a foot does now.
+/// State of a foot after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedFoot {
     /// Whether it is locked to the ground.
@@ -48,7 +48,7 @@ pub struct PlacedFoot {
     /// `world_from_sole`: the ground under the ankle of the flat foot, +Y the ground's normal, +Z to the toes. For a foot
     /// on its way, of the place over which it is.
     pub sole: Frame,
-    /// What it is locked to.
+    /// Support that it is locked to.
     pub support: Option<SupportId>,
     /// Whether it was locked in this very frame.
     pub landed: bool,
@@ -70,13 +70,13 @@ pub struct FootPlacer {
     pelvis: Ride,
     ground_m: f32,
     grade: f32,
-    /// How steep the ground is to which the step under way leads, and the foot that takes it.
+    /// Grade of the ground to which the step under way leads, and the foot that takes it.
     grade_ahead: f32,
     aimed: Option<usize>,
     memory: Option<Memory>,
 }
 
-/// What the frame before left.
+/// Places in the frame before.
 #[derive(Clone, Copy, Debug)]
 struct Memory {
     world_from_floor: Frame,
@@ -147,7 +147,7 @@ impl FootPlacer {
         self.ground_m
     }
 
-    /// How steep the way is from one foothold to the other in the direction that the character faces: rise by run, positive uphill.
+    /// Grade from one foothold to the other in the direction that the character faces: rise by run, positive uphill.
     pub fn grade(&self) -> f32 {
         self.grade
     }
@@ -275,7 +275,7 @@ impl FootPlacer {
         }
     }
 
-    /// Whether a foot of an animation that does not tell stands.
+    /// Whether a foot stands, in an animation without known contacts.
     fn stands(
         &self,
         dt_secs: f32,

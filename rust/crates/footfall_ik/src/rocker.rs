@@ -13,7 +13,7 @@ use footfall_core::rotation::from_heading;
 use footfall_core::{FootShape, Side, Skeleton};
 use glam::{Quat, Vec3};
 
-/// How far the toes bend up before the foot rises on their tips, radians.
+/// Largest angle by which the toes bend up before the foot rises on their tips, radians.
 const MAX_TOE_FLEXION: f32 = 0.9 * FRAC_PI_3;
 
 /// Pitches much smaller than this count as flat, radians: captured soles are not level to a degree.
@@ -98,7 +98,7 @@ impl RockerFoot {
         }
     }
 
-    /// How far the ankle is at this pitch from where it is when the foot is flat, for a foot that points to +Z.
+    /// Displacement of the ankle at this pitch from its place over the flat foot, for a foot that points to +Z.
     pub fn roll(&self, pitch: f32) -> Vec3 {
         let flat = Plant {
             flat_ankle: Vec3::ZERO,
@@ -159,8 +159,8 @@ impl RockerFoot {
         Vec3::Z * (0.5 * (heel.z + tip.z))
     }
 
-    /// How far the ankle is at this pitch from where it is when the foot is flat, for a foot in the air that points to +Z and keeps the
-    /// middle of its sole where it is.
+    /// Displacement of the ankle at this pitch from its place over the flat foot, for a foot in the air that points to +Z and keeps the
+    /// middle of its sole in place.
     pub fn tilt(&self, pitch: f32) -> Vec3 {
         let middle = self.sole_middle() - Vec3::Y * self.ankle_height();
         middle - Quat::from_rotation_x(pitch) * middle

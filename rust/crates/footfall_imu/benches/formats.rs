@@ -1,4 +1,4 @@
-//! How fast what devices send is read: samples a second of every form, and all the way to samples with times.
+//! Speed of reading every form that devices send, alone and all the way to samples with times.
 
 #[expect(dead_code, reason = "some forms are of use to tests alone")]
 #[path = "../tests/live/encode.rs"]

@@ -1,10 +1,10 @@
-//! What is wrong with a recording as a whole: units, dead axes, rate.
+//! Checks of a recording as a whole: units, dead axes, rate.
 
 use crate::sample::{ImuRecording, ImuSample};
 use footfall_core::rotation::exp_map;
 use glam::{Quat, Vec3};
 
-/// The slowest sensor from which a gait can be told, samples a second.
+/// Lowest rate from which a gait can be reconstructed, samples a second.
 pub const LEAST_RATE_HZ: f64 = 20.0;
 
 /// No limb turns faster than this for a hundredth of the time, rad/s; degrees for radians do.
@@ -52,13 +52,13 @@ pub enum RecordingFault {
     DeadAxis {
         /// Name of the column.
         channel: &'static str,
-        /// How many samples there are.
+        /// Number of samples.
         samples: usize,
     },
     /// There are too few samples a second.
     #[error("there are {rate_hz:.1} samples a second; a gait needs {LEAST_RATE_HZ} or more")]
     Rate {
-        /// What there are.
+        /// Samples a second in the recording.
         rate_hz: f64,
     },
 }

@@ -17,7 +17,7 @@ pub enum ImuCsvError {
     Csv {
         /// The file.
         path: PathBuf,
-        /// What is wrong, with the line if there is one.
+        /// Underlying error, with the line if there is one.
         source: csv::Error,
     },
     /// The header is another.
@@ -25,7 +25,7 @@ pub enum ImuCsvError {
     Header {
         /// The file.
         path: PathBuf,
-        /// What it has.
+        /// Header of the file.
         found: String,
     },
     /// A value is no finite number, or time does not go on.
@@ -37,7 +37,7 @@ pub enum ImuCsvError {
         line: u64,
         /// The column.
         column: &'static str,
-        /// What it has.
+        /// Text of the value.
         value: String,
     },
     /// There are too few samples, or too many.
@@ -45,7 +45,7 @@ pub enum ImuCsvError {
     Samples {
         /// The file.
         path: PathBuf,
-        /// How many it has.
+        /// Number of samples in the file.
         found: usize,
     },
 }

@@ -13,8 +13,8 @@
 //! | gaitmap example, two feet, 204.8 Hz | initial | 59 | 0.98 | +19 | 7 |
 //! | the same | terminal | 57 | 1.00 | +2 | 5 |
 //!
-//! What is missed are steps on the spot and the half step before standing: there the foot turns about the vertical or hardly at all. Of what is
-//! found more than 0.99 are events. The two references define initial contact 20 ms apart.
+//! Steps on the spot and the half step before standing are missed: there the foot turns about the vertical or hardly at all. More than 0.99 of
+//! all detections are events. The two references define initial contact 20 ms apart.
 
 use crate::filter::{low_pass, means_around, principal_axis};
 use crate::sample::ImuRecording;
@@ -51,7 +51,7 @@ const STRIKE_SECS: f64 = 0.15;
 const TERMINAL_SHARE: f32 = 0.7;
 const INITIAL_SHARE: f32 = 0.4;
 
-/// Turning by so much out of a stance tells with certainty which way the heel rises, radians.
+/// Turn out of a stance beyond which the direction of the rising heel is certain, radians.
 const FULL_VOTE: f32 = 0.3;
 
 /// Contact ends within this time after the peak of push-off, seconds: a runner's heel rises on in the air.

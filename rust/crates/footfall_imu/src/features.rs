@@ -1,4 +1,4 @@
-//! What a reconstructor compares with its model: samples at any rate become frames at the model's.
+//! Features that a reconstructor compares with its model: samples at any rate become frames at the model's.
 //!
 //! A frame holds means over the time since the frame before, so that recordings of any rate are band-limited alike. It is complete when its
 //! time is reached and waits for no later sample.
@@ -21,7 +21,7 @@ const LONGEST_GAP_SECS: f64 = 10.0;
 pub struct FeatureFrame {
     /// The end of the frame on the sensor's clock, seconds.
     pub time_secs: f64,
-    /// What was measured; `None` when samples were missing.
+    /// Measured features; `None` when samples were missing.
     pub values: Option<[f32; SENSOR_FEATURES]>,
     /// Standard deviation of up, radians.
     pub tilt_deviation: f32,

@@ -1,4 +1,4 @@
-//! Runtime: what one inertial sensor tells.
+//! Runtime: samples, orientation, features and gait events of inertial sensors.
 //!
 //! Modules in the order in which data flows: [`sample`]s, [`csv`] recordings and their [`checks`], [`orientation`] of the sensor, the
 //! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`]. With the feature

@@ -66,7 +66,7 @@ impl OrientationFilter {
         self.tilt_variance.sqrt()
     }
 
-    /// What is taken off the angular rate, rad/s.
+    /// Bias that is subtracted from the angular rate, rad/s.
     pub const fn bias(&self) -> Vec3 {
         self.bias
     }

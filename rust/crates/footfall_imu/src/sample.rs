@@ -5,7 +5,7 @@ use glam::{Quat, Vec3};
 /// Standard gravity, m/s².
 pub const GRAVITY_MPS2: f32 = 9.806_65;
 
-/// What a sensor measures at one time, in its own axes.
+/// Measurement of a sensor at one time, in its own axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImuSample {
     /// The sensor's clock, seconds.
@@ -22,7 +22,7 @@ impl ImuSample {
         self.time_secs.is_finite() && self.force.is_finite() && self.rate.is_finite()
     }
 
-    /// What lies on the line to a later sample at a time between both.
+    /// Linear interpolation to a later sample, at a time between both.
     pub(crate) fn towards(&self, later: &Self, time_secs: f64) -> Self {
         let share = (time_secs - self.time_secs) / (later.time_secs - self.time_secs);
         let share = share.clamp(0.0, 1.0) as f32;
@@ -68,7 +68,7 @@ impl ImuRecording {
         last - self.start_secs()
     }
 
-    /// What was measured at a time, on the line between the samples about it; the nearest sample beyond the ends, and zeros where there is none.
+    /// Measurement at a time, interpolated linearly; the nearest sample beyond the ends, and zeros where there is none.
     #[must_use]
     pub fn at(&self, time_secs: f64) -> ImuSample {
         let after = self

@@ -1,6 +1,6 @@
-//! How far a foot that wears a sensor goes in each stride: integration from rest to rest (zero-velocity updates).
+//! Lengths of the strides of a foot that wears a sensor: integration from rest to rest (zero-velocity updates).
 //!
-//! From the middle of a stance to the middle of the next the foot begins and ends at rest: what velocity is left at the end is taken off in
+//! From the middle of a stance to the middle of the next the foot begins and ends at rest: velocity that is left at the end is subtracted in
 //! proportion to time.
 //!
 //! On the gaitmap example, against markers on the foot (61 strides, turns and half steps included): heel -1.4 cm in the mean with a spread of 4.4 cm,
@@ -28,7 +28,7 @@ pub struct SensorStride {
     pub start_secs: f64,
     /// When it rests again.
     pub end_secs: f64,
-    /// How far it has gone along the ground, metres.
+    /// Distance covered along the ground, metres.
     pub length_m: f64,
 }
 
@@ -71,7 +71,7 @@ pub fn measure_strides(recording: &ImuRecording, swings: &[Swing]) -> Vec<Sensor
     strides
 }
 
-/// How much the foot moves round each sample.
+/// Motion of the foot around each sample.
 struct Quiet {
     motion: Vec<f32>,
 }

@@ -11,7 +11,7 @@ use crate::gaussian::GaussianStats;
 /// A question about contexts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
-    /// What is asked, for reports.
+    /// Text of the question, for reports.
     pub name: String,
     /// The answer for every context.
     pub answers: Vec<bool>,
@@ -30,14 +30,14 @@ enum Node {
     Leaf,
     Split {
         question: usize,
-        /// What the split shortens the description by, nats; positive.
+        /// Reduction of the description length by the split, nats; positive.
         gain: f64,
         /// For the answers no and yes.
         children: Box<[Self; 2]>,
     },
 }
 
-/// How to grow a tree.
+/// Settings for growing a tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClusterConfig {
     /// Factor on what a further Gaussian costs: 1 is the description length itself, more makes smaller trees.
@@ -92,7 +92,7 @@ impl ContextTree {
         })
     }
 
-    /// How many leaves there are.
+    /// Number of leaves.
     pub fn leaves(&self) -> usize {
         self.leaves
     }
@@ -102,7 +102,7 @@ impl ContextTree {
         &self.leaf_of
     }
 
-    /// What the splits shorten the description of the data by, nats.
+    /// Reduction of the description length by all splits, nats.
     pub fn gain(&self) -> f64 {
         fn sum(node: &Node) -> f64 {
             match node {
@@ -133,15 +133,15 @@ impl ContextTree {
 /// A line of a tree written down.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutlineLine {
-    /// How many questions lead here.
+    /// Number of questions that lead here.
     pub depth: usize,
     /// The answer that led here from the question above; `None` at the root.
     pub answer: Option<bool>,
-    /// What is found here.
+    /// Question or leaf at this place.
     pub node: OutlineNode,
 }
 
-/// What stands at a place of a tree.
+/// Content of a place in a tree.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OutlineNode {
     /// A question, by its index, and what it shortens the description by, nats.
@@ -382,7 +382,7 @@ mod tests {
     }
 
     proptest! {
-        /// The gain that a tree tells is the difference of two descriptions written out, and no question asked of a leaf would
+        /// The gain that a tree reports is the difference of two descriptions written out, and no question asked of a leaf would
         /// shorten the description further.
         #[test]
         fn a_tree_stops_where_no_split_pays(

@@ -1,4 +1,4 @@
-//! How long a segment lasts, in frames: Gaussian durations on 1..=max, in the log domain.
+//! Durations of segments in frames: Gaussian on 1..=max, in the log domain.
 //!
 //! The paper (section 5.1.1) models state durations by a Gaussian density. Frames are whole and a
 //! state lasts at least one, so the density is evaluated at 1, 2, ..., `max_duration` and normalised there.

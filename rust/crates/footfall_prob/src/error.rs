@@ -1,8 +1,8 @@
-//! What can be wrong with the numbers that a caller hands in.
+//! Errors in the numbers that a caller hands in.
 
 use thiserror::Error;
 
-/// Why an inference function refused its input.
+/// Reason for which an inference function refused its input.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ProbError {
     /// A slice has the wrong length for the other arguments.
@@ -44,7 +44,7 @@ pub enum ProbError {
         index: usize,
         /// The offending index.
         value: usize,
-        /// How many entries the table has.
+        /// Number of entries in the table.
         len: usize,
     },
     /// An argument that needs at least one entry is empty.
@@ -101,7 +101,7 @@ pub enum ProbError {
     /// A linear transform is not determined by its data.
     #[error("the {what} is singular: give more or more varied frames, or a prior")]
     Degenerate {
-        /// What is singular.
+        /// Name of the quantity that is not determined.
         what: &'static str,
     },
 }

@@ -27,7 +27,7 @@ use banded::{Banded, Solution};
 use crate::error::{ProbError, check_finite, check_len, check_positive};
 use crate::mlpg::{MlpgProblem, MlpgWorkspace, Pull, mlpg};
 
-/// What the variance over time should be, and how much that counts.
+/// Target for the variance over time, and its weight.
 #[derive(Debug, Clone, Copy)]
 pub struct GlobalVarianceTarget<'a> {
     /// D expected variances over time, μ.
@@ -43,7 +43,7 @@ pub fn hts_weight(n_frames: usize) -> f64 {
     (3.0 * n_frames as f64).recip()
 }
 
-/// What the optimum turned out to be, per dimension. As a [`Pull`], `strength` and `towards`
+/// Optimum per dimension. As a [`Pull`], `strength` and `towards`
 /// reproduce the optimum with plain [`mlpg`], and carried to other chunks of the same motion they
 /// restore its variance at no cost.
 #[derive(Debug, Clone, PartialEq)]

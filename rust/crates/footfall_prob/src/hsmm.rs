@@ -39,7 +39,7 @@ pub enum Edge {
     Censored,
 }
 
-/// What is known about the two ends of the recording.
+/// Knowledge about the two ends of the recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Boundary {
     /// The start, where [`Edge::Censored`] means that the first segment was already running, since
@@ -146,7 +146,7 @@ impl<'a> Problem<'a> {
         k + 1 == self.chain.len() && self.boundary.end == Edge::Censored
     }
 
-    /// How segment `k` is seen: only the outermost ones can be cut off.
+    /// Boundary of segment `k`: only the outermost ones can be cut off.
     fn seen(&self, k: usize) -> Boundary {
         Boundary {
             start: if self.is_start_censored(k) {

@@ -5,8 +5,8 @@
 //!
 //! In suggested reading order: [`gaussian`] and [`duration`] (what a state is), [`hsmm`] (which
 //! frames belong to which state); then from states back to motion, [`windows`], [`mlpg`] and
-//! [`global_variance`]. [`regression`] moves a model with few frames; [`clustering`] tells which contexts share one. [`switching`] finds
-//! when a system changes, [`subspace`] which one it is.
+//! [`global_variance`]. [`regression`] adapts a model with few frames; [`clustering`] finds the contexts that share one. [`switching`]
+//! detects changes of a system, [`subspace`] identifies it.
 
 pub mod clustering;
 pub mod duration;

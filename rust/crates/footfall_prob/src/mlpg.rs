@@ -16,7 +16,7 @@ use lanes::sealed::Block as _;
 use crate::error::{ProbError, check_len};
 use crate::windows::Windows;
 
-/// What [`mlpg`] solves. S states, D dimensions, T frames; all matrices row-major.
+/// Input of [`mlpg`]. S states, D dimensions, T frames; all matrices row-major.
 #[derive(Debug, Clone, Copy)]
 pub struct MlpgProblem<'a, R> {
     /// The dynamic features that the states describe.
@@ -84,7 +84,7 @@ impl<R: Real> MlpgWorkspace<R> {
     }
 }
 
-/// What all blocks of dimensions share.
+/// Data that all blocks of dimensions share.
 #[doc(hidden)]
 #[derive(Debug, Default)]
 pub struct Plan {

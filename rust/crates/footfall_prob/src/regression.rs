@@ -114,7 +114,7 @@ impl LinearTransform {
     }
 }
 
-/// What a transform must know of the frames that belong to one Gaussian: Σ γ ξξᵀ with ξ = (1, o).
+/// Statistics of the frames that belong to one Gaussian, as a transform needs them: Σ γ ξξᵀ with ξ = (1, o).
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegressionStats {
     dim: usize,

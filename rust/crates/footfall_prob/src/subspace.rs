@@ -77,7 +77,7 @@ impl AffineSystem {
         ]
     }
 
-    /// What the system puts out from a state.
+    /// Output of the system in a state.
     pub fn put_out(&self, state: &DVector<f64>) -> DVector<f64> {
         &self.output * state + &self.offset
     }

@@ -27,7 +27,7 @@ impl Windows {
         ]
     }
 
-    /// How many frames the static, Δ and Δ² window reach to either side.
+    /// Number of frames that the static, Δ and Δ² windows reach to either side.
     ///
     /// In synthesis a window that would reach over an end of the sequence has no say (its precision
     /// is zero), as in `hts_engine`.

@@ -11,7 +11,7 @@ use eframe::egui::{
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
-/// What is shown beside the list.
+/// Views beside the list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tab {
     /// Motion in space and as curves.
@@ -40,7 +40,7 @@ impl Tab {
         Self::Evaluate,
     ];
 
-    /// What it is called.
+    /// Title of the view.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Clips => "Clips",
@@ -66,7 +66,7 @@ pub struct Studio {
     may_close: bool,
     /// The longest time that a frame took on the processor, seconds.
     longest_frame_secs: f32,
-    /// What the last frames took, seconds.
+    /// Durations of the last frames, seconds.
     frame_secs: VecDeque<f32>,
 }
 
@@ -153,7 +153,7 @@ impl Studio {
         self.shell.library.is_busy() || self.shell.is_reading() || self.views.is_busy()
     }
 
-    /// What was said last, if it was not dismissed.
+    /// Last message, if it was not dismissed.
     pub fn message(&self) -> Option<&str> {
         self.shell
             .message
@@ -176,7 +176,7 @@ impl Studio {
         self.views.clips.playback.secs
     }
 
-    /// How probable each behaviour of the sensor's body is, in the order of [`Behaviour::ALL`](footfall_core::Behaviour::ALL).
+    /// Probability of each behaviour of the sensor's body, in the order of [`Behaviour::ALL`](footfall_core::Behaviour::ALL).
     pub fn behaviours(&self) -> [f32; footfall_core::Behaviour::ALL.len()] {
         self.views.sensor.behaviours()
     }
@@ -251,7 +251,7 @@ impl Studio {
         ui.add_space(2.0);
     }
 
-    /// How long frames take, so that a studio that stutters says so.
+    /// Shows the duration of frames, so that a studio that stutters says so.
     fn frame_timer(&self, ui: &mut Ui) {
         if self.frame_secs.is_empty() {
             return;

@@ -1,9 +1,9 @@
-//! What is asked of whoever evaluates: the command line hands its own commands over, so that both show the same figures.
+//! Interface to evaluations: the command line hands its own commands over, so that both show the same figures.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What is to be judged.
+/// Kinds of evaluation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EvaluateKind {
     /// Are styles told apart?
@@ -71,10 +71,10 @@ impl EvaluateKind {
     }
 }
 
-/// What is to be judged, and on which recordings.
+/// Request for an evaluation: its kind and its recordings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EvaluateRequest {
-    /// What is to be judged.
+    /// Kind of evaluation.
     pub kind: EvaluateKind,
     /// Table of the recordings.
     pub index: PathBuf,

@@ -60,7 +60,7 @@ impl Labels {
         self.stances != self.saved
     }
 
-    /// What is there now is on disk.
+    /// Marks the present stances as saved.
     pub(crate) fn mark_saved(&mut self) {
         self.saved = self.stances.clone();
     }

@@ -25,14 +25,14 @@ pub use evaluator::{EvaluateKind, EvaluateRequest, Evaluator};
 
 use std::path::PathBuf;
 
-/// How the studio begins.
+/// Settings of the studio at its start.
 #[derive(Clone, Default)]
 pub struct StudioOptions {
     /// Files and folders to open.
     pub paths: Vec<PathBuf>,
     /// Where what must outlive a crash is kept; the user's data folder when absent.
     pub data_folder: Option<PathBuf>,
-    /// What judges recordings; without it the view says so.
+    /// Evaluator of recordings; without it the view says so.
     pub evaluator: Option<Evaluator>,
 }
 

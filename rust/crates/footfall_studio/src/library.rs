@@ -1,4 +1,4 @@
-//! What was opened: files and folders of recordings, each checked in the background.
+//! Opened files and folders of recordings, each checked in the background.
 
 mod list;
 mod scan;
@@ -9,7 +9,7 @@ use scan::{Scan, ScanEvent};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// What is known of a recording without looking at it.
+/// Facts about a recording, for the list.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Facts {
     pub(crate) frames: usize,
@@ -56,7 +56,7 @@ pub(crate) struct Library {
     ticked: BTreeSet<PathBuf>,
 }
 
-/// What was asked for in the list.
+/// Actions of a user on the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum ListAction {
     /// Look at this one.
@@ -104,7 +104,7 @@ impl Library {
         self.entries.is_empty()
     }
 
-    /// What is known of a file after it was looked at or corrected.
+    /// Updates the facts of a file after it was looked at or corrected.
     pub(crate) fn update(&mut self, path: &Path, facts: Result<Facts, String>) {
         if let Some(entry) = self.entries.get_mut(path) {
             entry.facts = Some(facts);
@@ -120,7 +120,7 @@ impl Library {
         self.entries.iter().filter(usable).collect()
     }
 
-    /// How many are ticked.
+    /// Number of ticked recordings.
     pub(crate) fn ticked(&self) -> usize {
         self.ticked.len()
     }

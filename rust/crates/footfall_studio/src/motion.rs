@@ -13,15 +13,15 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Motion {
     /// The file, for a motion that was read from one.
     pub(crate) path: Option<PathBuf>,
-    /// What it is called.
+    /// Name in the list.
     pub(crate) name: String,
     /// The motion, its contacts and walks.
     pub(crate) recording: Recording,
-    /// When the legs change roles, from joint angles alone.
+    /// Changes of the legs' roles, from joint angles alone.
     pub(crate) switches: Vec<Switch>,
-    /// What the body does from event to event.
+    /// Phases of the motion, from event to event.
     pub(crate) phases: Vec<Phase>,
-    /// What that detector looks at.
+    /// Residual in which the switches were detected.
     pub(crate) residual: Option<SwitchResidual>,
 }
 

@@ -1,4 +1,4 @@
-//! What all views share: the list, the motion that is looked at, dialogs and messages.
+//! State that all views share: the list, the motion that is looked at, dialogs and messages.
 
 use crate::job::{self, Job, finished};
 use crate::library::{Facts, Library, ListAction};
@@ -14,7 +14,7 @@ use footfall_motion::gltf::clip_to_glb;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a chosen file is for.
+/// Purpose of a chosen file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     OpenFile,
@@ -38,7 +38,7 @@ pub(crate) enum Purpose {
     /// A recording of a sensor to replay.
     OpenSensor,
     SaveSensor,
-    /// What turns a sensor's samples into a body.
+    /// Model that turns a sensor's samples into a body.
     SensorModel,
     /// The table of the recordings to judge.
     EvaluateIndex,
@@ -65,7 +65,7 @@ enum Place {
 /// A motion on its way: what for, its file, and the work.
 type Reading = (Place, PathBuf, Job<Result<Motion, String>>);
 
-/// What all views share.
+/// State that all views share.
 pub(crate) struct Shell {
     pub(crate) library: Library,
     pub(crate) current: Option<Motion>,

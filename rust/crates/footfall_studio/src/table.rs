@@ -21,7 +21,7 @@ pub(crate) struct Table {
 pub(crate) enum Cell {
     Number(f64),
     Text(String),
-    /// What could not be measured.
+    /// Value that could not be measured.
     Nothing,
 }
 

@@ -1,4 +1,4 @@
-//! What is beside the list, one module each.
+//! Views beside the list, one module each.
 
 pub(crate) mod clips;
 pub(crate) mod design;

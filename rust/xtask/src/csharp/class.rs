@@ -119,7 +119,7 @@ impl Wrapper<'_> {
         }
     }
 
-    /// How one comes to a wrapper, and back to the engine's object.
+    /// Writes the ways to a wrapper, and back to the engine's object.
     fn write_making(&self, out: &mut Writer) {
         let (name, base) = (&self.class.name, &self.class.base);
         if self.class.can_be_made {

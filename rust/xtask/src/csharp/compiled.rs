@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Compiles the wrappers, the code of their README and the tests, and runs these. Without a compiler it says so and passes.
 ///
 /// # Errors
-/// What the compiler or a test complains about.
+/// Compiles the wrappers and runs their tests. An error is the complaint of the compiler or of a test.
 pub(super) fn check(reference: &Reference) -> Result<()> {
     let mono = match Mono::provision() {
         Ok(mono) => mono,

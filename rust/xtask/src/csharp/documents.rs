@@ -10,7 +10,7 @@ pub(super) struct Documents {
     classes: BTreeMap<String, ClassText>,
 }
 
-/// What is written of one class. Texts are in the editor's own markup.
+/// Documentation of one class. Texts are in the editor's own markup.
 #[derive(Debug, Default)]
 pub(super) struct ClassText {
     pub(super) text: String,
@@ -19,7 +19,7 @@ pub(super) struct ClassText {
     signals: BTreeMap<String, MemberText>,
 }
 
-/// What is written of a property, method or signal.
+/// Documentation of a property, method or signal.
 #[derive(Debug, Default)]
 pub(super) struct MemberText {
     pub(super) text: String,

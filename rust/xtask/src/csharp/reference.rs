@@ -1,4 +1,4 @@
-//! What the library registers with the engine, as a headless Godot tells it, with the class reference beside it.
+//! Classes that the library registers with the engine, as a headless Godot reports them, with the class reference beside them.
 
 use super::documents::Documents;
 use crate::{demo, engine_run, godot, link, open, paths};

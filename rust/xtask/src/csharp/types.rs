@@ -36,7 +36,7 @@ pub(super) enum Type {
 }
 
 impl Type {
-    /// How it is declared.
+    /// Declaration of the type.
     pub(super) fn declared(&self) -> String {
         match self {
             Self::Void => "void".into(),
@@ -48,7 +48,7 @@ impl Type {
         }
     }
 
-    /// How signals hand it over, which know nothing of wrappers.
+    /// Type in which signals hand it over, which know nothing of wrappers.
     pub(super) fn emitted(&self, reference: &Reference) -> String {
         match self {
             Self::Wrapped(name) => reference

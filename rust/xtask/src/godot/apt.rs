@@ -34,7 +34,7 @@ const PACKAGES: [&str; 9] = [
 ];
 /// Where the export template is, from the cache folder.
 pub(super) const RELEASE_TEMPLATE: &str = "root/usr/bin/godot-template-release";
-/// What is started, from the cache folder.
+/// Script that starts Godot, from the cache folder.
 const STARTER: &str = "godot";
 
 /// Downloads and unpacks; what an interrupted run had finished is kept. Returns the script that starts Godot.

@@ -11,7 +11,7 @@ use std::process::Command;
 const RELEASE: &str = "4.6.3-stable";
 const RELEASES: &str = "https://github.com/godotengine/godot/releases/download";
 
-/// What the release for one platform is called.
+/// Names of the release for one platform.
 #[derive(Debug, PartialEq, Eq)]
 struct Release {
     /// The part of the archive's name after the version, without `.zip`.

@@ -27,7 +27,7 @@ struct Band {
     middle: Vec3,
     along: Vec3,
     half_length: f32,
-    /// How far from the middle it counts, so that it stays on its limb.
+    /// Distance from the middle within which it counts, so that it stays on its limb.
     reach: f32,
     accent: bool,
 }
@@ -42,7 +42,7 @@ pub(super) struct Body {
 
 /// Further away than any part of the body, metres.
 const FAR_M: f32 = 100.0;
-/// How deep a band lies below the shells, metres.
+/// Depth of a band below the shells, metres.
 const INSET_M: f32 = 0.003;
 
 impl Body {
@@ -79,7 +79,7 @@ impl Body {
         smooth_difference(inset, half.y, 0.012)
     }
 
-    /// How many bands there are.
+    /// Number of bands.
     pub(super) fn bands(&self) -> usize {
         self.bands.len()
     }

@@ -18,7 +18,7 @@ pub(super) struct Loft {
     /// `model_from_loft` axes: side, along, front.
     axes: Mat3,
     stations: Vec<Station>,
-    /// How far the rounded ends reach beyond the first and the last station.
+    /// Lengths of the rounded ends beyond the first and the last station.
     caps: [f32; 2],
 }
 
@@ -156,7 +156,7 @@ pub(super) fn smooth_union(a: f32, b: f32, radius: f32) -> f32 {
     a.min(b) - near * near * radius * 0.25
 }
 
-/// What is in `a` but not in `b`, rounded where they meet.
+/// Distance to the shape that is in `a` but not in `b`, rounded where they meet.
 pub(super) fn smooth_difference(a: f32, b: f32, radius: f32) -> f32 {
     -smooth_union(-a, b, radius)
 }

@@ -31,7 +31,7 @@ struct Buffer {
     accessors: Vec<Value>,
 }
 
-/// What an accessor holds.
+/// Layout of an accessor's elements.
 struct Layout {
     /// `FLOAT` 5126, `UNSIGNED_BYTE` 5121 or `UNSIGNED_SHORT` 5123.
     component: u32,

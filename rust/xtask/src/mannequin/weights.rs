@@ -18,7 +18,7 @@ struct Territory {
     radius: f32,
 }
 
-/// How far the weights of neighbouring joints run into each other: standard deviation along the skin, metres.
+/// Width over which the weights of neighbouring joints blend: standard deviation along the skin, metres.
 fn spread(joint: Joint) -> f32 {
     match joint {
         Joint::Spine | Joint::Chest | Joint::UpperChest => 0.045,

@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Crates that games ship.
-const RUNTIME: [&str; 8] = [
+const RUNTIME: [&str; 9] = [
     "footfall_core",
     "footfall_prob",
     "footfall_model",
@@ -13,6 +13,7 @@ const RUNTIME: [&str; 8] = [
     "footfall_imu",
     "footfall_recon",
     "footfall_ik",
+    "footfall",
     "footfall_godot",
 ];
 /// Crates for work at the desk.
@@ -158,6 +159,7 @@ mod tests {
             found[0].starts_with("footfall_synth/Cargo.toml")
                 && found[0].contains("footfall_motion")
         );
+        assert_eq!(rules(&[package("footfall", &["footfall_train"])]).len(), 1);
         let mut tested = package("footfall_synth", &["footfall_motion"]);
         tested["dependencies"][0]["kind"] = "dev".into();
         assert!(rules(&[tested]).is_empty());

@@ -1,4 +1,4 @@
-//! What files may be in the repository, and what no text file may name.
+//! Rules on files: which may be in the repository, and names that no text file may hold.
 
 use super::Violation;
 

@@ -1,4 +1,4 @@
-//! What the text of Rust sources may not hold.
+//! Rules on the text of Rust sources.
 
 use super::Violation;
 use super::source::{code_only, without_tests};
@@ -15,7 +15,7 @@ const PURE: [&str; 6] = [
 /// Crates that talk to a user.
 const TOOLS: [&str; 3] = ["footfall_cli", "footfall_studio", "xtask"];
 
-/// What makes a function depend on more than its arguments.
+/// Names that make a function depend on more than its arguments.
 const IMPURE: [(&str, &str); 20] = [
     ("std::time", "the clock"),
     ("Instant::now", "the clock"),

@@ -66,7 +66,7 @@ fn comment_end(bytes: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// How many `#` a raw string has that starts with the `r` at this place.
+/// Number of `#` of a raw string that starts with the `r` at this place.
 fn raw_hashes(bytes: &[u8], at: usize) -> Option<usize> {
     let hashes = bytes[at + 1..]
         .iter()

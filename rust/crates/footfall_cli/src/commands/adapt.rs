@@ -35,16 +35,16 @@ pub(crate) struct AdaptArgs {
     conditions: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
-    /// What the style is called
+    /// Name of the style
     #[arg(long)]
     name: String,
     /// Use the first so many steps; all when absent
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..))]
     steps: Option<u32>,
-    /// How the base is moved
+    /// Method by which the base is adapted
     #[arg(long, value_enum, default_value_t = MethodArg::Csmaplr)]
     method: MethodArg,
-    /// What the style is made from, in your words, for its provenance; the conditions when absent
+    /// Description of the data for the style's provenance, in your words; the conditions when absent
     #[arg(long, value_name = "TEXT")]
     describe: Option<String>,
     /// Where to write the style

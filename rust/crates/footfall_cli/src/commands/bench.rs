@@ -30,7 +30,7 @@ pub(crate) struct BenchArgs {
     /// Model for the walker; a small built-in one when absent
     #[arg(long, value_name = "WALK.footfall")]
     model: Option<PathBuf>,
-    /// How often each kernel is timed; the best counts
+    /// Number of times that each kernel is timed; the best counts
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=1000))]
     repetitions: u16,
     /// Print one JSON object on stdout
@@ -324,7 +324,7 @@ struct Best {
     bodies: [Least; imu::SIZES.len()],
 }
 
-/// How long one run takes, microseconds.
+/// Duration of one run, microseconds.
 fn time(run: impl FnOnce() -> Result<()>) -> Result<f64> {
     let begun = now();
     run()?;

@@ -25,7 +25,7 @@ pub(crate) struct ContactsArgs {
     input: PathBuf,
     #[command(flatten)]
     map: MapArgs,
-    /// How to find them
+    /// Method of detection
     #[arg(long, value_enum, default_value_t = Method::Kinematic)]
     method: Method,
     /// Print one JSON object on stdout

@@ -44,7 +44,7 @@ pub(crate) struct DesignArgs {
     conditions: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
-    /// How many steps the clips of a corpus are to have at least
+    /// Least number of steps of all clips of a corpus
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
     /// Which chance a sheet with irregular steps draws
@@ -64,7 +64,7 @@ pub(crate) struct DesignArgs {
     print: Option<String>,
 }
 
-/// What became of one recording.
+/// Outcome for one recording.
 #[derive(Debug, Serialize)]
 struct Designed {
     output: PathBuf,

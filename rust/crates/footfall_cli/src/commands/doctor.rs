@@ -42,7 +42,7 @@ struct Finding {
     what: &'static str,
     state: State,
     found: String,
-    /// What to do; empty when there is nothing to do.
+    /// Next thing to do; empty when there is nothing to do.
     next: String,
 }
 

@@ -42,7 +42,7 @@ pub(crate) struct InspectArgs {
     json: bool,
 }
 
-/// What a file turned out to be.
+/// Content of a file, by kind.
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum Finding {
@@ -127,7 +127,7 @@ fn fact(name: &str, value: impl std::fmt::Display) -> String {
     format!("{name:<14} {value}")
 }
 
-/// What every model file of ours tells.
+/// Facts that every model file of ours has.
 #[derive(Serialize)]
 struct FileFacts {
     file: PathBuf,

@@ -31,7 +31,7 @@ pub(crate) struct SheetArgs {
     /// Where to begin, in seconds from frame 0; the first frame of the motion when absent
     #[arg(long)]
     start: Option<f64>,
-    /// How many seconds to draw; all when absent
+    /// Number of seconds to draw; all when absent
     #[arg(long)]
     seconds: Option<f64>,
     /// Figures in each pose strip

@@ -36,7 +36,7 @@ pub(crate) struct SynthArgs {
     /// A style to walk in and its weight, 1 when absent; may repeat. Beyond 1 exaggerates, below 0 is the opposite
     #[arg(long = "style", value_name = "STYLE.footstyle[:WEIGHT]")]
     styles: Vec<StyleArg>,
-    /// How many steps to take
+    /// Number of steps to take
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     steps: u32,
     /// Begin and end standing; otherwise the walk is cut out of a longer one
@@ -52,7 +52,7 @@ pub(crate) struct SynthArgs {
     /// Seconds to stand, with `--speed 0`
     #[arg(long, default_value_t = 20.0, value_name = "SECONDS")]
     seconds: f64,
-    /// How much it moves as it stands, with `--speed 0`: 0 not at all, 1 as in the recordings
+    /// Amount of motion while standing, with `--speed 0`: 0 none, 1 as in the recordings
     #[arg(long, default_value_t = 1.0, value_name = "AMOUNT")]
     standing_motion: f32,
     #[command(flatten)]

@@ -58,7 +58,7 @@ pub(crate) struct TrainArgs {
     /// Time differences that the model holds
     #[arg(long, value_enum, default_value_t = WindowsArg::Compact)]
     windows: WindowsArg,
-    /// What the model is trained on, in your words, for its provenance; the conditions when absent
+    /// Description of the data for the model's provenance, in your words; the conditions when absent
     #[arg(long, value_name = "TEXT")]
     describe: Option<String>,
     /// Most iterations of expectation-maximisation
@@ -112,7 +112,7 @@ struct Contexts<'a> {
     duration_leaves: usize,
     /// Different step models left of ten.
     models: usize,
-    /// What the trees ask.
+    /// Questions that the trees ask.
     questions: &'a [String],
 }
 
@@ -251,7 +251,7 @@ pub(super) fn read_corpus(
     Ok(corpus)
 }
 
-/// What a corpus left out.
+/// Recordings that a corpus left out.
 pub(super) fn skipped(corpus: &Corpus) -> Vec<Skipped> {
     let skipped = corpus.report.skipped.iter();
     skipped

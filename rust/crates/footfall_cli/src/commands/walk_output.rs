@@ -1,4 +1,4 @@
-//! What `synth` and `dynamics synth` have in common: how to walk, and the files that a walk becomes.
+//! Options and output files that `synth` and `dynamics synth` have in common.
 
 use crate::output;
 use anyhow::{Context as _, Result, ensure};
@@ -9,7 +9,7 @@ use footfall_synth::SynthesizedWalk;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// How to walk, and where to write it.
+/// Options of a walk, and its output files.
 #[derive(Debug, clap::Args)]
 pub(super) struct WalkArgs {
     /// Which walker, and which of its walks
@@ -38,7 +38,7 @@ pub(super) struct WalkArgs {
         value_name = "DEGREES"
     )]
     pub(super) direction: f32,
-    /// How far the walker strays from the average: 0 not at all, 1 as in the recordings
+    /// Variation of the walker and its steps about the average: 0 none, 1 as in the recordings
     #[arg(long, default_value_t = 1.0)]
     pub(super) variation: f32,
     /// Where to write
@@ -49,7 +49,7 @@ pub(super) struct WalkArgs {
     contacts: Option<PathBuf>,
 }
 
-/// What became of a walk.
+/// Facts about a walk, for the report.
 #[derive(Serialize)]
 pub(super) struct WalkFacts<'a> {
     output: &'a Path,

@@ -23,7 +23,7 @@ pub(crate) struct Plot {
     pub(crate) least_range: [f32; 2],
 }
 
-/// How many plots [`plots`] returns.
+/// Number of plots that [`plots`] returns.
 pub(crate) const PLOT_COUNT: usize = 8;
 
 /// Every plot of a clip, left column and right column in turn.

@@ -156,7 +156,7 @@ impl Canvas {
         }
     }
 
-    /// How wide a text is, in pixels.
+    /// Width of a text, in pixels.
     pub(crate) fn text_width(&self, text: &str, size: f32) -> f32 {
         let scaled = self.font.as_scaled(PxScale::from(size));
         text.chars()

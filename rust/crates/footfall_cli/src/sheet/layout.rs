@@ -17,9 +17,9 @@ const LARGEST_SCALE: f32 = 140.0;
 const LARGEST_PATH_HEIGHT: f32 = 420.0;
 /// Room beside the outermost hips for limbs, metres.
 const REACH_M: f32 = 0.6;
-/// What a figure takes across in a pose strip, metres.
+/// Width of a figure in a pose strip, metres.
 const FIGURE_WIDTH_M: f32 = 1.05;
-/// What a pose strip covers when the clip is longer: about two strides of a walk, seconds.
+/// Time that a pose strip covers when the clip is longer: about two strides of a walk, seconds.
 const STRIP_SECS: f64 = 2.2;
 /// Travel between two figures of the travelling view, metres.
 const FIGURE_SPACING_M: f32 = 0.6;

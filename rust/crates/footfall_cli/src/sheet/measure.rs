@@ -1,4 +1,4 @@
-//! What the panels show, measured from a clip: positions, heading, travel, joint angles.
+//! Measurements of a clip for the panels: positions, heading, travel, joint angles.
 
 use super::{SheetOptions, Subject};
 use anyhow::{Result, ensure};

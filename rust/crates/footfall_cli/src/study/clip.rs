@@ -1,4 +1,4 @@
-//! What a participant sees of a recording.
+//! Recordings as participants see them.
 
 use footfall_core::rotation::from_heading;
 use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
@@ -20,7 +20,7 @@ const LEAST_STEPS: usize = 3;
 pub(crate) struct Excerpt<'a> {
     /// Style that it shows or is meant to show.
     pub(crate) style: &'a str,
-    /// What to call the recording in the answers.
+    /// Name of the recording in the answers.
     pub(crate) name: String,
     clip: &'a Clip,
     steps: &'a [Step],
@@ -60,7 +60,7 @@ fn opening<'a>(walk: &'a Walk, clip: &Clip, frames: usize) -> &'a [Step] {
 }
 
 impl Excerpt<'_> {
-    /// How many steps it has.
+    /// Number of its steps.
     pub(crate) fn steps(&self) -> usize {
         self.steps.len()
     }

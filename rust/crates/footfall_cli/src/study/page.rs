@@ -11,7 +11,7 @@ const STYLE_SHEET: &str = include_str!("page.css");
 const FIGURE: &str = include_str!("figure.js");
 const TESTS: &str = include_str!("study.js");
 
-/// How large the study is.
+/// Size of the study.
 #[derive(Clone, Debug)]
 pub(crate) struct StudyOptions {
     /// Heading of the page.

@@ -4,7 +4,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// What a run left behind.
+/// Outcome of a run.
 pub(crate) struct Run {
     /// Exit code.
     pub(crate) code: i32,

@@ -1,4 +1,4 @@
-//! What makes the command line a pleasure: completions, manuals, a check-up.
+//! Conveniences of the command line: completions, manuals, a check-up.
 
 use crate::common::footfall;
 use std::path::Path;

@@ -122,7 +122,7 @@ fn what_cannot_be_judged_is_named() {
     assert!(!folder.path().join("study.html").exists());
 }
 
-/// What the calibration says of captured people: six styles of set 2 all told apart across takes, fourteen of set 1 within a
+/// Calibration on captured people: six styles of set 2 all recognised across takes, fourteen of set 1 within a
 /// take, and fewer across takes.
 #[test]
 fn captured_styles_are_recognised_as_the_calibration_says() {

@@ -1,4 +1,4 @@
-//! What the product promises, measured on the real CMU walks. Skipped where the recordings are not.
+//! Promises of the product, measured on the real CMU walks. Skipped where the recordings are not.
 
 use crate::common::footfall;
 use footfall_motion::bvh;

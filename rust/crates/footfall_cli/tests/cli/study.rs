@@ -41,13 +41,13 @@ fn visit(chromium: &Path, profile: &Path, page: &Path) -> String {
     dom
 }
 
-/// What the page shows: its scripts hold the same words.
+/// Visible part of the page: its scripts hold the same words.
 fn main_of(dom: &str) -> &str {
     let (_, rest) = dom.split_once("<main id=\"main\">").expect("a main part");
     rest.split("</main>").next().unwrap_or_default()
 }
 
-/// What the participant left in the document.
+/// Report that the participant left in the document.
 fn report(dom: &str) -> Value {
     // The last one: the script that makes it names it too.
     let (_, rest) = dom

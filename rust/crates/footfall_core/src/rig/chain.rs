@@ -24,7 +24,7 @@ pub(super) struct Chain {
 /// The better, the larger: more joints that are needed, more joints, more preferred names, fewer bones between.
 type Score = (usize, usize, isize, isize);
 
-/// Finds the bones of joints that hang below each other. `needed` tells which of them count most.
+/// Finds the bones of joints that hang below each other. `needed` marks those that count most.
 pub(super) fn best_chain(rig: &Rig, joints: &[Vec<Candidate>], needed: &[bool]) -> Chain {
     let mut search = Search {
         rig,

@@ -11,7 +11,7 @@ pub(super) fn known() -> Vec<JointMap> {
 /// Names of a family: trunk names as they are, limb names with `*` for the side.
 struct Family {
     label: &'static str,
-    /// What `*` is on the left and on the right.
+    /// Text in the place of `*`, on the left and on the right.
     sides: [&'static str; 2],
     /// From hips to head, in the order of the canonical joints; alternatives separated by `|`.
     trunk: [&'static str; 6],

@@ -45,7 +45,7 @@ impl Placement {
             .collect()
     }
 
-    /// How many joints are placed.
+    /// Number of joints that are placed.
     pub fn count(&self) -> usize {
         self.joints.iter().flatten().count()
     }

@@ -22,7 +22,7 @@ pub(super) struct View<'a> {
     bones: HashMap<&'a str, Vec<usize>>,
 }
 
-/// How likely bones with a prefix are those that move the mesh, the likeliest first.
+/// Purpose of bones with a prefix, those that most likely move the mesh first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Purpose {
     /// Named so by rigs that have others too.
@@ -94,7 +94,7 @@ impl View<'_> {
     }
 }
 
-/// What of a name counts in comparison: letters and digits of what follows the last namespace, small.
+/// Form of a name for comparison: letters and digits after the last namespace, in lower case.
 pub(super) fn key(name: &str) -> String {
     name.rsplit([':', '|'])
         .next()

@@ -18,7 +18,7 @@ impl MapKeys {
         Self(core::array::from_fn(|joint| keys(&map.names[joint])))
     }
 
-    /// Names that a body can be told by.
+    /// Names from which a body is recognised.
     pub(super) fn anchors(&self) -> Vec<String> {
         let of = |joint: Joint| self.0[joint.index()].iter().cloned();
         of(Joint::Hips).chain(of(Joint::Head)).collect()
@@ -162,7 +162,7 @@ impl Placing<'_> {
         }
     }
 
-    /// The trunk is what carries arms and head and not the legs; names tell its bones apart (true), else they are shared out.
+    /// Places the trunk: the bones that carry arms and head and not the legs. Returns true where names distinguish them; otherwise they are shared out.
     fn place_trunk(&mut self) -> bool {
         const TRUNK: [Joint; 3] = [Joint::Spine, Joint::Chest, Joint::UpperChest];
         let Some(hips) = self.placement.joint(Joint::Hips) else {

@@ -112,7 +112,7 @@ impl Clip {
     }
 }
 
-/// What is wrong with a rig, with what can be done about it in the editor.
+/// Problem with a rig, and its remedy in the editor.
 fn advice(error: &RetargetError) -> String {
     match error {
         RetargetError::UnknownSkeleton {

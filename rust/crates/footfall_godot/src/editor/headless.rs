@@ -8,7 +8,7 @@ use godot::classes::{DisplayServer, GDExtensionManager};
 use godot::init::is_singleton_available;
 use godot::prelude::*;
 
-/// What the engine tells when extensions were added.
+/// Signal of the engine after extensions were added.
 const ADDED: &str = "extensions_reloaded";
 
 /// Keeps a headless editor from making its class reference anew for the extension that is being loaded.

@@ -1,4 +1,4 @@
-//! What importers of earlier versions left beside models: `.import` files, which nobody needs any more and which an export would follow.
+//! Leftovers of importers of earlier versions beside models: `.import` files, which nobody needs any more and which an export would follow.
 
 use godot::classes::{
     ConfigFile, DirAccess, EditorExportPlugin, EditorFileSystemDirectory, EditorInterface,
@@ -9,7 +9,7 @@ use godot::prelude::*;
 
 /// The classes of files that were imported once.
 const ONCE_IMPORTED: [&str; 3] = ["GaitModel", "GaitStyle", "ImuModel"];
-/// What the names of those importers began with.
+/// Prefix of the names of those importers.
 const IMPORTERS: &str = "footfall.";
 
 /// Removes the `.import` files from the whole project.

@@ -1,4 +1,4 @@
-//! What Godot starts by itself as soon as the library is loaded in the editor.
+//! Plugin that Godot starts by itself as soon as the library is loaded in the editor.
 
 use super::leftovers::{self, FootfallExportPlugin};
 use super::preview_bar::FootfallPreviewInspector;
@@ -8,7 +8,7 @@ use crate::shipped;
 use godot::classes::{EditorFileSystem, EditorInterface, EditorPlugin, IEditorPlugin};
 use godot::prelude::*;
 
-/// What the file system tells when it has looked through the project.
+/// Signal of the file system after it has looked through the project.
 const SCANNED: &str = "filesystem_changed";
 
 /// Brings the editor its dock, gizmos and preview bar, and has it look at a project in which the add-on is new.
@@ -19,7 +19,7 @@ struct FootfallEditorPlugin {
     base: Base<EditorPlugin>,
 }
 
-/// What the plugin adds.
+/// Tools that the plugin adds.
 struct Tools {
     dock: Gd<FootfallStyleDock>,
     gizmo: Gd<FootfallWalkGizmo>,

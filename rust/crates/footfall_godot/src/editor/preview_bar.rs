@@ -7,7 +7,7 @@ use godot::classes::{
 };
 use godot::prelude::*;
 
-/// How much of a walk the slider covers, seconds.
+/// Length of the walk that the slider covers, seconds.
 const SHOWN_SECS: f64 = 20.0;
 
 /// Adds the bar to the inspector of a `GaitGenerator3D`.

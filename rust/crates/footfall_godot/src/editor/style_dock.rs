@@ -209,7 +209,7 @@ impl FootfallStyleDock {
         dock
     }
 
-    /// What to make, as the form says.
+    /// Order from the form.
     fn order(&self) -> Result<Order, String> {
         let form = self.form.as_ref().ok_or("The dock is not open.")?;
         if self.recordings.is_empty() {

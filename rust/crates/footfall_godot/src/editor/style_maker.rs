@@ -8,15 +8,15 @@ use footfall_train::{Progress, Recordings, TrainError, shows_steps};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What to make.
+/// Order for a style.
 pub(super) struct Order {
     /// The walk that is adapted.
     pub(super) base: Arc<GaitModel>,
     /// Recordings of the style.
     pub(super) recordings: Vec<Clip>,
-    /// What the style is called.
+    /// Name of the style.
     pub(super) name: String,
-    /// How many steps are taken from them at most.
+    /// Largest number of steps to take from them.
     pub(super) steps: usize,
     /// Where it is written.
     pub(super) file: PathBuf,
@@ -26,7 +26,7 @@ pub(super) struct Order {
 pub(super) struct Made {
     pub(super) base: Arc<GaitModel>,
     pub(super) style: Arc<GaitStyle>,
-    /// What there is to be said about it, empty when all is well.
+    /// Remarks about it, empty when all is well.
     pub(super) remarks: String,
 }
 
@@ -116,7 +116,7 @@ impl Walks {
         Ok(walks)
     }
 
-    /// What there is to be said about the style that was made of them.
+    /// Remarks about the style that was made of them.
     pub(super) fn remarks(&self, style: &GaitStyle) -> String {
         let thin = style
             .thin_warning()

@@ -6,9 +6,9 @@ use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop};
 use glam::{Vec2, Vec3};
 
-/// Who is this close to a place has arrived there, metres.
+/// Distance at which a walker has arrived at a place, metres.
 const ARRIVED_M: f32 = 1.0;
-/// How fast somebody turns towards where it wants to go: rad/s for each radian that is missing, and at most.
+/// Rate of turning towards the wanted direction: rad/s for each radian that is missing, and at most.
 const TURN_GAIN: f32 = 1.6;
 const MAX_TURN_RADPS: f32 = 1.3;
 /// Others are seen this far, metres.
@@ -19,7 +19,7 @@ const RISE_SECS: f32 = 0.15;
 /// A tint that changes nothing: red, green, blue and opacity.
 pub(super) const WHITE: [f32; 4] = [1.0; 4];
 
-/// What a walker is asked to do.
+/// Goals of a walker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Goal {
     /// A turn rate, rad/s.
@@ -35,7 +35,7 @@ pub(super) struct Seen {
     pub(super) velocity: Vec2,
 }
 
-/// What is drawn of a walker: where it was when it moved last but one, and where it is.
+/// Places of a walker for drawing: where it was when it moved last but one, and where it is.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Drawn {
     pub(super) places: [Vec3; 2],
@@ -61,14 +61,14 @@ impl Drawn {
 pub(super) struct Agent {
     /// Its walk, in memory that the thread that made it asked for; none before it is made, and for places that nobody has.
     pub(super) walker: Option<Box<CrowdWalker>>,
-    /// Tells it from others who had its place or will have it.
+    /// Number that distinguishes it from others who had its place or will have it.
     pub(super) ticket: u64,
     /// Whether it is one of the node's `count`, not one that a script added.
     pub(super) counted: bool,
     /// Where in its stride it begins.
     pub(super) start_phase: f32,
     pub(super) goal: Goal,
-    /// What it would like to walk, m/s.
+    /// Preferred speed, m/s.
     pub(super) speed_mps: f32,
     /// Its height against that of the character.
     pub(super) size: f32,
@@ -82,7 +82,7 @@ pub(super) struct Agent {
     pub(super) outfit: Outfit,
     /// Places to go to after its goal, the next one last.
     pub(super) route: Vec<Vec2>,
-    /// How far along a path it is, metres, and how far beside its middle.
+    /// Place along a path and beside its middle, metres.
     pub(super) progress_m: f32,
     pub(super) aside_m: f32,
     /// The foot that landed in the last frame and where, if one did.
@@ -208,7 +208,7 @@ impl Agent {
         }
     }
 
-    /// What is drawn of it, after it moved from there.
+    /// Places for drawing, after it moved from there.
     pub(super) fn drawn(&self, from: Vec3, from_heading: f32) -> Drawn {
         let turned = wrap_angle(self.heading - from_heading);
         Drawn {

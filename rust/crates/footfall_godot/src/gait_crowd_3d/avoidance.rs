@@ -159,7 +159,7 @@ mod tests {
         }
     }
 
-    /// How near the two come when one takes a detour and the other goes on.
+    /// Least distance of the two when one takes a detour and the other goes on.
     fn nearest(detour: Detour, other: &Seen) -> f32 {
         let velocity = direction(detour.aside) * (1.3 * detour.speed);
         (0..80)

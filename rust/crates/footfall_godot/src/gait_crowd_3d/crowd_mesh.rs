@@ -15,7 +15,7 @@ use godot::prelude::*;
 /// Joints that move one vertex.
 const INFLUENCES: usize = 4;
 
-/// What a crowd needs to know of its character.
+/// Character of a crowd: its mesh and its body.
 pub(super) struct CrowdMesh {
     /// For walkers whose pose is new in every frame, and for those far away.
     pub(super) meshes: [Gd<ArrayMesh>; 2],
@@ -27,7 +27,7 @@ pub(super) struct CrowdMesh {
 }
 
 impl CrowdMesh {
-    /// How high its highest joint is in the T-pose.
+    /// Height of its highest joint in the T-pose.
     pub(super) fn height(&self) -> f32 {
         self.rest
             .iter()
@@ -50,7 +50,7 @@ impl CrowdMesh {
     /// Takes a character to pieces. `host` is a node in the tree, under which it is put for a moment.
     ///
     /// # Errors
-    /// What is wrong with the character, for the user.
+    /// Text for the user that says what is wrong with the character.
     pub(super) fn new(scene: &Gd<PackedScene>, host: &mut Gd<Node3D>) -> Result<Self, String> {
         let made = scene
             .instantiate()

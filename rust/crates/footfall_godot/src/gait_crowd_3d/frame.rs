@@ -1,4 +1,4 @@
-//! One frame of a crowd: time passes, everybody is drawn, and what happened is told.
+//! One frame of a crowd: time passes, everybody is drawn, and signals are emitted.
 
 use super::navigation::Navigation;
 use super::scene::{CrowdScene, Look};
@@ -104,7 +104,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// What `footsteps` has to tell, if anything; nothing in the editor.
+    /// Arguments of the signal `footsteps`, if any feet landed; nothing in the editor.
     fn landed(
         &self,
         walkers: &Walkers,

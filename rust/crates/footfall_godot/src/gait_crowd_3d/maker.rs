@@ -20,7 +20,7 @@ pub(super) struct Order {
     /// Which walker it is for: another one may have its place when it is done.
     pub(super) ticket: u64,
     pub(super) outfit: Outfit,
-    /// How it walks; none for a walker that is there and only dressed.
+    /// Settings of its walk; none for a walker that is there and only dressed.
     pub(super) config: Option<GeneratorConfig>,
 }
 
@@ -84,12 +84,12 @@ impl Maker {
         maker
     }
 
-    /// How many styles there are.
+    /// Number of styles.
     pub(super) fn styles(&self) -> usize {
         self.shared.recipe.styles.len()
     }
 
-    /// What walkers are made with, once it is there, or why it cannot be.
+    /// Kit with which walkers are made, once it is there, or the reason why it cannot be.
     pub(super) fn kit(&self) -> Option<&Result<Arc<Kit>, String>> {
         self.shared.kit.get()
     }

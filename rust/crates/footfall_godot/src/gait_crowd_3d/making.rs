@@ -97,7 +97,7 @@ impl GaitCrowd3D {
         self.base_mut().update_configuration_warnings();
     }
 
-    /// What keeps the crowd from walking, as far as it is known.
+    /// Problems that keep the crowd from walking, as far as they are known.
     pub(super) fn problems(&self) -> PackedStringArray {
         let mut problems: Vec<String> = Vec::new();
         let checked = self.walk().and_then(|(model, styles, space)| {

@@ -15,7 +15,7 @@ const CHUNK: usize = 128;
 pub(super) const FETCHED: usize = 16;
 /// Walkers far away are in so many groups, of which one moves in each frame.
 pub(super) const GROUPS: usize = 4;
-/// Who is near whom is looked at in every so many frames.
+/// Interval at which neighbours are found anew, in frames.
 const NEIGHBOURS_EVERY: u64 = 4;
 
 impl Walkers {
@@ -105,7 +105,7 @@ impl Walkers {
             || self.frame % GROUPS as u64 == (index % GROUPS) as u64
     }
 
-    /// Whose feet landed in the last frame, which, and where.
+    /// Landings in the last frame: walker, foot and place.
     pub(super) fn landed(&self) -> impl Iterator<Item = (usize, Side, Vec3)> {
         let agents = self.agents.iter().enumerate();
         agents.filter_map(|(index, agent)| {

@@ -1,4 +1,4 @@
-//! Who is near whom: a grid over the plane, made anew as people move.
+//! Neighbours: a grid over the plane, made anew as people move.
 
 use super::agent::{SIGHT_M, Seen};
 use glam::{IVec2, Vec2};

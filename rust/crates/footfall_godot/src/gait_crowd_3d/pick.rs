@@ -4,7 +4,7 @@ use super::agent::Agent;
 use super::walkers::Walkers;
 use glam::Vec3;
 
-/// How wide a walker is, from its middle, and how far its skull goes beyond the joint of its head, as a share of its height.
+/// Half the width of a walker as a share of its height, and that height over the one of its highest joint.
 const RADIUS: f32 = 0.16;
 const SKULL: f32 = 1.12;
 

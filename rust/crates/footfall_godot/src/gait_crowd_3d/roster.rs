@@ -93,7 +93,7 @@ impl Roster {
         })
     }
 
-    /// How many places there are, left ones included.
+    /// Number of places, left ones included.
     pub(super) fn places(&self) -> usize {
         self.turns.len()
     }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 const HEADER: &[u8; 8] = b"footcrw2";
 const HEADER_1: &[u8; 8] = b"footcrw1";
 
-/// What is kept of a walker.
+/// Saved state of a walker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedAgent {
     pub(super) seed: u64,
@@ -29,7 +29,7 @@ pub(super) struct SavedAgent {
 /// A crowd as it is kept.
 #[derive(Debug, PartialEq)]
 pub(super) struct SavedCrowd {
-    /// How many walkers there ever were.
+    /// Number of walkers that there ever were.
     pub(super) made: u64,
     /// None for a crowd that was saved before walkers had names.
     pub(super) roster: Option<Roster>,
@@ -63,7 +63,7 @@ pub(super) fn write<'a>(
 /// Reads everybody.
 ///
 /// # Errors
-/// What is wrong with the bytes, for the user.
+/// Text for the user that says what is wrong with the bytes.
 pub(super) fn read(bytes: &[u8]) -> Result<SavedCrowd, String> {
     let damaged = |error| format!("the bytes are damaged ({error})");
     let saved = if let Some(content) = bytes.strip_prefix(HEADER) {

@@ -1,4 +1,4 @@
-//! What is seen of a crowd.
+//! Visible part of a crowd.
 
 use super::actors::Actors;
 use super::agent::Agent;
@@ -15,10 +15,10 @@ use rayon::prelude::*;
 
 /// Tiers are chosen anew in every so many frames.
 const CHOOSE_EVERY: u64 = 8;
-/// Who is this close to what the camera sees counts as seen, metres: poses must be there before they are needed.
+/// Margin around the camera's view in which walkers count as seen, metres: poses must be there before they are needed.
 const MARGIN_M: f32 = 3.0;
 
-/// How the node wants its crowd to look.
+/// Settings of a crowd's look.
 pub(super) struct Look {
     pub(super) character: Option<Gd<PackedScene>>,
     pub(super) material: Option<Gd<ShaderMaterial>>,
@@ -27,7 +27,7 @@ pub(super) struct Look {
     pub(super) most_made: usize,
 }
 
-/// What draws a crowd.
+/// Drawing of a crowd.
 pub(super) struct CrowdScene {
     near: Flock,
     far: Vec<Flock>,

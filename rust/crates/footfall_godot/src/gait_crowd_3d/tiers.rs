@@ -1,8 +1,8 @@
-//! How much is done for each walker of a crowd: by distance, with most counts, and with hysteresis.
+//! Tiers of a crowd's walkers: by distance, with largest counts, and with hysteresis.
 
 use glam::Vec3;
 
-/// What a walker is drawn as.
+/// Ways of drawing a walker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Tier {
     /// A whole scene with a skeleton and what hangs from it.
@@ -23,7 +23,7 @@ pub(super) struct Limits {
     pub(super) distances_m: [f32; 2],
 }
 
-/// Who has a better tier keeps it up to this much farther away.
+/// Factor on the distance up to which a walker keeps a better tier.
 const KEEP: f32 = 1.1;
 
 /// Chooses tiers.

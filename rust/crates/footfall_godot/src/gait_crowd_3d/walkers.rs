@@ -18,7 +18,7 @@ use std::sync::Arc;
 const GOLDEN: f32 = 0.618_034;
 const PLASTIC: [f32; 2] = [0.754_877_7, 0.569_840_3];
 
-/// How walkers differ.
+/// Settings by which walkers differ.
 pub(super) struct Settings {
     pub(super) seed: u64,
     pub(super) speeds_mps: [f32; 2],
@@ -33,12 +33,12 @@ pub(super) struct Settings {
 pub(super) struct Walkers {
     pub(super) agents: Vec<Agent>,
     pub(super) tiers: Vec<Tier>,
-    /// What is drawn of each.
+    /// Places of each for drawing.
     pub(super) drawn: Vec<Drawn>,
     pub(super) roster: Roster,
-    /// Who began to walk in the last frame, by name.
+    /// Walkers that began in the last frame, by name.
     pub(super) began: Vec<i32>,
-    /// How many frames there were.
+    /// Number of frames so far.
     pub(super) frame: u64,
     pub(super) time_secs: f64,
     pub(super) mesh: CrowdMesh,
@@ -46,11 +46,11 @@ pub(super) struct Walkers {
     pub(super) neighbours: Neighbours,
     pub(super) way: Way,
     pub(super) repeats: bool,
-    /// How much those move who stand.
+    /// Amount of motion of those who stand.
     pub(super) standing_motion: f32,
     pub(super) maker: Maker,
     settings: Settings,
-    /// How many walkers there ever were: the number of the next, which says who it is.
+    /// Number of walkers that there ever were: the number of the next, which identifies it.
     made: u64,
     tickets: u64,
     /// Walkers who have names and no rows yet, in the order in which they came.

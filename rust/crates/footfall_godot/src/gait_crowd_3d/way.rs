@@ -3,13 +3,13 @@
 use super::agent::{Agent, Goal};
 use glam::Vec2;
 
-/// Who follows a path looks so far ahead on it, metres.
+/// Distance that a walker looks ahead on its path, metres.
 const AHEAD_M: f32 = 2.5;
 
-/// What all walkers of a crowd do.
+/// Ways of all walkers of a crowd.
 #[derive(Debug, Default)]
 pub(super) enum Way {
-    /// What scripts tell them.
+    /// As scripts command.
     #[default]
     Told,
     /// From one place of a rectangle about the origin to another.

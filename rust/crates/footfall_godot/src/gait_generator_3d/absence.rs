@@ -5,7 +5,7 @@ use super::session::Session;
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
-/// What goes on when the character comes back.
+/// State that goes on when the character comes back.
 pub(super) struct Absent {
     skeleton: InstanceId,
     pub(super) elapsed_secs: f64,

@@ -1,4 +1,4 @@
-//! What the nodes beside the generator and the editor ask of it.
+//! Interface of the generator to the nodes beside it and to the editor.
 
 use super::GaitGenerator3D;
 use super::reign::Reign;
@@ -12,13 +12,13 @@ impl GaitGenerator3D {
     /// The node that travels.
     ///
     /// # Errors
-    /// What to set, when there is none.
+    /// Property to set, when there is none.
     pub(crate) fn find_character(&self, skeleton: &Gd<Skeleton3D>) -> Result<Gd<Node3D>, String> {
         let node = self.base().clone().upcast::<Node>();
         character::find(&node, skeleton, &self.character)
     }
 
-    /// What tells bones from joints.
+    /// Map from joints to bones.
     pub(crate) fn bones(&self) -> Option<Gd<BoneMap>> {
         self.bone_map.clone()
     }
@@ -56,7 +56,7 @@ impl GaitGenerator3D {
         self.slowed = share;
     }
 
-    /// How much of the body is the walk's. What is not a number is all of it.
+    /// Shares of the body's parts that are the walk's. A weight that is not a number counts as 1.
     pub(super) fn layer_weights(&self) -> LayerWeights {
         let [spine, head, left_arm, right_arm] = [
             self.spine_weight,

@@ -1,9 +1,9 @@
-//! How finely a walk is worked out.
+//! Detail of a walk.
 
 use footfall_synth::Detail;
 use godot::prelude::*;
 
-/// How finely a walk is worked out.
+/// Detail in which a walk is worked out.
 #[derive(GodotConvert, Var, Export, Default, Clone, Copy, Debug)]
 #[godot(via = i64)]
 pub(crate) enum GaitDetail {

@@ -26,7 +26,7 @@ pub(super) struct Fitting {
     pub(super) seen: Seen,
 }
 
-/// What makes walks.
+/// Maker of walks.
 pub(super) struct Maker<'a> {
     pub(super) source: &'a WalkSource,
     pub(super) style_weights: &'a [f32],
@@ -130,7 +130,7 @@ impl Maker<'_> {
     }
 }
 
-/// What of a motion tells which moment of a stride it resembles.
+/// Features of a motion by which it is compared with moments of a stride.
 struct Look {
     /// Ankles, from the hips over the ground, and heights over it.
     feet: [Vec3; 2],

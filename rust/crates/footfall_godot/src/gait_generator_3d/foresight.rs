@@ -7,7 +7,7 @@ use footfall_synth::Footstep;
 use glam::{Affine3A, Vec3};
 use godot::obj::WithBaseField as _;
 
-/// How many steps ahead are shown, and how long is waited for them at most, in frames.
+/// Number of steps ahead that are shown, and the longest wait for them, in frames.
 const STEPS_AHEAD: usize = 12;
 const MOST_FRAMES: usize = 600;
 const FRAME_SECS: f32 = 1.0 / 30.0;

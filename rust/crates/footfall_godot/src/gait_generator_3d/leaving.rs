@@ -14,7 +14,7 @@ use godot::prelude::*;
 /// A foot that cannot find its place is let go so long after the end, seconds.
 const PATIENCE_SECS: f32 = 2.0;
 
-/// How fast the character still is.
+/// Remaining motion of a character whose walk gives the body away: it dies away.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leaving {
     /// At the beginning, in the axes of the ground.

@@ -1,4 +1,4 @@
-//! What scripts ask of the node.
+//! Methods of the node for scripts.
 
 use super::GaitGenerator3D;
 use super::gait_choice::name_of;

@@ -1,4 +1,4 @@
-//! What keeps a character from walking, for the editor, scripts and the log.
+//! Problems that keep a character from walking, for the editor, scripts and the log.
 
 use super::GaitGenerator3D;
 use crate::bones;
@@ -37,7 +37,7 @@ impl GaitGenerator3D {
         problems
     }
 
-    /// Tells the log what keeps the character from walking, once.
+    /// Logs what keeps the character from walking, once.
     pub(super) fn report(&mut self, problem: String) {
         if self.reported.as_ref() == Some(&problem) {
             return;

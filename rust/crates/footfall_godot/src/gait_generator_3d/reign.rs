@@ -1,4 +1,4 @@
-//! Who poses the skeleton: the walk, other animation, or one on its way to the other.
+//! Control of the skeleton: by the walk, by other animation, or on the way from one to the other.
 
 use super::GaitGenerator3D;
 use super::session::Session;
@@ -16,18 +16,18 @@ const MOST_SECS: f64 = 10.0;
 /// A walk that was measured anew goes over to itself within this time, seconds.
 const RESIZE_SECS: f64 = 0.3;
 
-/// Who poses the skeleton.
+/// States of control of the skeleton.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Reign {
     #[default]
     Walking,
     /// The walk gives the body away.
     Leaving,
-    /// Other animation does.
+    /// Other animation poses the skeleton.
     Away,
 }
 
-/// What was asked for and has not begun.
+/// Requests that have not begun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Wish {
     TakeOver(f64),

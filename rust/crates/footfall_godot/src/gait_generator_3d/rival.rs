@@ -13,7 +13,7 @@ pub(super) struct Rivals {
 }
 
 impl GaitGenerator3D {
-    /// What is wrong when another generator walks the skeleton already.
+    /// Problem when another generator walks the skeleton already.
     pub(super) fn rivalry(&mut self, skeleton: &Gd<Skeleton3D>) -> Option<String> {
         let (index, children) = (self.base().get_index(), skeleton.get_child_count());
         if self.rivals.index != index || self.rivals.children != children {

@@ -26,7 +26,7 @@ impl Seen {
         self.frames = (self.frames + 1).min(2);
     }
 
-    /// One frame more of a motion that does not tell which feet stand. The floor is that of a frame of its space in which lengths are
+    /// Takes one frame more of a motion without known contacts. The floor is that of a frame of its space in which lengths are
     /// `scale` times as long.
     pub(super) fn see_silent(
         &mut self,

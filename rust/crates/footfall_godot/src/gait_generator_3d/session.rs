@@ -25,9 +25,9 @@ pub(super) struct Session {
     source: WalkSource,
     /// In the space above the ground under the character.
     pub(super) pose: Pose,
-    /// What the skeleton showed last, in the space where the walk began.
+    /// Motion that the skeleton showed last, in the space where the walk began.
     pub(super) shown: Seen,
-    /// What is left of the motion before.
+    /// Handover from the motion before.
     pub(super) handover: Option<Handover>,
     /// Since somebody else began to pose the skeleton.
     pub(super) watched: super::watch::Watch,
@@ -35,7 +35,7 @@ pub(super) struct Session {
     size: Size,
 }
 
-/// How long a character has had its size.
+/// Size of a character, and the time that it has had it.
 #[derive(Debug, Default)]
 struct Size {
     scale: f32,
@@ -147,7 +147,7 @@ impl Session {
         Ok(())
     }
 
-    /// What the skeleton showed last, on the ground under the character, in metres of the world.
+    /// Motion that the skeleton showed last, on the ground under the character, in metres of the world.
     pub(super) fn shown_here(&self) -> Seen {
         let place = fit::frame(&self.traveller.ground_place());
         self.shown.seen_from(&place, self.traveller.scale())

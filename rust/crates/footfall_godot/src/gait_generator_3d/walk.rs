@@ -73,7 +73,7 @@ impl GaitGenerator3D {
         Ok((character, binding))
     }
 
-    /// One frame: time passes, the character travels, bones are posed, footsteps are told.
+    /// One frame: time passes, the character travels, bones are posed, footsteps are emitted.
     pub(super) fn walk(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
         self.reported = None;
         let in_editor = Engine::singleton().is_editor_hint();

@@ -22,14 +22,14 @@ pub(super) struct Session {
     pub(super) sensors: [Worn; MAX_SENSORS],
     /// Whether it is found out how sensors are worn.
     pub(super) finds_mountings: bool,
-    /// How the body stands before anything is heard.
+    /// Pose of the body before anything is heard.
     pub(super) standing: Pose,
     pub(super) pose: Pose,
     pub(super) behaviour: Behaviour,
     pub(super) state: SensorState,
 }
 
-/// What every sensor of a person measures who stands.
+/// Measurement of every sensor of a person who stands.
 fn standing_sample(time_secs: f64) -> ImuSample {
     ImuSample {
         time_secs,

@@ -129,7 +129,7 @@ impl Worn {
         }
     }
 
-    /// How old the newest sample of a live sensor is, seconds.
+    /// Age of the newest sample of a live sensor, seconds.
     pub(super) fn latency_secs(&self) -> f64 {
         self.live_secs.map_or(0.0, |at| (now_secs() - at).max(0.0))
     }

@@ -1,4 +1,4 @@
-//! Whose pose a bone takes: the gait's or that of what animates the skeleton besides.
+//! Layers: bones that take the gait's pose, and bones that keep that of other animation.
 
 use super::{SkeletonBinding, turned_by_links};
 use crate::convert;
@@ -8,7 +8,7 @@ use glam::Quat;
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
-/// How much of the gait each part of the body takes: 0 none, 1 all. Hips and legs take all.
+/// Share of the gait in each part of the body: 0 none, 1 all. Hips and legs take all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LayerWeights {
     pub(crate) spine: f32,
@@ -112,7 +112,7 @@ impl SkeletonBinding {
         }
     }
 
-    /// How the skeleton is posed: each bone's own rotation, and for hips, spine and head the rotation on the ground.
+    /// Pose of the skeleton: each bone's own rotation, and for hips, spine and head the rotation on the ground.
     fn animated(&self, skeleton: &Gd<Skeleton3D>) -> (Rotations, Rotations) {
         let mut own = [Quat::IDENTITY; JOINT_COUNT];
         let mut directions = own;

@@ -1,4 +1,4 @@
-//! How a skeleton is posed, as a pose of the body.
+//! Reading of a skeleton as a pose of the body.
 
 use super::{SkeletonBinding, is_leg, turned_by_links};
 use crate::convert;

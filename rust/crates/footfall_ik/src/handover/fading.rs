@@ -1,4 +1,4 @@
-//! What is left of one motion when another has begun: it dies away and takes its own speed along.
+//! Offset from one motion to the next: it dies away, beginning at its own speed.
 
 use glam::Vec3;
 
@@ -29,7 +29,7 @@ impl Fading {
         self.age_secs = (self.age_secs + dt_secs).min(self.secs);
     }
 
-    /// How far through it is, 0 to 1.
+    /// Share of its time that has passed, 0 to 1.
     pub(super) fn share(&self) -> f32 {
         if self.secs > 0.0 {
             self.age_secs / self.secs
@@ -42,7 +42,7 @@ impl Fading {
         self.age_secs >= self.secs
     }
 
-    /// What is left now.
+    /// Offset that is left now.
     pub(super) fn left(&self) -> Vec3 {
         let s = self.share();
         if s >= 1.0 {

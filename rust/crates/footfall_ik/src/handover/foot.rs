@@ -31,7 +31,7 @@ pub(super) struct MovingFoot {
     pub(super) stands: bool,
 }
 
-/// How a foot gets from where it was to where the motion that goes on has it.
+/// Way of a foot from where it was to where the motion that goes on has it.
 ///
 /// Two things part them. Over the ground and about the vertical it is held where it stands, so that a rolling foot rolls about the place
 /// where it was put, until the new motion lifts it. The rest, its height, tilt and speed, dies away.
@@ -41,7 +41,7 @@ pub(super) struct HeldFoot {
     /// Where it stands as long as it is held, and its heading.
     held: Option<(Vec3, f32)>,
     going: Option<Going>,
-    /// What parts it over the ground from the motion that goes on: x and z; y is the turn. And how fast that grows.
+    /// Offset over the ground from the motion that goes on: x and z; y is the turn. And its rate.
     parted: Vec3,
     parting: Vec3,
     place: Fading,
@@ -153,7 +153,7 @@ impl HeldFoot {
         target
     }
 
-    /// How far it is held from where it should stand, metres; 0 for a foot that is not held.
+    /// Distance from where it is held to where it should stand, metres; 0 for a foot that is not held.
     pub(super) fn distance(&self) -> f32 {
         if self.held.is_none() {
             return 0.0;
@@ -166,7 +166,7 @@ impl HeldFoot {
         self.distance() > 0.0
     }
 
-    /// How far over the ground it is from where the motion that goes on has it, metres.
+    /// Distance over the ground from where the motion that goes on has it, metres.
     pub(super) fn parted_m(&self) -> f32 {
         level(self.parted).length()
     }
@@ -224,7 +224,7 @@ impl HeldFoot {
     }
 }
 
-/// What parts two places on the ground: x and z; y is the turn.
+/// Offset between two places on the ground: x and z; y is the turn.
 fn parted(stood: (Vec3, f32), stands: (Vec3, f32)) -> Vec3 {
     let mut parted = stood.0 - stands.0;
     parted.y = wrap_angle(stood.1 - stands.1);

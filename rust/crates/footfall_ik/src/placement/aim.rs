@@ -29,15 +29,15 @@ const LONGER_COST: f32 = 1.5;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
     pub(super) foothold: Foothold,
-    /// How long the step has to be, as a share of what it is.
+    /// Length that the step needs, as a share of its own.
     pub(super) share: f32,
     /// By how much the ground rises from this foothold to about the next one, metres.
     pub(super) next_rise_m: f32,
-    /// How steep the ground ahead is over two steps from the standing foot.
+    /// Grade of the ground ahead over two steps from the standing foot.
     pub(super) grade: f32,
 }
 
-/// What a step has to do with.
+/// Step to aim: the standing foot, the landing, and the leg that takes it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step<'a> {
     /// The sole of the standing foot, in the world.
@@ -57,7 +57,7 @@ struct Way {
     length: f32,
     /// Height of the standing foot, metres.
     standing: f32,
-    /// How far the foot may be put short of where it would land and beyond, metres.
+    /// Largest distances by which the foot may land short of its place and beyond it, metres.
     bounds: (f32, f32),
 }
 
@@ -171,7 +171,7 @@ impl Step<'_> {
         Some((cost, aim))
     }
 
-    /// How far the foot may be put short of where it would land and beyond, metres.
+    /// Largest distances by which the foot may land short of its place and beyond it, metres.
     fn bounds(&self, length: f32, may_shift: bool) -> (f32, f32) {
         let more = MOST_MORE_M.min(MORE_SHARE * length);
         if self.may_stretch {
@@ -183,7 +183,7 @@ impl Step<'_> {
         }
     }
 
-    /// How far the foot may be put to the left and to the right: not in the way of the other, metres.
+    /// Largest shifts of the foot to the left and to the right that keep it out of the other's way, metres.
     fn room_aside(&self, flat: &Frame) -> [f32; 2] {
         let left = flat.rotation * Vec3::X;
         let apart = (flat.position - self.standing.position).dot(left);

@@ -22,7 +22,7 @@ const STEP_SECS: f32 = 0.6;
 const LEAST_STEP_SECS: f32 = 0.2;
 /// A foot of which nobody knows when it lands is about to when it is lower than this, metres.
 const SOON_M: f32 = 0.15;
-/// Soles that are farther apart than this tell the grade, metres, which follows within this time, seconds.
+/// Distance of the soles beyond which they give the grade, metres, and the time within which the grade follows, seconds.
 const GRADE_RUN_M: f32 = 0.2;
 const GRADE_SECS: f32 = 0.3;
 
@@ -60,7 +60,7 @@ impl FootPlacer {
         self.ground_m = self.ground_under(hips);
         let bound = self.config.max_pelvis_m;
         let arrival = self.arrival(moment, terrain, hips_rotation);
-        // Of an animation that tells nothing it is not known that the heel is about to rise anyway.
+        // Without known landings, nothing says that the heel is about to rise anyway.
         let firm = if arrival.is_some() {
             FIRM_EXTENSION
         } else {
@@ -136,13 +136,13 @@ impl FootPlacer {
         0.5 * (plane(&self.feet[0]) + plane(&self.feet[1]))
     }
 
-    /// How much of its length a leg of the animation takes.
+    /// Share of its length to which a leg of the animation is stretched.
     fn stretch(&self, index: usize, animated: &[Animated; 2], hips: Vec3, rotation: Quat) -> f32 {
         let hip = hips + rotation * self.hips_from_hip[index];
         animated[index].foot.ankle.distance(hip) / self.leg_lengths[index]
     }
 
-    /// Where the pelvis has to be at the next landing, for a walk that tells of it.
+    /// Place of the pelvis at the next landing, for a walk that knows it.
     fn arrival(
         &self,
         moment: &Moment<'_>,
@@ -200,8 +200,8 @@ impl FootPlacer {
         })
     }
 
-    /// How high the pelvis can be above the animation's floor with legs that are not stretched, over ground of which nobody knows
-    /// where the next foot lands.
+    /// Greatest height of the pelvis above the animation's floor with legs that are not stretched, where the place of the next landing is
+    /// unknown.
     fn easy_offset(
         &self,
         hips: Vec3,
@@ -281,7 +281,7 @@ impl FootPlacer {
         self.grade += (grade - self.grade) * (1.0 - (-dt_secs / GRADE_SECS).exp());
     }
 
-    /// How far the supports of locked feet moved since the last frame.
+    /// Motion of the supports of locked feet since the last frame.
     fn carried(&self, soles: &[Frame; 2]) -> Vec3 {
         let Some(memory) = &self.memory else {
             return Vec3::ZERO;

@@ -1,10 +1,10 @@
-//! What placement is told: its settings, and each frame of the animation.
+//! Input of placement: settings, and each frame of the animation.
 
 use crate::placement::contact::ContactThresholds;
 use crate::placement::foot::Landing;
 use crate::placement::frame::Frame;
 
-/// How feet meet the ground.
+/// Settings of foot placement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacementConfig {
     /// Ground that is farther above the animation's floor and the higher sole, or farther below the floor and the lower one, is out of
@@ -12,9 +12,9 @@ pub struct PlacementConfig {
     pub max_step_m: f32,
     /// Feet are tilted against the animation by this much at most, radians.
     pub max_tilt: f32,
-    /// How long the pelvis takes for half of its way up or down, seconds.
+    /// Time in which the pelvis goes half of its way up or down, seconds.
     pub pelvis_half_life_secs: f32,
-    /// How far the pelvis moves against the animation's floor at most, metres.
+    /// Largest motion of the pelvis against the animation's floor, metres.
     pub max_pelvis_m: f32,
     /// A foot that the animation drags this far from where it is locked is put anew, metres.
     pub max_drift_m: f32,
@@ -22,7 +22,7 @@ pub struct PlacementConfig {
     pub max_twist: f32,
     /// Whether a foot that would stand across an edge is put ahead of it, behind it or beside it.
     pub adjust_footholds: bool,
-    /// When a foot stands, for animations that do not tell.
+    /// Thresholds of contact, for animations without known contacts.
     pub contact: ContactThresholds,
 }
 
@@ -46,9 +46,9 @@ impl Default for PlacementConfig {
 pub struct PlacementInput {
     /// `world_from_floor`: the flat floor that the animation moves over. +Y is up, against gravity.
     pub world_from_floor: Frame,
-    /// Which feet stand, where the animation tells; otherwise height and speed of the feet do.
+    /// Feet that stand, where the animation knows; `None` to find them from height and speed.
     pub contacts: Option<[bool; 2]>,
-    /// Where the left and the right foot will land next, where the animation knows.
+    /// Next landings of the left and the right foot, where the animation knows.
     pub landings: [Option<Landing>; 2],
     /// Whether the character is in the air: feet are left to the animation.
     pub airborne: bool,

@@ -1,6 +1,6 @@
-//! Contacts of an animation that does not tell them: a foot that is low and slow stands.
+//! Detection of contacts for animations that do not know them: a foot that is low and slow stands.
 
-/// Below both a foot comes to stand, beyond either it no longer does: the hysteresis of foot locks in Unreal and Untold Engine.
+/// Thresholds with hysteresis, as foot locks have them in Unreal and Untold Engine: below both a foot comes to stand, beyond either it no longer does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactThresholds {
     /// Speed over the ground below which a foot may come to stand, m/s.

@@ -1,4 +1,4 @@
-//! How a foot is carried from the flat floor of the animation to the real ground.
+//! Correction of a foot from the flat floor of the animation to the real ground.
 
 use crate::leg::FootTarget;
 use crate::placement::frame::Frame;
@@ -7,9 +7,9 @@ use glam::{Quat, Vec3};
 /// A change of place and tilt, both relative to the sole's place on the animation's floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Correction {
-    /// How far the sole moves, metres.
+    /// Displacement of the sole, metres.
     pub(crate) shift: Vec3,
-    /// How its floor tilts.
+    /// Tilt of its floor.
     pub(crate) tilt: Quat,
 }
 
@@ -46,7 +46,7 @@ impl Correction {
     }
 }
 
-/// What is left of a jump, so that nothing pops: it fades.
+/// Remainder of a jump, which fades so that nothing pops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Residual {
     pub(crate) ankle: Vec3,
@@ -61,7 +61,7 @@ impl Residual {
         toes: Quat::IDENTITY,
     };
 
-    /// What leads from `now` to where the foot was.
+    /// Remainder that leads from `now` to where the foot was.
     pub(crate) fn of(was: &FootTarget, now: &FootTarget) -> Self {
         Self {
             ankle: was.ankle - now.ankle,

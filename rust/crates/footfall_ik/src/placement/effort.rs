@@ -1,7 +1,7 @@
-//! What a grade does to a walker's speed.
+//! Speed of a walker on a grade.
 
-/// What is left of a walker's speed on a grade: Tobler's hiking function (1993) relative to level ground, and no less than people
-/// keep on stairs.
+/// Share of a walker's speed that is left on a grade: Tobler's hiking function (1993) relative to level ground, and no less than
+/// people keep on stairs.
 pub(super) fn slowed_by(grade: f32) -> f32 {
     const STEEPNESS: f32 = 3.5;
     const EASIEST: f32 = -0.05;

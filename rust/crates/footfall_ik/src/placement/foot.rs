@@ -47,7 +47,7 @@ pub(super) struct Animated {
     pub(super) landing: Option<Landing>,
 }
 
-/// What a foot does.
+/// Activity of a foot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Mode {
     /// As the animation has it.
@@ -56,7 +56,7 @@ pub(super) enum Mode {
     Locked,
 }
 
-/// What goes from frame to frame.
+/// State of a foot from frame to frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Foot {
     pub(super) mode: Mode,
@@ -70,17 +70,17 @@ pub(super) struct Foot {
     pub(super) plan: Option<Plan>,
     /// Where in the world the animation's landing was when no ground was found for it.
     pub(super) missed_at: Option<Vec3>,
-    /// What was on the way to a foothold that was given up in this frame.
+    /// Correction on the way to a foothold that was given up in this frame.
     pub(super) dropped: Option<(Correction, f32)>,
     /// Where in the world a swinging ankle was in the last frame.
     pub(super) passed: Option<Vec3>,
     /// Where in the world the animation had the foot when its way to a planned foothold began.
     pub(super) left_from: Option<Vec3>,
-    /// How much of it is held there yet.
+    /// Share of it that is still held there.
     pub(super) held: f32,
     /// Where in the world the animation had a foot that follows the ground.
     pub(super) followed: Option<Vec3>,
-    /// What carried it when it last changed its mode, and the height in the world of the animation's floor then.
+    /// Correction that carried it when it last changed its mode, and the height in the world of the animation's floor then.
     pub(super) lifted_with: Correction,
     pub(super) lifted_from_m: f32,
     /// The same height in the last frame.
@@ -91,7 +91,7 @@ pub(super) struct Foot {
     pub(super) replant_secs: f32,
     pub(super) guard: Follower,
     pub(super) residual: Residual,
-    /// What a lock makes of the animated foot, beyond its correction.
+    /// Residual between the locked foot and the animated one, beyond its correction.
     pub(super) at_lock: Residual,
     pub(super) begun: bool,
     /// Whether it was let go before the animation lifts it.

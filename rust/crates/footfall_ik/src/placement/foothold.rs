@@ -36,13 +36,13 @@ impl Foothold {
         Some(support.child(&self.support_from_sole))
     }
 
-    /// What it stands on.
+    /// Support that it stands on.
     pub(crate) fn support(&self) -> SupportId {
         self.support
     }
 }
 
-/// What a place costs: a metre of shift, higher ground close by, and a heel or toes that stick out over an edge. A sole that is borne
+/// Costs of a place: a metre of shift, higher ground close by, and a heel or toes that stick out over an edge. A sole that is borne
 /// by less costs more than any of them.
 pub(crate) const SHIFT_COST: f32 = 1.0;
 const TIGHT_COST: f32 = 0.08;
@@ -64,19 +64,19 @@ impl Lie {
     }
 }
 
-/// What limits a foothold.
+/// Limits of a search for footholds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Search {
     /// The direction against gravity, of the world.
     pub(crate) up: Vec3,
-    /// How far above the animation's floor ground is looked for, and how far below it, metres.
+    /// Range in which ground is looked for above and below the animation's floor, metres.
     pub(crate) above_m: f32,
     pub(crate) below_m: f32,
     /// A sole is tilted by this much at most, radians.
     pub(crate) max_tilt: f32,
     /// Whether the sole may move ahead or back, out of the way of an edge.
     pub(crate) may_shift: bool,
-    /// How far it may move to the left and to the right, metres.
+    /// Largest shifts to the left and to the right, metres.
     pub(crate) aside_m: [f32; 2],
     /// Whether it does so also where its middle lies across an edge. Most edges lie across the way, and moving to the side is in vain.
     pub(crate) thorough: bool,
@@ -125,7 +125,7 @@ impl Search {
         best?.1.foothold(terrain)
     }
 
-    /// How a sole lies in this place, or a little to the side of it, and what that costs, beyond the way to it; `None` where there is no
+    /// Judges a place: how a sole lies there, or a little to the side, and the cost of that beyond the way to it. `None` where there is no
     /// ground, or where it would cost `most` and more.
     pub(crate) fn judge(
         &self,
@@ -162,8 +162,8 @@ impl Search {
         best
     }
 
-    /// How a sole lies in this very place and what that costs; infinitely much, where its rim need not be looked at for it to cost
-    /// `most` and more.
+    /// Weighs this very place: how a sole lies there and the cost of that. The cost is infinite where it reaches `most` before the rim is
+    /// looked at.
     fn weigh(
         &self,
         terrain: &mut impl Terrain,

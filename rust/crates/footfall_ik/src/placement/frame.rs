@@ -7,7 +7,7 @@ use glam::{Quat, Vec3};
 pub struct Frame {
     /// Where its origin is, metres.
     pub position: Vec3,
-    /// How its axes are turned.
+    /// Rotation of its axes.
     pub rotation: Quat,
 }
 

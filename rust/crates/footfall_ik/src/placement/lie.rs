@@ -1,4 +1,4 @@
-//! How a sole lies on the ground in a place.
+//! Lie of a sole on the ground in one place.
 
 use crate::placement::foothold::{FLAT_M, Search};
 use crate::placement::frame::Frame;
@@ -26,11 +26,11 @@ pub(crate) struct Lie {
     /// In the world.
     pub(crate) sole: Frame,
     pub(super) support: SupportId,
-    /// How far from the ground its farthest point is, and its ball with the nearer end, metres.
+    /// Distance from the ground to its farthest point, and to its ball with the nearer end, metres.
     pub(super) gap: f32,
     pub(super) borne_gap: f32,
     pub(super) heel_hangs: bool,
-    /// How far the ground beside it is above it at most, metres, and how many points of its rim have none under them.
+    /// Largest height of the ground beside it above the sole, metres, and the number of points of its rim without ground.
     pub(super) rim_cut: f32,
     pub(super) rim_hangs: usize,
 }

@@ -1,4 +1,4 @@
-//! How high the pelvis is carried over uneven ground.
+//! Height of the pelvis over uneven ground.
 
 use glam::Vec3;
 

@@ -14,7 +14,7 @@ use glam::{Quat, Vec3};
 
 /// A foot on its way is lifted to so far above what it would touch, metres.
 const GUARD_M: f32 = 0.01;
-/// How long a foot that would pass through something takes for half of its way over it, seconds.
+/// Time in which a foot that would pass through something goes half of its way over it, seconds.
 const GUARD_HALF_LIFE_SECS: f32 = 0.021;
 /// No point of its sole is deeper inside than this, even where the way over it is short, metres.
 const TOUCH_M: f32 = 0.015;
@@ -30,7 +30,7 @@ const EARLY_FALL_M: f32 = 0.08;
 /// before it and not through it. As one that goes up counts it from so many metres on.
 const LATE_SHARES: [f32; 2] = [0.1, 0.6];
 const LATE_RISE_M: f32 = 0.08;
-/// How high it is lifted then, metres.
+/// Height to which it is lifted then, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
 /// A foot that lands where nothing is under its heel is level from so long before on, after so long a turn, seconds.
 const LEVEL_SECS: [f32; 2] = [0.25, 0.02];
@@ -55,10 +55,10 @@ pub(super) struct Plan {
     pub(super) foothold: Foothold,
     /// By how much the ground rises from there to the next foothold, about, metres.
     pub(super) next_rise_m: f32,
-    /// Where the animation would put the foot, as it is seen from the foothold; `None` until it is told again, for it may change its
-    /// step for this foothold's sake.
+    /// Landing of the animation, as seen from the foothold; `None` until it is given anew, for the animation may change its step for this
+    /// foothold's sake.
     flat_from_sole: Option<Vec3>,
-    /// How much higher than usual it has to be lifted; `None` until it leaves the ground.
+    /// Height by which it has to be lifted more than usual; `None` until it leaves the ground.
     lift_m: Option<f32>,
 }
 
@@ -158,7 +158,7 @@ impl Foot {
         self.correction.shift += self.held * come * Vec3::new(1.0, 0.0, 1.0);
     }
 
-    /// What carried the foot when it was lifted, over the floor as it is now.
+    /// Correction that carried the foot when it was lifted, over the floor as it is now.
     fn lifted<T: Terrain>(&self, scene: &Scene<'_, T>) -> Correction {
         let mut lifted = self.lifted_with;
         lifted.shift.y -= scene.floor_m() - self.lifted_from_m;
@@ -227,7 +227,7 @@ impl Foot {
         });
     }
 
-    /// How much higher than usual the foot has to be lifted in the middle of its way to `sole`.
+    /// Height by which the foot has to be lifted more than usual in the middle of its way to `sole`.
     fn way_lift<T: Terrain>(
         &self,
         scene: &mut Scene<'_, T>,
@@ -364,7 +364,7 @@ fn on_way(from: &Correction, toward: &Correction, height: f32, share: f32) -> (C
     (correction, height * (share * (1.0 - share) * 4.0).powi(2))
 }
 
-/// How much of its rise a foot has behind it: one that goes up does so early, one that goes down late.
+/// Share of its rise that a foot has behind it: one that goes up rises early, one that goes down sinks late.
 fn rising(share: f32, rises: bool) -> f32 {
     if rises {
         share / RISE_SHARE

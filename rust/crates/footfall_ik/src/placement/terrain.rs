@@ -1,9 +1,9 @@
-//! What feet can stand on.
+//! Ground queries.
 
 use crate::placement::frame::Frame;
 use glam::Vec3;
 
-/// Tells one thing to stand on from another. 0 is the world itself, which never moves.
+/// Identity of one thing to stand on. 0 is the world itself, which never moves.
 pub type SupportId = u64;
 
 /// A point of the ground.
@@ -13,11 +13,13 @@ pub struct Ground {
     pub position: Vec3,
     /// The unit normal of the ground there.
     pub normal: Vec3,
-    /// What it belongs to.
+    /// Support that it belongs to.
     pub support: SupportId,
 }
 
 /// The ground of a scene, however it is found: by casting rays, from a height map, from a formula.
+///
+/// A closure that answers [`cast`](Self::cast) is ground on which nothing moves.
 pub trait Terrain {
     /// The first ground on the way from `from` along `way`, both of the world in metres; `None` when there is none. Ground in which
     /// `from` itself lies is not met.
@@ -25,4 +27,14 @@ pub trait Terrain {
 
     /// Where a support is in the world now: `world_from_support`. `None` when it is gone.
     fn support(&mut self, support: SupportId) -> Option<Frame>;
+}
+
+impl<F: FnMut(Vec3, Vec3) -> Option<Ground>> Terrain for F {
+    fn cast(&mut self, from: Vec3, way: Vec3) -> Option<Ground> {
+        self(from, way)
+    }
+
+    fn support(&mut self, _support: SupportId) -> Option<Frame> {
+        Some(Frame::IDENTITY)
+    }
 }

@@ -1,4 +1,4 @@
-//! Steps of which the animation tells beforehand where they land.
+//! Steps whose landings the animation knows beforehand.
 
 use crate::placement::aim::Step;
 use crate::placement::effort::slowed_by;
@@ -12,14 +12,13 @@ use glam::Vec3;
 const SAME_SHARE: f32 = 0.02;
 
 impl FootPlacer {
-    /// How much of its speed a walker keeps on the ground under it and on that ahead.
+    /// Share of its speed that a walker keeps on the ground under it and on that ahead.
     pub fn pace(&self) -> f32 {
         slowed_by(self.grade).min(slowed_by(self.grade_ahead))
     }
 
-    /// How long the step that has just begun has to be for its foot to find ground within reach, as a share of how long it is; `None`
-    /// for a step that is right as it is. For walks that can change their steps: once they have, [`step`](Self::step) is to be told of
-    /// the landing as it is then.
+    /// Length that the step that has just begun needs for its foot to find ground within reach, as a share of its own; `None` for a step
+    /// that is right as it is. For walks that can change their steps: pass the new landing to [`step`](Self::step) once they have.
     pub fn step_share(
         &mut self,
         input: &PlacementInput,
@@ -61,7 +60,7 @@ impl FootPlacer {
         }
     }
 
-    /// The step that this foot takes next, where the animation tells of it and the other foot has ground to stand on.
+    /// The next step of this foot, where the animation knows it and the other foot has ground to stand on.
     pub(super) fn next_step<'a, T: Terrain>(
         &'a self,
         scene: &mut Scene<'_, T>,

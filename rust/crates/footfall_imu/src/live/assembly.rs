@@ -10,10 +10,10 @@ use footfall_core::rotation::log_map;
 use glam::{Quat, Vec3};
 use std::collections::VecDeque;
 
-/// Forces that wait for a rate: of sensors that tell forces more often, the newest.
+/// Forces that wait for a rate: of sensors that send forces more often, the newest.
 const MOST_WAITING: usize = 8;
 
-/// What is derived is left alone this long after the same was measured, seconds.
+/// Time for which a measured quantity takes precedence over the same one derived, seconds.
 const MEASURED_SECS: f64 = 1.0;
 
 /// A rate that is older says nothing, seconds.

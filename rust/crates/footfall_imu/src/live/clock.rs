@@ -1,4 +1,4 @@
-//! Times of samples: counters that go round, clocks of devices against ours, and times of arrival where a device tells none.
+//! Times of samples: counters that go round, clocks of devices against ours, and times of arrival where a device sends none.
 
 /// A counter of few bits that goes on without end.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,7 +47,7 @@ pub struct DeviceClock {
 struct DeviceClockState {
     /// Least difference between arrival and the device's time, seconds.
     least: f64,
-    /// What is used: it follows `least` without jumps.
+    /// Offset in use: it follows `least` without jumps.
     offset: f64,
     device_secs: f64,
     arrival_secs: f64,
@@ -90,7 +90,7 @@ impl DeviceClock {
     }
 }
 
-/// How fast the smoothed time follows arrivals, and its period their steps.
+/// Gains by which the smoothed time follows arrivals, and its period their steps.
 const PHASE_GAIN: f64 = 0.05;
 const PERIOD_GAIN: f64 = 0.002;
 

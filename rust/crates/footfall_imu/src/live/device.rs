@@ -42,12 +42,12 @@ pub fn now_secs() -> f64 {
     BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// What is known of a device.
+/// Status of a device.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeviceStatus {
-    /// Who it is: a port, an address or what it calls itself.
+    /// Name: a port, an address or the name that it gives itself.
     pub name: String,
-    /// What it speaks.
+    /// Protocol of the device.
     pub format: &'static str,
     /// Samples so far.
     pub samples: u64,
@@ -67,12 +67,12 @@ pub struct DeviceStatus {
     pub heard_secs: f64,
     /// The last sample.
     pub last: Option<ImuSample>,
-    /// What is wrong with units, axes or rate, and what to do.
+    /// Fault of units, axes or rate, and its remedy.
     pub fault: Option<String>,
 }
 
 impl DeviceStatus {
-    /// How long nothing was heard, seconds.
+    /// Time since something was heard, seconds.
     pub fn silent_secs(&self) -> f64 {
         (now_secs() - self.heard_secs).max(0.0)
     }
@@ -98,7 +98,7 @@ impl Device {
         }
     }
 
-    /// What is known of it now.
+    /// Current status.
     pub fn status(&self) -> DeviceStatus {
         self.lock().clone()
     }
@@ -180,7 +180,7 @@ impl DeviceWriter {
         self.device.lock().rejected += 1;
     }
 
-    /// What holds of the device whatever it measures.
+    /// Sets a fault that holds whatever the device measures.
     pub fn set_fault(&mut self, fault: &str) {
         self.device.lock().fault = Some(fault.to_owned());
         // It is not to be replaced by a check of samples.
@@ -263,7 +263,7 @@ impl DeviceWriter {
         self.recent.push_back(sample);
     }
 
-    /// What is wrong with the last seconds, now and then.
+    /// Checks the last seconds, at intervals.
     fn check(&mut self, arrival_secs: f64) -> Option<Result<(), RecordingFault>> {
         let first = self.recent.front()?.time_secs;
         let long_enough = self.last_secs? - first > 0.9 * CHECKED_SECS;

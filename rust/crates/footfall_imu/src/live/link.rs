@@ -17,7 +17,7 @@ pub(super) const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// A device of which nothing was heard for so long gives its place to a new one from the same sender, seconds.
 const PLACE_KEPT_SECS: f64 = 2.0;
 
-/// How a port does.
+/// State of a port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkState {
     /// It is being opened, or what speaks there is being found out.
@@ -41,7 +41,7 @@ impl LinkState {
         }
     }
 
-    /// What a person is told.
+    /// Message for a person.
     pub fn message(&self) -> &str {
         match self {
             Self::Opening(text) | Self::Listening(text) | Self::Failed(text) => text,
@@ -93,7 +93,7 @@ impl Link {
         Self { shared, thread }
     }
 
-    /// Runs `listen` on a thread, and again some time after it told a problem, until it is time to stop.
+    /// Runs `listen` on a thread, and again some time after it returned a problem, until it is time to stop.
     pub(super) fn keep(
         name: &str,
         retry: Duration,
@@ -110,7 +110,7 @@ impl Link {
         })
     }
 
-    /// How it does.
+    /// State of the port.
     pub fn state(&self) -> LinkState {
         lock(&self.shared.state).clone()
     }
@@ -120,7 +120,7 @@ impl Link {
         lock(&self.shared.devices).clone()
     }
 
-    /// How many devices were heard.
+    /// Number of devices that were heard.
     pub fn device_count(&self) -> usize {
         lock(&self.shared.devices).len()
     }
@@ -223,7 +223,7 @@ impl<K: PartialEq> Senders<K> {
         }
     }
 
-    /// The device of a sender; `alike` tells who may take over the place of one that has fallen silent. `None` when there are too many.
+    /// The device of a sender; `alike` decides who may take over the place of one that has fallen silent. `None` when there are too many.
     pub(super) fn device(
         &mut self,
         sender: K,
@@ -264,7 +264,7 @@ impl<K: PartialEq> Senders<K> {
     }
 }
 
-/// What a person is told when a port of the network cannot be had.
+/// Message for a person when a port of the network cannot be opened.
 pub(super) fn bind_problem(what: &str, port: u16, error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::AddrInUse => {

@@ -34,7 +34,7 @@ const LONGEST: usize = 1 + 256 * SAMPLE_BYTES;
 /// A port that is taken is tried again after so long.
 const RETRY: Duration = Duration::from_secs(2);
 
-/// How to serve.
+/// Settings of a server of pages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PhoneConfig {
     /// The port; 0 for any that is free.
@@ -143,7 +143,7 @@ fn code() -> Result<String, getrandom::Error> {
     Ok(bytes.map(letter).iter().collect())
 }
 
-/// Runs a server on this thread until it ends or it is time to stop; tells why it ended.
+/// Runs a server on this thread until it ends or it is time to stop. Returns why it ended.
 pub(super) fn until_stopped(link: &LinkWriter, server: impl Future<Output = String>) -> String {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()

@@ -1,4 +1,4 @@
-//! What devices tell, in our units: m/s², rad/s, axes of the sensor.
+//! Readings of devices in our units: m/s², rad/s, axes of the sensor.
 
 use crate::sample::GRAVITY_MPS2;
 use glam::{Quat, Vec3};
@@ -9,13 +9,13 @@ pub(crate) const RADIANS: f32 = core::f32::consts::PI / 180.0;
 /// One quantity at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// The device's clock, seconds; `None` when it tells none, and the time of arrival has to do.
+    /// The device's clock, seconds; `None` when it sends none, and the time of arrival has to do.
     pub time_secs: Option<f64>,
-    /// What was measured.
+    /// Measured quantity and its value.
     pub quantity: Quantity,
 }
 
-/// What can be measured. Vectors are in the sensor's axes, which are right-handed.
+/// Quantities that a device measures. Vectors are in the sensor's axes, which are right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Quantity {
     /// Specific force, m/s²: gravity included, +9.81 along up at rest.

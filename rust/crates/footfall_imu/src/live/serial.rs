@@ -21,7 +21,7 @@ use super::reading::Reading;
 /// No message is longer, bytes.
 const LONGEST_MESSAGE: usize = 2048;
 
-/// What a device may speak.
+/// Protocols of serial devices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SerialFormat {
     /// WitMotion's standard protocol (WT901, JY901 and their kin).
@@ -66,7 +66,7 @@ impl SerialFormat {
         Self::ALL.into_iter().find(|format| format.name() == name)
     }
 
-    /// What its users have to know.
+    /// Limitation that its users have to know.
     pub const fn caveat(self) -> Option<&'static str> {
         match self {
             Self::Bno085 => Some(
@@ -77,7 +77,7 @@ impl SerialFormat {
     }
 }
 
-/// What the beginning of a stream is.
+/// Classification of the beginning of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Taken {
     /// A message that is not whole yet.

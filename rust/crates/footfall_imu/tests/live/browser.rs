@@ -11,7 +11,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use tungstenite::{Message, WebSocket};
 
-/// A browser that is told what to do over its debugging protocol.
+/// A browser that is controlled over its debugging protocol.
 struct Browser {
     child: Child,
     socket: WebSocket<TcpStream>,

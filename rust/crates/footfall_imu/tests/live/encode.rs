@@ -160,7 +160,7 @@ pub(crate) fn floats(values: &[f32]) -> Vec<u8> {
         .collect()
 }
 
-/// One of Android's sensors as SensorServer and SensaGram tell it.
+/// One of Android's sensors as SensorServer and SensaGram send it.
 pub(crate) fn android(kind: &str, time_secs: f64, values: [f32; 3]) -> Vec<u8> {
     let [x, y, z] = values;
     let nanos = (time_secs * 1e9).round() as u64;

@@ -21,7 +21,7 @@ fn terminal() -> (TTYPort, String) {
     (device, name)
 }
 
-/// Sends at 200 Hz until it is told to stop.
+/// Sends at 200 Hz until it is stopped.
 struct Sender {
     stop: Arc<AtomicBool>,
     thread: JoinHandle<u32>,
@@ -183,7 +183,7 @@ fn a_port_that_is_not_there_is_named_and_tried_again() {
     sender.stop();
 }
 
-/// Memory of this process, bytes; `None` where the system does not tell.
+/// Memory of this process, bytes; `None` where the system does not report it.
 fn memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/statm").ok()?;
     let pages: u64 = text.split_whitespace().nth(1)?.parse().ok()?;

@@ -1,4 +1,4 @@
-//! What a made-up sensor measures, and what of it arrives.
+//! Measurements of a simulated sensor, and the part of them that arrives.
 
 use footfall_imu::ImuSample;
 use footfall_imu::live::{Device, Link, LinkState};

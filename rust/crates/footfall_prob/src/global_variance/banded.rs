@@ -21,7 +21,7 @@ pub(super) struct Banded {
     factors: Vec<[f64; 3]>,
 }
 
-/// What one value of κ leads to.
+/// Solution for one value of κ.
 #[derive(Clone, Copy)]
 pub(super) struct Solution {
     /// Mean over all frames.

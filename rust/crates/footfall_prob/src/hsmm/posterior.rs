@@ -7,7 +7,7 @@ use super::{Boundary, ChainState, Problem};
 use crate::duration::DurationDist;
 use crate::error::ProbError;
 
-/// What the whole sequence says about one segment of the chain.
+/// Posterior of one segment of the chain, given the whole sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SegmentPosterior {
     /// First frame of `state_probs`; outside its range the segment has no probability.

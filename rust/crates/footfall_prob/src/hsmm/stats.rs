@@ -1,4 +1,4 @@
-//! What the M-step needs, gathered from posteriors.
+//! Sufficient statistics for the M-step, gathered from posteriors.
 
 use super::{ChainState, HsmmPosterior};
 use crate::duration::DurationStats;

@@ -41,7 +41,7 @@ pub(super) fn solve_f32(plan: &Plan, job: &mut Job<'_, f32>) {
     }
 }
 
-/// What is compiled for each instruction set; on its own, the fallback for every target.
+/// Solver that is compiled for each instruction set; on its own, the fallback for every target.
 #[inline(always)]
 pub(super) fn solve<R: Real, const FUSED: bool>(plan: &Plan, job: &mut Job<'_, R>) {
     match plan.windows {
@@ -92,7 +92,7 @@ fn fill_rows<R: Real, const FUSED: bool>(
     }
 }
 
-/// What a chain of coupled frames carries from one of its frames to the next.
+/// Values that a chain of coupled frames carries from one of its frames to the next.
 #[derive(Clone, Copy)]
 struct Carry<B> {
     /// To subtract from the next pivot, and what of it the one after will need.

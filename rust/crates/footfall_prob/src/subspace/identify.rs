@@ -4,7 +4,7 @@ use super::AffineSystem;
 use crate::error::{ProbError, check_finite, check_len};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// How to identify.
+/// Settings of identification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct IdentifyConfig {
     /// Order n of the system.
@@ -16,7 +16,7 @@ pub struct IdentifyConfig {
 /// Weight of a small identity in least squares, relative to the mean of the diagonal: states may say one thing twice.
 const RIDGE: f64 = 1e-12;
 
-/// The system that the segments tell of, each T × `channels` frame by frame. Hankel columns of all segments stand side by side, none
+/// Identifies the system behind segments, each T × `channels` frame by frame. Hankel columns of all segments stand side by side, none
 /// across two, so that a segment may be far shorter than the order needs.
 ///
 /// The strongest directions of the columns span what the system can be seen to do (equations 3 and 5 with no input but the offset);

@@ -4,7 +4,7 @@ use super::AffineSystem;
 use crate::error::{ProbError, check_finite, check_len};
 use nalgebra::{DMatrix, DVector};
 
-/// Weight that holds a state near zero where a segment does not tell it.
+/// Weight that holds a state near zero where a segment does not determine it.
 const RIDGE: f64 = 1e-9;
 
 /// As [`initial_states`], of one segment.

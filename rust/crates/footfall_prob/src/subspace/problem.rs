@@ -1,9 +1,9 @@
-//! What refinement minimises, and its gradient, which runs backwards through each segment.
+//! Objective of refinement and its gradient, which runs backwards through each segment.
 
 use super::{AffineSystem, Refinement};
 use nalgebra::{DMatrix, DVector};
 
-/// What of an identified gain is tried.
+/// Shares of an identified gain that are tried.
 const GAIN_SHARES: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.03, 0.0];
 
 /// Squared one-step errors of segments as a function of a system's numbers and of the states in which segments begin.

@@ -18,7 +18,7 @@ const ARMIJO: f64 = 1e-4;
 /// A step is halved at most so often.
 const HALVINGS: usize = 20;
 
-/// What refinement may change.
+/// Parameters that refinement may change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refinement {
     /// Everything but the gain, which counts as 0: segments are foretold from their initial states alone, as generation does.
@@ -27,7 +27,7 @@ pub enum Refinement {
     Gain,
 }
 
-/// What refinement came to.
+/// Result of refinement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refined {
     /// The system.

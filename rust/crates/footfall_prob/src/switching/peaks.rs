@@ -3,7 +3,7 @@
 use super::ProjectionResidual;
 use crate::error::ProbError;
 
-/// What counts as a peak.
+/// Conditions on a peak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakConfig {
     /// A peak is the greatest within so many frames; odd.

@@ -6,7 +6,7 @@ use crate::error::{ProbError, check_finite, check_len};
 /// exact modes of a system without noise.
 const DEPENDENT: f64 = 1e-9;
 
-/// What of every stretch of future outputs is no linear function of the stretch of past ones before it.
+/// Residual of every stretch of future outputs after projection onto the stretch of past ones before it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProjectionResidual {
     window: usize,
@@ -123,7 +123,7 @@ impl Basis {
         }
     }
 
-    /// What is left of a row when its part in the span is taken away.
+    /// Component of a row that is orthogonal to the span.
     fn residual(&self, row: &[f64]) -> Vec<f64> {
         let mut rest = row.to_vec();
         for _ in 0..2 {

@@ -2,7 +2,7 @@
 
 use crate::error::ProbError;
 
-/// How fast old frames are forgotten: half after some 140.
+/// Weight that a frame keeps with each new one: half of it after some 140.
 const FORGETTING: f64 = 0.995;
 
 /// Variance of the predictor's entries before any frame, relative to the outputs' own.
@@ -11,8 +11,8 @@ const PRIOR_VARIANCE: f64 = 1e3;
 /// Frames over which the residual's own level is taken.
 const LEVEL_FRAMES: usize = 180;
 
-/// Recursive least squares for M of equation 6, `Y_f = M [Y_p; 1]`: every frame tells the residual of what was `window` frames ago
-/// against what the frames before foretold. Allocates nothing after it was made.
+/// Recursive least squares for M of equation 6, `Y_f = M [Y_p; 1]`. Every frame yields the residual of the frame `window` frames ago
+/// against its prediction from the frames before. Allocates nothing after construction.
 #[derive(Clone, Debug)]
 pub struct StreamingResidual {
     window: usize,
@@ -60,7 +60,7 @@ impl StreamingResidual {
         })
     }
 
-    /// Takes a frame in (`channels` numbers) and tells the residual norm of the frame [`delay`](Self::delay) frames ago over the
+    /// Takes in a frame (`channels` numbers) and returns the residual norm of the frame [`delay`](Self::delay) frames ago over the
     /// median of the last ones: above 3 or so, and the greatest for a while, it is a switch. `None` until there are enough frames,
     /// and for a frame of the wrong length or with numbers that are not finite, which is left out.
     pub fn push(&mut self, outputs: &[f64]) -> Option<f64> {
@@ -109,7 +109,7 @@ impl StreamingResidual {
         Some(square.sqrt() / self.level(square.sqrt()))
     }
 
-    /// How many frames ago the frame is that [`push`](Self::push) tells of.
+    /// Number of frames by which the result of [`push`](Self::push) lags behind.
     pub fn delay(&self) -> usize {
         self.window - 1
     }

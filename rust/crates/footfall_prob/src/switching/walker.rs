@@ -18,7 +18,7 @@ pub struct SimplestWalker {
     first_stands: bool,
 }
 
-/// What a walker did.
+/// Motion of a walker, frame by frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WalkerRecord {
     /// Frame by frame, the angles of the first and of the second leg to the slope's normal.
@@ -72,7 +72,7 @@ impl SimplestWalker {
         [self.state[0], self.state[2]]
     }
 
-    /// Lets time pass; tells the state right after a heel strike.
+    /// Lets time pass. Returns the state right after a heel strike, where there was one.
     fn advance(&mut self, dt: f64) -> Option<[f64; 4]> {
         let mut struck = None;
         let mut left = dt;

@@ -6,7 +6,7 @@ use eframe::egui::{ComboBox, RichText, ScrollArea, TextEdit, Ui};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// What a recording is now.
+/// Role of a recording in the views.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mark {
     None,

@@ -13,7 +13,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 /// Folders in folders are looked into this deep.
 const MOST_DEPTH: usize = 8;
 
-/// What a scan tells.
+/// Events of a scan.
 pub(super) enum ScanEvent {
     /// A recording is there.
     Found(PathBuf, Entry),

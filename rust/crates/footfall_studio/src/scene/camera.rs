@@ -18,7 +18,7 @@ pub(crate) struct Orbit {
     pub(crate) pitch: f32,
     /// Metres.
     pub(crate) distance: f32,
-    /// What it looks at.
+    /// Point that it looks at.
     pub(crate) target: Vec3,
 }
 

@@ -8,7 +8,7 @@ use eframe::egui::{Color32, Painter, Shape, Stroke};
 use footfall_core::Side;
 use glam::Vec3;
 
-/// How far the grid reaches, metres.
+/// Reach of the grid, metres.
 const REACH_M: i32 = 7;
 
 /// Half the width of a footprint, metres.

@@ -16,7 +16,7 @@ pub(crate) struct Body<'a> {
     pub(crate) look: Look,
 }
 
-/// How a body is painted.
+/// Styles of painting a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Look {
     Solid,
@@ -40,7 +40,7 @@ pub(crate) struct SensorBox {
     pub(crate) rotation: Quat,
 }
 
-/// What there is to see.
+/// Content of a scene.
 #[derive(Default)]
 pub(crate) struct Scene<'a> {
     pub(crate) bodies: Vec<Body<'a>>,

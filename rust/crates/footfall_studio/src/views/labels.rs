@@ -17,7 +17,7 @@ use footfall_motion::contact_file::ContactFile;
 use footfall_motion::phases::{Phase, segment_phases};
 use timeline::Timeline;
 
-/// How long a stance is that is added by hand, seconds.
+/// Length of a stance that is added by hand, seconds.
 const NEW_STANCE_SECS: f64 = 0.6;
 
 #[derive(Default)]
@@ -26,9 +26,9 @@ pub(crate) struct LabelsView {
     labels: Option<Labels>,
     timeline: Timeline,
     scene: SceneView,
-    /// What was left unsaved before, by recording.
+    /// Corrections that were left unsaved before, by recording.
     recovered: Vec<Kept>,
-    /// What is kept already, so that it is not written in every frame.
+    /// Corrections that are kept already, so that they are not written in every frame.
     kept: Option<Kept>,
     /// Whether the phases are those of other contacts than the ones that are shown.
     phases_are_old: bool,
@@ -36,7 +36,7 @@ pub(crate) struct LabelsView {
 }
 
 impl LabelsView {
-    /// What was unsaved when the studio ended last.
+    /// Offers corrections that were unsaved when the studio ended last.
     pub(crate) fn offer_recovery(&mut self, kept: Vec<Kept>) {
         self.recovered = kept;
     }

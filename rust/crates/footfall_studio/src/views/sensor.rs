@@ -21,7 +21,7 @@ use std::time::Duration;
 /// While a sensor is heard the window is painted this often.
 const REPAINT: Duration = Duration::from_millis(16);
 
-/// How many of the most probable phases are shown.
+/// Number of the most probable phases that are shown.
 const SHOWN_PHASES: usize = 5;
 
 #[derive(Default)]
@@ -45,7 +45,7 @@ impl SensorView {
                 .is_some_and(Connection::is_replaying)
     }
 
-    /// How probable each behaviour is.
+    /// Probability of each behaviour.
     pub(crate) fn behaviours(&self) -> [f32; Behaviour::ALL.len()] {
         self.body.behaviours()
     }

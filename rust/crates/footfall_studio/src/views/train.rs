@@ -15,13 +15,13 @@ use footfall_train::{Adapted, ContextReport, Recordings, Trained};
 use std::sync::Arc;
 pub(crate) use work::{adapt_to, chosen_of};
 
-/// What was made last.
+/// Result of the last training.
 enum Made {
     Average(Box<Trained>),
     Style(Box<Adapted>),
 }
 
-/// What is looked at on the right.
+/// Pages on the right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Page {
     #[default]

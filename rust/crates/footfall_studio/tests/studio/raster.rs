@@ -6,7 +6,7 @@ use egui_kittest::TestRenderer;
 use image::{Rgba, RgbaImage};
 use std::collections::HashMap;
 
-/// What the window is cleared to when it is dark.
+/// Colour of a cleared window in the dark theme.
 const CLEAR: Rgba<u8> = Rgba([24, 26, 31, 255]);
 
 #[derive(Default)]

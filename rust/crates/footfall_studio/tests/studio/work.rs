@@ -1,4 +1,4 @@
-//! What the studio does: from recordings to files that the other tools read.
+//! Work in the studio: from recordings to files that the other tools read.
 
 use crate::world::{Window, World, base, click, saved_style, settle, shipped};
 use eframe::egui::accesskit::Role;
@@ -261,7 +261,7 @@ fn a_style_for_another_model_is_refused_with_its_reason() {
     assert!(message.contains("half.footstyle"), "{message}");
 }
 
-/// What a mouse does with its main button.
+/// Presses or releases the main button of the mouse.
 fn press(window: &Window, pos: Pos2, pressed: bool) {
     window.event(Event::PointerButton {
         pos,

@@ -73,7 +73,7 @@ impl World {
         self.clips().join(name)
     }
 
-    /// What a phone in the right pocket measures while somebody walks off.
+    /// Recording of a phone in the right pocket while somebody walks off.
     pub(crate) fn sensor(&self) -> PathBuf {
         let file = bvh::read(self.clip("anna/anna_1.bvh")).unwrap();
         let motion = retarget(&file, &RetargetOptions::default()).unwrap();
@@ -134,7 +134,7 @@ pub(crate) fn click(window: &mut Window, label: &str) {
     window.run_steps(3);
 }
 
-/// What is in the style that a button saves.
+/// Content of the style that a button saves.
 pub(crate) fn saved_style(window: &mut Window, label: &str, path: PathBuf) -> GaitStyle {
     click(window, label);
     assert!(window.state_mut().answer_dialog(path.clone()));

@@ -17,7 +17,7 @@ pub(in crate::godot) struct Archive {
     pub(super) architecture: &'static Architecture,
 }
 
-/// How Debian names an architecture.
+/// Names of an architecture in Debian.
 #[derive(Debug)]
 pub(super) struct Architecture {
     pub(super) debian: &'static str,

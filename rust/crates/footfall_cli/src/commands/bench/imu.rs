@@ -1,4 +1,4 @@
-//! What a game pays for each frame of a body that sensors drive.
+//! Cost of each frame of a body that sensors drive in a game.
 
 use super::{microseconds, now};
 use anyhow::{Result, ensure};

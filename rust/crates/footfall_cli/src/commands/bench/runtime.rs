@@ -1,4 +1,4 @@
-//! What a game pays for each frame of a walker.
+//! Cost of each frame of a walker in a game.
 
 use super::{microseconds, now};
 use anyhow::{Context as _, Result};

@@ -33,7 +33,7 @@ pub(crate) struct FitArgs {
     output: PathBuf,
     #[command(flatten)]
     size: SizeArgs,
-    /// What the model is fitted to, in your words, for its provenance; the conditions when absent
+    /// Description of the data for the model's provenance, in your words; the conditions when absent
     #[arg(long, value_name = "TEXT")]
     describe: Option<String>,
     /// Print one JSON object on stdout
@@ -41,7 +41,7 @@ pub(crate) struct FitArgs {
     json: bool,
 }
 
-/// How large the systems are.
+/// Size of the systems.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(in crate::commands) struct SizeArgs {
     /// Frames per second of the systems

@@ -18,7 +18,7 @@ pub(crate) struct DynamicsSynthArgs {
     /// The model
     #[arg(long, value_name = "GAIT.footdyn")]
     model: PathBuf,
-    /// How long to walk
+    /// Length of the walk, seconds
     #[arg(long, default_value_t = 10.0)]
     seconds: f64,
     #[command(flatten)]

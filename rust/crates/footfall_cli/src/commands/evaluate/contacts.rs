@@ -46,7 +46,7 @@ pub(crate) struct ContactsArgs {
     ablate: bool,
     #[command(flatten)]
     knees: KneesArgs,
-    /// How far apart switches or events of sensors and others may be to count as one, milliseconds
+    /// Largest difference at which switches or events of sensors count as the same as others, milliseconds
     #[arg(long, default_value_t = 33.4)]
     tolerance: f64,
     /// Print one JSON object on stdout
@@ -89,7 +89,7 @@ pub(super) struct Report {
     sensors: BTreeMap<String, Agreement>,
 }
 
-/// What is printed as JSON.
+/// Evaluates, and returns the report that is printed as JSON.
 pub(super) fn evaluate(args: &ContactsArgs) -> Result<Report> {
     let mut report = Report {
         tolerance_ms: args.tolerance,

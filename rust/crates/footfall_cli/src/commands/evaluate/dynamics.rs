@@ -57,7 +57,7 @@ pub(super) struct Report {
     too_short: Vec<String>,
 }
 
-/// What is printed as JSON; draws the errors of the first recording if that was asked for.
+/// Evaluates, and returns the report that is printed as JSON. Draws the errors of the first recording if that was asked for.
 pub(super) fn evaluate(args: &DynamicsArgs) -> Result<Report> {
     let config = args.size.config()?;
     let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;

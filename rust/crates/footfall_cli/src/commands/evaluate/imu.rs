@@ -86,7 +86,7 @@ struct Figures {
     median_delay_s: Option<f64>,
 }
 
-/// What is printed as JSON.
+/// Evaluates, and returns the report that is printed as JSON.
 pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
     let asked = match &args.sites[..] {
         [] => SENSORS.to_vec(),

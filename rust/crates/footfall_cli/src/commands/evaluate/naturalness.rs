@@ -28,7 +28,7 @@ use std::sync::Arc;
 pub(crate) struct NaturalnessArgs {
     #[command(flatten)]
     judged: JudgedArgs,
-    /// How many walks are generated, each at the mean speed of one of the recordings
+    /// Number of generated walks, each at the mean speed of one of the recordings
     #[arg(long, default_value_t = 48, value_parser = clap::value_parser!(u32).range(8..=1000))]
     seeds: u32,
     /// Steps of each generated walk

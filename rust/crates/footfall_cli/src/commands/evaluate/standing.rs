@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 /// Generated standing beside captured
 ///
-/// How far and how fast hips and head sway, root mean squares by band and part of the body, knees, and the greatest correlation with an
+/// Sway of hips and head in place and speed, root mean squares by band and part of the body, knees, and the greatest correlation with an
 /// earlier while, over windows of 20 seconds in which people stand at ease on planted feet; and the same for the still pose. With
 /// `--leave-one-out` every person is compared with a model of the others, beside what the others score in its place.
 #[derive(Debug, clap::Args)]
@@ -25,7 +25,7 @@ use std::sync::Arc;
 pub(crate) struct StandingArgs {
     #[command(flatten)]
     judged: JudgedArgs,
-    /// How many people are generated
+    /// Number of people that are generated
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(2..=1000))]
     seeds: u32,
     /// Seconds that each stands

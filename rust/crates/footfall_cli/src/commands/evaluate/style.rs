@@ -22,7 +22,7 @@ pub(crate) struct StyleArgs {
     corpora: CorpusPair,
     #[command(flatten)]
     knees: KneesArgs,
-    /// How real strides are kept unseen: each take in turn, or each half of every recording; takes when every style has two
+    /// Split that keeps real strides unseen: each take in turn, or each half of every recording; takes when every style has two
     #[arg(long, value_enum)]
     split: Option<SplitArg>,
     /// Print one JSON object on stdout
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &StyleArgs) -> Result<()> {
     output::print_text(&tables(&evaluation))
 }
 
-/// What is printed as JSON.
+/// Evaluates, and returns the report that is printed as JSON.
 pub(super) fn evaluate(args: &StyleArgs) -> Result<Report> {
     let (evaluation, skipped) = judge(args)?;
     Ok(Report::new(&evaluation, skipped))

@@ -68,7 +68,7 @@ pub(crate) fn run(args: &TrainingArgs) -> Result<()> {
     output::print_text(&report.table())
 }
 
-/// What is printed as JSON.
+/// Evaluates, and returns the report that is printed as JSON.
 pub(super) fn evaluate(args: &TrainingArgs) -> Result<Report> {
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);

@@ -30,7 +30,7 @@ pub(crate) struct ReconstructArgs {
     /// The recording of the sensor; twice for two sensors, in the order of the model's sites
     #[arg(long = "imu", value_name = "IMU.csv", required = true)]
     recordings: Vec<PathBuf>,
-    /// How the sensors are worn
+    /// Mounting of the sensors
     #[arg(long, value_enum, default_value_t = MountingArg::Auto)]
     mounting: MountingArg,
     /// Use nothing of the future: what a game shows at each moment

@@ -34,7 +34,7 @@ pub(crate) struct SimulateArgs {
     /// Seed of the errors
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How the sensor is turned against the site's axes: degrees about x, then y, then z of the site
+    /// Rotation of the sensor against the site's axes: degrees about x, then y, then z of the site
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_angles, default_value = "0,0,0", allow_hyphen_values = true)]
     mounting: Angles,
     /// Where to write

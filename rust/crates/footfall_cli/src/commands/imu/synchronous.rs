@@ -8,8 +8,8 @@ use footfall_motion::corpus::CorpusClip;
 use footfall_train::imu::synchronise;
 use std::path::{Path, PathBuf};
 
-/// What real sensors measured during a clip, one recording for each site, on the clip's time; none unless the index names one for each
-/// in columns like `imu_right_foot`, relative to itself. One that does not go with its clip is told, and simulated instead.
+/// Reads measurements of real sensors during a clip, one recording for each site, on the clip's time; none unless the index names one for
+/// each in columns like `imu_right_foot`, relative to itself. One that does not go with its clip is reported, and simulated instead.
 ///
 /// # Errors
 /// When the model would overwrite one.

@@ -37,7 +37,7 @@ pub(crate) struct ImuTrainArgs {
     /// Where to write the model
     #[arg(short, long, value_name = "BODY.footimu")]
     output: PathBuf,
-    /// What the model is trained on, in your words, for its provenance; the conditions when absent
+    /// Description of the data for the model's provenance, in your words; the conditions when absent
     #[arg(long, value_name = "TEXT")]
     describe: Option<String>,
     /// Print one JSON object on stdout
@@ -45,7 +45,7 @@ pub(crate) struct ImuTrainArgs {
     json: bool,
 }
 
-/// What a model is like.
+/// Options of a model.
 #[derive(Clone, Debug, clap::Args)]
 pub(in crate::commands) struct ModelArgs {
     /// Where the sensor sits; twice for two sensors
@@ -58,7 +58,7 @@ pub(in crate::commands) struct ModelArgs {
     kept: KeptArgs,
 }
 
-/// What of the recordings a model keeps.
+/// Part of the recordings that a model keeps.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(in crate::commands) struct KeptArgs {
     /// Leave out the recordings' mirror images

@@ -81,7 +81,7 @@ pub(super) struct ImuRecordingFacts {
     rate_hz: f64,
     start_s: f64,
     seconds: f64,
-    /// What is wrong with it; absent when nothing is.
+    /// Fault of the recording; absent when there is none.
     fault: Option<String>,
 }
 

@@ -29,7 +29,7 @@ pub(super) struct ModelFacts {
     step_components: usize,
     /// Places in a walk whose steps have models of their own.
     ends: Vec<String>,
-    /// How its people stand; nothing where it stands still.
+    /// Standing of its people; absent where it stands still.
     standing: Option<StandingFacts>,
     /// How its people run; nothing where it only walks.
     running: Option<RunningFacts>,

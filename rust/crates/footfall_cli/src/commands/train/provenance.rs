@@ -1,4 +1,4 @@
-//! What a model's file says about where it comes from.
+//! Provenance of a model, for its file.
 
 use super::{TrainArgs, WindowsArg};
 use footfall_model::Provenance;
@@ -44,8 +44,8 @@ fn terms<'a>(stated: impl Iterator<Item = &'a str>) -> String {
     terms.into_iter().collect::<Vec<_>>().join("; ")
 }
 
-/// What is chosen from an index, in the user's words if there are some, and on which terms. Names of files without their
-/// folders, so that a model tells nothing about the machine that made it.
+/// Description of the recordings that are chosen from an index, in the user's words if there are some, and their terms. Names of files come
+/// without their folders, so that a model reveals nothing about the machine that made it.
 pub(in crate::commands) fn describe(
     corpus: &Corpus,
     index: &Path,

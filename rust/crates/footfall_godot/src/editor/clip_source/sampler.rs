@@ -7,7 +7,7 @@ use godot::classes::animation::TrackType;
 use godot::classes::{Animation, Skeleton3D};
 use godot::prelude::*;
 
-/// Rate where the animation's step tells none, frames per second.
+/// Rate where the animation's step gives none, frames per second.
 const USUAL_RATE_HZ: f64 = 30.0;
 const PLAUSIBLE_RATES_HZ: std::ops::RangeInclusive<f64> = 15.0..=240.0;
 /// Longest animation that is sampled, seconds.
@@ -20,7 +20,7 @@ struct Track {
     bone: usize,
 }
 
-/// How many of a skeleton's bones an animation turns.
+/// Number of a skeleton's bones that an animation turns.
 pub(super) fn bones_turned(animation: &Gd<Animation>, skeleton: &Gd<Skeleton3D>) -> usize {
     let turns = tracks(animation, skeleton).into_iter();
     turns

@@ -1,4 +1,4 @@
-//! What the dock consists of.
+//! Controls of the dock.
 
 use super::{FootfallStyleDock, GaitModel, USUAL_BASE};
 use crate::editor::walker_view::FootfallWalkerView;
@@ -30,7 +30,7 @@ pub(super) struct Form {
     parts: Gd<BoxContainer>,
 }
 
-/// How far a style has come.
+/// Progress of a style.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
     /// None was made yet.

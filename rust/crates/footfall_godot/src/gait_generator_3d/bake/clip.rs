@@ -23,12 +23,12 @@ pub(super) struct Clips {
     root: Root,
 }
 
-/// What travels.
+/// Track of the root.
 struct Root {
     path: NodePath,
     /// Where it is before it has travelled.
     rest: Vector3,
-    /// What a metre ahead adds.
+    /// Travel of the root for a metre ahead.
     ahead: Vector3,
 }
 

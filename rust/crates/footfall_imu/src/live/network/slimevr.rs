@@ -15,13 +15,13 @@ const BUNDLE: u32 = 100;
 /// Kinds that there are; others are no packets of this protocol.
 const MOST_KIND: u32 = 120;
 
-/// What a tracker takes for a server that is there.
+/// Reply to a handshake, by which a tracker recognises a server.
 pub const HANDSHAKE_REPLY: &[u8] = b"\x03Hey OVR =D 5";
 
-/// What is sent to a tracker every second, so that it keeps sending: a heartbeat without a number.
+/// Heartbeat without a number, sent to a tracker every second so that it keeps sending.
 pub const HEARTBEAT_PACKET: &[u8] = &[0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0];
 
-/// What a packet asks for.
+/// Answer that a packet asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Packet {
     /// Nothing.

@@ -18,7 +18,7 @@ pub const DEFAULT_PORT: u16 = 6969;
 /// Longer datagrams are no messages of a sensor, bytes.
 const LONGEST: usize = 4096;
 
-/// Trackers are told so often that somebody listens, seconds; they give up after ten.
+/// Interval of heartbeats to trackers, seconds; they give up after ten without one.
 const HEARTBEAT_SECS: f64 = 1.0;
 
 /// A port that is taken is tried again after so long.
@@ -29,7 +29,7 @@ const RETRY: Duration = Duration::from_secs(2);
 pub struct UdpConfig {
     /// The port; 0 for any that is free.
     pub port: u16,
-    /// What lines of numbers mean.
+    /// Meaning of lines of numbers.
     pub text: TextFormat,
 }
 

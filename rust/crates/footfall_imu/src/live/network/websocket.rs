@@ -10,14 +10,14 @@ use std::time::Duration;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error, Message, WebSocket};
 
-/// How long the phone may take to answer, and after what it is tried again.
+/// Time in which the phone has to answer, and time after which it is asked again.
 const ANSWER: Duration = Duration::from_secs(3);
 const RETRY: Duration = Duration::from_secs(1);
 
 /// Longest message, bytes.
 const LONGEST: usize = 16 * 1024;
 
-/// What is asked of the phone.
+/// Request to the phone: its path and the sensors.
 const SENSORS: &str =
     "/sensors/connect?types=[%22android.sensor.accelerometer%22,%22android.sensor.gyroscope%22]";
 

@@ -22,13 +22,13 @@ use std::time::Duration;
 
 const PAGE: &str = include_str!("page.html");
 
-/// What the page may load: itself alone.
+/// Content policy of the page: it may load itself alone.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 /// A wrong code is answered after so long: guessing takes for ever.
 const WRONG_CODE_DELAY: Duration = Duration::from_millis(500);
 
-/// The page is told of its state every so many of the server's looks at footsteps, each after this time.
+/// Interval of the server's looks at footsteps, and the number of looks after which the page is sent its state.
 const LOOK: Duration = Duration::from_millis(25);
 const TELL_EVERY: u32 = 20;
 
@@ -44,7 +44,7 @@ struct Shared {
     slots: Arc<Slots>,
 }
 
-/// Serves until there is a problem; tells it.
+/// Serves until there is a problem. Returns it.
 pub(super) async fn serve(
     link: LinkWriter,
     config: PhoneConfig,
@@ -155,7 +155,7 @@ async fn page() -> Response {
     (headers, PAGE).into_response()
 }
 
-/// What the page shows.
+/// State that the page shows, as JSON.
 fn told(status: &DeviceStatus) -> String {
     let fault = serde_json::to_string(&status.fault).unwrap_or_default();
     format!(

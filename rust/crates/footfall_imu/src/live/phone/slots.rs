@@ -53,7 +53,7 @@ impl Slots {
         self.slots.get(player).map(|slot| slot.code.as_str())
     }
 
-    /// The player of a code. Every code is compared to its end, so that time tells nothing.
+    /// The player of a code. Every code is compared to its end, so that the time taken reveals nothing.
     pub(super) fn player(&self, code: &str) -> Option<usize> {
         let same = |own: &str| {
             let differ = own
@@ -76,7 +76,7 @@ impl Slots {
         self.slots[player].footsteps.load(Ordering::Relaxed)
     }
 
-    /// Takes a message of a page; what the person is told when it is not taken.
+    /// Takes a message of a page. An error is the text for the person.
     pub(super) fn take(
         &self,
         link: &LinkWriter,

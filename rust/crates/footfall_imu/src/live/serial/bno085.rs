@@ -1,6 +1,6 @@
 //! BNO085 in UART-RVC mode: `AA AA index yaw pitch roll ax ay az 0 0 0 sum`, little-endian, 100 a second, angles in 0.01°, forces in mg.
 //!
-//! It is recognised so that a person learns why nothing moves: without angular rates no gait can be told.
+//! It is recognised so that a person learns why nothing moves: without angular rates no gait can be reconstructed.
 
 use super::{Format, Taken, bytes_at, garbage_until, sum};
 use crate::live::reading::{Quantity, Reading};

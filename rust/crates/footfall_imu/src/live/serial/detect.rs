@@ -1,4 +1,4 @@
-//! What a stream of bytes is.
+//! Detection of the protocol of a stream of bytes.
 
 use super::{SerialFormat, StreamParser, TextFormat};
 
@@ -31,7 +31,7 @@ impl Detection {
         }
     }
 
-    /// How many bytes came.
+    /// Number of bytes so far.
     pub const fn bytes(&self) -> u64 {
         self.bytes
     }

@@ -12,7 +12,7 @@ const MT_DATA2: u8 = 0x36;
 const EXTENDED: u8 = 0xFF;
 const LONGEST: usize = 2000;
 
-/// Identifiers without the bits that tell the number format and the frame.
+/// Identifiers without the bits for the number format and the frame.
 const ACCELERATION: u16 = 0x4020;
 const RATE_OF_TURN: u16 = 0x8020;
 const SAMPLE_TIME_FINE: u16 = 0x1060;
@@ -89,7 +89,7 @@ impl Mti {
     }
 }
 
-/// Three numbers in the format that the identifier's lowest bits tell.
+/// Three numbers in the format of the identifier's lowest bits.
 fn vector(data: &[u8], identifier: u16) -> Option<Vec3> {
     let number = |n: usize| -> Option<f64> {
         Some(match identifier & 0x3 {

@@ -14,7 +14,7 @@ pub const BAUD_RATES: [u32; 6] = [115_200, 921_600, 460_800, 230_400, 57_600, 96
 /// A read waits so long for bytes.
 const READ_TIMEOUT: Duration = Duration::from_millis(20);
 
-/// How long each rate is listened to, to find out what speaks.
+/// Time for which each rate is listened to when the device is unknown.
 const LISTEN_SECS: f64 = 0.8;
 
 /// A port that cannot be opened is tried again after so long.
@@ -30,18 +30,18 @@ pub struct SerialConfig {
     pub port: String,
     /// Bits a second; `None` to find out.
     pub baud_rate: Option<u32>,
-    /// What the device speaks; `None` to find out.
+    /// Protocol of the device; `None` to find out.
     pub format: Option<SerialFormat>,
-    /// What lines of numbers mean.
+    /// Meaning of lines of numbers.
     pub text: TextFormat,
 }
 
 /// A port that there is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortInfo {
-    /// What it is opened by.
+    /// Name by which it is opened.
     pub name: String,
-    /// What is plugged in there, when it tells.
+    /// Description of the device there; empty when the system knows none.
     pub description: String,
     /// Whether it is on USB.
     pub is_usb: bool,
@@ -91,7 +91,7 @@ pub fn listen(config: SerialConfig) -> Link {
     })
 }
 
-/// Opens the port; what a person is told when that fails.
+/// Opens the port. An error is the text for a person.
 fn open(config: &SerialConfig) -> Result<(String, Box<dyn SerialPort>), String> {
     let name = if config.port.is_empty() {
         let usb = ports().into_iter().find(|port| port.is_usb);
@@ -124,7 +124,7 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
-    /// Listens until the port is gone, what speaks has changed, or it is time to stop; tells why.
+    /// Listens until the port is gone, the protocol changes, or it is time to stop. Returns why.
     fn run(&mut self, device: &mut Option<DeviceWriter>) -> String {
         let format = match self.find_out() {
             Ok(format) => format,
@@ -175,7 +175,7 @@ impl Session<'_> {
         String::new()
     }
 
-    /// What speaks, at which rate.
+    /// Finds the protocol and the rate.
     fn find_out(&mut self) -> Result<SerialFormat, String> {
         if let (Some(format), Some(_)) = (self.config.format, self.config.baud_rate) {
             return Ok(format);
@@ -223,7 +223,7 @@ impl Session<'_> {
         })
     }
 
-    /// What came; none after the timeout.
+    /// Reads what has come; nothing after the timeout.
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize, String> {
         match self.port.read(buffer) {
             Ok(0) => Err(format!("{}: the sensor was unplugged", self.name)),

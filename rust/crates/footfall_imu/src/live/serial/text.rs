@@ -20,16 +20,16 @@ const LONGEST_LINE: usize = 512;
 /// Lines after which units are guessed from the numbers.
 const GUESS_AFTER: usize = 25;
 
-/// What lines of numbers mean, where they do not tell.
+/// Meaning of lines of numbers, as far as their header does not say.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextFormat {
     /// Names of the columns as in a header; `None` when the stream has a header or the usual order.
     pub columns: Option<String>,
-    /// Unit of time; `None`: told by the header, else guessed.
+    /// Unit of time; `None`: from the header, else guessed.
     pub time: Option<TimeUnit>,
-    /// Unit of specific force; `None`: told by the header, else guessed.
+    /// Unit of specific force; `None`: from the header, else guessed.
     pub force: Option<ForceUnit>,
-    /// Unit of angular rate; `None`: told by the header, else that which goes with the force's.
+    /// Unit of angular rate; `None`: from the header, else the one that goes with the force's.
     pub rate: Option<RateUnit>,
 }
 
@@ -37,7 +37,7 @@ impl TextFormat {
     /// Checks the names of the columns.
     ///
     /// # Errors
-    /// What is wrong with them, and what to give.
+    /// Text that names the fault and the remedy.
     pub fn check(&self) -> Result<(), String> {
         let named = |columns: &String| Columns::of_header(columns).is_some();
         match &self.columns {

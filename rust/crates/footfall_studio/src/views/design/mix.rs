@@ -14,7 +14,7 @@ use footfall_synth::{
 use std::path::Path;
 use std::sync::Arc;
 
-/// How far weights go on their sliders.
+/// Range of weights on their sliders.
 const WEIGHTS: core::ops::RangeInclusive<f32> = -0.5..=1.5;
 
 /// Steps of a walk that is exported.
@@ -318,7 +318,7 @@ fn places(count: usize) -> Vec<Vec2> {
         .collect()
 }
 
-/// How far from the middle the puck goes: a style at 1.35 times itself.
+/// Keeps the puck within its reach from the middle: a style at 1.35 times itself.
 fn within_reach(puck: Vec2) -> Vec2 {
     puck / (puck.length() / 1.35).max(1.0)
 }

@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// Steps that a style is made from.
 const STEPS: usize = 24;
 
-/// What a section is about, for its header.
+/// Headers of the sections.
 const SECTIONS: [(&str, &str); 10] = [
     ("walk", "Walk: steps in space and time"),
     ("feet", "Feet: landing, push-off, swing"),
@@ -42,7 +42,7 @@ type PreviewJob = (StyleSheet, u64, Job<Result<Motion, String>>);
 pub(super) struct SheetPage {
     sheet: StyleSheet,
     keys: Vec<KeySpec>,
-    /// What the preview shows, and of which motion.
+    /// Sheet that the preview shows, and the number of its motion.
     designed: Option<(StyleSheet, u64)>,
     preview: Option<Motion>,
     preview_job: Option<PreviewJob>,

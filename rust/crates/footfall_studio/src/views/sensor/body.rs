@@ -14,7 +14,7 @@ use glam::Quat;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What is remembered for finding the mounting, seconds.
+/// Length of the recording that is kept for finding the mounting, seconds.
 const REMEMBERED_SECS: f64 = 8.0;
 
 /// The mounting is looked for when so much was heard.
@@ -35,7 +35,7 @@ pub(super) struct LiveBody {
     /// When it was looked for last, on the sensor's clock.
     looked_secs: f64,
     problem: Option<String>,
-    /// How probable each phase of the model is.
+    /// Probability of each phase of the model.
     phases: Vec<f32>,
 }
 

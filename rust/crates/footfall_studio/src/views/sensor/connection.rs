@@ -241,7 +241,7 @@ impl Connection {
         }
     }
 
-    /// How the connection does.
+    /// Shows the state of the connection.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         match &mut self.source {
             Source::Replay {

@@ -10,7 +10,7 @@ use footfall_motion::switches::Landing;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// How far apart two contacts may be to count as one, milliseconds; a little more than 50, for times are those of frames.
+/// Largest difference at which two contacts count as one, milliseconds; a little more than 50, for times are those of frames.
 const CONTACT_TOLERANCE_MS: f64 = 50.1;
 
 /// Events nearer to an end than this are left out, seconds.

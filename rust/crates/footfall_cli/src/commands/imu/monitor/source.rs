@@ -34,7 +34,7 @@ pub(super) struct SourceArgs {
     /// Baud rate of the serial port [default: found by listening]
     #[arg(long, value_name = "RATE", requires = "serial")]
     baud: Option<u32>,
-    /// What the serial device speaks [default: found by listening]
+    /// Protocol of the serial device [default: found by listening]
     #[arg(long, value_parser = parse_format, requires = "serial")]
     format: Option<SerialFormat>,
     /// Columns of lines of numbers, such as t,ax,ay,az,gx,gy,gz [default: told by a header, or this order]

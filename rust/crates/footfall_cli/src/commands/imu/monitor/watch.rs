@@ -1,4 +1,4 @@
-//! What is seen of the devices while they are watched.
+//! Observation of devices while they are watched.
 
 use anyhow::{Context as _, Result};
 use footfall_imu::ImuSample;
@@ -14,7 +14,7 @@ const MEAN_GAIN: f32 = 0.02;
 /// A device is silent when nothing was heard for so long, seconds.
 const SILENT_SECS: f64 = 0.5;
 
-/// What is printed as JSON.
+/// Report that is printed as JSON.
 #[derive(Serialize)]
 pub(super) struct Report {
     pub(super) seconds: f64,

@@ -7,7 +7,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 
-/// What a line holds, in its own units.
+/// Values of a line, in its own units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
     pub(super) time: Option<f64>,
@@ -15,7 +15,7 @@ pub(super) struct Row {
     pub(super) values: [f64; 6],
 }
 
-/// Units that a header tells.
+/// Units that a header names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Units {
     pub(super) time: Option<TimeUnit>,
@@ -24,7 +24,7 @@ pub(super) struct Units {
 }
 
 impl Units {
-    /// Whether header and setting tell everything, so that nothing has to be guessed.
+    /// Whether header and setting give everything, so that nothing has to be guessed.
     pub(super) const fn are_told(self, setting: &TextFormat, row: &Row) -> bool {
         let force = self.force.is_some() || setting.force.is_some();
         let rate = self.rate.is_some() || setting.rate.is_some();
@@ -43,7 +43,7 @@ pub(super) struct Columns {
     units: Units,
 }
 
-/// What a column is.
+/// Meaning of a column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Channel {
     Time,
@@ -52,7 +52,7 @@ enum Channel {
 }
 
 impl Columns {
-    /// What a header of names tells; `None` when it does not name all six axes.
+    /// Columns of a header of names; `None` when it does not name all six axes.
     pub(super) fn of_header(line: &str) -> Option<Self> {
         // Numbers begin otherwise, and labelled lines are no header.
         let named = line.starts_with(|c: char| c.is_ascii_alphabetic() || c == '"');

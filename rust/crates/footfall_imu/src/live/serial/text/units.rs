@@ -1,4 +1,4 @@
-//! Units of lines of numbers: told, or guessed from the numbers.
+//! Units of lines of numbers: given, or guessed from the numbers.
 
 use super::TextFormat;
 use super::columns::{Row, Units};
@@ -166,7 +166,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// What the setting says, else the header, else the numbers.
+    /// Units from the setting, else from the header, else from the numbers.
     pub(super) fn new(setting: &TextFormat, header: Units, rows: &[Row]) -> Self {
         let magnitude = |row: &Row| {
             let [x, y, z, ..] = row.values;

@@ -69,7 +69,7 @@ pub(super) fn draw_ruler(painter: &Painter, ui: &Ui, scale: &Scale) {
     }
 }
 
-/// What the detectors find: heels and toes above, what joint angles alone tell below.
+/// Draws what the detectors find: contacts from heels and toes above, those from joint angles alone below.
 pub(super) fn draw_detected(painter: &Painter, scale: &Scale, row: Rect, motion: &Motion) {
     let clip = motion.clip();
     let angles = switches::stances(&motion.switches, clip.poses.len());

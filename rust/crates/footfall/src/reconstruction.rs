@@ -1,0 +1,75 @@
+//! A whole body from what one or two sensors measure.
+//!
+//! [`Prepared`] lays a model out once for all bodies. A [`Reconstructor`] takes samples as they come and writes poses; a [`ReconConfig`], with a [`TrackerConfig`] in it, has
+//! its settings, a [`SensorState`] says whether anything is heard, a [`Behaviour`] what the body does. [`reconstruct_recording`] makes a [`Reconstructed`] of a whole
+//! recording, where later samples help. Poses are in the space where the body began; [`Reconstructor::split`] divides one into the character's place and the pose above it.
+//!
+//! ```
+//! use footfall::body::Pose;
+//! use footfall::model::ImuModel;
+//! use footfall::reconstruction::{
+//!     Behaviour, Prepared, ReconConfig, Reconstructed, Reconstructor, SensorState, reconstruct_recording,
+//! };
+//! use footfall::sensor::csv;
+//! use std::path::Path;
+//! use std::sync::Arc;
+//!
+//! # std::env::set_current_dir("../../..")?;
+//! let bytes = std::fs::read("addons/footfall/models/right_foot.footimu")?;
+//! let model = Arc::new(ImuModel::from_bytes(&bytes)?);
+//! let body = model.skeleton.clone();
+//! let prepared = Arc::new(Prepared::new(model)?);
+//! let config = ReconConfig::default();
+//! let recording = csv::read(Path::new("tests/data/walker_1_slow.right_foot.csv"))?;
+//!
+//! let mut live = Reconstructor::new(&prepared, &body, &config)?;
+//! assert_eq!(live.sensor_state(), SensorState::Waiting);
+//! let mut pose = Pose::rest(&body);
+//! for sample in &recording.samples {
+//!     live.push(0, *sample);
+//!     live.step(0.01, &mut pose); // A game does this once a frame.
+//! }
+//! assert_eq!(live.sensor_state(), SensorState::Tracking);
+//! assert_eq!(live.behaviour(), Behaviour::Walk);
+//!
+//! // For an engine: the place and heading of the character, and the pose above it.
+//! let (place, heading) = live.split(&mut pose);
+//! assert!(place.z > 3.0 && heading.abs() < 0.5, "{place} {heading}");
+//! assert!(pose.root_position.with_y(0.0).length() < 0.3, "{}", pose.root_position);
+//!
+//! let whole: Reconstructed = reconstruct_recording(&prepared, &[recording], &body, &config, false)?;
+//! let walks = whole.behaviours.iter().filter(|behaviour| **behaviour == Behaviour::Walk);
+//! assert!(walks.count() > whole.clip.poses.len() / 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`find_mounting`] finds the [`Mounting`] of a sensor that is worn in any orientation, from a recording of a few steps; a [`MountingError`] says when there is too
+//! little motion. Give [`Mounting::site_from_sensor`] to [`Reconstructor::set_mounting`].
+//!
+//! ```
+//! use footfall::glam::Quat;
+//! use footfall::model::ImuModel;
+//! use footfall::reconstruction::{Mounting, MountingError, Prepared, TrackerConfig, find_mounting};
+//! use footfall::sensor::csv;
+//! use std::path::Path;
+//! use std::sync::Arc;
+//!
+//! # std::env::set_current_dir("../../..")?;
+//! let bytes = std::fs::read("addons/footfall/models/right_foot.footimu")?;
+//! let prepared = Arc::new(Prepared::new(Arc::new(ImuModel::from_bytes(&bytes)?))?);
+//! let aligned = csv::read(Path::new("tests/data/walker_1_slow.right_foot.csv"))?;
+//! let worn = Quat::from_rotation_x(1.0) * Quat::from_rotation_z(2.0);
+//! let recording = aligned.turned(worn);
+//! let mounting: Result<Mounting, MountingError> =
+//!     find_mounting(&prepared, 0, &recording, &TrackerConfig::default());
+//! // Turned back by what was found, the recording is nearly the aligned one.
+//! let error = (mounting?.site_from_sensor * worn).angle_between(Quat::IDENTITY);
+//! assert!(error < 0.35, "{error}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub use footfall_core::Behaviour;
+pub use footfall_recon::{
+    Mounting, MountingError, Prepared, ReconConfig, Reconstructed, Reconstructor, SensorState,
+    TrackerConfig, find_mounting, reconstruct_recording,
+};
