@@ -39,7 +39,7 @@ pub struct GaitModel {
     pub standing: Option<StandingModel>,
     /// How people run: steps of the same features and frame rate that end with a flight ([`StepModel::other_terminal`] is negative), and with no
     /// standing and running of their own. Nothing in models of earlier versions, which only walk.
-    pub running: Option<Box<GaitModel>>,
+    pub running: Option<Box<Self>>,
     /// Where the model comes from.
     pub provenance: Provenance,
 }

@@ -384,8 +384,8 @@ impl CrowdWalker {
         let leading = self.shape.timing.leading;
         let model = styled.space.model();
         let velocity = &mut self.velocity_mps;
-        let (before, gait) = (&self.next.request, self.blend.gait);
-        let (request, gait) = worn.request(&ask, model, before, gait, leading.other(), velocity);
+        let before = (&self.next.request, self.blend.gait);
+        let (request, gait) = worn.request(&ask, model, before, leading.other(), velocity);
         let blend = worn.dress(gait);
         let mut origin = Origin {
             request,

@@ -55,7 +55,7 @@ pub(crate) struct Blend {
 
 impl Blend {
     /// The mixture of a walk, or its run.
-    pub(crate) fn of_gait<'a>(self: &'a Arc<Self>, gait: Gait) -> &'a Arc<Self> {
+    pub(crate) fn of_gait(self: &Arc<Self>, gait: Gait) -> &Arc<Self> {
         match (gait, &self.running) {
             (Gait::Run, Some(running)) => running,
             _ => self,
@@ -157,7 +157,7 @@ impl StyleSpace {
         let standing = standing_features(&model);
         let parts = self.running.as_ref().zip(model.running.as_ref());
         let running =
-            parts.map(|(parts, running)| Arc::new(parts.mix(running, standing, &weights)));
+            parts.map(|(parts, running)| Arc::new(parts.mix(running, &standing, &weights)));
         Blend {
             gait: Gait::Walk,
             running,
@@ -199,13 +199,13 @@ impl RunningParts {
     }
 
     /// The run of a mixture of styles by these weights, of somebody who stands like this.
-    fn mix(&self, model: &GaitModel, standing: [f32; FEATURE_COUNT], weights: &[f32]) -> Blend {
+    fn mix(&self, model: &GaitModel, standing: &[f32; FEATURE_COUNT], weights: &[f32]) -> Blend {
         let mut statistics = Statistics::new(model);
         statistics.set_pull(&self.pull);
         Blend {
             weights: weights.to_vec(),
             statistics,
-            standing,
+            standing: *standing,
             fine: self.fine.clone(),
             fine_scale: model
                 .fine

@@ -233,7 +233,7 @@ impl GaitGenerator {
         };
         match &mut self.steps {
             Steps::Styled(steps) => {
-                **steps = state.styled(steps, &running, &self.skeleton, &config)?
+                **steps = state.styled(steps, &running, &self.skeleton, &config)?;
             }
             Steps::Switching(steps) => state.resume(steps, &config)?,
         }

@@ -146,7 +146,9 @@ impl StepSource for StyledSteps {
         let side = self.walker.step().timing.leading.other();
         let model = self.space.model();
         let velocity = &mut self.velocity_mps;
-        let (request, gait) = self.worn.request(ask, model, before, gait, side, velocity);
+        let (request, gait) = self
+            .worn
+            .request(ask, model, (before, gait), side, velocity);
         let draw = self.planner.draw(self.walker.step().timing.leading);
         let blend = self.worn.dress(gait);
         self.planner.wear(&blend.model);

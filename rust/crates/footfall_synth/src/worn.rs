@@ -72,8 +72,7 @@ impl Worn {
         &self,
         ask: &Ask,
         model: &GaitModel,
-        before: &Request,
-        gait_before: Gait,
+        (before, gait_before): (&Request, Gait),
         side: Side,
         velocity_mps: &mut Vec2,
     ) -> (Request, Gait) {

@@ -51,7 +51,11 @@ pub fn learn_running(
 fn carried(walk: &GaitModel, component: &[StepOffset; 2]) -> StepOffset {
     let mut posture = [0.0; FEATURE_COUNT];
     let mut tempo = 0.0;
-    let frames: f64 = walk.steps.iter().map(|step| step.mean_frames()).sum();
+    let frames: f64 = walk
+        .steps
+        .iter()
+        .map(footfall_model::StepModel::mean_frames)
+        .sum();
     for (step, offset) in walk.steps.iter().zip(component) {
         let rows = offset.means.chunks_exact(OBSERVATION_COUNT);
         for (index, (state, row)) in step.states.iter().zip(rows).enumerate() {

@@ -25,7 +25,9 @@ pub(super) fn of(corpus: &Corpus, others: &[Option<&Corpus>], args: &TrainArgs) 
             if !conditions.is_empty() {
                 let conditions: Vec<String> = conditions.iter().map(ToString::to_string).collect();
                 let conditions = conditions.join(" and ");
-                described.corpus += &format!("; {behaviour} where {conditions}");
+                described
+                    .corpus
+                    .extend(["; ", behaviour, " where ", &conditions]);
             }
         }
     }
