@@ -14,15 +14,10 @@ const LEAST_STRIDE_M: f32 = 0.4;
 const MOST_APART: f32 = 1.8;
 
 /// How much of the quotient of a stride the factor follows, on a logarithmic scale.
-const FOLLOWED: f32 = 0.5;
+const FOLLOWED: f32 = 0.4;
 
 /// Bounds of the factor.
 const FACTORS: [f32; 2] = [0.7, 1.4];
-
-/// What the body is behind (a first step that was recognised late) is made up for: the share of a step that is added for each metre, and bounds of
-/// what is owed, metres.
-const REPAID_PER_M: f32 = 0.1;
-const MOST_OWED_M: f32 = 1.0;
 
 /// What is shown follows the factor with this half-life, seconds: legs do not jump.
 const HALF_LIFE_SECS: f32 = 0.15;
@@ -38,8 +33,6 @@ pub(crate) struct Travel {
     /// Where the foot was shown at the rest before.
     anchor: Option<Vec3>,
     factor: f32,
-    /// How far the body is behind the wearer, metres of the model's body.
-    owed_m: f32,
     shown: f32,
 }
 
@@ -53,7 +46,6 @@ impl Travel {
             rested: None,
             anchor: None,
             factor: 1.0,
-            owed_m: 0.0,
             shown: 1.0,
         }
     }
@@ -92,8 +84,7 @@ impl Travel {
     /// Goes on in time; the factor on the recordings' steps from now on.
     pub(crate) fn step(&mut self, dt_secs: f32) -> f32 {
         let share = 1.0 - (-core::f32::consts::LN_2 * dt_secs / HALF_LIFE_SECS).exp();
-        let wanted = self.factor * (1.0 + REPAID_PER_M * self.owed_m);
-        self.shown += share * (wanted - self.shown);
+        self.shown += share * (self.factor - self.shown);
         self.shown
     }
 
@@ -110,7 +101,6 @@ impl Travel {
         if measured < LEAST_STRIDE_M {
             return;
         }
-        self.owed_m = (self.owed_m + measured - shown).clamp(-MOST_OWED_M, MOST_OWED_M);
         if (measured / MOST_APART..measured * MOST_APART).contains(&shown) {
             let factor = self.factor * (measured / shown).powf(FOLLOWED);
             self.factor = factor.clamp(FACTORS[0], FACTORS[1]);
