@@ -21,7 +21,7 @@ impl ShownBehaviour {
         }
     }
 
-    pub(crate) const fn behaviour(&self) -> Behaviour {
+    pub(crate) const fn behaviour(self) -> Behaviour {
         self.behaviour
     }
 

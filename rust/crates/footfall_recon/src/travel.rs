@@ -4,6 +4,7 @@
 //! steps follows the quotient. Standing feet stay where they are: [`ground`](crate::ground) swings the legs further, it does not slide the body.
 
 use footfall_core::{Side, Site};
+use footfall_imu::stride_meter::Rest;
 use footfall_imu::{ImuSample, StrideMeter};
 use glam::Vec3;
 
@@ -28,8 +29,8 @@ pub(crate) struct Travel {
     /// Which of the sensors sits on a foot, and on which.
     foot: Option<(usize, Side)>,
     meter: StrideMeter,
-    /// A rest that was measured and not yet compared: with the length of the stride before it.
-    rested: Option<Option<f32>>,
+    /// A rest that was measured and not yet compared.
+    rested: Option<Rest>,
     /// Where the foot was shown at the rest before.
     anchor: Option<Vec3>,
     factor: f32,
@@ -77,7 +78,7 @@ impl Travel {
         if self.sensor() == Some(sensor)
             && let Some(rest) = self.meter.push(sample)
         {
-            self.rested = Some(rest.stride.map(|stride| stride.length_m as f32));
+            self.rested = Some(rest);
         }
     }
 
@@ -90,13 +91,14 @@ impl Travel {
 
     /// Compares a stride that was measured with the way of the foot that was shown. `scale` is metres of the shown body for one of the model's.
     pub(crate) fn compare(&mut self, ankle: Vec3, scale: f32) {
-        let Some(measured) = self.rested.take() else {
+        let Some(rest) = self.rested.take() else {
             return;
         };
         let before = self.anchor.replace(ankle);
-        let (Some(measured), Some(before)) = (measured, before) else {
+        let (Some(stride), Some(before)) = (rest.stride, before) else {
             return;
         };
+        let measured = stride.length_m as f32;
         let shown = (ankle - before).with_y(0.0).length() / scale;
         if measured < LEAST_STRIDE_M {
             return;
