@@ -18,8 +18,21 @@ const DYNAMICS: &str = "addons/footfall/models/walk.footdyn";
 /// Sensor models: a sensor on a foot, and a phone in the pocket of the trousers.
 const SENSORS: [&str; 2] = ["right_foot", "right_thigh"];
 
-/// A third of what there is serves other people as well as all of it.
-const SENSOR_FRAMES: &str = "3000";
+/// A tenth of what there is, most of which is one actor's and people's who stand.
+const SENSOR_FRAMES: &str = "6000";
+
+/// What sensor models learn from: everything that is free for commercial use but the dancer's manner of subject 131, a take whose floor is not at 0
+/// (its contacts read as flights), and one of crouching, which a sensor cannot tell from standing upright.
+const SENSOR_RECORDINGS: [&str; 8] = [
+    "--where",
+    "path!=bandai/*",
+    "--where",
+    "subject!=cmu131",
+    "--where",
+    "path!=o3de/Jumps1.bvh",
+    "--where",
+    "path!=o3de/Crouching1.bvh",
+];
 
 /// Walks of one person, who has the most of them: two linear systems hold one way of walking.
 const WALKS_OF_ONE: [&str; 4] = [
@@ -105,17 +118,18 @@ pub(crate) fn command() -> Result<()> {
     Ok(())
 }
 
-/// Everything that people of the free recordings do, but for the dancer's manner of subject 131.
+/// People whose hip joints are misplaced are put right first: models would crouch as they do.
 fn train_sensor(data: &Data, site: &str) -> Result<()> {
     let mut train = data.footfall("imu");
     train
         .args(["train", "--corpus"])
         .arg(&data.index)
-        .args(["--where", "path=cmu/*", "--where", "subject!=cmu131"])
+        .args(SENSOR_RECORDINGS)
+        .arg("--correct-hips")
         .args(["--site", site, "--no-mirror", "--frames", SENSOR_FRAMES])
         .args([
             "--describe",
-            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu): walks, runs, jumps, hops, turns, a sidestep",
+            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu): walks, runs, jumps, hops, turns, a sidestep; the O3DE Motion Matching gem: walks, runs, stops, turns; ReActIdle (github.com/Enekoassets/ReActIdle): standing",
             "-o",
         ])
         .arg(format!("addons/footfall/models/{site}.footimu"));

@@ -1,7 +1,8 @@
 //! Runtime: samples, orientation, features and gait events of inertial sensors.
 //!
 //! Modules in the order in which data flows: [`sample`]s, [`csv`] recordings and their [`checks`], [`orientation`] of the sensor, the
-//! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`]. With the feature
+//! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`], which a [`stride_meter`] tells as
+//! they are made. With the feature
 //! `live`, [`live`] hears sensors over serial ports and networks; without, nothing here opens a port.
 //!
 //! Everywhere specific force is in m/s² and holds gravity (a sensor at rest reads +9.81 along up), angular rate is in rad/s, and axes are
@@ -16,6 +17,7 @@ pub mod filter;
 pub mod live;
 pub mod orientation;
 pub mod sample;
+pub mod stride_meter;
 pub mod strides;
 
 pub use checks::{RecordingFault, check_recording};
@@ -23,3 +25,4 @@ pub use csv::ImuCsvError;
 pub use features::{FeatureFrame, FeatureStream, SENSOR_FEATURES};
 pub use orientation::OrientationFilter;
 pub use sample::{GRAVITY_MPS2, ImuRecording, ImuSample};
+pub use stride_meter::StrideMeter;

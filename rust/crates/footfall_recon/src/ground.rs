@@ -22,6 +22,9 @@ const SETTLE_HALF_LIFE_SECS: f32 = 0.03;
 /// The height of the pelvis follows the standing feet with this half-life, seconds.
 const HEIGHT_HALF_LIFE_SECS: f32 = 0.05;
 
+/// A leg that steps are lengthened for reaches at most so far from below the hip, as a share of its length.
+const MOST_SPREAD: f32 = 0.6;
+
 /// Added to the bend of a knee before legs are weighed by it, radians.
 const KNEE_SLACK: f32 = 0.1;
 
@@ -46,6 +49,7 @@ pub struct Ground {
     compared_secs: f32,
     height_m: f32,
     feet: [StandingFoot; 2],
+    stride: f32,
     model: ModelPose,
 }
 
@@ -80,6 +84,8 @@ pub struct GroundInput {
     pub frames: f32,
     /// The same in seconds.
     pub dt_secs: f32,
+    /// How long steps are beside those of the recordings, 1 as long.
+    pub stride: f32,
 }
 
 impl Ground {
@@ -95,6 +101,7 @@ impl Ground {
             compared_secs: 0.0,
             height_m: 0.0,
             feet: [StandingFoot::FREE; 2],
+            stride: 1.0,
             model: ModelPose::default(),
             skeleton: skeleton.clone(),
         }
@@ -110,6 +117,11 @@ impl Ground {
     /// The body's proportions.
     pub const fn skeleton(&self) -> &Skeleton {
         &self.skeleton
+    }
+
+    /// Metres of this body for one of the model's.
+    pub const fn scale(&self) -> f32 {
+        self.scale
     }
 
     /// Where the body is on the floor, metres.
@@ -155,7 +167,9 @@ impl Ground {
         self.turn(body, input);
         let level = from_heading(self.heading);
         pose.rotations[0] = level * pose.rotations[0];
-        let way = Vec3::new(body[WAY], 0.0, body[WAY + 1]) * (self.scale * input.frames);
+        self.stride = input.stride;
+        let metres = self.scale * self.stride * input.frames;
+        let way = Vec3::new(body[WAY], 0.0, body[WAY + 1]) * metres;
         self.place += level * way;
         pose.root_position += self.place;
         forward_kinematics(&self.skeleton, pose, &mut self.model);
@@ -165,6 +179,25 @@ impl Ground {
         for side in Side::BOTH {
             self.solve(side, body, input.dt_secs, pose);
         }
+    }
+
+    /// Where an ankle is, its leg swung from the hip as much further as steps are longer: knees keep their bend, and the pelvis comes down over
+    /// feet that are further apart.
+    fn ankle(&self, side: Side) -> Vec3 {
+        let hip = self.model.position(side.upper_leg());
+        let own = self.model.position(side.foot()) - hip;
+        let along = own.with_y(0.0);
+        let longest = MOST_SPREAD * own.length();
+        let wanted = (along * self.stride).clamp_length_max(longest.max(along.length()));
+        let down = (own.length_squared() - wanted.length_squared())
+            .max(0.0)
+            .sqrt();
+        hip + wanted + Vec3::Y * down.copysign(own.y)
+    }
+
+    /// Where the ankle of a foot is shown after the last step, metres.
+    pub fn shown_ankle(&self, side: Side) -> Vec3 {
+        self.ankle(side) + self.feet[side.index()].last.0
     }
 
     fn turn(&mut self, body: &BodyFrame, input: &GroundInput) {
@@ -189,7 +222,7 @@ impl Ground {
             if let Some(plant) = self.feet[side.index()].plant {
                 let target = self.standing(side, &plant);
                 let weight = body[CONTACT + side.index()].clamp(0.05, 1.0);
-                shift += (target.ankle - self.model.position(side.foot())).with_y(0.0) * weight;
+                shift += (target.ankle - self.ankle(side)).with_y(0.0) * weight;
                 weights += weight;
             }
         }
@@ -207,7 +240,7 @@ impl Ground {
     fn follow_height(&mut self, dt_secs: f32, pose: &mut Pose) {
         let (mut wanted, mut weights) = (0.0, 0.0);
         for side in Side::BOTH {
-            let ankle = self.model.position(side.foot());
+            let ankle = self.ankle(side);
             let lift = if let Some(plant) = self.feet[side.index()].plant {
                 self.standing(side, &plant).ankle.y - ankle.y
             } else {
@@ -242,7 +275,7 @@ impl Ground {
     /// Puts one foot where it belongs.
     fn solve(&mut self, side: Side, body: &BodyFrame, dt_secs: f32, pose: &mut Pose) {
         let index = side.index();
-        let ankle = self.model.position(side.foot());
+        let ankle = self.ankle(side);
         let (foot, toes) = (
             self.model.rotation(side.foot()),
             self.model.rotation(side.toes()),

@@ -81,6 +81,22 @@ pub(crate) fn weigh(
     sums.into_iter().sum()
 }
 
+/// Lets no distance be farther than this; infinite ones stay.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma", "aarch64+neon"))]
+pub(crate) fn cap(distance: &mut [f32], farthest: f32) {
+    for distance in distance.chunks_exact_mut(BLOCK) {
+        if distance[0] != f32::INFINITY {
+            for distance in distance {
+                *distance = if *distance < farthest {
+                    *distance
+                } else {
+                    farthest
+                };
+            }
+        }
+    }
+}
+
 /// Multiplies all.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(crate) fn scale(values: &mut [f32], factor: f32) {

@@ -1,7 +1,8 @@
 //! Runtime: what one or two inertial sensors measure becomes a body (Mousas 2017).
 //!
 //! Modules in the order in which data flows: [`prepared`] lays a model out for the loop that reads it, [`tracker`] tells how probable each of
-//! its frames is, [`body`] is what they say in the mean, [`blend`] keeps it continuous, [`ground`] moves it and keeps its feet in place.
+//! its frames is, [`body`] is what they say in the mean, [`blend`] keeps it continuous, [`ground`] moves it, in steps as long as the wearer's (`travel`), and keeps
+//! its feet in place.
 //! [`mounting`] finds how a sensor is worn; [`reconstructor`] is all of it for samples as they come, [`recording`] for a recording as a whole.
 
 pub mod blend;
@@ -13,7 +14,9 @@ pub mod mounting;
 pub mod prepared;
 pub mod reconstructor;
 pub mod recording;
+mod shown_behaviour;
 pub mod tracker;
+mod travel;
 
 pub use body::BodyFrame;
 pub use mounting::{Mounting, MountingError, find_mounting};

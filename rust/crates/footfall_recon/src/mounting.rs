@@ -81,7 +81,12 @@ pub fn find_mounting(
         sensor,
         frames: &frames,
     };
-    let mut tracker = Tracker::new(prepared, *config);
+    // How far off a wrong rotation is tells as much as what the right one explains.
+    let config = TrackerConfig {
+        farthest: f32::INFINITY,
+        ..*config
+    };
+    let mut tracker = Tracker::new(prepared, config);
     let level = finder.level();
     let mut found: Vec<(f64, Quat)> = (0..CANDIDATES)
         .map(|n| {

@@ -4,7 +4,9 @@ use crate::blend::Blend;
 use crate::ground::{Ground, GroundInput};
 use crate::measure::{measure, sensor_heading};
 use crate::prepared::Prepared;
+use crate::shown_behaviour::ShownBehaviour;
 use crate::tracker::{Tracker, TrackerConfig};
+use crate::travel::Travel;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Behaviour, Pose, Skeleton, SkeletonError};
 use footfall_imu::{FeatureFrame, FeatureStream, ImuSample};
@@ -63,7 +65,8 @@ pub struct Reconstructor {
     blend: Blend,
     ground: Ground,
     sensors: [Sensor; MAX_SENSORS],
-    behaviour: Behaviour,
+    travel: Travel,
+    behaviour: ShownBehaviour,
     silent_secs: f32,
     /// Frames that were shown ahead of the last one measured.
     ahead: f32,
@@ -117,7 +120,8 @@ impl Reconstructor {
             blend: Blend::new(config.blend_gain),
             ground: Ground::new(skeleton, &prepared.model.skeleton),
             sensors: [Sensor::new(rate); MAX_SENSORS],
-            behaviour: Behaviour::Stand,
+            travel: Travel::new(&prepared.model.sites),
+            behaviour: ShownBehaviour::new(),
             silent_secs: 0.0,
             ahead: 0.0,
             heading: None,
@@ -133,6 +137,7 @@ impl Reconstructor {
             // What it measured in other axes means nothing any more.
             sensor.stream = FeatureStream::new(self.prepared.model.frame_rate_hz);
             self.ground.forget_sensor_heading();
+            self.travel.forget_samples();
         }
     }
 
@@ -148,6 +153,8 @@ impl Reconstructor {
         self.tracker.reset();
         self.blend.reset();
         self.ground.reset();
+        self.travel = Travel::new(&self.prepared.model.sites);
+        self.behaviour = ShownBehaviour::new();
         (self.silent_secs, self.ahead) = (0.0, 0.0);
         self.heading = None;
     }
@@ -162,9 +169,9 @@ impl Reconstructor {
         self.ground.heading()
     }
 
-    /// What the body does.
+    /// What the body does. No behaviour is shown for less than 0.2 s.
     pub const fn behaviour(&self) -> Behaviour {
-        self.behaviour
+        self.behaviour.behaviour()
     }
 
     /// Whether anything is heard of the sensors.
@@ -220,6 +227,7 @@ impl Reconstructor {
         let Some(own) = self.sensors[..used].get_mut(sensor) else {
             return;
         };
+        self.travel.push(sensor, sample);
         let Sensor {
             mounting,
             stream,
@@ -277,13 +285,11 @@ impl Reconstructor {
         }
         // What was shown ahead is part of this frame.
         self.ahead -= 1.0;
-        let behaviours = self.tracker.behaviours();
-        if let Some(likely) = Behaviour::ALL
-            .into_iter()
-            .find(|b| behaviours[b.index()] > self.config.behaviour_probability)
-        {
-            self.behaviour = likely;
-        }
+        self.behaviour.step(
+            self.tracker.behaviours(),
+            self.config.behaviour_probability,
+            1.0 / self.prepared.model.frame_rate_hz as f32,
+        );
     }
 
     /// Goes on by `dt_secs` and writes the pose; the rest pose until the first frame is measured.
@@ -308,8 +314,13 @@ impl Reconstructor {
             heading: self.heading,
             frames: dt_secs * rate,
             dt_secs,
+            stride: self.travel.step(dt_secs),
         };
         self.ground.step(&body, &input, pose);
+        if let Some(side) = self.travel.side() {
+            self.travel
+                .compare(self.ground.shown_ankle(side), self.ground.scale());
+        }
     }
 
     /// Splits a pose that [`step`](Self::step) wrote into the place and heading of the body on the ground, and the pose above it, which faces +Z.

@@ -6,9 +6,11 @@ use crate::ground::{Ground, GroundInput};
 use crate::measure::{measure, sensor_heading};
 use crate::prepared::Prepared;
 use crate::reconstructor::ReconConfig;
+use crate::shown_behaviour::{LEAST_SHOWN_SECS, ShownBehaviour, drop_short_runs};
 use crate::tracker::{Measurement, Tracker};
+use crate::travel::Travel;
 use footfall_core::{Behaviour, Clip, Pose, Skeleton, SkeletonError};
-use footfall_imu::{FeatureFrame, FeatureStream, ImuRecording};
+use footfall_imu::{FeatureFrame, FeatureStream, ImuRecording, ImuSample};
 use footfall_model::imu_model::MAX_SENSORS;
 use std::sync::Arc;
 
@@ -43,7 +45,12 @@ pub fn reconstruct_recording(
     skeleton.check()?;
     let frames = frames_of(prepared, recordings);
     let rate = prepared.model.frame_rate_hz;
+    let travel = Travel::new(&prepared.model.sites);
+    let strides = travel.sensor().and_then(|n| recordings.get(n));
     let mut shown = Shown {
+        samples: strides.map_or(&[][..], |recording| &recording.samples),
+        travel,
+        live: live.then_some((ShownBehaviour::new(), config.behaviour_probability)),
         out: Reconstructed {
             clip: Clip {
                 skeleton: skeleton.clone(),
@@ -94,6 +101,8 @@ pub fn reconstruct_recording(
         }
         filtered.drain(..end - first);
     }
+    let least = (f64::from(LEAST_SHOWN_SECS) * rate).ceil() as usize;
+    drop_short_runs(&mut shown.out.behaviours, least);
     Ok(shown.out)
 }
 
@@ -151,14 +160,19 @@ fn frames_of(
 }
 
 /// What is shown of each frame.
-struct Shown {
+struct Shown<'a> {
+    /// Those of the sensor that measures strides which were not heard yet.
+    samples: &'a [ImuSample],
+    travel: Travel,
+    /// What a game shows, and how probable it must be.
+    live: Option<(ShownBehaviour, f32)>,
     out: Reconstructed,
     blend: Blend,
     ground: Ground,
     frame_secs: f32,
 }
 
-impl Shown {
+impl Shown<'_> {
     fn add(
         &mut self,
         tracker: &Tracker,
@@ -186,18 +200,43 @@ impl Shown {
         sensors: [Option<FeatureFrame>; MAX_SENSORS],
         frames: f32,
     ) {
+        self.hear(&sensors);
         let input = GroundInput {
             heading: sensor_heading(&sensors, body),
             frames,
             dt_secs: self.frame_secs,
+            stride: self.travel.step(self.frame_secs),
         };
         let mut pose = Pose::default();
         self.ground.step(body, &input, &mut pose);
         self.out.clip.poses.push(pose);
+        if let Some(side) = self.travel.side() {
+            self.travel
+                .compare(self.ground.shown_ankle(side), self.ground.scale());
+        }
         let behaviours = tracker.behaviours();
-        let likely = Behaviour::ALL
-            .into_iter()
-            .max_by(|a, b| behaviours[a.index()].total_cmp(&behaviours[b.index()]));
-        self.out.behaviours.push(likely.unwrap_or(Behaviour::Stand));
+        let shown = match &mut self.live {
+            Some((shown, needed)) => shown.step(behaviours, *needed, self.frame_secs),
+            None => Behaviour::ALL
+                .into_iter()
+                .max_by(|a, b| behaviours[a.index()].total_cmp(&behaviours[b.index()]))
+                .unwrap_or(Behaviour::Stand),
+        };
+        self.out.behaviours.push(shown);
+    }
+
+    /// Measures strides up to the end of a frame.
+    fn hear(&mut self, sensors: &[Option<FeatureFrame>; MAX_SENSORS]) {
+        let sensor = self.travel.sensor();
+        if let Some((sensor, frame)) = sensor.and_then(|n| Some((n, sensors[n]?))) {
+            let heard = self
+                .samples
+                .partition_point(|sample| sample.time_secs <= frame.time_secs);
+            let (now, later) = self.samples.split_at(heard);
+            for sample in now {
+                self.travel.push(sensor, *sample);
+            }
+            self.samples = later;
+        }
     }
 }

@@ -4,7 +4,7 @@
 mod backward;
 mod interpolation;
 
-use crate::kernels::{add, distances, weigh};
+use crate::kernels::{add, cap, distances, weigh};
 use crate::prepared::Prepared;
 use footfall_core::Behaviour;
 use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
@@ -23,6 +23,9 @@ pub struct TrackerConfig {
     pub exit: f32,
     /// What a frame of the sensor counts: successive frames are alike, and would count several times over.
     pub evidence: f32,
+    /// Squared distance, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
+    /// where none explains it the body goes on as it did.
+    pub farthest: f32,
     /// How many segments are interpolated (section 5.3; there 5).
     pub interpolated: usize,
     /// How much of the regression on the sensor is applied (equation 6), 0 to 1.
@@ -37,6 +40,7 @@ impl Default for TrackerConfig {
             keep_subject: 0.9,
             exit: 0.01,
             evidence: 0.5,
+            farthest: 40.0,
             interpolated: 10,
             // On recordings that a model has not seen it makes walks worse by half a centimetre.
             regression: 0.0,
@@ -308,14 +312,16 @@ impl Tracker {
             weights[n] = sensor.weights[n];
         }
         let width = deviations.len();
-        distances(
+        let nearest = distances(
             &self.prepared.sensor,
             &measured[..width],
             &weights[..width],
             &self.predicted,
             limit,
             &mut self.distance,
-        )
+        );
+        cap(&mut self.distance, self.config.farthest);
+        nearest.min(self.config.farthest)
     }
 
     /// Brings the weighed candidates to a sum of one, and drops those that hold next to nothing.

@@ -130,6 +130,8 @@ fn the_forward_algorithm_is_that_of_the_whole_matrix() {
     let model = model();
     let config = TrackerConfig {
         exit: 0.0,
+        // Of what is measured here some frames are farther and some are not.
+        farthest: 12.0,
         ..TrackerConfig::default()
     };
     let matrix = transitions(&model, &config);
@@ -137,6 +139,7 @@ fn the_forward_algorithm_is_that_of_the_whole_matrix() {
     let prepared = Arc::new(Prepared::new(Arc::new(model.clone())).unwrap());
     let mut tracker = Tracker::new(&prepared, config);
     let mut slow = vec![1.0 / frames as f64; frames];
+    let (mut near, mut far) = (0, 0);
     for n in 0..60 {
         // Every seventh frame is missing.
         let sensor = (n % 7 != 6).then(|| measured(n));
@@ -150,7 +153,12 @@ fn the_forward_algorithm_is_that_of_the_whole_matrix() {
                 let squares = numbers.map(|((own, value), weight)| {
                     f64::from(*weight) * (f64::from(own - value) / 0.7).powi(2)
                 });
-                *after *= (-0.5 * f64::from(config.evidence) * squares.sum::<f64>()).exp();
+                let squares = squares.sum::<f64>();
+                (near, far) = (
+                    near + usize::from(squares < 12.0),
+                    far + usize::from(squares > 12.0),
+                );
+                *after *= (-0.5 * f64::from(config.evidence) * squares.min(12.0)).exp();
             }
         }
         let sum: f64 = after.iter().sum();
@@ -161,6 +169,24 @@ fn the_forward_algorithm_is_that_of_the_whole_matrix() {
                 "{fast} is not {slow} at {n}"
             );
         }
+    }
+    assert!(near > 100 && far > 100, "{near} frames near, {far} far");
+}
+
+#[test]
+fn what_fits_nothing_tells_nothing() {
+    let prepared = Arc::new(Prepared::new(Arc::new(model())).unwrap());
+    let mut told = Tracker::new(&prepared, TrackerConfig::default());
+    for n in 0..20 {
+        told.step(Some(&measured(n)));
+    }
+    let mut silent = told.clone();
+    let mut odd = measured(20);
+    odd.values[3] = 1e3;
+    told.step(Some(&odd));
+    silent.step(None);
+    for (told, silent) in told.probabilities().iter().zip(silent.probabilities()) {
+        assert!((told - silent).abs() < 0.01, "{told} is not {silent}");
     }
 }
 

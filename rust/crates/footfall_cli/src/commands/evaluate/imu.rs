@@ -4,7 +4,7 @@ use crate::commands::imu::{KeptArgs, imu_clip, parse_site};
 use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
-use footfall_core::Site;
+use footfall_core::{Behaviour, Site};
 use footfall_motion::corpus::Where;
 use footfall_train::imu::evaluate::{HeldOut, ImuTrial, evaluate_imu};
 use footfall_train::imu::{ImuClip, ImuTrainConfig};
@@ -45,6 +45,12 @@ pub(crate) struct ImuArgs {
     sites: Vec<Site>,
     #[command(flatten)]
     kept: KeptArgs,
+    /// Condition on the recordings that are judged; models are trained on the others, too; may repeat
+    #[arg(long = "judge", value_name = "COLUMN=VALUE")]
+    judged: Vec<Where>,
+    /// Leave out whole people only: no model that has seen other recordings of the same one
+    #[arg(long)]
+    strangers: bool,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -58,7 +64,7 @@ pub(super) struct Report {
 #[derive(Serialize)]
 struct SensorReport {
     sites: Vec<&'static str>,
-    /// Models that have seen all other recordings.
+    /// Models that have seen all other recordings; empty with --strangers.
     other_recordings: BTreeMap<String, Figures>,
     /// Models that have seen other subjects only; empty when there is but one.
     other_subjects: BTreeMap<String, Figures>,
@@ -84,6 +90,10 @@ struct Figures {
     /// Changes of behaviour, and the median delay with which they are recognised live.
     changes: usize,
     median_delay_s: Option<f64>,
+    /// Median bend of the knees while the body stands, degrees: recorded, and live.
+    standing_knee_deg: Option<[f32; 2]>,
+    /// Of the frames of each behaviour, the share that is recognised live as each.
+    confusion: BTreeMap<&'static str, BTreeMap<&'static str, f64>>,
 }
 
 /// Evaluates, and returns the report that is printed as JSON.
@@ -106,19 +116,28 @@ pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
         .iter()
         .map(|clip| clip.row.category())
         .collect();
+    let judged = |clip: usize| {
+        let row = &corpus.clips[clip].row;
+        let holds = |c: &Where| row.column(&c.column).is_some_and(|v| c.matches(v));
+        args.judged.iter().all(holds)
+    };
     let several = clips.iter().any(|clip| clip.subject != clips[0].subject);
     let mut sensors = Vec::new();
     for config in &asked {
         let names: Vec<&str> = config.sites.iter().map(|site| site.name()).collect();
         output::note(&format!("reconstructing from {}", names.join(" and ")));
         let figures = |held_out: HeldOut| -> Result<BTreeMap<String, Figures>> {
-            let trials = evaluate_imu(&clips, config, held_out)
+            let trials = evaluate_imu(&clips, config, held_out, &judged)
                 .with_context(|| args.corpus.display().to_string())?;
             Ok(summarise(&trials, &categories))
         };
         sensors.push(SensorReport {
             sites: names,
-            other_recordings: figures(HeldOut::Recording)?,
+            other_recordings: if args.strangers {
+                BTreeMap::new()
+            } else {
+                figures(HeldOut::Recording)?
+            },
             other_subjects: if several {
                 figures(HeldOut::Subject)?
             } else {
@@ -148,7 +167,7 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
                 sensor.sites.join(" and ")
             ));
             lines.push(format!(
-                "{:28} {:>10} {:>7} {:>6} {:>7} {:>6} {:>9} {:>11} {:>6}",
+                "{:28} {:>10} {:>7} {:>6} {:>7} {:>6} {:>9} {:>11} {:>6} {:>16}",
                 "",
                 "recordings",
                 "frames",
@@ -157,13 +176,17 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
                 "whole",
                 "constant",
                 "recognised",
-                "delay"
+                "delay",
+                "standing knee"
             ));
             lines.extend(
                 figures
                     .iter()
                     .map(|(category, figures)| figures.line(category)),
             );
+            if let Some(total) = figures.get("total") {
+                lines.extend(total.confusion_lines());
+            }
             lines.push(String::new());
         }
     }
@@ -171,12 +194,32 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
 }
 
 impl Figures {
+    /// What each behaviour is taken for, in shares of its frames.
+    fn confusion_lines(&self) -> Vec<String> {
+        let mut lines = vec![format!(
+            "{:28} {}",
+            "taken live for",
+            Behaviour::ALL.map(|b| format!("{:>9}", b.name())).join(" ")
+        )];
+        lines.extend(self.confusion.iter().map(|(truth, shares)| {
+            let share = |b: Behaviour| 100.0 * shares.get(b.name()).copied().unwrap_or(0.0);
+            let cells = Behaviour::ALL.map(|b| format!("{:7.0} %", share(b)));
+            format!("{truth:28} {}", cells.join(" "))
+        }));
+        lines
+    }
+
     fn line(&self, category: &str) -> String {
         let delay = self
             .median_delay_s
             .map_or("-".to_owned(), |d| format!("{d:.2} s"));
+        let knee = self
+            .standing_knee_deg
+            .map_or("-".to_owned(), |[truth, live]| {
+                format!("{live:.0}° of {truth:.0}°")
+            });
         format!(
-            "{category:28} {:10} {:7} {:6.2} {:7.2} {:6.2} {:9.2} {:9.0} % {delay:>6}",
+            "{category:28} {:10} {:7} {:6.2} {:7.2} {:6.2} {:9.2} {:9.0} % {delay:>6} {knee:>16}",
             self.recordings,
             self.moving_frames,
             self.live_cm,
@@ -240,5 +283,39 @@ fn figures_of(trials: &[&ImuTrial]) -> Figures {
         recognised: all(|t| t.live.recognised),
         changes: delays.len(),
         median_delay_s: delays.get(delays.len() / 2).copied(),
+        standing_knee_deg: standing_knee_deg(trials),
+        confusion: confusion(trials),
     }
+}
+
+fn standing_knee_deg(trials: &[&ImuTrial]) -> Option<[f32; 2]> {
+    let median = |which: usize| {
+        let knees = trials.iter().flat_map(|t| &t.standing_knees_deg);
+        let mut knees: Vec<f32> = knees.map(|knees| knees[which]).collect();
+        knees.sort_by(f32::total_cmp);
+        knees.get(knees.len() / 2).copied()
+    };
+    Some([median(0)?, median(1)?])
+}
+
+/// Behaviours that occur, each with the shares of what is recognised.
+fn confusion(trials: &[&ImuTrial]) -> BTreeMap<&'static str, BTreeMap<&'static str, f64>> {
+    let count = |truth: Behaviour, found: Behaviour| -> usize {
+        let cells = trials
+            .iter()
+            .map(|t| t.confusion[truth.index()][found.index()]);
+        cells.sum()
+    };
+    let rows = Behaviour::ALL.into_iter().filter_map(|truth| {
+        let all: usize = Behaviour::ALL.iter().map(|b| count(truth, *b)).sum();
+        let share = |found: Behaviour| (found.name(), count(truth, found) as f64 / all as f64);
+        let shares = Behaviour::ALL.into_iter().map(share);
+        (all > 0).then(|| {
+            (
+                truth.name(),
+                shares.filter(|(_, share)| *share > 0.0).collect(),
+            )
+        })
+    });
+    rows.collect()
 }

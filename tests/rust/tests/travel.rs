@@ -1,0 +1,138 @@
+//! A body goes as far as the wearer of a foot's sensor.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
+
+use footfall_core::{Clip, ModelPose, Pose, Side, Site, Skeleton, forward_kinematics};
+use footfall_imu::ImuRecording;
+use footfall_model::{GaitModel, Provenance};
+use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
+use footfall_recon::{Prepared, ReconConfig, Reconstructor, reconstruct_recording};
+use footfall_synth::{WalkConfig, synthesize};
+use footfall_tests::data::repository;
+use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
+use glam::Vec3;
+use std::sync::Arc;
+
+const RATE_HZ: f64 = 100.0;
+
+fn walk(gait: &Arc<GaitModel>, skeleton: &Skeleton, seed: u64, speed: f32) -> Clip {
+    let config = WalkConfig {
+        steps: 24,
+        seed,
+        variation: 1.0,
+        speed_mps: Some(speed),
+        turn_rate_radps: 0.0,
+        direction_rad: 0.0,
+        frame_rate_hz: Some(60.0),
+        from_standing: false,
+    };
+    synthesize(gait, skeleton, &config).unwrap().clip
+}
+
+fn gait() -> Arc<GaitModel> {
+    let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall")).unwrap();
+    Arc::new(GaitModel::from_bytes(&bytes).unwrap())
+}
+
+/// A model of one walker's body, made from walks of these speeds.
+fn prepare(gait: &Arc<GaitModel>, site: Site) -> Arc<Prepared> {
+    let walks: Vec<(String, Clip)> = (0..8)
+        .map(|seed| {
+            let speed = 0.9 + 0.05 * seed as f32;
+            (seed.to_string(), walk(gait, &gait.skeleton, seed, speed))
+        })
+        .collect();
+    let clips: Vec<ImuClip<'_>> = walks
+        .iter()
+        .map(|(subject, clip)| ImuClip {
+            subject,
+            clip,
+            first_frame: 0,
+            recordings: &[],
+        })
+        .collect();
+    let config = ImuTrainConfig::new(&[site]);
+    let model = train_imu_clips(&clips, &config, Provenance::default()).unwrap();
+    Arc::new(Prepared::new(Arc::new(model)).unwrap())
+}
+
+/// What a sensor measures of a wearer who takes longer steps than anybody in the model, and how far this one goes after four seconds, metres.
+fn wearer(gait: &Arc<GaitModel>, site: Site) -> (ImuRecording, f32) {
+    let tall = gait.skeleton.scaled(1.2);
+    let clip = walk(gait, &tall, 99, 1.5);
+    let recording = simulate(&clip, 0, site, &VirtualImuConfig::ideal(RATE_HZ));
+    (recording, way_m(clip.poses.iter(), 60))
+}
+
+fn way_m<'a>(mut poses: impl DoubleEndedIterator<Item = &'a Pose>, rate: usize) -> f32 {
+    let first = poses.nth(4 * rate).unwrap().root_position;
+    let last = poses.next_back().unwrap().root_position;
+    (last - first).with_y(0.0).length()
+}
+
+#[test]
+fn a_body_goes_as_far_as_the_wearer() {
+    let gait = gait();
+    let prepared = prepare(&gait, Site::RightFoot);
+    let (recording, true_m) = wearer(&gait, Site::RightFoot);
+    let skeleton = prepared.model().skeleton.clone();
+    let config = ReconConfig::default();
+    for live in [true, false] {
+        let recordings = [recording.clone()];
+        let made = reconstruct_recording(&prepared, &recordings, &skeleton, &config, live).unwrap();
+        let own_m = way_m(made.clip.poses.iter(), 30);
+        let off = own_m / true_m - 1.0;
+        assert!(
+            off.abs() < 0.05,
+            "{own_m:.2} m of {true_m:.2} m, live {live}"
+        );
+    }
+}
+
+#[test]
+fn a_thigh_knows_no_strides() {
+    let gait = gait();
+    let prepared = prepare(&gait, Site::RightThigh);
+    let (recording, true_m) = wearer(&gait, Site::RightThigh);
+    let skeleton = prepared.model().skeleton.clone();
+    let made = reconstruct_recording(
+        &prepared,
+        &[recording],
+        &skeleton,
+        &ReconConfig::default(),
+        true,
+    )
+    .unwrap();
+    let own_m = way_m(made.clip.poses.iter(), 30);
+    // The steps are those of the people in the model, who are smaller and slower: the test above can fail.
+    assert!(own_m < 0.9 * true_m, "{own_m:.2} m of {true_m:.2} m");
+}
+
+#[test]
+fn longer_steps_do_not_slide() {
+    let gait = gait();
+    let prepared = prepare(&gait, Site::RightFoot);
+    let (recording, _) = wearer(&gait, Site::RightFoot);
+    let skeleton = prepared.model().skeleton.clone();
+    let mut body = Reconstructor::new(&prepared, &skeleton, &ReconConfig::default()).unwrap();
+    let (mut pose, mut model) = (Pose::default(), ModelPose::default());
+    let mut before: [Option<Vec3>; 2] = [None; 2];
+    let (mut slid_m, mut stood) = (0.0_f32, 0);
+    for (n, sample) in recording.samples.iter().enumerate() {
+        body.push(0, *sample);
+        body.step((1.0 / RATE_HZ) as f32, &mut pose);
+        forward_kinematics(&skeleton, &pose, &mut model);
+        let stands = body.stands();
+        for side in Side::BOTH {
+            let toes = model.position(side.toes());
+            let last = before[side.index()].replace(toes);
+            // A foot that has stood for a while, not one that is just put down.
+            if let Some(last) = last.filter(|_| n > 400 && stands[side.index()] && toes.y < 0.03) {
+                slid_m += (toes - last).with_y(0.0).length();
+                stood += 1;
+            }
+        }
+    }
+    let mps = f64::from(slid_m) * RATE_HZ / f64::from(stood);
+    assert!(stood > 300 && mps < 0.1, "{mps:.3} m/s in {stood} frames");
+}
