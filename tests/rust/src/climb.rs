@@ -5,7 +5,7 @@ use crate::terrain::{Origin, PlacedWalker, Relief};
 use footfall_core::{Side, Skeleton};
 use footfall_ik::placement::{Frame, PlacementConfig};
 use footfall_model::GaitModel;
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
+use footfall_synth::{Controls, GaitChoice, GaitGenerator, GeneratorConfig, StyleSpace};
 use glam::Vec3;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -243,6 +243,8 @@ impl Climb {
         walker.carrier = self.origin;
         let controls = Controls {
             speed_mps: self.speed_mps,
+            // Grades are walked, as beside `FootPlacement3D`, whoever has legs short enough to run at this speed.
+            gait: GaitChoice::Walk,
             ..Controls::STAND
         };
         let mut watcher = Watcher {

@@ -23,6 +23,7 @@ fn walk(gait: &Arc<GaitModel>, skeleton: &Skeleton, seed: u64, speed: f32) -> Cl
         speed_mps: Some(speed),
         turn_rate_radps: 0.0,
         direction_rad: 0.0,
+        gait: footfall_synth::GaitChoice::Auto,
         frame_rate_hz: Some(60.0),
         from_standing: false,
     };

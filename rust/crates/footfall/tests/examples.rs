@@ -166,7 +166,8 @@ fn a_sensor_on_a_foot_walks_a_body_as_far_as_its_wearer_went() {
     slips.sort_by(f32::total_cmp);
     // A body of other lengths, known by one sensor: most of the way, straight ahead, step by step.
     assert!((0.65..1.35).contains(&share), "{way} of {truth} m");
-    assert!(way.x.abs() < 0.25 * way.z, "{way}");
+    // Where ahead is follows from its first steps, within twenty degrees.
+    assert!(way.x.abs() < 0.36 * way.z, "{way}");
     assert!((8..=12).contains(&footfalls), "{footfalls}");
     // In most frames a standing foot does not move at all.
     slips.sort_by(f32::total_cmp);

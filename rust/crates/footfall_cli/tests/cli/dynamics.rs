@@ -209,7 +209,11 @@ fn bad_input_is_named() {
         let arguments = ["dynamics", "synth", "--model", model, "-o", "out.bvh"];
         footfall(folder, &[&arguments[..], more].concat())
     };
-    synth(model.to_str().unwrap(), &[]).fails_with(&["walk.footfall", "'gait'", "'dynamics'"]);
+    synth(model.to_str().unwrap(), &[]).fails_with(&[
+        "locomotion.footfall",
+        "'gait'",
+        "'dynamics'",
+    ]);
     let good = repository().join("addons/footfall/models/walk.footdyn");
     let mut bytes = fs::read(&good).unwrap();
     let middle = bytes.len() / 2;

@@ -217,7 +217,10 @@ fn on_the_spot(seed: &str) -> (f64, f64, f32) {
             .join(name);
         path.to_str().expect("a path in UTF-8").to_owned()
     };
-    let (walk, pocket) = (shipped("walk.footfall"), shipped("right_thigh.footimu"));
+    let (walk, pocket) = (
+        shipped("locomotion.footfall"),
+        shipped("right_thigh.footimu"),
+    );
     fs::write(folder.join("spot.toml"), ON_THE_SPOT).expect("a sheet");
     let run = |arguments: &[&str]| {
         let run = footfall(folder, arguments);

@@ -4,7 +4,7 @@ use super::GaitGenerator3D;
 use super::session::Session;
 use crate::root_motion::Now;
 use crate::travel::Travel;
-use footfall_synth::Controls;
+use footfall_synth::{Controls, GaitChoice};
 use glam::Vec3;
 use godot::classes::{Engine, Skeleton3D};
 use godot::prelude::*;
@@ -177,7 +177,12 @@ impl GaitGenerator3D {
             speed_mps: self.speed as f32 * self.slowed,
             turn_rate_radps: self.turn_rate as f32,
             direction_rad: self.direction as f32,
-            gait: self.gait.into(),
+            // A grade ahead is walked.
+            gait: if self.slowed < 1.0 {
+                GaitChoice::Walk
+            } else {
+                self.gait.into()
+            },
         }
     }
 }

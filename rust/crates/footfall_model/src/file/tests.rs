@@ -142,10 +142,47 @@ fn standing_survives_beside_every_version_of_the_walk() {
             ..plain.clone()
         };
         let bytes = model.to_bytes().unwrap();
-        assert_eq!(read_header(&bytes).unwrap().0, FORMAT_VERSION);
+        assert_eq!(read_header(&bytes).unwrap().0, FORMAT_4);
         assert_eq!(GaitModel::from_bytes(&bytes).unwrap(), model);
         assert_eq!(model.fingerprint().unwrap(), plain.fingerprint().unwrap());
+        let runner = GaitModel {
+            running: Some(Box::new(run_of(&plain))),
+            ..model
+        };
+        let bytes = runner.to_bytes().unwrap();
+        assert_eq!(read_header(&bytes).unwrap().0, FORMAT_VERSION);
+        assert_eq!(GaitModel::from_bytes(&bytes).unwrap(), runner);
+        assert_eq!(runner.fingerprint().unwrap(), plain.fingerprint().unwrap());
     }
+}
+
+/// Steps that end in flight, from other recordings than the walk's.
+fn run_of(walk: &GaitModel) -> GaitModel {
+    let mut run = walk.clone();
+    for step in &mut run.steps {
+        step.other_terminal = -0.25;
+    }
+    run.provenance.corpus = "runs".to_owned();
+    run
+}
+
+#[test]
+fn a_run_that_does_not_belong_to_its_walk_is_refused() {
+    let refused = |change: &dyn Fn(&mut GaitModel)| {
+        let mut run = run_of(&sample());
+        change(&mut run);
+        let model = GaitModel {
+            running: Some(Box::new(run)),
+            ..sample()
+        };
+        model.to_bytes().unwrap_err().to_string()
+    };
+    let said = refused(&|run| run.frame_rate_hz *= 2.0);
+    assert!(said.contains("frame rate of the run"), "{said}");
+    let said = refused(&|run| run.running = Some(Box::new(sample())));
+    assert!(said.contains("running or standing of the run"), "{said}");
+    let said = refused(&|run| run.steps[0].states[1].variance[3] = 0.0);
+    assert!(said.contains("state 1"), "{said}");
 }
 
 #[test]
