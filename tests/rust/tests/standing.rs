@@ -77,6 +77,7 @@ fn knees_deg(pose: &Pose) -> [f32; 2] {
 
 #[test]
 fn older_models_stand_still() {
+    // Format 4 brought standing.
     for version in 1..4 {
         let space = Arc::new(StyleSpace::new(&model(version), &[]).unwrap());
         let mut generator = standing(&space, 2);
