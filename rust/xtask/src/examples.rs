@@ -26,7 +26,7 @@ pub(crate) fn check() -> Result<()> {
     let folder = paths::target_folder().join("verify");
     fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let walk = folder.join("walk_once.bvh");
-    let model = paths::addon().join("models/walk.footfall");
+    let model = paths::addon().join("models/locomotion.footfall");
     let sensor = paths::repository_root().join("tests/data/walker_1_slow.right_foot.csv");
     run("walk_once", &[&model, &walk])?;
     let written = fs::read_to_string(&walk)
