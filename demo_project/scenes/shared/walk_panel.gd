@@ -11,6 +11,8 @@ const FIRST_SEED := 1
 
 ## What the panel says above its sliders.
 @export var title := ""
+## The fastest speed to ask for: from about 2 m/s on a trained model runs.
+@export_range(0.5, 6.0, 0.1, "suffix:m/s") var fastest := 2.0
 ## What the button to another scene says, and the scene.
 @export var other_title := ""
 @export_file("*.tscn") var other_scene := ""
@@ -21,6 +23,7 @@ const FIRST_SEED := 1
 
 
 func _ready() -> void:
+	_speed.max_value = fastest
 	_speed.value_changed.connect(func(value: float) -> void:
 		%SpeedValue.text = "%.2f m/s" % value
 		speed_changed.emit(value))
