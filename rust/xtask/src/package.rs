@@ -19,14 +19,7 @@ const FACTS: [&str; 4] = ["description", "license", "readme", "rust_version"];
 /// # Errors
 /// A crate whose manifest lacks something, or whose package does not compile by itself.
 pub(crate) fn check() -> Result<()> {
-    let metadata = process::read(process::cargo().args([
-        "metadata",
-        "--format-version",
-        "1",
-        "--no-deps",
-        "--locked",
-    ]))?;
-    let metadata: Value = serde_json::from_str(&metadata).context("cargo metadata is no JSON")?;
+    let metadata = process::metadata()?;
     let none = Vec::new();
     let packages = metadata["packages"].as_array().unwrap_or(&none);
     let (published, kept): (Vec<&Value>, Vec<&Value>) =

@@ -95,6 +95,16 @@ pub(crate) fn tail(log: &str, lines: usize) -> String {
     all[all.len().saturating_sub(lines)..].join("\n")
 }
 
+/// The workspace as cargo describes it, without its dependencies.
+///
+/// # Errors
+/// When cargo fails or prints no JSON.
+pub(crate) fn metadata() -> Result<serde_json::Value> {
+    let metadata =
+        read(cargo().args(["metadata", "--format-version", "1", "--no-deps", "--locked"]))?;
+    serde_json::from_str(&metadata).context("cargo metadata is no JSON")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -50,14 +50,7 @@ pub(crate) fn command() -> Result<()> {
 
 fn check() -> Result<Vec<Violation>> {
     let root = paths::repository_root();
-    let metadata = process::read(process::cargo().args([
-        "metadata",
-        "--format-version",
-        "1",
-        "--no-deps",
-        "--locked",
-    ]))?;
-    let metadata = serde_json::from_str(&metadata).context("cargo metadata is no JSON")?;
+    let metadata = process::metadata()?;
     let mut violations = dependencies::check(&metadata);
     let listed = process::read(Command::new("git").current_dir(&root).args([
         "ls-files",

@@ -67,6 +67,11 @@ impl Joint {
         RightToes,
     ];
 
+    /// Whether the joint is one of the hips and legs.
+    pub fn is_of_lower_body(self) -> bool {
+        self == Self::Hips || self >= Self::LeftUpperLeg
+    }
+
     /// Position in [`Joint::ALL`] and in every array of per-joint values.
     pub const fn index(self) -> usize {
         self as usize

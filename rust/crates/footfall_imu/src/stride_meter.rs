@@ -47,7 +47,7 @@ pub struct StrideMeter {
     state: State,
 }
 
-/// Where a foot is in its cycle.
+/// Part of its cycle that a foot is in.
 #[derive(Clone, Copy, Debug, Default)]
 enum State {
     #[default]

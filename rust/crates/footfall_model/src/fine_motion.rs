@@ -28,7 +28,7 @@ pub type FineTable = [Vec<f64>; 2];
 pub struct FineMotion {
     /// What steps have in common.
     pub shared: FineTable,
-    /// What each component of [`Variation::walker`](crate::Variation::walker) adds by its weight; empty where all walkers have the same.
+    /// Addition of each component of [`Variation::walker`](crate::Variation::walker) by its weight; empty where all walkers have the same.
     pub walker: Vec<FineTable>,
     /// What differs from step to step.
     pub chance: FineChance,

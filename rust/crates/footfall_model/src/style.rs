@@ -2,6 +2,8 @@
 
 mod running;
 
+pub use running::carried_posture_share;
+
 use crate::gait_model::{
     GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, StateModel, StepModel, check_len,
     check_positive,

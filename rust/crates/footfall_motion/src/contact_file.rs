@@ -121,7 +121,7 @@ impl ContactFile {
         Self {
             fps,
             frames,
-            flight: flights(frames, stances),
+            flight: flights(stances),
             left,
             right,
             events: events
@@ -213,8 +213,8 @@ impl ContactFile {
         })
     }
 }
-/// The frames in which neither foot bears, in a row.
-fn flights(frames: usize, stances: [&[FrameSpan]; 2]) -> Vec<[usize; 2]> {
+/// The frames between contacts in which neither foot bears. What comes before the first and after the last is no flight that was seen.
+fn flights(stances: [&[FrameSpan]; 2]) -> Vec<[usize; 2]> {
     let mut flights: Vec<[usize; 2]> = Vec::new();
     let mut spans: Vec<&FrameSpan> = stances.into_iter().flatten().collect();
     spans.sort_by_key(|span| span.first);
@@ -225,8 +225,6 @@ fn flights(frames: usize, stances: [&[FrameSpan]; 2]) -> Vec<[usize; 2]> {
         }
         borne_until = borne_until.max(span.last + 1);
     }
-    // What comes before the first contact and after the last was not seen to end.
-    flights.retain(|flight| flight[1] < frames);
     flights
 }
 
@@ -239,7 +237,7 @@ mod tests {
         let span = |first, last| FrameSpan { first, last };
         let left = [span(0, 10), span(30, 40)];
         let right = [span(8, 20), span(26, 28), span(50, 60)];
-        let flights = flights(61, [&left, &right]);
+        let flights = flights([&left, &right]);
         assert_eq!(flights, [[21, 25], [29, 29], [41, 49]]);
     }
 }

@@ -84,7 +84,7 @@ pub struct GroundInput {
     pub frames: f32,
     /// The same in seconds.
     pub dt_secs: f32,
-    /// How long steps are beside those of the recordings, 1 as long.
+    /// Factor on the length of the recordings' steps.
     pub stride: f32,
 }
 
@@ -181,7 +181,7 @@ impl Ground {
         }
     }
 
-    /// Where an ankle is, its leg swung from the hip as much further as steps are longer: knees keep their bend, and the pelvis comes down over
+    /// Position of an ankle, its leg swung from the hip as much further as steps are longer: knees keep their bend, and the pelvis comes down over
     /// feet that are further apart.
     fn ankle(&self, side: Side) -> Vec3 {
         let hip = self.model.position(side.upper_leg());
@@ -195,7 +195,7 @@ impl Ground {
         hip + wanted + Vec3::Y * down.copysign(own.y)
     }
 
-    /// Where the ankle of a foot is shown after the last step, metres.
+    /// Position at which the ankle of a foot is shown after the last step, metres.
     pub fn shown_ankle(&self, side: Side) -> Vec3 {
         self.ankle(side) + self.feet[side.index()].last.0
     }

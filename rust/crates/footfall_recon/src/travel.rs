@@ -23,7 +23,7 @@ const FACTORS: [f32; 2] = [0.7, 1.4];
 /// What is shown follows the factor with this half-life, seconds: legs do not jump.
 const HALF_LIFE_SECS: f32 = 0.15;
 
-/// How long the wearer's steps are.
+/// Length of the wearer's steps beside those of the recordings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Travel {
     /// Which of the sensors sits on a foot, and on which.

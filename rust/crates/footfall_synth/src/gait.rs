@@ -28,7 +28,7 @@ pub enum GaitChoice {
 /// at about 0.5, and not at the same speed in both directions.
 const RUN_FROM_FROUDE: f32 = 0.5;
 const WALK_FROM_FROUDE: f32 = 0.4;
-const GRAVITY_MPS2: f32 = 9.81;
+pub(crate) const GRAVITY_MPS2: f32 = 9.81;
 
 /// Who travels farther to the side than this from where they face walks, radians: nobody runs sideways.
 const WIDEST_RUN_RAD: f32 = 1.1;

@@ -253,18 +253,16 @@ impl Recording {
             .min(to - from);
         for (left, pose) in poses.iter_mut().rev().enumerate().take(frames) {
             let share = smooth_step(1.0 - left as f32 / frames as f32);
-            for joint in Joint::ALL.into_iter().filter(|joint| !is_bearing(*joint)) {
+            for joint in Joint::ALL
+                .into_iter()
+                .filter(|joint| !joint.is_of_lower_body())
+            {
                 let before = self.poses[from - left].rotation(joint);
                 let rotation = &mut pose.rotations[joint.index()];
                 *rotation = rotation.slerp(before, share);
             }
         }
     }
-}
-
-/// Whether a joint is one of the hips and legs.
-fn is_bearing(joint: Joint) -> bool {
-    joint == Joint::Hips || joint >= Joint::LeftUpperLeg
 }
 
 /// Where the joints of a frame are, and how fast they move.
@@ -279,7 +277,11 @@ impl Look {
         let (mut sum, mut weights) = (0.0, 0.0);
         for joint in Joint::ALL {
             let index = joint.index();
-            let weight = if is_bearing(joint) { LEG_WEIGHT } else { 1.0 };
+            let weight = if joint.is_of_lower_body() {
+                LEG_WEIGHT
+            } else {
+                1.0
+            };
             sum += weight
                 * (a.positions[index].distance(b.positions[index])
                     + VELOCITY_SECS * a.velocities[index].distance(b.velocities[index]));

@@ -7,11 +7,11 @@ use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
 use footfall_model::{
     FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, Provenance, STATES_PER_STEP, StepOffset,
+    carried_posture_share,
 };
 
-/// Share of a walker's own tempo, and of the posture of their hips and legs, that is theirs in a run, too.
+/// Share of a walker's own tempo that is theirs in a run, too.
 const TEMPO_SHARE: f64 = 0.5;
-const LEG_POSTURE_SHARE: f64 = 0.4;
 
 /// Learns the run of a walk's model from the runs in recordings, few people's as a rule. Those who run differ as those who walk do: each of the
 /// walk's components between walkers becomes one of the run, of how the body is held and of tempo.
@@ -67,10 +67,8 @@ fn carried(walk: &GaitModel, component: &[StepOffset; 2]) -> StepOffset {
         }
     }
     for joint in Joint::ALL {
-        if joint == Joint::Hips || joint >= Joint::LeftUpperLeg {
-            for value in &mut posture[feature_offset(joint)..][..3] {
-                *value *= LEG_POSTURE_SHARE;
-            }
+        for value in &mut posture[feature_offset(joint)..][..3] {
+            *value *= carried_posture_share(joint);
         }
     }
     let mut carried = StepOffset::zero();

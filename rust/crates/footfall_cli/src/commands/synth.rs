@@ -42,7 +42,7 @@ pub(crate) struct SynthArgs {
     /// Begin and end standing; otherwise the walk is cut out of a longer one
     #[arg(long)]
     standing: bool,
-    /// What to do when: a table with the columns `time_s`, `speed_mps`, `turn_dps`, `direction_deg`, gait, crouch and `jump_m`. A row holds until the next,
+    /// Controls over time: a table with the columns `time_s`, `speed_mps`, `turn_dps`, `direction_deg`, gait, crouch and `jump_m`. A row holds until the next,
     /// the last for one second; missing columns keep their defaults. It begins standing
     #[arg(long, value_name = "MOVES.csv", conflicts_with_all = ["steps", "standing", "seconds", "speed", "turn", "direction", "gait"])]
     controls: Option<PathBuf>,

@@ -13,7 +13,7 @@ struct ModelV5 {
     /// The version of the payload that holds the steps of the run.
     running_version: u32,
     running: Vec<u8>,
-    /// Where the run comes from, as JSON like the header's.
+    /// Provenance of the run, as JSON like the header's.
     running_provenance: String,
 }
 

@@ -17,6 +17,15 @@ const SWING_FACTORS: [f64; 2] = [0.5, 1.6];
 const TEMPO_EXPONENT: f64 = 0.5;
 const TEMPO_FACTORS: [f64; 2] = [0.85, 1.18];
 
+/// Share of what somebody does to the posture of a joint in walking that they do to it in a run.
+pub fn carried_posture_share(joint: Joint) -> f64 {
+    if joint.is_of_lower_body() {
+        LEG_POSTURE_SHARE
+    } else {
+        1.0
+    }
+}
+
 impl GaitModel {
     /// This run as people run who walk as `styled` instead of as `walk`.
     pub(super) fn in_style_of(&self, walk: &Self, styled: &Self) -> Self {
@@ -26,11 +35,9 @@ impl GaitModel {
         let mut shift = [0.0; FEATURE_COUNT];
         let mut factor = [1.0; FEATURE_COUNT];
         for joint in Joint::ALL {
-            let is_leg = joint == Joint::Hips || joint >= Joint::LeftUpperLeg;
             for dim in feature_offset(joint)..feature_offset(joint) + 3 {
-                let share = if is_leg { LEG_POSTURE_SHARE } else { 1.0 };
-                shift[dim] = share * (to[dim] - from[dim]);
-                if !is_leg {
+                shift[dim] = carried_posture_share(joint) * (to[dim] - from[dim]);
+                if !joint.is_of_lower_body() {
                     let variances = [walk, styled].map(|model| model.global_variance.mean[dim]);
                     let swing = (variances[1] / variances[0]).sqrt();
                     factor[dim] = swing.clamp(SWING_FACTORS[0], SWING_FACTORS[1]);

@@ -6,13 +6,12 @@
 use super::support::LET_GO_EXTENSION;
 use super::swing::Swing;
 use super::{PlantedFrame, Planter, StepTiming, free_foot};
+use crate::gait::GRAVITY_MPS2;
 use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
 use footfall_core::rotation::from_heading;
 use footfall_ik::FootTarget;
 use glam::Quat;
-
-const GRAVITY_MPS2: f32 = 9.81;
 
 /// Speed upwards at which the hips leave the ground at least and at most, m/s, beyond that which brings them back to the same height. Legs that
 /// disagree more about where a short flight ends are bent or stretched.

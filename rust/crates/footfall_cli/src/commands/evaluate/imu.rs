@@ -194,7 +194,7 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
 }
 
 impl Figures {
-    /// What each behaviour is taken for, in shares of its frames.
+    /// Behaviours that each behaviour is taken for, in shares of its frames.
     fn confusion_lines(&self) -> Vec<String> {
         let mut lines = vec![format!(
             "{:28} {}",
