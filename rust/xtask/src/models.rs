@@ -91,7 +91,7 @@ pub(crate) fn command() -> Result<()> {
         .args(RUNNING)
         .args([
             "--describe",
-            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), walks and how they begin and end; standing from ReActIdle (github.com/Enekoassets/ReActIdle) and the O3DE Motion Matching gem, running from the latter",
+            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), walks and how they begin and end; standing from ReActIdle (github.com/Enekoassets/ReActIdle) and the O3DE Motion Matching gem, running and crouching from the latter",
             "-o",
             WALK,
         ]);

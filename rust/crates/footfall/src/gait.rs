@@ -68,8 +68,8 @@
 //! assert_eq!(runner.gait(), Gait::Run);
 //!
 //! let moves = [
-//!     Move { time_secs: 0.5, controls: Controls { gait: GaitChoice::Walk, ..fast } },
-//!     Move { time_secs: 3.0, controls: Controls::STAND },
+//!     Move { time_secs: 0.5, controls: Controls { gait: GaitChoice::Walk, ..fast }, jump_m: 0.3 },
+//!     Move { time_secs: 3.0, controls: Controls::STAND, jump_m: 0.0 },
 //! ];
 //! let config = StandConfig { seconds: 6.0, seed: 1, variation: 1.0, motion: 1.0, frame_rate_hz: None };
 //! let clip = synthesize_moves(&model, &body, &moves, &config)?.clip;

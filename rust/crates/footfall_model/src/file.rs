@@ -7,7 +7,7 @@
 //! | 4 | length of the header in bytes |
 //! | … | header: JSON with `kind`, `written_by` and `provenance`; readable in every version |
 //! | 8 | length of the payload in bytes |
-//! | … | payload: postcard encoding of the version's own types (`v1` to `v5`) |
+//! | … | payload: postcard encoding of the version's own types (`v1` to `v6`) |
 //! | 4 | CRC-32 of all that precedes |
 
 mod dynamics_v1;
@@ -19,6 +19,7 @@ mod v2;
 mod v3;
 mod v4;
 mod v5;
+mod v6;
 
 use crate::dynamics::DynamicsModel;
 use crate::gait_model::{GaitModel, ModelError};
@@ -30,7 +31,7 @@ use std::sync::Arc;
 
 /// The latest version that this build writes; it reads all versions up to this one. A file has the earliest version that
 /// can hold its content.
-pub const FORMAT_VERSION: u32 = 5;
+pub const FORMAT_VERSION: u32 = 6;
 
 /// The version without [`GaitModel::contexts`].
 const FORMAT_1: u32 = 1;
@@ -43,6 +44,9 @@ const FORMAT_3: u32 = 3;
 
 /// The version without [`GaitModel::running`].
 const FORMAT_4: u32 = 4;
+
+/// The version without [`GaitModel::jump`] and [`GaitModel::crouch`].
+const FORMAT_5: u32 = 5;
 
 const MAGIC: &[u8; 8] = b"FOOTFALL";
 const GAIT_KIND: &str = "gait";
@@ -119,12 +123,18 @@ impl GaitModel {
             Some(standing) => (FORMAT_4, v4::encode(walk, standing)?),
             None => walk,
         };
-        let (version, payload) = match &self.running {
+        let model = match &self.running {
             Some(running) => (
-                FORMAT_VERSION,
+                FORMAT_5,
                 v5::encode(model, running.encode_walk()?, &running.provenance)?,
             ),
             None => model,
+        };
+        let (jump, crouch) = (self.jump.as_ref(), self.crouch.as_ref());
+        let (version, payload) = if jump.is_some() || crouch.is_some() {
+            (FORMAT_VERSION, v6::encode(model, jump, crouch)?)
+        } else {
+            model
         };
         write_container(version, GAIT_KIND, &self.provenance, &payload)
     }
@@ -137,8 +147,8 @@ impl GaitModel {
         let (version, header, payload) = read_container(bytes)?;
         check_kind(&header, GAIT_KIND)?;
         let model = match version {
-            FORMAT_1..=FORMAT_4 => decode_standing(version, payload, header.provenance)?,
-            _ => v5::decode(payload, header.provenance)?,
+            FORMAT_1..=FORMAT_5 => decode_running(version, payload, header.provenance)?,
+            _ => v6::decode(payload, header.provenance)?,
         };
         model.check()?;
         Ok(model)
@@ -156,7 +166,7 @@ impl GaitModel {
     }
 
     /// A number that tells this model from others: the CRC-32 of its payload in format version 1. It says nothing of the
-    /// provenance, of the steps at the ends of a walk, of the fine motion, of standing nor of running, and is the same before writing and after reading.
+    /// provenance, of the steps at the ends of a walk, of the fine motion, of standing, running, jumping nor crouching, and is the same before writing and after reading.
     ///
     /// # Errors
     /// [`ModelError::Value`] when the model cannot be encoded.
@@ -276,6 +286,18 @@ impl WalkModel {
             Self::Gait(model) => &model.provenance,
             Self::Dynamics(model) => &model.provenance,
         }
+    }
+}
+
+/// The model in a payload of a version that knows no jumping and no crouching.
+fn decode_running(
+    version: u32,
+    payload: &[u8],
+    provenance: Provenance,
+) -> Result<GaitModel, ModelFileError> {
+    match version {
+        FORMAT_5 => v5::decode(payload, provenance),
+        _ => decode_standing(version, payload, provenance),
     }
 }
 

@@ -1,6 +1,8 @@
 //! The average walk: two step models of five states each, how they follow speed, and how walkers and steps differ.
 
+use crate::crouching::CrouchModel;
 use crate::fine_motion::FineMotion;
+use crate::jumping::JumpModel;
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 use crate::provenance::Provenance;
 use crate::standing::StandingModel;
@@ -38,8 +40,12 @@ pub struct GaitModel {
     /// How people stand; nothing in models of earlier versions, which stand still.
     pub standing: Option<StandingModel>,
     /// How people run: steps of the same features and frame rate that end with a flight ([`StepModel::other_terminal`] is negative), and with no
-    /// standing and running of their own. Nothing in models of earlier versions, which only walk.
+    /// standing, running, jumping and crouching of their own. Nothing in models of earlier versions, which only walk.
     pub running: Option<Box<Self>>,
+    /// How people jump off both feet; nothing in models of earlier versions.
+    pub jump: Option<JumpModel>,
+    /// How people crouch; nothing in models of earlier versions.
+    pub crouch: Option<CrouchModel>,
     /// Where the model comes from.
     pub provenance: Provenance,
 }
@@ -297,6 +303,12 @@ impl GaitModel {
         if let Some(standing) = &self.standing {
             standing.check()?;
         }
+        if let Some(jump) = &self.jump {
+            jump.check()?;
+        }
+        if let Some(crouch) = &self.crouch {
+            crouch.check()?;
+        }
         match &self.running {
             Some(running) => running.check_running(self.frame_rate_hz),
             None => Ok(()),
@@ -313,8 +325,14 @@ impl GaitModel {
         if (self.frame_rate_hz - frame_rate_hz).abs() > f64::EPSILON * frame_rate_hz {
             return bad("frame rate");
         }
-        if self.running.is_some() || self.standing.is_some() {
-            return bad("running or standing");
+        let more = [
+            self.running.is_some(),
+            self.standing.is_some(),
+            self.jump.is_some(),
+            self.crouch.is_some(),
+        ];
+        if more.contains(&true) {
+            return bad("running, standing, jumping or crouching");
         }
         self.check()
     }

@@ -3,18 +3,21 @@
 //! Probability is in f64 and poses are in f32; the two meet in [`layout`]. The crate works on bytes: it reads and
 //! writes no file.
 //!
-//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`imu_model`], [`standing`], [`provenance`], [`mod@file`].
+//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`imu_model`], [`standing`], [`jumping`], [`crouching`], [`provenance`], [`mod@file`].
 
+pub mod crouching;
 pub mod dynamics;
 pub mod file;
 pub mod fine_motion;
 pub mod gait_model;
 pub mod imu_model;
+pub mod jumping;
 pub mod layout;
 pub mod provenance;
 pub mod standing;
 pub mod style;
 
+pub use crouching::CrouchModel;
 pub use dynamics::{DynamicsModel, Regime, SEGMENT_SLACK};
 pub use file::{FORMAT_VERSION, ModelFileError, WalkModel};
 pub use fine_motion::{
@@ -25,6 +28,9 @@ pub use gait_model::{
     StepContext, StepModel, StepOffset, Variation,
 };
 pub use imu_model::ImuModel;
+pub use jumping::{
+    BESIDE_COUNT, JUMP_PHASES, JUMP_RESPONSES, JumpModel, JumpPhase, MAX_JUMP_KNOTS,
+};
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;
 pub use standing::{

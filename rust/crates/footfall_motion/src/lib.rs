@@ -4,7 +4,7 @@
 //! body with the hip joints where [`hip_centres`] finds them, [`contacts`] of its feet with the ground, [`steps`] of its walks; [`recording`], all of these for one file, with
 //! the [corrections](contact_file) that a person made; and [`corpus`], many files at once.
 //! [`switches`] are contacts from joint angles alone, [`sensor_switches`] from a sensor on a foot; [`published_events`] judge them. [`virtual_imu`]
-//! measures what a sensor on the body would have, and [`phases`] cuts any locomotion at its contacts and extremes.
+//! measures what a sensor on the body would have, [`phases`] cuts any locomotion at its contacts and extremes, and [`jumps`] finds jumps off both feet.
 //! [`figure`] is a body as capsules, for whoever draws it; [`gltf`] takes clips to and from other programs by way of [`skeletal`], and [`game_clip`] makes recordings of clips that walk in place or loop.
 
 pub mod bvh;
@@ -16,6 +16,7 @@ pub mod files;
 pub mod game_clip;
 pub mod gltf;
 pub mod hip_centres;
+pub mod jumps;
 pub mod phases;
 pub mod published_events;
 pub mod recording;

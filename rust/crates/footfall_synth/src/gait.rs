@@ -31,7 +31,7 @@ const WALK_FROM_FROUDE: f32 = 0.4;
 pub(crate) const GRAVITY_MPS2: f32 = 9.81;
 
 /// Who travels farther to the side than this from where they face walks, radians: nobody runs sideways.
-const WIDEST_RUN_RAD: f32 = 1.1;
+pub(crate) const WIDEST_RUN_RAD: f32 = 1.1;
 
 /// Fastest speed that is walked and that is run, m/s.
 pub(crate) const FASTEST_WALK_MPS: f32 = 3.0;

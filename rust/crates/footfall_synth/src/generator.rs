@@ -3,6 +3,7 @@
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::gait::{FASTEST_RUN_MPS, Gait, GaitChoice};
+use crate::moves::{Leap, Moves};
 use crate::plan::StepShape;
 use crate::planting::PlantedFrame;
 use crate::space::StyleSpace;
@@ -59,6 +60,8 @@ pub struct Controls {
     pub direction_rad: f32,
     /// Walking or running, where the model knows both.
     pub gait: GaitChoice,
+    /// How low to keep, from 0, upright, to 1, as low as the model's people; takes effect at once. Who crouches goes no faster than those do.
+    pub crouch: f32,
 }
 
 impl Controls {
@@ -68,6 +71,7 @@ impl Controls {
         turn_rate_radps: 0.0,
         direction_rad: 0.0,
         gait: GaitChoice::Auto,
+        crouch: 0.0,
     };
 
     /// The velocity that is walked, to the left and forwards from where the walker faces.
@@ -158,6 +162,10 @@ pub struct GaitGenerator {
     pub(crate) plan_from_start: GroundTransform,
     /// How it is alive as it stands; nothing where the model stands still.
     pub(crate) life: Option<Life>,
+    /// How it crouches and jumps; nothing with a switching model.
+    pub(crate) moves: Option<Moves>,
+    /// The jump that is waited for.
+    pub(crate) asked_jump: Option<Leap>,
     footsteps: Vec<Footstep>,
     /// The speed forwards that was asked for last, m/s.
     pub(crate) asked_mps: f32,
@@ -183,6 +191,7 @@ impl GaitGenerator {
         let steps = Steps::Styled(Box::new(steps));
         let mut generator = Self::begin(steps, rate, skeleton, config);
         generator.life = Life::new(space, skeleton, config);
+        generator.moves = Some(Moves::new(space, skeleton));
         Ok(generator)
     }
 
@@ -223,6 +232,8 @@ impl GaitGenerator {
             position: (2.0 * config.phase.rem_euclid(1.0)).fract() * frames,
             plan_from_start: GroundTransform::default(),
             life: None,
+            moves: None,
+            asked_jump: None,
             footsteps: Vec::with_capacity(MAX_FOOTSTEPS),
             asked_mps: 0.0,
             start_from_character: GroundTransform::default(),
@@ -294,6 +305,7 @@ impl GaitGenerator {
     /// A `dt_secs` of 0 gives the same pose again.
     pub fn step(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
         self.footsteps.clear();
+        let controls = &self.steered(controls);
         self.asked_mps = controls.velocity().y.max(0.0);
         if dt_secs > 0.0 {
             self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
@@ -323,7 +335,13 @@ impl GaitGenerator {
         out.rotations[root] = character_from_plan * out.rotations[root];
         self.live(dt_secs, out);
         self.contact = contact;
+        self.pass_moves(dt_secs.clamp(0.0, MAX_DT_SECS), controls);
         self.start_from_character = self.plan_from_start.local(&plan_from_character);
+        if let Some(flown) = self.moves.as_ref().and_then(|moves| moves.move_pose(out)) {
+            let faced = from_heading(self.start_from_character.heading);
+            self.start_from_character.position += faced * flown.place;
+            self.contact = contact.map(|bears| bears && flown.bears);
+        }
     }
 
     /// Moves the pose of someone who stands, or has just begun to walk.
@@ -390,13 +408,20 @@ impl GaitGenerator {
 
     fn next_step(&mut self, controls: &Controls) {
         let fastest = self.steps.source().fastest_mps();
-        let ask = Ask::after(self.shape(), *controls, fastest, self.detail);
+        let ask = Ask {
+            leap_m: self.next_leap(controls),
+            ..Ask::after(self.shape(), *controls, fastest, self.detail)
+        };
         self.steps.source_mut().advance(&ask);
         let side = self.shape().timing.leading;
-        if let Some(plant) = self.steps.source().stage().plant(side)
-            && self.footsteps.len() < MAX_FOOTSTEPS
-        {
-            let footstep = Footstep::seen_from(&self.plan_from_start, side, plant);
+        if let Some(plant) = self.steps.source().stage().plant(side) {
+            self.report(Footstep::seen_from(&self.plan_from_start, side, plant));
+        }
+    }
+
+    /// Reports an initial contact, as long as there is room for it.
+    pub(crate) fn report(&mut self, footstep: Footstep) {
+        if self.footsteps.len() < MAX_FOOTSTEPS {
             self.footsteps.push(footstep);
         }
     }

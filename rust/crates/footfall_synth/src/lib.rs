@@ -2,7 +2,7 @@
 //!
 //! A step of a gait model is planned (`plan`: durations and means, with chance and speed, from the model's `statistics`) and turned into a smooth trajectory of
 //! joint rotations (`trajectory`); a step of a switching model is run by one of its two systems (`switching`). Either is put on
-//! the ground (`stage` and `planting`, on `rocker` feet). [`GaitGenerator`] does so in real time; [`synthesize`] solves a whole walk
+//! the ground (`stage` and `planting`, on `rocker` feet). What the whole body does on top of its steps, crouching and jumping, is in `moves`. [`GaitGenerator`] does so in real time; [`synthesize`] solves a whole walk
 //! at once.
 
 mod crowd;
@@ -12,7 +12,9 @@ mod fine_motion;
 mod footing;
 mod gait;
 mod generator;
+mod jumping;
 mod looped;
+mod moves;
 mod pace;
 mod plan;
 mod planting;
@@ -42,6 +44,7 @@ pub use error::SynthError;
 pub use gait::{Gait, GaitChoice};
 pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};
 pub use looped::LoopedWalk;
+pub use moves::JumpPhase;
 pub use recording::{
     Move, StandConfig, SwitchingWalkConfig, synthesize_moves, synthesize_standing,
     synthesize_switching,

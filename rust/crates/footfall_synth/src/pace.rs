@@ -135,6 +135,7 @@ impl Trial<'_> {
     /// Travel over the ground and frames of the second stride.
     fn travel(&mut self, covariate_mps: f64, facing: f32) -> Result<(Vec3, usize), SynthError> {
         let request = Request {
+            leap_m: None,
             manner: Manner::inside(Pace {
                 covariate_mps,
                 tempo: 1.0,

@@ -38,6 +38,7 @@ pub(crate) fn from_standing(
         turn_rate_radps: config.turn_rate_radps,
         direction_rad: config.direction_rad,
         gait: config.gait,
+        ..Controls::STAND
     };
     for _ in 0..=rest {
         recording.step(Controls::STAND);
@@ -70,6 +71,8 @@ pub struct Move {
     pub time_secs: f64,
     /// What.
     pub controls: Controls,
+    /// Rise of the hips in one jump that is asked for then, metres, as of [`GaitGenerator::jump`]; 0 asks for none.
+    pub jump_m: f32,
 }
 
 /// Generates somebody who does one thing after another, out of standing; the first move begins at once, whatever its time. It is who `config` says, for
@@ -90,6 +93,7 @@ pub fn synthesize_moves(
         let time = frame as f64 / rate;
         while let Some(begun) = moves.get(next).filter(|begun| begun.time_secs <= time) {
             controls = begun.controls;
+            recording.generator.jump(begun.jump_m);
             next += 1;
         }
         recording.step(controls);

@@ -3,6 +3,7 @@
 use crate::error::SynthError;
 use crate::fine_motion::{FineTables, Scale};
 use crate::gait::Gait;
+use crate::moves::MoveTables;
 use crate::standing::{StandingTables, standing_features};
 use crate::statistics::Statistics;
 use crate::variance;
@@ -24,6 +25,8 @@ pub struct StyleSpace {
     fine: Option<Arc<FineTables>>,
     /// How people of the model stand; nothing where it stands still.
     standing: Option<Arc<StandingTables>>,
+    /// How its people crouch and jump.
+    moves: Arc<MoveTables>,
     /// Mixtures that somebody wears.
     blends: Mutex<Vec<Weak<Blend>>>,
     benches: Workbenches,
@@ -90,6 +93,7 @@ impl StyleSpace {
                 .as_ref()
                 .map(StandingTables::of)
                 .map(Arc::new),
+            moves: Arc::new(MoveTables::of(model)),
             model: Arc::clone(model),
             styles: styles.to_vec(),
             blends: Mutex::default(),
@@ -115,6 +119,11 @@ impl StyleSpace {
     /// How people of the model stand; `None` where it stands still.
     pub(crate) fn standing(&self) -> Option<&Arc<StandingTables>> {
         self.standing.as_ref()
+    }
+
+    /// How people of the model crouch and jump.
+    pub(crate) fn moves(&self) -> &Arc<MoveTables> {
+        &self.moves
     }
 
     /// The weights as they are used: one a style, 0 for what is missing or not finite.

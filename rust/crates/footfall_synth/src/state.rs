@@ -4,6 +4,7 @@
 //! and what it took over from the step before (where the feet stood and the last frames of the trajectory). The rest is
 //! made again from the model.
 
+mod moving;
 mod source;
 
 use crate::detail::Detail;
@@ -17,10 +18,12 @@ use crate::strafe::Strafe;
 use footfall_core::StepPosition;
 use footfall_ik::{FootTarget, Plant};
 use glam::{Quat, Vec3};
+use moving::Moving;
 use serde::{Deserialize, Serialize};
 
-/// The version of the layout that this build writes; it reads those before, too, which knew no running and no life in standing.
-const VERSION: u8 = 6;
+/// The version of the layout that this build writes; it reads those before, too, which knew no jumps, no running and no life in standing.
+const VERSION: u8 = 7;
+const RUNNING_VERSION: u8 = 6;
 const WALKING_VERSION: u8 = 5;
 const STILL_VERSION: u8 = 4;
 
@@ -208,7 +211,7 @@ impl GaitGenerator {
             speed: moment.speed,
         };
         // Writing to memory does not fail; an empty state is refused like any other that is not one.
-        postcard::to_stdvec(&(state, alive, self.running())).unwrap_or_default()
+        postcard::to_stdvec(&(state, alive, self.running(), Moving::of(self))).unwrap_or_default()
     }
 
     /// Goes on from a [`state`](Self::state) of a walker with the same model, styles and body; the seed is the state's.
@@ -217,13 +220,27 @@ impl GaitGenerator {
     /// [`StateError`]; the walker then walks on as before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
-        let (alive, running): (Alive, Running) = match state.version {
+        let (alive, running, moving): (Alive, Running, Moving) = match state.version {
             VERSION => postcard::from_bytes(rest)?,
-            WALKING_VERSION => (postcard::from_bytes(rest)?, Running::default()),
+            RUNNING_VERSION => {
+                let (alive, running) = postcard::from_bytes(rest)?;
+                (alive, running, Moving::default())
+            }
+            WALKING_VERSION => (
+                postcard::from_bytes(rest)?,
+                Running::default(),
+                Moving::default(),
+            ),
             STILL_VERSION => Default::default(),
             other => return Err(StateError::Version(other)),
         };
-        if !state.is_sensible() || !alive.is_sensible() || !running.is_sensible() {
+        let sensible = [
+            state.is_sensible(),
+            alive.is_sensible(),
+            running.is_sensible(),
+            moving.is_sensible(),
+        ];
+        if sensible.contains(&false) {
             return Err(StateError::Damaged);
         }
         let config = GeneratorConfig {
@@ -233,7 +250,8 @@ impl GaitGenerator {
         };
         match &mut self.steps {
             Steps::Styled(steps) => {
-                **steps = state.styled(steps, &running, &self.skeleton, &config)?;
+                let more = (&running, moving.leap_m);
+                **steps = state.styled(steps, more, &self.skeleton, &config)?;
             }
             Steps::Switching(steps) => state.resume(steps, &config)?,
         }
@@ -254,6 +272,7 @@ impl GaitGenerator {
         };
         let frames = self.steps.source().shape().timing.frames as f32;
         self.position = state.position.clamp(0.0, frames);
+        moving.resume(self);
         self.tell_place();
         Ok(())
     }

@@ -18,6 +18,8 @@ pub(crate) struct Ask {
     pub(crate) turn_rate: f32,
     pub(crate) amplitude: Amplitude,
     pub(crate) gait: GaitChoice,
+    /// Rise of the hips in a leap, if it is one, metres.
+    pub(crate) leap_m: Option<f32>,
     pub(crate) detail: Detail,
 }
 
@@ -37,6 +39,7 @@ impl Ask {
                 to: if controls.is_standing() { 0.0 } else { 1.0 },
             },
             gait: controls.gait,
+            leap_m: None,
             detail,
         }
     }

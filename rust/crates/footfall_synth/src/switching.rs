@@ -177,6 +177,7 @@ impl SwitchingSteps {
     fn travel(&mut self, ratio: f64) -> (Vec3, usize) {
         let speed = ratio * self.own_speed_mps;
         let ask = Ask {
+            leap_m: None,
             gait: GaitChoice::Walk,
             velocity_mps: speed as f32 * Vec2::Y,
             turn_rate: 0.0,

@@ -41,6 +41,8 @@ pub(crate) struct Request {
     pub(crate) velocity_mps: Vec2,
     /// Heading under which the walk goes along +Z, radians: people hold their hips a little askew.
     pub(crate) facing: f32,
+    /// Rise of the hips in a leap, if it is one, metres.
+    pub(crate) leap_m: Option<f32>,
 }
 
 /// Where the current step came from: with the planner's and the styles' state all that it takes to make it again.
@@ -84,6 +86,7 @@ impl Walker {
             turn_rate: 0.0,
             velocity_mps: Vec2::ZERO,
             facing: 0.0,
+            leap_m: None,
         };
         Self {
             blend: Arc::clone(blend),
@@ -147,6 +150,7 @@ impl Walker {
         let same = !self.stale
             && self.origin.request.manner == request.manner
             && request.manner.position == StepPosition::Inside
+            && [request.leap_m, self.origin.request.leap_m] == [None; 2]
             && Arc::ptr_eq(&self.blend, blend);
         self.origin = self.next_origin(request);
         self.draws.rotate_left(1);
@@ -275,6 +279,10 @@ impl Walker {
         }
         if changes {
             self.plans[1].go_over_from(&bench.going_over);
+        }
+        if let Some(rise_m) = request.leap_m {
+            let before = self.blend_before.gait;
+            self.plans[1].leap(rise_m, before, self.blend.model.frame_rate_hz);
         }
         self.plans[1].shape.set_amplitude(request.amplitude);
     }

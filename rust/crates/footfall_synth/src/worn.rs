@@ -115,6 +115,7 @@ impl Worn {
             turn_rate: ask.turn_rate,
             velocity_mps: stepped,
             facing,
+            leap_m: ask.leap_m,
         };
         (request, gait)
     }
@@ -123,6 +124,9 @@ impl Worn {
     fn gait(&self, ask: &Ask, before: Gait, amplitude: Amplitude, velocity_mps: Vec2) -> Gait {
         if self.run.is_none() {
             return Gait::Walk;
+        }
+        if ask.leap_m.is_some() {
+            return Gait::Run;
         }
         let ends = amplitude != Amplitude::WALK;
         ask.gait
@@ -150,6 +154,7 @@ impl Worn {
             turn_rate: 0.0,
             velocity_mps: speed as f32 * Vec2::Y,
             facing: self.walk.facing,
+            leap_m: None,
         }
     }
 

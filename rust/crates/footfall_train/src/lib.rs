@@ -2,12 +2,14 @@
 //!
 //! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
 //! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps), [`contexts`] (the ends of a walk);
-//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); [`standing`] (how people stand); [`recordings`] and [`job`] (for tools with windows); and [`evaluate`], which judges what comes out.
+//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); [`standing`], [`jumping`] and [`crouching`] (how people do that); [`recordings`] and [`job`] (for tools with windows); and [`evaluate`], which judges what comes out.
 
 pub mod adapt;
 pub mod average;
 mod average_body;
+mod beside;
 pub mod contexts;
+pub mod crouching;
 pub mod dataset;
 pub mod differences;
 pub mod dynamics;
@@ -16,6 +18,7 @@ pub mod evaluate;
 pub mod fine_motion;
 pub mod imu;
 pub mod job;
+pub mod jumping;
 pub mod normalise;
 pub mod progress;
 pub mod recordings;

@@ -241,20 +241,25 @@ fn offsets(stretch: &Stretch, posture: &[f64], ahead: f64) -> Offsets {
             let vector = log_map(turn).as_dvec3().to_array();
             row[feature_offset(joint)..][..3].copy_from_slice(&vector);
         }
-        for chain in CHAINS {
-            for axis in 0..3 {
-                let turns = chain.iter().map(|joint| row[feature_offset(*joint) + axis]);
-                let mean = turns.sum::<f64>() / chain.len() as f64;
-                for joint in chain {
-                    row[feature_offset(*joint) + axis] = mean;
-                }
-            }
-        }
+        spread_chains(&mut row);
         row[FEATURE_COUNT] = hips[0];
         row[FEATURE_COUNT + 1] = hips[1] - ahead;
         row
     })
     .collect()
+}
+
+/// Spreads what joints of a chain turn together evenly among them.
+pub(crate) fn spread_chains(row: &mut [f64]) {
+    for chain in CHAINS {
+        for axis in 0..3 {
+            let turns = chain.iter().map(|joint| row[feature_offset(*joint) + axis]);
+            let mean = turns.sum::<f64>() / chain.len() as f64;
+            for joint in chain {
+                row[feature_offset(*joint) + axis] = mean;
+            }
+        }
+    }
 }
 
 /// An offset of the mirrored body.

@@ -143,6 +143,8 @@ pub fn train_average(
         fine: None,
         standing: None,
         running: None,
+        jump: None,
+        crouch: None,
         provenance: Provenance {
             clips: counts.clips,
             subjects: counts.subjects,

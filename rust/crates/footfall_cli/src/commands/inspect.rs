@@ -5,6 +5,7 @@ mod dynamics;
 mod imu;
 pub(super) mod model;
 mod motion;
+pub(in crate::commands) mod moves;
 mod style;
 
 use crate::motion_input::MapArgs;

@@ -188,7 +188,13 @@ fn follow(
         .with_context(|| args.model.display().to_string())?;
     let landings = walk.events().into_iter();
     let steps = landings.filter(|event| event.kind == EventKind::InitialContact);
-    report(args, steps.count() as u32, &walk, styles, table.warnings)
+    report(
+        args,
+        steps.count() as u32,
+        &walk,
+        styles,
+        table.warnings(model),
+    )
 }
 
 /// Somebody who stands, as long as is asked for.

@@ -1,8 +1,10 @@
 //! `footfall train`: a corpus becomes a model.
 
+mod moves;
 pub(super) mod provenance;
 
 use crate::commands::inspect::model::RunningFacts;
+use crate::commands::inspect::moves::{CrouchFacts, JumpFacts};
 use crate::motion_input::KneesArgs;
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
@@ -15,6 +17,7 @@ use footfall_train::standing::{self, LearnedStanding, StandingClip};
 use footfall_train::{
     ContextReport, EmConfig, TrainConfig, Trained, TrainingClip, learn_running, train_average,
 };
+use moves::Moves;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -47,6 +50,12 @@ pub(crate) struct TrainArgs {
     /// run; without, it only walks
     #[arg(long = "running", value_name = "COLUMN=VALUE")]
     running: Vec<Where>,
+    /// Condition on recordings in which people jump off both feet, out of standing, for example `category=jumping`; may repeat
+    #[arg(long = "jumping", value_name = "COLUMN=VALUE")]
+    jumping: Vec<Where>,
+    /// Condition on recordings in which people go upright and crouched, for example `path=o3de/Crouching1.bvh`; may repeat
+    #[arg(long = "crouching", value_name = "COLUMN=VALUE")]
+    crouching: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
     /// Where to write the model
@@ -95,6 +104,9 @@ struct Report<'a> {
     standing_seconds: BTreeMap<String, f64>,
     /// How people run; nothing where the model only walks.
     running: Option<RunningFacts>,
+    /// How people jump off both feet and crouch; nothing where nobody does.
+    jumping: Option<JumpFacts>,
+    crouching: Option<CrouchFacts>,
     /// Recordings that could not be used, and why.
     skipped: Vec<Skipped>,
     warnings: Vec<String>,
@@ -153,10 +165,13 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let standing = further_corpus(args, &args.standing)?;
     let running = further_corpus(args, &args.running)?;
+    let moves = Moves::read(args)?;
+    let others = [standing.as_ref(), running.as_ref()];
+    let others: Vec<Option<&Corpus>> = others.into_iter().chain(moves.corpora()).collect();
     let mut trained = train_average(
         &clips,
         &config(args),
-        provenance::of(&corpus, &[standing.as_ref(), running.as_ref()], args),
+        provenance::of(&corpus, &others, args),
         &mut progress,
     )
     .with_context(|| args.corpus.display().to_string())?;
@@ -172,6 +187,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
         }
         None => None,
     };
+    moves.learn(args, &mut trained.model)?;
     let bytes = trained.model.to_bytes().context("the trained model")?;
     write_atomic(&args.output, &bytes)?;
     progress.0.finish();
@@ -292,6 +308,8 @@ fn report(
             .map(|learned| learned.people.iter().cloned().collect())
             .unwrap_or_default(),
         running: trained.model.running.as_deref().map(RunningFacts::of),
+        jumping: JumpFacts::of(&trained.model),
+        crouching: CrouchFacts::of(&trained.model),
         skipped: skipped(corpus),
         warnings,
         seconds,
@@ -324,6 +342,12 @@ fn report(
     }
     if let Some(running) = &report.running {
         output::note(&format!("running: {}", running.line()));
+    }
+    if let Some(jumping) = &report.jumping {
+        output::note(&format!("jumping: {}", jumping.line()));
+    }
+    if let Some(crouching) = &report.crouching {
+        output::note(&format!("crouching: {}", crouching.line()));
     }
     let contexts = &report.contexts;
     output::note(&format!(

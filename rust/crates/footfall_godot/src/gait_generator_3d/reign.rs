@@ -183,6 +183,7 @@ impl GaitGenerator3D {
             } else {
                 self.gait.into()
             },
+            ..Controls::STAND
         }
     }
 }

@@ -50,6 +50,8 @@ pub(crate) fn sample() -> GaitModel {
         fine: None,
         standing: None,
         running: None,
+        jump: None,
+        crouch: None,
         provenance: Provenance {
             corpus: "made by a test".to_owned(),
             clips: 3,

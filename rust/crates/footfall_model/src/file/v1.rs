@@ -123,6 +123,8 @@ pub(super) fn decode(payload: &[u8], provenance: Provenance) -> Result<GaitModel
         fine: None,
         standing: None,
         running: None,
+        jump: None,
+        crouch: None,
         provenance,
     })
 }

@@ -17,6 +17,10 @@ use glam::Quat;
 /// disagree more about where a short flight ends are bent or stretched.
 const MOST_LIFT_MPS: f32 = 0.3;
 
+/// Longer flights are leaps, seconds; they keep this share of the speed over the ground that they begin with.
+const LEAP_SECS: f32 = 0.22;
+const LEAP_SPEED_SHARE: f32 = 0.85;
+
 /// A foot in the air between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Airborne {
@@ -59,13 +63,27 @@ impl Airborne {
 }
 
 impl Planter {
-    /// Lets the hips go on over the ground as they did above the foot, in the frames after it has taken off.
-    pub(super) fn drift(timing: &StepTiming, out: &mut [PlantedFrame]) {
+    /// Lets the hips go on over the ground as they did above the foot, in the frames after it has taken off; a leap keeps most of the speed that it begins
+    /// with.
+    pub(super) fn drift(&self, timing: &StepTiming, out: &mut [PlantedFrame]) {
         let Some(take_off) = timing.take_off else {
             return;
         };
         let [begin, leaves] = [0, take_off].map(|frame| out[frame].pose.root_position);
-        let pace = (leaves - begin) / take_off as f32;
+        let mut pace = (leaves - begin) / take_off as f32;
+        let flight_secs = (timing.frames - take_off) as f32 * self.frame_secs;
+        if flight_secs > LEAP_SECS {
+            let along = pace.with_y(0.0).normalize_or_zero();
+            let entry = self.state.hips_velocity.unwrap_or_default().dot(along);
+            let missing = (LEAP_SPEED_SHARE * entry * self.frame_secs - pace.dot(along)).max(0.0);
+            for (frame, planted) in out[..=take_off].iter_mut().enumerate() {
+                let s = frame as f32 / take_off as f32;
+                let gained = s * s * s / 3.0 * take_off as f32;
+                planted.pose.root_position += along * (missing * gained);
+            }
+            pace += along * missing;
+        }
+        let leaves = out[take_off].pose.root_position;
         for (passed, frame) in out[take_off..=timing.frames].iter_mut().enumerate() {
             frame.pose.root_position = leaves + passed as f32 * pace;
         }
@@ -138,7 +156,7 @@ impl Planter {
                 let free = free_foot(&raw[index], side, hips, frame.level);
                 (raw[index].legs[side.index()].target, free)
             });
-            let swing = Swing::departing(&ends, timing, take_off);
+            let swing = Swing::departing(&ends, timing, take_off, self.frame_secs);
             self.fill_swing(raw, side, take_off + 1..timing.frames + 1, &swing, frames);
             let at = |frame: usize| raw[frame].legs[side.index()].target;
             Airborne {

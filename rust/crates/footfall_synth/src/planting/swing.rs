@@ -22,6 +22,9 @@ const MAX_LANDING_MPS: f32 = 1.2;
 /// Part of the swing by which a foot is free of how it stood.
 const FREED_BY: f32 = 0.3;
 
+/// A foot that takes off has forgotten how it stood after so long, seconds.
+const LONGEST_DEPARTURE_SECS: f32 = 0.6;
+
 /// Over this time at most a faster foot is braked, seconds.
 const BRAKING_SECS: f32 = 0.16;
 
@@ -86,12 +89,14 @@ impl Swing {
         ends: &[(FootTarget, FootTarget); 2],
         timing: &StepTiming,
         take_off: usize,
+        frame_secs: f32,
     ) -> Self {
         let flight = timing.frames - take_off;
-        // The next step is about as long as this one.
+        // The next step is about as long as this one; that after a leap is not.
         let frames = (flight + timing.frames) as f32;
+        let frames = frames.min((LONGEST_DEPARTURE_SECS / frame_secs).max(1.0));
         Self {
-            freed_after: flight as f32,
+            freed_after: frames.min(flight as f32),
             ..Self::between(ends, None, take_off, frames)
         }
     }

@@ -16,6 +16,10 @@ const SETTLE_SECS: f32 = 0.07;
 /// much longer to settle, as a share.
 const SHORT_SETTLE_SHARE: f32 = 1.8;
 
+/// Who falls onto a foot faster than anybody who runs takes up the fall for so much longer: m/s, and seconds by m/s.
+const SOFT_FALL_MPS: f32 = 1.3;
+const SETTLE_BY_FALL: f32 = 0.04;
+
 /// Part of a step over which a new turn rate sets in.
 const TURN_ONSET: f32 = 0.6;
 
@@ -61,7 +65,7 @@ impl Planter {
                 frame.pose.rotations[Joint::Hips.index()] = hips_rotation.lane(lane);
             }
         }
-        Self::drift(timing, out);
+        self.drift(timing, out);
         self.even(timing, out);
         self.glide(timing, out);
     }
@@ -91,7 +95,9 @@ impl Planter {
         let forwards = self.state.strafe == Strafe::NONE;
         let stride = self.state.stride.clamp(0.0, 1.0);
         let short = if forwards { 1.0 - stride } else { 0.0 };
+        let fall = self.state.hips_velocity.map_or(0.0, |speed| -speed.y);
         SETTLE_SECS * (1.0 + SHORT_SETTLE_SHARE * short)
+            + SETTLE_BY_FALL * (fall - SOFT_FALL_MPS).max(0.0)
     }
 
     /// Fills the heading of every frame; returns that of the first.

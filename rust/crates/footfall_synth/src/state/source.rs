@@ -56,7 +56,7 @@ impl State {
     pub(super) fn styled(
         &self,
         current: &StyledSteps,
-        running: &Running,
+        (running, leap_m): (&Running, Option<f32>),
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<StyledSteps, StateError> {
@@ -113,6 +113,7 @@ impl State {
                 turn_rate: self.turn_rate,
                 velocity_mps: self.velocity_mps.into(),
                 facing: self.facing[1],
+                leap_m,
             },
             manner_before: manner(0),
             facing_before: self.facing[0],

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 
+mod jumping;
 mod running;
 mod strafing;
 mod world;

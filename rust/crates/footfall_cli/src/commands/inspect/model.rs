@@ -1,5 +1,6 @@
 //! Facts of a gait model.
 
+use super::moves::{CrouchFacts, JumpFacts};
 use super::{FileFacts, fact};
 use crate::model_file::read_model;
 use anyhow::Result;
@@ -33,6 +34,9 @@ pub(super) struct ModelFacts {
     standing: Option<StandingFacts>,
     /// How its people run; nothing where it only walks.
     running: Option<RunningFacts>,
+    /// How its people jump off both feet and crouch; nothing where they do not.
+    jumping: Option<JumpFacts>,
+    crouching: Option<CrouchFacts>,
 }
 
 #[derive(Serialize)]
@@ -143,6 +147,8 @@ pub(super) fn inspect(path: &Path) -> Result<ModelFacts> {
             .collect(),
         standing: model.standing.as_ref().map(standing_facts),
         running: model.running.as_deref().map(RunningFacts::of),
+        jumping: JumpFacts::of(&model),
+        crouching: CrouchFacts::of(&model),
     })
 }
 
@@ -237,6 +243,13 @@ impl ModelFacts {
         lines.push(fact("standing", standing));
         let running = self.running.as_ref().map(RunningFacts::line);
         lines.push(fact("running", running.unwrap_or_else(|| "no".to_owned())));
+        let jumping = self.jumping.as_ref().map(JumpFacts::line);
+        lines.push(fact("jumping", jumping.unwrap_or_else(|| "no".to_owned())));
+        let crouching = self.crouching.as_ref().map(CrouchFacts::line);
+        lines.push(fact(
+            "crouching",
+            crouching.unwrap_or_else(|| "no".to_owned()),
+        ));
         lines
     }
 }

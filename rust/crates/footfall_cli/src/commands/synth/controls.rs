@@ -1,6 +1,7 @@
 //! Tables of controls over time: what a walker is asked to do, row by row.
 
 use anyhow::{Context as _, Result, bail, ensure};
+use footfall_model::GaitModel;
 use footfall_synth::{Controls, GaitChoice, Move};
 use std::collections::BTreeMap;
 use std::fs;
@@ -22,13 +23,14 @@ const COLUMNS: [&str; 7] = [
     "jump_m",
 ];
 
-/// A table, and what of it no model can do yet.
+/// A table.
 #[derive(Debug, PartialEq)]
 pub(super) struct Table {
     pub(super) moves: Vec<Move>,
     /// When the last row ends.
     pub(super) seconds: f64,
-    pub(super) warnings: Vec<String>,
+    /// Columns that not every model knows, and the line of the first row that uses each.
+    uses: BTreeMap<&'static str, u64>,
 }
 
 /// Reads a table of controls.
@@ -55,7 +57,7 @@ fn parse(text: &str) -> Result<Table> {
         "no column time_s: when does each row begin?"
     );
     let mut moves: Vec<Move> = Vec::new();
-    let mut cannot: BTreeMap<&str, u64> = BTreeMap::new();
+    let mut uses = BTreeMap::new();
     for record in reader.records() {
         let record = record?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -85,7 +87,7 @@ fn parse(text: &str) -> Result<Table> {
         );
         for name in ["crouch", "jump_m"] {
             if number(name)? > 0.0 {
-                cannot.entry(name).or_insert(line);
+                uses.entry(name).or_insert(line);
             }
         }
         moves.push(Move {
@@ -95,20 +97,38 @@ fn parse(text: &str) -> Result<Table> {
                 turn_rate_radps: number("turn_dps")?.to_radians(),
                 direction_rad: number("direction_deg")?.to_radians(),
                 gait: gait(cell("gait"), line)?,
+                crouch: number("crouch")?,
             },
+            jump_m: number("jump_m")?,
         });
     }
     let Some(last) = moves.last() else {
         bail!("no rows: give at least one");
     };
-    let warnings = cannot.iter().map(|(name, line)| {
-        format!("line {line}: no model knows {name} yet; it is walked and run as if it were 0")
-    });
     Ok(Table {
         seconds: last.time_secs + LAST_SECS,
-        warnings: warnings.collect(),
+        uses,
         moves,
     })
+}
+
+impl Table {
+    /// What of the table a model cannot do.
+    pub(super) fn warnings(&self, model: &GaitModel) -> Vec<String> {
+        let knows = [
+            ("crouch", model.crouch.is_some()),
+            ("jump_m", model.jump.is_some()),
+        ];
+        let lacks = knows.iter().filter(|(_, knows)| !knows);
+        lacks
+            .filter_map(|(name, _)| {
+                let line = self.uses.get(name)?;
+                Some(format!(
+                    "line {line}: the model knows no {name}; it goes on as if it were 0 (`footfall train --jumping` and `--crouching` teach it)"
+                ))
+            })
+            .collect()
+    }
 }
 
 fn gait(text: &str, line: u64) -> Result<GaitChoice> {
@@ -136,15 +156,16 @@ mod tests {
             (run.controls.speed_mps, run.controls.gait),
             (0.0, GaitChoice::Run)
         );
-        assert!((table.seconds - 3.5).abs() < 1e-9 && table.warnings.is_empty());
+        assert!((table.seconds - 3.5).abs() < 1e-9 && table.uses.is_empty());
         Ok(())
     }
 
     #[test]
-    fn what_nobody_can_do_is_said() -> Result<()> {
-        let table = parse("time_s,jump_m\n0,0\n1,0.4\n")?;
-        assert_eq!(table.warnings.len(), 1);
-        assert!(table.warnings[0].contains("line 3"), "{:?}", table.warnings);
+    fn jumps_and_crouches_are_read_and_their_first_lines_kept() -> Result<()> {
+        let table = parse("time_s,jump_m,crouch\n0,0,0.5\n1,0.4,1\n")?;
+        assert!((table.moves[1].jump_m - 0.4).abs() < 1e-6);
+        assert!((table.moves[0].controls.crouch - 0.5).abs() < 1e-6);
+        assert_eq!(table.uses, BTreeMap::from([("crouch", 2), ("jump_m", 3)]));
         Ok(())
     }
 

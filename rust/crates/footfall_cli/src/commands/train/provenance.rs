@@ -21,7 +21,7 @@ pub(super) fn of(corpus: &Corpus, others: &[Option<&Corpus>], args: &TrainArgs) 
         command,
     );
     if args.describe.is_none() {
-        for (behaviour, conditions) in [("standing", &args.standing), ("running", &args.running)] {
+        for (behaviour, conditions) in further(args) {
             if !conditions.is_empty() {
                 let conditions: Vec<String> = conditions.iter().map(ToString::to_string).collect();
                 let conditions = conditions.join(" and ");
@@ -35,6 +35,16 @@ pub(super) fn of(corpus: &Corpus, others: &[Option<&Corpus>], args: &TrainArgs) 
     let all = others.flat_map(|corpus| &corpus.clips).chain(&corpus.clips);
     described.terms = terms(all.filter_map(|clip| clip.row.column(LICENSE_COLUMN)));
     described
+}
+
+/// Behaviours beside the walk, and the conditions on their recordings.
+fn further(args: &TrainArgs) -> [(&'static str, &[Where]); 4] {
+    [
+        ("standing", &args.standing),
+        ("running", &args.running),
+        ("jumping", &args.jumping),
+        ("crouching", &args.crouching),
+    ]
 }
 
 /// The terms that recordings come under, each once.
@@ -77,11 +87,10 @@ fn command(args: &TrainArgs, index: &str, conditions: &[String]) -> String {
     for condition in conditions {
         words.push(format!("--where '{condition}'"));
     }
-    for condition in &args.standing {
-        words.push(format!("--standing '{condition}'"));
-    }
-    for condition in &args.running {
-        words.push(format!("--running '{condition}'"));
+    for (behaviour, conditions) in further(args) {
+        for condition in conditions {
+            words.push(format!("--{behaviour} '{condition}'"));
+        }
     }
     words.extend(args.knees.words());
     words.push(format!("--fps {}", args.fps));

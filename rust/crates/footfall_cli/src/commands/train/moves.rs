@@ -1,0 +1,57 @@
+//! Jumps and crouches of a model: the recordings that show them, and learning from them.
+
+use super::{TrainArgs, further_corpus};
+use anyhow::{Context as _, Result};
+use footfall_core::Clip;
+use footfall_model::GaitModel;
+use footfall_motion::corpus::Corpus;
+use footfall_train::{crouching, jumping};
+
+/// Recordings of people who jump and who crouch, if some are asked for.
+pub(super) struct Moves {
+    jumping: Option<Corpus>,
+    crouching: Option<Corpus>,
+}
+
+impl Moves {
+    pub(super) fn read(args: &TrainArgs) -> Result<Self> {
+        Ok(Self {
+            jumping: further_corpus(args, &args.jumping)?,
+            crouching: further_corpus(args, &args.crouching)?,
+        })
+    }
+
+    pub(super) fn corpora(&self) -> [Option<&Corpus>; 2] {
+        [self.jumping.as_ref(), self.crouching.as_ref()]
+    }
+
+    /// Adds to a model what the recordings show.
+    pub(super) fn learn(&self, args: &TrainArgs, model: &mut GaitModel) -> Result<()> {
+        if let Some(corpus) = &self.jumping {
+            let learned = jumping::learn(&clips(corpus)).with_context(|| {
+                format!(
+                    "{}: nobody jumps off both feet three times, out of standing, in what --jumping chooses; widen it",
+                    args.corpus.display()
+                )
+            })?;
+            model.jump = Some(learned.model);
+        }
+        if let Some(corpus) = &self.crouching {
+            let learned = crouching::learn(&clips(corpus)).with_context(|| {
+                format!(
+                    "{}: nobody goes both upright and crouched for some seconds in what --crouching chooses; widen it",
+                    args.corpus.display()
+                )
+            })?;
+            model.crouch = Some(learned.model);
+        }
+        Ok(())
+    }
+}
+
+fn clips(corpus: &Corpus) -> Vec<(&Clip, usize)> {
+    let clips = corpus.clips.iter();
+    clips
+        .map(|clip| (&clip.retargeted.clip, clip.retargeted.first_frame))
+        .collect()
+}

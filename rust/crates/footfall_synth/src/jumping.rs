@@ -1,0 +1,168 @@
+//! Jumps of a walker: asked for, waited for, made.
+//!
+//! Who stands jumps off both feet ([`moves`](crate::moves)). Who walks or runs forwards leaps: the next step is one of the run whose flight lasts as
+//! long as the rise takes ([`StepPlan::leap`](crate::plan::StepPlan::leap)). Who goes sideways, backwards or hardly at all comes to a stand first.
+
+use crate::gait::WIDEST_RUN_RAD;
+use crate::generator::{Controls, Footstep, GaitGenerator};
+use crate::moves::{JumpPhase, Leap};
+use crate::steps::Steps;
+use footfall_core::Side;
+use footfall_core::rotation::from_heading;
+use glam::Vec3;
+
+/// Slower than this nobody leaps off one foot, m/s.
+const LEAST_LEAP_MPS: f32 = 0.8;
+
+/// Rise of a jump to a place as high as where it begins: metres, and share of the distance; and how much higher than the place the hips come.
+const RISE_TO_PLACE_M: f32 = 0.2;
+const RISE_BY_DISTANCE: f32 = 0.08;
+const RISE_ABOVE_PLACE_M: f32 = 0.25;
+
+/// Less is no jump, metres.
+const LEAST_RISE_M: f32 = 0.01;
+
+impl GaitGenerator {
+    /// Asks for one jump in which the hips rise this high above where they were, standing, walking or running, metres: 0.1 to 0.5 is what adults do. It is made as soon as
+    /// the feet allow: at once by who stands, with the next step by who walks or runs forwards faster than 0.8 m/s (a leap off one foot onto the other),
+    /// and after coming to a stand by everybody else. Asking again while one is waited for or made changes nothing.
+    ///
+    /// Returns whether there will be a jump: not with a model that knows none, nor for a rise that is not finite or hardly one.
+    pub fn jump(&mut self, rise_m: f32) -> bool {
+        self.ask_jump(Leap {
+            rise_m,
+            way: Vec3::ZERO,
+        })
+    }
+
+    /// Asks for one jump off both feet that lands on a place, as it is seen by the character that stands: metres to the left, up and ahead. Who moves
+    /// comes to a stand first. A place farther than people jump (about twice the length of the legs ahead, two thirds of it to the side or
+    /// back) is not reached: the jump goes as far as it can in that direction.
+    ///
+    /// Returns whether there will be a jump, as [`jump`](Self::jump) does.
+    pub fn jump_to(&mut self, place: Vec3) -> bool {
+        let level = RISE_TO_PLACE_M + RISE_BY_DISTANCE * place.with_y(0.0).length();
+        self.ask_jump(Leap {
+            rise_m: level.max(place.y + RISE_ABOVE_PLACE_M),
+            way: place,
+        })
+    }
+
+    fn ask_jump(&mut self, leap: Leap) -> bool {
+        let possible = self.moves.as_ref().is_some_and(|moves| moves.can_jump());
+        let sensible = leap.way.is_finite() && leap.rise_m.is_finite();
+        if !possible || !sensible || leap.rise_m < LEAST_RISE_M {
+            return false;
+        }
+        if self.asked_jump.is_none() && self.jump_phase().is_none() {
+            self.asked_jump = Some(leap);
+        }
+        true
+    }
+
+    /// The phase of the jump that is under way; nothing while it is waited for.
+    pub fn jump_phase(&self) -> Option<JumpPhase> {
+        let both = self.moves.as_ref().and_then(|moves| moves.phase());
+        both.or_else(|| self.leap_phase())
+    }
+
+    /// The phase of a leap off one foot. Its landing is the beginning of the next step, which is one like any other.
+    fn leap_phase(&self) -> Option<JumpPhase> {
+        let Steps::Styled(steps) = &self.steps else {
+            return None;
+        };
+        steps.walker.origin().request.leap_m?;
+        let flies = self.feet_in_contact() == [false; 2];
+        Some(if flies {
+            JumpPhase::Flight
+        } else {
+            JumpPhase::Load
+        })
+    }
+
+    /// The controls of somebody who crouches, jumps or waits to.
+    pub(crate) fn steered(&self, controls: &Controls) -> Controls {
+        let Some(moves) = &self.moves else {
+            return *controls;
+        };
+        let waits = self.asked_jump.is_some() && !self.leaps(controls);
+        if waits || moves.phase().is_some() {
+            return Controls {
+                crouch: controls.crouch,
+                ..Controls::STAND
+            };
+        }
+        Controls {
+            speed_mps: controls
+                .speed_mps
+                .min(moves.fastest_mps(controls.crouch, crate::gait::FASTEST_RUN_MPS)),
+            ..*controls
+        }
+    }
+
+    /// Whether the jump that is asked for can be a step.
+    fn leaps(&self, controls: &Controls) -> bool {
+        let Some(leap) = self.asked_jump else {
+            return false;
+        };
+        let velocity = controls.velocity();
+        let direction = velocity.x.atan2(velocity.y).abs();
+        let walks = self.shape().amplitude.to >= 1.0;
+        let runs = matches!(&self.steps, Steps::Styled(steps) if steps.worn().running.is_some());
+        leap.way == Vec3::ZERO
+            && walks
+            && runs
+            && direction < WIDEST_RUN_RAD
+            && velocity.length() >= LEAST_LEAP_MPS
+    }
+
+    /// The rise of the leap that the next step is, if it is one.
+    pub(crate) fn next_leap(&mut self, controls: &Controls) -> Option<f32> {
+        if self.leaps(controls) {
+            self.asked_jump.take().map(|leap| leap.rise_m)
+        } else {
+            None
+        }
+    }
+
+    /// Lets the time of crouches and jumps pass, and begins those that are waited for.
+    pub(crate) fn pass_moves(&mut self, secs: f32, controls: &Controls) {
+        let stands = self.is_standing();
+        let Some(moves) = &mut self.moves else { return };
+        let before = moves.phase();
+        moves.step(secs, controls.crouch);
+        if let Some(way) = moves.landed() {
+            self.shift(way);
+        } else if before.is_none()
+            && stands
+            && let Some(leap) = self.asked_jump.take()
+        {
+            moves.jump(leap);
+        } else if before != moves.phase() && moves.phase() == Some(JumpPhase::Landing) {
+            self.report_landing();
+        }
+    }
+
+    /// Lets the character be so far from where it was: to the left, up and ahead.
+    fn shift(&mut self, way: Vec3) {
+        let faced = from_heading(self.plan_from_character().heading);
+        self.plan_from_start.position -= faced * way;
+    }
+
+    /// Reports both feet where a jump has put them.
+    fn report_landing(&mut self) {
+        let faced = self.plan_from_start.local(&self.plan_from_character());
+        let Some(way) = self.moves.as_ref().and_then(|moves| moves.way()) else {
+            return;
+        };
+        for side in Side::BOTH {
+            let stage = self.steps.source().stage();
+            let Some(plant) = stage.plant(side) else {
+                continue;
+            };
+            let mut footstep = Footstep::seen_from(&self.plan_from_start, side, plant);
+            footstep.position += from_heading(faced.heading) * way;
+            self.report(footstep);
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Moves of the whole body on top of its steps: crouching, and jumping off both feet.
+//!
+//! Steps say where the feet are and how the body is held over them; [`crouch`] lowers it there and [`jump`] takes it off the ground and back. Both are
+//! postures beside standing that the model has learned, put on by [`body`].
+
+mod body;
+mod crouch;
+mod jump;
+
+use crate::space::StyleSpace;
+use crate::standing::standing_features;
+use body::Body;
+use crouch::Crouch;
+pub(crate) use crouch::CrouchMoment;
+use footfall_core::{Pose, Skeleton};
+use footfall_model::{CrouchModel, GaitModel};
+use glam::Vec3;
+pub use jump::JumpPhase;
+pub(crate) use jump::Leap;
+use jump::{Flown, JumpMoment, JumpTables};
+use std::sync::Arc;
+
+/// Moves of a model, shared by all of its walkers.
+#[derive(Debug)]
+pub(crate) struct MoveTables {
+    jump: Option<JumpTables>,
+    crouch: Option<CrouchModel>,
+}
+
+/// Moves of one walker.
+#[derive(Clone, Debug)]
+pub(crate) struct Moves {
+    tables: Arc<MoveTables>,
+    body: Body,
+    crouch: Crouch,
+    jump: Option<JumpMoment>,
+}
+
+impl MoveTables {
+    pub(crate) fn of(model: &GaitModel) -> Self {
+        Self {
+            jump: model
+                .jump
+                .as_ref()
+                .map(|jump| JumpTables::of(jump, &standing_features(model))),
+            crouch: model.crouch.clone(),
+        }
+    }
+}
+
+impl Moves {
+    /// Those of a walker of this space.
+    pub(crate) fn new(space: &StyleSpace, skeleton: &Skeleton) -> Self {
+        let tables = Arc::clone(space.moves());
+        let body = Body::new(skeleton);
+        Self {
+            crouch: Crouch::new(tables.crouch.as_ref(), body.leg_length),
+            tables,
+            body,
+            jump: None,
+        }
+    }
+
+    /// Whether the model knows how to jump off both feet.
+    pub(crate) fn can_jump(&self) -> bool {
+        self.tables.jump.is_some()
+    }
+
+    /// How fast somebody may go who is asked to crouch by so much, m/s.
+    pub(crate) fn fastest_mps(&self, amount: f32, upright: f32) -> f32 {
+        self.crouch.fastest_mps(amount, upright)
+    }
+
+    /// Begins to jump off both feet.
+    pub(crate) fn jump(&mut self, leap: Leap) {
+        let Some(tables) = &self.tables.jump else {
+            return;
+        };
+        self.jump = Some(JumpMoment::new(tables, leap, &self.body));
+    }
+
+    /// The phase of the jump that is under way.
+    pub(crate) fn phase(&self) -> Option<JumpPhase> {
+        self.jump.as_ref().map(JumpMoment::phase)
+    }
+
+    /// How far to the left, up and ahead the jump that is under way goes.
+    pub(crate) fn way(&self) -> Option<Vec3> {
+        self.jump.as_ref().map(JumpMoment::way)
+    }
+
+    /// Lets time pass.
+    pub(crate) fn step(&mut self, secs: f32, crouch: f32) {
+        self.crouch.step(secs, crouch);
+        if let Some(jump) = &mut self.jump {
+            jump.secs += secs;
+        }
+    }
+
+    /// How far the jump went that was under way and is over; once.
+    pub(crate) fn landed(&mut self) -> Option<Vec3> {
+        let jump = self.jump.filter(JumpMoment::is_over)?;
+        self.jump = None;
+        Some(jump.way())
+    }
+
+    /// Moves a pose that faces +Z; returns how far that goes for one who jumps.
+    pub(crate) fn move_pose(&self, pose: &mut Pose) -> Option<Flown> {
+        self.crouch.lower(&self.body, pose);
+        let (tables, jump) = (self.tables.jump.as_ref()?, self.jump.as_ref()?);
+        Some(jump.move_pose(tables, &self.body, pose))
+    }
+
+    /// How deep it crouches, and the jump that is under way with the time since it began: what a state holds.
+    pub(crate) fn moment(&self) -> (CrouchMoment, Option<(Leap, f32)>) {
+        let jump = self.jump.map(|jump| (jump.leap, jump.secs));
+        (self.crouch.moment, jump)
+    }
+
+    /// Goes on from such a moment.
+    pub(crate) fn resume(&mut self, crouch: CrouchMoment, jump: Option<(Leap, f32)>) {
+        self.crouch.moment = crouch;
+        self.jump = None;
+        if let Some((leap, secs)) = jump {
+            self.jump(leap);
+            if let Some(jump) = &mut self.jump {
+                jump.secs = secs;
+            }
+        }
+    }
+}

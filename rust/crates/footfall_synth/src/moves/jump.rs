@@ -1,0 +1,281 @@
+//! Jumping off both feet, out of standing: down, off, through the air, down again and up.
+//!
+//! How the body is held comes from the model. The hips go as it says as long as the feet bear, with the speed at take-off and landing that the flight
+//! needs; in between nothing but gravity acts, and they are on a parabola. Feet roll off on their toes and land on them, where they were or on the place
+//! that was asked for.
+
+mod course;
+
+use super::body::{Beside, Body};
+use crate::stage::Posture;
+use course::Course;
+use footfall_core::Pose;
+use footfall_core::ease::{hermite, smooth_step};
+use footfall_core::rotation::{exp_map, log_map};
+use footfall_ik::FootTarget;
+use footfall_model::{JUMP_PHASES, JUMP_RESPONSES, JumpModel, layout};
+use glam::Vec3;
+
+/// The phases of a model's jump.
+const DIP: usize = 0;
+const PUSH: usize = 1;
+const FLIGHT: usize = 2;
+const ABSORPTION: usize = 3;
+const RECOVERY: usize = 4;
+
+/// Part of the flight in which the feet go over from where they stood into how the jump has them, and part from which on they go to where they land.
+const FREED_BY: f32 = 0.5;
+const REACHING_FROM: f32 = 0.45;
+
+/// What is asked of a jump.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Leap {
+    /// How much higher than standing before the jump the hips come, metres.
+    pub(crate) rise_m: f32,
+    /// How far to the left, up and ahead the feet land, metres.
+    pub(crate) way: Vec3,
+}
+
+/// A phase of a jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JumpPhase {
+    /// The body goes down and pushes off; feet bear.
+    Load,
+    /// No foot bears.
+    Flight,
+    /// The legs take up the fall; feet bear.
+    Landing,
+}
+
+/// A jump that is under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct JumpMoment {
+    pub(crate) leap: Leap,
+    /// Time since it began, seconds.
+    pub(crate) secs: f32,
+    course: Course,
+}
+
+/// How far a jump has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Flown {
+    /// How far to the left, up and ahead of where it began the character is, metres.
+    pub(crate) place: Vec3,
+    /// Whether the feet bear.
+    pub(crate) bears: bool,
+}
+
+/// The model's jumps, ready to be jumped.
+#[derive(Clone, Debug)]
+pub(crate) struct JumpTables {
+    /// How its people stand.
+    standing: Pose,
+    secs: [[f32; JUMP_RESPONSES]; JUMP_PHASES],
+    rise: [f32; 3],
+    way: [f32; 3],
+    /// Knots of all phases; those in which two phases meet are there once.
+    knots: Vec<[Beside; JUMP_RESPONSES]>,
+    /// The knot that begins each phase, and the last of all.
+    begins: [usize; JUMP_PHASES + 1],
+}
+
+impl JumpTables {
+    pub(super) fn of(model: &JumpModel, standing: &Posture) -> Self {
+        let mut upright = Pose::default();
+        layout::decode(standing, &mut upright.rotations);
+        let row = |values: &Vec<f64>| -> Beside { core::array::from_fn(|at| values[at] as f32) };
+        let mut knots = Vec::new();
+        let mut begins = [0; JUMP_PHASES + 1];
+        for (index, phase) in model.phases.iter().enumerate() {
+            let shared = usize::from(index > 0);
+            knots.extend(
+                phase
+                    .knots
+                    .iter()
+                    .skip(shared)
+                    .map(|knot| knot.each_ref().map(row)),
+            );
+            begins[index + 1] = knots.len() - 1;
+        }
+        Self {
+            standing: upright,
+            secs: model
+                .phases
+                .each_ref()
+                .map(|phase| phase.secs.map(|secs| secs as f32)),
+            rise: model.rise.map(|rise| rise as f32),
+            way: model.way.map(|way| way as f32),
+            knots,
+            begins,
+        }
+    }
+
+    /// How far a jump of this rise and way, in leg lengths, is from the mean one: what slopes are multiplied with.
+    fn factors(&self, rise: f32, way: f32) -> [f32; JUMP_RESPONSES] {
+        let deviation = |value: f32, [least, mean, most]: [f32; 3]| value.clamp(least, most) - mean;
+        [1.0, deviation(rise, self.rise), deviation(way, self.way)]
+    }
+
+    /// Duration of a phase, seconds.
+    fn secs(&self, phase: usize, factors: [f32; JUMP_RESPONSES]) -> f32 {
+        let responses = self.secs[phase].iter().zip(factors);
+        responses.map(|(secs, factor)| secs * factor).sum()
+    }
+
+    /// A number of a knot's posture.
+    fn number(&self, knot: usize, factors: [f32; JUMP_RESPONSES], dim: usize) -> f32 {
+        let responses = self.knots[knot].iter().zip(factors);
+        responses.map(|(row, factor)| row[dim] * factor).sum()
+    }
+
+    /// The posture at part `s` of a phase, when phases last so long: a cubic curve through the knots.
+    fn beside(&self, phase: usize, s: f32, timing: &Timing) -> Beside {
+        let Timing {
+            factors,
+            scale,
+            secs,
+        } = *timing;
+        let count = self.begins[phase + 1] - self.begins[phase];
+        let position = s.clamp(0.0, 1.0) * count as f32;
+        let within = (position as usize).min(count - 1);
+        let knot = self.begins[phase] + within;
+        let spacing = |knot: usize| {
+            let phase = (0..JUMP_PHASES).find(|phase| knot < self.begins[phase + 1]);
+            let phase = phase.unwrap_or(JUMP_PHASES - 1);
+            secs[phase] / (self.begins[phase + 1] - self.begins[phase]) as f32
+        };
+        let last = self.knots.len() - 1;
+        let here = spacing(knot);
+        // How much faster the knots before and after pass than these do.
+        let slope = |from: usize, to: usize| {
+            let secs: f32 = (from..to).map(spacing).sum();
+            here / secs
+        };
+        let before = knot.saturating_sub(1);
+        let after = (knot + 2).min(last);
+        let [departure, arrival] = [slope(before, knot + 1), slope(knot, after)];
+        let share = position - within as f32;
+        core::array::from_fn(|dim| {
+            let at = |knot: usize| scale * self.number(knot, factors, dim);
+            let (from, to) = (at(knot), at(knot + 1));
+            hermite(
+                from,
+                departure * (to - at(before)),
+                to,
+                arrival * (at(after) - from),
+                share,
+            )
+        })
+    }
+}
+
+/// How long the phases of a jump last, and how the body is held in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Timing {
+    /// What the model's slopes are multiplied with.
+    factors: [f32; JUMP_RESPONSES],
+    /// How much there is of its postures: jumps lower than recorded ones have less.
+    scale: f32,
+    secs: [f32; JUMP_PHASES],
+}
+
+impl JumpMoment {
+    pub(super) fn new(tables: &JumpTables, leap: Leap, body: &Body) -> Self {
+        Self {
+            leap,
+            secs: 0.0,
+            course: Course::new(tables, leap, body),
+        }
+    }
+
+    /// The phase, and the part of it that has passed.
+    fn passed(&self) -> (usize, f32) {
+        let mut left = self.secs;
+        for (phase, secs) in self.course.timing.secs.into_iter().enumerate() {
+            if left < secs || phase + 1 == JUMP_PHASES {
+                return (phase, (left / secs).min(1.0));
+            }
+            left -= secs;
+        }
+        (JUMP_PHASES - 1, 1.0)
+    }
+
+    pub(super) fn phase(&self) -> JumpPhase {
+        match self.passed().0 {
+            DIP | PUSH => JumpPhase::Load,
+            FLIGHT => JumpPhase::Flight,
+            _ => JumpPhase::Landing,
+        }
+    }
+
+    /// How far to the left, up and ahead it ends.
+    pub(super) fn way(&self) -> Vec3 {
+        self.course.way()
+    }
+
+    pub(super) fn is_over(&self) -> bool {
+        self.secs >= self.course.timing.secs.iter().sum()
+    }
+
+    /// Moves the pose of somebody who stands facing +Z. The pose is that of the character where it [has come](Flown).
+    pub(super) fn move_pose(&self, tables: &JumpTables, body: &Body, pose: &mut Pose) -> Flown {
+        let (phase, s) = self.passed();
+        let course = &self.course;
+        let plants = body.plants(pose);
+        let turned = |phase: usize, s: f32| {
+            let beside = tables.beside(phase, s, &course.timing);
+            let mut turned = pose.clone();
+            Body::turn(&beside, &mut turned);
+            turned.root_position += course.hips(phase, s, &beside);
+            turned
+        };
+        let mut moved = turned(phase, s);
+        let landing = course.way();
+        let targets = match phase {
+            DIP | PUSH => body.on_toes(&plants, Vec3::ZERO, &moved),
+            FLIGHT => {
+                let ends = [turned(PUSH, 1.0), turned(ABSORPTION, 0.0)];
+                let places = [Vec3::ZERO, landing];
+                let planted: [[FootTarget; 2]; 2] =
+                    core::array::from_fn(|end| body.on_toes(&plants, places[end], &ends[end]));
+                let free = ends.each_ref().map(|pose| body.feet(pose));
+                let now = body.feet(&moved);
+                core::array::from_fn(|side| {
+                    let ends = [0, 1].map(|end| (&planted[end][side], &free[end][side]));
+                    in_flight(&now[side], ends, s)
+                })
+            }
+            _ => body.on_toes(&plants, landing, &moved),
+        };
+        body.stand(&targets, &mut moved);
+        let place = course.place(phase, s);
+        moved.root_position -= place;
+        *pose = moved;
+        Flown {
+            place,
+            bears: phase != FLIGHT,
+        }
+    }
+}
+
+/// A foot in flight: where the jump has it, coming from where it stood and going to where it lands. `ends` are where it is planted and where it would
+/// be free, at take-off and at landing.
+fn in_flight(free: &FootTarget, ends: [(&FootTarget, &FootTarget); 2], s: f32) -> FootTarget {
+    let shares = [
+        1.0 - smooth_step(s / FREED_BY),
+        smooth_step((s - REACHING_FROM) / (1.0 - REACHING_FROM)),
+    ];
+    let mut target = *free;
+    let mut toes = Vec3::ZERO;
+    for ((planted, free), share) in ends.into_iter().zip(shares) {
+        target.ankle += share * (planted.ankle - free.ankle);
+        let turn = log_map(planted.foot * free.foot.inverse());
+        target.foot = exp_map(share * turn) * target.foot;
+        toes += share * log_map(planted.foot.inverse() * planted.toes);
+    }
+    target.toes = target.foot * exp_map(toes);
+    target
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,192 @@
+//! The way of the hips through a jump: as the legs have it before and after, and a parabola in between.
+
+use super::super::body::{Beside, Body};
+use super::{ABSORPTION, DIP, FLIGHT, JumpTables, Leap, PUSH, RECOVERY, Timing};
+use crate::gait::GRAVITY_MPS2;
+use footfall_core::ease::{hermite, smooth_step};
+use footfall_model::{BESIDE_COUNT, FEATURE_COUNT};
+use glam::Vec3;
+
+/// Dips and recoveries last so long, seconds: recorded ones are unhurried, players are not.
+const DIP_SECS: [f32; 2] = [0.15, 0.32];
+const RECOVERY_SECS: [f32; 2] = [0.25, 0.5];
+
+/// Pushes and absorptions are quick as they are; no jump makes them quicker, seconds.
+const LEAST_SECS: f32 = 0.08;
+
+/// Rises of a jump, in leg lengths: less is none, more is beyond people.
+const RISES: [f32; 2] = [0.03, 0.8];
+
+/// Ways of a jump ahead, and to the side or back, in leg lengths at most.
+const FARTHEST_AHEAD: f32 = 2.2;
+const FARTHEST_ASIDE: f32 = 0.7;
+
+/// Hips rise above where they are at landing by so much at least, metres.
+const LEAST_FALL_M: f32 = 0.02;
+
+/// Legs that take up a fall evenly need the time to do so on their way; they need at least this share of it.
+const ABSORPTION_SHARE: f32 = 0.9;
+
+/// The character begins to go this long before take-off and is there as long after landing, seconds.
+const SHIFT_SECS: f32 = 0.12;
+
+/// Part of a phase over which a slope is measured.
+const SLOPE_PART: f32 = 0.02;
+
+/// The course of one jump.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Course {
+    pub(super) timing: Timing,
+    /// How far to the left, up and ahead the feet land, metres.
+    way: Vec3,
+    /// Where the hips are at take-off and at landing, from where they stand before and after the jump, metres.
+    ends: [Vec3; 2],
+    /// How fast they are there, m/s.
+    speeds: [Vec3; 2],
+    /// What the model's own way lacks of both, at the end of the push and at the beginning of the absorption: metres, and metres a phase.
+    missing: [[Vec3; 2]; 2],
+    leg: f32,
+}
+
+impl Course {
+    /// That of a jump of a body. A rise that does not reach the place where the feet land becomes one that does; a place beyond reach becomes one
+    /// on the way to it, and the highest that can be reached.
+    pub(super) fn new(tables: &JumpTables, leap: Leap, body: &Body) -> Self {
+        let leg = body.leg_length;
+        let rise = (leap.rise_m / leg).clamp(RISES[0], RISES[1]);
+        let over_ground = within_reach(leap.way.with_y(0.0), leg);
+        let mut timing = tables.timing(rise, over_ground.z / leg);
+        let slope = |phase: usize, from: f32| {
+            let at = |s: f32| leg * hips_of(&tables.beside(phase, s, &timing));
+            (at(from + SLOPE_PART) - at(from)) / SLOPE_PART
+        };
+        let own_slopes = [slope(PUSH, 1.0 - SLOPE_PART), slope(ABSORPTION, 0.0)];
+        let postures =
+            [(PUSH, 1.0), (ABSORPTION, 0.0)].map(|(phase, s)| tables.beside(phase, s, &timing));
+        let own_ends = postures.each_ref().map(|beside| leg * hips_of(beside));
+        let mut ends = own_ends;
+        for (end, beside) in ends.iter_mut().zip(&postures) {
+            end.y = end.y.min(highest(tables, body, beside, *end));
+        }
+        let up = leap.way.y.min(RISES[1] * leg - 2.0 * LEAST_FALL_M);
+        let apex = (rise * leg)
+            .max(ends[0].y + LEAST_FALL_M)
+            .max(up + ends[1].y.max(0.0) + LEAST_FALL_M)
+            .min(RISES[1] * leg);
+        ends[1].y = ends[1].y.min(apex - up - LEAST_FALL_M);
+        let push = (2.0 * GRAVITY_MPS2 * (apex - ends[0].y)).sqrt();
+        let fall = (2.0 * GRAVITY_MPS2 * (apex - up - ends[1].y)).sqrt();
+        timing.secs[FLIGHT] = (push + fall) / GRAVITY_MPS2;
+        let lowest = leg * hips_of(&tables.beside(ABSORPTION, 1.0, &timing)).y;
+        let even_secs = 2.0 * (ends[1].y - lowest) / fall;
+        timing.secs[ABSORPTION] = timing.secs[ABSORPTION].max(ABSORPTION_SHARE * even_secs);
+        let way = over_ground.with_y(up);
+        let drift = (way + ends[1] - ends[0]) / timing.secs[FLIGHT];
+        let speeds = [push, -fall].map(|rise| drift.with_y(rise));
+        let missing = core::array::from_fn(|end| {
+            let secs = timing.secs[[PUSH, ABSORPTION][end]];
+            [
+                ends[end] - own_ends[end],
+                speeds[end] * secs - own_slopes[end],
+            ]
+        });
+        Self {
+            timing,
+            way,
+            ends,
+            speeds,
+            missing,
+            leg,
+        }
+    }
+
+    /// Where the hips are at part `s` of a phase in which the model holds the body so, from where they stand before the jump: metres.
+    pub(super) fn hips(&self, phase: usize, s: f32, beside: &Beside) -> Vec3 {
+        let own = self.leg * hips_of(beside);
+        let none = Vec3::ZERO;
+        let [[off, speed_off], [on, speed_on]] = self.missing;
+        match phase {
+            DIP => own,
+            PUSH => own + hermite(none, none, off, speed_off, s),
+            FLIGHT => {
+                let t = s * self.timing.secs[FLIGHT];
+                let fall = 0.5 * GRAVITY_MPS2 * t * t * Vec3::Y;
+                self.ends[0] + self.speeds[0] * t - fall
+            }
+            ABSORPTION => self.way + own + hermite(on, speed_on, none, none, s),
+            _ => self.way + own,
+        }
+    }
+
+    /// Where the feet land, from where they stood.
+    pub(super) fn way(&self) -> Vec3 {
+        self.way
+    }
+
+    /// How far the character has come at part `s` of a phase: over the ground smoothly about the flight, and in the flight as high as the jump has it.
+    pub(super) fn place(&self, phase: usize, s: f32) -> Vec3 {
+        let secs = &self.timing.secs;
+        let take_off = secs[DIP] + secs[PUSH];
+        let now = secs[..phase].iter().sum::<f32>() + s * secs[phase];
+        let gone = (now - take_off + SHIFT_SECS) / (secs[FLIGHT] + 2.0 * SHIFT_SECS);
+        let up = match phase {
+            DIP | PUSH => 0.0,
+            FLIGHT => {
+                let level = self.ends[0].y + s * (self.ends[1].y - self.ends[0].y);
+                self.hips(phase, s, &[0.0; BESIDE_COUNT]).y - level
+            }
+            _ => self.way.y,
+        };
+        (self.way * smooth_step(gone)).with_y(up)
+    }
+}
+
+/// How high the hips of a posture beside standing can be on feet that bear, from their height in standing.
+fn highest(tables: &JumpTables, body: &Body, beside: &Beside, end: Vec3) -> f32 {
+    let mut pose = tables.standing.clone();
+    let feet = body.feet(&pose);
+    // Flat soles are on the ground.
+    let up = body.feet[0].ankle_height() - feet[0].ankle.y;
+    pose.root_position.y += up;
+    let plants = body.plants(&pose);
+    Body::turn(beside, &mut pose);
+    pose.root_position += end;
+    let targets = body.on_toes(&plants, Vec3::ZERO, &pose);
+    body.highest(&pose, &targets) - up
+}
+
+impl JumpTables {
+    /// The timing of a jump of this rise and way, in leg lengths; that of its flight follows later.
+    fn timing(&self, rise: f32, way: f32) -> Timing {
+        let factors = self.factors(rise, way);
+        let secs = core::array::from_fn(|phase| {
+            let secs = self.secs(phase, factors);
+            match phase {
+                DIP => secs.clamp(DIP_SECS[0], DIP_SECS[1]),
+                RECOVERY => secs.clamp(RECOVERY_SECS[0], RECOVERY_SECS[1]),
+                _ => secs.max(LEAST_SECS),
+            }
+        });
+        Timing {
+            factors,
+            scale: (rise / self.rise[0]).min(1.0),
+            secs,
+        }
+    }
+}
+
+/// A way over the ground, shortened to what people jump on legs of this length.
+fn within_reach(way: Vec3, leg: f32) -> Vec3 {
+    let ahead = if way.z > 0.0 {
+        FARTHEST_AHEAD
+    } else {
+        FARTHEST_ASIDE
+    };
+    let beyond = Vec3::new(way.x / FARTHEST_ASIDE, 0.0, way.z / ahead).length() / leg;
+    way / beyond.max(1.0)
+}
+
+/// The hips' way of a posture beside standing, leg lengths.
+fn hips_of(beside: &Beside) -> Vec3 {
+    Vec3::new(0.0, beside[FEATURE_COUNT], beside[FEATURE_COUNT + 1])
+}

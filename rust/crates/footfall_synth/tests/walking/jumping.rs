@@ -1,0 +1,255 @@
+//! Jumps and crouches: parabolas, planted feet, places that are reached.
+
+use crate::world::{
+    DT, Frame, Kind, assert_planted_within, assert_smooth, config, generator, model, run, space,
+    walking,
+};
+use footfall_core::{Joint, Pose, Skeleton};
+use footfall_synth::{Controls, GaitGenerator, JumpPhase, StyleSpace};
+use glam::Vec3;
+use std::sync::Arc;
+
+const GRAVITY_MPS2: f32 = 9.81;
+
+/// Somebody who has stood for a second.
+fn stander(seed: u64) -> GaitGenerator {
+    let mut generator = generator(Kind::Styled, seed);
+    generator.stand();
+    run(&mut generator, &Skeleton::standard(), &Controls::STAND, 60);
+    generator
+}
+
+fn hips(frame: &Frame) -> f32 {
+    frame.model.position(Joint::Hips).y
+}
+
+/// How high the hips come above their mean height in the half second before.
+fn rise(before: &[Frame], frames: &[Frame]) -> f32 {
+    let last = &before[before.len() - 30..];
+    let level = last.iter().map(hips).sum::<f32>() / 30.0;
+    frames.iter().map(hips).fold(0.0, f32::max) - level
+}
+
+fn assert_ballistic(frames: &[Frame]) {
+    let mut flown = 0;
+    for window in frames.windows(3) {
+        if window.iter().any(|frame| frame.contact != [false; 2]) {
+            continue;
+        }
+        let [before, now, next] = [0, 1, 2].map(|index: usize| hips(&window[index]));
+        let acceleration = (next - 2.0 * now + before) / (DT * DT);
+        assert!(
+            (acceleration + GRAVITY_MPS2).abs() < 0.3,
+            "{acceleration} m/s² in the air"
+        );
+        flown += 1;
+    }
+    assert!(flown > 8, "only {flown} frames in the air");
+}
+
+#[test]
+fn who_stands_jumps_as_high_as_asked_on_a_parabola() {
+    let skeleton = Skeleton::standard();
+    for (seed, asked) in [(1, 0.1), (2, 0.25), (3, 0.4), (4, 0.55)] {
+        let mut generator = stander(seed);
+        let (before, _) = run(&mut generator, &skeleton, &Controls::STAND, 40);
+        assert!(generator.jump(asked));
+        let (frames, footsteps) = run(&mut generator, &skeleton, &Controls::STAND, 150);
+        let risen = rise(&before, &frames);
+        assert!((risen / asked - 1.0).abs() < 0.05, "{risen} for {asked} m");
+        assert_ballistic(&frames);
+        assert_planted_within(&skeleton, &frames, 0.005);
+        // 30 cm of foot from the push into the flight, at 150 m/s² captured ones.
+        assert_smooth(&frames, 0.042);
+        assert_eq!(footsteps.len(), 2, "both feet land");
+        assert!(generator.is_standing() && generator.jump_phase().is_none());
+        let way = generator.start_from_character().position.length();
+        assert!(way < 1e-4, "came {way} m away from the spot");
+    }
+}
+
+#[test]
+fn phases_follow_each_other_and_feet_bear_but_in_the_flight() {
+    let mut generator = stander(5);
+    generator.jump(0.3);
+    let mut phases = Vec::new();
+    let mut pose = Pose::default();
+    for _ in 0..150 {
+        generator.step(DT, &Controls::STAND, &mut pose);
+        let phase = generator.jump_phase();
+        let bears = generator.feet_in_contact() == [true; 2];
+        assert_eq!(bears, phase != Some(JumpPhase::Flight));
+        if phases.last() != Some(&phase) {
+            phases.push(phase);
+        }
+    }
+    let expected = [
+        Some(JumpPhase::Load),
+        Some(JumpPhase::Flight),
+        Some(JumpPhase::Landing),
+        None,
+    ];
+    assert_eq!(phases, expected);
+}
+
+#[test]
+fn a_jump_lands_where_it_was_sent() {
+    let skeleton = Skeleton::standard();
+    for (seed, place) in [
+        (1, Vec3::new(0.0, 0.0, 1.2)),
+        (2, Vec3::new(0.3, 0.0, 0.6)),
+        (3, Vec3::new(0.0, 0.3, 0.5)),
+        (4, Vec3::new(-0.1, -0.6, 0.8)),
+    ] {
+        let mut generator = stander(seed);
+        assert!(generator.jump_to(place));
+        let (frames, footsteps) = run(&mut generator, &skeleton, &Controls::STAND, 180);
+        let came = generator.start_from_character().position;
+        let left_out = frames[0].model.position(Joint::LeftFoot) + place;
+        let foot = frames.last().unwrap().model.position(Joint::LeftFoot);
+        assert!(came.distance(place) < 1e-3, "{came} for {place}");
+        assert!(foot.distance(left_out) < 0.01, "foot at {foot}");
+        assert_eq!(footsteps.len(), 2);
+        assert!((footsteps[0].position.y - place.y).abs() < 1e-4);
+        assert_ballistic(&frames);
+        // A wall half as high as the leg is long is stepped onto with bent knees, and smoothly.
+        assert_smooth(&frames, 0.06);
+        run(&mut generator, &skeleton, &walking(1.3), 120);
+        let height = generator.start_from_character().position.y;
+        assert!((height - place.y).abs() < 1e-4, "walks on at {height}");
+    }
+}
+
+#[test]
+fn walkers_and_runners_leap() {
+    let skeleton = Skeleton::standard();
+    for (seed, speed, asked) in [
+        (1, 1.2, 0.2),
+        (2, 1.4, 0.3),
+        (3, 2.8, 0.4),
+        (4, 3.4, 0.4),
+        (5, 1.0, 0.4),
+    ] {
+        let mut generator = generator(Kind::Styled, seed);
+        let (before, _) = run(&mut generator, &skeleton, &walking(speed), 240);
+        assert!(generator.jump(asked));
+        let (frames, _) = run(&mut generator, &skeleton, &walking(speed), 150);
+        let risen = rise(&before, &frames);
+        assert!(
+            (risen - asked).abs() < 0.1 * asked + 0.015,
+            "{risen} for {asked} m at {speed} m/s"
+        );
+        let aloft = frames.iter().filter(|f| f.contact == [false; 2]).count();
+        assert!(aloft > 15, "{aloft} frames in the air at {speed} m/s");
+        assert_planted_within(&skeleton, &frames, 0.06);
+        assert_smooth(&frames, 0.042);
+        let way = (frames.last().unwrap().place - frames[0].place).length() / 2.5;
+        assert!(way > 0.75 * speed, "{way} m/s of {speed}");
+    }
+}
+
+#[test]
+fn who_goes_sideways_stands_first_and_goes_on_after_it() {
+    let skeleton = Skeleton::standard();
+    let controls = Controls {
+        direction_rad: 1.5,
+        ..walking(0.6)
+    };
+    let mut generator = generator(Kind::Styled, 3);
+    run(&mut generator, &skeleton, &controls, 180);
+    generator.jump(0.3);
+    let (frames, _) = run(&mut generator, &skeleton, &controls, 300);
+    assert_ballistic(&frames);
+    assert!(!generator.is_standing(), "goes on");
+    let aloft = |frame: &&Frame| frame.contact == [false; 2];
+    let flight = frames.iter().filter(aloft).count();
+    assert!((20..45).contains(&flight), "{flight} frames in the air");
+}
+
+#[test]
+fn asking_again_or_for_nonsense_changes_nothing() {
+    let skeleton = Skeleton::standard();
+    let mut generator = stander(1);
+    for nonsense in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        assert!(!generator.jump(nonsense), "{nonsense}");
+        assert!(!generator.jump_to(Vec3::new(0.0, nonsense * 0.0, f32::NAN)));
+    }
+    generator.jump(0.3);
+    run(&mut generator, &skeleton, &Controls::STAND, 50);
+    generator.jump(0.5);
+    let (frames, _) = run(&mut generator, &skeleton, &Controls::STAND, 200);
+    let landings = frames
+        .windows(2)
+        .filter(|pair| pair[0].contact == [false; 2] && pair[1].contact == [true; 2])
+        .count();
+    assert_eq!(landings, 1);
+
+    let nobody_jumps = footfall_model::GaitModel {
+        jump: None,
+        crouch: None,
+        ..(*model()).clone()
+    };
+    let space = Arc::new(StyleSpace::new(&Arc::new(nobody_jumps), &[]).unwrap());
+    let mut generator = GaitGenerator::new(&space, &[], &skeleton, &config(1)).unwrap();
+    assert!(!generator.jump(0.3));
+    assert!(!self::generator(Kind::Switching, 1).jump(0.3));
+}
+
+#[test]
+fn who_crouches_is_lower_on_the_same_feet_and_slower() {
+    let skeleton = Skeleton::standard();
+    let mut generator = stander(2);
+    let crouching = |speed: f32| Controls {
+        crouch: 1.0,
+        ..walking(speed)
+    };
+    let (before, _) = run(&mut generator, &skeleton, &Controls::STAND, 30);
+    let (frames, _) = run(&mut generator, &skeleton, &crouching(0.0), 90);
+    let sunk = hips(&before[29]) - hips(&frames[89]);
+    assert!((0.12..0.35).contains(&sunk), "{sunk} m lower");
+    assert_planted_within(&skeleton, &frames, 0.005);
+    let (frames, _) = run(&mut generator, &skeleton, &crouching(4.0), 400);
+    assert_planted_within(&skeleton, &frames, 0.06);
+    let speed = (frames[399].place - frames[160].place).length() / (239.0 * DT);
+    assert!((0.5..2.0).contains(&speed), "{speed} m/s in a crouch");
+    let (frames, _) = run(&mut generator, &skeleton, &walking(1.2), 240);
+    assert_smooth(&frames, 0.034);
+    assert!(hips(&frames[239]) > 0.85 * hips(&before[29]));
+}
+
+#[test]
+fn a_jumper_goes_on_from_a_saved_state_bit_for_bit() {
+    let skeleton = Skeleton::standard();
+    for (speed, saved) in [
+        (0.0, 5),
+        (0.0, 30),
+        (0.0, 55),
+        (0.0, 75),
+        (1.3, 20),
+        (3.0, 40),
+    ] {
+        let controls = Controls {
+            crouch: 0.4,
+            ..walking(speed)
+        };
+        let mut first = generator(Kind::Styled, 9);
+        first.stand();
+        run(&mut first, &skeleton, &controls, 200);
+        first.jump(0.35);
+        run(&mut first, &skeleton, &controls, saved);
+        let state = first.state();
+        let mut second = GaitGenerator::new(&space(), &[], &skeleton, &config(4)).unwrap();
+        second.restore(&state).unwrap();
+        let (mut a, mut b) = (Pose::default(), Pose::default());
+        for frame in 0..200 {
+            first.step(DT, &controls, &mut a);
+            second.step(DT, &controls, &mut b);
+            assert_eq!(a, b, "{frame} frames after {saved} at {speed} m/s");
+            assert_eq!(
+                first.start_from_character(),
+                second.start_from_character(),
+                "{frame} frames after {saved} at {speed} m/s"
+            );
+        }
+    }
+}

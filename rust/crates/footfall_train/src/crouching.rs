@@ -1,0 +1,121 @@
+//! How people crouch, as a part of a model of how they walk.
+
+use crate::beside::{Upright, symmetric};
+use footfall_core::{Clip, Joint};
+use footfall_model::layout::feature_offset;
+use footfall_model::{BESIDE_COUNT, CrouchModel, FEATURE_COUNT};
+
+/// Hips of somebody upright are at least as high as this, and of somebody who crouches at most as high as the second, as shares of their height
+/// in the T-pose.
+const UPRIGHT_SHARE: f32 = 0.95;
+const CROUCHED_SHARE: f32 = 0.9;
+
+/// The deepest crouch is that of this quantile of crouched frames, and so is the fastest.
+const QUANTILE: f64 = 0.9;
+
+/// Speed is that of the hips over so long, seconds.
+const SPEED_SECS: f64 = 1.0;
+
+/// Less is no crouch to learn from, seconds; nor are fewer upright ones to compare with.
+const LEAST_SECS: f64 = 3.0;
+const LEAST_UPRIGHT_SECS: f64 = 0.5;
+
+/// What was learned about crouching, and from how much.
+#[derive(Clone, Debug)]
+pub struct LearnedCrouching {
+    /// The section of a model.
+    pub model: CrouchModel,
+    /// For how many seconds people crouch.
+    pub secs: f64,
+}
+
+/// Sums over the frames of somebody who crouches.
+#[derive(Default)]
+struct Sums {
+    /// Of each number of a posture times how low it is, and of that squared.
+    by_depth: Vec<f64>,
+    squared: f64,
+    depths: Vec<f64>,
+    speeds: Vec<f64>,
+    secs: f64,
+}
+
+/// Learns how people crouch; each clip comes with its leading frames to leave out, and shows somebody both upright and low. `None` when nobody
+/// crouches for some seconds.
+///
+/// Every number of a posture goes with how low the hips are: a regression through the upright posture, for people crouch in between as well.
+pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedCrouching> {
+    let mut sums = Sums {
+        by_depth: vec![0.0; BESIDE_COUNT],
+        ..Sums::default()
+    };
+    for (clip, skip) in clips {
+        sums.add(clip, *skip);
+    }
+    if sums.secs < LEAST_SECS {
+        return None;
+    }
+    let depth = quantile(&mut sums.depths);
+    let slopes = sums.by_depth.iter().map(|sum| sum / sums.squared);
+    let mut beside: Vec<f64> = slopes.map(|slope| depth * slope).collect();
+    for joint in Joint::ALL {
+        if joint >= Joint::LeftUpperLeg {
+            beside[feature_offset(joint)..][..3].fill(0.0);
+        }
+    }
+    beside[FEATURE_COUNT] = -depth;
+    Some(LearnedCrouching {
+        model: CrouchModel {
+            beside: symmetric(&beside),
+            fastest: quantile(&mut sums.speeds).max(f64::MIN_POSITIVE),
+        },
+        secs: sums.secs,
+    })
+}
+
+impl Sums {
+    fn add(&mut self, clip: &Clip, skip: usize) {
+        let rate = clip.frame_rate_hz;
+        let (leg, height) = (clip.skeleton.mean_leg_length(), clip.skeleton.hip_height());
+        let poses = clip.poses.get(skip..).unwrap_or_default();
+        let upright: Vec<Upright> = poses
+            .iter()
+            .filter(|pose| pose.root_position.y > UPRIGHT_SHARE * height)
+            .map(|pose| Upright::new(&clip.skeleton, pose))
+            .collect();
+        if (upright.len() as f64) < LEAST_UPRIGHT_SECS * rate {
+            return;
+        }
+        let Some(standing) = Upright::mean(&upright) else {
+            return;
+        };
+        let reach = (0.5 * SPEED_SECS * rate) as usize;
+        for (index, pose) in poses.iter().enumerate() {
+            if pose.root_position.y > CROUCHED_SHARE * height {
+                continue;
+            }
+            let row = Upright::new(&clip.skeleton, pose).beside(&standing, leg);
+            let depth = -row[FEATURE_COUNT];
+            for (sum, value) in self.by_depth.iter_mut().zip(&row) {
+                *sum += depth * value;
+            }
+            self.squared += depth * depth;
+            self.depths.push(depth);
+            self.secs += 1.0 / rate;
+            let [from, to] = [
+                index.saturating_sub(reach),
+                (index + reach).min(poses.len() - 1),
+            ];
+            let way = poses[to].root_position - poses[from].root_position;
+            let secs = (to - from).max(1) as f64 / rate;
+            self.speeds
+                .push(f64::from(way.with_y(0.0).length() / leg) / secs);
+        }
+    }
+}
+
+fn quantile(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let index = (QUANTILE * values.len().saturating_sub(1) as f64) as usize;
+    values.get(index).copied().unwrap_or_default()
+}
