@@ -28,6 +28,10 @@ const EDGE_SLACK := 0.001
 ## A crouching character's capsule has this share of its height, after so long, seconds.
 const CROUCHED_HEIGHT := 0.65
 const CROUCH_SECS := 0.3
+## A wall that is nearer than this is jumped onto, metres.
+const WALL_REACH := 0.7
+## Somebody whom the wall's side has held up is where the jump goes after so long, seconds.
+const CATCH_UP_SECS := 0.1
 ## From the ground to what the camera looks at, as a share of the height.
 const EYE_HEIGHT := 0.8
 
@@ -58,7 +62,7 @@ const EYE_HEIGHT := 0.8
 @export_range(0.0, 0.5, 0.01, "suffix:s") var step_half_life := 0.15
 
 @export_group("Air")
-## Height of a jump; 0 for characters that do not.
+## Rise of the hips in a jump, and height of the highest wall that it jumps onto; 0 for characters that do not.
 @export_range(0.0, 2.0, 0.01, "or_greater", "suffix:m") var jump_height := 0.45
 ## Share of the control that is left in the air.
 @export_range(0.0, 20.0, 0.1, "suffix:m/s²") var air_acceleration := 3.0
@@ -73,7 +77,7 @@ const EYE_HEIGHT := 0.8
 
 ## Set to walk without a player: a direction on the ground, of length 0 to 1.
 var autopilot := Vector3.ZERO
-## Set to crouch without a player, where [GaitGenerator3D] can.
+## Set to crouch without a player.
 var crouches := false
 ## The generator that walks the character; null without one.
 var gait: GaitGenerator3D:
@@ -94,6 +98,9 @@ var _step_turn := 0.0
 var _step_secs := USUAL_STEP_SECS
 var _step_left := 0.0
 var _leaps := false
+## Whether the generator has the body in the air, in a jump of its own, and how far a wall has kept it from going with that.
+var _soars := false
+var _behind := Vector3.ZERO
 var _air_secs := 0.0
 
 @onready var _figure: GaitFigure = $Figure
@@ -130,15 +137,21 @@ func _physics_process(delta: float) -> void:
 		_camera.call(&"follow", _figure.global_position + Vector3.UP * EYE_HEIGHT * _standing_height)
 
 
-## Jumps, if it stands.
+## Jumps, if it is on the ground: onto a wall of which it stands in front, else up, or over what is ahead of somebody who walks or runs.
 func jump() -> void:
 	if not is_on_floor() or jump_height <= 0.0:
 		return
-	if gait and gait.has_method(&"jump"):
-		# It bends its knees first, and tells when it leaves the ground.
-		gait.call(&"jump", jump_height)
-	else:
-		_take_off()
+	var top := _wall_ahead() if gait else Vector3.INF
+	# It bends its knees first, and tells when it leaves the ground.
+	if gait and (gait.jump_to(top) if top.is_finite() else gait.jump(jump_height)):
+		return
+	_take_off()
+
+
+## Jumps to a place near by, in global space, such as the other side of a gap; see [method GaitGenerator3D.jump_to].
+func jump_to(place: Vector3) -> void:
+	if is_on_floor() and gait:
+		gait.jump_to(place)
 
 
 ## Puts the character elsewhere, standing still; nothing of the way there is seen.
@@ -163,8 +176,8 @@ func _wear() -> void:
 	if gait and not Engine.is_editor_hint():
 		gait.modification_processed.connect(_follow_steps)
 		gait.foothold_planned.connect(_begin_step)
-		if gait.has_signal(&"took_off"):
-			gait.connect(&"took_off", _take_off)
+		gait.took_off.connect(_rise)
+		gait.landed.connect(_come_down)
 	update_configuration_warnings()
 
 
@@ -223,16 +236,14 @@ func _begin_step(_foot: StringName, _place: Vector3, seconds: float) -> void:
 	_step_left = _step_secs
 
 
-## Crouches, where the generator can; under a low ceiling it stays down.
+## Crouches; under a low ceiling it stays down.
 func _crouch(delta: float) -> void:
-	if not &"crouch" in gait:
-		return
-	var down: float = gait.get(&"crouch")
+	var down := gait.crouch
 	var wanted := 1.0 if crouches or (player_controlled and GaitInput.is_pressed(&"crouch")) else 0.0
 	if wanted < down and test_move(global_transform, Vector3.UP * (_standing_height * (1.0 - CROUCHED_HEIGHT) * down)):
 		wanted = down
 	down = move_toward(down, wanted, delta / CROUCH_SECS)
-	gait.set(&"crouch", down)
+	gait.crouch = down
 	var capsule := _shape.shape as CapsuleShape3D
 	if capsule:
 		capsule.height = _standing_height * lerpf(1.0, CROUCHED_HEIGHT, down)
@@ -257,15 +268,22 @@ func _travel() -> void:
 		velocity = _flight(delta)
 	else:
 		velocity = _figure.global_basis * _steps.origin / delta
-		var climbs := _air_secs == 0.0 and _step_up(delta)
-		if climbs or is_on_floor():
-			fall = 0.0
+		if _soars:
+			fall = velocity.y
+			velocity += _behind / CATCH_UP_SECS
+		else:
+			var climbs := _air_secs == 0.0 and _step_up(delta)
+			if climbs or is_on_floor():
+				fall = 0.0
 	velocity.y = fall
+	var wanted := velocity * delta - _behind * (delta / CATCH_UP_SECS) + _behind
+	var from := global_position
 	move_and_slide()
+	_behind = (wanted - global_position + from) * Vector3(1, 0, 1) if _soars else Vector3.ZERO
 	rotation.y += _steps.basis.get_euler().y + get_platform_angular_velocity().y * delta
 	_steps = Transform3D.IDENTITY
 	_due = false
-	if not flies:
+	if not flies and not _soars:
 		_figure.stay_below(global_position.y - begin - carried)
 	_figure.follow(step_half_life, delta)
 	_stay_or_land(-fall, delta)
@@ -283,6 +301,35 @@ func _take_off() -> void:
 	jumped.emit()
 
 
+## The generator's jump leaves the ground.
+func _rise() -> void:
+	_soars = true
+	jumped.emit()
+
+
+## A foot of the generator's jump is where it was to land. Where there is no ground, the character falls on.
+func _come_down(_foot: StringName) -> void:
+	if _soars and (is_on_floor() or test_move(global_transform, Vector3.DOWN * step_height)):
+		landed.emit(-velocity.y)
+	_soars = false
+
+
+## The top of a wall ahead that is neither too high nor too narrow to stand on; infinite without one.
+func _wall_ahead() -> Vector3:
+	var capsule := _shape.shape as CapsuleShape3D
+	var radius := capsule.radius if capsule else 0.3
+	var ahead := _figure.global_basis.z.normalized()
+	if not test_move(global_transform.translated(Vector3.UP * step_height), ahead * WALL_REACH):
+		return Vector3.INF
+	# Nothing may be in the way above it, and it must be there to stand on.
+	var over := global_transform.translated(Vector3.UP * (jump_height + step_height))
+	var onto := ahead * (WALL_REACH + radius)
+	var down := KinematicCollision3D.new()
+	if test_move(over, onto) or not test_move(over.translated(onto), Vector3.DOWN * jump_height, down):
+		return Vector3.INF
+	return over.origin + onto + down.get_travel()
+
+
 func _flies() -> bool:
 	return _leaps or _air_secs > FALL_SECS
 
@@ -294,13 +341,17 @@ func _stay_or_land(fall: float, delta: float) -> void:
 			landed.emit(fall)
 		_leaps = false
 		_air_secs = 0.0
+	elif _soars:
+		_air_secs = 0.0
 	elif _air_secs > 0.0 or not test_move(global_transform, Vector3.DOWN * step_height):
 		# Above ground that is near, the capsule slides off an edge.
 		_air_secs += delta
-	if placement and placement.in_air != _flies():
-		placement.in_air = _flies()
-		# A generator that can jump knows what to do in the air.
-		gait.playing = not _flies() or gait.has_method(&"jump")
+	var airborne := _flies() or _soars
+	if placement and placement.in_air != airborne:
+		placement.in_air = airborne
+	if gait:
+		# It knows how to jump, but not how to fall.
+		gait.playing = not _flies()
 
 
 ## Climbs an edge that is low enough: a capsule alone would stop at it, and a slow one slide back off it. Returns whether there is

@@ -27,6 +27,7 @@ namespace Footfall
             public static readonly StringName TurnRate = "turn_rate";
             public static readonly StringName Direction = "direction";
             public static readonly StringName Gait = "gait";
+            public static readonly StringName Crouch = "crouch";
             public static readonly StringName SpineWeight = "spine_weight";
             public static readonly StringName HeadWeight = "head_weight";
             public static readonly StringName LeftArmWeight = "left_arm_weight";
@@ -55,6 +56,8 @@ namespace Footfall
             public static readonly StringName HandOver = "hand_over";
             public static readonly StringName IsFootOnGround = "is_foot_on_ground";
             public static readonly StringName IsHandedOver = "is_handed_over";
+            public static readonly StringName Jump = "jump";
+            public static readonly StringName JumpTo = "jump_to";
             public static readonly StringName Restart = "restart";
             public static readonly StringName Seek = "seek";
             public static readonly StringName SetState = "set_state";
@@ -68,7 +71,9 @@ namespace Footfall
             public static readonly StringName Footstep = "footstep";
             public static readonly StringName GaitChanged = "gait_changed";
             public static readonly StringName HandedOver = "handed_over";
+            public static readonly StringName Landed = "landed";
             public static readonly StringName TakenOver = "taken_over";
+            public static readonly StringName TookOff = "took_off";
         }
 
         /// <summary>Makes a new <c>GaitGenerator3D</c> in the engine.</summary>
@@ -146,6 +151,14 @@ namespace Footfall
         {
             get => (GaitMode)Native.Get(PropertyName.Gait).AsInt64();
             set => Native.Set(PropertyName.Gait, (long)value);
+        }
+
+        /// <summary>How low the character keeps, standing or walking: 0 upright, 1 as low as the model's people.</summary>
+        /// <remarks>Taken up at once and smoothly; feet stay where they are. Who crouches goes no faster than those people do, about 1 m/s at 1. A model that knows no crouch (any <c>.footdyn</c>, and <c>.footfall</c> files without <c>footfall train --crouching</c>) stays upright.</remarks>
+        public double Crouch
+        {
+            get => Native.Get(PropertyName.Crouch).AsDouble();
+            set => Native.Set(PropertyName.Crouch, value);
         }
 
         /// <summary>How much of the spine's pose is the walk's: at 0 <c>Spine</c>, <c>Chest</c> and <c>UpperChest</c> are posed by what else animates the skeleton, such as an <c>AnimationPlayer</c>, an <c>AnimationTree</c> or a script. Hips and legs always walk.</summary>
@@ -280,11 +293,26 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.HandedOver, Callable.From(value));
         }
 
+        /// <summary>A foot, <c>left</c> or <c>right</c>, lands after a jump: one after a leap, both after a jump off both feet. Not emitted in the editor.</summary>
+        /// <value>Handlers take <c>foot</c>.</value>
+        public event Action<StringName> Landed
+        {
+            add => Native.Connect(SignalName.Landed, Callable.From(value));
+            remove => Native.Disconnect(SignalName.Landed, Callable.From(value));
+        }
+
         /// <summary>Emitted when the pose from before <see cref="TakeOver"/> has faded: the pose is the walk's.</summary>
         public event Action TakenOver
         {
             add => Native.Connect(SignalName.TakenOver, Callable.From(value));
             remove => Native.Disconnect(SignalName.TakenOver, Callable.From(value));
+        }
+
+        /// <summary>The character leaves the ground in a jump. Not emitted in the editor.</summary>
+        public event Action TookOff
+        {
+            add => Native.Connect(SignalName.TookOff, Callable.From(value));
+            remove => Native.Disconnect(SignalName.TookOff, Callable.From(value));
         }
 
         /// <summary>Makes animations of this character's walk, which an <c>AnimationPlayer</c> or <c>AnimationTree</c> plays without the add-on: for a platform that the add-on is not built for, for another tool, or for a crowd of one's own. Returns <c>null</c> where the character cannot walk; the log says why.</summary>
@@ -328,6 +356,17 @@ namespace Footfall
 
         /// <summary>Whether the skeleton is left to other animation: after <see cref="HandOver"/>, until <see cref="TakeOver"/>.</summary>
         public bool IsHandedOver() => Native.Call(MethodName.IsHandedOver).AsBool();
+
+        /// <summary>Asks for one jump in which the hips rise <c>height</c> metres above where they were: 0.1 to 0.5 is what adults do.</summary>
+        /// <remarks>
+        /// <para>Who stands jumps off both feet at once; who walks or runs forwards leaps with the next step, off one foot onto the other; who goes sideways or backwards comes to a stand first. The body bends its knees, <see cref="TookOff"/> is emitted as it leaves the ground and <see cref="Landed"/> as it is back. A jump off both feet moves the character up and down by its root motion; a leap lifts the body above the character. Asking again while a jump is waited for or under way changes nothing.</para>
+        /// <para>Returns whether there will be a jump: not before the first frame of the walk, with a model that knows none (any <c>.footdyn</c>, and <c>.footfall</c> files without <c>footfall train --jumping</c>), or for a height that is none.</para>
+        /// </remarks>
+        public bool Jump(double height) => Native.Call(MethodName.Jump, height).AsBool();
+
+        /// <summary>Asks for one jump off both feet that lands at <c>position</c>, in global space: onto a wall, over a gap, down from a ledge. Who moves comes to a stand first. It does not turn: face the place before. It rises as high as the way needs.</summary>
+        /// <remarks>A place farther than people jump (about twice the length of the legs ahead, two thirds of it to the side or back, and six tenths of it up) is not reached; the jump goes as far as it can in that direction. Returns whether there will be a jump, as <see cref="Jump"/> does.</remarks>
+        public bool JumpTo(Vector3 position) => Native.Call(MethodName.JumpTo, position).AsBool();
 
         /// <summary>Starts the walk anew from <see cref="Seed"/> and <see cref="Phase"/>, where the character stands now. Also measures the skeleton anew.</summary>
         public void Restart() => Native.Call(MethodName.Restart);

@@ -107,7 +107,11 @@ fn assert_no_allocation(mut generator: GaitGenerator, seed: u64) {
             turn_rate_radps: 2.0 * wave,
             direction_rad: 4.0 * wave,
             gait: footfall_synth::GaitChoice::Auto,
+            crouch: wave.max(0.0),
         };
+        if frame % 150 == 0 {
+            generator.jump(0.3);
+        }
         let dt_secs = if frame % 1000 == 999 { 3.0 } else { 1.0 / 60.0 };
         let before = allocations();
         generator.step(dt_secs, &controls, &mut pose);
@@ -191,8 +195,8 @@ fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Worksh
 
 #[test]
 fn a_step_of_the_generator_allocates_nothing() {
-    // Without fine motion, with it, and with standing that lives.
-    for name in ["v1.footfall", "v3.footfall", "v4.footfall"] {
+    // Without fine motion, with it, with standing that lives, and with runs, jumps and crouches.
+    for name in ["v1.footfall", "v3.footfall", "v4.footfall", "v6.footfall"] {
         let read = |name: &str| std::fs::read(repository().join("tests/model_versions").join(name));
         let model = Arc::new(GaitModel::from_bytes(&read(name).unwrap()).unwrap());
         let switching = Arc::new(DynamicsModel::from_bytes(&read("v1.footdyn").unwrap()).unwrap());

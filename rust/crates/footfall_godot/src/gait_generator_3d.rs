@@ -10,6 +10,7 @@ mod foresight;
 mod gait_choice;
 mod leaving;
 mod methods;
+mod moves;
 mod problems;
 mod reign;
 mod rival;
@@ -106,6 +107,14 @@ pub(crate) struct GaitGenerator3D {
     /// as every `.footdyn`, walks. `get_current_gait()` tells which it is.
     #[export]
     gait: GaitMode,
+
+    /// How low the character keeps, standing or walking: 0 upright, 1 as low as the model's people.
+    ///
+    /// Taken up at once and smoothly; feet stay where they are. Who crouches goes no faster than those people do, about 1 m/s at 1. A model that knows
+    /// no crouch (any `.footdyn`, and `.footfall` files without `footfall train --crouching`) stays upright.
+    #[export(range = (0.0, 1.0, 0.01))]
+    #[var(set = set_crouch)]
+    crouch: f64,
 
     /// How much of the spine's pose is the walk's: at 0 `Spine`, `Chest` and `UpperChest` are posed by what else animates the skeleton, such
     /// as an `AnimationPlayer`, an `AnimationTree` or a script. Hips and legs always walk.
@@ -283,6 +292,14 @@ impl GaitGenerator3D {
     #[signal]
     fn gait_changed(gait: StringName);
 
+    /// The character leaves the ground in a jump. Not emitted in the editor.
+    #[signal]
+    fn took_off();
+
+    /// A foot, `left` or `right`, lands after a jump: one after a leap, both after a jump off both feet. Not emitted in the editor.
+    #[signal]
+    fn landed(foot: StringName);
+
     /// Emitted when the pose from before `take_over()` has faded: the pose is the walk's.
     #[signal]
     fn taken_over();
@@ -336,6 +353,13 @@ impl GaitGenerator3D {
         if direction.is_finite() {
             self.direction = direction;
             self.redraw_way();
+        }
+    }
+
+    #[func]
+    fn set_crouch(&mut self, crouch: f64) {
+        if crouch.is_finite() {
+            self.crouch = crouch.clamp(0.0, 1.0);
         }
     }
 

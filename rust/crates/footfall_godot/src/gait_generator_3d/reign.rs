@@ -183,7 +183,7 @@ impl GaitGenerator3D {
             } else {
                 self.gait.into()
             },
-            ..Controls::STAND
+            crouch: self.crouch as f32,
         }
     }
 }

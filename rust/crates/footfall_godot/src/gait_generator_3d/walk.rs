@@ -2,6 +2,7 @@
 
 use super::GaitGenerator3D;
 use super::gait_choice::name_of;
+use super::moves::Flight;
 use super::reign::Reign;
 use super::session::Session;
 use crate::gait_model::NO_STYLES;
@@ -109,6 +110,7 @@ impl GaitGenerator3D {
             self.rest(session);
             return;
         }
+        let jumped = session.generator.jump_phase();
         let (travel, arrived, out) = if self.reign == Reign::Leaving {
             let (travel, out) = session.go_out(&skeleton, delta.max(0.0));
             (travel, false, out)
@@ -137,6 +139,7 @@ impl GaitGenerator3D {
         };
         let foothold = session.next_foothold(&travel).filter(|_| !silent);
         let gait = session.generator.gait();
+        let flight = Flight::between(jumped, session.generator.jump_phase());
         self.session = Some(session);
         if arrived {
             self.signals().taken_over().emit();
@@ -145,9 +148,12 @@ impl GaitGenerator3D {
             self.reign = Reign::Away;
             self.signals().handed_over().emit();
         }
-        for (side, position) in footsteps {
+        for (side, position) in &footsteps {
             let foot = StringName::from(side.name());
-            self.signals().footstep().emit(&foot, position);
+            self.signals().footstep().emit(&foot, *position);
+        }
+        if !silent {
+            self.tell_flight(flight, &footsteps);
         }
         if gait != self.told_gait && !silent {
             self.told_gait = gait;

@@ -1,9 +1,11 @@
 use super::*;
+use crate::crouching::CrouchModel;
 use crate::fine_motion::{FINE_POINTS, FINE_TAPS, FineChance, FineMotion};
 use crate::gait_model::{
     GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepContext, StepModel,
     StepOffset, Variation,
 };
+use crate::jumping::{BESIDE_COUNT, JumpModel, JumpPhase};
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 use crate::standing::{Breath, Looks, SWAY_COUNT, StandingModel, SwayOctave};
 use footfall_core::{Side, Skeleton, StepPosition};
@@ -152,9 +154,53 @@ fn standing_survives_beside_every_version_of_the_walk() {
             ..model
         };
         let bytes = runner.to_bytes().unwrap();
-        assert_eq!(read_header(&bytes).unwrap().0, FORMAT_VERSION);
+        assert_eq!(read_header(&bytes).unwrap().0, FORMAT_5);
         assert_eq!(GaitModel::from_bytes(&bytes).unwrap(), runner);
         assert_eq!(runner.fingerprint().unwrap(), plain.fingerprint().unwrap());
+    }
+}
+
+/// A model of any version learns to jump, to crouch or both: everything survives, and styles fit as before.
+#[test]
+fn jumps_and_crouches_survive_beside_every_version() {
+    let row = |scale: f64| (0..BESIDE_COUNT).map(|i| scale * (i + 1) as f64).collect();
+    let phase = |scale: f64| JumpPhase {
+        secs: [scale, 0.25, -0.125],
+        knots: vec![
+            [row(scale), row(-scale), row(0.5)],
+            [row(2.0), row(1.0), row(scale)],
+        ],
+    };
+    let jump = JumpModel {
+        phases: [0.25, 0.5, 0.75, 1.0, 1.25].map(phase),
+        rise: [0.25, 0.5, 0.75],
+        way: [0.0, 0.5, 1.5],
+    };
+    let crouch = CrouchModel {
+        beside: row(-0.125),
+        fastest: 1.5,
+    };
+    let plain = sample();
+    let runner = GaitModel {
+        running: Some(Box::new(run_of(&plain))),
+        ..plain.clone()
+    };
+    for model in [&plain, &runner] {
+        for (jump, crouch) in [
+            (Some(&jump), None),
+            (None, Some(&crouch)),
+            (Some(&jump), Some(&crouch)),
+        ] {
+            let model = GaitModel {
+                jump: jump.cloned(),
+                crouch: crouch.cloned(),
+                ..model.clone()
+            };
+            let bytes = model.to_bytes().unwrap();
+            assert_eq!(read_header(&bytes).unwrap().0, FORMAT_VERSION);
+            assert_eq!(GaitModel::from_bytes(&bytes).unwrap(), model);
+            assert_eq!(model.fingerprint().unwrap(), plain.fingerprint().unwrap());
+        }
     }
 }
 
@@ -182,7 +228,7 @@ fn a_run_that_does_not_belong_to_its_walk_is_refused() {
     let said = refused(&|run| run.frame_rate_hz *= 2.0);
     assert!(said.contains("frame rate of the run"), "{said}");
     let said = refused(&|run| run.running = Some(Box::new(sample())));
-    assert!(said.contains("running or standing of the run"), "{said}");
+    assert!(said.contains("crouching of the run"), "{said}");
     let said = refused(&|run| run.steps[0].states[1].variance[3] = 0.0);
     assert!(said.contains("state 1"), "{said}");
 }

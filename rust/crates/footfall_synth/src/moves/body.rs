@@ -12,8 +12,17 @@ use glam::Vec3;
 /// A posture beside standing: see [`BESIDE_COUNT`].
 pub(super) type Beside = [f32; BESIDE_COUNT];
 
-/// Fraction of the straight leg that a leg which pushes off uses at most.
-const MOST_STRETCHED: f32 = 0.996;
+/// Fractions of the straight leg from which on heels rise as a leg pushes off, and that it uses at most.
+const STRETCHED: f32 = 0.95;
+const MOST_STRETCHED: f32 = 0.988;
+
+/// The same of a leg in the air, which straightens more.
+const STRETCHED_ALOFT: f32 = 0.975;
+const MOST_STRETCHED_ALOFT: f32 = 0.993;
+
+/// Steepest pitch of a foot on its toes, radians, and how often the interval in which a pitch lies is halved: to a ten-thousandth.
+const STEEPEST: f32 = 1.1;
+const HALVINGS: usize = 13;
 
 /// One body, ready to be moved.
 #[derive(Clone, Debug)]
@@ -72,28 +81,68 @@ impl Body {
         })
     }
 
-    /// Feet that stand on plants, moved by this much, at the pitch of a pose; nobody jumps on the heels.
-    pub(super) fn on_toes(&self, plants: &[Plant; 2], moved: Vec3, pose: &Pose) -> [FootTarget; 2] {
+    /// Feet that stand on plants, moved by this much, at the pitch of a pose: nobody jumps on the heels. Where `rise` is 1, heels rise as far as the legs
+    /// need it to reach the hips without being straight; where it is 0, legs may be straight.
+    pub(super) fn on_toes(
+        &self,
+        plants: &[Plant; 2],
+        moved: Vec3,
+        rise: f32,
+        pose: &Pose,
+    ) -> [FootTarget; 2] {
         let feet = self.feet(pose);
         core::array::from_fn(|side| {
-            let pitch = settled_pitch(foot_pitch(feet[side].foot).max(0.0));
+            let foot = &self.feet[side];
             let plant = Plant {
                 flat_ankle: plants[side].flat_ankle + moved,
                 ..plants[side]
             };
-            self.feet[side].stand(&plant, pitch)
+            let pitch = settled_pitch(foot_pitch(feet[side].foot).max(0.0)).min(STEEPEST);
+            let hip = pose.root_position + pose.rotation(Joint::Hips) * self.hip_from_hips[side];
+            let distance = |pitch: f32| hip.distance(foot.stand(&plant, pitch).ankle);
+            let length = self.leg_lengths[side];
+            let stretched = distance(pitch) / length;
+            let wanted = (stretched
+                + rise * (yielded(stretched, [STRETCHED, MOST_STRETCHED]) - stretched))
+                * length;
+            let (mut low, mut high) = (pitch, STEEPEST);
+            if rise > 0.0 && distance(low) > wanted {
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (low + high);
+                    if distance(middle) > wanted {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+            }
+            foot.stand(&plant, low)
         })
     }
 
-    /// Greatest height of the hips of a pose from which both legs reach these feet without being quite straight, metres.
-    pub(super) fn highest(&self, pose: &Pose, targets: &[FootTarget; 2]) -> f32 {
+    /// Greatest height of the hips of a pose from which both legs reach feet on the very tips of their toes, metres.
+    pub(super) fn highest(&self, pose: &Pose, plants: &[Plant; 2]) -> f32 {
         let hips = pose.root_position;
-        let limits = Side::BOTH.map(|side| {
-            let hip = pose.rotation(Joint::Hips) * self.hip_from_hips[side.index()];
-            let (ankle, length) = (targets[side.index()].ankle, self.leg_lengths[side.index()]);
-            reach_height(hips, hip, ankle, length, MOST_STRETCHED).unwrap_or(hips.y)
+        let limits = [0, 1].map(|side: usize| {
+            let hip = pose.rotation(Joint::Hips) * self.hip_from_hips[side];
+            let ankle = self.feet[side].stand(&plants[side], STEEPEST).ankle;
+            let reach = self.leg_lengths[side];
+            reach_height(hips, hip, ankle, reach, MOST_STRETCHED).unwrap_or(hips.y)
         });
         limits[0].min(limits[1])
+    }
+
+    /// Draws feet in the air nearer to the hips of a pose where its legs would be straight.
+    pub(super) fn within_reach(&self, pose: &Pose, targets: &mut [FootTarget; 2]) {
+        for (side, target) in targets.iter_mut().enumerate() {
+            let hip = pose.root_position + pose.rotation(Joint::Hips) * self.hip_from_hips[side];
+            let way = target.ankle - hip;
+            let stretched = way.length() / self.leg_lengths[side];
+            if stretched > STRETCHED_ALOFT {
+                let bounds = [STRETCHED_ALOFT, MOST_STRETCHED_ALOFT];
+                target.ankle = hip + way * (yielded(stretched, bounds) / stretched);
+            }
+        }
     }
 
     /// Solves the legs to where the feet have to be.
@@ -103,4 +152,12 @@ impl Body {
             leg.solve(hips, rotation, target, pose);
         }
     }
+}
+
+/// How far a leg is stretched that would be stretched so far, as fractions of the straight leg: from the first bound on ever harder, so that no knee
+/// snaps, and never beyond the second.
+fn yielded(fraction: f32, [from, most]: [f32; 2]) -> f32 {
+    let beyond = (fraction - from).max(0.0);
+    let room = most - from;
+    fraction.min(from) + room * (1.0 - (-beyond / room).exp())
 }

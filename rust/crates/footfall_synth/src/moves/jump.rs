@@ -232,20 +232,24 @@ impl JumpMoment {
         let mut moved = turned(phase, s);
         let landing = course.way();
         let targets = match phase {
-            DIP | PUSH => body.on_toes(&plants, Vec3::ZERO, &moved),
+            DIP => body.on_toes(&plants, Vec3::ZERO, 0.0, &moved),
+            PUSH => body.on_toes(&plants, Vec3::ZERO, smooth_step(s), &moved),
             FLIGHT => {
                 let ends = [turned(PUSH, 1.0), turned(ABSORPTION, 0.0)];
                 let places = [Vec3::ZERO, landing];
                 let planted: [[FootTarget; 2]; 2] =
-                    core::array::from_fn(|end| body.on_toes(&plants, places[end], &ends[end]));
+                    core::array::from_fn(|end| body.on_toes(&plants, places[end], 1.0, &ends[end]));
                 let free = ends.each_ref().map(|pose| body.feet(pose));
                 let now = body.feet(&moved);
-                core::array::from_fn(|side| {
+                let mut targets = core::array::from_fn(|side| {
                     let ends = [0, 1].map(|end| (&planted[end][side], &free[end][side]));
                     in_flight(&now[side], ends, s)
-                })
+                });
+                body.within_reach(&moved, &mut targets);
+                targets
             }
-            _ => body.on_toes(&plants, landing, &moved),
+            ABSORPTION => body.on_toes(&plants, landing, 1.0 - smooth_step(s), &moved),
+            _ => body.on_toes(&plants, landing, 0.0, &moved),
         };
         body.stand(&targets, &mut moved);
         let place = course.place(phase, s);

@@ -21,6 +21,9 @@ const MOST_LIFT_MPS: f32 = 0.3;
 const LEAP_SECS: f32 = 0.22;
 const LEAP_SPEED_SHARE: f32 = 0.85;
 
+/// Fraction of the straight leg at which a foot that leaps leaves the ground: hips rise so fast then that a knee would snap straight.
+const LEAP_EXTENSION: f32 = 0.98;
+
 /// A foot in the air between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Airborne {
@@ -71,8 +74,7 @@ impl Planter {
         };
         let [begin, leaves] = [0, take_off].map(|frame| out[frame].pose.root_position);
         let mut pace = (leaves - begin) / take_off as f32;
-        let flight_secs = (timing.frames - take_off) as f32 * self.frame_secs;
-        if flight_secs > LEAP_SECS {
+        if self.flight_secs(timing) > LEAP_SECS {
             let along = pace.with_y(0.0).normalize_or_zero();
             let entry = self.state.hips_velocity.unwrap_or_default().dot(along);
             let missing = (LEAP_SPEED_SHARE * entry * self.frame_secs - pace.dot(along)).max(0.0);
@@ -87,6 +89,12 @@ impl Planter {
         for (passed, frame) in out[take_off..=timing.frames].iter_mut().enumerate() {
             frame.pose.root_position = leaves + passed as f32 * pace;
         }
+    }
+
+    /// Time from the take-off to the end of the step, seconds.
+    fn flight_secs(&self, timing: &StepTiming) -> f32 {
+        let frames = timing.take_off.map_or(0, |last| timing.frames - last);
+        frames as f32 * self.frame_secs
     }
 
     /// Puts the hips on their parabola, and lets the standing leg push them off at its speed.
@@ -127,7 +135,12 @@ impl Planter {
     ) -> Option<usize> {
         let take_off = timing.take_off?;
         let side = timing.leading.index();
-        let reach = LET_GO_EXTENSION * self.leg_lengths[side];
+        let extension = if self.flight_secs(timing) > LEAP_SECS {
+            LEAP_EXTENSION
+        } else {
+            LET_GO_EXTENSION
+        };
+        let reach = extension * self.leg_lengths[side];
         let beyond = (2..=take_off).find(|index| {
             let frame = &frames[*index];
             let leg = &raw[*index].legs[side];
@@ -156,7 +169,8 @@ impl Planter {
                 let free = free_foot(&raw[index], side, hips, frame.level);
                 (raw[index].legs[side.index()].target, free)
             });
-            let swing = Swing::departing(&ends, timing, take_off, self.frame_secs);
+            let leaps = self.flight_secs(timing) > LEAP_SECS;
+            let swing = Swing::departing(&ends, timing, take_off, leaps, self.frame_secs);
             self.fill_swing(raw, side, take_off + 1..timing.frames + 1, &swing, frames);
             let at = |frame: usize| raw[frame].legs[side.index()].target;
             Airborne {

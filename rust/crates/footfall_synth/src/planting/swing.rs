@@ -22,8 +22,8 @@ const MAX_LANDING_MPS: f32 = 1.2;
 /// Part of the swing by which a foot is free of how it stood.
 const FREED_BY: f32 = 0.3;
 
-/// A foot that takes off has forgotten how it stood after so long, seconds.
-const LONGEST_DEPARTURE_SECS: f32 = 0.6;
+/// A foot that leaps has forgotten how it stood after so long, seconds: hips rise fast, and its leg is drawn after them at once.
+const LEAP_DEPARTURE_SECS: f32 = 0.5;
 
 /// Over this time at most a faster foot is braked, seconds.
 const BRAKING_SECS: f32 = 0.16;
@@ -89,14 +89,19 @@ impl Swing {
         ends: &[(FootTarget, FootTarget); 2],
         timing: &StepTiming,
         take_off: usize,
+        leaps: bool,
         frame_secs: f32,
     ) -> Self {
         let flight = timing.frames - take_off;
         // The next step is about as long as this one; that after a leap is not.
         let frames = (flight + timing.frames) as f32;
-        let frames = frames.min((LONGEST_DEPARTURE_SECS / frame_secs).max(1.0));
+        let frames = if leaps {
+            (LEAP_DEPARTURE_SECS / frame_secs).max(1.0)
+        } else {
+            frames
+        };
         Self {
-            freed_after: frames.min(flight as f32),
+            freed_after: if leaps { 0.0 } else { flight as f32 },
             ..Self::between(ends, None, take_off, frames)
         }
     }

@@ -30,6 +30,26 @@ fn rise(before: &[Frame], frames: &[Frame]) -> f32 {
     frames.iter().map(hips).fold(0.0, f32::max) - level
 }
 
+/// No joint's velocity changes by more between two frames than in captured jumps (seven of the CMU corpus and the O3DE take, 60 fps): hips 30 to 63 mm a
+/// frame, knees 22 to 91, feet 89 to 183 as they land.
+fn assert_no_pop(frames: &[Frame]) {
+    for (index, triple) in frames.windows(3).enumerate() {
+        for (joint, most) in [
+            (Joint::Hips, 0.02),
+            (Joint::Head, 0.025),
+            (Joint::LeftHand, 0.05),
+            (Joint::LeftLowerLeg, 0.065),
+            (Joint::RightLowerLeg, 0.065),
+            (Joint::LeftFoot, 0.08),
+            (Joint::RightFoot, 0.08),
+        ] {
+            let [a, b, c] = [0, 1, 2].map(|at: usize| triple[at].model.position(joint));
+            let jolt = (a - 2.0 * b + c).length();
+            assert!(jolt < most, "{joint:?} by {jolt} m in frame {index}");
+        }
+    }
+}
+
 fn assert_ballistic(frames: &[Frame]) {
     let mut flown = 0;
     for window in frames.windows(3) {
@@ -59,8 +79,7 @@ fn who_stands_jumps_as_high_as_asked_on_a_parabola() {
         assert!((risen / asked - 1.0).abs() < 0.05, "{risen} for {asked} m");
         assert_ballistic(&frames);
         assert_planted_within(&skeleton, &frames, 0.005);
-        // 30 cm of foot from the push into the flight, at 150 m/s² captured ones.
-        assert_smooth(&frames, 0.042);
+        assert_no_pop(&frames);
         assert_eq!(footsteps.len(), 2, "both feet land");
         assert!(generator.is_standing() && generator.jump_phase().is_none());
         let way = generator.start_from_character().position.length();
@@ -112,8 +131,7 @@ fn a_jump_lands_where_it_was_sent() {
         assert_eq!(footsteps.len(), 2);
         assert!((footsteps[0].position.y - place.y).abs() < 1e-4);
         assert_ballistic(&frames);
-        // A wall half as high as the leg is long is stepped onto with bent knees, and smoothly.
-        assert_smooth(&frames, 0.06);
+        assert_no_pop(&frames);
         run(&mut generator, &skeleton, &walking(1.3), 120);
         let height = generator.start_from_character().position.y;
         assert!((height - place.y).abs() < 1e-4, "walks on at {height}");
@@ -142,7 +160,7 @@ fn walkers_and_runners_leap() {
         let aloft = frames.iter().filter(|f| f.contact == [false; 2]).count();
         assert!(aloft > 15, "{aloft} frames in the air at {speed} m/s");
         assert_planted_within(&skeleton, &frames, 0.06);
-        assert_smooth(&frames, 0.042);
+        assert_no_pop(&frames);
         let way = (frames.last().unwrap().place - frames[0].place).length() / 2.5;
         assert!(way > 0.75 * speed, "{way} m/s of {speed}");
     }

@@ -27,6 +27,11 @@ const LEAST_FALL_M: f32 = 0.02;
 /// Legs that take up a fall evenly need the time to do so on their way; they need at least this share of it.
 const ABSORPTION_SHARE: f32 = 0.9;
 
+/// Falls faster than recorded ones, m/s, are taken up so much deeper, metres by m/s, and at most so much, leg lengths.
+const USUAL_FALL_MPS: f32 = 2.8;
+const SINK_SECS: f32 = 0.09;
+const DEEPEST_SINK: f32 = 0.3;
+
 /// The character begins to go this long before take-off and is there as long after landing, seconds.
 const SHIFT_SECS: f32 = 0.12;
 
@@ -45,6 +50,8 @@ pub(crate) struct Course {
     speeds: [Vec3; 2],
     /// What the model's own way lacks of both, at the end of the push and at the beginning of the absorption: metres, and metres a phase.
     missing: [[Vec3; 2]; 2],
+    /// How much deeper than in recorded jumps the legs take up the fall, metres.
+    sink: f32,
     leg: f32,
 }
 
@@ -78,7 +85,8 @@ impl Course {
         let fall = (2.0 * GRAVITY_MPS2 * (apex - up - ends[1].y)).sqrt();
         timing.secs[FLIGHT] = (push + fall) / GRAVITY_MPS2;
         let lowest = leg * hips_of(&tables.beside(ABSORPTION, 1.0, &timing)).y;
-        let even_secs = 2.0 * (ends[1].y - lowest) / fall;
+        let sink = (SINK_SECS * (fall - USUAL_FALL_MPS)).clamp(0.0, DEEPEST_SINK * leg);
+        let even_secs = 2.0 * (ends[1].y - lowest + sink) / fall;
         timing.secs[ABSORPTION] = timing.secs[ABSORPTION].max(ABSORPTION_SHARE * even_secs);
         let way = over_ground.with_y(up);
         let drift = (way + ends[1] - ends[0]) / timing.secs[FLIGHT];
@@ -96,6 +104,7 @@ impl Course {
             ends,
             speeds,
             missing,
+            sink,
             leg,
         }
     }
@@ -113,8 +122,11 @@ impl Course {
                 let fall = 0.5 * GRAVITY_MPS2 * t * t * Vec3::Y;
                 self.ends[0] + self.speeds[0] * t - fall
             }
-            ABSORPTION => self.way + own + hermite(on, speed_on, none, none, s),
-            _ => self.way + own,
+            ABSORPTION => {
+                let lowest = -self.sink * Vec3::Y;
+                self.way + own + hermite(on, speed_on, lowest, none, s)
+            }
+            _ => self.way + own - self.sink * (1.0 - smooth_step(s)) * Vec3::Y,
         }
     }
 
@@ -151,8 +163,7 @@ fn highest(tables: &JumpTables, body: &Body, beside: &Beside, end: Vec3) -> f32 
     let plants = body.plants(&pose);
     Body::turn(beside, &mut pose);
     pose.root_position += end;
-    let targets = body.on_toes(&plants, Vec3::ZERO, &pose);
-    body.highest(&pose, &targets) - up
+    body.highest(&pose, &plants) - up
 }
 
 impl JumpTables {

@@ -58,7 +58,7 @@ fn the_course_goes_through_every_knot_and_is_smooth_where_phases_meet() {
                 );
             }
         }
-        let step = 1e-2;
+        let step = 2e-3;
         let per_sec = |from: f32, to: f32| -> Beside {
             let [a, b] = [from, to].map(|s| tables.beside(phase, s, &timing));
             core::array::from_fn(|dim| (b[dim] - a[dim]) / ((to - from) * timing.secs[phase]))

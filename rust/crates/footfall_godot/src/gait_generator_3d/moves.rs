@@ -1,0 +1,79 @@
+//! Jumps of a character: asking for them, and telling when they leave the ground and land.
+
+use super::GaitGenerator3D;
+use super::session::Session;
+use crate::convert;
+use footfall_core::Side;
+use footfall_synth::JumpPhase;
+use glam::Vec3;
+use godot::prelude::*;
+
+/// What became of a jump within a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Flight {
+    pub(super) took_off: bool,
+    pub(super) landed: bool,
+}
+
+impl Flight {
+    /// What a frame made of a body that was in this phase of a jump before.
+    pub(super) fn between(before: Option<JumpPhase>, now: Option<JumpPhase>) -> Self {
+        let [flew, flies] = [before, now].map(|phase| phase == Some(JumpPhase::Flight));
+        Self {
+            took_off: flies && !flew,
+            landed: flew && !flies,
+        }
+    }
+}
+
+#[godot_api(secondary)]
+impl GaitGenerator3D {
+    /// Asks for one jump in which the hips rise `height` metres above where they were: 0.1 to 0.5 is what adults do.
+    ///
+    /// Who stands jumps off both feet at once; who walks or runs forwards leaps with the next step, off one foot onto the other; who goes sideways
+    /// or backwards comes to a stand first. The body bends its knees, `took_off` is emitted as it leaves the ground and `landed` as it is back. A
+    /// jump off both feet moves the character up and down by its root motion; a leap lifts the body above the character. Asking again while a jump is
+    /// waited for or under way changes nothing.
+    ///
+    /// Returns whether there will be a jump: not before the first frame of the walk, with a model that knows none (any `.footdyn`, and
+    /// `.footfall` files without `footfall train --jumping`), or for a height that is none.
+    #[func]
+    fn jump(&mut self, height: f64) -> bool {
+        self.with_session(|session| {
+            let scale = session.traveller.scale();
+            session.generator.jump(height as f32 / scale)
+        })
+    }
+
+    /// Asks for one jump off both feet that lands at `position`, in global space: onto a wall, over a gap, down from a ledge. Who moves comes to a stand
+    /// first. It does not turn: face the place before. It rises as high as the way needs.
+    ///
+    /// A place farther than people jump (about twice the length of the legs ahead, two thirds of it to the side or back, and six tenths of it up) is not
+    /// reached; the jump goes as far as it can in that direction. Returns whether there will be a jump, as `jump()` does.
+    #[func]
+    fn jump_to(&mut self, position: Vector3) -> bool {
+        self.with_session(|session| {
+            let ground = session.traveller.world_from_ground();
+            let from_ground = convert::vec3(position) - ground.position;
+            let place: Vec3 = ground.rotation.inverse() * from_ground;
+            session.generator.jump_to(place / session.traveller.scale())
+        })
+    }
+
+    fn with_session(&mut self, ask: impl FnOnce(&mut Session) -> bool) -> bool {
+        self.session.as_mut().is_some_and(ask)
+    }
+
+    /// Emits what became of a jump.
+    pub(super) fn tell_flight(&mut self, flight: Flight, footsteps: &[(Side, Vector3)]) {
+        if flight.took_off {
+            self.signals().took_off().emit();
+        }
+        if flight.landed {
+            for (side, _) in footsteps {
+                let foot = StringName::from(side.name());
+                self.signals().landed().emit(&foot);
+            }
+        }
+    }
+}
