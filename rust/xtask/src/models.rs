@@ -56,6 +56,14 @@ const RUNNING: [&str; 6] = [
     "path!=*Jumps*",
 ];
 
+/// Where people jump off both feet, and where one actor crouches: other crouches are none that is held.
+const MOVES: [&str; 4] = [
+    "--jumping",
+    "path=cmu/*jump*",
+    "--crouching",
+    "path=o3de/Crouching1.bvh",
+];
+
 /// These, and how walks begin and end, but for the dancer's manner of subject 131.
 const WALKS_WITH_ENDS: [&str; 6] = [
     "--where",
@@ -89,9 +97,10 @@ pub(crate) fn command() -> Result<()> {
         .args(WALKS_WITH_ENDS)
         .args(STANDING)
         .args(RUNNING)
+        .args(MOVES)
         .args([
             "--describe",
-            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), walks and how they begin and end; standing from ReActIdle (github.com/Enekoassets/ReActIdle) and the O3DE Motion Matching gem, running and crouching from the latter",
+            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), walks and how they begin and end, and jumps; standing from ReActIdle (github.com/Enekoassets/ReActIdle) and the O3DE Motion Matching gem, running and crouching from the latter",
             "-o",
             WALK,
         ]);

@@ -77,6 +77,35 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A walker jumps when it is asked to, to a height or to a place, and [`GaitGenerator::jump_phase`] is the [`JumpPhase`] that it is in. [`Controls::crouch`]
+//! keeps it low.
+//!
+//! ```
+//! use footfall::body::Pose;
+//! use footfall::gait::{Controls, GaitGenerator, GeneratorConfig, JumpPhase, StyleSpace};
+//! use footfall::glam::Vec3;
+//! use footfall::model::GaitModel;
+//! use std::sync::Arc;
+//!
+//! # std::env::set_current_dir("../../..")?;
+//! let model = Arc::new(GaitModel::from_bytes(&std::fs::read("addons/footfall/models/locomotion.footfall")?)?);
+//! let styles = Arc::new(StyleSpace::new(&model, &[])?);
+//! let body = model.skeleton.clone();
+//! let config = GeneratorConfig { seed: 1, phase: 0.0, variation: 1.0 };
+//! let mut jumper = GaitGenerator::new(&styles, &[], &body, &config)?;
+//! jumper.stand();
+//! // Onto a stone 30 cm high, 60 cm ahead.
+//! assert!(jumper.jump_to(Vec3::new(0.0, 0.3, 0.6)));
+//! let mut pose = Pose::rest(&body);
+//! let mut flew = false;
+//! for _ in 0..150 {
+//!     jumper.step(1.0 / 60.0, &Controls { crouch: 0.5, ..Controls::STAND }, &mut pose);
+//!     flew |= jumper.jump_phase() == Some(JumpPhase::Flight);
+//! }
+//! assert!(flew && (jumper.start_from_character().position.y - 0.3).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! [`StateError`] says why a state cannot be taken up; the walker then goes on as before.
 //!
 //! A generator of a [`DynamicsModel`](crate::model::DynamicsModel) is made by [`GaitGenerator::switching`] and used in the same way.
@@ -175,7 +204,7 @@
 pub use footfall_core::{EventKind, FrameSpan, GaitEvent};
 pub use footfall_synth::{
     Controls, Detail, Footstep, Gait, GaitChoice, GaitGenerator, GeneratorConfig, GroundTransform,
-    LoopedWalk, Move, StandConfig, StateError, StyleSpace, SwitchingWalkConfig, SynthError,
-    SynthesizedWalk, WalkConfig, synthesize, synthesize_moves, synthesize_standing,
+    JumpPhase, LoopedWalk, Move, StandConfig, StateError, StyleSpace, SwitchingWalkConfig,
+    SynthError, SynthesizedWalk, WalkConfig, synthesize, synthesize_moves, synthesize_standing,
     synthesize_switching,
 };

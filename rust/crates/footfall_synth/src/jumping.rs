@@ -5,7 +5,7 @@
 
 use crate::gait::WIDEST_RUN_RAD;
 use crate::generator::{Controls, Footstep, GaitGenerator};
-use crate::moves::{JumpPhase, Leap};
+use crate::moves::{JumpPhase, Leap, Moves};
 use crate::steps::Steps;
 use footfall_core::Side;
 use footfall_core::rotation::from_heading;
@@ -49,7 +49,7 @@ impl GaitGenerator {
     }
 
     fn ask_jump(&mut self, leap: Leap) -> bool {
-        let possible = self.moves.as_ref().is_some_and(|moves| moves.can_jump());
+        let possible = self.moves.as_ref().is_some_and(Moves::can_jump);
         let sensible = leap.way.is_finite() && leap.rise_m.is_finite();
         if !possible || !sensible || leap.rise_m < LEAST_RISE_M {
             return false;
@@ -62,7 +62,7 @@ impl GaitGenerator {
 
     /// The phase of the jump that is under way; nothing while it is waited for.
     pub fn jump_phase(&self) -> Option<JumpPhase> {
-        let both = self.moves.as_ref().and_then(|moves| moves.phase());
+        let both = self.moves.as_ref().and_then(Moves::phase);
         both.or_else(|| self.leap_phase())
     }
 
@@ -152,7 +152,7 @@ impl GaitGenerator {
     /// Reports both feet where a jump has put them.
     fn report_landing(&mut self) {
         let faced = self.plan_from_start.local(&self.plan_from_character());
-        let Some(way) = self.moves.as_ref().and_then(|moves| moves.way()) else {
+        let Some(way) = self.moves.as_ref().and_then(Moves::way) else {
             return;
         };
         for side in Side::BOTH {

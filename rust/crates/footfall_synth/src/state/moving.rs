@@ -2,7 +2,7 @@
 
 use super::is_reasonable;
 use crate::generator::GaitGenerator;
-use crate::moves::{CrouchMoment, Leap};
+use crate::moves::{CrouchMoment, Leap, Moves};
 use crate::steps::Steps;
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ impl Moving {
         let (crouch, jump) = generator
             .moves
             .as_ref()
-            .map_or_else(Default::default, |moves| moves.moment());
+            .map_or_else(Default::default, Moves::moment);
         Self {
             crouch: [crouch.amount, crouch.speed],
             jump: jump.map(|(leap, secs)| (numbers_of(&leap), secs)),
