@@ -11,6 +11,7 @@ mod support;
 mod surge;
 mod swing;
 mod travel;
+mod urge;
 
 use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
@@ -23,6 +24,7 @@ use footfall_core::{Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
 use glam::{Quat, Vec3};
 use swing::Swing;
+pub(crate) use urge::SpeedChange;
 
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
 const MAX_LANDING_EXTENSION: f32 = 0.985;
@@ -151,6 +153,8 @@ pub(crate) struct Course {
     pub(crate) turn_rate: f32,
     /// Headings of the features from where the walker faces, before the step and after it, radians.
     pub(crate) facing: [f32; 2],
+    /// How the speed changes within it.
+    pub(crate) change: SpeedChange,
 }
 
 impl Planter {

@@ -2,7 +2,7 @@
 
 use crate::detail::Detail;
 use crate::plan::StepShape;
-use crate::planting::{Course, PlantedFrame, Planter, PlanterState};
+use crate::planting::{Course, PlantedFrame, Planter, PlanterState, SpeedChange};
 use crate::raw::RawFrame;
 use crate::standing::Amplitude;
 use crate::strafe::{Strafe, sway};
@@ -28,6 +28,8 @@ pub(crate) struct Placing<'a> {
     pub(crate) facing: [f32; 2],
     /// Travel to the left and forwards from where the walker faces, m/s.
     pub(crate) velocity_mps: Vec2,
+    /// That of the step before.
+    pub(crate) velocity_before_mps: Vec2,
 }
 
 /// A body whose foot lands.
@@ -138,6 +140,7 @@ impl Stage {
         let course = Course {
             turn_rate: placing.turn_rate,
             facing: placing.facing,
+            change: placing.change(),
         };
         planter.set_frame_secs(frame_secs);
         planter.set_stride(stride);
@@ -151,6 +154,12 @@ impl Stage {
 }
 
 impl Placing<'_> {
+    /// How the speed changes from the step before to the end of this one.
+    fn change(&self) -> SpeedChange {
+        let Amplitude { from, to } = self.shape.amplitude;
+        SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps)
+    }
+
     /// The standing posture at part `s` of the step, and what there is of the walk on top of it.
     fn grown(&self, walking: &[f32], s: f32) -> (Posture, Posture) {
         let amplitude = self.shape.amplitude.at(s);

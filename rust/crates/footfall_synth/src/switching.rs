@@ -278,6 +278,7 @@ impl SwitchingSteps {
                 turn_rate: self.origin.turn_rate,
                 facing: self.origin.facing,
                 velocity_mps: self.velocity_mps,
+                velocity_before_mps: self.velocity_mps,
             },
             &mut self.raw,
         );

@@ -5,7 +5,7 @@ use crate::fine_motion::{FineBench, FineTables, neighbours};
 use crate::gait::{Gait, GaitChoice};
 use crate::pace::PaceTable;
 use crate::plan::{Manner, Planner, StepDraw, StepPlan};
-use crate::planting::{Course, PlantedFrame, Planter};
+use crate::planting::{Course, PlantedFrame, Planter, SpeedChange};
 use crate::raw::RawFrame;
 use crate::recording;
 use crate::space::StyleSpace;
@@ -175,6 +175,7 @@ pub(crate) fn put_on_ground(
     let course = Course {
         turn_rate: config.turn_rate_radps,
         facing: [facing; 2],
+        change: SpeedChange::default(),
     };
     let mut poses: Vec<Pose> = Vec::new();
     let mut stances: [Vec<[f64; 2]>; 2] = [vec![], vec![]];

@@ -50,6 +50,8 @@ pub(crate) struct Origin {
     /// The manner and the facing of the step before.
     pub(crate) manner_before: Manner,
     pub(crate) facing_before: f32,
+    /// Velocity of the step before.
+    pub(crate) velocity_before_mps: Vec2,
     /// The feet before the step; `None` for the first.
     pub(crate) planter: Option<PlanterState>,
     pub(crate) tie: [f32; TIE_LEN],
@@ -96,6 +98,7 @@ impl Walker {
                 request: nothing,
                 manner_before: nothing.manner,
                 facing_before: 0.0,
+                velocity_before_mps: Vec2::ZERO,
                 planter: None,
                 tie: [0.0; TIE_LEN],
             },
@@ -122,6 +125,7 @@ impl Walker {
         self.origin.request = request;
         self.origin.manner_before = request.manner;
         self.origin.facing_before = request.facing;
+        self.origin.velocity_before_mps = request.velocity_mps;
         self.origin.planter = None;
         for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
             planner.realise(draw, request.manner, &blend.statistics, plan);
@@ -204,6 +208,7 @@ impl Walker {
             request,
             manner_before: self.origin.request.manner,
             facing_before: self.origin.request.facing,
+            velocity_before_mps: self.origin.request.velocity_mps,
             planter: self.stage.planter_state(),
             tie: self.end,
         }
@@ -326,6 +331,7 @@ impl Walker {
             turn_rate: self.origin.request.turn_rate,
             facing: [self.origin.facing_before, self.origin.request.facing],
             velocity_mps: self.origin.request.velocity_mps,
+            velocity_before_mps: self.origin.velocity_before_mps,
         };
         let Workbench {
             trajectory,

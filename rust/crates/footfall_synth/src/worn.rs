@@ -17,6 +17,13 @@ use footfall_model::GaitModel;
 use glam::Vec2;
 use std::sync::Arc;
 
+/// Steps that start a walk and that end one take this long at most, seconds.
+const FIRST_SECS: f64 = 0.45;
+const LAST_SECS: f64 = 0.4;
+
+/// The speed that a first step reaches at most, m/s.
+const FIRST_MPS: f32 = 2.0;
+
 /// A mixture of styles, and how fast each of its gaits goes on this body.
 #[derive(Debug)]
 pub(crate) struct Worn {
@@ -83,15 +90,20 @@ impl Worn {
             amplitude.to = 1.0;
         }
         let position = position_after(before.manner.position, amplitude);
-        if amplitude.to >= 1.0 && model.context(position, side).is_some() {
-            // The model knows how this step gets to the speed of the walk.
-            *velocity_mps = ask.velocity_mps.clamp_length_max(self.first_mps());
-        } else if amplitude.to >= 1.0 || model.context(position, side).is_none() {
+        let sets_out = amplitude.from < 1.0 && amplitude.to >= 1.0;
+        if sets_out {
+            let most = if self.run.is_some() {
+                FIRST_MPS
+            } else {
+                FASTEST_WALK_MPS
+            };
+            *velocity_mps = ask.velocity_mps.clamp_length_max(most);
+        } else if amplitude.to >= 1.0 {
             *velocity_mps = ask.velocity_after(*velocity_mps, gait_before);
         }
         let gait = self.gait(ask, gait_before, amplitude, *velocity_mps);
         *velocity_mps = velocity_mps.clamp_length_max(gait.fastest_mps());
-        let (pace, facing, stepped) = match (gait, &self.run) {
+        let (mut pace, facing, stepped) = match (gait, &self.run) {
             (Gait::Run, Some(run)) => {
                 let speed = velocity_mps.length();
                 // The body turns to where it runs.
@@ -105,10 +117,14 @@ impl Worn {
                 *velocity_mps,
             ),
         };
+        if gait == Gait::Walk && amplitude.from != amplitude.to {
+            let most = if sets_out { FIRST_SECS } else { LAST_SECS };
+            pace = self.walk.within(pace, most);
+        }
         let request = Request {
             manner: Manner {
                 pace,
-                position,
+                position: StepPosition::Inside,
                 detail: ask.detail,
             },
             amplitude,

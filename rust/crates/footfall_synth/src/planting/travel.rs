@@ -62,7 +62,7 @@ impl Planter {
             }
         }
         Self::drift(timing, out);
-        self.even(timing, out);
+        self.even(timing, course.change, out);
         self.glide(timing, out);
     }
 

@@ -116,6 +116,7 @@ impl State {
             },
             manner_before: manner(0),
             facing_before: self.facing[0],
+            velocity_before_mps: self.velocity_mps.into(),
             planter: self.feet.as_ref().map(|feet| PlanterState {
                 airborne: running.airborne(),
                 ..feet.planter()
