@@ -307,6 +307,7 @@ impl GaitGenerator {
             self.position -= frames;
             self.next_step(controls);
         }
+        self.replan(controls);
         let plan_from_character = self.plan_from_character();
         let (frame, next, weight) = self.frames();
         let (facing, _) = blend_near(frame.plan_from_ground, next.plan_from_ground, weight);
@@ -398,6 +399,16 @@ impl GaitGenerator {
         {
             let footstep = Footstep::seen_from(&self.plan_from_start, side, plant);
             self.footsteps.push(footstep);
+        }
+    }
+
+    /// Has a step whose foot is in the air obey what is asked for now.
+    fn replan(&mut self, controls: &Controls) {
+        let frame = self.position as usize;
+        let fastest = self.steps.source().fastest_mps();
+        let ask = Ask::after(self.shape(), *controls, fastest, self.detail);
+        if self.steps.source_mut().replan(&ask, frame) {
+            self.position -= frame as f32;
         }
     }
 

@@ -5,6 +5,7 @@
 //! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
 //! generated rotations and planted feet disagree about is spread over the swing.
 
+mod cut;
 mod flight;
 mod lift;
 mod support;
@@ -17,6 +18,7 @@ use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
 use crate::strafe::{Strafe, Turner};
 use core::ops::Range;
+pub(crate) use cut::Cut;
 pub(crate) use flight::Airborne;
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;

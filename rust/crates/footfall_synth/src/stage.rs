@@ -2,7 +2,7 @@
 
 use crate::detail::Detail;
 use crate::plan::StepShape;
-use crate::planting::{Course, PlantedFrame, Planter, PlanterState, SpeedChange};
+use crate::planting::{Course, Cut, PlantedFrame, Planter, PlanterState, SpeedChange};
 use crate::raw::RawFrame;
 use crate::standing::Amplitude;
 use crate::strafe::{Strafe, sway};
@@ -30,6 +30,8 @@ pub(crate) struct Placing<'a> {
     pub(crate) velocity_mps: Vec2,
     /// That of the step before.
     pub(crate) velocity_before_mps: Vec2,
+    /// Whether it is the rest of a step that was planned anew.
+    pub(crate) is_rest: bool,
 }
 
 /// A body whose foot lands.
@@ -87,6 +89,29 @@ impl Stage {
     /// Where this foot was put last; `None` before the first step.
     pub(crate) fn plant(&self, side: Side) -> Option<&Plant> {
         self.planter.as_ref().map(|planter| planter.plant(side))
+    }
+
+    /// What the rest of the step on the ground goes on from when it is cut at a frame in which one foot is in the air; nothing where none is, and where frames
+    /// were left out. `begun` is what the step began with.
+    pub(crate) fn cut(
+        &self,
+        shape: &StepShape,
+        frame: usize,
+        begun: PlanterState,
+        turn_rate: f32,
+    ) -> Option<PlanterState> {
+        let cut = Cut {
+            skeleton: &self.skeleton,
+            frame_secs: self.frame_secs,
+            timing: &shape.timing,
+            frames: self.frames.get(..=shape.timing.frames)?,
+            frame,
+            begun,
+            ended: self.planter_state()?,
+            turn_rate,
+        };
+        let whole = shape.detail == Detail::Full && frame < shape.timing.frames;
+        (whole && cut.is_in_swing()).then(|| cut.state())
     }
 
     /// How far the hips travelled over the ground in the step that was put there.
@@ -157,7 +182,12 @@ impl Placing<'_> {
     /// How the speed changes from the step before to the end of this one.
     fn change(&self) -> SpeedChange {
         let Amplitude { from, to } = self.shape.amplitude;
-        SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps)
+        let change = SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps);
+        if self.is_rest {
+            // Half a step has no surge of a step.
+            return change.whole();
+        }
+        change
     }
 
     /// The standing posture at part `s` of the step, and what there is of the walk on top of it.

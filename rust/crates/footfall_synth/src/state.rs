@@ -10,7 +10,9 @@ use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::gait::Gait;
 use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
+use crate::obeyed::Obeyed;
 use crate::planting::{Airborne, PlanterState};
+use crate::rest::Rest;
 use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
 use crate::strafe::Strafe;
@@ -19,8 +21,10 @@ use footfall_ik::{FootTarget, Plant};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// The version of the layout that this build writes; it reads those before, too, which knew no running and no life in standing.
-const VERSION: u8 = 6;
+/// The version of the layout that this build writes; it reads those before, too, which knew no steps that change in their middle, no running
+/// and no life in standing.
+const VERSION: u8 = 7;
+const SLOW_VERSION: u8 = 6;
 const WALKING_VERSION: u8 = 5;
 const STILL_VERSION: u8 = 4;
 
@@ -116,6 +120,17 @@ struct Alive {
     speed: f32,
 }
 
+/// What it takes to go on with a step that was made to obey in its middle.
+#[derive(Default, Serialize, Deserialize)]
+struct Quick {
+    /// Velocity of the step before and of this one, as their requests had them.
+    velocities_mps: [[f32; 2]; 2],
+    /// What the step obeys: velocity and turning; whether it stops, and whether it was stretched.
+    obeys: ([f32; 2], f32, bool, bool),
+    /// The state that its rest begins in, the share of that which is left, and the share of the whole step that had passed.
+    rest: Option<(u8, f32, f32)>,
+}
+
 /// What a runner has beyond that.
 #[derive(Default, Serialize, Deserialize)]
 struct Running {
@@ -208,7 +223,7 @@ impl GaitGenerator {
             speed: moment.speed,
         };
         // Writing to memory does not fail; an empty state is refused like any other that is not one.
-        postcard::to_stdvec(&(state, alive, self.running())).unwrap_or_default()
+        postcard::to_stdvec(&(state, alive, self.running(), self.quick())).unwrap_or_default()
     }
 
     /// Goes on from a [`state`](Self::state) of a walker with the same model, styles and body; the seed is the state's.
@@ -217,13 +232,19 @@ impl GaitGenerator {
     /// [`StateError`]; the walker then walks on as before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
-        let (alive, running): (Alive, Running) = match state.version {
+        let slow = Quick::of_slow(&state);
+        let (alive, running, quick): (Alive, Running, Quick) = match state.version {
             VERSION => postcard::from_bytes(rest)?,
-            WALKING_VERSION => (postcard::from_bytes(rest)?, Running::default()),
-            STILL_VERSION => Default::default(),
+            SLOW_VERSION => {
+                let (alive, running) = postcard::from_bytes(rest)?;
+                (alive, running, slow)
+            }
+            WALKING_VERSION => (postcard::from_bytes(rest)?, Running::default(), slow),
+            STILL_VERSION => (Alive::default(), Running::default(), slow),
             other => return Err(StateError::Version(other)),
         };
-        if !state.is_sensible() || !alive.is_sensible() || !running.is_sensible() {
+        let sensible = state.is_sensible() && alive.is_sensible();
+        if !sensible || !running.is_sensible() || !quick.is_sensible() {
             return Err(StateError::Damaged);
         }
         let config = GeneratorConfig {
@@ -233,7 +254,7 @@ impl GaitGenerator {
         };
         match &mut self.steps {
             Steps::Styled(steps) => {
-                **steps = state.styled(steps, &running, &self.skeleton, &config)?;
+                **steps = state.styled(steps, (&running, &quick), &self.skeleton, &config)?;
             }
             Steps::Switching(steps) => state.resume(steps, &config)?,
         }
@@ -260,6 +281,26 @@ impl GaitGenerator {
 }
 
 impl GaitGenerator {
+    fn quick(&self) -> Quick {
+        let Steps::Styled(steps) = &self.steps else {
+            return Quick::default();
+        };
+        let (origin, obeyed) = (steps.walker.origin(), &steps.obeyed);
+        let velocities = [origin.velocity_before_mps, origin.request.velocity_mps];
+        Quick {
+            velocities_mps: velocities.map(|velocity| velocity.to_array()),
+            obeys: (
+                obeyed.velocity_mps.to_array(),
+                obeyed.turn_rate,
+                obeyed.stops,
+                obeyed.stretched,
+            ),
+            rest: origin
+                .rest
+                .map(|rest| (rest.state as u8, rest.left, rest.passed)),
+        }
+    }
+
     fn running(&self) -> Running {
         let Steps::Styled(steps) = &self.steps else {
             return Running::default();
@@ -276,6 +317,47 @@ impl GaitGenerator {
                 )
             }),
         }
+    }
+}
+
+impl Quick {
+    /// Of a state that knows no such steps: one whose speed does not change.
+    fn of_slow(state: &State) -> Self {
+        Self {
+            velocities_mps: [state.velocity_mps; 2],
+            obeys: (
+                state.velocity_mps,
+                state.turn_rate,
+                state.amplitude[1] < 1.0,
+                false,
+            ),
+            rest: None,
+        }
+    }
+
+    fn obeyed(&self) -> Obeyed {
+        let (velocity, turn_rate, stops, stretched) = self.obeys;
+        Obeyed {
+            velocity_mps: velocity.into(),
+            turn_rate,
+            stops,
+            stretched,
+        }
+    }
+
+    fn rest(&self) -> Option<Rest> {
+        self.rest.map(|(state, left, passed)| Rest {
+            state: state.into(),
+            left,
+            passed,
+        })
+    }
+
+    fn is_sensible(&self) -> bool {
+        let (obeyed, turn_rate, ..) = self.obeys;
+        let numbers = self.velocities_mps.into_iter().flatten().chain(obeyed);
+        let reasonable = numbers.chain([turn_rate]).map(f64::from).all(is_reasonable);
+        reasonable && self.rest().is_none_or(|rest| rest.is_sensible())
     }
 }
 

@@ -74,6 +74,11 @@ pub(crate) trait StepSource {
     /// Goes on to the next step.
     fn advance(&mut self, ask: &Ask);
 
+    /// Has the rest of the current step obey something new from a frame of it on; whether it does. The step then begins with that frame.
+    fn replan(&mut self, _ask: &Ask, _frame: usize) -> bool {
+        false
+    }
+
     /// Puts the current step on the ground anew, again and again, with the factors on the legs' reach that `next` makes of where it
     /// lies; the walk goes on from the speed that this gives. Before, it becomes quicker by the factor
     /// `haste` and shorter by as much, which is the same speed. The first step of all stays as it is.

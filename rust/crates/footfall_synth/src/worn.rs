@@ -24,6 +24,9 @@ const LAST_SECS: f64 = 0.4;
 /// The speed that a first step reaches at most, m/s.
 const FIRST_MPS: f32 = 2.0;
 
+/// The rest of a step is walked no faster than this, m/s.
+const REST_MOST_MPS: f32 = 2.0;
+
 /// A mixture of styles, and how fast each of its gaits goes on this body.
 #[derive(Debug)]
 pub(crate) struct Worn {
@@ -89,7 +92,6 @@ impl Worn {
             // Who runs slows down before coming to a stand.
             amplitude.to = 1.0;
         }
-        let position = position_after(before.manner.position, amplitude);
         let sets_out = amplitude.from < 1.0 && amplitude.to >= 1.0;
         if sets_out {
             let most = if self.run.is_some() {
@@ -133,6 +135,31 @@ impl Worn {
             facing,
         };
         (request, gait)
+    }
+
+    /// The rest of a walked step that came from `before` and would have so many frames in all, when something else is asked for in its middle. It takes
+    /// no longer than it would have.
+    pub(crate) fn rest_request(
+        &self,
+        ask: &Ask,
+        before: &Request,
+        frames: f64,
+        velocity_mps: &mut Vec2,
+    ) -> Request {
+        let wanted = ask.velocity_after(*velocity_mps, Gait::Walk);
+        *velocity_mps = wanted.clamp_length_max(REST_MOST_MPS.max(velocity_mps.length()));
+        let secs = frames / self.blend.model.frame_rate_hz;
+        let pace = self.walk.pace_towards(*velocity_mps);
+        Request {
+            manner: Manner {
+                pace: self.walk.within(pace, secs),
+                ..before.manner
+            },
+            turn_rate: ask.turn_rate,
+            velocity_mps: *velocity_mps,
+            facing: self.walk.facing + pelvis_turn(*velocity_mps),
+            ..*before
+        }
     }
 
     /// The gait of a step.
@@ -180,15 +207,5 @@ impl Worn {
             velocity_mps: Vec2::ZERO,
             ..self.first_request(detail)
         }
-    }
-}
-
-/// The place of a step in its walk. That a step is the last but one is known only when it is over.
-fn position_after(before: StepPosition, amplitude: Amplitude) -> StepPosition {
-    match (amplitude.from < 1.0, amplitude.to < 1.0) {
-        (true, false) => StepPosition::First,
-        (false, true) => StepPosition::Last,
-        (false, false) if before == StepPosition::First => StepPosition::Second,
-        _ => StepPosition::Inside,
     }
 }

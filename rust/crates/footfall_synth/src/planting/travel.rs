@@ -17,7 +17,7 @@ const SETTLE_SECS: f32 = 0.07;
 const SHORT_SETTLE_SHARE: f32 = 1.8;
 
 /// Part of a step over which a new turn rate sets in.
-const TURN_ONSET: f32 = 0.6;
+pub(super) const TURN_ONSET: f32 = 0.6;
 
 /// Generated legs disagree by a few centimetres about the hips' height when a foot lands. This share of the gap is closed
 /// before the landing, from this part of the step on, and the rest after it.

@@ -38,6 +38,14 @@ impl SpeedChange {
         }
     }
 
+    /// The same, which shapes a step wholly.
+    pub(crate) fn whole(self) -> Self {
+        Self {
+            weight: 1.0,
+            ..self
+        }
+    }
+
     /// How much it counts in a step of so much travel, as a share of the leg: nobody who steps on the spot goes anywhere.
     pub(super) fn weight_over(&self, travel: f32) -> f32 {
         self.weight * smooth_step(travel / LEAST_TRAVEL)

@@ -1,6 +1,6 @@
 //! What each kind of steps adds to a state, and how it goes on from one.
 
-use super::{Feet, Running, Source, State, StateError, detail_of};
+use super::{Feet, Quick, Running, Source, State, StateError, detail_of};
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
 use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
@@ -56,7 +56,7 @@ impl State {
     pub(super) fn styled(
         &self,
         current: &StyledSteps,
-        running: &Running,
+        (running, quick): (&Running, &Quick),
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<StyledSteps, StateError> {
@@ -111,17 +111,18 @@ impl State {
                 manner: manner(1),
                 amplitude: self.amplitude(),
                 turn_rate: self.turn_rate,
-                velocity_mps: self.velocity_mps.into(),
+                velocity_mps: quick.velocities_mps[1].into(),
                 facing: self.facing[1],
             },
             manner_before: manner(0),
             facing_before: self.facing[0],
-            velocity_before_mps: self.velocity_mps.into(),
+            velocity_before_mps: quick.velocities_mps[0].into(),
             planter: self.feet.as_ref().map(|feet| PlanterState {
                 airborne: running.airborne(),
                 ..feet.planter()
             }),
             tie: [0.0; TIE_LEN],
+            rest: quick.rest(),
         };
         if tie.len() == TIE_LEN {
             origin.tie.copy_from_slice(tie);
@@ -143,6 +144,7 @@ impl State {
             walker,
             worn,
             self.velocity_mps.into(),
+            quick.obeyed(),
         ))
     }
 
