@@ -157,6 +157,8 @@ pub(crate) struct Course {
     pub(crate) facing: [f32; 2],
     /// How the speed changes within it.
     pub(crate) change: SpeedChange,
+    /// Duration of the whole step, seconds.
+    pub(crate) step_secs: f32,
 }
 
 impl Planter {
@@ -304,7 +306,7 @@ impl Planter {
         let last = &out[timing.frames];
         let (hips, heading) = (last.pose.root_position, last.heading);
         let trailing = timing.leading.other();
-        let next_plant = self.next_plant(raw, timing, hips, heading, course.turn_rate);
+        let next_plant = self.next_plant(raw, timing, hips, heading, course);
         let mut ends = self.swing_ends(raw, timing, out, &next_plant);
         if let Some(airborne) = &airborne {
             [ends[0], ends[1]] = self.airborne_ends(airborne, raw, timing, out);
@@ -391,13 +393,13 @@ impl Planter {
         timing: &StepTiming,
         hips: Vec3,
         heading: f32,
-        turn_rate: f32,
+        course: Course,
     ) -> Plant {
         let side = timing.leading.other();
         let leg = &raw[timing.frames].legs[side.index()];
         let ankle = hips + from_heading(heading) * leg.ankle;
         // The foot points to where the body will have turned by the middle of its stance.
-        let lead = 0.5 * turn_rate * self.frame_secs * timing.frames as f32;
+        let lead = 0.5 * course.turn_rate * course.step_secs;
         let foot = &self.feet[side.index()];
         let mut plant = foot.plant_under(ankle, heading + lead + leg.heading(), leg.pitch);
         let hip = hips + from_heading(heading) * leg.hip;

@@ -30,8 +30,8 @@ pub(crate) struct Placing<'a> {
     pub(crate) velocity_mps: Vec2,
     /// That of the step before.
     pub(crate) velocity_before_mps: Vec2,
-    /// Whether it is the rest of a step that was planned anew.
-    pub(crate) is_rest: bool,
+    /// The share of it that had passed when it was planned anew.
+    pub(crate) passed: f32,
 }
 
 /// A body whose foot lands.
@@ -166,6 +166,7 @@ impl Stage {
             turn_rate: placing.turn_rate,
             facing: placing.facing,
             change: placing.change(),
+            step_secs: step_secs / (1.0 - placing.passed),
         };
         planter.set_frame_secs(frame_secs);
         planter.set_stride(stride);
@@ -183,7 +184,7 @@ impl Placing<'_> {
     fn change(&self) -> SpeedChange {
         let Amplitude { from, to } = self.shape.amplitude;
         let change = SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps);
-        if self.is_rest {
+        if self.passed > 0.0 {
             // Half a step has no surge of a step.
             return change.whole();
         }

@@ -43,8 +43,12 @@ impl Ask {
 
     /// The velocity of the next step, after one of this velocity and gait.
     pub(crate) fn velocity_after(&self, velocity_mps: Vec2, gait: Gait) -> Vec2 {
-        let change = self.velocity_mps - velocity_mps;
-        velocity_mps + change.clamp_length_max(gait.most_change_mps())
+        self.velocity_within(velocity_mps, gait.most_change_mps())
+    }
+
+    /// The velocity of the next step, which differs by so much at most from that of this one.
+    pub(crate) fn velocity_within(&self, velocity_mps: Vec2, most_mps: f32) -> Vec2 {
+        velocity_mps + (self.velocity_mps - velocity_mps).clamp_length_max(most_mps)
     }
 }
 

@@ -149,14 +149,8 @@ impl StepSource for StyledSteps {
 
     fn advance(&mut self, ask: &Ask) {
         self.obeyed = Obeyed::of(ask);
-        let before = &self.walker.origin().request;
-        let gait = self.walker.blends()[1].gait;
-        let side = self.walker.step().timing.leading.other();
-        let model = self.space.model();
-        let velocity = &mut self.velocity_mps;
-        let (request, gait) = self
-            .worn
-            .request(ask, model, (before, gait), side, velocity);
+        let gait = self.gait();
+        let (request, gait) = self.worn.request(ask, gait, &mut self.velocity_mps);
         let draw = self.planner.draw(self.walker.step().timing.leading);
         let blend = self.worn.dress(gait);
         self.planner.wear(&blend.model);

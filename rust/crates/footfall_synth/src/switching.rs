@@ -279,7 +279,7 @@ impl SwitchingSteps {
                 facing: self.origin.facing,
                 velocity_mps: self.velocity_mps,
                 velocity_before_mps: self.velocity_mps,
-                is_rest: false,
+                passed: 0.0,
             },
             &mut self.raw,
         );

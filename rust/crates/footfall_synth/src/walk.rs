@@ -172,7 +172,8 @@ pub(crate) fn put_on_ground(
         .map(|(fine, tables)| (tables, FineTables::scale(fine)));
     let mut bench = FineBench::new();
     let mut planter: Option<Planter> = None;
-    let course = Course {
+    let mut course = Course {
+        step_secs: 0.0,
         turn_rate: config.turn_rate_radps,
         facing: [facing; 2],
         change: SpeedChange::default(),
@@ -208,6 +209,7 @@ pub(crate) fn put_on_ground(
         }
         RawFrame::fill(&mut raw, &frames, skeleton, |_| f32x8::splat(stride));
         begin += timing.frames;
+        course.step_secs = (timing.frames as f64 * frame_secs) as f32;
         let timing = planter
             .get_or_insert_with(|| {
                 Planter::new(skeleton, frame_secs as f32, &raw[0], timing, facing)

@@ -405,7 +405,7 @@ impl Walker {
             facing: [self.origin.facing_before, self.origin.request.facing],
             velocity_mps: self.origin.request.velocity_mps,
             velocity_before_mps: self.origin.velocity_before_mps,
-            is_rest: rest.is_some(),
+            passed: rest.map_or(0.0, |rest| rest.passed),
         };
         let Workbench {
             trajectory,

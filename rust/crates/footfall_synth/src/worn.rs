@@ -12,8 +12,7 @@ use crate::steps::Ask;
 use crate::strafe::pelvis_turn;
 use crate::walker::Request;
 use crate::workbench::Workbench;
-use footfall_core::{Side, Skeleton, StepPosition};
-use footfall_model::GaitModel;
+use footfall_core::{Skeleton, StepPosition};
 use glam::Vec2;
 use std::sync::Arc;
 
@@ -76,14 +75,12 @@ impl Worn {
         self.blend.of_gait(gait)
     }
 
-    /// The next step, which `side` begins, after one that came from `before`; and the gait that it is walked or run in. `velocity_mps` is the
+    /// The next step, after one of this gait, and the gait that it is walked or run in. `velocity_mps` is the
     /// walk's and follows.
     pub(crate) fn request(
         &self,
         ask: &Ask,
-        model: &GaitModel,
-        (before, gait_before): (&Request, Gait),
-        side: Side,
+        gait_before: Gait,
         velocity_mps: &mut Vec2,
     ) -> (Request, Gait) {
         let mut amplitude = ask.amplitude;

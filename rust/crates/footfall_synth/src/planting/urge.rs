@@ -7,7 +7,7 @@ use footfall_core::ease::smooth_step;
 use glam::Vec2;
 
 /// Changes of the asked velocity up to the first are none, and from the second on shape the step wholly, m/s.
-const CHANGED_MPS: [f32; 2] = [0.05, 0.35];
+const CHANGED_MPS: [f32; 2] = [0.2, 1.0];
 
 /// Travel in a step from which on a change of speed shapes it, as a share of the leg's length.
 const LEAST_TRAVEL: f32 = 0.12;
