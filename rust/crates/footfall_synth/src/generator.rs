@@ -28,7 +28,7 @@ pub(crate) const STANDING_SPEED_MPS: f32 = 0.1;
 const STANDING_TURN_RATE_RADPS: f32 = 0.05;
 
 /// Fastest turning that is walked.
-const MAX_TURN_RATE_RADPS: f32 = 2.0;
+const MAX_TURN_RATE_RADPS: f32 = 3.5;
 
 /// Closer than this share of a frame counts as on it: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;

@@ -7,6 +7,7 @@
 
 mod cut;
 mod flight;
+mod lean;
 mod lift;
 mod support;
 mod surge;
@@ -25,6 +26,7 @@ use footfall_core::rotation::from_heading;
 use footfall_core::{Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
 use glam::{Quat, Vec3};
+pub(crate) use lean::{Lean, Pull};
 use swing::Swing;
 pub(crate) use urge::SpeedChange;
 
@@ -110,6 +112,8 @@ pub(crate) struct PlanterState {
     pub(crate) strafe: Strafe,
     /// The foot that took off in the last step, if that was one of a run.
     pub(crate) airborne: Option<Airborne>,
+    /// How the trunk leans.
+    pub(crate) lean: Lean,
 }
 
 impl AsRef<Pose> for PlantedFrame {
@@ -144,6 +148,7 @@ impl PlanterState {
             stride: self.stride,
             strafe: self.strafe,
             airborne: self.airborne.map(|foot| foot.moved(from, to)),
+            lean: self.lean,
         }
     }
 }
@@ -189,6 +194,7 @@ impl Planter {
             stride: 1.0,
             strafe: Strafe::NONE,
             airborne: None,
+            lean: Lean::default(),
         };
         let mut planter = Self::resume(skeleton, frame_secs, state);
         let standing = match timing.take_off {

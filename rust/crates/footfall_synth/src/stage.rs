@@ -2,7 +2,7 @@
 
 use crate::detail::Detail;
 use crate::plan::StepShape;
-use crate::planting::{Course, Cut, PlantedFrame, Planter, PlanterState, SpeedChange};
+use crate::planting::{Course, Cut, PlantedFrame, Planter, PlanterState, Pull, SpeedChange};
 use crate::raw::RawFrame;
 use crate::standing::Amplitude;
 use crate::strafe::{Strafe, sway};
@@ -98,7 +98,7 @@ impl Stage {
         shape: &StepShape,
         frame: usize,
         begun: PlanterState,
-        turn_rate: f32,
+        placing: &Placing<'_>,
     ) -> Option<PlanterState> {
         let cut = Cut {
             skeleton: &self.skeleton,
@@ -108,7 +108,8 @@ impl Stage {
             frame,
             begun,
             ended: self.planter_state()?,
-            turn_rate,
+            turn_rate: placing.turn_rate,
+            pull: placing.pull(shape.timing.frames as f32 * self.frame_secs),
         };
         let whole = shape.detail == Detail::Full && frame < shape.timing.frames;
         (whole && cut.is_in_swing()).then(|| cut.state())
@@ -172,6 +173,7 @@ impl Stage {
         planter.set_stride(stride);
         planter.turn_step(raw, &timing, strafe, facing - strafe.turn, frames);
         planter.plant_step(raw, &timing, course, frames);
+        planter.lean(&placing.pull(step_secs), frames);
         self.arrival = Arrival {
             hips: frames[timing.frames].pose.root_position,
             ankles: Side::BOTH.map(|side| raw[timing.frames].legs[side.index()].target.ankle),
@@ -180,6 +182,16 @@ impl Stage {
 }
 
 impl Placing<'_> {
+    /// What there is to lean against in a step of so many seconds. A run leans into its turns, too; nobody leans out of a sidestep.
+    fn pull(&self, secs: f32) -> Pull {
+        let Amplitude { from, to } = self.shape.amplitude;
+        let [before, after] = [from * self.velocity_before_mps, to * self.velocity_mps];
+        Pull {
+            within: Vec2::new(0.0, (after.y - before.y) / secs),
+            after: Vec2::new(after.y * self.turn_rate, 0.0),
+        }
+    }
+
     /// How the speed changes from the step before to the end of this one.
     fn change(&self) -> SpeedChange {
         let Amplitude { from, to } = self.shape.amplitude;

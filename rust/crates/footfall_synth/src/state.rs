@@ -11,14 +11,14 @@ use crate::error::SynthError;
 use crate::gait::Gait;
 use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
 use crate::obeyed::Obeyed;
-use crate::planting::{Airborne, PlanterState};
+use crate::planting::{Airborne, Lean, PlanterState};
 use crate::rest::Rest;
 use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
 use crate::strafe::Strafe;
 use footfall_core::StepPosition;
 use footfall_ik::{FootTarget, Plant};
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// The version of the layout that this build writes; it reads those before, too, which knew no steps that change in their middle, no running
@@ -129,6 +129,8 @@ struct Quick {
     obeys: ([f32; 2], f32, bool, bool),
     /// The state that its rest begins in, the share of that which is left, and the share of the whole step that had passed.
     rest: Option<(u8, f32, f32)>,
+    /// How the trunk leans as the step begins, and how fast that changes.
+    lean: [[f32; 2]; 2],
 }
 
 /// What a runner has beyond that.
@@ -256,7 +258,7 @@ impl GaitGenerator {
             Steps::Styled(steps) => {
                 **steps = state.styled(steps, (&running, &quick), &self.skeleton, &config)?;
             }
-            Steps::Switching(steps) => state.resume(steps, &config)?,
+            Steps::Switching(steps) => state.resume(steps, quick.lean(), &config)?,
         }
         self.config = config;
         if let Some(life) = &mut self.life {
@@ -282,8 +284,19 @@ impl GaitGenerator {
 
 impl GaitGenerator {
     fn quick(&self) -> Quick {
-        let Steps::Styled(steps) = &self.steps else {
-            return Quick::default();
+        let lean_of = |feet: Option<PlanterState>| {
+            feet.map_or_else(Default::default, |feet| {
+                [feet.lean.angle, feet.lean.rate].map(|part| part.to_array())
+            })
+        };
+        let steps = match &self.steps {
+            Steps::Styled(steps) => steps,
+            Steps::Switching(steps) => {
+                return Quick {
+                    lean: lean_of(steps.origin.planter),
+                    ..Quick::default()
+                };
+            }
         };
         let (origin, obeyed) = (steps.walker.origin(), &steps.obeyed);
         let velocities = [origin.velocity_before_mps, origin.request.velocity_mps];
@@ -298,6 +311,7 @@ impl GaitGenerator {
             rest: origin
                 .rest
                 .map(|rest| (rest.state as u8, rest.left, rest.passed)),
+            lean: lean_of(origin.planter),
         }
     }
 
@@ -332,7 +346,13 @@ impl Quick {
                 false,
             ),
             rest: None,
+            lean: Default::default(),
         }
+    }
+
+    fn lean(&self) -> Lean {
+        let [angle, rate] = self.lean.map(Vec2::from);
+        Lean { angle, rate }
     }
 
     fn obeyed(&self) -> Obeyed {
@@ -355,7 +375,12 @@ impl Quick {
 
     fn is_sensible(&self) -> bool {
         let (obeyed, turn_rate, ..) = self.obeys;
-        let numbers = self.velocities_mps.into_iter().flatten().chain(obeyed);
+        let numbers = self
+            .velocities_mps
+            .into_iter()
+            .chain(self.lean)
+            .flatten()
+            .chain(obeyed);
         let reasonable = numbers.chain([turn_rate]).map(f64::from).all(is_reasonable);
         reasonable && self.rest().is_none_or(|rest| rest.is_sensible())
     }
@@ -497,6 +522,7 @@ impl Feet {
             stride: self.stride,
             strafe: self.strafe,
             airborne: None,
+            lean: Lean::default(),
         }
     }
 

@@ -326,7 +326,9 @@ impl Walker {
         let Some(rest) = Rest::of(&self.plans[1], frame, self.origin.rest) else {
             return false;
         };
-        let Some(feet) = self.stage.cut(&shape, frame, begun, before.turn_rate) else {
+        let blends = [&*self.blend_before, &*self.blend];
+        let placing = placing(&self.origin, &self.plans, blends, 1);
+        let Some(feet) = self.stage.cut(&shape, frame, begun, &placing) else {
             return false;
         };
         // Nobody kept the trajectory.
@@ -398,15 +400,8 @@ impl Walker {
         let shape = &self.plans[step].shape;
         let rest = self.origin.rest.filter(|_| step == 1);
         self.end = bench.tie_at(first + shape.timing.frames + 1 - TIE);
-        let placing = Placing {
-            shape,
-            standing: [&self.blend_before.standing, &self.blend.standing],
-            turn_rate: self.origin.request.turn_rate,
-            facing: [self.origin.facing_before, self.origin.request.facing],
-            velocity_mps: self.origin.request.velocity_mps,
-            velocity_before_mps: self.origin.velocity_before_mps,
-            passed: rest.map_or(0.0, |rest| rest.passed),
-        };
+        let blends = [&*self.blend_before, &*self.blend];
+        let placing = placing(&self.origin, &self.plans, blends, step);
         let Workbench {
             trajectory,
             raw,
@@ -440,5 +435,24 @@ impl Walker {
         }
         self.stage
             .put(shown.chunks_exact(FEATURE_COUNT), &placing, raw);
+    }
+}
+
+/// How a step of the window is put on the ground, after a step in one mixture and in another.
+fn placing<'a>(
+    origin: &Origin,
+    plans: &'a [StepPlan<f32>; WINDOW],
+    [before, now]: [&'a Blend; 2],
+    step: usize,
+) -> Placing<'a> {
+    let rest = origin.rest.filter(|_| step == 1);
+    Placing {
+        shape: &plans[step].shape,
+        standing: [&before.standing, &now.standing],
+        turn_rate: origin.request.turn_rate,
+        facing: [origin.facing_before, origin.request.facing],
+        velocity_mps: origin.request.velocity_mps,
+        velocity_before_mps: origin.velocity_before_mps,
+        passed: rest.map_or(0.0, |rest| rest.passed),
     }
 }

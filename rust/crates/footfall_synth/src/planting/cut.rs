@@ -1,7 +1,8 @@
 //! A step cut off in its swing: what its rest goes on from.
 
+use super::lean::Bend;
 use super::travel::TURN_ONSET;
-use super::{Airborne, PlantedFrame, PlanterState, StepTiming};
+use super::{Airborne, PlantedFrame, PlanterState, Pull, StepTiming};
 use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Side, Skeleton};
 use footfall_ik::FootTarget;
@@ -18,6 +19,7 @@ pub(crate) struct Cut<'a> {
     pub(crate) begun: PlanterState,
     pub(crate) ended: PlanterState,
     pub(crate) turn_rate: f32,
+    pub(crate) pull: Pull,
 }
 
 impl Cut<'_> {
@@ -49,6 +51,12 @@ impl Cut<'_> {
             ground_velocity: velocity(|frame| frame.ground_position),
             stride: self.begun.stride + share * (self.ended.stride - self.begun.stride),
             strafe: self.begun.strafe.between(&self.ended.strafe, s),
+            lean: Bend::new(
+                self.begun.lean,
+                &self.pull,
+                self.timing.frames as f32 * self.frame_secs,
+            )
+            .at(s),
             airborne: Some(Airborne {
                 now: self.foot(now, swinging),
                 before: self.foot(before, swinging),

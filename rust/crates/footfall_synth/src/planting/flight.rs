@@ -65,7 +65,10 @@ impl Planter {
             return;
         };
         let [begin, leaves] = [0, take_off].map(|frame| out[frame].pose.root_position);
-        let pace = (leaves - begin) / take_off as f32;
+        // In a turn the way of the stance is an arc, and what flies goes on along its tangent.
+        let headings = out[..=take_off].iter().map(|frame| frame.heading);
+        let ahead = out[take_off].heading - headings.sum::<f32>() / (take_off + 1) as f32;
+        let pace = from_heading(ahead) * (leaves - begin) / take_off as f32;
         for (passed, frame) in out[take_off..=timing.frames].iter_mut().enumerate() {
             frame.pose.root_position = leaves + passed as f32 * pace;
         }

@@ -1,10 +1,10 @@
 //! What each kind of steps adds to a state, and how it goes on from one.
 
-use super::{Feet, Quick, Running, Source, State, StateError, detail_of};
+use super::{Quick, Running, Source, State, StateError, detail_of};
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
 use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
-use crate::planting::PlanterState;
+use crate::planting::{Lean, PlanterState};
 use crate::styled::{StyledSteps, walker_of};
 use crate::switching::{SwitchingOrigin, SwitchingSteps};
 use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
@@ -119,6 +119,7 @@ impl State {
             velocity_before_mps: quick.velocities_mps[0].into(),
             planter: self.feet.as_ref().map(|feet| PlanterState {
                 airborne: running.airborne(),
+                lean: quick.lean(),
                 ..feet.planter()
             }),
             tie: [0.0; TIE_LEN],
@@ -152,6 +153,7 @@ impl State {
     pub(super) fn resume(
         &self,
         steps: &mut SwitchingSteps,
+        lean: Lean,
         config: &GeneratorConfig,
     ) -> Result<(), StateError> {
         let Source::Switching {
@@ -179,7 +181,10 @@ impl State {
             facing: self.facing,
             chance_position: self.chance_position,
             expected: expected.clone(),
-            planter: self.feet.as_ref().map(Feet::planter),
+            planter: self.feet.as_ref().map(|feet| PlanterState {
+                lean,
+                ..feet.planter()
+            }),
         };
         steps.resume(config, origin, self.velocity_mps.into());
         Ok(())

@@ -17,6 +17,13 @@ const AFTER_SECS: f64 = 5.0;
 /// Walkers are asked at moments of their stride that differ by this, seconds.
 const APART_SECS: f64 = 0.083;
 
+/// How a character is steered that is to face elsewhere, as `GaitCharacter3D` does: it turns what is left in so many seconds, no faster than this, rad/s,
+/// and slows down for what lies between these angles, radians, to this share of its speed.
+const TURN_SECS: f32 = 0.35;
+const MOST_TURN_RADPS: f32 = 3.5;
+const SLOWS_RAD: [f32; 2] = [1.75, 2.6];
+const SLOWEST: f32 = 0.3;
+
 /// What is asked for: a speed, where the travel goes from where the body faces, and how far the body is to turn, m/s and radians.
 #[derive(Clone, Copy, Debug)]
 struct Asked {
@@ -132,12 +139,8 @@ fn run_trial(
             left
         };
         let controls = Controls {
-            speed_mps: asked.speed,
-            turn_rate_radps: if asked.turn == 0.0 {
-                0.0
-            } else {
-                steer(&walker, left)
-            },
+            speed_mps: asked.speed * pace(left),
+            turn_rate_radps: (left / TURN_SECS).clamp(-MOST_TURN_RADPS, MOST_TURN_RADPS),
             direction_rad: asked.direction,
             ..Controls::STAND
         };
@@ -164,8 +167,11 @@ fn run_trial(
     })
 }
 
-fn steer(_walker: &GaitGenerator, left: f32) -> f32 {
-    (left / 0.5).clamp(-2.0, 2.0)
+/// The share of its speed at which somebody goes who has yet to turn so far: nobody keeps all of it who turns back.
+fn pace(left: f32) -> f32 {
+    let [full, slow] = SLOWS_RAD;
+    let share = (left.abs() - full) / (slow - full);
+    1.0 + share.clamp(0.0, 1.0) * (SLOWEST - 1.0)
 }
 
 /// How long the manoeuvre lasts that begins when it is asked for.
