@@ -163,6 +163,8 @@ pub struct GaitGenerator {
     pub(crate) asked_mps: f32,
     start_from_character: GroundTransform,
     contact: [bool; 2],
+    /// Controls that hold no news for the current step.
+    pub(crate) heard: Option<Controls>,
 }
 
 impl GaitGenerator {
@@ -227,6 +229,7 @@ impl GaitGenerator {
             asked_mps: 0.0,
             start_from_character: GroundTransform::default(),
             contact: [true; 2],
+            heard: None,
         };
         generator.plan_from_start = generator.plan_from_character();
         generator
@@ -393,6 +396,7 @@ impl GaitGenerator {
         let fastest = self.steps.source().fastest_mps();
         let ask = Ask::after(self.shape(), *controls, fastest, self.detail);
         self.steps.source_mut().advance(&ask);
+        self.heard = None;
         let side = self.shape().timing.leading;
         if let Some(plant) = self.steps.source().stage().plant(side)
             && self.footsteps.len() < MAX_FOOTSTEPS
@@ -404,12 +408,20 @@ impl GaitGenerator {
 
     /// Has a step whose foot is in the air obey what is asked for now.
     fn replan(&mut self, controls: &Controls) {
+        if self.heard.as_ref() == Some(controls) {
+            return;
+        }
         let frame = self.position as usize;
         let fastest = self.steps.source().fastest_mps();
         let ask = Ask::after(self.shape(), *controls, fastest, self.detail);
-        if self.steps.source_mut().replan(&ask, frame) {
+        let source = self.steps.source_mut();
+        if source.replan(&ask, frame) {
             self.position -= frame as f32;
+        } else if source.is_news(&ask) {
+            // It may be obeyed a few frames later.
+            return;
         }
+        self.heard = Some(*controls);
     }
 
     /// The frames on both sides of now, and the weight of the later one.

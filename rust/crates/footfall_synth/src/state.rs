@@ -270,6 +270,7 @@ impl GaitGenerator {
             };
         }
         self.detail = detail_of(state.detail);
+        self.heard = None;
         let [x, y, z, heading] = state.plan_from_start;
         self.plan_from_start = GroundTransform {
             position: Vec3::new(x, y, z),

@@ -83,6 +83,11 @@ pub(crate) trait StepSource {
         false
     }
 
+    /// Whether so much else is asked for that the current step would obey it where it can.
+    fn is_news(&self, _ask: &Ask) -> bool {
+        false
+    }
+
     /// Puts the current step on the ground anew, again and again, with the factors on the legs' reach that `next` makes of where it
     /// lies; the walk goes on from the speed that this gives. Before, it becomes quicker by the factor
     /// `haste` and shorter by as much, which is the same speed. The first step of all stays as it is.

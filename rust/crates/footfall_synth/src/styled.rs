@@ -171,9 +171,12 @@ impl StepSource for StyledSteps {
         self.obeyed.stretched = true;
     }
 
+    fn is_news(&self, ask: &Ask) -> bool {
+        !self.obeyed.stretched && self.obeyed.differs_from(ask) && self.gait() == Gait::Walk
+    }
+
     fn replan(&mut self, ask: &Ask, frame: usize) -> bool {
-        let news = !self.obeyed.stretched && self.obeyed.differs_from(ask);
-        if !news || self.gait() == Gait::Run {
+        if !self.is_news(ask) {
             return false;
         }
         // Styles may have changed since the step began.

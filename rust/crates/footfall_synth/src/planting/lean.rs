@@ -14,6 +14,12 @@ use glam::{Quat, Vec2, Vec3};
 const SHARE: f32 = 0.5;
 const HEAD_KEPT: f32 = 0.5;
 
+/// Who has less time than this to lean and to come back, seconds, leans less.
+const UNHURRIED_SECS: f32 = 0.4;
+
+/// Weaker pulls bend nobody, m/s².
+const UNNOTICED_MPS2: f32 = 0.3;
+
 /// Nobody's trunk leans farther, radians.
 const MOST_RAD: f32 = 0.22;
 
@@ -46,13 +52,14 @@ pub(crate) struct Bend {
 impl Bend {
     pub(crate) fn new(begin: Lean, pull: &Pull, secs: f32) -> Self {
         let angle = |pull: Vec2| {
-            let balance = (pull.length() / GRAVITY_MPS2).atan();
+            let balance = ((pull.length() - UNNOTICED_MPS2).max(0.0) / GRAVITY_MPS2).atan();
             (SHARE * balance).min(MOST_RAD) * pull.normalize_or_zero()
         };
         Self {
             begin,
             end: angle(pull.after),
-            middle: angle(pull.within),
+            // Nobody bends to and fro in an instant.
+            middle: (secs / UNHURRIED_SECS).powi(2).min(1.0) * angle(pull.within),
             secs,
         }
     }
@@ -66,13 +73,17 @@ impl Bend {
             secs,
         } = *self;
         let left = 1.0 - s;
-        let hump = (PI * s).sin().powi(2);
+        let (hump, slope) = if middle == Vec2::ZERO {
+            (0.0, 0.0)
+        } else {
+            ((PI * s).sin().powi(2), PI * (2.0 * PI * s).sin())
+        };
         let angle = begin.angle
             + smooth_step(s) * (end - begin.angle)
             + hump * middle
             + begin.rate * (secs * s * left * left);
         let rate = 6.0 * s * left * (end - begin.angle)
-            + PI * (2.0 * PI * s).sin() * middle
+            + slope * middle
             + begin.rate * (secs * left * (1.0 - 3.0 * s));
         Lean {
             angle,
@@ -108,8 +119,9 @@ fn bend_trunk(frame: &mut PlantedFrame, angle: Vec2) {
     let axis = Vec3::new(angle.y, 0.0, -angle.x);
     let bend = |pose: &mut Pose, joint: Joint, parent: Quat, axis: Vec3| {
         let rotation = &mut pose.rotations[joint.index()];
-        let seen = parent.conjugate() * axis;
-        *rotation = (Quat::from_scaled_axis(seen) * *rotation).normalize();
+        // Twice the tangent of half of so small an angle is the angle.
+        let half = 0.5 * (parent.conjugate() * axis);
+        *rotation = (Quat::from_xyzw(half.x, half.y, half.z, 1.0) * *rotation).normalize();
     };
     bend(pose, Joint::Spine, hips, axis);
     let trunk = [Joint::Spine, Joint::Chest, Joint::UpperChest];
@@ -137,8 +149,8 @@ mod tests {
         assert!(bend.at(0.0).angle.distance(begin.angle) < 1e-6);
         assert!(bend.at(0.0).rate.distance(begin.rate) < 1e-5);
         assert!(bend.at(1.0).rate.length() < 1e-4);
-        // Half of the angle whose tangent is 2.5 over 9.81.
-        assert!((bend.at(1.0).angle.x - 0.125).abs() < 0.002);
+        // Half of the angle whose tangent is 2.2 over 9.81.
+        assert!((bend.at(1.0).angle.x - 0.11).abs() < 0.002);
         for s in [0.2, 0.5, 0.8] {
             let step = 1e-3;
             let slope = (bend.at(s + step).angle - bend.at(s - step).angle) / (2.0 * step * 0.5);
