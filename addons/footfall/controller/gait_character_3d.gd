@@ -15,10 +15,12 @@ const GaitInput := preload("gait_input.gd")
 const GaitFigure := preload("gait_figure.gd")
 ## Time without a floor after which the character is in the air, seconds; shorter is a gap between two steps.
 const FALL_SECS := 0.12
-## Duration of a step before the first has begun, seconds.
-const USUAL_STEP_SECS := 0.55
-## A step takes half of this share of its time to come from the turning of the step before to its own.
-const TURN_ONSET := 0.6
+## What is left of a turn is turned in so many seconds.
+const TURN_SECS := 0.35
+## Who has to turn by more than the first angle slows down, by the second to this share of its speed: it plants a foot, turns on it and goes, radians.
+const SLOW_FROM := 1.75
+const SLOWEST_FROM := 2.6
+const SLOWEST_SHARE := 0.3
 ## Smaller angles are no reason for somebody who stands to take a step, radians.
 const LEAST_TURN := 0.15
 ## Distance ahead at which an edge is looked for, metres.
@@ -55,7 +57,7 @@ const EYE_HEIGHT := 0.8
 ## Speed of hurrying, while the action `hurry` is pressed.
 @export_range(0.0, 5.0, 0.05, "or_greater", "suffix:m/s") var hurry_speed := 3.2
 ## Turning towards where it is asked to go, at most.
-@export_range(0.0, 360.0, 1.0, "or_greater", "radians_as_degrees", "suffix:°/s") var max_turn_rate := 2.0
+@export_range(0.0, 360.0, 1.0, "or_greater", "radians_as_degrees", "suffix:°/s") var max_turn_rate := 3.5
 ## Higher edges than this are walls.
 @export_range(0.0, 0.5, 0.01, "or_greater", "suffix:m") var step_height := 0.22
 ## Half-life of the figure's distance from its capsule after an edge, which the capsule steps onto at once.
@@ -93,10 +95,6 @@ var _standing_height := 0.0
 var _due := false
 var _steps := Transform3D.IDENTITY
 var _wish := Vector3.ZERO
-## The step under way: how fast it turns, how long it lasts in all and from now on.
-var _step_turn := 0.0
-var _step_secs := USUAL_STEP_SECS
-var _step_left := 0.0
 var _leaps := false
 ## Whether the generator has the body in the air, in a jump of its own, and how far a wall has kept it from going with that.
 var _soars := false
@@ -129,7 +127,7 @@ func _physics_process(delta: float) -> void:
 	_due = true
 	_wish = _wished()
 	if gait:
-		_steer(delta)
+		_steer()
 		_crouch(delta)
 	if player_controlled and GaitInput.is_just_pressed(&"jump"):
 		jump()
@@ -175,7 +173,6 @@ func _wear() -> void:
 	_standing_height = capsule.height if capsule else size.x
 	if gait and not Engine.is_editor_hint():
 		gait.modification_processed.connect(_follow_steps)
-		gait.foothold_planned.connect(_begin_step)
 		gait.took_off.connect(_rise)
 		gait.landed.connect(_come_down)
 	update_configuration_warnings()
@@ -200,11 +197,7 @@ func _view_heading() -> float:
 	return atan2(camera.global_basis.z.x, camera.global_basis.z.z)
 
 
-func _steer(delta: float) -> void:
-	_step_left -= delta
-	if _step_left < -USUAL_STEP_SECS:
-		# No step has followed: it stands.
-		_step_turn = 0.0
+func _steer() -> void:
 	var walks := _wish.length() >= 0.1
 	var way := wrapf(atan2(_wish.x, _wish.z) - rotation.y, -PI, PI)
 	var hurries := player_controlled and GaitInput.is_pressed(&"hurry")
@@ -215,25 +208,17 @@ func _steer(delta: float) -> void:
 		gait.direction = way if walks else 0.0
 		_turn_by(_view_heading() + PI - rotation.y)
 	elif walks:
-		# Who has to turn far slows down, or turns on the spot.
-		gait.speed *= clampf(1.3 - absf(_turn_by(way)), 0.0, 1.0)
+		_turn_by(way)
+		gait.speed *= clampf(remap(absf(way), SLOW_FROM, SLOWEST_FROM, 1.0, SLOWEST_SHARE), SLOWEST_SHARE, 1.0)
 	else:
 		gait.turn_rate = 0.0
 
 
-## Has the next step turn as far as is left when the one under way is over. Returns how far that is.
-func _turn_by(angle: float) -> float:
-	var left := wrapf(angle - _step_turn * (maxf(_step_left, 0.0) + 0.5 * TURN_ONSET * _step_secs), -PI, PI)
+## Turns towards where it is to face. The step under way obeys, too, while its foot is in the air.
+func _turn_by(angle: float) -> void:
+	var left := wrapf(angle, -PI, PI)
 	var idle := gait.speed == 0.0 and absf(left) < LEAST_TURN
-	gait.turn_rate = 0.0 if idle else clampf(left / _step_secs, -max_turn_rate, max_turn_rate)
-	return left
-
-
-## A step begins, which turns as it was asked to until it lands.
-func _begin_step(_foot: StringName, _place: Vector3, seconds: float) -> void:
-	_step_turn = gait.turn_rate
-	_step_secs = maxf(seconds, 0.2)
-	_step_left = _step_secs
+	gait.turn_rate = 0.0 if idle else clampf(left / TURN_SECS, -max_turn_rate, max_turn_rate)
 
 
 ## Crouches; under a low ceiling it stays down.

@@ -382,10 +382,7 @@ impl CrowdWalker {
         let worn = &styled.worn;
         let ask = Ask::after(&self.shape, controls, worn.fastest_mps(), self.detail);
         let leading = self.shape.timing.leading;
-        let model = styled.space.model();
-        let velocity = &mut self.velocity_mps;
-        let before = (&self.next.request, self.blend.gait);
-        let (request, gait) = worn.request(&ask, model, before, leading.other(), velocity);
+        let (request, gait) = worn.request(&ask, self.blend.gait, &mut self.velocity_mps);
         let blend = worn.dress(gait);
         let mut origin = Origin {
             request,

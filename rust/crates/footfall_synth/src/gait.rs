@@ -37,11 +37,12 @@ pub(crate) const WIDEST_RUN_RAD: f32 = 1.1;
 pub(crate) const FASTEST_WALK_MPS: f32 = 3.0;
 pub(crate) const FASTEST_RUN_MPS: f32 = 6.0;
 
-/// A step's velocity differs by at most this much from that of the step before, m/s: nobody brakes faster.
-const MOST_CHANGE_MPS: [f32; 2] = [0.5, 0.8];
+/// By how much a step's velocity differs from that of the step before at most, m/s, walked and run: people who set out or brake hard
+/// change theirs by 3 to 4 m/s a second.
+const MOST_CHANGE_MPS: [f32; 2] = [1.2, 1.6];
 
 /// Speed from which a walker can come to a stand within the next two steps, and to which it starts within one, m/s.
-pub(crate) const STOPPABLE_MPS: f32 = 1.8;
+pub(crate) const STOPPABLE_MPS: f32 = 2.0;
 
 impl GaitChoice {
     /// The gait of a step at this velocity to the left and forwards, after one of `before`, on legs of this length. `starts_or_stops` says whether the

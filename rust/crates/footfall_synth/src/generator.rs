@@ -29,7 +29,7 @@ pub(crate) const STANDING_SPEED_MPS: f32 = 0.1;
 const STANDING_TURN_RATE_RADPS: f32 = 0.05;
 
 /// Fastest turning that is walked.
-const MAX_TURN_RATE_RADPS: f32 = 2.0;
+const MAX_TURN_RATE_RADPS: f32 = 3.5;
 
 /// Closer than this share of a frame counts as on it: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;
@@ -171,6 +171,8 @@ pub struct GaitGenerator {
     pub(crate) asked_mps: f32,
     start_from_character: GroundTransform,
     contact: [bool; 2],
+    /// Controls that hold no news for the current step.
+    pub(crate) heard: Option<Controls>,
 }
 
 impl GaitGenerator {
@@ -238,6 +240,7 @@ impl GaitGenerator {
             asked_mps: 0.0,
             start_from_character: GroundTransform::default(),
             contact: [true; 2],
+            heard: None,
         };
         generator.plan_from_start = generator.plan_from_character();
         generator
@@ -319,6 +322,7 @@ impl GaitGenerator {
             self.position -= frames;
             self.next_step(controls);
         }
+        self.replan(controls);
         let plan_from_character = self.plan_from_character();
         let (frame, next, weight) = self.frames();
         let (facing, _) = blend_near(frame.plan_from_ground, next.plan_from_ground, weight);
@@ -413,6 +417,7 @@ impl GaitGenerator {
             ..Ask::after(self.shape(), *controls, fastest, self.detail)
         };
         self.steps.source_mut().advance(&ask);
+        self.heard = None;
         let side = self.shape().timing.leading;
         if let Some(plant) = self.steps.source().stage().plant(side) {
             self.report(Footstep::seen_from(&self.plan_from_start, side, plant));
@@ -424,6 +429,24 @@ impl GaitGenerator {
         if self.footsteps.len() < MAX_FOOTSTEPS {
             self.footsteps.push(footstep);
         }
+    }
+
+    /// Has a step whose foot is in the air obey what is asked for now.
+    fn replan(&mut self, controls: &Controls) {
+        if self.heard.as_ref() == Some(controls) {
+            return;
+        }
+        let frame = self.position as usize;
+        let fastest = self.steps.source().fastest_mps();
+        let ask = Ask::after(self.shape(), *controls, fastest, self.detail);
+        let source = self.steps.source_mut();
+        if source.replan(&ask, frame) {
+            self.position -= frame as f32;
+        } else if source.is_news(&ask) {
+            // It may be obeyed a few frames later.
+            return;
+        }
+        self.heard = Some(*controls);
     }
 
     /// The frames on both sides of now, and the weight of the later one.

@@ -97,6 +97,17 @@ impl PaceTable {
         }
     }
 
+    /// The same pace with a tempo at which its steps last so long at most, seconds.
+    pub(crate) fn within(&self, mut pace: Pace, most_secs: f64) -> Pace {
+        let speed = self
+            .samples
+            .iter()
+            .find(|sample| sample[0] >= pace.covariate_mps);
+        let [_, _, secs] = speed.copied().unwrap_or(self.samples[SAMPLES - 1]);
+        pace.tempo = pace.tempo.max(secs / most_secs);
+        pace
+    }
+
     /// The pace that gives a speed forwards, and how long its steps last.
     fn pace_and_secs(&self, speed_mps: f64) -> (Pace, f64) {
         let (first, last) = (self.samples[0], self.samples[SAMPLES - 1]);

@@ -5,24 +5,30 @@
 //! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
 //! generated rotations and planted feet disagree about is spread over the swing.
 
+mod cut;
 mod flight;
+mod lean;
 mod lift;
 mod support;
 mod surge;
 mod swing;
 mod travel;
+mod urge;
 
 use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
 use crate::strafe::{Strafe, Turner};
 use core::ops::Range;
+pub(crate) use cut::Cut;
 pub(crate) use flight::Airborne;
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
 use glam::{Quat, Vec3};
+pub(crate) use lean::{Lean, Pull};
 use swing::Swing;
+pub(crate) use urge::SpeedChange;
 
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
 const MAX_LANDING_EXTENSION: f32 = 0.985;
@@ -106,6 +112,8 @@ pub(crate) struct PlanterState {
     pub(crate) strafe: Strafe,
     /// The foot that took off in the last step, if that was one of a run.
     pub(crate) airborne: Option<Airborne>,
+    /// How the trunk leans.
+    pub(crate) lean: Lean,
 }
 
 impl AsRef<Pose> for PlantedFrame {
@@ -140,6 +148,7 @@ impl PlanterState {
             stride: self.stride,
             strafe: self.strafe,
             airborne: self.airborne.map(|foot| foot.moved(from, to)),
+            lean: self.lean,
         }
     }
 }
@@ -151,6 +160,10 @@ pub(crate) struct Course {
     pub(crate) turn_rate: f32,
     /// Headings of the features from where the walker faces, before the step and after it, radians.
     pub(crate) facing: [f32; 2],
+    /// How the speed changes within it.
+    pub(crate) change: SpeedChange,
+    /// Duration of the whole step, seconds.
+    pub(crate) step_secs: f32,
 }
 
 impl Planter {
@@ -181,6 +194,7 @@ impl Planter {
             stride: 1.0,
             strafe: Strafe::NONE,
             airborne: None,
+            lean: Lean::default(),
         };
         let mut planter = Self::resume(skeleton, frame_secs, state);
         let standing = match timing.take_off {
@@ -298,7 +312,7 @@ impl Planter {
         let last = &out[timing.frames];
         let (hips, heading) = (last.pose.root_position, last.heading);
         let trailing = timing.leading.other();
-        let next_plant = self.next_plant(raw, timing, hips, heading, course.turn_rate);
+        let next_plant = self.next_plant(raw, timing, hips, heading, course);
         let mut ends = self.swing_ends(raw, timing, out, &next_plant);
         if let Some(airborne) = &airborne {
             [ends[0], ends[1]] = self.airborne_ends(airborne, raw, timing, out);
@@ -385,13 +399,13 @@ impl Planter {
         timing: &StepTiming,
         hips: Vec3,
         heading: f32,
-        turn_rate: f32,
+        course: Course,
     ) -> Plant {
         let side = timing.leading.other();
         let leg = &raw[timing.frames].legs[side.index()];
         let ankle = hips + from_heading(heading) * leg.ankle;
         // The foot points to where the body will have turned by the middle of its stance.
-        let lead = 0.5 * turn_rate * self.frame_secs * timing.frames as f32;
+        let lead = 0.5 * course.turn_rate * course.step_secs;
         let foot = &self.feet[side.index()];
         let mut plant = foot.plant_under(ankle, heading + lead + leg.heading(), leg.pitch);
         let hip = hips + from_heading(heading) * leg.hip;

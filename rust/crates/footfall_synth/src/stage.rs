@@ -2,7 +2,7 @@
 
 use crate::detail::Detail;
 use crate::plan::StepShape;
-use crate::planting::{Course, PlantedFrame, Planter, PlanterState};
+use crate::planting::{Course, Cut, PlantedFrame, Planter, PlanterState, Pull, SpeedChange};
 use crate::raw::RawFrame;
 use crate::standing::Amplitude;
 use crate::strafe::{Strafe, sway};
@@ -28,6 +28,10 @@ pub(crate) struct Placing<'a> {
     pub(crate) facing: [f32; 2],
     /// Travel to the left and forwards from where the walker faces, m/s.
     pub(crate) velocity_mps: Vec2,
+    /// That of the step before.
+    pub(crate) velocity_before_mps: Vec2,
+    /// The share of it that had passed when it was planned anew.
+    pub(crate) passed: f32,
 }
 
 /// A body whose foot lands.
@@ -87,6 +91,30 @@ impl Stage {
         self.planter.as_ref().map(|planter| planter.plant(side))
     }
 
+    /// What the rest of the step on the ground goes on from when it is cut at a frame in which one foot is in the air; nothing where none is, and where frames
+    /// were left out. `begun` is what the step began with.
+    pub(crate) fn cut(
+        &self,
+        shape: &StepShape,
+        frame: usize,
+        begun: PlanterState,
+        placing: &Placing<'_>,
+    ) -> Option<PlanterState> {
+        let cut = Cut {
+            skeleton: &self.skeleton,
+            frame_secs: self.frame_secs,
+            timing: &shape.timing,
+            frames: self.frames.get(..=shape.timing.frames)?,
+            frame,
+            begun,
+            ended: self.planter_state()?,
+            turn_rate: placing.turn_rate,
+            pull: placing.pull(shape.timing.frames as f32 * self.frame_secs),
+        };
+        let whole = shape.detail == Detail::Full && frame < shape.timing.frames;
+        (whole && cut.is_in_swing()).then(|| cut.state())
+    }
+
     /// How far the hips travelled over the ground in the step that was put there.
     pub(crate) fn travel(&self, shape: &StepShape) -> Vec3 {
         let last = shape.ground_timing().frames;
@@ -138,11 +166,14 @@ impl Stage {
         let course = Course {
             turn_rate: placing.turn_rate,
             facing: placing.facing,
+            change: placing.change(),
+            step_secs: step_secs / (1.0 - placing.passed),
         };
         planter.set_frame_secs(frame_secs);
         planter.set_stride(stride);
         planter.turn_step(raw, &timing, strafe, facing - strafe.turn, frames);
         planter.plant_step(raw, &timing, course, frames);
+        planter.lean(&placing.pull(step_secs), frames);
         self.arrival = Arrival {
             hips: frames[timing.frames].pose.root_position,
             ankles: Side::BOTH.map(|side| raw[timing.frames].legs[side.index()].target.ankle),
@@ -151,6 +182,27 @@ impl Stage {
 }
 
 impl Placing<'_> {
+    /// What there is to lean against in a step of so many seconds. A run leans into its turns, too; nobody leans out of a sidestep.
+    fn pull(&self, secs: f32) -> Pull {
+        let Amplitude { from, to } = self.shape.amplitude;
+        let [before, after] = [from * self.velocity_before_mps, to * self.velocity_mps];
+        Pull {
+            within: Vec2::new(0.0, (after.y - before.y) / secs),
+            after: Vec2::new(after.y * self.turn_rate, 0.0),
+        }
+    }
+
+    /// How the speed changes from the step before to the end of this one.
+    fn change(&self) -> SpeedChange {
+        let Amplitude { from, to } = self.shape.amplitude;
+        let change = SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps);
+        if self.passed > 0.0 {
+            // Half a step has no surge of a step.
+            return change.whole();
+        }
+        change
+    }
+
     /// The standing posture at part `s` of the step, and what there is of the walk on top of it.
     fn grown(&self, walking: &[f32], s: f32) -> (Posture, Posture) {
         let amplitude = self.shape.amplitude.at(s);

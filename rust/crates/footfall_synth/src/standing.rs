@@ -23,13 +23,13 @@ pub(crate) use sway::StandingTables;
 const KNEE_FLEXION: f32 = 0.1;
 
 /// Part of a starting step in which it grows: before, the weight shifts.
-const GROWTH: [f32; 2] = [0.1, 0.7];
+const GROWTH: [f32; 2] = [0.0, 0.7];
 
 /// Part of a stopping step by which it has shrunk.
 const SHRUNK_BY: f32 = 0.9;
 
 /// Least part of a starting step in which both feet stand.
-pub(crate) const START_TERMINAL: f64 = 0.3;
+pub(crate) const START_TERMINAL: f64 = 0.22;
 
 /// How much of the walk there is at the beginning and at the end of a step: 0 is standing, 1 is walking.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,17 +11,20 @@ use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::gait::Gait;
 use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
-use crate::planting::{Airborne, PlanterState};
+use crate::obeyed::Obeyed;
+use crate::planting::{Airborne, Lean, PlanterState};
+use crate::rest::Rest;
 use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
 use crate::strafe::Strafe;
 use footfall_core::StepPosition;
 use footfall_ik::{FootTarget, Plant};
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use moving::Moving;
 use serde::{Deserialize, Serialize};
 
-/// The version of the layout that this build writes; it reads those before, too, which knew no jumps, no running and no life in standing.
+/// The version of the layout that this build writes; it reads those before, too, which knew no jumps and no steps that change in their middle, no running
+/// and no life in standing.
 const VERSION: u8 = 7;
 const RUNNING_VERSION: u8 = 6;
 const WALKING_VERSION: u8 = 5;
@@ -119,6 +122,19 @@ struct Alive {
     speed: f32,
 }
 
+/// What it takes to go on with a step that was made to obey in its middle.
+#[derive(Default, Serialize, Deserialize)]
+struct Quick {
+    /// Velocity of the step before and of this one, as their requests had them.
+    velocities_mps: [[f32; 2]; 2],
+    /// What the step obeys: velocity and turning; whether it stops, and whether it was stretched.
+    obeys: ([f32; 2], f32, bool, bool),
+    /// The state that its rest begins in, the share of that which is left, and the share of the whole step that had passed.
+    rest: Option<(u8, f32, f32)>,
+    /// How the trunk leans as the step begins, and how fast that changes.
+    lean: [[f32; 2]; 2],
+}
+
 /// What a runner has beyond that.
 #[derive(Default, Serialize, Deserialize)]
 struct Running {
@@ -211,7 +227,8 @@ impl GaitGenerator {
             speed: moment.speed,
         };
         // Writing to memory does not fail; an empty state is refused like any other that is not one.
-        postcard::to_stdvec(&(state, alive, self.running(), Moving::of(self))).unwrap_or_default()
+        let more = (self.running(), self.quick(), Moving::of(self));
+        postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
 
     /// Goes on from a [`state`](Self::state) of a walker with the same model, styles and body; the seed is the state's.
@@ -220,24 +237,27 @@ impl GaitGenerator {
     /// [`StateError`]; the walker then walks on as before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
-        let (alive, running, moving): (Alive, Running, Moving) = match state.version {
-            VERSION => postcard::from_bytes(rest)?,
-            RUNNING_VERSION => {
-                let (alive, running) = postcard::from_bytes(rest)?;
-                (alive, running, Moving::default())
-            }
-            WALKING_VERSION => (
-                postcard::from_bytes(rest)?,
-                Running::default(),
-                Moving::default(),
-            ),
-            STILL_VERSION => Default::default(),
-            other => return Err(StateError::Version(other)),
-        };
+        let slow = Quick::of_slow(&state);
+        let still = Moving::default();
+        let (alive, (running, quick, moving)): (Alive, (Running, Quick, Moving)) =
+            match state.version {
+                VERSION => postcard::from_bytes(rest)?,
+                RUNNING_VERSION => {
+                    let (alive, running) = postcard::from_bytes(rest)?;
+                    (alive, (running, slow, still))
+                }
+                WALKING_VERSION => {
+                    let alive = postcard::from_bytes(rest)?;
+                    (alive, (Running::default(), slow, still))
+                }
+                STILL_VERSION => (Alive::default(), (Running::default(), slow, still)),
+                other => return Err(StateError::Version(other)),
+            };
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
             running.is_sensible(),
+            quick.is_sensible(),
             moving.is_sensible(),
         ];
         if sensible.contains(&false) {
@@ -250,10 +270,10 @@ impl GaitGenerator {
         };
         match &mut self.steps {
             Steps::Styled(steps) => {
-                let more = (&running, moving.leap_m);
+                let more = (&running, &quick, moving.leap_m);
                 **steps = state.styled(steps, more, &self.skeleton, &config)?;
             }
-            Steps::Switching(steps) => state.resume(steps, &config)?,
+            Steps::Switching(steps) => state.resume(steps, quick.lean(), &config)?,
         }
         self.config = config;
         if let Some(life) = &mut self.life {
@@ -265,6 +285,7 @@ impl GaitGenerator {
             };
         }
         self.detail = detail_of(state.detail);
+        self.heard = None;
         let [x, y, z, heading] = state.plan_from_start;
         self.plan_from_start = GroundTransform {
             position: Vec3::new(x, y, z),
@@ -279,6 +300,38 @@ impl GaitGenerator {
 }
 
 impl GaitGenerator {
+    fn quick(&self) -> Quick {
+        let lean_of = |feet: Option<PlanterState>| {
+            feet.map_or_else(Default::default, |feet| {
+                [feet.lean.angle, feet.lean.rate].map(|part| part.to_array())
+            })
+        };
+        let steps = match &self.steps {
+            Steps::Styled(steps) => steps,
+            Steps::Switching(steps) => {
+                return Quick {
+                    lean: lean_of(steps.origin.planter),
+                    ..Quick::default()
+                };
+            }
+        };
+        let (origin, obeyed) = (steps.walker.origin(), &steps.obeyed);
+        let velocities = [origin.velocity_before_mps, origin.request.velocity_mps];
+        Quick {
+            velocities_mps: velocities.map(|velocity| velocity.to_array()),
+            obeys: (
+                obeyed.velocity_mps.to_array(),
+                obeyed.turn_rate,
+                obeyed.stops,
+                obeyed.stretched,
+            ),
+            rest: origin
+                .rest
+                .map(|rest| (rest.state as u8, rest.left, rest.passed)),
+            lean: lean_of(origin.planter),
+        }
+    }
+
     fn running(&self) -> Running {
         let Steps::Styled(steps) = &self.steps else {
             return Running::default();
@@ -295,6 +348,58 @@ impl GaitGenerator {
                 )
             }),
         }
+    }
+}
+
+impl Quick {
+    /// Of a state that knows no such steps: one whose speed does not change.
+    fn of_slow(state: &State) -> Self {
+        Self {
+            velocities_mps: [state.velocity_mps; 2],
+            obeys: (
+                state.velocity_mps,
+                state.turn_rate,
+                state.amplitude[1] < 1.0,
+                false,
+            ),
+            rest: None,
+            lean: Default::default(),
+        }
+    }
+
+    fn lean(&self) -> Lean {
+        let [angle, rate] = self.lean.map(Vec2::from);
+        Lean { angle, rate }
+    }
+
+    fn obeyed(&self) -> Obeyed {
+        let (velocity, turn_rate, stops, stretched) = self.obeys;
+        Obeyed {
+            velocity_mps: velocity.into(),
+            turn_rate,
+            stops,
+            stretched,
+        }
+    }
+
+    fn rest(&self) -> Option<Rest> {
+        self.rest.map(|(state, left, passed)| Rest {
+            state: state.into(),
+            left,
+            passed,
+        })
+    }
+
+    fn is_sensible(&self) -> bool {
+        let (obeyed, turn_rate, ..) = self.obeys;
+        let numbers = self
+            .velocities_mps
+            .into_iter()
+            .chain(self.lean)
+            .flatten()
+            .chain(obeyed);
+        let reasonable = numbers.chain([turn_rate]).map(f64::from).all(is_reasonable);
+        reasonable && self.rest().is_none_or(|rest| rest.is_sensible())
     }
 }
 
@@ -434,6 +539,7 @@ impl Feet {
             stride: self.stride,
             strafe: self.strafe,
             airborne: None,
+            lean: Lean::default(),
         }
     }
 

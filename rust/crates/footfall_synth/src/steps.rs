@@ -46,8 +46,12 @@ impl Ask {
 
     /// The velocity of the next step, after one of this velocity and gait.
     pub(crate) fn velocity_after(&self, velocity_mps: Vec2, gait: Gait) -> Vec2 {
-        let change = self.velocity_mps - velocity_mps;
-        velocity_mps + change.clamp_length_max(gait.most_change_mps())
+        self.velocity_within(velocity_mps, gait.most_change_mps())
+    }
+
+    /// The velocity of the next step, which differs by so much at most from that of this one.
+    pub(crate) fn velocity_within(&self, velocity_mps: Vec2, most_mps: f32) -> Vec2 {
+        velocity_mps + (self.velocity_mps - velocity_mps).clamp_length_max(most_mps)
     }
 }
 
@@ -76,6 +80,16 @@ pub(crate) trait StepSource {
 
     /// Goes on to the next step.
     fn advance(&mut self, ask: &Ask);
+
+    /// Has the rest of the current step obey something new from a frame of it on; whether it does. The step then begins with that frame.
+    fn replan(&mut self, _ask: &Ask, _frame: usize) -> bool {
+        false
+    }
+
+    /// Whether so much else is asked for that the current step would obey it where it can.
+    fn is_news(&self, _ask: &Ask) -> bool {
+        false
+    }
 
     /// Puts the current step on the ground anew, again and again, with the factors on the legs' reach that `next` makes of where it
     /// lies; the walk goes on from the speed that this gives. Before, it becomes quicker by the factor

@@ -4,11 +4,12 @@ use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::gait::Gait;
 use crate::generator::GeneratorConfig;
+use crate::obeyed::Obeyed;
 use crate::plan::{Planner, StepShape};
 use crate::space::{Blend, StyleSpace};
 use crate::stage::Stage;
 use crate::steps::{Ask, StepSource, Stretches};
-use crate::walker::Walker;
+use crate::walker::{Request, Walker};
 use crate::worn::Worn;
 use footfall_core::{Side, Skeleton};
 use glam::Vec2;
@@ -26,6 +27,8 @@ pub(crate) struct StyledSteps {
     retired: Option<Arc<Blend>>,
     /// Velocity of the current step, as its request has it.
     pub(crate) velocity_mps: Vec2,
+    /// What the current step obeys, and whether something else has changed it since.
+    pub(crate) obeyed: Obeyed,
 }
 
 impl StyledSteps {
@@ -58,6 +61,7 @@ impl StyledSteps {
             worn,
             retired: None,
             velocity_mps: request.velocity_mps,
+            obeyed: Obeyed::default(),
         })
     }
 
@@ -68,6 +72,7 @@ impl StyledSteps {
         walker: Walker,
         worn: Worn,
         velocity_mps: Vec2,
+        obeyed: Obeyed,
     ) -> Self {
         Self {
             space: Arc::clone(space),
@@ -76,6 +81,7 @@ impl StyledSteps {
             worn,
             retired: None,
             velocity_mps,
+            obeyed,
         }
     }
 
@@ -136,19 +142,15 @@ impl StepSource for StyledSteps {
             .at_bench(|bench| walker.start(planner, blend, draws, request, bench).is_ok());
         if started {
             self.velocity_mps = Vec2::ZERO;
+            self.obeyed = Obeyed::default();
         }
         started
     }
 
     fn advance(&mut self, ask: &Ask) {
-        let before = &self.walker.origin().request;
-        let gait = self.walker.blends()[1].gait;
-        let side = self.walker.step().timing.leading.other();
-        let model = self.space.model();
-        let velocity = &mut self.velocity_mps;
-        let (request, gait) = self
-            .worn
-            .request(ask, model, (before, gait), side, velocity);
+        self.obeyed = Obeyed::of(ask);
+        let gait = self.gait();
+        let (request, gait) = self.worn.request(ask, gait, &mut self.velocity_mps);
         let draw = self.planner.draw(self.walker.step().timing.leading);
         let blend = self.worn.dress(gait);
         self.planner.wear(&blend.model);
@@ -166,6 +168,30 @@ impl StepSource for StyledSteps {
             .space
             .at_bench(|bench| walker.stretch(planner, haste, next, bench));
         self.velocity_mps *= whole;
+        self.obeyed.stretched = true;
+    }
+
+    fn is_news(&self, ask: &Ask) -> bool {
+        !self.obeyed.stretched && self.obeyed.differs_from(ask) && self.gait() == Gait::Walk
+    }
+
+    fn replan(&mut self, ask: &Ask, frame: usize) -> bool {
+        if !self.is_news(ask) {
+            return false;
+        }
+        // Styles may have changed since the step began.
+        self.planner.wear(&self.walker.blends()[1].model);
+        let (worn, velocity) = (&self.worn, &mut self.velocity_mps);
+        let request =
+            |before: &Request, frames: f64| worn.rest_request(ask, before, frames, velocity);
+        let (planner, walker) = (&mut self.planner, &mut self.walker);
+        let replanned = self
+            .space
+            .at_bench(|bench| walker.replan(planner, frame, request, bench));
+        if replanned {
+            self.obeyed = Obeyed::of(ask);
+        }
+        replanned
     }
 }
 

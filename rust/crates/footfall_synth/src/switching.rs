@@ -279,6 +279,8 @@ impl SwitchingSteps {
                 turn_rate: self.origin.turn_rate,
                 facing: self.origin.facing,
                 velocity_mps: self.velocity_mps,
+                velocity_before_mps: self.velocity_mps,
+                passed: 0.0,
             },
             &mut self.raw,
         );

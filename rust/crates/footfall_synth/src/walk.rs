@@ -5,7 +5,7 @@ use crate::fine_motion::{FineBench, FineTables, neighbours};
 use crate::gait::{Gait, GaitChoice};
 use crate::pace::PaceTable;
 use crate::plan::{Manner, Planner, StepDraw, StepPlan};
-use crate::planting::{Course, PlantedFrame, Planter};
+use crate::planting::{Course, PlantedFrame, Planter, SpeedChange};
 use crate::raw::RawFrame;
 use crate::recording;
 use crate::space::StyleSpace;
@@ -172,9 +172,11 @@ pub(crate) fn put_on_ground(
         .map(|(fine, tables)| (tables, FineTables::scale(fine)));
     let mut bench = FineBench::new();
     let mut planter: Option<Planter> = None;
-    let course = Course {
+    let mut course = Course {
+        step_secs: 0.0,
         turn_rate: config.turn_rate_radps,
         facing: [facing; 2],
+        change: SpeedChange::default(),
     };
     let mut poses: Vec<Pose> = Vec::new();
     let mut stances: [Vec<[f64; 2]>; 2] = [vec![], vec![]];
@@ -207,6 +209,7 @@ pub(crate) fn put_on_ground(
         }
         RawFrame::fill(&mut raw, &frames, skeleton, |_| f32x8::splat(stride));
         begin += timing.frames;
+        course.step_secs = (timing.frames as f64 * frame_secs) as f32;
         let timing = planter
             .get_or_insert_with(|| {
                 Planter::new(skeleton, frame_secs as f32, &raw[0], timing, facing)

@@ -1,14 +1,17 @@
 //! One walker, step after step: planning, trajectory and planting in a row.
 
+use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::fine_motion::{Scale, neighbours};
 use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan, StepShape};
 use crate::planting::PlanterState;
+use crate::rest::Rest;
 use crate::space::Blend;
 use crate::stage::{Placing, Stage};
 use crate::standing::Amplitude;
 use crate::steps::Stretches;
 use crate::workbench::Workbench;
+use footfall_core::ease::smooth_step;
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::{FEATURE_COUNT, STATES_PER_STEP};
 use glam::Vec2;
@@ -52,9 +55,13 @@ pub(crate) struct Origin {
     /// The manner and the facing of the step before.
     pub(crate) manner_before: Manner,
     pub(crate) facing_before: f32,
+    /// Velocity of the step before.
+    pub(crate) velocity_before_mps: Vec2,
     /// The feet before the step; `None` for the first.
     pub(crate) planter: Option<PlanterState>,
     pub(crate) tie: [f32; TIE_LEN],
+    /// Where the current step is the rest of one that was planned anew.
+    pub(crate) rest: Option<Rest>,
 }
 
 /// One walker between the planner's draws and frames on the ground; allocates nothing after it was made.
@@ -99,8 +106,10 @@ impl Walker {
                 request: nothing,
                 manner_before: nothing.manner,
                 facing_before: 0.0,
+                velocity_before_mps: Vec2::ZERO,
                 planter: None,
                 tie: [0.0; TIE_LEN],
+                rest: None,
             },
             stage: Stage::new(skeleton, blend.model.frame_rate_hz, longest),
         }
@@ -125,7 +134,9 @@ impl Walker {
         self.origin.request = request;
         self.origin.manner_before = request.manner;
         self.origin.facing_before = request.facing;
+        self.origin.velocity_before_mps = request.velocity_mps;
         self.origin.planter = None;
+        self.origin.rest = None;
         for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
             planner.realise(draw, request.manner, &blend.statistics, plan);
             plan.shape.set_amplitude(request.amplitude);
@@ -208,8 +219,10 @@ impl Walker {
             request,
             manner_before: self.origin.request.manner,
             facing_before: self.origin.request.facing,
+            velocity_before_mps: self.origin.request.velocity_mps,
             planter: self.stage.planter_state(),
             tie: self.end,
+            rest: None,
         }
     }
 
@@ -285,6 +298,72 @@ impl Walker {
             self.plans[1].leap(rise_m, before, self.blend.model.frame_rate_hz);
         }
         self.plans[1].shape.set_amplitude(request.amplitude);
+        if let Some(rest) = self.origin.rest
+            && first <= 1
+        {
+            rest.keep(&mut self.plans[1]);
+            let fine = self.plans[0].fine;
+            let manner = self.origin.manner_before;
+            planner.realise(
+                &self.draws[1],
+                manner,
+                &self.blend.statistics,
+                &mut self.plans[0],
+            );
+            rest.hold(&mut self.plans[0]);
+            self.plans[0].fine = fine;
+        }
+    }
+
+    /// Plans the rest of the current step anew from a frame of it on, where one foot is in the air and enough is left; whether it did. `request` makes of
+    /// the current request what is asked for now.
+    pub(crate) fn replan(
+        &mut self,
+        planner: &mut Planner,
+        frame: usize,
+        request: impl FnOnce(&Request, f64) -> Request,
+        bench: &mut Workbench,
+    ) -> bool {
+        let shape = self.plans[1].shape;
+        let before = self.origin.request;
+        let same = Arc::ptr_eq(&self.blend_before, &self.blend);
+        let usual = before.amplitude == Amplitude::WALK && before.manner.detail == Detail::Full;
+        let (Some(begun), true) = (self.origin.planter, same && usual) else {
+            return false;
+        };
+        let Some(rest) = Rest::of(&self.plans[1], frame, self.origin.rest) else {
+            return false;
+        };
+        let blends = [&*self.blend_before, &*self.blend];
+        let placing = placing(&self.origin, &self.plans, blends, 1);
+        let Some(feet) = self.stage.cut(&shape, frame, begun, &placing) else {
+            return false;
+        };
+        // Nobody kept the trajectory.
+        bench.go_on(&self.blend.statistics, &self.plans, &self.origin.tie, false);
+        let tie = bench.tie_at(frame);
+        let whole = shape.timing.frames as f64 / (1.0 - self.passed());
+        let [facing_before, facing] = [self.origin.facing_before, before.facing];
+        let share = smooth_step(frame as f32 / shape.timing.frames as f32);
+        self.origin = Origin {
+            request: request(&before, whole),
+            manner_before: before.manner,
+            facing_before: facing_before + share * (facing - facing_before),
+            velocity_before_mps: before.velocity_mps,
+            planter: Some(feet),
+            tie,
+            rest: Some(rest),
+        };
+        self.stage.resume(feet);
+        self.stale = false;
+        self.realise(planner, 1, bench);
+        self.solve_tied(bench);
+        true
+    }
+
+    /// The share of the current step that had passed when it was planned anew.
+    fn passed(&self) -> f64 {
+        self.origin.rest.map_or(0.0, |rest| f64::from(rest.passed))
     }
 
     /// Solves the current step and the one ahead, tied to the step before, and puts the current one on the ground.
@@ -327,14 +406,10 @@ impl Walker {
     /// Puts a step of the window, which begins with frame `first` of what was solved, on the ground.
     fn put_on_ground(&mut self, step: usize, first: usize, bench: &mut Workbench) {
         let shape = &self.plans[step].shape;
+        let rest = self.origin.rest.filter(|_| step == 1);
         self.end = bench.tie_at(first + shape.timing.frames + 1 - TIE);
-        let placing = Placing {
-            shape,
-            standing: [&self.blend_before.standing, &self.blend.standing],
-            turn_rate: self.origin.request.turn_rate,
-            facing: [self.origin.facing_before, self.origin.request.facing],
-            velocity_mps: self.origin.request.velocity_mps,
-        };
+        let blends = [&*self.blend_before, &*self.blend];
+        let placing = placing(&self.origin, &self.plans, blends, step);
         let Workbench {
             trajectory,
             raw,
@@ -362,10 +437,30 @@ impl Walker {
             fine.prepare(tables, shape.timing.leading, &neighbours(&self.plans, step));
             let rows = shown.chunks_exact_mut(FEATURE_COUNT).enumerate();
             for (frame, row) in rows.step_by(shape.detail.stride()) {
-                fine.add(frame as f32 / shape.timing.frames as f32, scales, row);
+                let phase = Rest::phase(rest, frame as f32 / shape.timing.frames as f32);
+                fine.add(phase, scales, row);
             }
         }
         self.stage
             .put(shown.chunks_exact(FEATURE_COUNT), &placing, raw);
+    }
+}
+
+/// How a step of the window is put on the ground, after a step in one mixture and in another.
+fn placing<'a>(
+    origin: &Origin,
+    plans: &'a [StepPlan<f32>; WINDOW],
+    [before, now]: [&'a Blend; 2],
+    step: usize,
+) -> Placing<'a> {
+    let rest = origin.rest.filter(|_| step == 1);
+    Placing {
+        shape: &plans[step].shape,
+        standing: [&before.standing, &now.standing],
+        turn_rate: origin.request.turn_rate,
+        facing: [origin.facing_before, origin.request.facing],
+        velocity_mps: origin.request.velocity_mps,
+        velocity_before_mps: origin.velocity_before_mps,
+        passed: rest.map_or(0.0, |rest| rest.passed),
     }
 }

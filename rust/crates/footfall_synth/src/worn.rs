@@ -12,10 +12,19 @@ use crate::steps::Ask;
 use crate::strafe::pelvis_turn;
 use crate::walker::Request;
 use crate::workbench::Workbench;
-use footfall_core::{Side, Skeleton, StepPosition};
-use footfall_model::GaitModel;
+use footfall_core::{Skeleton, StepPosition};
 use glam::Vec2;
 use std::sync::Arc;
+
+/// Steps that start a walk and that end one take this long at most, seconds.
+const FIRST_SECS: f64 = 0.45;
+const LAST_SECS: f64 = 0.4;
+
+/// The speed that a first step reaches at most, m/s.
+const FIRST_MPS: f32 = 2.0;
+
+/// The rest of a step is walked no faster than this, m/s.
+const REST_MOST_MPS: f32 = 2.0;
 
 /// A mixture of styles, and how fast each of its gaits goes on this body.
 #[derive(Debug)]
@@ -66,14 +75,12 @@ impl Worn {
         self.blend.of_gait(gait)
     }
 
-    /// The next step, which `side` begins, after one that came from `before`; and the gait that it is walked or run in. `velocity_mps` is the
+    /// The next step, after one of this gait, and the gait that it is walked or run in. `velocity_mps` is the
     /// walk's and follows.
     pub(crate) fn request(
         &self,
         ask: &Ask,
-        model: &GaitModel,
-        (before, gait_before): (&Request, Gait),
-        side: Side,
+        gait_before: Gait,
         velocity_mps: &mut Vec2,
     ) -> (Request, Gait) {
         let mut amplitude = ask.amplitude;
@@ -82,16 +89,20 @@ impl Worn {
             // Who runs slows down before coming to a stand.
             amplitude.to = 1.0;
         }
-        let position = position_after(before.manner.position, amplitude);
-        if amplitude.to >= 1.0 && model.context(position, side).is_some() {
-            // The model knows how this step gets to the speed of the walk.
-            *velocity_mps = ask.velocity_mps.clamp_length_max(self.first_mps());
-        } else if amplitude.to >= 1.0 || model.context(position, side).is_none() {
+        let sets_out = amplitude.from < 1.0 && amplitude.to >= 1.0;
+        if sets_out {
+            let most = if self.run.is_some() {
+                FIRST_MPS
+            } else {
+                FASTEST_WALK_MPS
+            };
+            *velocity_mps = ask.velocity_mps.clamp_length_max(most);
+        } else if amplitude.to >= 1.0 {
             *velocity_mps = ask.velocity_after(*velocity_mps, gait_before);
         }
         let gait = self.gait(ask, gait_before, amplitude, *velocity_mps);
         *velocity_mps = velocity_mps.clamp_length_max(gait.fastest_mps());
-        let (pace, facing, stepped) = match (gait, &self.run) {
+        let (mut pace, facing, stepped) = match (gait, &self.run) {
             (Gait::Run, Some(run)) => {
                 let speed = velocity_mps.length();
                 // The body turns to where it runs.
@@ -105,10 +116,14 @@ impl Worn {
                 *velocity_mps,
             ),
         };
+        if gait == Gait::Walk && amplitude.from != amplitude.to {
+            let most = if sets_out { FIRST_SECS } else { LAST_SECS };
+            pace = self.walk.within(pace, most);
+        }
         let request = Request {
             manner: Manner {
                 pace,
-                position,
+                position: StepPosition::Inside,
                 detail: ask.detail,
             },
             amplitude,
@@ -118,6 +133,31 @@ impl Worn {
             leap_m: ask.leap_m,
         };
         (request, gait)
+    }
+
+    /// The rest of a walked step that came from `before` and would have so many frames in all, when something else is asked for in its middle. It takes
+    /// no longer than it would have.
+    pub(crate) fn rest_request(
+        &self,
+        ask: &Ask,
+        before: &Request,
+        frames: f64,
+        velocity_mps: &mut Vec2,
+    ) -> Request {
+        let wanted = ask.velocity_after(*velocity_mps, Gait::Walk);
+        *velocity_mps = wanted.clamp_length_max(REST_MOST_MPS.max(velocity_mps.length()));
+        let secs = frames / self.blend.model.frame_rate_hz;
+        let pace = self.walk.pace_towards(*velocity_mps);
+        Request {
+            manner: Manner {
+                pace: self.walk.within(pace, secs),
+                ..before.manner
+            },
+            turn_rate: ask.turn_rate,
+            velocity_mps: *velocity_mps,
+            facing: self.walk.facing + pelvis_turn(*velocity_mps),
+            ..*before
+        }
     }
 
     /// The gait of a step.
@@ -169,15 +209,5 @@ impl Worn {
             velocity_mps: Vec2::ZERO,
             ..self.first_request(detail)
         }
-    }
-}
-
-/// The place of a step in its walk. That a step is the last but one is known only when it is over.
-fn position_after(before: StepPosition, amplitude: Amplitude) -> StepPosition {
-    match (amplitude.from < 1.0, amplitude.to < 1.0) {
-        (true, false) => StepPosition::First,
-        (false, true) => StepPosition::Last,
-        (false, false) if before == StepPosition::First => StepPosition::Second,
-        _ => StepPosition::Inside,
     }
 }

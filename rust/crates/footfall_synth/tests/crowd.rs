@@ -68,8 +68,13 @@ fn a_walker_of_a_crowd_walks_as_a_generator_does() {
         let mut pose = Pose::default();
         let mut model = ModelPose::default();
         let mut joints = CrowdPose::default();
+        let mut controls = asked(0);
         for frame in 0..1300 {
-            let controls = asked(frame);
+            // A generator's steps obey in their middle, a crowd's wait for the next: something new is asked for as a step begins.
+            let lands = generator.next_footstep();
+            if lands.is_none_or(|(_, secs)| secs < DT) {
+                controls = asked(frame);
+            }
             generator.step(DT, &controls, &mut pose);
             walker.step(DT, controls, &mut workshop);
             // Somebody else may use the workshop in between.

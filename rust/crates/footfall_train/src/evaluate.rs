@@ -5,7 +5,7 @@
 //! paper's Table 2 and equation 16); synthesised strides are compared with real ones of the style ([`resemblance`]); feet and
 //! smoothness are judged by themselves ([`naturalness`]).
 //!
-//! Modules in suggested reading order: [`stride_features`], [`lda`], [`confusion`], [`resemblance`], [`naturalness`]; [`told_apart`]; [`standing`].
+//! Modules in suggested reading order: [`stride_features`], [`lda`], [`confusion`], [`resemblance`], [`naturalness`]; [`told_apart`]; [`standing`]; [`response`].
 
 pub mod confusion;
 mod error;
@@ -13,6 +13,7 @@ pub mod lda;
 pub mod naturalness;
 mod recognition;
 pub mod resemblance;
+pub mod response;
 pub mod standing;
 pub mod stride_features;
 pub mod told_apart;

@@ -73,7 +73,10 @@ impl Planter {
             return;
         };
         let [begin, leaves] = [0, take_off].map(|frame| out[frame].pose.root_position);
-        let mut pace = (leaves - begin) / take_off as f32;
+        // In a turn the way of the stance is an arc, and what flies goes on along its tangent.
+        let headings = out[..=take_off].iter().map(|frame| frame.heading);
+        let ahead = out[take_off].heading - headings.sum::<f32>() / (take_off + 1) as f32;
+        let mut pace = from_heading(ahead) * (leaves - begin) / take_off as f32;
         if self.flight_secs(timing) > LEAP_SECS {
             let along = pace.with_y(0.0).normalize_or_zero();
             let entry = self.state.hips_velocity.unwrap_or_default().dot(along);

@@ -4,7 +4,8 @@
 //! the whole body. So a step's way along its direction keeps as much of the step's frequency as people have, and the legs are
 //! solved to the feet from there.
 
-use super::{PlantedFrame, Planter, StepTiming};
+use super::urge::{steady, urge};
+use super::{PlantedFrame, Planter, SpeedChange, StepTiming};
 use core::f32::consts::TAU;
 use footfall_core::ease::smooth_step;
 use glam::{Vec2, Vec3};
@@ -21,13 +22,14 @@ const EVENED: [f32; 2] = [0.1, 0.5];
 
 impl Planter {
     /// Evens the hips' way over a step; it begins and ends where it did.
-    pub(super) fn even(&self, timing: &StepTiming, out: &mut [PlantedFrame]) {
+    pub(super) fn even(&self, timing: &StepTiming, change: SpeedChange, out: &mut [PlantedFrame]) {
         let frames = timing.frames as f32;
         let begin = out[0].pose.root_position;
         let way = (out[timing.frames].pose.root_position - begin) * Vec3::new(1.0, 0.0, 1.0);
         let length = way.length();
         let share = length / self.leg_lengths[timing.leading.index()];
-        let weight = smooth_step((share - EVENED[0]) / (EVENED[1] - EVENED[0]));
+        let even = smooth_step((share - EVENED[0]) / (EVENED[1] - EVENED[0]));
+        let weight = even.max(change.weight_over(share));
         if weight <= 0.0 {
             return;
         }
@@ -48,18 +50,28 @@ impl Planter {
             wave.turn = turn;
             wave.amplitude = (sum * (2.0 / frames)).clamp_length_max(most * pace / turn.to_angle());
         }
+        // A change of speed is no surge, though it looks like one.
+        for wave in &mut waves {
+            wave.amplitude *= 1.0 - change.weight;
+        }
         let begins_at = waves
             .iter()
             .fold(pace, |speed, wave| speed + wave.first_speed());
         let news = self.state.hips_velocity.map_or(0.0, |velocity| {
             along.dot(velocity) * self.frame_secs - begins_at
         });
+        let mut ends = change.speed_mps * self.frame_secs - pace;
+        if !timing.rests {
+            ends = 0.5 * (ends + steady(news, ends));
+        }
         let decay = -self.frame_secs / PASSING_SECS;
         let left = (frames * decay).exp();
         let mut angles = [Vec2::X; MOST.len()];
         for (frame, planted) in out[..=timing.frames].iter_mut().enumerate() {
             let time = frame as f32;
-            let mut evened = news * time * ((time * decay).exp() - left);
+            let settled = news * time * ((time * decay).exp() - left);
+            let urged = frames * urge(news, ends, time / frames);
+            let mut evened = settled + change.weight * (urged - settled);
             for (wave, angle) in waves.iter().zip(&mut angles) {
                 evened += wave.amplitude.dot(*angle - Vec2::X);
                 *angle = wave.turn.rotate(*angle);

@@ -21,7 +21,7 @@ const SOFT_FALL_MPS: f32 = 1.3;
 const SETTLE_BY_FALL: f32 = 0.04;
 
 /// Part of a step over which a new turn rate sets in.
-const TURN_ONSET: f32 = 0.6;
+pub(super) const TURN_ONSET: f32 = 0.6;
 
 /// Generated legs disagree by a few centimetres about the hips' height when a foot lands. This share of the gap is closed
 /// before the landing, from this part of the step on, and the rest after it.
@@ -66,7 +66,7 @@ impl Planter {
             }
         }
         self.drift(timing, out);
-        self.even(timing, out);
+        self.even(timing, course.change, out);
         self.glide(timing, out);
     }
 

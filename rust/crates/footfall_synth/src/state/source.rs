@@ -1,10 +1,10 @@
 //! What each kind of steps adds to a state, and how it goes on from one.
 
-use super::{Feet, Running, Source, State, StateError, detail_of};
+use super::{Quick, Running, Source, State, StateError, detail_of};
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
 use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
-use crate::planting::PlanterState;
+use crate::planting::{Lean, PlanterState};
 use crate::styled::{StyledSteps, walker_of};
 use crate::switching::{SwitchingOrigin, SwitchingSteps};
 use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
@@ -56,7 +56,7 @@ impl State {
     pub(super) fn styled(
         &self,
         current: &StyledSteps,
-        (running, leap_m): (&Running, Option<f32>),
+        (running, quick, leap_m): (&Running, &Quick, Option<f32>),
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<StyledSteps, StateError> {
@@ -111,17 +111,20 @@ impl State {
                 manner: manner(1),
                 amplitude: self.amplitude(),
                 turn_rate: self.turn_rate,
-                velocity_mps: self.velocity_mps.into(),
+                velocity_mps: quick.velocities_mps[1].into(),
                 facing: self.facing[1],
                 leap_m,
             },
             manner_before: manner(0),
             facing_before: self.facing[0],
+            velocity_before_mps: quick.velocities_mps[0].into(),
             planter: self.feet.as_ref().map(|feet| PlanterState {
                 airborne: running.airborne(),
+                lean: quick.lean(),
                 ..feet.planter()
             }),
             tie: [0.0; TIE_LEN],
+            rest: quick.rest(),
         };
         if tie.len() == TIE_LEN {
             origin.tie.copy_from_slice(tie);
@@ -143,6 +146,7 @@ impl State {
             walker,
             worn,
             self.velocity_mps.into(),
+            quick.obeyed(),
         ))
     }
 
@@ -150,6 +154,7 @@ impl State {
     pub(super) fn resume(
         &self,
         steps: &mut SwitchingSteps,
+        lean: Lean,
         config: &GeneratorConfig,
     ) -> Result<(), StateError> {
         let Source::Switching {
@@ -177,7 +182,10 @@ impl State {
             facing: self.facing,
             chance_position: self.chance_position,
             expected: expected.clone(),
-            planter: self.feet.as_ref().map(Feet::planter),
+            planter: self.feet.as_ref().map(|feet| PlanterState {
+                lean,
+                ..feet.planter()
+            }),
         };
         steps.resume(config, origin, self.velocity_mps.into());
         Ok(())

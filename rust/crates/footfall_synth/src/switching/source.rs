@@ -11,6 +11,9 @@ use crate::steps::{Ask, StepSource, Stretches};
 use crate::strafe::pelvis_turn;
 use glam::Vec2;
 
+/// A step's velocity differs by at most this much from that of the step before, m/s: two systems know one way of walking and are harder to bend.
+const MOST_CHANGE_MPS: f32 = 0.5;
+
 impl StepSource for SwitchingSteps {
     fn fastest_mps(&self) -> f32 {
         FASTEST_WALK_MPS
@@ -41,7 +44,7 @@ impl StepSource for SwitchingSteps {
     }
 
     fn advance(&mut self, ask: &Ask) {
-        self.velocity_mps = ask.velocity_after(self.velocity_mps, Gait::Walk);
+        self.velocity_mps = ask.velocity_within(self.velocity_mps, MOST_CHANGE_MPS);
         self.take_over(self.origin.leading.other());
         self.set_pace();
         self.origin.turn_rate = ask.turn_rate;

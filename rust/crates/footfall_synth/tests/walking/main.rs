@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 
 mod jumping;
+mod quick;
 mod running;
 mod strafing;
 mod world;
@@ -150,7 +151,7 @@ fn equal_seeds_walk_equally_and_others_do_not() {
 fn motion_is_continuous_through_changes_of_control() {
     for kind in KINDS {
         let skeleton = Skeleton::standard();
-        let mut generator = generator(kind, 21);
+        let mut generator = generator(kind, 23);
         let mut all = Vec::new();
         for (speed, turn) in [(1.2, 0.0), (1.8, 0.5), (0.6, -0.5), (1.4, 0.0)] {
             let controls = Controls {

@@ -1,0 +1,193 @@
+//! Quick to obey: starts, stops and turns within a step, also in the middle of one.
+
+use crate::world::{
+    DT, Frame, Kind, assert_planted_within, config, generator, run, space, walking,
+};
+use core::f32::consts::{PI, TAU};
+use footfall_core::{Joint, Pose, Skeleton};
+use footfall_synth::{Controls, GaitGenerator};
+use glam::Vec3;
+
+/// Frames over which speeds are taken: hips surge faster.
+const OVER: usize = 12;
+
+/// The hips' velocity over the ground about a frame, m/s.
+fn velocity(frames: &[Frame], at: usize) -> Vec3 {
+    let hips = |frame: usize| frames[frame].model.position(Joint::Hips);
+    let (first, last) = (
+        at.saturating_sub(OVER / 2),
+        (at + OVER / 2).min(frames.len() - 1),
+    );
+    let way = (hips(last) - hips(first)) / ((last - first) as f32 * DT);
+    Vec3::new(way.x, 0.0, way.z)
+}
+
+/// Seconds from a frame until something is so of the velocity.
+fn secs_until(frames: &[Frame], from: usize, is_so: impl Fn(Vec3) -> bool) -> f32 {
+    let found = (from..frames.len()).find(|at| is_so(velocity(frames, *at)));
+    found.map_or(f32::INFINITY, |at| (at - from) as f32 * DT)
+}
+
+/// The largest acceleration of a joint, m/s².
+fn hardest(frames: &[Frame], joint: Joint) -> f32 {
+    let place = |frame: &Frame| frame.model.position(joint);
+    let accelerations = frames
+        .windows(3)
+        .map(|at| (place(&at[2]) - 2.0 * place(&at[1]) + place(&at[0])).length() / (DT * DT));
+    accelerations.fold(0.0, f32::max)
+}
+
+#[test]
+fn a_start_takes_one_step() {
+    let skeleton = Skeleton::standard();
+    for seed in 1..7 {
+        for (speed, most) in [(1.3, 0.5), (3.0, 0.7)] {
+            let mut walker = generator(Kind::Styled, seed);
+            walker.stand();
+            let (mut frames, _) = run(&mut walker, &skeleton, &Controls::STAND, 40);
+            frames.extend(run(&mut walker, &skeleton, &walking(speed), 120).0);
+            let secs = secs_until(&frames, 40, |velocity| velocity.z > 0.8 * speed);
+            assert!(secs < most, "seed {seed}: {secs} s to {speed} m/s");
+            assert_planted_within(&skeleton, &frames, 0.05);
+        }
+    }
+}
+
+#[test]
+fn a_stop_takes_a_second_at_most() {
+    let skeleton = Skeleton::standard();
+    for seed in 1..7 {
+        for (speed, most) in [(1.3, 0.85), (3.4, 1.15)] {
+            let mut walker = generator(Kind::Styled, seed);
+            let before = 150 + 7 * seed as usize;
+            let (mut frames, _) = run(&mut walker, &skeleton, &walking(speed), before);
+            frames.extend(run(&mut walker, &skeleton, &Controls::STAND, 150).0);
+            let secs = secs_until(&frames, before, |velocity| velocity.length() < 0.15);
+            assert!(secs < most, "seed {seed}: {secs} s from {speed} m/s");
+            assert_planted_within(&skeleton, &frames, 0.05);
+        }
+    }
+}
+
+/// Something new is asked for at every moment of a stride.
+#[test]
+fn a_change_in_the_middle_of_a_step_is_obeyed_without_a_pop() {
+    let skeleton = Skeleton::standard();
+    let news = [
+        Controls {
+            turn_rate_radps: 1.5,
+            ..walking(1.3)
+        },
+        walking(0.7),
+        walking(1.7),
+        Controls::STAND,
+    ];
+    for (index, controls) in news.iter().enumerate() {
+        let mut sooner = 0;
+        for moment in 0..33 {
+            let mut walker = generator(Kind::Styled, 4);
+            let before = 121 + 2 * moment;
+            let (mut frames, _) = run(&mut walker, &skeleton, &walking(1.3), before);
+            let landing = walker.next_footstep().unwrap();
+            frames.extend(run(&mut walker, &skeleton, controls, 1).0);
+            let now = walker.next_footstep().unwrap();
+            // The same foot is to land elsewhere, or under another heading.
+            let moved = now
+                .0
+                .position
+                .distance(landing.0.position - 1.3 * DT * Vec3::Z);
+            let turned = (now.0.heading - landing.0.heading).abs();
+            sooner += usize::from(now.0.side == landing.0.side && (moved > 0.03 || turned > 0.1));
+            frames.extend(run(&mut walker, &skeleton, controls, 90).0);
+            assert_planted_within(&skeleton, &frames, 0.02);
+            for (joint, most) in [(Joint::Hips, 30.0), (Joint::Head, 50.0)] {
+                let hardest = hardest(&frames[100..], joint);
+                assert!(
+                    hardest < most,
+                    "{index}, {moment}: {joint:?} {hardest} m/s²"
+                );
+            }
+        }
+        assert!(
+            sooner > 6,
+            "{index}: obeyed in the same step at {sooner} of 33 moments"
+        );
+    }
+}
+
+#[test]
+fn whoever_turns_back_plants_a_foot_and_goes() {
+    let skeleton = Skeleton::standard();
+    for seed in 1..7 {
+        let mut walker = generator(Kind::Styled, seed);
+        let before = 150 + 5 * seed as usize;
+        let (mut frames, _) = run(&mut walker, &skeleton, &walking(1.3), before);
+        for _ in 0..150 {
+            let left = PI - walker.start_from_character().heading.rem_euclid(TAU);
+            let controls = Controls {
+                turn_rate_radps: (left / 0.35).clamp(-3.5, 3.5),
+                ..walking(if left > 2.0 { 0.5 } else { 1.3 })
+            };
+            frames.extend(run(&mut walker, &skeleton, &controls, 1).0);
+        }
+        let secs = secs_until(&frames, before, |velocity| velocity.z < -0.8 * 1.3);
+        assert!(secs < 1.5, "seed {seed}: {secs} s");
+        let last = walker.start_from_character().heading.rem_euclid(TAU);
+        assert!((last - PI).abs() < 0.1, "seed {seed}: faces {last}");
+        assert_planted_within(&skeleton, &frames, 0.05);
+    }
+}
+
+#[test]
+fn trunks_lean_into_turns_and_against_stops() {
+    let skeleton = Skeleton::standard();
+    let lean = |frame: &Frame| {
+        let up = frame.model.rotation(Joint::UpperChest) * Vec3::Y;
+        let level = glam::Quat::from_rotation_y(-frame.heading);
+        level * up
+    };
+    let mean = |frames: &[Frame]| frames.iter().map(lean).sum::<Vec3>() / frames.len() as f32;
+    let turning = |turn_rate_radps: f32| {
+        let mut walker = generator(Kind::Styled, 2);
+        let controls = Controls {
+            turn_rate_radps,
+            ..walking(1.4)
+        };
+        mean(&run(&mut walker, &skeleton, &controls, 600).0[120..])
+    };
+    // Half of the angle whose tangent is v·ω over g, less what nobody notices.
+    let leans = turning(1.2).x - turning(-1.2).x;
+    assert!((0.1..0.2).contains(&leans), "{leans}");
+    let mut walker = generator(Kind::Styled, 2);
+    let (walked, _) = run(&mut walker, &skeleton, &walking(1.5), 200);
+    let (stopped, _) = run(&mut walker, &skeleton, &Controls::STAND, 45);
+    let back = stopped
+        .iter()
+        .map(|frame| lean(frame).z)
+        .fold(1.0, f32::min);
+    assert!(back < mean(&walked).z - 0.08, "leans back to {back}");
+}
+
+#[test]
+fn a_step_that_was_planned_anew_goes_on_from_a_saved_state_bit_for_bit() {
+    let skeleton = Skeleton::standard();
+    let turning = Controls {
+        turn_rate_radps: 1.2,
+        ..walking(1.6)
+    };
+    for before in [121, 127, 133, 139, 145, 151, 157] {
+        let mut first = generator(Kind::Styled, 11);
+        run(&mut first, &skeleton, &walking(1.2), before);
+        run(&mut first, &skeleton, &turning, 3);
+        let state = first.state();
+        let mut second = GaitGenerator::new(&space(), &[], &skeleton, &config(2)).unwrap();
+        second.restore(&state).unwrap();
+        let (mut a, mut b) = (Pose::default(), Pose::default());
+        for frame in 0..200 {
+            let controls = if frame < 40 { turning } else { walking(0.8) };
+            first.step(DT, &controls, &mut a);
+            second.step(DT, &controls, &mut b);
+            assert_eq!(a, b, "{frame} frames after {before}");
+        }
+    }
+}
