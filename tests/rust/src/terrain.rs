@@ -199,6 +199,10 @@ impl PlacedWalker {
             airborne: false,
         };
         if told {
+            if self.placer.pace() < 1.0 {
+                // As `FootPlacement3D` does on a grade.
+                self.generator.keep_step();
+            }
             input.landings = self.generator.landings();
             if let Some(share) = self.placer.step_share(&input, terrain) {
                 self.generator.stretch_step(share);

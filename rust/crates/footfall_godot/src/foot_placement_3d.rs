@@ -342,6 +342,10 @@ impl FootPlacement3D {
                 1.0
             };
             generator.slow_down(slowed);
+            if session.placer.pace() < 1.0 {
+                // On a grade its foothold has been chosen.
+                generator.keep_step();
+            }
             let mut ground = session.ground.now(space.clone());
             if !in_editor
                 && self.adjust_footholds

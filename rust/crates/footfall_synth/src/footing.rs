@@ -26,6 +26,11 @@ impl GaitGenerator {
         landings(self.next_footstep(), &self.plan_from_character(), arrival)
     }
 
+    /// Leaves the current step as it is: something else that is asked for waits for the next one. For whoever has chosen a foothold for it.
+    pub fn keep_step(&mut self) {
+        self.steps.source_mut().keep();
+    }
+
     /// Has the step that has just begun land at this share of its way, within what people do; the walk goes on at the speed that this
     /// gives and comes back to the one that is asked for with the steps to follow. Once a step is under way it stays as it is.
     pub fn stretch_step(&mut self, share: f32) {

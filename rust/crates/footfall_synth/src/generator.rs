@@ -45,7 +45,8 @@ pub struct GeneratorConfig {
     pub variation: f32,
 }
 
-/// What the walker is asked to do. Takes effect with the next step.
+/// What the walker is asked to do. A walker whose foot is in the air obeys at once, where enough of the step is left; otherwise it takes effect with the next
+/// step, as all do of runners, of walkers in less than full detail and of those of a [`DynamicsModel`].
 ///
 /// A speed and turn rate near zero stop the walker within two steps; it stands until one of them rises. Turning without
 /// speed turns in place.

@@ -13,7 +13,7 @@ pub(crate) struct Obeyed {
     pub(crate) velocity_mps: Vec2,
     pub(crate) turn_rate: f32,
     pub(crate) stops: bool,
-    /// Whether the ground has made it longer or shorter since: then it stays as it is.
+    /// Whether it has a foothold on the ground, and may be longer or shorter for it: then it stays as it is.
     pub(crate) stretched: bool,
 }
 

@@ -86,6 +86,9 @@ pub(crate) trait StepSource {
         false
     }
 
+    /// Leaves the current step as it is, whatever else is asked for.
+    fn keep(&mut self) {}
+
     /// Whether so much else is asked for that the current step would obey it where it can.
     fn is_news(&self, _ask: &Ask) -> bool {
         false

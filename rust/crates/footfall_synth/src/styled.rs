@@ -171,6 +171,10 @@ impl StepSource for StyledSteps {
         self.obeyed.stretched = true;
     }
 
+    fn keep(&mut self) {
+        self.obeyed.stretched = true;
+    }
+
     fn is_news(&self, ask: &Ask) -> bool {
         !self.obeyed.stretched && self.obeyed.differs_from(ask) && self.gait() == Gait::Walk
     }

@@ -51,6 +51,13 @@ impl GaitGenerator3D {
         }
     }
 
+    /// Leaves the current step as it is, whatever else is asked for.
+    pub(crate) fn keep_step(&mut self) {
+        if let Some(session) = &mut self.session {
+            session.generator.keep_step();
+        }
+    }
+
     /// Walks at this share of the speed from the next step on.
     pub(crate) fn slow_down(&mut self, share: f32) {
         self.slowed = share;
