@@ -196,7 +196,7 @@ impl Planter {
             airborne: None,
             lean: Lean::default(),
         };
-        let mut planter = Self::resume(skeleton, frame_secs, state);
+        let mut planter = Self::resume(skeleton, frame_secs, &state);
         let standing = match timing.take_off {
             Some(_) => timing.leading,
             None => timing.leading.other(),
@@ -209,13 +209,13 @@ impl Planter {
     }
 
     /// Goes on from a [`state`](Self::state).
-    pub(crate) fn resume(skeleton: &Skeleton, frame_secs: f32, state: PlanterState) -> Self {
+    pub(crate) fn resume(skeleton: &Skeleton, frame_secs: f32, state: &PlanterState) -> Self {
         Self {
             feet: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
             legs: Side::BOTH.map(|side| Leg::new(skeleton, side)),
             leg_lengths: Side::BOTH.map(|side| skeleton.leg_length(side)),
             frame_secs,
-            state,
+            state: *state,
         }
     }
 

@@ -77,7 +77,7 @@ impl Stage {
     }
 
     /// The next step goes on from these feet.
-    pub(crate) fn resume(&mut self, state: PlanterState) {
+    pub(crate) fn resume(&mut self, state: &PlanterState) {
         self.planter = Some(Planter::resume(&self.skeleton, self.frame_secs, state));
     }
 
@@ -97,7 +97,7 @@ impl Stage {
         &self,
         shape: &StepShape,
         frame: usize,
-        begun: PlanterState,
+        begun: &PlanterState,
         placing: &Placing<'_>,
     ) -> Option<PlanterState> {
         let cut = Cut {

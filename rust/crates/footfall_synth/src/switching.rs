@@ -229,7 +229,7 @@ impl SwitchingSteps {
         self.draw_by(config);
         self.rng.set_word_pos(u128::from(origin.chance_position));
         match origin.planter {
-            Some(state) => self.stage.resume(state),
+            Some(state) => self.stage.resume(&state),
             None => self.stage.clear(),
         }
         self.origin = origin;

@@ -191,7 +191,7 @@ impl Walker {
             let pace = &mut self.origin.request.manner.pace;
             pace.tempo *= haste;
             pace.stride /= haste;
-            self.stage.resume(feet);
+            self.stage.resume(&feet);
             self.realise(planner, 1, bench);
             self.solve_tied(bench);
             solved = true;
@@ -201,7 +201,7 @@ impl Walker {
             let stride = self.origin.request.manner.pace.stride * f64::from(share);
             self.origin.request.manner.pace.stride = stride;
             self.plans[1].shape.stride = stride;
-            self.stage.resume(feet);
+            self.stage.resume(&feet);
             if solved {
                 self.put_on_ground(1, TIE - 1, bench);
             } else {
@@ -255,7 +255,7 @@ impl Walker {
         planner.wear(&blend.model);
         self.blend_before = Arc::clone(blend_before);
         self.blend = Arc::clone(blend);
-        self.stage.resume(state);
+        self.stage.resume(&state);
         self.origin = origin;
         self.stale = false;
         self.realise(planner, 1, bench);
@@ -336,7 +336,7 @@ impl Walker {
         };
         let blends = [&*self.blend_before, &*self.blend];
         let placing = placing(&self.origin, &self.plans, blends, 1);
-        let Some(feet) = self.stage.cut(&shape, frame, begun, &placing) else {
+        let Some(feet) = self.stage.cut(&shape, frame, &begun, &placing) else {
             return false;
         };
         // Nobody kept the trajectory.
@@ -354,7 +354,7 @@ impl Walker {
             tie,
             rest: Some(rest),
         };
-        self.stage.resume(feet);
+        self.stage.resume(&feet);
         self.stale = false;
         self.realise(planner, 1, bench);
         self.solve_tied(bench);

@@ -116,7 +116,7 @@ impl Worn {
                 *velocity_mps,
             ),
         };
-        if gait == Gait::Walk && amplitude.from != amplitude.to {
+        if gait == Gait::Walk && (sets_out || amplitude.to < 1.0) {
             let most = if sets_out { FIRST_SECS } else { LAST_SECS };
             pace = self.walk.within(pace, most);
         }

@@ -16,7 +16,7 @@ pub(crate) struct Cut<'a> {
     pub(crate) frames: &'a [PlantedFrame],
     pub(crate) frame: usize,
     /// What the step began with, what the next would, and the turning at its end.
-    pub(crate) begun: PlanterState,
+    pub(crate) begun: &'a PlanterState,
     pub(crate) ended: PlanterState,
     pub(crate) turn_rate: f32,
     pub(crate) pull: Pull,

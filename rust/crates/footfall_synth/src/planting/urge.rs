@@ -47,7 +47,7 @@ impl SpeedChange {
     }
 
     /// How much it counts in a step of so much travel, as a share of the leg: nobody who steps on the spot goes anywhere.
-    pub(super) fn weight_over(&self, travel: f32) -> f32 {
+    pub(super) fn weight_over(self, travel: f32) -> f32 {
         self.weight * smooth_step(travel / LEAST_TRAVEL)
     }
 }

@@ -66,14 +66,14 @@ impl StepSource for SwitchingSteps {
             // The same step, drawn by the same chance.
             self.rng
                 .set_word_pos(u128::from(self.origin.chance_position));
-            self.stage.resume(feet);
+            self.stage.resume(&feet);
             self.realise();
         }
         while let Some(share) = next(&self.shape, &self.stage) {
             self.origin.stride *= f64::from(share);
             self.shape.stride = self.origin.stride;
             self.velocity_mps *= share;
-            self.stage.resume(feet);
+            self.stage.resume(&feet);
             self.put_on_ground();
         }
     }

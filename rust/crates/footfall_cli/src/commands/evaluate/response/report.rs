@@ -29,7 +29,7 @@ struct Row {
 /// What hips do in a take.
 #[derive(Serialize)]
 pub(super) struct Take {
-    take: String,
+    name: String,
     starts: Vec<Found>,
     stops: Vec<Found>,
     reversals: Vec<Found>,
@@ -69,7 +69,7 @@ impl Report {
                 0 => String::new(),
                 never => format!("  {never} of {} never came to it", row.walkers),
             };
-            let _ = writeln!(
+            let _written = writeln!(
                 text,
                 "{:23} {} {}   {:9.2} {:14.1}{never}",
                 row.course,
@@ -80,10 +80,10 @@ impl Report {
             );
         }
         for take in &self.captured {
-            let _ = writeln!(
+            let _written = writeln!(
                 text,
                 "\n{}: hips {:.1} m/s² (99.9 %)",
-                take.take, take.hips_acceleration_mps2
+                take.name, take.hips_acceleration_mps2
             );
             let kinds = [
                 ("starts", &take.starts),
@@ -97,7 +97,8 @@ impl Report {
                 let found = found
                     .iter()
                     .map(|found| format!("{:.2} s ({:.1} m/s)", found.secs, found.speed_mps));
-                let _ = writeln!(text, "  {name:9} {}", found.collect::<Vec<_>>().join(", "));
+                let _written =
+                    writeln!(text, "  {name:9} {}", found.collect::<Vec<_>>().join(", "));
             }
         }
         text
@@ -134,7 +135,7 @@ impl Take {
         };
         let poses = clip.poses.get(first..).unwrap_or_default();
         Self {
-            take: name.to_owned(),
+            name: name.to_owned(),
             starts: of(ManoeuvreKind::Start),
             stops: of(ManoeuvreKind::Stop),
             reversals: of(ManoeuvreKind::Reversal),
