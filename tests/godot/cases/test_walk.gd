@@ -368,3 +368,42 @@ func test_moving_to_another_skeleton() -> void:
 	var before := other.global_position
 	other.walk(60)
 	check(other.global_position.z > before.z + 0.3, "the other character walks")
+
+
+func test_it_jumps_when_it_is_asked_to_and_tells() -> void:
+	var walker := _walker(func(made: Walker) -> void: made.gait.speed = 0.0)
+	walker.walk(30)
+	var told: Array[StringName] = []
+	walker.gait.took_off.connect(func() -> void: told.append(&"up"))
+	walker.gait.landed.connect(func(foot: StringName) -> void: told.append(foot))
+	var begin := walker.joint("Hips").y
+	check(walker.gait.jump(0.3), "it will jump")
+	var top := [0.0]
+	walker.walk(120, func() -> void: top[0] = maxf(top[0], walker.joint("Hips").y))
+	check_near(top[0] - begin, 0.3, 0.03, "rise of the hips")
+	check_equal(told, [&"up", &"left", &"right"] as Array[StringName], "told")
+	check_near(walker.global_position.y, 0.0, 1e-3, "on the ground again")
+	check(not walker.gait.jump(0.0) and not walker.gait.jump(NAN), "no jump is none")
+	check(walker.gait.jump_to(walker.global_position + Vector3(0, 0.3, 0.6)), "it jumps to a place")
+	walker.walk(120)
+	check_near(walker.global_position.y, 0.3, 0.01, "and is there")
+	check_near(walker.global_position.z, 0.6, 0.02, "and is there")
+
+
+func test_it_crouches_and_gives_way_to_pushes() -> void:
+	var walker := _walker(func(made: Walker) -> void: made.gait.speed = 0.0)
+	walker.walk(30)
+	var upright := walker.joint("Hips").y
+	walker.gait.crouch = 1.0
+	walker.walk(60)
+	check_near(upright - walker.joint("Hips").y, 0.2, 0.08, "it keeps low")
+	walker.gait.crouch = 0.0
+	walker.walk(60)
+	walker.footsteps.clear()
+	walker.gait.push(Vector3(0, 0, 10))
+	walker.walk(90)
+	check(walker.footsteps.is_empty(), "a soft push is stood")
+	walker.gait.push(Vector3(0, 0, 70))
+	walker.walk(240)
+	check(not walker.footsteps.is_empty(), "a hard one is stepped off")
+	check(walker.global_position.z > 0.1, "its way: %s" % walker.global_position)

@@ -1,15 +1,15 @@
-//! Jumps of a walker: asked for, waited for, made.
+//! Jumps of a walker, asked for, waited for and made; and pushes.
 //!
 //! Who stands jumps off both feet ([`moves`](crate::moves)). Who walks or runs forwards leaps: the next step is one of the run whose flight lasts as
 //! long as the rise takes ([`StepPlan::leap`](crate::plan::StepPlan::leap)). Who goes sideways, backwards or hardly at all comes to a stand first.
 
-use crate::gait::WIDEST_RUN_RAD;
+use crate::gait::{FASTEST_RUN_MPS, WIDEST_RUN_RAD};
 use crate::generator::{Controls, Footstep, GaitGenerator};
 use crate::moves::{JumpPhase, Leap, Moves};
 use crate::steps::Steps;
 use footfall_core::Side;
 use footfall_core::rotation::from_heading;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Slower than this nobody leaps off one foot, m/s.
 const LEAST_LEAP_MPS: f32 = 0.8;
@@ -92,11 +92,34 @@ impl GaitGenerator {
                 ..Controls::STAND
             };
         }
-        Controls {
-            speed_mps: controls
-                .speed_mps
-                .min(moves.fastest_mps(controls.crouch, crate::gait::FASTEST_RUN_MPS)),
+        let fastest = moves.fastest_mps(controls.crouch, FASTEST_RUN_MPS);
+        let asked = Controls {
+            speed_mps: controls.speed_mps.min(fastest),
             ..*controls
+        };
+        let pushed = moves.stepped();
+        if pushed == Vec2::ZERO {
+            return asked;
+        }
+        // Who is pushed hard goes with it, and back on its way as the push is walked off.
+        let velocity = asked.velocity() + pushed;
+        Controls {
+            speed_mps: velocity.length(),
+            direction_rad: velocity.x.atan2(velocity.y),
+            ..asked
+        }
+    }
+
+    /// Pushes the walker by a change of velocity, m/s, to its left and forwards: an impulse over the mass of the body. The body gives way over its feet and comes
+    /// back; a push of more than 0.3 m/s is stepped off in its direction, out of standing and while walking. More than 2 m/s, which would throw people over, counts as that.
+    ///
+    /// Nothing happens with a push that is not finite, in a jump off both feet, and with a switching model.
+    pub fn push(&mut self, velocity_mps: Vec2) {
+        if let Some(moves) = &mut self.moves
+            && velocity_mps.is_finite()
+            && moves.phase().is_none()
+        {
+            moves.push(velocity_mps);
         }
     }
 

@@ -1,11 +1,12 @@
-//! Moves of the whole body on top of its steps: crouching, and jumping off both feet.
+//! Moves of the whole body on top of its steps: crouching, jumping off both feet, and giving way to pushes.
 //!
-//! Steps say where the feet are and how the body is held over them; [`crouch`] lowers it there and [`jump`] takes it off the ground and back. Both are
+//! Steps say where the feet are and how the body is held over them; [`crouch`] lowers it there, [`jump`] takes it off the ground and back, and [`push`] moves it aside. The first two are
 //! postures beside standing that the model has learned, put on by [`body`].
 
 mod body;
 mod crouch;
 mod jump;
+mod push;
 
 use crate::space::StyleSpace;
 use crate::standing::standing_features;
@@ -14,10 +15,11 @@ use crouch::Crouch;
 pub(crate) use crouch::CrouchMoment;
 use footfall_core::{Pose, Skeleton};
 use footfall_model::{CrouchModel, GaitModel};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 pub use jump::JumpPhase;
 pub(crate) use jump::Leap;
 use jump::{Flown, JumpMoment, JumpTables};
+pub(crate) use push::PushMoment;
 use std::sync::Arc;
 
 /// Moves of a model, shared by all of its walkers.
@@ -34,6 +36,7 @@ pub(crate) struct Moves {
     body: Body,
     crouch: Crouch,
     jump: Option<JumpMoment>,
+    push: PushMoment,
 }
 
 impl MoveTables {
@@ -58,6 +61,7 @@ impl Moves {
             tables,
             body,
             jump: None,
+            push: PushMoment::default(),
         }
     }
 
@@ -79,6 +83,16 @@ impl Moves {
         self.jump = Some(JumpMoment::new(tables, leap, &self.body));
     }
 
+    /// Pushes the body by a change of velocity to the left and forwards, m/s.
+    pub(crate) fn push(&mut self, velocity: Vec2) {
+        self.push.push(velocity);
+    }
+
+    /// The velocity of a push that is to be stepped off.
+    pub(crate) fn stepped(&self) -> Vec2 {
+        self.push.stepped()
+    }
+
     /// The phase of the jump that is under way.
     pub(crate) fn phase(&self) -> Option<JumpPhase> {
         self.jump.as_ref().map(JumpMoment::phase)
@@ -92,6 +106,7 @@ impl Moves {
     /// Lets time pass.
     pub(crate) fn step(&mut self, secs: f32, crouch: f32) {
         self.crouch.step(secs, crouch);
+        self.push.step(secs);
         if let Some(jump) = &mut self.jump {
             jump.secs += secs;
         }
@@ -106,20 +121,27 @@ impl Moves {
 
     /// Moves a pose that faces +Z; returns how far that goes for one who jumps.
     pub(crate) fn move_pose(&self, pose: &mut Pose) -> Option<Flown> {
+        self.push.give_way(&self.body, pose);
         self.crouch.lower(&self.body, pose);
         let (tables, jump) = (self.tables.jump.as_ref()?, self.jump.as_ref()?);
         Some(jump.move_pose(tables, &self.body, pose))
     }
 
-    /// How deep it crouches, and the jump that is under way with the time since it began: what a state holds.
-    pub(crate) fn moment(&self) -> (CrouchMoment, Option<(Leap, f32)>) {
+    /// How deep it crouches, the push that is taken up, and the jump that is under way with the time since it began: what a state holds.
+    pub(crate) fn moment(&self) -> (CrouchMoment, PushMoment, Option<(Leap, f32)>) {
         let jump = self.jump.map(|jump| (jump.leap, jump.secs));
-        (self.crouch.moment, jump)
+        (self.crouch.moment, self.push, jump)
     }
 
     /// Goes on from such a moment.
-    pub(crate) fn resume(&mut self, crouch: CrouchMoment, jump: Option<(Leap, f32)>) {
+    pub(crate) fn resume(
+        &mut self,
+        crouch: CrouchMoment,
+        push: PushMoment,
+        jump: Option<(Leap, f32)>,
+    ) {
         self.crouch.moment = crouch;
+        self.push = push;
         self.jump = None;
         if let Some((leap, secs)) = jump {
             self.jump(leap);

@@ -1,12 +1,15 @@
-//! Jumps of a character: asking for them, and telling when they leave the ground and land.
+//! Jumps and pushes of a character, and the signals of a flight.
 
 use super::GaitGenerator3D;
 use super::session::Session;
 use crate::convert;
 use footfall_core::Side;
 use footfall_synth::JumpPhase;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use godot::prelude::*;
+
+/// Mass of a body, kilograms.
+const BODY_KG: f32 = 70.0;
 
 /// What became of a jump within a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,6 +61,21 @@ impl GaitGenerator3D {
             let place: Vec3 = ground.rotation.inverse() * from_ground;
             session.generator.jump_to(place / session.traveller.scale())
         })
+    }
+
+    /// Pushes the character by an impulse in newton seconds, in global space; only its way over the ground counts. The body has 70 kg: 20 make it sway over
+    /// its feet, 60 take a step or two, 140 and more count as 140.
+    ///
+    /// It comes to a stand again, or goes on as asked. In a jump off both feet, before the first frame of the walk and with a `.footdyn` model
+    /// nothing happens.
+    #[func]
+    fn push(&mut self, impulse: Vector3) {
+        if let Some(session) = &mut self.session {
+            let ground = session.traveller.world_from_ground();
+            let way = ground.rotation.inverse() * convert::vec3(impulse);
+            let velocity = Vec2::new(way.x, way.z) / (BODY_KG * session.traveller.scale());
+            session.generator.push(velocity);
+        }
     }
 
     fn with_session(&mut self, ask: impl FnOnce(&mut Session) -> bool) -> bool {

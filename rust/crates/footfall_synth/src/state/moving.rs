@@ -2,8 +2,9 @@
 
 use super::is_reasonable;
 use crate::generator::GaitGenerator;
-use crate::moves::{CrouchMoment, Leap, Moves};
+use crate::moves::{CrouchMoment, Leap, Moves, PushMoment};
 use crate::steps::Steps;
+use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
 /// How a walker crouches and jumps, behind a [`State`](super::State).
@@ -11,6 +12,8 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Moving {
     /// How deep it crouches, and by how much more a second.
     crouch: [f32; 2],
+    /// The push that is taken up: what is left of it, how far the hips have given way and how fast they do, to the left and forwards.
+    push: Option<[[f32; 2]; 3]>,
     /// The jump off both feet that is under way (its rise, and its way to the left, up and ahead), and the time since it began.
     jump: Option<([f32; 4], f32)>,
     /// The jump that is waited for.
@@ -21,12 +24,14 @@ pub(super) struct Moving {
 
 impl Moving {
     pub(super) fn of(generator: &GaitGenerator) -> Self {
-        let (crouch, jump) = generator
+        let (crouch, push, jump) = generator
             .moves
             .as_ref()
             .map_or_else(Default::default, Moves::moment);
         Self {
             crouch: [crouch.amount, crouch.speed],
+            push: (push != PushMoment::default())
+                .then(|| [push.velocity, push.away, push.speed].map(|way| way.to_array())),
             jump: jump.map(|(leap, secs)| (numbers_of(&leap), secs)),
             asked: generator.asked_jump.as_ref().map(numbers_of),
             leap_m: match &generator.steps {
@@ -42,7 +47,13 @@ impl Moving {
         if let Some(moves) = &mut generator.moves {
             let [amount, speed] = self.crouch;
             let jump = self.jump.map(|(leap, secs)| (leap_of(leap), secs));
-            moves.resume(CrouchMoment { amount, speed }, jump);
+            let [velocity, away, swing] = self.push.unwrap_or_default().map(Vec2::from);
+            let push = PushMoment {
+                velocity,
+                away,
+                speed: swing,
+            };
+            moves.resume(CrouchMoment { amount, speed }, push, jump);
         }
     }
 
@@ -50,7 +61,11 @@ impl Moving {
         let jump = self.jump.map(|(leap, _)| leap);
         let leaps = jump.into_iter().chain(self.asked).flatten();
         let secs = self.jump.map(|(_, secs)| secs);
-        let numbers = leaps.chain(self.crouch).chain(secs).chain(self.leap_m);
+        let numbers = leaps
+            .chain(self.crouch)
+            .chain(self.push.into_iter().flatten().flatten())
+            .chain(secs)
+            .chain(self.leap_m);
         secs.is_none_or(|secs| secs >= 0.0) && numbers.map(f64::from).all(is_reasonable)
     }
 }

@@ -1,0 +1,113 @@
+//! Pushes: the body gives way over its feet, and who is pushed hard steps to where it falls.
+
+use super::body::Body;
+use footfall_core::{Joint, Pose};
+use glam::{Quat, Vec2, Vec3};
+
+/// A push fades so quickly: what is left of it is walked off, 1/s.
+const FADING: f32 = 1.6;
+
+/// Less of a push than this is stood, m/s; more is a step, and beyond the second bound nobody would keep on the feet.
+const STEPPED_MPS: f32 = 0.3;
+const MOST_MPS: f32 = 2.0;
+
+/// How quickly the body comes back over its feet: the rate of a critically damped spring, 1/s.
+const RETURN: f32 = 6.5;
+
+/// Share of a push that the body gives way with at once.
+const GIVEN_WAY: f32 = 0.45;
+
+/// Farther the body does not give way, leg lengths.
+const FARTHEST: f32 = 0.12;
+
+/// How far the trunk stays behind hips that are pushed away, radians by leg length.
+const TRUNK_LAG: f32 = 0.9;
+
+/// A push that is being taken up; vectors are to the left and forwards.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PushMoment {
+    /// What is left to be walked off, m/s.
+    pub(crate) velocity: Vec2,
+    /// How far the hips have given way, metres, and how fast they do, m/s.
+    pub(crate) away: Vec2,
+    pub(crate) speed: Vec2,
+}
+
+impl PushMoment {
+    /// Pushes by a change of velocity.
+    pub(super) fn push(&mut self, velocity: Vec2) {
+        self.velocity = (self.velocity + velocity).clamp_length_max(MOST_MPS);
+        self.speed += GIVEN_WAY * velocity.clamp_length_max(MOST_MPS);
+    }
+
+    /// The velocity that has to be stepped off.
+    pub(super) fn stepped(&self) -> Vec2 {
+        if self.velocity.length() > STEPPED_MPS {
+            self.velocity
+        } else {
+            Vec2::ZERO
+        }
+    }
+
+    pub(super) fn step(&mut self, secs: f32) {
+        self.velocity *= (-FADING * secs).exp();
+        if self.velocity.length() < 0.1 * STEPPED_MPS {
+            self.velocity = Vec2::ZERO;
+        }
+        let impulse = self.speed + RETURN * self.away;
+        let fade = (-RETURN * secs).exp();
+        self.away = (self.away + impulse * secs) * fade;
+        self.speed = (self.speed - RETURN * impulse * secs) * fade;
+        if self.away.length() < 1e-5 && self.speed.length() < 1e-4 {
+            (self.away, self.speed) = (Vec2::ZERO, Vec2::ZERO);
+        }
+    }
+
+    /// Lets a pose that faces +Z give way over its feet.
+    pub(super) fn give_way(&self, body: &Body, pose: &mut Pose) {
+        if self.away == Vec2::ZERO {
+            return;
+        }
+        let feet = body.feet(pose);
+        let most = FARTHEST * body.leg_length;
+        let away = self.away * (most / (most + self.away.length()));
+        // Hips over legs that lean go down as a pendulum does.
+        let down = -0.5 * away.length_squared() / body.leg_length;
+        pose.root_position += Vec3::new(away.x, down, away.y);
+        let lag = away * (TRUNK_LAG / body.leg_length);
+        let turn = Quat::from_rotation_x(-lag.y) * Quat::from_rotation_z(lag.x);
+        pose.rotations[Joint::Spine.index()] *= turn;
+        body.stand(&feet, pose);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_comes_back_however_time_is_cut() {
+        let mut pushed = PushMoment::default();
+        pushed.push(Vec2::new(0.4, -0.3));
+        let (mut whole, mut halves) = (pushed, pushed);
+        whole.step(0.3);
+        halves.step(0.15);
+        halves.step(0.15);
+        assert!((whole.away - halves.away).length() < 1e-5);
+        assert!((whole.velocity - halves.velocity).length() < 1e-5);
+        assert!(whole.away.x > 0.005 && whole.away.y < -0.003);
+        for _ in 0..600 {
+            pushed.step(1.0 / 60.0);
+        }
+        assert_eq!(pushed, PushMoment::default());
+    }
+
+    #[test]
+    fn only_hard_pushes_are_stepped_off() {
+        let mut pushed = PushMoment::default();
+        pushed.push(Vec2::new(0.2, 0.0));
+        assert_eq!(pushed.stepped(), Vec2::ZERO);
+        pushed.push(Vec2::new(9.0, 0.0));
+        assert!((pushed.stepped().length() - MOST_MPS).abs() < 1e-5);
+    }
+}
