@@ -58,6 +58,7 @@ namespace Footfall
             public static readonly StringName IsHandedOver = "is_handed_over";
             public static readonly StringName Jump = "jump";
             public static readonly StringName JumpTo = "jump_to";
+            public static readonly StringName Push = "push";
             public static readonly StringName Restart = "restart";
             public static readonly StringName Seek = "seek";
             public static readonly StringName SetState = "set_state";
@@ -367,6 +368,10 @@ namespace Footfall
         /// <summary>Asks for one jump off both feet that lands at <c>position</c>, in global space: onto a wall, over a gap, down from a ledge. Who moves comes to a stand first. It does not turn: face the place before. It rises as high as the way needs.</summary>
         /// <remarks>A place farther than people jump (about twice the length of the legs ahead, two thirds of it to the side or back, and six tenths of it up) is not reached; the jump goes as far as it can in that direction. Returns whether there will be a jump, as <see cref="Jump"/> does.</remarks>
         public bool JumpTo(Vector3 position) => Native.Call(MethodName.JumpTo, position).AsBool();
+
+        /// <summary>Pushes the character by an impulse in newton seconds, in global space; only its way over the ground counts. The body has 70 kg: 20 make it sway over its feet, 60 take a step or two, 140 and more count as 140.</summary>
+        /// <remarks>It comes to a stand again, or goes on as asked. In a jump off both feet, before the first frame of the walk and with a <c>.footdyn</c> model nothing happens.</remarks>
+        public void Push(Vector3 impulse) => Native.Call(MethodName.Push, impulse);
 
         /// <summary>Starts the walk anew from <see cref="Seed"/> and <see cref="Phase"/>, where the character stands now. Also measures the skeleton anew.</summary>
         public void Restart() => Native.Call(MethodName.Restart);

@@ -1,5 +1,7 @@
 //! Jumps and crouches that the model makes are learned from the recordings of them.
 
+#![expect(clippy::unwrap_used, reason = "tests may fail")]
+
 use footfall_core::{Clip, Joint};
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use footfall_synth::{Controls, Move, StandConfig, synthesize_moves};
