@@ -54,6 +54,10 @@ pub(crate) fn play(
             landings: walker.landings(),
             airborne: false,
         };
+        if placer.pace() < 1.0 {
+            // A foothold on the kerb has been chosen for this step.
+            walker.keep_step();
+        }
         if let Some(share) = placer.step_share(&input, &mut street) {
             walker.stretch_step(share);
             input.landings = walker.landings();

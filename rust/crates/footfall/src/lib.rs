@@ -77,6 +77,10 @@
 //!             landings: self.walker.landings(),
 //!             airborne: false,
 //!         };
+//!         if self.placer.pace() < 1.0 {
+//!             // The foothold of this step has been chosen: what is asked for now waits for the next.
+//!             self.walker.keep_step();
+//!         }
 //!         // A step that would end on the edge becomes a shorter or a longer one.
 //!         if let Some(share) = self.placer.step_share(&input, terrain) {
 //!             self.walker.stretch_step(share);

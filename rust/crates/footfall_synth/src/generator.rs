@@ -337,7 +337,7 @@ impl GaitGenerator {
         out.root_position =
             character_from_plan * (out.root_position - plan_from_character.position);
         let root = Joint::Hips.index();
-        out.rotations[root] = character_from_plan * out.rotations[root];
+        out.rotations[root] = (character_from_plan * out.rotations[root]).normalize();
         self.live(dt_secs, out);
         self.contact = contact;
         self.pass_moves(dt_secs.clamp(0.0, MAX_DT_SECS), controls);
