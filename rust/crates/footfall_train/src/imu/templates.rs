@@ -365,11 +365,11 @@ mod tests {
         let own: Vec<Chain> = many.chunks(4).map(|c| chain(Behaviour::Walk, c)).collect();
         let mut chains = own;
         for _ in 0..3 {
-            let mut other = chain(Behaviour::Walk, &[-0.4]);
+            let mut other = chain(Behaviour::Walk, &[-2.5]);
             other.subject = "somebody else".to_owned();
             chains.push(other);
         }
-        let few = choose_of(&chains, 2 * 2 * FRAMES);
+        let few = choose_of(&chains, 3 * 2 * FRAMES);
         assert!(few.iter().any(|(chain, _)| *chain >= 10), "{few:?}");
     }
 }
