@@ -37,11 +37,11 @@ impl Default for TrackerConfig {
         Self {
             stay_next_skip: [0.15, 0.7, 0.15],
             keep_recording: 0.7,
-            keep_subject: 0.9,
+            keep_subject: 0.7,
             exit: 0.01,
             evidence: 0.5,
-            farthest: 40.0,
-            interpolated: 10,
+            farthest: 25.0,
+            interpolated: 20,
             // On recordings that a model has not seen it makes walks worse by half a centimetre.
             regression: 0.0,
         }

@@ -23,6 +23,9 @@ const STEP_SECS: f64 = 0.5;
 /// Less speed sideways is no sidestep, m/s.
 const SIDESTEP_MPS: f32 = 0.15;
 
+/// A body that turns faster walks: a pivot carries the hips sideways of where they face, too, rad/s.
+const SIDESTEP_RADPS: f32 = 0.8;
+
 /// A behaviour lasts at least so long, seconds.
 const LEAST_SECS: f64 = 0.2;
 
@@ -80,10 +83,14 @@ fn on_the_ground(
     frames_of: &impl Fn(f64) -> usize,
 ) -> Behaviour {
     let (first, end) = (contacts.first_frame, contacts.frames);
-    let velocity = |points: &[Vec3], reach: usize| {
+    let around = |reach: usize| {
         let from = frame.saturating_sub(reach).max(first);
         let to = (frame + reach).min(end - 1).max(from);
         let secs = (to - from).max(1) as f32 / contacts.frame_rate_hz as f32;
+        (from, to, secs)
+    };
+    let velocity = |points: &[Vec3], reach: usize| {
+        let (from, to, secs) = around(reach);
         (points[to] - points[from]) / secs
     };
     let near = frames_of(STAND_SECS).max(1);
@@ -94,10 +101,13 @@ fn on_the_ground(
     if slow && feet_rest {
         return Behaviour::Stand;
     }
-    let way = velocity(&track.hips, frames_of(STEP_SECS).max(1));
+    let step = frames_of(STEP_SECS).max(1);
+    let (from, to, secs) = around(step);
+    let turning = track.forward[from].angle_between(track.forward[to]) / secs;
+    let way = velocity(&track.hips, step);
     let forward = way.dot(track.forward[frame]);
     let sideways = way.dot(track.forward[frame].cross(Vec3::Y));
-    if sideways.abs() > forward.abs().max(SIDESTEP_MPS) {
+    if turning < SIDESTEP_RADPS && sideways.abs() > forward.abs().max(SIDESTEP_MPS) {
         Behaviour::Sidestep
     } else {
         Behaviour::Walk
@@ -116,5 +126,53 @@ fn drop_short(behaviours: &mut [Behaviour], least: usize) {
             behaviours[first..end].fill(previous);
         }
         first = end;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contacts::FootContacts;
+    use footfall_core::rotation::from_heading;
+
+    const FRAMES: usize = 200;
+
+    /// The behaviour in the middle of a recording of 100 Hz in which hips and feet go to the left of where the hips face at 0.6 m/s, while the
+    /// hips turn at this rate, rad/s.
+    fn going_sideways(turning: f32) -> Behaviour {
+        let facing = |frame: usize| from_heading(turning * (frame as f32 - 100.0) / 100.0);
+        let mut place = Vec3::ZERO;
+        let mut hips = Vec::new();
+        for frame in 0..FRAMES {
+            hips.push(place);
+            place += facing(frame) * Vec3::X * 0.006;
+        }
+        let track = Track {
+            ankles: [hips.clone(), hips.clone()],
+            hips,
+            forward: (0..FRAMES).map(|frame| facing(frame) * Vec3::Z).collect(),
+        };
+        let bears = FootContacts {
+            heel: vec![true; FRAMES],
+            toe: vec![true; FRAMES],
+            stances: vec![FrameSpan {
+                first: 0,
+                last: FRAMES - 1,
+            }],
+        };
+        let contacts = Contacts {
+            frame_rate_hz: 100.0,
+            frames: FRAMES,
+            first_frame: 0,
+            feet: [bears.clone(), bears],
+        };
+        behaviours_of(&track, &contacts)[FRAMES / 2]
+    }
+
+    #[test]
+    fn a_pivot_is_no_sidestep() {
+        assert_eq!(going_sideways(0.0), Behaviour::Sidestep);
+        assert_eq!(going_sideways(0.3), Behaviour::Sidestep);
+        assert_eq!(going_sideways(1.5), Behaviour::Walk);
     }
 }

@@ -1,7 +1,7 @@
 //! How close reconstructed bodies come to the recorded ones (Mousas 2017, section 7.2).
 //!
 //! Every recording is reconstructed by a model that has not seen it: trained on all other recordings (the same subject's stay in), or on those
-//! of other subjects. The sensors are virtual, 100 samples a second, with the noise and biases of a phone's. The error is the mean distance between the
+//! of other subjects. The sensors are virtual, 100 samples a second (or a phone's: [`Device`]), with the noise and biases of a phone's. The error is the mean distance between the
 //! joints of both bodies, their hips and headings brought together.
 //!
 //! Measured on the CMU recordings of the public data as recorded (72 clips, 14 subjects, not what the shipped models learned from: ARCHITECTURE has their table;
@@ -34,6 +34,7 @@ use footfall_core::rotation::{from_heading, heading};
 use footfall_core::{
     Behaviour, Clip, JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics,
 };
+use footfall_imu::{ImuRecording, ImuSample};
 use footfall_model::Provenance;
 use footfall_model::imu_model::BODY_COUNT;
 use footfall_motion::virtual_imu::{SensorNoise, VirtualImuConfig, simulate};
@@ -44,8 +45,8 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Samples a second of the sensors.
-const RATE_HZ: f64 = 100.0;
+/// Steps in which browsers round a phone's measurements, m/s² and rad/s (0.1 °/s).
+const PHONE_STEPS: [f32; 2] = [0.1, 0.1 * core::f32::consts::PI / 180.0];
 
 /// A change of behaviour counts as recognised within this time, seconds; a behaviour that lasts less is not asked for.
 const CHANGE_SECS: f64 = 1.0;
@@ -58,6 +59,38 @@ pub enum HeldOut {
     Recording,
     /// Those of other subjects.
     Subject,
+}
+
+/// Simulated sensor that bodies are reconstructed from. All have a phone's noise and biases.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Device {
+    /// 100 samples a second, as measured.
+    #[default]
+    Board,
+    /// A phone's browser: 60 samples a second, rounded to 0.1 m/s² and 0.1 °/s.
+    Phone,
+}
+
+impl Device {
+    const fn rate_hz(self) -> f64 {
+        match self {
+            Self::Board => 100.0,
+            Self::Phone => 60.0,
+        }
+    }
+
+    /// A sample as the device tells it.
+    fn round(self, sample: ImuSample) -> ImuSample {
+        let to_steps = |value: Vec3, step: f32| (value / step).round() * step;
+        match self {
+            Self::Board => sample,
+            Self::Phone => ImuSample {
+                force: to_steps(sample.force, PHONE_STEPS[0]),
+                rate: to_steps(sample.rate, PHONE_STEPS[1]),
+                ..sample
+            },
+        }
+    }
 }
 
 /// What a body's error is, centimetres.
@@ -105,6 +138,7 @@ pub fn evaluate_imu(
     clips: &[ImuClip<'_>],
     config: &ImuTrainConfig,
     held_out: HeldOut,
+    device: Device,
     judged: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Vec<ImuTrial>, TrainError> {
     config.check()?;
@@ -135,7 +169,14 @@ pub fn evaluate_imu(
             let trials = trials.filter(|clip| is_held(clip) && judged(*clip));
             let trials = trials.filter_map(|clip| {
                 let truth = chains[clip].first()?;
-                Some(try_clip(clip, &clips[clip], truth, &prepared, &constant))
+                Some(try_clip(
+                    clip,
+                    &clips[clip],
+                    truth,
+                    &prepared,
+                    &constant,
+                    device,
+                ))
             });
             Ok(trials.collect())
         })
@@ -151,6 +192,7 @@ fn try_clip(
     truth: &Chain,
     prepared: &Arc<Prepared>,
     constant: &Pose,
+    device: Device,
 ) -> ImuTrial {
     let sites = &prepared.model().sites;
     let recordings: Vec<_> = sites
@@ -160,9 +202,13 @@ fn try_clip(
             let config = VirtualImuConfig {
                 noise: Some(SensorNoise::consumer(1.0)),
                 seed: (own * 2 + n) as u64,
-                ..VirtualImuConfig::ideal(RATE_HZ)
+                ..VirtualImuConfig::ideal(device.rate_hz())
             };
-            simulate(clip.clip, clip.first_frame, *site, &config)
+            let measured = simulate(clip.clip, clip.first_frame, *site, &config);
+            let samples = measured.samples.into_iter();
+            ImuRecording {
+                samples: samples.map(|sample| device.round(sample)).collect(),
+            }
         })
         .collect();
     let bodies: Vec<[Vec3; JOINT_COUNT]> = (0..truth.frames())
@@ -313,4 +359,23 @@ fn joints(pose: &Pose, skeleton: &Skeleton) -> [Vec3; JOINT_COUNT] {
 fn distance_cm(a: &[Vec3; JOINT_COUNT], b: &[Vec3; JOINT_COUNT]) -> f64 {
     let sum: f32 = a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum();
     100.0 * f64::from(sum) / JOINT_COUNT as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_phone_rounds_what_it_measures() {
+        let sample = ImuSample {
+            time_secs: 0.5,
+            force: Vec3::new(9.84, -0.06, 0.0),
+            rate: Vec3::new(0.0, 1.26_f32.to_radians(), -0.04_f32.to_radians()),
+        };
+        let told = Device::Phone.round(sample);
+        assert!(told.force.abs_diff_eq(Vec3::new(9.8, -0.1, 0.0), 1e-5));
+        let expected = Vec3::new(0.0, 1.3_f32.to_radians(), 0.0);
+        assert!(told.rate.abs_diff_eq(expected, 1e-5), "{}", told.rate);
+        assert_eq!(Device::Board.round(sample), sample);
+    }
 }

@@ -3,10 +3,10 @@
 //! A *cycle* is a run of segments until the phase that began it comes again; recordings are kept or left out by whole cycles, so that what is kept
 //! still goes from phase to phase as it was recorded. What is lost by leaving cycles out is the sum, over all frames of all recordings, of how far
 //! their segment is from the nearest of the same phase that is kept of another recording. Cycle after cycle is left out, always the one whose frames
-//! are missed least.
+//! are missed least. What one person does for minutes counts by the square root of its frames: otherwise one actor's runs push out everybody else's.
 
 use super::chain::{Chain, ChainSegment};
-use footfall_core::PhaseKind;
+use footfall_core::{Behaviour, PhaseKind};
 use footfall_model::FEATURE_COUNT;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -78,7 +78,8 @@ fn cycles(chain: usize, segments: &[ChainSegment]) -> Vec<Cycle> {
 /// A segment as it is compared with others.
 struct Template {
     cycle: usize,
-    frames: usize,
+    /// What all of its frames together count.
+    weight: f64,
     kind: PhaseKind,
     /// Body and sensor, scaled, at [`SAMPLES`] frames.
     values: Vec<f32>,
@@ -109,6 +110,7 @@ impl Choice {
             let last = recordings.last().copied().unwrap_or(0);
             recordings.push(last + usize::from(!chain.mirrored));
         }
+        let shares = Shares::of(chains);
         for (n, cycle) in cycles.iter().enumerate() {
             let chain = chains[cycle.chain];
             let segments = &chain.segments[cycle.segments.clone()];
@@ -119,7 +121,7 @@ impl Choice {
                     .push(templates.len());
                 templates.push(Template {
                     cycle: n,
-                    frames: segment.end - segment.first,
+                    weight: shares.weight(chain, segment),
                     kind: segment.kind,
                     values: samples(chain, segment, deviations),
                     recording: recordings[cycle.chain],
@@ -221,13 +223,35 @@ impl Choice {
     }
 }
 
+/// Frames of each person in each behaviour.
+struct Shares<'a>(BTreeMap<(&'a str, Behaviour), usize>);
+
+impl<'a> Shares<'a> {
+    fn of(chains: &[&'a Chain]) -> Self {
+        let mut frames = BTreeMap::new();
+        for chain in chains {
+            for segment in &chain.segments {
+                let own = (chain.subject.as_str(), segment.kind.behaviour);
+                *frames.entry(own).or_default() += segment.end - segment.first;
+            }
+        }
+        Self(frames)
+    }
+
+    /// What a segment counts: all segments of one person and behaviour together, the square root of their frames.
+    fn weight(&self, chain: &'a Chain, segment: &ChainSegment) -> f64 {
+        let all = self.0[&(chain.subject.as_str(), segment.kind.behaviour)];
+        (segment.end - segment.first) as f64 / (all as f64).sqrt()
+    }
+}
+
 impl Template {
     /// Adds what is lost with the nearest cycle to what leaving that cycle out would cost.
     fn count(&self, sign: f64, losses: &mut [f64]) {
         for (weight, nearest) in [OWN_WEIGHT, 1.0].into_iter().zip(&self.nearest) {
             let [(cycle, apart), (_, next)] = *nearest;
             if let Some(loss) = losses.get_mut(cycle) {
-                *loss += sign * weight * self.frames as f64 * f64::from(next - apart);
+                *loss += sign * weight * self.weight * f64::from(next - apart);
             }
         }
     }
@@ -332,5 +356,20 @@ mod tests {
         );
         assert!(few.contains(&(2, 0)) && !few.contains(&(0, 3)), "{few:?}");
         assert_eq!(choose_of(&chains, 0).len(), 1);
+    }
+
+    #[test]
+    fn who_does_one_thing_for_long_pushes_nobody_out() {
+        // One person walks in forty ways of her own, another three times in a third way: his walks stay.
+        let many: Vec<f32> = (0..40).map(|n| 0.1 * n as f32).collect();
+        let own: Vec<Chain> = many.chunks(4).map(|c| chain(Behaviour::Walk, c)).collect();
+        let mut chains = own;
+        for _ in 0..3 {
+            let mut other = chain(Behaviour::Walk, &[-2.5]);
+            other.subject = "somebody else".to_owned();
+            chains.push(other);
+        }
+        let few = choose_of(&chains, 3 * 2 * FRAMES);
+        assert!(few.iter().any(|(chain, _)| *chain >= 10), "{few:?}");
     }
 }

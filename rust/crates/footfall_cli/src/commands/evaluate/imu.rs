@@ -6,7 +6,7 @@ use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_core::{Behaviour, Site};
 use footfall_motion::corpus::Where;
-use footfall_train::imu::evaluate::{HeldOut, ImuTrial, evaluate_imu};
+use footfall_train::imu::evaluate::{Device, HeldOut, ImuTrial, evaluate_imu};
 use footfall_train::imu::{ImuClip, ImuTrainConfig};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -51,6 +51,9 @@ pub(crate) struct ImuArgs {
     /// Leave out whole people only: no model that has seen other recordings of the same one
     #[arg(long)]
     strangers: bool,
+    /// Simulate the sensor of a phone's browser: 60 samples a second, rounded to 0.1 m/s² and 0.1 °/s
+    #[arg(long)]
+    phone: bool,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -122,12 +125,17 @@ pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
         args.judged.iter().all(holds)
     };
     let several = clips.iter().any(|clip| clip.subject != clips[0].subject);
+    let device = if args.phone {
+        Device::Phone
+    } else {
+        Device::Board
+    };
     let mut sensors = Vec::new();
     for config in &asked {
         let names: Vec<&str> = config.sites.iter().map(|site| site.name()).collect();
         output::note(&format!("reconstructing from {}", names.join(" and ")));
         let figures = |held_out: HeldOut| -> Result<BTreeMap<String, Figures>> {
-            let trials = evaluate_imu(&clips, config, held_out, &judged)
+            let trials = evaluate_imu(&clips, config, held_out, device, &judged)
                 .with_context(|| args.corpus.display().to_string())?;
             Ok(summarise(&trials, &categories))
         };
