@@ -84,7 +84,7 @@ impl Pose {
             shortest = shortest.min(squared);
         }
         if shortest < LEAST_SQUARED_LENGTH {
-            // Seldom: the same rotation can be written with either sign.
+            // Seldom: the same rotation can be written with either sign, and frames far apart show quick swings.
             for (blend, (rotation, target)) in out.rotations.iter_mut().zip(pairs) {
                 *blend = rotation.lerp(*target, weight);
             }
@@ -92,8 +92,9 @@ impl Pose {
     }
 }
 
-/// Blends of neighbouring rotations are longer than this, unless they are written with opposite signs.
-const LEAST_SQUARED_LENGTH: f32 = 0.9;
+/// Blends of neighbouring rotations are longer than this, unless they are written with opposite signs or lie so far apart (0.2 radians) that one step of
+/// Newton's method leaves them short by more than 4e-5.
+const LEAST_SQUARED_LENGTH: f32 = 0.99;
 
 /// A pose in model space: where every joint is and how it is turned there.
 #[derive(Clone, Debug, PartialEq)]
