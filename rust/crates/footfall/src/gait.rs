@@ -1,7 +1,7 @@
 //! Walks in real time, whole walks, and loops.
 //!
 //! A [`StyleSpace`] prepares a model and its styles once for all walkers. A [`GaitGenerator`] is one walker; its [`GeneratorConfig`] makes it differ from others.
-//! [`Controls`] are what it is asked to do, from the next step on. A [`SynthError`] says why a model, a body or a setting cannot be used.
+//! [`Controls`] are what it is asked to do. A [`SynthError`] says why a model, a body or a setting cannot be used.
 //!
 //! ```
 //! use footfall::body::Pose;

@@ -79,21 +79,21 @@ pub(crate) struct GaitGenerator3D {
 
     /// How fast the character walks or runs, in metres per second. Cadence and step length follow as they do in people, and `gait` says from where on it runs.
     ///
-    /// May change at any time; the walk takes it up with the next step. `GaitModel.get_speed_range()` tells what the model was
+    /// May change at any time: a walk whose foot is in the air takes it up at once, any other step with the next. `GaitModel.get_speed_range()` tells what the model was
     /// trained on. At 0 the character stops within two steps and stands, or turns in place by `turn_rate`.
     #[export(range = (0.0, 5.0, 0.01, or_greater, suffix = "m/s"))]
     #[var(set = set_speed)]
     #[init(val = 1.3)]
     speed: f64,
 
-    /// Turning of the character in radians per second. Positive turns to its left. Taken up with the next step.
+    /// Turning of the character in radians per second. Positive turns to its left. Taken up as `speed` is.
     #[export(range = (-180.0, 180.0, 0.1, or_less, or_greater, radians_as_degrees, suffix = "°/s"))]
     #[var(set = set_turn_rate)]
     turn_rate: f64,
 
     /// Where the character goes, seen from where it faces, in radians: 0 forwards, 90° to its left, -90° to its right, 180° backwards.
     ///
-    /// For characters that look at something else than their way. Taken up with the next step, over several steps where the change is
+    /// For characters that look at something else than their way. Taken up as `speed` is, over several steps where the change is
     /// great. Steps to the side and backwards are shorter than those forwards, as people's are: sideways a character reaches about 0.65 m/s,
     /// backwards 1 m/s, whatever `speed` says.
     #[export(range = (-180.0, 180.0, 1.0, radians_as_degrees, suffix = "°"))]
