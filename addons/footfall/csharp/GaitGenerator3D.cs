@@ -124,14 +124,14 @@ namespace Footfall
         }
 
         /// <summary>How fast the character walks or runs, in metres per second. Cadence and step length follow as they do in people, and <see cref="Gait"/> says from where on it runs.</summary>
-        /// <remarks>May change at any time; the walk takes it up with the next step. <see cref="GaitModel.GetSpeedRange"/> tells what the model was trained on. At 0 the character stops within two steps and stands, or turns in place by <see cref="TurnRate"/>.</remarks>
+        /// <remarks>May change at any time: a walk whose foot is in the air takes it up at once, any other step with the next. <see cref="GaitModel.GetSpeedRange"/> tells what the model was trained on. At 0 the character stops within two steps and stands, or turns in place by <see cref="TurnRate"/>.</remarks>
         public double Speed
         {
             get => Native.Get(PropertyName.Speed).AsDouble();
             set => Native.Set(PropertyName.Speed, value);
         }
 
-        /// <summary>Turning of the character in radians per second. Positive turns to its left. Taken up with the next step.</summary>
+        /// <summary>Turning of the character in radians per second. Positive turns to its left. Taken up as <see cref="Speed"/> is.</summary>
         public double TurnRate
         {
             get => Native.Get(PropertyName.TurnRate).AsDouble();
@@ -139,7 +139,7 @@ namespace Footfall
         }
 
         /// <summary>Where the character goes, seen from where it faces, in radians: 0 forwards, 90° to its left, -90° to its right, 180° backwards.</summary>
-        /// <remarks>For characters that look at something else than their way. Taken up with the next step, over several steps where the change is great. Steps to the side and backwards are shorter than those forwards, as people's are: sideways a character reaches about 0.65 m/s, backwards 1 m/s, whatever <see cref="Speed"/> says.</remarks>
+        /// <remarks>For characters that look at something else than their way. Taken up as <see cref="Speed"/> is, over several steps where the change is great. Steps to the side and backwards are shorter than those forwards, as people's are: sideways a character reaches about 0.65 m/s, backwards 1 m/s, whatever <see cref="Speed"/> says.</remarks>
         public double Direction
         {
             get => Native.Get(PropertyName.Direction).AsDouble();
