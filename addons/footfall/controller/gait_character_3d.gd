@@ -15,9 +15,9 @@ const GaitInput := preload("gait_input.gd")
 const GaitFigure := preload("gait_figure.gd")
 ## Time without a floor after which the character is in the air, seconds; shorter is a gap between two steps.
 const FALL_SECS := 0.12
-## What is left of a turn is turned in so many seconds.
+## Time in which the rest of a turn is turned, seconds.
 const TURN_SECS := 0.35
-## Who has to turn by more than the first angle slows down, by the second to this share of its speed: it plants a foot, turns on it and goes, radians.
+## Angles of a turn from which on the character slows down, and at which it has slowed down to the share below to turn on a planted foot, radians.
 const SLOW_FROM := 1.75
 const SLOWEST_FROM := 2.6
 const SLOWEST_SHARE := 0.3

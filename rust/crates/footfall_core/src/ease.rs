@@ -1,6 +1,6 @@
 //! Curves between two values.
 
-use core::ops::{Add, Mul};
+use core::ops::{Add, Mul, Sub};
 
 /// From 0 at 0 to 1 at 1, level at both ends and beyond.
 pub fn smooth_step(s: f32) -> f32 {
@@ -29,4 +29,18 @@ pub fn catmull_rom(s: f32) -> [f32; 4] {
         0.5 * (-3.0 * s3 + 4.0 * s2 + s),
         0.5 * (s3 - s2),
     ]
+}
+
+/// How far away from rest, and how fast, something is after so long that comes back as a critically damped spring of this rate (1/s) does. However time is
+/// cut into steps, it comes to the same.
+pub fn settled<T>(away: T, speed: T, rate: f32, secs: f32) -> (T, T)
+where
+    T: Copy + Mul<f32, Output = T> + Add<Output = T> + Sub<Output = T>,
+{
+    let impulse = speed + away * rate;
+    let fade = (-rate * secs).exp();
+    (
+        (away + impulse * secs) * fade,
+        (speed - impulse * rate * secs) * fade,
+    )
 }

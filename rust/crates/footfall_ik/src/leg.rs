@@ -51,6 +51,20 @@ impl Leg {
         }
     }
 
+    /// Where the foot of a pose is.
+    pub fn foot_of(&self, pose: &Pose) -> FootTarget {
+        let hips = pose.rotation(Joint::Hips);
+        let thigh = hips * pose.rotation(self.side.upper_leg());
+        let shank = thigh * pose.rotation(self.side.lower_leg());
+        let foot = shank * pose.rotation(self.side.foot());
+        let hip = hips * self.hip_from_hips;
+        FootTarget {
+            ankle: pose.root_position + hip + self.ankle_from_hip(thigh, shank),
+            foot,
+            toes: foot * pose.rotation(self.side.toes()),
+        }
+    }
+
     /// The way from the hip joint to the ankle of a leg that is turned so in model space, metres.
     pub fn ankle_from_hip(&self, thigh: Quat, shank: Quat) -> Vec3 {
         thigh * self.thigh_axis + shank * self.shank_axis

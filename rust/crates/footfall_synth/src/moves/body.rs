@@ -48,19 +48,7 @@ impl Body {
 
     /// Where the feet of a pose are.
     pub(super) fn feet(&self, pose: &Pose) -> [FootTarget; 2] {
-        Side::BOTH.map(|side| {
-            let hips = pose.rotation(Joint::Hips);
-            let thigh = hips * pose.rotation(side.upper_leg());
-            let shank = thigh * pose.rotation(side.lower_leg());
-            let foot = shank * pose.rotation(side.foot());
-            let hip = hips * self.hip_from_hips[side.index()];
-            let reach = self.legs[side.index()].ankle_from_hip(thigh, shank);
-            FootTarget {
-                ankle: pose.root_position + hip + reach,
-                foot,
-                toes: foot * pose.rotation(side.toes()),
-            }
-        })
+        self.legs.each_ref().map(|leg| leg.foot_of(pose))
     }
 
     /// Turns the joints of a pose that stands by those of a posture beside standing.

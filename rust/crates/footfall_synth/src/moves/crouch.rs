@@ -1,6 +1,7 @@
 //! Crouching: hips low over the same feet, trunk and arms as people hold them there.
 
 use super::body::{Beside, Body};
+use footfall_core::ease::settled;
 use footfall_model::{CrouchModel, FEATURE_COUNT};
 use glam::Vec3;
 
@@ -30,12 +31,10 @@ pub(super) struct Crouch {
 impl CrouchMoment {
     /// So much later, for one who is asked for this amount.
     fn after(self, secs: f32, asked: f32) -> Self {
-        let missing = self.amount - asked;
-        let impulse = self.speed + RATE * missing;
-        let fade = (-RATE * secs).exp();
+        let (away, speed) = settled(self.amount - asked, self.speed, RATE, secs);
         let later = Self {
-            amount: asked + (missing + impulse * secs) * fade,
-            speed: (self.speed - RATE * impulse * secs) * fade,
+            amount: asked + away,
+            speed,
         };
         if asked <= 0.0 && later.amount.abs() < LEAST && later.speed.abs() < LEAST {
             return Self::default();

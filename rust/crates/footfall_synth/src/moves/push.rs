@@ -1,6 +1,7 @@
 //! Pushes: the body gives way over its feet, and who is pushed hard steps to where it falls.
 
 use super::body::Body;
+use footfall_core::ease::settled;
 use footfall_core::{Joint, Pose};
 use glam::{Quat, Vec2, Vec3};
 
@@ -54,10 +55,7 @@ impl PushMoment {
         if self.velocity.length() < 0.1 * STEPPED_MPS {
             self.velocity = Vec2::ZERO;
         }
-        let impulse = self.speed + RETURN * self.away;
-        let fade = (-RETURN * secs).exp();
-        self.away = (self.away + impulse * secs) * fade;
-        self.speed = (self.speed - RETURN * impulse * secs) * fade;
+        (self.away, self.speed) = settled(self.away, self.speed, RETURN, secs);
         if self.away.length() < 1e-5 && self.speed.length() < 1e-4 {
             (self.away, self.speed) = (Vec2::ZERO, Vec2::ZERO);
         }

@@ -103,19 +103,9 @@ impl Carrier {
     }
 
     fn foot(&self, pose: &Pose, side: Side) -> Foot {
-        let hips = pose.rotation(Joint::Hips);
-        let thigh = hips * pose.rotation(side.upper_leg());
-        let shank = thigh * pose.rotation(side.lower_leg());
-        let foot = shank * pose.rotation(side.foot());
-        let hip = hips * self.hip_from_hips[side.index()];
-        let reach = self.legs[side.index()].ankle_from_hip(thigh, shank);
         Foot {
-            target: FootTarget {
-                ankle: pose.root_position + hip + reach,
-                foot,
-                toes: foot * pose.rotation(side.toes()),
-            },
-            hip,
+            target: self.legs[side.index()].foot_of(pose),
+            hip: pose.rotation(Joint::Hips) * self.hip_from_hips[side.index()],
         }
     }
 

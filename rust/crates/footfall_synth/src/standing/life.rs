@@ -4,6 +4,7 @@ use super::carry::Carrier;
 use super::sway::{Stander, StandingTables, Sway};
 use crate::generator::GeneratorConfig;
 use crate::space::StyleSpace;
+use footfall_core::ease::settled;
 use footfall_core::{Pose, Skeleton};
 use glam::Quat;
 use std::sync::Arc;
@@ -46,13 +47,11 @@ impl Moment {
         } else {
             (0.0, FALL_RATE)
         };
-        let missing = self.share - target;
-        let impulse = self.speed + rate * missing;
-        let fade = (-rate * secs).exp();
+        let (away, speed) = settled(self.share - target, self.speed, rate, secs);
         let later = Self {
             secs: self.secs + f64::from(secs),
-            share: target + (missing + impulse * secs) * fade,
-            speed: (self.speed - rate * impulse * secs) * fade,
+            share: target + away,
+            speed,
         };
         if !stands && later.share < LEAST_SHARE {
             // Who walks does not grow older.

@@ -113,7 +113,7 @@ fn parse(text: &str) -> Result<Table> {
 }
 
 impl Table {
-    /// What of the table a model cannot do.
+    /// Warnings about columns of the table that a model cannot obey.
     pub(super) fn warnings(&self, model: &GaitModel) -> Vec<String> {
         let knows = [
             ("crouch", model.crouch.is_some()),

@@ -1,4 +1,4 @@
-//! What walkers are asked to do, and what becomes of it.
+//! Manoeuvres that walkers are asked for, and the times they take.
 
 use anyhow::Result;
 use core::f32::consts::{FRAC_PI_2, PI};
@@ -24,7 +24,7 @@ const MOST_TURN_RADPS: f32 = 3.5;
 const SLOWS_RAD: [f32; 2] = [1.75, 2.6];
 const SLOWEST: f32 = 0.3;
 
-/// What is asked for: a speed, where the travel goes from where the body faces, and how far the body is to turn, m/s and radians.
+/// A request: a speed, where the travel goes from where the body faces, and how far the body is to turn, m/s and radians.
 #[derive(Clone, Copy, Debug)]
 struct Asked {
     speed: f32,
@@ -174,7 +174,7 @@ fn pace(left: f32) -> f32 {
     1.0 + share.clamp(0.0, 1.0) * (SLOWEST - 1.0)
 }
 
-/// How long the manoeuvre lasts that begins when it is asked for.
+/// Duration of the manoeuvre that begins when it is asked for.
 fn moved(travel: &Travel, asked_at: f64, course: &Course) -> Option<f64> {
     let kind = match (course.before.speed > 0.0, course.after.speed > 0.0) {
         (false, _) => ManoeuvreKind::Start,

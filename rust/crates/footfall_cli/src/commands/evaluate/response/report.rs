@@ -26,7 +26,7 @@ struct Row {
     hips_acceleration_mps2: f32,
 }
 
-/// What hips do in a take.
+/// Starts, stops and reversals that the hips make in a take, and their greatest acceleration.
 #[derive(Serialize)]
 pub(super) struct Take {
     name: String,
