@@ -23,6 +23,9 @@ const MAX_RESIDUAL: f64 = 1.6;
 /// Least factor on the tempo: slower walks take shorter strides instead.
 const MIN_TEMPO: f64 = 0.8;
 
+/// Factor on the tempo of the briskest walk at which steps to the side and backwards are taken at most.
+const MOST_QUICKER: f64 = 1.6;
+
 /// How closely the walk is found whose steps are quick enough, m/s.
 const BRISKER_MPS: f64 = 0.05;
 
@@ -81,16 +84,19 @@ impl PaceTable {
         self.pace_and_secs(speed_mps).0
     }
 
-    /// The pace that gives a velocity to the left and forwards. Where its steps would be too long, they are shorter ones of a brisker walk.
+    /// The pace that gives a velocity to the left and forwards. Where its steps would be too long, they are shorter ones of a brisker walk,
+    /// or of a quicker one still.
     pub(crate) fn pace_towards(&self, velocity_mps: Vec2) -> Pace {
         let speed = f64::from(velocity_mps.length());
         let fastest = self.samples[SAMPLES - 1][1];
         let mut brisk = speed;
         loop {
             let (mut pace, secs) = self.pace_and_secs(brisk);
-            let fits = overstep(velocity_mps, secs as f32, self.leg_length) <= 1.0;
-            if fits || brisk >= fastest {
-                pace.stride *= if brisk > speed { speed / brisk } else { 1.0 };
+            let over = f64::from(overstep(velocity_mps, secs as f32, self.leg_length));
+            if over <= 1.0 || brisk >= fastest {
+                let quicker = over.clamp(1.0, MOST_QUICKER);
+                pace.tempo *= quicker;
+                pace.stride *= (speed / (brisk.max(speed) * quicker)).min(1.0);
                 return pace;
             }
             brisk = (brisk + BRISKER_MPS).min(fastest);

@@ -24,8 +24,11 @@ const MAX_PELVIS_TURN: f32 = FRAC_PI_6;
 const FULL_TURN_SPEED_MPS: f32 = 0.4;
 
 /// Longest steps to the side and backwards, as shares of the leg. People's are shorter than those forwards.
-const MAX_SIDE_STEP: f32 = 0.36;
+const MAX_SIDE_STEP: f32 = 0.38;
 const MAX_BACK_STEP: f32 = 0.6;
+
+/// How much farther legs reach for a step to the side: some of it is lost where they do not reach that far.
+const SIDE_GAIN: f32 = 1.05;
 
 /// Feet that pass each other sideways keep this far from the middle, as a share of the leg, so that legs do not cross.
 const PASSING_SHARE: f32 = 0.085;
@@ -64,7 +67,7 @@ impl Strafe {
         let direction = seen_from_pelvis(velocity_mps).normalize_or(Vec2::Y);
         let over = overstep(velocity_mps, step_secs, skeleton.mean_leg_length());
         Self {
-            reach: (direction / over.max(1.0)).to_array(),
+            reach: (Vec2::new(SIDE_GAIN, 1.0) * direction / over.max(1.0)).to_array(),
             forwardness: direction.y,
             turn,
             ..Self::NONE

@@ -94,7 +94,7 @@ fn corrected_contacts_are_saved_beside_the_clip_and_taken_by_training() {
 /// Adds a stance where the right foot swings.
 fn correct(window: &mut Window) {
     click(window, "Labels");
-    window.state_mut().seek(0.55);
+    window.state_mut().seek(0.48);
     window.run_steps(2);
     click(window, "Add right stance");
 }

@@ -14,8 +14,8 @@ const RISING_SOFTNESS: f32 = 0.0014;
 /// How far a heel rises for this at most, radians.
 const MOST_RISE: f32 = 0.4;
 
-/// A heel rises for this where the foot is behind the hip by this share of the leg's length: ahead of it, it has just landed.
-const BEHIND: f32 = 0.1;
+/// A heel rises for this where the foot is not ahead of the hip by this share of the leg's length: there it has just landed.
+const AHEAD: f32 = 0.1;
 
 /// Newton's steps to the pitch: the leg's length is nearly linear in it.
 const STEPS: usize = 2;
@@ -47,11 +47,11 @@ impl Planter {
         let hip = frame.pose.root_position + frame.level * leg.hip;
         let extension = hip.distance(leg.target.ankle) / length;
         let beyond = (extension - RISING_EXTENSION) / RISING_SOFTNESS;
-        let behind = (frame.level.inverse() * (hip - leg.target.ankle)).z / (BEHIND * length);
-        if beyond < -8.0 || behind <= 0.0 || leg.pitch < 0.0 {
+        let ahead = (frame.level.inverse() * (leg.target.ankle - hip)).z / (AHEAD * length);
+        if beyond < -8.0 || ahead >= 1.0 || leg.pitch < 0.0 {
             return;
         }
-        let share = smooth_step(behind);
+        let share = smooth_step(1.0 - ahead);
         let wanted = extension - share * RISING_SOFTNESS * beyond.exp().ln_1p();
         let (plant, foot) = (self.plant(side), &self.feet[side.index()]);
         let level = from_heading(plant.heading);

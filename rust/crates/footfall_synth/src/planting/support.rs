@@ -13,7 +13,7 @@ const MAX_STANCE_EXTENSION: f32 = 0.998;
 pub(super) const LET_GO_EXTENSION: f32 = 0.998;
 
 /// Over how many metres the pelvis yields to that limit.
-const REACH_SOFTNESS_M: f32 = 0.002;
+const REACH_SOFTNESS_M: f32 = 0.003;
 
 /// Over how long a leaving leg's reach ceases to bear on the pelvis, seconds.
 const REACH_FADE_SECS: f32 = 0.07;

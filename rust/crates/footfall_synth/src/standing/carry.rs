@@ -73,7 +73,7 @@ impl Carrier {
         }
         for side in Side::BOTH {
             if let Some(limit) = self.height(hips, side, &feet[side.index()], MOST_STRETCHED) {
-                hips.y = hips.y.min(limit.max(pose.root_position.y));
+                hips.y = hips.y.min(limit);
             }
         }
         pose.root_position = hips;

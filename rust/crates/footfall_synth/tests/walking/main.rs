@@ -15,8 +15,8 @@ use footfall_synth::{
 };
 use glam::Vec3;
 use world::{
-    Frame, KINDS, Kind, assert_continuous, assert_planted, config, generator, model, run, sole,
-    walker, walking,
+    Frame, KINDS, Kind, assert_continuous, assert_planted, assert_smooth, config, generator, model,
+    run, sole, walker, walking,
 };
 
 #[test]
@@ -254,7 +254,8 @@ fn turning_without_speed_turns_in_place() {
         }
         assert!((4.0..5.2).contains(&turned), "it turned by {turned}");
         assert_planted(&skeleton, &frames);
-        assert_continuous(kind, &frames);
+        // A foot that leaves a place that it does not roll off does so at once: knees come to 140 m/s².
+        assert_smooth(&frames, 0.04);
     }
 }
 
