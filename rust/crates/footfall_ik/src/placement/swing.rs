@@ -15,7 +15,7 @@ use glam::{Quat, Vec3};
 /// A foot on its way is lifted to so far above what it would touch, metres.
 const GUARD_M: f32 = 0.01;
 /// Time in which a foot that would pass through something goes half of its way over it, seconds.
-const GUARD_HALF_LIFE_SECS: f32 = 0.021;
+const GUARD_HALF_LIFE_SECS: f32 = 0.032;
 /// No point of its sole is deeper inside than this, even where the way over it is short, metres.
 const TOUCH_M: f32 = 0.015;
 /// So long before it lands it is no longer held up, seconds: it comes down where it was meant to.
