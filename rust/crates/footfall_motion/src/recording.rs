@@ -19,7 +19,7 @@ pub struct Recording {
     /// Contacts of its feet: as a person corrected them where there is a [file of corrections](ContactFile::beside), else as
     /// detected.
     pub contacts: Contacts,
-    /// What the detector finds, whatever was corrected.
+    /// Contacts as detected, whatever was corrected.
     pub detected: Contacts,
     /// Its walks, by its contacts.
     pub walks: Vec<Walk>,
@@ -41,7 +41,7 @@ pub enum RecordingError {
     Retarget {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Fault.
         source: RetargetError,
     },
     /// The corrections beside it do not fit.
@@ -160,7 +160,7 @@ impl Recording {
         }
     }
 
-    /// How many steps all its walks have.
+    /// Number of steps in all its walks.
     pub fn step_count(&self) -> usize {
         self.walks.iter().map(|walk| walk.steps.len()).sum()
     }

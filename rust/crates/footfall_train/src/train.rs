@@ -34,7 +34,7 @@ pub struct TrainingClip {
     pub skip_frames: usize,
     /// The walks in the clip, in its own frames.
     pub walks: Vec<Walk>,
-    /// How often the clip shows the same steps: more than once for a loop that was unrolled.
+    /// Number of times that the clip shows the same steps: more than once for a loop that was unrolled.
     pub repeats: usize,
 }
 
@@ -64,7 +64,7 @@ impl From<&CorpusClip> for TrainingClip {
     }
 }
 
-/// How to train.
+/// Settings of training.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrainConfig {
     /// Frames per second of the model.

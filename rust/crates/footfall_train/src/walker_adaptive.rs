@@ -13,7 +13,7 @@ use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT};
 use footfall_prob::gaussian::GaussianStats;
 use footfall_prob::hsmm::HsmmStats;
 
-/// How often transforms and average walk take turns.
+/// Number of turns that transforms and average walk take.
 const ROUNDS: usize = 3;
 
 /// Iterations of the average walk between two rounds: it moves little.

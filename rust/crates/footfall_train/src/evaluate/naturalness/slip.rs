@@ -1,4 +1,4 @@
-//! How fast standing feet slip, by a contact rule of its own: the generator's is not to judge itself.
+//! Slip of standing and landing feet, by a contact rule of its own: the generator's is not to judge itself.
 
 use super::joint_positions;
 use footfall_core::{Clip, ModelPose, Side};

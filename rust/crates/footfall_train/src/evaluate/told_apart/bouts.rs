@@ -80,7 +80,7 @@ fn flight_frames(step: &Step) -> usize {
         .map_or(0, |frame| step.end.saturating_sub(frame + 1))
 }
 
-/// How far apart in speed bouts are still compared, m/s.
+/// Greatest difference in speed of bouts that are compared, m/s.
 const ALIKE_MPS: f64 = 0.25;
 /// Captured bouts fewer than this span no range.
 const LEAST_BOUTS: usize = 3;

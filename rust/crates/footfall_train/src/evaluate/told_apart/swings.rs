@@ -19,7 +19,7 @@ const ROOT_CUT_OFF_HZ: f64 = 8.0;
 /// Samples of a time-normalised stride.
 pub const PHASES: usize = 40;
 
-/// How many parts are judged.
+/// Number of parts that are judged.
 pub const PART_COUNT: usize = 14;
 
 /// Names of the parts.
