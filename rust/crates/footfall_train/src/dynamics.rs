@@ -124,7 +124,7 @@ pub fn fit_dynamics(
     })
 }
 
-/// What a system's segments were like.
+/// Statistics of a system's segments.
 fn regime(
     system: &AffineSystem,
     segments: &[&[f64]],

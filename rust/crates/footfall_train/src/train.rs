@@ -39,7 +39,7 @@ pub struct TrainingClip {
 }
 
 impl TrainingClip {
-    /// What is read of a recording.
+    /// Reads of a recording what training needs.
     pub fn new(subject: &str, motion: &Retargeted, walks: &[Walk]) -> Self {
         Self {
             subject: subject.to_owned(),
