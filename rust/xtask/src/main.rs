@@ -31,6 +31,7 @@ mod package;
 mod paths;
 mod process;
 mod progress;
+mod skipped;
 mod tidy;
 mod verify;
 
@@ -133,7 +134,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Link => link::command(),
         Command::Mannequin => mannequin::command(),
         Command::Addon { packed } => addon::command(*packed),
-        Command::Models { which } => models::command(&which),
+        Command::Models { which } => models::command(which),
         Command::Golden { update } => golden::command(*update),
         Command::Csharp { check } => csharp::command(*check),
         Command::Tidy => tidy::command(),

@@ -1,7 +1,7 @@
 //! Checks of the first minutes with the add-on, unzipped into a project on a machine that has never seen it: `cargo verify newcomer`.
 
 use crate::godot::Engine;
-use crate::{addon, engine_run, export, godot, open, paths};
+use crate::{addon, engine_run, export, godot, open, paths, skipped};
 use anyhow::{Context as _, Result, bail};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -20,8 +20,7 @@ const SOURCES: &str = "tests/newcomer";
 /// The first thing that does not go as it should.
 pub(crate) fn check() -> Result<()> {
     if !cfg!(target_os = "linux") {
-        eprintln!("skipped: the newcomer's game is exported on Linux only");
-        return Ok(());
+        return skipped::note("newcomer", "the newcomer's game is exported on Linux only");
     }
     let engine = godot::provision()?;
     let folder = paths::target_folder().join("newcomer");
@@ -128,8 +127,7 @@ impl Newcomer {
     /// The project becomes a game in which its checks hold.
     fn exports(&self, project: &Path, name: &str) -> Result<()> {
         if self.engine.release_template.is_none() {
-            eprintln!("skipped: this Godot came without an export template");
-            return Ok(());
+            return skipped::note(name, "this Godot came without an export template");
         }
         eprintln!("{name} …");
         let game = self.folder.join(format!("{name}_game/game.x86_64"));

@@ -2,7 +2,7 @@
 
 use crate::{
     csharp, demo, engine_run, examples, export, godot, library, link, newcomer, open, package,
-    paths, process, tidy,
+    paths, process, skipped, tidy,
 };
 use anyhow::{Context as _, Result, bail};
 use std::path::Path;
@@ -95,7 +95,12 @@ pub(crate) fn command(only: &[String]) -> Result<()> {
     }
     let wanted = |step: &&Step| only.is_empty() || only.iter().any(|name| name == step.name);
     let steps: Vec<&Step> = STEPS.iter().filter(wanted).collect();
+    if steps.iter().any(|step| step.name == "tests") {
+        skipped::check_promised_recordings()?;
+    }
+    skipped::begin()?;
     let begin = Instant::now();
+    let mut times = Vec::new();
     for (index, step) in steps.iter().enumerate() {
         eprintln!("── {}/{} {}", index + 1, steps.len(), step.name);
         let begin = Instant::now();
@@ -106,12 +111,12 @@ pub(crate) fn command(only: &[String]) -> Result<()> {
                 begin.elapsed().as_secs_f32()
             )
         })?;
-        eprintln!(
-            "── {} passed in {:.0} s",
-            step.name,
-            begin.elapsed().as_secs_f32()
-        );
+        let secs = begin.elapsed().as_secs_f32();
+        eprintln!("── {} passed in {secs:.0} s", step.name);
+        times.push(format!("{} {secs:.0}", step.name));
     }
+    eprintln!("── seconds: {}", times.join(", "));
+    eprintln!("── {}", skipped::summary()?);
     eprintln!("── all passed in {:.0} s", begin.elapsed().as_secs_f32());
     Ok(())
 }
@@ -143,6 +148,7 @@ fn tests() -> Result<()> {
         "--features",
         "footfall/live",
     ]);
+    cargo.env(skipped::LIST, skipped::list());
     let status = cargo.status().context("cannot start cargo")?;
     if !status.success() {
         bail!("`{}` failed ({status})", process::shown(&cargo));
@@ -226,13 +232,11 @@ fn demo_in_godot() -> Result<()> {
 /// The demo as players get it: with the library's other flavour, and without an editor.
 fn exported_demo() -> Result<()> {
     if !cfg!(target_os = "linux") {
-        eprintln!("skipped: the demo is exported on Linux only");
-        return Ok(());
+        return skipped::note("export", "the demo is exported on Linux only");
     }
     let engine = godot::provision()?;
     if engine.release_template.is_none() {
-        eprintln!("skipped: this Godot came without an export template");
-        return Ok(());
+        return skipped::note("export", "this Godot came without an export template");
     }
     library::build(&library::Options {
         all: true,

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Where Chromium is on this machine; says which test is skipped when it is not there.
-#[expect(clippy::print_stderr, reason = "a skipped test has to say so")]
+/// Where Chromium is on this machine; [notes](crate::skips::note) that the test is skipped when it is not there.
 pub fn chromium(test: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let found = std::env::split_paths(&path)
@@ -12,7 +11,8 @@ pub fn chromium(test: &str) -> Option<PathBuf> {
         })
         .find(|program| program.is_file());
     if found.is_none() {
-        eprintln!("{test}: skipped, no Chromium on the path; install Debian's package chromium");
+        let reason = "no Chromium on the path; install Debian's package chromium";
+        crate::skips::note(test, reason);
     }
     found
 }

@@ -15,18 +15,15 @@ pub fn own_file(name: &str) -> PathBuf {
 
 /// The folder with the recordings: `FOOTFALL_DATA`, else `../shared/data` beside the repository.
 ///
-/// `None` when there is none; says so on stderr, so that a skipped test does not pass for a run one.
-#[expect(clippy::print_stderr, reason = "a skipped test has to say so")]
+/// `None` when there is none, which is [noted](crate::skips::note), so that a skipped test does not pass for a run one.
 pub fn recordings(test: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("FOOTFALL_DATA")
         .map_or_else(|| repository().join("../shared/data"), PathBuf::from);
     if folder.join("index.csv").is_file() {
         return Some(folder);
     }
-    eprintln!(
-        "{test}: skipped, no recordings in {}; set FOOTFALL_DATA to the folder with index.csv",
-        folder.display()
-    );
+    let reason = "no recordings; set FOOTFALL_DATA to the folder with index.csv";
+    crate::skips::note(test, reason);
     None
 }
 

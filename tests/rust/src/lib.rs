@@ -6,4 +6,5 @@ pub mod climb;
 pub mod data;
 pub mod evaluator;
 pub mod golden;
+pub mod skips;
 pub mod terrain;

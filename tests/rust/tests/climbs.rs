@@ -171,7 +171,9 @@ fn the_whole_sweep() {
         .ok()
         .and_then(|value| value.parse().ok());
     let Some(count) = count else {
-        println!("skipped: set FOOTFALL_CLIMBS to the number of distances, for example 200");
+        let reason =
+            "a quarter of an hour; set FOOTFALL_CLIMBS to the number of distances, for example 200";
+        footfall_tests::skips::note("the_whole_sweep", reason);
         return;
     };
     let mut whole = Survey::default();

@@ -4,37 +4,48 @@ use footfall_core::Clip;
 use footfall_model::GaitModel;
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
 use footfall_motion::steps::segment_walks;
-use footfall_synth::{WalkConfig, synthesize};
+use footfall_synth::{GaitChoice, WalkConfig, synthesize};
 use footfall_tests::data::repository;
 use footfall_train::evaluate::EvaluateError;
+use footfall_train::evaluate::told_apart::bouts::{Bout, Gait, WithinRange};
 use footfall_train::evaluate::told_apart::features::View;
 use footfall_train::evaluate::told_apart::{Comparison, Walker, compare};
 use std::sync::Arc;
 
 /// Walks of the shipped model, a seed each, seen through a change of its poses.
-fn walkers(seeds: core::ops::Range<u64>, change: impl Fn(&Clip) -> Clip) -> Vec<Walker> {
+fn walkers(
+    gait: Gait,
+    seeds: core::ops::Range<u64>,
+    change: impl Fn(&Clip) -> Clip,
+) -> Vec<Walker> {
     let path = repository().join("addons/footfall/models/locomotion.footfall");
     let bytes = std::fs::read(&path).expect("the shipped model");
     let model = Arc::new(GaitModel::from_bytes(&bytes).expect("the shipped model"));
     seeds
         .map(|seed| {
+            let (choice, asked_mps) = match gait {
+                Gait::Walk => (GaitChoice::Walk, 1.3),
+                Gait::Run => (GaitChoice::Run, 3.2),
+            };
             let config = WalkConfig {
                 steps: 13,
                 seed,
                 variation: 1.0,
-                speed_mps: None,
+                speed_mps: Some(asked_mps as f32),
                 turn_rate_radps: 0.0,
                 direction_rad: 0.0,
                 frame_rate_hz: None,
                 from_standing: false,
-                gait: footfall_synth::GaitChoice::Auto,
+                gait: choice,
             };
             let walk = synthesize(&model, &model.skeleton, &config).expect("a walk");
             let contacts = detect_contacts(&walk.clip, &ContactConfig::from_frame(0));
             let walks = segment_walks(&walk.clip, &contacts);
+            let parts = gait.parts(&walk.clip, &walks);
             Walker {
                 name: format!("seed {seed}"),
-                clips: vec![(change(&walk.clip), walks)],
+                clips: vec![(change(&walk.clip), parts)],
+                asked_mps: Some(asked_mps),
             }
         })
         .collect()
@@ -67,30 +78,74 @@ fn accuracies(comparison: &Comparison, wanted: View) -> [f64; 2] {
     verdict.accuracies.map(|accuracy| accuracy.mean)
 }
 
-#[test]
-fn equal_sources_are_not_told_apart_and_a_smoothed_copy_is() {
-    let first = walkers(1..9, Clip::clone);
-    let alike = compare(&first, &walkers(101..117, Clip::clone)).expect("enough strides");
+/// Judges one gait of the model against itself and against a smoothed copy; the former is returned.
+fn judge_both(gait: Gait) -> Comparison {
+    let first = walkers(gait, 1..9, Clip::clone);
+    let alike =
+        compare(&first, &walkers(gait, 101..117, Clip::clone), gait).expect("enough strides");
     for view in View::ALL {
         for accuracy in accuracies(&alike, view) {
-            assert!(accuracy < 0.68, "{}: {accuracy}", view.name());
+            assert!(accuracy < 0.68, "{gait:?}, {}: {accuracy}", view.name());
         }
     }
-    let smooth = compare(&first, &walkers(101..117, smoothed)).expect("enough strides");
+    let smooth = compare(&first, &walkers(gait, 101..117, smoothed), gait).expect("enough strides");
     for view in [View::All, View::Smoothness] {
         for accuracy in accuracies(&smooth, view) {
-            assert!(accuracy > 0.9, "{}: {accuracy}", view.name());
+            assert!(accuracy > 0.9, "{gait:?}, {}: {accuracy}", view.name());
         }
     }
     // A smoothed copy lacks what the measure of detail is about, in every part that moves.
     for ((part, [_, own]), (_, [_, copy])) in alike.detail.iter().zip(&smooth.detail) {
         assert!(copy.rms < 0.8 * own.rms, "{part}: {copy:?} of {own:?}");
     }
+    // Its feet slide as they land and as they stand.
+    let [own, copy] = [&alike, &smooth].map(|comparison| {
+        let [_, generated] = &comparison.gait;
+        generated.landing_slip_mps.expect("feet land")
+    });
+    assert!(copy > 2.0 * own, "{gait:?}: {copy} of {own} m/s");
+    alike
+}
+
+#[test]
+fn equal_walks_are_not_told_apart_and_a_smoothed_copy_is() {
+    let alike = judge_both(Gait::Walk);
+    let [_, walks] = &alike.gait;
+    assert!(walks.bouts.iter().all(|bout| bout.flight_share == 0.0));
+}
+
+#[test]
+fn equal_runs_are_not_told_apart_and_a_smoothed_copy_is() {
+    let alike = judge_both(Gait::Run);
+    let [first, second] = &alike.gait;
+    assert!(second.bouts.iter().all(|bout| bout.flight_share > 0.02));
+    assert!(
+        second.speed_errors.iter().all(|error| *error < 0.1),
+        "{:?}",
+        second.speed_errors
+    );
+    let within = WithinRange::of(&first.bouts, &second.bouts);
+    assert!(within.bouts >= 8 && within.cadence > 0.5, "{within:?}");
+    // The same runs played faster have a cadence that nobody had at their speed.
+    let hurried: Vec<_> = second
+        .bouts
+        .iter()
+        .map(|bout| Bout {
+            cadence_hz: 1.3 * bout.cadence_hz,
+            ..*bout
+        })
+        .collect();
+    assert!(WithinRange::of(&first.bouts, &hurried).cadence < 0.1);
 }
 
 #[test]
 fn too_few_walkers_are_an_error_that_says_so() {
-    let error = compare(&walkers(1..3, Clip::clone), &walkers(1..9, Clip::clone)).unwrap_err();
+    let error = compare(
+        &walkers(Gait::Walk, 1..3, Clip::clone),
+        &walkers(Gait::Walk, 1..9, Clip::clone),
+        Gait::Walk,
+    )
+    .unwrap_err();
     assert!(matches!(
         error,
         EvaluateError::TooFewWalkers { found: 2, .. }

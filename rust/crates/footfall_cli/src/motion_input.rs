@@ -4,13 +4,12 @@ use crate::hip_facts::note_people;
 use anyhow::{Context as _, Result};
 use footfall_core::Clip;
 use footfall_motion::bvh::BvhFile;
-use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
 use footfall_motion::corpus::{Corpus, Where};
-use footfall_motion::recording::read_motion;
+use footfall_motion::recording::{Recording, read_motion};
 use footfall_motion::retarget::{
     HipCentres, JointMap, RetargetOptions, Retargeted, parse_joint_map,
 };
-use footfall_motion::steps::{Step, Walk, segment_walks};
+use footfall_motion::steps::Step;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -105,12 +104,13 @@ impl MotionInput {
     }
 }
 
-/// Contacts and steps of a recording, with the figures that describe its walking.
+/// Reads a recording with its contacts: a person's where there is a file of corrections beside it, else those detected.
+pub(crate) fn read_recording(path: &Path, options: &RetargetOptions) -> Result<Recording> {
+    Recording::read_one_round(path, options).map_err(|error| anyhow::anyhow!(error.to_string()))
+}
+
+/// Figures that describe a recording's walking.
 pub(crate) struct Walking {
-    /// Contacts of both feet.
-    pub(crate) contacts: Contacts,
-    /// Runs of steps.
-    pub(crate) walks: Vec<Walk>,
     /// Mean speed of the hips along the ground over the motion, m/s on the canonical body.
     pub(crate) speed_mps: f64,
     /// Steps per minute while walking; `None` without a step.
@@ -118,26 +118,17 @@ pub(crate) struct Walking {
 }
 
 impl Walking {
-    /// Detects contacts and steps.
-    pub(crate) fn of(retargeted: &Retargeted) -> Self {
-        let clip = &retargeted.clip;
-        let contacts = detect_contacts(clip, &ContactConfig::from_frame(retargeted.first_frame));
-        let walks = segment_walks(clip, &contacts);
-        let steps = || walks.iter().flat_map(|walk| &walk.steps);
+    /// Measures a recording by its contacts.
+    pub(crate) fn of(recording: &Recording) -> Self {
+        let clip = &recording.retargeted.clip;
+        let steps = || recording.walks.iter().flat_map(|walk| &walk.steps);
         let frames: usize = steps().map(Step::frames).sum();
         let cadence_per_min = (frames > 0)
             .then(|| 60.0 * steps().count() as f64 * clip.frame_rate_hz / frames as f64);
         Self {
-            speed_mps: mean_speed(clip, retargeted.first_frame),
+            speed_mps: mean_speed(clip, recording.retargeted.first_frame),
             cadence_per_min,
-            contacts,
-            walks,
         }
-    }
-
-    /// Number of steps in all walks.
-    pub(crate) fn step_count(&self) -> usize {
-        self.walks.iter().map(|walk| walk.steps.len()).sum()
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::gait_model::{ModelError, check_finite, check_len};
 use crate::jumping::BESIDE_COUNT;
 
-/// How people keep low.
+/// Posture of people who keep low.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrouchModel {
     /// The deepest crouch of the recordings beside the same person upright: [`BESIDE_COUNT`] numbers, the same left and right. The hips' way upwards

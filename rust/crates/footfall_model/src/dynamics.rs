@@ -43,7 +43,7 @@ pub struct Regime {
     pub system: AffineSystem,
     /// States in which segments began.
     pub starts: Vec<Vec<f64>>,
-    /// How many frames the segments that began so had.
+    /// Lengths in frames of the segments that began so.
     pub frames: Vec<usize>,
     /// When the other foot leaves the ground, as a fraction of the segment.
     pub other_terminal: f64,

@@ -57,7 +57,7 @@ const IMU_KIND: &str = "imu";
 /// The part of a file that every version can read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
-    /// What the payload is: `gait`, `style`, `dynamics` or `imu`.
+    /// Kind of payload: `gait`, `style`, `dynamics` or `imu`.
     pub kind: String,
     /// The version of Footfall that wrote the file.
     pub written_by: String,
@@ -74,7 +74,7 @@ pub enum ModelFileError {
     /// The bytes end too early.
     #[error("the model is cut short after {found} bytes; copy or train it again")]
     Truncated {
-        /// How many bytes there are.
+        /// Number of bytes.
         found: usize,
     },
     /// The file was written by a later version.
@@ -95,7 +95,7 @@ pub enum ModelFileError {
     Undecodable {
         /// `header` or `payload`.
         part: &'static str,
-        /// What the decoder says.
+        /// Message of the decoder.
         reason: String,
     },
     /// The file holds another kind of model.

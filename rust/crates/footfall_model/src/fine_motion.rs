@@ -1,4 +1,4 @@
-//! What captured steps have beyond the trajectories of their states.
+//! Detail of captured steps beyond the trajectories of their states.
 //!
 //! A trajectory that is the likeliest one through five Gaussians a step is too smooth: edges that all steps have in common are rounded, and
 //! what differs from step to step within a state is gone. Both are added to it after it is solved: tables over the step's phase for
@@ -23,14 +23,14 @@ pub const MAX_FINE_DIRECTIONS: usize = 16;
 /// and for the one with the right's.
 pub type FineTable = [Vec<f64>; 2];
 
-/// What is added to the features of a step after its trajectory is solved.
+/// Detail that is added to the features of a step after its trajectory is solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FineMotion {
-    /// What steps have in common.
+    /// Detail that steps have in common.
     pub shared: FineTable,
     /// Addition of each component of [`Variation::walker`](crate::Variation::walker) by its weight; empty where all walkers have the same.
     pub walker: Vec<FineTable>,
-    /// What differs from step to step.
+    /// Detail that differs from step to step.
     pub chance: FineChance,
     /// Factor on each feature: 1 for the average walk, another in a style that swings farther or less.
     pub scale: Vec<f64>,

@@ -27,30 +27,30 @@ pub struct GaitModel {
     pub windows: Windows,
     /// The step that begins with the left foot's initial contact, then the one with the right's.
     pub steps: [StepModel; 2],
-    /// How much the features of one walk vary in total.
+    /// Total variance of the features of one walk.
     pub global_variance: GlobalVarianceModel,
-    /// How a step changes with speed.
+    /// Change of a step with speed.
     pub speed: SpeedResponse,
-    /// How walkers, and the steps of one walker, differ.
+    /// Variation between walkers, and between the steps of one walker.
     pub variation: Variation,
-    /// How steps at the ends of a walk differ from those inside it; none where they do not.
+    /// Differences of steps at the ends of a walk from those inside it; none where they do not differ.
     pub contexts: Vec<StepContext>,
-    /// What steps have beyond the trajectories of their states; nothing in models of earlier versions.
+    /// Detail of steps beyond the trajectories of their states; nothing in models of earlier versions.
     pub fine: Option<FineMotion>,
-    /// How people stand; nothing in models of earlier versions, which stand still.
+    /// Standing; nothing in models of earlier versions, which stand still.
     pub standing: Option<StandingModel>,
-    /// How people run: steps of the same features and frame rate that end with a flight ([`StepModel::other_terminal`] is negative), and with no
+    /// Running: steps of the same features and frame rate that end with a flight ([`StepModel::other_terminal`] is negative), and with no
     /// standing, running, jumping and crouching of their own. Nothing in models of earlier versions, which only walk.
     pub running: Option<Box<Self>>,
-    /// How people jump off both feet; nothing in models of earlier versions.
+    /// Jumps off both feet; nothing in models of earlier versions.
     pub jump: Option<JumpModel>,
-    /// How people crouch; nothing in models of earlier versions.
+    /// Crouching; nothing in models of earlier versions.
     pub crouch: Option<CrouchModel>,
     /// Where the model comes from.
     pub provenance: Provenance,
 }
 
-/// How the steps at one place of a walk differ from those inside it: the same foot's step plus an offset.
+/// Difference of the steps at one place of a walk from those inside it: the same foot's step plus an offset.
 ///
 /// The means of the leaf of a decision tree over the ten contexts (five places, two feet; section 5.2.1), taken from those
 /// of the steps inside a walk of the same speed. Variances are those of the steps inside.
@@ -60,7 +60,7 @@ pub struct StepContext {
     pub position: StepPosition,
     /// The foot whose initial contact begins the step.
     pub side: Side,
-    /// What to add.
+    /// Offset to add.
     pub offset: StepOffset,
 }
 
@@ -96,7 +96,7 @@ pub struct GlobalVarianceModel {
     pub variance: Vec<f64>,
 }
 
-/// What can differ between one step and the mean step: an offset to every state's mean, to the logarithm of its
+/// Difference between one step and the mean step: an offset to every state's mean, to the logarithm of its
 /// duration, and to the time of the other foot's terminal contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepOffset {
@@ -109,7 +109,7 @@ pub struct StepOffset {
 }
 
 impl StepOffset {
-    /// How many numbers an offset has.
+    /// Number of an offset's values.
     pub const LEN: usize = STATES_PER_STEP * OBSERVATION_COUNT + STATES_PER_STEP + 1;
 
     /// The parts of a [row](Self::to_row), each in units of its own: means, log-durations, terminal contact.
@@ -161,7 +161,7 @@ impl StepOffset {
     }
 }
 
-/// How a step changes with the speed of the walk: a linear regression over the steps of the corpus.
+/// Change of a step with the speed of the walk: a linear regression over the steps of the corpus.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeedResponse {
     /// The speed at which the offset is zero, m/s.
@@ -176,7 +176,7 @@ pub struct SpeedResponse {
     pub slopes: [StepOffset; 2],
 }
 
-/// How walkers differ from each other and steps of one walker among themselves: principal components, each scaled so
+/// Variation between walkers and between the steps of one walker: principal components, each scaled so
 /// that its weight is a standard normal number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variation {
@@ -188,7 +188,7 @@ pub struct Variation {
     pub step_correlation: f64,
 }
 
-/// What is wrong with a model's content.
+/// Fault of a model's content.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ModelError {
     /// A part has the wrong size.
@@ -198,9 +198,9 @@ pub enum ModelError {
     Shape {
         /// Which part.
         part: String,
-        /// How many numbers it should have.
+        /// Number of values expected.
         expected: usize,
-        /// How many it has.
+        /// Number of values found.
         found: usize,
     },
     /// A number is not finite, or not positive where it must be.

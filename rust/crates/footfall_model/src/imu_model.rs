@@ -50,13 +50,13 @@ pub struct Segment {
     pub phase: u16,
     /// Who moves: an index below [`ImuModel::subjects`].
     pub subject: u16,
-    /// How many frames it has.
+    /// Number of its frames.
     pub frames: u16,
     /// Whether it follows the segment before without a gap.
     pub follows: bool,
 }
 
-/// What sensor frames mean for a body.
+/// Motion of a body beside the frames of its sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImuModel {
     /// Frames per second.
@@ -73,9 +73,9 @@ pub struct ImuModel {
     pub subjects: usize,
     /// Phases of the recordings, in order.
     pub segments: Vec<Segment>,
-    /// What the sensors measured: [`SENSOR_COUNT`] numbers a sensor for each frame of each segment.
+    /// Measurements of the sensors: [`SENSOR_COUNT`] numbers a sensor for each frame of each segment.
     pub sensor: Vec<f32>,
-    /// What the body did: [`BODY_COUNT`] numbers for each frame.
+    /// Motion of the body: [`BODY_COUNT`] numbers for each frame.
     pub body: Vec<f32>,
     /// Standard deviation of each sensor number round that of a like frame.
     pub deviations: Vec<f32>,

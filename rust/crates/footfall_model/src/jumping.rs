@@ -19,7 +19,7 @@ pub const JUMP_RESPONSES: usize = 3;
 /// Knots of a phase at most.
 pub const MAX_JUMP_KNOTS: usize = 32;
 
-/// How people jump off both feet.
+/// Jumps off both feet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JumpModel {
     /// Dip, push, flight, absorption and recovery.

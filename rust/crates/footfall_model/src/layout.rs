@@ -1,4 +1,4 @@
-//! How a pose becomes a vector of features, and back.
+//! Encoding of a pose as a vector of features, and decoding.
 //!
 //! A frame has [`FEATURE_COUNT`] static features: the exponential map of every joint's local rotation, three numbers a
 //! joint in the order of [`Joint::ALL`]; the hips' with the walker's heading removed (Tilmanne et al. 2012, section 4).

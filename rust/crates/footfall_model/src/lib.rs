@@ -1,4 +1,4 @@
-//! What training hands to the runtime: the feature layout, the gait model, and its versioned file.
+//! Models that training hands to the runtime: the feature layout, the gait model, and its versioned file.
 //!
 //! Probability is in f64 and poses are in f32; the two meet in [`layout`]. The crate works on bytes: it reads and
 //! writes no file.

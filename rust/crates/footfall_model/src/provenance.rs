@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Where a model comes from and under which terms: stored in every file, shown by `footfall inspect`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Provenance {
-    /// What it was trained on, in words a reader understands.
+    /// Training data, in words a reader understands.
     pub corpus: String,
     /// Terms of the data, as the corpus states them.
     pub terms: String,
@@ -13,10 +13,10 @@ pub struct Provenance {
     pub command: String,
     /// The commit of this project that it was made with; empty when unknown.
     pub commit: String,
-    /// How many clips were used.
+    /// Number of clips used.
     pub clips: usize,
-    /// How many different subjects walked in them.
+    /// Number of different subjects in them.
     pub subjects: usize,
-    /// How many steps were used, mirrored ones not counted.
+    /// Number of steps used, mirrored ones not counted.
     pub steps: usize,
 }

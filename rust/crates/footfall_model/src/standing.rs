@@ -22,12 +22,12 @@ pub const MAX_SWAY_DIRECTIONS: usize = 8;
 /// Directions in which people look: to the side, and up or down.
 pub const LOOK_DIRECTIONS: usize = 2;
 
-/// How people stand.
+/// Standing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StandingModel {
     /// Features ([`FEATURE_COUNT`]) of the upright posture, the same left and right, with ankles straight below the hip joints.
     pub posture: Vec<f64>,
-    /// How far the hips of somebody who stands at ease are ahead of that, leg lengths.
+    /// Distance of the hips of somebody who stands at ease ahead of that, leg lengths.
     pub hips_ahead: f64,
     /// Weight on one leg for long. All people have as much of it.
     pub stance: SwayOctave,
@@ -35,7 +35,7 @@ pub struct StandingModel {
     pub octaves: Vec<SwayOctave>,
     /// Where they look.
     pub looks: Looks,
-    /// How they breathe.
+    /// Breathing.
     pub breath: Breath,
     /// Standard deviation, between people, of the logarithm of how far they sway and look about.
     pub strength_spread: f64,
@@ -53,11 +53,11 @@ pub struct SwayOctave {
 /// Looks about: the gaze jumps to a place and stays there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Looks {
-    /// How often it jumps, a second; 0 for never.
+    /// Jumps a second; 0 for never.
     pub rate_hz: f64,
-    /// How long a jump takes.
+    /// Duration of a jump.
     pub shift_secs: f64,
-    /// What the body does with a look to the side and with one down ([`SWAY_COUNT`] numbers each), by the standard deviation of where
+    /// Motion of the body with a look to the side and with one down ([`SWAY_COUNT`] numbers each), by the standard deviation of where
     /// it rests.
     pub directions: Vec<Vec<f64>>,
 }
@@ -67,7 +67,7 @@ pub struct Looks {
 pub struct Breath {
     /// Breaths a second.
     pub rate_hz: f64,
-    /// What the body does from the middle of a breath to its top ([`SWAY_COUNT`] numbers).
+    /// Motion of the body from the middle of a breath to its top ([`SWAY_COUNT`] numbers).
     pub direction: Vec<f64>,
 }
 

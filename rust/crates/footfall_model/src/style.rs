@@ -18,15 +18,15 @@ use footfall_core::Joint;
 /// and steps differ) stays the base's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaitStyle {
-    /// What the style is called.
+    /// Name of the style.
     pub name: String,
     /// [`GaitModel::fingerprint`] of the model that it was adapted from, and the only one that it fits.
     pub base_fingerprint: u32,
     /// The adapted steps: means, variances, durations and terminal contacts; the left foot's first.
     pub steps: [StepModel; 2],
-    /// How much the features of a walk in the style vary in total.
+    /// Total variance of the features of a walk in the style.
     pub global_variance: GlobalVarianceModel,
-    /// How much its steps differ from each other.
+    /// Spread of its steps.
     pub step_spread: StepSpread,
     /// Mean speed of the recorded steps on the canonical body, m/s.
     pub speed_mps: f64,
@@ -36,7 +36,7 @@ pub struct GaitStyle {
     pub provenance: Provenance,
 }
 
-/// How much the steps of a style differ from each other, as factors on the base's [`variation`](GaitModel::variation) of
+/// Spread of the steps of a style, as factors on the base's [`variation`](GaitModel::variation) of
 /// steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepSpread {
@@ -82,7 +82,7 @@ pub enum StyleError {
     Content {
         /// Which style.
         style: String,
-        /// What is wrong.
+        /// Fault.
         source: ModelError,
     },
     /// The base model cannot be used.
@@ -293,7 +293,7 @@ impl GaitModel {
         2.0 * self.frame_rate_hz / frames
     }
 
-    /// How much of a mixture's way its poses can go: 1 when all of it.
+    /// Share of a mixture's way that its poses can go: 1 when all of it.
     fn human_share(&self, parts: &[(&GaitStyle, f64)]) -> f64 {
         let mut share: f64 = 1.0;
         for side in 0..2 {

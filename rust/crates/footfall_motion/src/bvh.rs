@@ -89,7 +89,7 @@ pub struct BvhFile {
     pub joints: Vec<BvhJoint>,
     /// Seconds from one frame to the next; above zero.
     pub frame_time_secs: f64,
-    /// How many frames there are; at least one.
+    /// Number of frames; at least one.
     pub frame_count: usize,
     /// `frame_count` rows of one value per channel, joints in order. Lengths in the file's unit, angles in degrees.
     pub values: Vec<f32>,
@@ -136,9 +136,9 @@ pub enum BvhError {
         line: usize,
         /// Column in characters, from 1.
         column: usize,
-        /// What should stand there.
+        /// Expected text.
         expected: String,
-        /// What stands there.
+        /// Text found.
         found: String,
     },
     /// The same with the file's name.
@@ -146,7 +146,7 @@ pub enum BvhError {
     InFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Its fault.
         error: Box<Self>,
     },
     /// The file cannot be opened, read or written.
@@ -154,7 +154,7 @@ pub enum BvhError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         source: std::io::Error,
     },
 }

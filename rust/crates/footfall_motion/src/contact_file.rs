@@ -16,7 +16,7 @@ use std::{fs, io};
 pub struct ContactFile {
     /// Frames per second.
     pub fps: f64,
-    /// How many frames the file has.
+    /// Number of the file's frames.
     pub frames: usize,
     /// First and last frame of each stance of the left foot.
     pub left: Vec<[usize; 2]>,
@@ -40,7 +40,7 @@ pub enum ContactFileError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         source: io::Error,
     },
     /// It does not hold contacts of the recording.
@@ -48,7 +48,7 @@ pub enum ContactFileError {
     Content {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Its fault.
         what: String,
     },
 }

@@ -96,7 +96,7 @@ pub struct FootContacts {
 pub struct Contacts {
     /// Frames per second of the clip.
     pub frame_rate_hz: f64,
-    /// How many frames the clip has.
+    /// Number of the clip's frames.
     pub frames: usize,
     /// First frame of the motion proper.
     pub first_frame: usize,

@@ -38,7 +38,7 @@ pub struct SkippedClip {
     pub reason: String,
 }
 
-/// What became of the rows that were chosen.
+/// Outcome of reading the chosen rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CorpusReport {
     /// Rows that meet all conditions.
@@ -54,7 +54,7 @@ pub struct CorpusReport {
 pub struct Corpus {
     /// In the order of the index; at least one.
     pub clips: Vec<CorpusClip>,
-    /// What was left out, and why.
+    /// Rows that were left out, and reasons.
     pub report: CorpusReport,
 }
 
@@ -66,7 +66,7 @@ pub enum CorpusError {
     Csv {
         /// The index.
         index: PathBuf,
-        /// What is wrong, with the line if there is one.
+        /// Fault, with the line if there is one.
         source: csv::Error,
     },
     /// The index lacks a column that is needed.
@@ -115,9 +115,9 @@ pub enum CorpusError {
     NothingUsable {
         /// The index.
         index: PathBuf,
-        /// How many were chosen.
+        /// Number of chosen recordings.
         count: usize,
-        /// What is wrong with the first.
+        /// Fault of the first.
         first: String,
     },
 }

@@ -12,7 +12,7 @@ const HAND: f32 = 0.036;
 const FOOT: [f32; 2] = [0.034, 0.022];
 const TRUNK_HALF_WIDTHS: [f32; 2] = [0.095, 0.115];
 
-/// What a limb belongs to, for its colour.
+/// Part of the body that a limb belongs to, for its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Hips to head.
@@ -30,7 +30,7 @@ pub struct Limb {
     pub ends: [Vec3; 2],
     /// The radii around them.
     pub radii: [f32; 2],
-    /// What it belongs to.
+    /// Part of the body that it belongs to.
     pub part: Part,
 }
 

@@ -23,7 +23,7 @@ const STAND_SECS: f64 = 0.4;
 /// A phase of a clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Phase {
-    /// What it is.
+    /// Kind of phase.
     pub kind: PhaseKind,
     /// First frame.
     pub first: usize,
@@ -96,7 +96,7 @@ fn complete(phases: &mut Vec<Phase>, first: usize, frames: usize, behaviours: &[
     }
 }
 
-/// What a walk does before an event.
+/// Stretch of a walk before an event.
 fn before(kind: PhaseKind) -> PhaseKind {
     use PhaseStart::{Apex, Crossing, Fastest, HeelOff, Interval, Landing, Lowest, TakeOff};
     let (start, side) = match kind.start {

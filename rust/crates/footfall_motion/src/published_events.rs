@@ -91,7 +91,7 @@ impl Tracks {
         (self.hips[to.min(last)] - self.hips[from.min(last)]).with_y(0.0)
     }
 
-    /// How far a foot is ahead of the hips, or with `sign` -1 behind, metres.
+    /// Distance of a foot ahead of the hips, or with `sign` -1 behind, metres.
     fn along(&self, foot: &[Vec3], reach: usize, sign: f32) -> Vec<f32> {
         (0..foot.len())
             .map(|frame| {

@@ -19,7 +19,7 @@ pub struct Recording {
     /// Contacts of its feet: as a person corrected them where there is a [file of corrections](ContactFile::beside), else as
     /// detected.
     pub contacts: Contacts,
-    /// What the detector finds, whatever was corrected.
+    /// Contacts as detected, whatever was corrected.
     pub detected: Contacts,
     /// Its walks, by its contacts.
     pub walks: Vec<Walk>,
@@ -41,7 +41,7 @@ pub enum RecordingError {
     Retarget {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Fault.
         source: RetargetError,
     },
     /// The corrections beside it do not fit.
@@ -101,6 +101,15 @@ impl Recording {
         Self::of_file(path, options, retargeted)
     }
 
+    /// Reads a file and what was corrected about it. A loop stays one round, as the file has it.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the file.
+    pub fn read_one_round(path: &Path, options: &RetargetOptions) -> Result<Self, RecordingError> {
+        let (_, retargeted) = read_motion(path, options)?;
+        Self::labelled(path, options, retargeted)
+    }
+
     /// The motion of a file that was read under these options.
     pub(crate) fn of_file(
         path: &Path,
@@ -108,6 +117,15 @@ impl Recording {
         mut retargeted: Retargeted,
     ) -> Result<Self, RecordingError> {
         game_clip::unroll(&mut retargeted);
+        Self::labelled(path, options, retargeted)
+    }
+
+    /// A motion with what was corrected about its file, else with what the detector finds.
+    fn labelled(
+        path: &Path,
+        options: &RetargetOptions,
+        retargeted: Retargeted,
+    ) -> Result<Self, RecordingError> {
         let mut recording = Self::detected(retargeted);
         // Frame numbers of the corrections are the file's.
         let labels = ContactFile::beside(path);
@@ -142,7 +160,7 @@ impl Recording {
         }
     }
 
-    /// How many steps all its walks have.
+    /// Number of steps in all its walks.
     pub fn step_count(&self) -> usize {
         self.walks.iter().map(|walk| walk.steps.len()).sum()
     }

@@ -24,7 +24,7 @@ use glam::{Quat, Vec3};
 use rest::{RestRotations, canonical_direction};
 use source::{SourceFrame, SourceMotion};
 
-/// What to do beyond the defaults.
+/// Settings beyond the defaults.
 #[derive(Clone, Debug, Default)]
 pub struct RetargetOptions {
     /// Names of the joints; chosen among [`JointMap::known`] when absent.
@@ -56,11 +56,11 @@ pub struct Retargeted {
     /// Frames before this one are not part of the motion (a T-pose that an exporter put in front); leave them out of contacts
     /// and training.
     pub first_frame: usize,
-    /// What was found out on the way.
+    /// Findings on the way.
     pub report: RetargetReport,
 }
 
-/// What retargeting found out about a file.
+/// Findings of retargeting about a file.
 #[derive(Clone, Debug)]
 pub struct RetargetReport {
     /// Label of the joint map.
@@ -75,7 +75,7 @@ pub struct RetargetReport {
     pub in_place: bool,
     /// Frames of one round, for a clip that is a loop.
     pub cycle_frames: Option<usize>,
-    /// How often the clip shows the same steps: more than once for a loop that was unrolled.
+    /// Number of times that the clip shows the same steps: more than once for a loop that was unrolled.
     pub repeats: usize,
     /// The finding about the hip joints.
     pub hip_centres: HipFinding,

@@ -35,15 +35,15 @@ use residual::Residual;
 /// Frames per second at which angles are looked at, those of the paper.
 pub const ANGLE_RATE_HZ: f64 = 60.0;
 
-/// How long a foot lands after the moment halfway between its ankle farthest ahead and its knee straightest, seconds.
+/// Time by which a foot lands after the moment halfway between its ankle farthest ahead and its knee straightest, seconds.
 ///
 /// Chosen on the kinematic contacts of all CMU and Bandai people; a few milliseconds more or less agree as well.
 const LANDING_SECS: f64 = 0.011;
 
-/// How far the residual is looked for from where the hips are farthest apart, frames at [`ANGLE_RATE_HZ`].
+/// Reach of the search for the residual from where the hips are farthest apart, frames at [`ANGLE_RATE_HZ`].
 const RESIDUAL_REACH: f64 = 12.0;
 
-/// What places a switch within the half cycle that holds it.
+/// Rule that places a switch within the half cycle that holds it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Landing {
     /// Nothing: the hips are farthest apart.

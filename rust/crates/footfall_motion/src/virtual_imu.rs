@@ -1,4 +1,4 @@
-//! What an inertial sensor on the body would have measured.
+//! Measurements of an inertial sensor that the body might have worn.
 //!
 //! Position and orientation of the site are differentiated over windows of equal length in seconds, so that clips of all rates are
 //! band-limited alike (near 10 Hz). Impacts, soft tissue and what a capture smooths away are not in a pose: on a real recording the magnitude of
@@ -43,7 +43,7 @@ impl SensorNoise {
     }
 }
 
-/// How a sensor is worn and what it does to the truth.
+/// Mounting and errors of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VirtualImuConfig {
     /// Samples per second.
@@ -68,7 +68,7 @@ impl VirtualImuConfig {
     }
 }
 
-/// What a sensor at a site of a moving body measures from `first_frame` to the end; times are the clip's. Fewer than two frames give
+/// Measurements of a sensor at a site of a moving body from `first_frame` to the end; times are the clip's. Fewer than two frames give
 /// nothing.
 pub fn simulate(
     clip: &Clip,

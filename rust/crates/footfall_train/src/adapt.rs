@@ -41,7 +41,7 @@ const VARIANCE_FLOOR: f64 = 0.02;
 /// Fewest steps that show both feet.
 const LEAST_STEPS: usize = 2;
 
-/// How the transforms are estimated.
+/// Estimation of the transforms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AdaptMethod {
     /// Constrained maximum-likelihood linear regression: one transform for all states, each joint's features mixed only among
@@ -51,10 +51,10 @@ pub enum AdaptMethod {
     Csmaplr,
 }
 
-/// How to adapt.
+/// Settings of adaptation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AdaptConfig {
-    /// How the transforms are estimated.
+    /// Estimation of the transforms.
     pub method: AdaptMethod,
     /// Use the first so many steps of the clips; all when absent.
     pub steps: Option<usize>,
@@ -155,7 +155,7 @@ pub fn adapt_style(
     })
 }
 
-/// How much the steps differ, by the clips that show different ones.
+/// Spread of the steps, by the clips that show different ones.
 fn own_spread(
     base: &GaitModel,
     clips: &[TrainingClip],

@@ -20,7 +20,7 @@ use trees::Trees;
 /// Five places and two feet.
 const CONTEXTS: usize = 2 * StepPosition::ALL.len();
 
-/// How often steps are cut into states and the tied states estimated anew.
+/// Number of times that steps are cut into states and the tied states estimated anew.
 const ROUNDS: usize = 4;
 
 /// A context of which fewer steps were seen counts as unseen: they tell of one person's whim.
@@ -49,7 +49,7 @@ pub struct ContextReport {
 /// A tree, written down.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TreeReport {
-    /// What it ties: `output of state 1`, `durations`.
+    /// Quantity that it ties: `output of state 1`, `durations`.
     pub name: String,
     /// Parents before children.
     pub lines: Vec<TreeLine>,
@@ -58,7 +58,7 @@ pub struct TreeReport {
 /// A line of a tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TreeLine {
-    /// How many questions lead here.
+    /// Number of questions that lead here.
     pub depth: usize,
     /// The answer that led here from the question above; `None` at the root.
     pub answer: Option<bool>,

@@ -1,4 +1,4 @@
-//! How people crouch, as a part of a model of how they walk.
+//! Crouching, as a part of a model of how they walk.
 
 use crate::beside::{Upright, symmetric};
 use footfall_core::{Clip, Joint};
@@ -20,7 +20,7 @@ const SPEED_SECS: f64 = 1.0;
 const LEAST_SECS: f64 = 3.0;
 const LEAST_UPRIGHT_SECS: f64 = 0.5;
 
-/// What was learned about crouching, and from how much.
+/// Crouching as learned, and the amount of data behind it.
 #[derive(Clone, Debug)]
 pub struct LearnedCrouching {
     /// The section of a model.

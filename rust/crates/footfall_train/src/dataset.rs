@@ -12,7 +12,7 @@ use footfall_prob::windows::Windows;
 /// features, a turn of the walker does not.
 const HEADING_WINDOW_SECS: f64 = 0.35;
 
-/// How a clip is encoded.
+/// Settings of encoding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncodeConfig {
     /// Frames per second of the features.

@@ -1,4 +1,4 @@
-//! How steps differ from the mean step: with speed, between walkers, and from step to step.
+//! Differences of steps from the mean step: with speed, between walkers, and from step to step.
 
 use crate::sequence::Sequence;
 use footfall_core::Side;
@@ -21,7 +21,7 @@ const SPEED_PRIOR: f64 = 0.05;
 /// Logarithm of the ratio of durations beyond which a step among others of its walk is no whole step.
 const MAX_TEMPO: f64 = 0.35;
 
-/// How one step of the corpus differs from the mean step.
+/// Difference of one step of the corpus from the mean step.
 struct Difference {
     walker: usize,
     sequence: usize,
@@ -38,7 +38,7 @@ impl Difference {
     }
 }
 
-/// How steps differ.
+/// Differences between steps.
 pub struct Differences {
     /// With speed.
     pub speed: SpeedResponse,

@@ -30,7 +30,7 @@ const SAME_CONTACT_SECS: f64 = 0.12;
 /// Frames of a column in identification: tried in turn, up to half of the longest segment.
 pub const WINDOWS: [usize; 10] = [2, 3, 4, 5, 6, 8, 11, 15, 20, 30];
 
-/// How to fit.
+/// Settings of the fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicsConfig {
     /// Frames per second of the systems.
@@ -124,7 +124,7 @@ pub fn fit_dynamics(
     })
 }
 
-/// What a system's segments were like.
+/// Statistics of a system's segments.
 fn regime(
     system: &AffineSystem,
     segments: &[&[f64]],

@@ -22,7 +22,7 @@ pub enum TrainError {
         "{found} steps are too few for a style, which needs two in a row and is better with six to twelve; choose longer walks"
     )]
     TooFewSteps {
-        /// How many there are.
+        /// Number found.
         found: usize,
     },
     /// The base model, or what came of it, makes no sense.
@@ -43,19 +43,19 @@ pub enum TrainError {
     /// The frame rate is not usable.
     #[error("a frame rate of {frame_rate_hz} fps cannot be trained at; use 20 to 240")]
     FrameRate {
-        /// What was asked for.
+        /// Value that was asked for.
         frame_rate_hz: f64,
     },
     /// A number of sensors that no model has.
     #[error("{found} sensors cannot be trained on; name one site or two")]
     Sensors {
-        /// What was asked for.
+        /// Value that was asked for.
         found: usize,
     },
     /// Nothing moves long enough, or there is too much.
     #[error("the clips have {found} frames for a sensor model; choose between 1 and 2000000")]
     ImuFrames {
-        /// How many there are.
+        /// Number found.
         found: usize,
     },
     /// A sensor's recording that is not of the clip it was given for.

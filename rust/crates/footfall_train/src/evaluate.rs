@@ -1,6 +1,6 @@
 //! Objective evaluation of styles: are they told apart, do they resemble their model, do they move like people?
 //!
-//! What Tilmanne et al. (2012, section 6) asked a hundred people, asked of measures. A classifier that is trained on strides
+//! Questions that Tilmanne et al. (2012, section 6) asked a hundred people, asked of measures. A classifier that is trained on strides
 //! of real recordings names the style of real strides that it has not seen and of synthesised ones ([`confusion`], the
 //! paper's Table 2 and equation 16); synthesised strides are compared with real ones of the style ([`resemblance`]); feet and
 //! smoothness are judged by themselves ([`naturalness`]).
@@ -33,7 +33,7 @@ use stride_features::{LEAST_SPREAD, Stride, strides};
 /// A recording of one style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StyledClip {
-    /// What it shows.
+    /// Style that it shows.
     pub style: String,
     /// The motion, on the canonical body, floor at y = 0.
     pub clip: Clip,
@@ -79,7 +79,7 @@ impl StyledClip {
     }
 }
 
-/// How real strides are divided into seen and unseen.
+/// Division of real strides into seen and unseen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Split {
     /// Every take in turn is unseen; each style needs two takes.
@@ -88,10 +88,10 @@ pub enum Split {
     Half,
 }
 
-/// What was measured.
+/// Measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StyleEvaluation {
-    /// How real strides were divided.
+    /// Division of the real strides.
     pub split: Split,
     /// Judgements of real strides that the classifier had not seen.
     pub real: Confusion,
@@ -119,9 +119,9 @@ pub struct StyleMeasures {
 /// Measures of recordings by themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Naturalness {
-    /// How many recordings.
+    /// Number of recordings.
     pub clips: usize,
-    /// How many strides they have.
+    /// Number of their strides.
     pub strides: usize,
     /// Median speed of standing feet, m/s.
     pub slip_mps: Option<f64>,

@@ -1,4 +1,4 @@
-//! What captured steps have beyond the trajectories of their states.
+//! Detail of captured steps beyond the trajectories of their states.
 //!
 //! Every captured walk is generated again from what a model can hold of it: the means that its own steps have in their states, durations
 //! as a generated step has them, and the walk's own variance. What is missing is sorted by the step's phase: a mean over all walkers, what
@@ -88,7 +88,7 @@ pub(crate) fn estimate(
     }))
 }
 
-/// What a walk has beyond what is generated from the means of its states; without its first and last step, at which filters end.
+/// Detail of a walk beyond the trajectory generated from the means of its states; without its first and last step, at which filters end.
 fn missing(
     model: &GaitModel,
     sequence: &Sequence,
@@ -173,7 +173,7 @@ fn regenerate(
     Ok(trajectory)
 }
 
-/// How long the states of a generated step last that lasts so long: they share its tempo.
+/// Durations of the states of a generated step of this length: they share its tempo.
 fn durations(step: &StepModel, frames: usize) -> [usize; STATES_PER_STEP] {
     let tempo = frames as f64 / step.mean_frames();
     let mut lengths = [0; STATES_PER_STEP];
@@ -236,7 +236,7 @@ fn mean_of<'a>(tables: impl Iterator<Item = &'a FineTable> + Clone) -> FineTable
     mean
 }
 
-/// What walkers' tables have to do with their weights. Components stand for all that walkers differ by: they get all of its energy.
+/// Regression of walkers' tables on their weights. Components stand for all that walkers differ by: they get all of its energy.
 fn along_components(
     means: &[Option<FineTable>],
     weights: &[Vec<f64>],

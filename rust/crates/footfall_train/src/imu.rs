@@ -19,7 +19,7 @@ use footfall_model::Provenance;
 use footfall_model::imu_model::{ImuModel, MAX_FRAMES, MAX_SENSORS};
 use std::collections::BTreeSet;
 
-/// How a model is trained.
+/// Settings of training.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImuTrainConfig {
     /// Frames per second of the model.

@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What the worker tells while it works.
+/// Report of a worker while it works.
 #[derive(Clone, Debug, Default)]
 pub struct JobProgress {
-    /// What is being done.
+    /// Present work.
     pub task: String,
     /// Parts of it that are finished.
     pub done: usize,
@@ -35,7 +35,7 @@ impl core::fmt::Debug for Reporter {
 }
 
 impl Reporter {
-    /// Tells what is being done; whether to go on with it.
+    /// Reports the present work; returns whether to go on with it.
     pub fn tell(&self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
         self.update(|progress| {
             task.clone_into(&mut progress.task);
@@ -85,7 +85,7 @@ impl<T> core::fmt::Debug for Job<T> {
 }
 
 impl<T> Job<T> {
-    /// What it told last.
+    /// Its last report.
     pub fn progress(&self) -> JobProgress {
         self.shared
             .progress
@@ -131,7 +131,7 @@ impl<T: Send + 'static> Job<T> {
         Self { shared, receiver }
     }
 
-    /// What came of it: `None` while it goes on, an error when it broke off. Whoever cancels gets nothing, even where it was
+    /// Outcome: `None` while it goes on, an error when it broke off. Whoever cancels gets nothing, even where it was
     /// done by then.
     pub fn poll(&self) -> Option<Result<T, String>> {
         match self.receiver.try_recv() {

@@ -1,4 +1,4 @@
-//! How people jump off both feet, as a part of a model of how they walk.
+//! Jumps off both feet, as a part of a model of how they walk.
 
 use crate::beside::{Upright, symmetric};
 use footfall_core::Clip;
@@ -15,15 +15,15 @@ const KNOTS: [usize; JUMP_PHASES] = [9, 7, 8, 4, 7];
 /// Fewer jumps show no slope.
 const LEAST_JUMPS: usize = 3;
 
-/// What a slope costs, as a share of the spread of rises and ways: with a dozen jumps chance makes slopes, too.
+/// Cost of a slope, as a share of the spread of rises and ways: with a dozen jumps chance makes slopes, too.
 const RIDGE: f64 = 0.15;
 
-/// What was learned about jumping, and from how much.
+/// Jumping as learned, and the amount of data behind it.
 #[derive(Clone, Debug)]
 pub struct LearnedJumping {
     /// The section of a model.
     pub model: JumpModel,
-    /// How many jumps there were.
+    /// Number of jumps.
     pub jumps: usize,
 }
 

@@ -1,4 +1,4 @@
-//! How long work tells what it does, and how it is told to stop.
+//! Progress reporting and cancellation.
 
 use core::ops::ControlFlow;
 
@@ -8,7 +8,7 @@ pub trait Progress {
     /// [`TrainError::Cancelled`](crate::TrainError::Cancelled).
     fn advance(&mut self, task: &str, done: usize, total: usize) -> ControlFlow<()>;
 
-    /// How well what there is now explains the data, as a log-likelihood; told after every iteration of a fit.
+    /// Log-likelihood of the data under the present model; reported after every iteration of a fit.
     fn fit(&mut self, _log_likelihood: f64) {}
 }
 
@@ -19,7 +19,7 @@ impl Progress for () {
     }
 }
 
-/// Tells progress, and whether to go on as an error that `?` passes on.
+/// Reports progress; a cancellation is an error that `?` passes on.
 pub(crate) fn advance(
     progress: &mut dyn Progress,
     task: &str,

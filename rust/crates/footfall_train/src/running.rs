@@ -1,4 +1,4 @@
-//! How people run, as a part of a model of how they walk.
+//! Running, as a part of a model of how they walk.
 
 use crate::error::TrainError;
 use crate::progress::Progress;
@@ -47,7 +47,7 @@ pub fn learn_running(
     Ok(run)
 }
 
-/// What a walker's difference from the average does in every state of a run.
+/// Offset of every state of a run by a walker's difference from the average.
 fn carried(walk: &GaitModel, component: &[StepOffset; 2]) -> StepOffset {
     let mut posture = [0.0; FEATURE_COUNT];
     let mut tempo = 0.0;

@@ -32,7 +32,7 @@ pub struct LabelledStep {
 }
 
 impl Sequence {
-    /// How many frames there are.
+    /// Number of frames.
     pub fn frames(&self) -> usize {
         self.observations.len() / OBSERVATION_COUNT
     }

@@ -1,4 +1,4 @@
-//! How people stand, from recordings of them standing.
+//! Standing, from recordings of people who stand.
 //!
 //! Of every recording the [stretches] count in which somebody stands upright on planted feet with arms that hang. Their mean is the posture.
 //! What moves about it is split into looks, which jump and hold (`looks`), and the rest, a Gaussian process of octaves (`octaves`).
@@ -26,7 +26,7 @@ const ENOUGH_SECS: f64 = 60.0;
 /// Breaths a minute of adults at rest: 12 to 20 (Barrett et al., *Ganong's Review of Medical Physiology*).
 const BREATHS_PER_MINUTE: f64 = 15.0;
 
-/// What quiet breathing moves, radians from the middle of a breath to its top: shoulders and breastbone rise by a few millimetres (De Groote et
+/// Motion of quiet breathing, radians from the middle of a breath to its top: shoulders and breastbone rise by a few millimetres (De Groote et
 /// al. 1997, *Chest wall motion during tidal breathing*). The neck keeps the head level. Joint, axis, radians.
 const BREATH: [(Joint, usize, f64); 9] = [
     (Joint::Chest, 0, -0.004),
@@ -57,7 +57,7 @@ pub struct StandingClip {
     pub skip_frames: usize,
 }
 
-/// What was learned about standing, and from how much.
+/// Standing as learned, and the amount of data behind it.
 #[derive(Clone, Debug)]
 pub struct LearnedStanding {
     /// The section of a model.

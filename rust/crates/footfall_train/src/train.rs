@@ -34,12 +34,12 @@ pub struct TrainingClip {
     pub skip_frames: usize,
     /// The walks in the clip, in its own frames.
     pub walks: Vec<Walk>,
-    /// How often the clip shows the same steps: more than once for a loop that was unrolled.
+    /// Number of times that the clip shows the same steps: more than once for a loop that was unrolled.
     pub repeats: usize,
 }
 
 impl TrainingClip {
-    /// What is read of a recording.
+    /// Reads of a recording what training needs.
     pub fn new(subject: &str, motion: &Retargeted, walks: &[Walk]) -> Self {
         Self {
             subject: subject.to_owned(),
@@ -64,7 +64,7 @@ impl From<&CorpusClip> for TrainingClip {
     }
 }
 
-/// How to train.
+/// Settings of training.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrainConfig {
     /// Frames per second of the model.

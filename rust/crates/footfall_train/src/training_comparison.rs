@@ -1,4 +1,4 @@
-//! What walker-adaptive training gains: sharper states, and walkers that it has not seen explained better.
+//! Gain of walker-adaptive training: sharper states, and walkers that it has not seen explained better.
 
 use crate::average::AverageWalk;
 use crate::error::TrainError;
@@ -22,7 +22,7 @@ pub struct TrainingComparison {
 pub struct HeldOutWalker {
     /// Who.
     pub subject: String,
-    /// How many frames were scored.
+    /// Number of frames that were scored.
     pub frames: usize,
     /// Under plain training.
     pub plain: f64,

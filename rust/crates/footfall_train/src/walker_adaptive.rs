@@ -13,13 +13,13 @@ use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT};
 use footfall_prob::gaussian::GaussianStats;
 use footfall_prob::hsmm::HsmmStats;
 
-/// How often transforms and average walk take turns.
+/// Number of turns that transforms and average walk take.
 const ROUNDS: usize = 3;
 
 /// Iterations of the average walk between two rounds: it moves little.
 const ROUND_ITERATIONS: usize = 6;
 
-/// How strongly a scale is held near 1, in frames that stray by one deviation of their state: a feature that one walker hardly
+/// Strength with which a scale is held near 1, in frames that stray by one deviation of their state: a feature that one walker hardly
 /// moves must not be blown up.
 const PRIOR_FRAMES: f64 = 20.0;
 
@@ -91,7 +91,7 @@ impl WalkerTransform {
         moved
     }
 
-    /// What the log density of every frame gains by the transform: ln |det| over statics, Δ and Δ².
+    /// Gain of the log density of every frame by the transform: ln |det| over statics, Δ and Δ².
     pub fn log_determinant(&self) -> f64 {
         WINDOWS * self.scale.iter().map(|scale| scale.ln()).sum::<f64>()
     }
@@ -165,7 +165,7 @@ pub(crate) struct WalkerAdaptive {
     pub(crate) walk: AverageWalk,
     /// The corpus with every walker's transform applied.
     pub(crate) aligned: Vec<Sequence>,
-    /// What was applied, walker by walker.
+    /// Transforms that were applied, walker by walker.
     pub(crate) transforms: Vec<WalkerTransform>,
     /// Log-likelihood of the corpus as recorded (transforms counted) after every round.
     pub(crate) log_likelihoods: Vec<f64>,

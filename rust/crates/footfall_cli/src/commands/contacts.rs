@@ -1,11 +1,12 @@
 //! `footfall contacts`: when each foot stands, and the steps.
 
-use crate::motion_input::{MapArgs, MotionInput, Walking};
+use crate::motion_input::{MapArgs, MotionInput};
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
 use footfall_core::GaitEvent;
 use footfall_motion::contact_file::ContactFile;
+use footfall_motion::recording::Recording;
 use footfall_motion::retarget::Retargeted;
 use footfall_motion::switches::{detect_switches, stances, walks};
 use std::path::PathBuf;
@@ -45,8 +46,8 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
     let motion = MotionInput::read(&args.input, &args.map.read(None)?)?.retargeted;
     let report = match args.method {
         Method::Kinematic => {
-            let walking = Walking::of(&motion);
-            ContactFile::new(&walking.contacts, &walking.walks)
+            let recording = Recording::detected(motion);
+            ContactFile::new(&recording.contacts, &recording.walks)
         }
         Method::Switching => {
             switching(&motion).with_context(|| args.input.display().to_string())?

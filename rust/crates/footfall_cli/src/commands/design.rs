@@ -3,7 +3,7 @@
 mod corpus_run;
 mod reference;
 
-use crate::motion_input::{KneesArgs, MotionInput, Walking};
+use crate::motion_input::{KneesArgs, read_recording};
 use crate::output;
 use anyhow::{Context as _, Result, bail};
 use footfall_core::Clip;
@@ -97,12 +97,11 @@ pub(crate) fn run(args: &DesignArgs) -> Result<()> {
 
 fn run_single(args: &DesignArgs, sheet: &StyleSheet, input: &Path, target: &Path) -> Result<()> {
     output::refuse_overwrite(&[input], target)?;
-    let motion = MotionInput::read(input, &args.knees.options())?;
-    let walking = Walking::of(&motion.retargeted);
+    let recording = read_recording(input, &args.knees.options())?;
     let clip = design(
-        &motion.retargeted.clip,
-        &walking.contacts,
-        &walking.walks,
+        &recording.retargeted.clip,
+        &recording.contacts,
+        &recording.walks,
         sheet,
         args.seed,
     )

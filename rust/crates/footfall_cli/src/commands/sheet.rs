@@ -1,12 +1,12 @@
 //! `footfall sheet`: motion on one page.
 
-use crate::motion_input::{MapArgs, MotionInput, Walking};
+use crate::motion_input::{MapArgs, Walking, read_recording};
 use crate::output;
 use crate::sheet::{SheetOptions, Subject, draw_sheet};
 use anyhow::{Context as _, Result, ensure};
 use footfall_core::Side;
 use footfall_motion::contact_file::ContactFile;
-use footfall_motion::retarget::Retargeted;
+use footfall_motion::recording::Recording;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder as _};
 use serde::Serialize;
@@ -77,18 +77,19 @@ pub(crate) fn run(args: &SheetArgs) -> Result<()> {
     };
     let mut subjects = Vec::new();
     for (index, input) in inputs.into_iter().enumerate() {
-        let motion = MotionInput::read(input, &reading)?.retargeted;
-        let walking = Walking::of(&motion);
+        let recording = read_recording(input, &reading)?;
+        let note = facts(&recording);
+        let motion = recording.retargeted;
         let stances = match args.contacts.get(index) {
             Some(path) => ContactFile::read(path, &motion.clip)?.stances(),
-            None => Side::BOTH.map(|side| walking.contacts.foot(side).stances.clone()),
+            None => Side::BOTH.map(|side| recording.contacts.foot(side).stances.clone()),
         };
         if args.start.is_none() {
             options.start_secs = motion.first_frame as f64 / motion.clip.frame_rate_hz;
         }
         subjects.push(Subject {
             title: file_name(input),
-            note: facts(&motion, &walking),
+            note,
             clip: motion.clip,
             stances,
         });
@@ -120,7 +121,8 @@ fn file_name(path: &Path) -> String {
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-fn facts(motion: &Retargeted, walking: &Walking) -> String {
+fn facts(recording: &Recording) -> String {
+    let (motion, walking) = (&recording.retargeted, Walking::of(recording));
     let clip = &motion.clip;
     let mut facts = vec![
         motion.report.map.clone(),
@@ -130,7 +132,7 @@ fn facts(motion: &Retargeted, walking: &Walking) -> String {
             clip.frame_rate_hz
         ),
         format!("{:.2} m/s", walking.speed_mps),
-        format!("{} steps", walking.step_count()),
+        format!("{} steps", recording.step_count()),
     ];
     facts.extend(
         walking

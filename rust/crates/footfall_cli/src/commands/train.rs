@@ -102,9 +102,9 @@ struct Report<'a> {
     cadence_range_per_minute: [f64; 2],
     /// Seconds in which people stand, by person; nothing where the model stands still.
     standing_seconds: BTreeMap<String, f64>,
-    /// How people run; nothing where the model only walks.
+    /// Running; nothing where the model only walks.
     running: Option<RunningFacts>,
-    /// How people jump off both feet and crouch; nothing where nobody does.
+    /// Jumps off both feet and crouching; nothing where nobody does.
     jumping: Option<JumpFacts>,
     crouching: Option<CrouchFacts>,
     /// Recordings that could not be used, and why.

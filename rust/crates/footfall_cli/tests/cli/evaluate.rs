@@ -1,7 +1,7 @@
 //! `footfall evaluate` and `footfall study` from the outside, on walks that the project made.
 
 use crate::common::{Run, footfall};
-use footfall_tests::data::{own_file, recordings};
+use footfall_tests::data::{own_file, recordings, repository};
 use std::fs;
 use std::path::Path;
 
@@ -100,6 +100,29 @@ fn tables_name_every_style_and_say_how_good_guessing_is() {
             both.stdout
         );
     }
+}
+
+#[test]
+fn recordings_without_a_run_and_speeds_that_are_none_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    write_pair(folder.path());
+    let model = repository().join("addons/footfall/models/locomotion.footfall");
+    let model = model.to_str().expect("a path in UTF-8");
+    let judged = |more: &[&str]| {
+        let mut all = vec!["evaluate", "naturalness", "--corpus", "real.csv", "--model"];
+        all.push(model);
+        all.extend(more);
+        footfall(folder.path(), &all)
+    };
+    judged(&["--gait", "run"]).fails_with(&["real.csv", "no run", "2.5 to 4.5 m/s", "--where"]);
+    judged(&["--speeds", "9:10"]).fails_with(&["real.csv", "no walk", "9 to 10 m/s"]);
+    let unreadable = judged(&["--speeds", "4:3"]);
+    assert_eq!(unreadable.code, 2, "{}", unreadable.stderr);
+    assert!(
+        unreadable.stderr.contains("2.5:4.5"),
+        "{}",
+        unreadable.stderr
+    );
 }
 
 #[test]

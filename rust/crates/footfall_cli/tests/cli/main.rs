@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod common;
+mod corrections;
 mod designs;
 mod desk;
 mod dynamics;

@@ -10,7 +10,7 @@ use footfall_core::Joint;
 /// Share of what the style does to the posture of hips and legs in walking: bent knees of a walk would double those of a run.
 const LEG_POSTURE_SHARE: f64 = 0.4;
 
-/// How much farther or less trunk and arms swing at most, as a factor.
+/// Greatest factor by which trunk and arms swing farther or less.
 const SWING_FACTORS: [f64; 2] = [0.5, 1.6];
 
 /// Styled tempo carries over with this exponent, within these factors: runs differ less in cadence than walks.

@@ -170,7 +170,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// What an open brace belongs to.
+/// Owner of an open brace.
 enum Open {
     Joint { index: usize, has_offset: bool },
     EndSite { joint: usize, offset: Option<Vec3> },

@@ -20,7 +20,7 @@ const SWING_PEAK_SECS: f32 = 0.05;
 /// Speed of a swing, from its fastest moment: what a tenth of the frames of a steady walk exceed.
 const SWING_SHARE: f32 = 0.93;
 
-/// How large a clip's body is: 1 for the canonical one.
+/// Size of a clip's body: 1 for the canonical one.
 pub(super) fn body_size(clip: &Clip) -> f32 {
     (clip.skeleton.mean_leg_length() / CANONICAL_LEG_M).max(f32::MIN_POSITIVE)
 }
@@ -75,7 +75,7 @@ impl FootSignals {
     }
 }
 
-/// How fast feet swing around each frame, metres a second: the fastest swing of either heel nearby.
+/// Speed at which feet swing around each frame, metres a second: the fastest swing of either heel nearby.
 ///
 /// Of the swings nearby, for a clip may hold standing, walking and running. Of either foot, for both swing alike, and at the ends
 /// of a clip one of them is not seen to.
@@ -89,7 +89,7 @@ pub(super) fn swing_speeds(heels: [&PointSignal; 2], rate: f32, size: f32) -> Ve
         .collect()
 }
 
-/// What a signal keeps for longer than `reach` frames before and after some moment nearby.
+/// Level that a signal keeps for longer than `reach` frames before and after some moment nearby.
 fn sustained(values: &[f32], reach: usize) -> Vec<f32> {
     extremes(&extremes(values, reach, f32::min), reach, f32::max)
 }
@@ -104,7 +104,7 @@ fn extremes(values: &[f32], reach: usize, better: fn(f32, f32) -> f32) -> Vec<f3
         .collect()
 }
 
-/// How fast the front of a foot leaves its place: the lesser forward speed and the lesser upward speed of ball and toe tip.
+/// Speed at which the front of a foot leaves its place: the lesser forward speed and the lesser upward speed of ball and toe tip.
 ///
 /// While a foot rolls over its toes the ball rises and the tip stays down, and neither goes forward. In bodies whose toes do not bend as
 /// the person's did, the tip slides back meanwhile as fast as the ball rises: the speed of either is no sign that the foot has lifted.

@@ -58,7 +58,7 @@ impl IndexRow {
 pub struct Where {
     /// Name of the column.
     pub column: String,
-    /// What its value must be.
+    /// Pattern of its value.
     pub pattern: String,
     /// Whether it must not be so instead.
     pub negated: bool,

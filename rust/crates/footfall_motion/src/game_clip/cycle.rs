@@ -65,7 +65,7 @@ pub(super) fn unroll(clip: &mut Clip, first: usize, cycle: usize) -> usize {
     repeats
 }
 
-/// How far the body turns and where it comes in one round, seen from where it begins with heading as it is.
+/// Turn of the body and its way in one round, seen from where it begins with heading as it is.
 fn round(poses: &[Pose], cycle: usize) -> (f32, Vec3) {
     let place = |frame: usize| poses[frame].root_position.with_y(0.0);
     let facing = |frame: usize| heading(poses[frame].rotation(Joint::Hips));
@@ -98,7 +98,7 @@ fn wrapped(angle: f32) -> f32 {
     angle - (angle / turn).round() * turn
 }
 
-/// How differently two bodies are posed, wherever they stand and face: radians, sum of all joints.
+/// Difference between the postures of two bodies, wherever they stand and face: radians, sum of all joints.
 fn difference(a: &Pose, b: &Pose) -> f32 {
     let level = |pose: &Pose| -> Quat {
         let hips = pose.rotation(Joint::Hips);

@@ -81,7 +81,7 @@ struct Step {
     shift: Vec3,
 }
 
-/// How the point that is lowest usually moves.
+/// Usual motion of the lowest point.
 fn median_of_lowest(steps: &[[Step; POINTS]]) -> Vec3 {
     let lowest: Vec<Vec3> = steps
         .iter()
@@ -98,7 +98,7 @@ fn median_of_lowest(steps: &[[Step; POINTS]]) -> Vec3 {
     Vec3::new(median(0), 0.0, median(2))
 }
 
-/// How the ground moves in a frame, by the points that stand; `None` in flight.
+/// Motion of the ground in a frame, by the points that stand; `None` in flight.
 fn shift(points: &[Step; POINTS], ground: Vec3) -> Option<Vec3> {
     let most = MOST_DIFFERENCE * ground.length();
     let (sum, weight) = points

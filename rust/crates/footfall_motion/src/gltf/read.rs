@@ -23,7 +23,7 @@ pub enum GltfError {
     File {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Fault.
         source: gltf::Error,
     },
     /// No animation turns a bone.

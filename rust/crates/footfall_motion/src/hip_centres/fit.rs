@@ -4,7 +4,7 @@ use super::reference::{FLEXION_DEG, Gait, PHASES, covariance_of_placing};
 use super::stances::{COUNT, Legs, Parameters};
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, SMatrix, SVector, U1};
 
-/// What fits to markers get wrong, in leg lengths: mean and standard deviation of how far hip joints have to move up and
+/// Errors of fits to markers, in leg lengths: mean and standard deviation of how far hip joints have to move up and
 /// forwards, by how much legs are too short, and how far the left hip joint is off otherwise than the right one.
 const MEAN: [f64; COUNT] = [0.016, -0.025, 0.0, 0.0, 0.0];
 const SPREAD: [f64; COUNT] = [0.010, 0.03, 0.004, 0.004, 0.008];

@@ -7,7 +7,7 @@ use footfall_core::Side;
 use glam::{DVec3, Vec2, Vec3};
 use nalgebra::{DMatrix, DVector, SVector};
 
-/// How many numbers a correction has.
+/// Number of a correction's parameters.
 pub(super) const COUNT: usize = 5;
 /// Strides farther from the middle one than so many times the median, and than so many degrees, are no plain walking.
 const OUTLIER: f64 = 2.5;

@@ -1,4 +1,4 @@
-//! What the body does in each frame, from contacts and from where hips and feet go.
+//! Behaviour of the body in each frame, from contacts and from where hips and feet go.
 
 use super::track::{Track, flights};
 use crate::contacts::Contacts;

@@ -8,7 +8,7 @@ use super::source::SourceMotion;
 use footfall_core::{Joint, Side};
 use glam::{Quat, Vec3, Vec4};
 
-/// What is known of one flat foot.
+/// Measurements of one flat foot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FlatFoot {
     /// Frames that it was learned from; 0 when the reference pose had to serve.

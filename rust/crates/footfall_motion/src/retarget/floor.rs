@@ -30,7 +30,7 @@ impl Floor {
 
 /// A captured floor is level to within this much; steeper ground is meant.
 const STEEPEST: f32 = 0.05;
-/// How steep a captured floor is by error of calibration, and how far single stances are off it, metres: the ridge of the fit.
+/// Slope of a captured floor by error of calibration, and distance of single stances from it, metres: the ridge of the fit.
 const SLOPE_SPREAD: f32 = 0.02;
 const STANCE_SPREAD: f32 = 0.01;
 /// Frames of one stance are one observation.

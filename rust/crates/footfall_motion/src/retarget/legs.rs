@@ -75,7 +75,7 @@ fn solve_leg(frame: &mut SourceFrame, side: Side, hip: Vec3, factor: f32, knee_a
     }
 }
 
-/// How far a leg of this length reaches for an ankle at a distance.
+/// Reach of a leg of this length for an ankle at a distance.
 fn reach_of(distance: f32, length: f32) -> f32 {
     let softness = SOFTNESS * length;
     let left = (MOST_STRETCHED * length - distance) / softness;

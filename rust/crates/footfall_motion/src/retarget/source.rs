@@ -294,7 +294,7 @@ fn up_axis(file: &BvhFile, placement: &Placement) -> Vec3 {
         .unwrap_or(Vec3::Y)
 }
 
-/// How many frames at the start are not part of the motion: after them the pose jumps.
+/// Number of frames at the start that are not part of the motion: after them the pose jumps.
 fn first_motion_frame(frames: &[SourceFrame]) -> usize {
     const LOOK_AHEAD: usize = 3;
     if frames.len() < LOOK_AHEAD + 5 {

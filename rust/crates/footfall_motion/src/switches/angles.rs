@@ -72,12 +72,12 @@ impl LegAngles {
         }
     }
 
-    /// How far the right thigh is behind the left one: positive when the left leg is ahead.
+    /// Angle of the right thigh behind the left one: positive when the left leg is ahead.
     fn lead(&self, frame: usize) -> f64 {
         self.frames[frame][1] - self.frames[frame][0]
     }
 
-    /// How far the ankle is ahead of its hip in the plane of the angles, metres.
+    /// Distance of the ankle ahead of its hip in the plane of the angles, metres.
     fn ankle_ahead(&self, frame: usize, side: Side) -> f64 {
         let angles = self.frames[frame];
         let (hip, knee) = (angles[side.index()], angles[2 + side.index()]);

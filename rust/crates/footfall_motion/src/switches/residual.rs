@@ -48,7 +48,7 @@ impl Residual {
         }))
     }
 
-    /// How many frames after these moments, all alike, the residual is greatest on average, from `-reach` to `reach`.
+    /// Number of frames, the same for all, after which the residual is greatest on average, from `-reach` to `reach`.
     pub(super) fn peak(&self, moments: &[(f64, Side)], reach: f64) -> f64 {
         let parts = (reach * PARTS as f64).round() as isize;
         let offsets: Vec<f64> = (-parts..=parts).map(|n| n as f64 / PARTS as f64).collect();

@@ -2,7 +2,6 @@
 #![allow(
     dead_code,
     clippy::allow_attributes,
-    clippy::print_stdout,
     clippy::unwrap_used,
     reason = "each test binary uses a part of this"
 )]
@@ -10,18 +9,13 @@
 pub(crate) mod natural;
 pub(crate) mod walker;
 
+use footfall_tests::data::recordings;
+use footfall_tests::skips::current_test;
 use std::path::{Path, PathBuf};
 
-/// The folder of recordings, if it is there: `FOOTFALL_DATA`, else `../shared/data` beside the repository.
+/// The folder of recordings, if it is there.
 pub(crate) fn data_folder() -> Option<PathBuf> {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
-    let folder = std::env::var_os("FOOTFALL_DATA")
-        .map_or_else(|| repository.join("../shared/data"), PathBuf::from);
-    if folder.join("index.csv").is_file() {
-        return Some(folder);
-    }
-    println!("skipped: no recordings; set FOOTFALL_DATA to the folder with index.csv");
-    None
+    recordings(&current_test())
 }
 
 /// Every `.bvh` below a folder, sorted.

@@ -1,4 +1,4 @@
-//! How much the steps of a style differ from each other, beside those of the base's walkers.
+//! Spread of the steps of a style, beside those of the base's walkers.
 
 use crate::sequence::Sequence;
 use footfall_core::{Joint, Side};
@@ -6,7 +6,7 @@ use footfall_model::{
     FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, STATES_PER_STEP, StepOffset, StepSpread,
 };
 
-/// How many steps count for a limb's spread being that of the body, and for the body's being the base's.
+/// Number of steps that count for a limb's spread being that of the body, and for the body's being the base's.
 const PRIOR_STEPS: f64 = 1.0;
 
 /// Parts of the body with a factor each.
@@ -73,7 +73,7 @@ fn limb_of(feature: usize) -> usize {
     }
 }
 
-/// What is compared between steps.
+/// Features that are compared between steps.
 struct Step {
     side: Side,
     /// Mean of every static feature in every fifth of the step.
@@ -122,7 +122,7 @@ impl Default for Variances {
 }
 
 impl Variances {
-    /// What the base's components of steps amount to.
+    /// Amount of the base's components of steps.
     fn of(base: &GaitModel) -> Self {
         let mut variances = Self::default();
         for offset in base.variation.step.iter().flatten() {

@@ -45,12 +45,12 @@ struct Class {
     /// One for each block of features.
     blocks: Vec<LinearTransform>,
     duration: LinearTransform,
-    /// What the prior is centred on: the transforms of the class that this one is a part of.
+    /// Centre of the prior: the transforms of the class that this one is a part of.
     centres: Vec<LinearTransform>,
     duration_centre: LinearTransform,
 }
 
-/// What an alignment says of every state.
+/// Statistics of every state by an alignment.
 struct Alignment {
     /// Per state and block.
     frames: Vec<Vec<RegressionStats>>,

@@ -1,4 +1,4 @@
-//! What the steps of every context look like.
+//! Moments of the steps of every context.
 
 use super::tied::Tied;
 use super::{CONTEXTS, context};
@@ -9,7 +9,7 @@ use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::duration::DurationDist;
 use footfall_prob::gaussian::GaussianStats;
 
-/// What every context looks like.
+/// Moments of every context.
 pub(super) struct Moments {
     /// Per state and context, the observations.
     pub(super) outputs: Vec<Vec<GaussianStats>>,
@@ -70,7 +70,7 @@ impl Moments {
     }
 }
 
-/// How fast the walk is between its ends, m/s.
+/// Speed of the walk between its ends, m/s.
 fn steady_speed(sequence: &Sequence) -> f64 {
     let mean = |steps: &mut dyn Iterator<Item = &LabelledStep>| {
         let (sum, count) = steps.fold((0.0, 0.0), |(s, n), step| (s + step.speed_mps, n + 1.0));

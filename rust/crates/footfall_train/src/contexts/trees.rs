@@ -16,7 +16,7 @@ const PENALTY: f64 = 0.5;
 /// Least variance of a duration relative to its mean, as the trees see it: whole frames know no less.
 const DURATION_FLOOR: f64 = DURATION_VARIANCE_FLOOR;
 
-/// What can be asked of a context. Nothing is asked that would tie beginnings to ends: one says nothing of the other.
+/// Questions that can be asked of a context. Nothing is asked that would tie beginnings to ends: one says nothing of the other.
 fn questions() -> Vec<Question> {
     use StepPosition::{First, Last, LastButOne, Second};
 

@@ -7,7 +7,7 @@ use crate::train::TrainingClip;
 use footfall_core::Side;
 use footfall_prob::subspace::initial_state;
 
-/// How far a model is off in every frame, as a root mean square over the component weights divided by their spread.
+/// Error of a model in every frame, as a root mean square over the component weights divided by their spread.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorCurve {
     /// Against the prediction from all frames before (equation 11).

@@ -86,7 +86,7 @@ impl PoseSpace {
     }
 }
 
-/// How far the joints that a joint moves are from it, root mean square over all joints, for every feature: what a radian there
+/// Distance from a joint of those that it moves, root mean square over all joints, for every feature: what a radian there
 /// moves, metres. A leg's joints move the foot half of the time, and all the rest of the body while the foot stands.
 fn reach(skeleton: &Skeleton) -> Vec<f64> {
     let mut rest = ModelPose::default();

@@ -24,12 +24,12 @@ impl Confusion {
         }
     }
 
-    /// How many judgements of a class there are.
+    /// Number of judgements of a class.
     pub fn judged(&self, actual: usize) -> usize {
         self.counts[actual].iter().sum()
     }
 
-    /// How many judgements there are.
+    /// Number of judgements.
     pub fn total(&self) -> usize {
         self.counts.iter().flatten().sum()
     }

@@ -14,7 +14,7 @@ pub enum EvaluateError {
         "{samples} samples of {classes} classes are too few to estimate a spread; add recordings"
     )]
     TooFewSamples {
-        /// How many there are.
+        /// Number found.
         samples: usize,
         /// Of how many classes.
         classes: usize,
@@ -40,7 +40,7 @@ pub enum EvaluateError {
         "the real recordings show {found} style with strides, and recognition needs two; widen --where"
     )]
     OneStyle {
-        /// How many styles there are: none or one.
+        /// Number of styles: none or one.
         found: usize,
     },
     /// A style that cannot be split.
@@ -48,7 +48,7 @@ pub enum EvaluateError {
     Split {
         /// The style.
         style: String,
-        /// What is missing, and what to do.
+        /// Lack, and the next step to take.
         reason: String,
     },
     /// A synthesised style that no real recording shows.
@@ -71,9 +71,9 @@ pub enum EvaluateError {
     TooFewWalkers {
         /// `captured` or `generated`.
         kind: &'static str,
-        /// How many there are.
+        /// Number found.
         found: usize,
-        /// How many are needed.
+        /// Number needed.
         least: usize,
     },
 }

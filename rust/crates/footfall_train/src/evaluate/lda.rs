@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 /// Least share of the target under [`Shrinkage::Automatic`]: keeps the covariance invertible whatever the data.
 const LEAST_SHRINKAGE: f64 = 0.01;
 
-/// How far the correlations are shrunk.
+/// Shrinkage of the correlations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shrinkage {
     /// By the formula of Schäfer and Strimmer, from the data alone, and at least by 0.01.

@@ -2,7 +2,7 @@
 
 mod slip;
 
-pub use slip::contact_slips;
+pub use slip::{Slips, contact_slips, slips};
 
 use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
 use glam::Vec3;

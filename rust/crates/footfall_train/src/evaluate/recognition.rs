@@ -11,7 +11,7 @@ pub(super) struct Fold<'a> {
     unseen: Vec<Labelled<'a>>,
 }
 
-/// What the classifiers said.
+/// Answers of the classifiers.
 pub(super) struct Judged {
     pub(super) real: Confusion,
     pub(super) synthesised: Option<Confusion>,

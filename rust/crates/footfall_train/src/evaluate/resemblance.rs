@@ -1,4 +1,4 @@
-//! How alike two sets of strides are.
+//! Resemblance of two sets of strides.
 
 use super::stride_features::Stride;
 use footfall_core::Joint;
@@ -80,7 +80,7 @@ pub fn variance_ratios(judged: &[&Stride], reference: &[&Stride]) -> JointRatios
     JointRatios::of(&mean(judged), &mean(reference), LEAST_RATIO_SPREAD.powi(2))
 }
 
-/// How much the steps of a walk differ from each other: for each joint the root mean square, over the phases of the step, of
+/// Variability of the steps of a walk: for each joint the root mean square, over the phases of the step, of
 /// the standard deviation of its angles between steps, radians.
 ///
 /// `walks` holds the strides of one walker's recording each; steps are compared with steps of the same foot in the same

@@ -32,7 +32,7 @@ const TURNING_SECS: f64 = 0.6;
 /// Somebody who stands longer in between stops and starts, seconds.
 const LONGEST_PAUSE_SECS: f64 = 0.25;
 
-/// What hips do.
+/// Motion of the hips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ManoeuvreKind {
     /// From standing to a speed.
@@ -46,11 +46,11 @@ pub enum ManoeuvreKind {
 /// A change of the way that hips take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Manoeuvre {
-    /// What it is.
+    /// Kind of change.
     pub kind: ManoeuvreKind,
     /// When it begins, seconds from the first frame.
     pub begin_secs: f64,
-    /// How long it lasts, seconds.
+    /// Duration, seconds.
     pub secs: f64,
     /// The speed that is reached or left, m/s; in a reversal the lower of both.
     pub speed_mps: f32,

@@ -31,7 +31,7 @@ pub const PARTS: [&str; PART_COUNT] = [
 ];
 const PART_COUNT: usize = 7;
 
-/// How one person stands.
+/// Standing of one person.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandingMeasures {
     /// Root mean square of the way over the ground from its mean within [`WINDOW_SECS`], centimetres: hips, head.
@@ -113,7 +113,7 @@ fn sway(way: &[[f64; 2]]) -> [f64; 2] {
     ]
 }
 
-/// What one part does in a window, number by number.
+/// Motion of one part in a window, number by number.
 fn signals(stretch: &Stretch, part: usize, window: Range<usize>, leg_m: f64) -> Vec<Vec<f64>> {
     let hips = |axis: usize| {
         let rows = stretch.hips[window.clone()].iter();

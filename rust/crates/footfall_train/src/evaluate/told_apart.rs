@@ -1,39 +1,64 @@
-//! Generated walks beside captured ones: can a classifier tell them apart, and by what?
+//! Generated walks or runs beside captured ones: can a classifier tell them apart, and by what?
 //!
 //! Strides of both are reduced to the swing of fourteen parts of the body, low-passed at 6 Hz so that the noise of markers does not
 //! count. Two classifiers learn which strides were captured, from some people and some seeds, and judge others
 //! ([`judge`](folds::judge)). People differ from each other too, so the yardstick is what people score in the generator's place
 //! ([`people_apart`](folds::people_apart)), not 0.5. Beside the verdict stand measures that say where a difference lies: [`detail`] of 3 to
-//! 6 Hz by part, [`root`] (surge, limp and bob of the hips) and [`posture`] (knees, pitch of the feet).
+//! 6 Hz by part, [`root`] (surge, limp and bob of the hips), [`posture`] (knees, pitch of the feet), [`bouts`] (speed, cadence, flight) and
+//! [`gait`] (these and slip over all walkers).
 //!
-//! Modules in the order in which data flows: [`swings`], [`features`], [`classifiers`], [`folds`]; [`detail`], [`root`], [`posture`].
+//! Modules in the order in which data flows: [`bouts`], [`gait`], [`swings`], [`features`], [`classifiers`], [`folds`]; [`detail`], [`root`], [`posture`].
 
+pub mod bouts;
 pub mod classifiers;
 pub mod detail;
 pub mod features;
 pub mod folds;
+pub mod gait;
 pub mod posture;
 pub mod root;
 pub mod swings;
 
 use crate::evaluate::EvaluateError;
+use bouts::{Bout, Gait};
+use core::ops::RangeInclusive;
 use detail::PartDetail;
 use features::View;
 use folds::{Sample, Verdict};
 use footfall_core::Clip;
 use footfall_motion::steps::Walk;
+use gait::GaitMeasures;
 use posture::Posture;
 use rayon::prelude::*;
 use root::RootHarmonics;
 use swings::{StrideSwings, stride_swings};
 
-/// Walking of one captured person, or of one seed of a generator.
+/// Walking and running of one captured person, or of one seed of a generator.
 #[derive(Clone, Debug)]
 pub struct Walker {
     /// Name of the person, or number of the seed.
     pub name: String,
-    /// Recordings on the canonical body with their walks.
+    /// Recordings on the canonical body with the walks that are judged.
     pub clips: Vec<(Clip, Vec<Walk>)>,
+    /// Speed that was asked of a generator, m/s.
+    pub asked_mps: Option<f64>,
+}
+
+impl Walker {
+    /// The walker with only the parts in a gait and, where a range is given, at speeds within it.
+    #[must_use]
+    pub fn in_gait(mut self, gait: Gait, speeds: Option<&RangeInclusive<f64>>) -> Self {
+        for (clip, walks) in &mut self.clips {
+            *walks = gait.parts(clip, walks);
+            walks.retain(|walk| {
+                let is_in = |range: &RangeInclusive<f64>| {
+                    Bout::of(clip, walk).is_some_and(|bout| range.contains(&bout.speed_mps))
+                };
+                speeds.is_none_or(is_in)
+            });
+        }
+        self
+    }
 }
 
 /// Measures of captured and generated walks side by side.
@@ -51,16 +76,23 @@ pub struct Comparison {
     pub root: [RootHarmonics; 2],
     /// Knees and feet: captured, generated.
     pub posture: [Posture; 2],
+    /// Speed, cadence, flight and slip: captured, generated.
+    pub gait: [GaitMeasures; 2],
 }
 
-/// Compares generated walks with captured ones.
+/// Compares generated walks with captured ones, all of one gait.
 ///
 /// # Errors
 /// [`EvaluateError::TooFewWalkers`] with fewer than three people or seeds that show a stride, and errors of the classifiers.
-pub fn compare(captured: &[Walker], generated: &[Walker]) -> Result<Comparison, EvaluateError> {
+pub fn compare(
+    captured: &[Walker],
+    generated: &[Walker],
+    gait: Gait,
+) -> Result<Comparison, EvaluateError> {
+    let measures = [captured, generated].map(GaitMeasures::of);
     let sides = [
-        ("captured", strides_of(captured)),
-        ("generated", strides_of(generated)),
+        ("captured", strides_of(captured, gait)),
+        ("generated", strides_of(generated, gait)),
     ];
     for (kind, walkers) in &sides {
         if walkers.len() < LEAST_WALKERS {
@@ -90,6 +122,7 @@ pub fn compare(captured: &[Walker], generated: &[Walker]) -> Result<Comparison, 
         detail: detail::by_part(both),
         root: both.map(|walkers| RootHarmonics::of(walkers.iter().flatten())),
         posture: both.map(|walkers| Posture::of(walkers.iter().flatten())),
+        gait: measures,
     })
 }
 
@@ -97,11 +130,11 @@ pub fn compare(captured: &[Walker], generated: &[Walker]) -> Result<Comparison, 
 const LEAST_WALKERS: usize = 3;
 
 /// Strides of each walker who shows any.
-fn strides_of(walkers: &[Walker]) -> Vec<Vec<StrideSwings>> {
+fn strides_of(walkers: &[Walker], gait: Gait) -> Vec<Vec<StrideSwings>> {
     let of = |walker: &Walker| -> Vec<StrideSwings> {
         let clips = walker.clips.iter();
         clips
-            .flat_map(|(clip, walks)| stride_swings(clip, walks))
+            .flat_map(|(clip, walks)| stride_swings(clip, walks, gait))
             .collect()
     };
     let all: Vec<Vec<StrideSwings>> = walkers.par_iter().map(of).collect();

@@ -105,7 +105,7 @@ fn hold_legs(direction: &mut [f64]) {
     }
 }
 
-/// How much a feature counts in the choice of directions.
+/// Weight of a feature in the choice of directions.
 fn weight(feature: usize) -> f64 {
     if feature < feature_offset(Joint::LeftShoulder) {
         TRUNK_WEIGHT
@@ -205,7 +205,7 @@ fn frequency(index: usize) -> f64 {
     core::f64::consts::PI * (index as f64 + 0.5) / FREQUENCIES as f64
 }
 
-/// How the logarithm of a walker's noise goes with its weights.
+/// Regression of the logarithm of a walker's noise on its weights.
 fn walker_strength(
     runs: &[Run],
     counts: &[f64],

@@ -34,7 +34,7 @@ pub struct ImuClip<'a> {
 /// A run of frames of one phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChainSegment {
-    /// What it is.
+    /// Kind of phase.
     pub kind: PhaseKind,
     /// First frame in the chain.
     pub first: usize,
@@ -60,7 +60,7 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// How many frames there are.
+    /// Number of frames.
     pub fn frames(&self) -> usize {
         self.body.len() / BODY_COUNT
     }

@@ -1,4 +1,4 @@
-//! How close reconstructed bodies come to the recorded ones (Mousas 2017, section 7.2).
+//! Errors of reconstructed bodies against the recorded ones (Mousas 2017, section 7.2).
 //!
 //! Every recording is reconstructed by a model that has not seen it: trained on all other recordings (the same subject's stay in), or on those
 //! of other subjects. The sensors are virtual, 100 samples a second (or a phone's: [`Device`]), with the noise and biases of a phone's. The error is the mean distance between the
@@ -93,7 +93,7 @@ impl Device {
     }
 }
 
-/// What a body's error is, centimetres.
+/// Error of a body, centimetres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointError {
     /// Mean distance of the joints, over all frames.
@@ -107,7 +107,7 @@ pub struct JointError {
 /// Frames by behaviour (row) and by what is recognised (column), in the order of [`Behaviour::ALL`].
 pub type Confusion = [[usize; Behaviour::ALL.len()]; Behaviour::ALL.len()];
 
-/// What came of one recording.
+/// Outcome of one recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImuTrial {
     /// Which of the clips it is.
@@ -298,7 +298,7 @@ fn mean_knee_deg(pose: &Pose) -> f32 {
     Side::BOTH.map(bend).iter().sum::<f32>() / 2.0
 }
 
-/// How long after each change of behaviour it is recognised.
+/// Delay with which each change of behaviour is recognised.
 fn delays(behaviours: &[Behaviour], found: &[Behaviour], rate_hz: f64) -> Vec<f64> {
     let frames_of = |secs: f64| (secs * rate_hz).round() as usize;
     (1..behaviours.len())

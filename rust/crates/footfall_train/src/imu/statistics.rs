@@ -1,4 +1,4 @@
-//! What the segments of a phase share: how sensors differ between like frames, what follows what, and how the body goes with the sensor.
+//! Statistics that the segments of a phase share: how sensors differ between like frames, what follows what, and how the body goes with the sensor.
 
 use super::align::warp;
 use super::chain::{Chain, ChainSegment};

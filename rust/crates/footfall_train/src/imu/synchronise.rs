@@ -35,7 +35,7 @@ pub struct Synchronised {
     pub recording: ImuRecording,
     /// The clip's time is the sensor's less this, seconds.
     pub offset_secs: f64,
-    /// How well both angular rates agree, at most 1.
+    /// Agreement of both angular rates, at most 1.
     pub correlation: f64,
     /// `site_from_sensor` rotation.
     pub mounting: Quat,

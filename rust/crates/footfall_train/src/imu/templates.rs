@@ -18,7 +18,7 @@ const SAMPLES: usize = 4;
 /// What a squared deviation of a sensor counts against a squared radian of a joint: enough to keep cycles that feel different to the sensor.
 const SENSOR_SHARE: f32 = 0.05;
 
-/// How far a frame is from a phase of which no segment is kept: farther than any two segments are.
+/// Distance of a frame from a phase of which no segment is kept: farther than any two segments are.
 const MISSED: f32 = 1e2;
 
 /// What counts, besides how far frames are from what is kept of other recordings, how far they are from what is kept of all. Were it only the
@@ -78,7 +78,7 @@ fn cycles(chain: usize, segments: &[ChainSegment]) -> Vec<Cycle> {
 /// A segment as it is compared with others.
 struct Template {
     cycle: usize,
-    /// What all of its frames together count.
+    /// Weight of all of its frames together.
     weight: f64,
     kind: PhaseKind,
     /// Body and sensor, scaled, at [`SAMPLES`] frames.
@@ -238,7 +238,7 @@ impl<'a> Shares<'a> {
         Self(frames)
     }
 
-    /// What a segment counts: all segments of one person and behaviour together, the square root of their frames.
+    /// Weight of a segment: all segments of one person and behaviour together, the square root of their frames.
     fn weight(&self, chain: &'a Chain, segment: &ChainSegment) -> f64 {
         let all = self.0[&(chain.subject.as_str(), segment.kind.behaviour)];
         (segment.end - segment.first) as f64 / (all as f64).sqrt()

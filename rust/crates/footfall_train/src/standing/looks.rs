@@ -125,7 +125,7 @@ fn path(stretch: &Stretch) -> Vec<[f64; 2]> {
     path
 }
 
-/// What the body does, a radian of gaze, by a regression within stretches.
+/// Motion of the body, a radian of gaze, by a regression within stretches.
 fn regress(
     people: &[Person],
     paths: &[Vec<Vec<[f64; 2]>>],

@@ -39,7 +39,7 @@ const ROUNDS: usize = 20;
 const FREQUENCIES: usize = 6000;
 const MOST_HZ: f64 = 12.0;
 
-/// What was found.
+/// Sway of a standing body, as found.
 pub(super) struct Swayed {
     /// Weight on one leg for long.
     pub(super) stance: SwayOctave,
@@ -90,7 +90,7 @@ pub(super) fn estimate(people: &[Vec<Offsets>], weights: &[f64]) -> Swayed {
     }
 }
 
-/// How much a number counts.
+/// Weight of a number.
 fn weight(number: usize) -> f64 {
     if number >= FEATURE_COUNT {
         HIPS_WEIGHT

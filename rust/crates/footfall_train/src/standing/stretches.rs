@@ -40,7 +40,7 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// How many frames it has.
+    /// Number of its frames.
     pub fn frames(&self) -> usize {
         self.features.len()
     }

@@ -32,9 +32,9 @@ pub(super) struct ModelFacts {
     ends: Vec<String>,
     /// Standing of its people; absent where it stands still.
     standing: Option<StandingFacts>,
-    /// How its people run; nothing where it only walks.
+    /// Running of its people; nothing where it only walks.
     running: Option<RunningFacts>,
-    /// How its people jump off both feet and crouch; nothing where they do not.
+    /// Jumps of its people off both feet and crouching; nothing where they do not.
     jumping: Option<JumpFacts>,
     crouching: Option<CrouchFacts>,
 }
@@ -50,7 +50,7 @@ struct StandingFacts {
     strength_factor: f64,
 }
 
-/// How a model's people run.
+/// Running of a model's people.
 #[derive(Serialize)]
 pub(in crate::commands) struct RunningFacts {
     subjects: usize,

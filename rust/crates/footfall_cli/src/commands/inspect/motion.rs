@@ -6,6 +6,7 @@ use crate::motion_input::{MotionInput, Walking};
 use anyhow::Result;
 use footfall_core::{Joint, Side};
 use footfall_motion::game_clip;
+use footfall_motion::recording::Recording;
 use footfall_motion::retarget::RetargetOptions;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -53,7 +54,9 @@ pub(super) fn inspect(path: &Path, options: &RetargetOptions) -> Result<MotionFa
     let report = &motion.report;
     let mut unrolled = motion.clone();
     game_clip::unroll(&mut unrolled);
-    let walking = Walking::of(&unrolled);
+    let recording = Recording::detected(unrolled);
+    let walking = Walking::of(&recording);
+    let unrolled = &recording.retargeted;
     let rounds = report.cycle_frames.map_or(1, |_| unrolled.report.repeats);
     let clip = &motion.clip;
     let mut heights: Vec<f32> = clip.poses[motion.first_frame..]
@@ -63,7 +66,7 @@ pub(super) fn inspect(path: &Path, options: &RetargetOptions) -> Result<MotionFa
     heights.sort_by(f32::total_cmp);
     let frames = (unrolled.clip.poses.len() - unrolled.first_frame).max(1);
     let [left, right] = Side::BOTH.map(|side| {
-        let stances = &walking.contacts.foot(side).stances;
+        let stances = &recording.contacts.foot(side).stances;
         let standing: usize = stances.iter().map(|stance| stance.frames()).sum();
         (
             stances.len().div_ceil(rounds),
@@ -86,8 +89,8 @@ pub(super) fn inspect(path: &Path, options: &RetargetOptions) -> Result<MotionFa
         metres_per_unit: motion.report.scale,
         hip_height_m: heights.get(heights.len() / 2).copied().unwrap_or_default(),
         mean_speed_mps: walking.speed_mps,
-        walks: walking.walks.len(),
-        steps: walking.step_count().div_ceil(rounds),
+        walks: recording.walks.len(),
+        steps: recording.step_count().div_ceil(rounds),
         steps_per_minute: walking.cadence_per_min,
         left_stances: left.0,
         right_stances: right.0,

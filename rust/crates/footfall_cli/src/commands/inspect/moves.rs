@@ -1,9 +1,9 @@
-//! How a model's people jump and crouch.
+//! Jumps and crouching of a model's people.
 
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use serde::Serialize;
 
-/// How a model's people jump off both feet, in metres on its own body.
+/// Jumps of a model's people off both feet, in metres on its own body.
 #[derive(Serialize)]
 pub(in crate::commands) struct JumpFacts {
     /// Rise of the hips above standing: least, mean and most.
@@ -15,10 +15,10 @@ pub(in crate::commands) struct JumpFacts {
     landing_secs: f64,
 }
 
-/// How a model's people crouch.
+/// Crouching of a model's people.
 #[derive(Serialize)]
 pub(in crate::commands) struct CrouchFacts {
-    /// How much lower the hips are, metres on the model's own body.
+    /// Lowering of the hips, metres on the model's own body.
     depth_m: f64,
     /// Fastest that they go, m/s.
     fastest_mps: f64,

@@ -1,4 +1,4 @@
-//! How fast standing feet slip, by a contact rule of its own: the generator's is not to judge itself.
+//! Slip of standing and landing feet, by a contact rule of its own: the generator's is not to judge itself.
 
 use super::joint_positions;
 use footfall_core::{Clip, ModelPose, Side};
@@ -17,16 +17,30 @@ const SOLE_SAMPLES: usize = 8;
 /// The sole from heel to ball, then the ball and the tip of the toes, which turn with the toes.
 const POINTS: usize = SOLE_SAMPLES + 3;
 
-/// Slip of the feet in every frame in which they stand, m/s, in no particular order.
+/// Slip of the feet in single frames, m/s, in no particular order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Slips {
+    /// While feet stand: 50 ms at both ends of a contact are left out.
+    pub standing: Vec<f64>,
+    /// While they land: the first 50 ms of a contact but its first frame, part of whose motion was before it.
+    pub landing: Vec<f64>,
+}
+
+/// Slip of the feet in every frame in which they stand, m/s, in no particular order: [`Slips::standing`].
+pub fn contact_slips(clip: &Clip) -> Vec<f64> {
+    slips(clip).standing
+}
+
+/// Slip of the feet in contact.
 ///
 /// A foot is in contact from when its sole's clearance is under 2 cm and its slip under 0.35 m/s until they reach 3.5 cm or
 /// 0.6 m/s, if that lasts 0.1 s. Slip is the least horizontal speed among the points that could be the pivot: points fixed to
-/// the foot at floor level, the ball and the tip of the toes. 50 ms at both ends of a contact are left out.
-pub fn contact_slips(clip: &Clip) -> Vec<f64> {
+/// the foot at floor level, the ball and the tip of the toes.
+pub fn slips(clip: &Clip) -> Slips {
     let frames = joint_positions(clip);
     let rate = clip.frame_rate_hz;
     let margin = (END_MARGIN_SECS * rate).ceil() as usize;
-    let mut slips = Vec::new();
+    let mut slips = Slips::default();
     for side in Side::BOTH {
         let feet: Vec<[Vec3; POINTS]> = frames
             .iter()
@@ -35,9 +49,12 @@ pub fn contact_slips(clip: &Clip) -> Vec<f64> {
         let slip: Vec<f32> = (0..feet.len())
             .map(|frame| slip_at(&feet, frame, rate))
             .collect();
+        let values = |frames: core::ops::Range<usize>| frames.map(|frame| f64::from(slip[frame]));
         for (first, last) in contacts(&feet, &slip, rate) {
-            let inner = first + margin..(last + 1).saturating_sub(margin);
-            slips.extend(inner.map(|frame| f64::from(slip[frame])));
+            let standing = first + margin..(last + 1).saturating_sub(margin);
+            slips.standing.extend(values(standing));
+            let landing = first + 1..(first + margin).min(last + 1);
+            slips.landing.extend(values(landing));
         }
     }
     slips
@@ -135,6 +152,25 @@ mod tests {
             slips.iter().all(|slip| (slip - 0.2).abs() < 1e-3),
             "{slips:?}"
         );
+    }
+
+    #[test]
+    fn a_slide_that_ends_shows_in_the_landing_alone() {
+        // Down after half a second, sliding on for 50 ms.
+        let landing = clip((0..60).map(|frame| {
+            let mut pose = standing();
+            pose.root_position.y += if frame < 30 { 0.1 } else { 0.0 };
+            pose.root_position.z += 0.3 * frame.min(33) as f32 / 60.0;
+            pose
+        }));
+        let slips = slips(&landing);
+        assert!(
+            slips.landing.iter().all(|slip| (slip - 0.3).abs() < 1e-3),
+            "{slips:?}"
+        );
+        assert_eq!(slips.landing.len(), 2 * 2);
+        let slow = slips.standing.iter().filter(|slip| **slip < 1e-3).count();
+        assert!(slow >= slips.standing.len() - 2, "{slips:?}");
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 /// Every so manieth seed is judged in a fold, the others are learned from.
 const SEED_FOLDS: usize = 8;
-/// How often people are divided into two halves.
+/// Number of divisions of people into two halves.
 const DIVISIONS: u64 = 8;
 
 /// A stride of somebody.
@@ -40,7 +40,7 @@ pub struct Verdict {
     pub accuracies: [Accuracy; 2],
 }
 
-/// How well captured strides are told from generated ones, each of people and seeds that the classifier has not seen. A fold leaves out
+/// Accuracy with which captured strides are told from generated ones, each of people and seeds that the classifier has not seen. A fold leaves out
 /// one captured person and every eighth seed; balanced accuracy is the mean over folds of the share of captured strides that
 /// are taken for captured and of generated strides that are not, halved.
 ///
@@ -57,7 +57,7 @@ pub fn judge(captured: &[Sample], generated: &[Sample]) -> Result<Verdict, Evalu
     })
 }
 
-/// What people score in the generator's place: half of them are called generated, their folds by stride, the others' by person.
+/// Scores of people in the generator's place: half of them are called generated, their folds by stride, the others' by person.
 /// `None` with fewer than four people.
 ///
 /// # Errors

@@ -1,5 +1,6 @@
 //! Swing of the body's parts over a stride, from positions that are low-passed.
 
+use super::bouts::Gait;
 use crate::dataset::smooth_headings;
 use footfall_core::rotation::{from_heading, log_map, shortest_arc};
 use footfall_core::{Clip, Joint, ModelPose, Side, StepPosition, forward_kinematics};
@@ -18,7 +19,7 @@ const ROOT_CUT_OFF_HZ: f64 = 8.0;
 /// Samples of a time-normalised stride.
 pub const PHASES: usize = 40;
 
-/// How many parts are judged.
+/// Number of parts that are judged.
 pub const PART_COUNT: usize = 14;
 
 /// Names of the parts.
@@ -38,6 +39,14 @@ pub const PARTS: [&str; PART_COUNT] = [
     "right shank",
     "right foot",
 ];
+
+/// Reference of a runner's feet, forwards and down. In a run's swing toes point backwards, nearly opposite to where they point in standing,
+/// and the rotation from there has no definite axis.
+const RUNNING_FOOT: Vec3 = Vec3::new(
+    0.0,
+    -core::f32::consts::FRAC_1_SQRT_2,
+    core::f32::consts::FRAC_1_SQRT_2,
+);
 
 /// The line that stands for each part, from one joint to another, and where it points on somebody who stands with hanging arms.
 /// The head's line ends at its top.
@@ -73,7 +82,8 @@ pub struct StrideSwings {
     pub side: Side,
     /// Its duration, seconds.
     pub secs: f64,
-    /// Swing of each part at [`RATE_HZ`]: exponential map from the part's direction when standing, radians, heading removed.
+    /// Swing of each part at [`RATE_HZ`]: exponential map from the part's direction when standing, radians, heading removed. Of a runner's feet it is from
+    /// forwards and down.
     pub angles: Vec<[Vec3; PART_COUNT]>,
     /// The same between [`DETAIL_FROM_HZ`] and [`CUT_OFF_HZ`] at [`PHASES`] equally spaced moments.
     pub detail: Vec<[Vec3; PART_COUNT]>,
@@ -86,11 +96,11 @@ pub struct StrideSwings {
 }
 
 /// Strides of a clip's walks, without those out of and into standing.
-pub fn stride_swings(clip: &Clip, walks: &[Walk]) -> Vec<StrideSwings> {
+pub fn stride_swings(clip: &Clip, walks: &[Walk], gait: Gait) -> Vec<StrideSwings> {
     if clip.poses.is_empty() {
         return Vec::new();
     }
-    let motion = Motion::of(clip);
+    let motion = Motion::of(clip, gait);
     let pairs = walks.iter().flat_map(|walk| walk.steps.windows(2));
     pairs
         .filter(|pair| {
@@ -115,7 +125,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn of(clip: &Clip) -> Self {
+    fn of(clip: &Clip, gait: Gait) -> Self {
         let rate = clip.frame_rate_hz;
         let headings = smooth_headings(clip);
         let frames: Vec<ModelPose> = clip
@@ -130,6 +140,10 @@ impl Motion {
         let mut angles = vec![[Vec3::ZERO; PART_COUNT]; frames.len()];
         let mut detail = angles.clone();
         for (part, (from, to, standing)) in LINES.into_iter().enumerate() {
+            let reference = match (gait, from) {
+                (Gait::Run, Joint::LeftFoot | Joint::RightFoot) => RUNNING_FOOT,
+                _ => standing,
+            };
             let line: Vec<Vec3> = frames
                 .iter()
                 .zip(&headings)
@@ -145,7 +159,7 @@ impl Motion {
                 .collect();
             let swing: Vec<Vec3> = low_pass(&line, rate, CUT_OFF_HZ)
                 .into_iter()
-                .map(|direction| log_map(shortest_arc(standing, direction)))
+                .map(|direction| log_map(shortest_arc(reference, direction)))
                 .collect();
             let slow = low_pass(&swing, rate, DETAIL_FROM_HZ);
             for (frame, (swing, slow)) in swing.iter().zip(&slow).enumerate() {

@@ -1,6 +1,8 @@
 //! The comparison as JSON and as a table.
 
+use super::pace::Pace;
 use crate::output;
+use footfall_train::evaluate::told_apart::bouts::Gait;
 use footfall_train::evaluate::told_apart::detail::PartDetail;
 use footfall_train::evaluate::told_apart::folds::{Accuracy, Verdict};
 use footfall_train::evaluate::told_apart::posture::Posture;
@@ -12,11 +14,14 @@ use std::fmt::Write as _;
 /// Generated walks beside captured ones.
 #[derive(Serialize)]
 pub(crate) struct Report {
+    gait: &'static str,
     people: usize,
     captured_strides: usize,
     seeds: usize,
     generated_strides: usize,
     told_apart: Vec<ToldApart>,
+    /// Speed, cadence, flight and slip.
+    pace: Pace,
     detail: Vec<Detail>,
     captured: Measures,
     generated: Measures,
@@ -82,7 +87,7 @@ impl Measures {
 }
 
 impl Report {
-    pub(super) fn new(comparison: &Comparison, skipped: Vec<String>) -> Self {
+    pub(super) fn new(gait: Gait, comparison: &Comparison, skipped: Vec<String>) -> Self {
         let told_apart = |(view, verdict, people): &(View, Verdict, Option<Verdict>)| {
             let of_people = |classifier: usize| {
                 let people = people.as_ref()?;
@@ -111,11 +116,13 @@ impl Report {
         let [captured, generated] =
             [0, 1].map(|side| Measures::new(&comparison.root[side], &comparison.posture[side]));
         Self {
+            gait: gait.name(),
             people: comparison.walkers[0],
             captured_strides: comparison.strides[0],
             seeds: comparison.walkers[1],
             generated_strides: comparison.strides[1],
             told_apart: comparison.told_apart.iter().map(told_apart).collect(),
+            pace: Pace::new(&comparison.gait),
             detail: comparison.detail.iter().map(detail).collect(),
             captured,
             generated,
@@ -133,7 +140,8 @@ impl Report {
     /// Text for a terminal.
     pub(super) fn table(&self) -> String {
         let mut text = format!(
-            "{} strides of {} people, {} strides of {} seeds\n\nTold apart (balanced accuracy on people and seeds not learned from; chance 0.50)\n{:<12} {:>9} {:>6}   {:>28}\n",
+            "{}: {} strides of {} people, {} strides of {} seeds\n\nTold apart (balanced accuracy on people and seeds not learned from; chance 0.50)\n{:<12} {:>9} {:>6}   {:>28}\n",
+            self.gait,
             self.captured_strides,
             self.people,
             self.generated_strides,
@@ -161,6 +169,7 @@ impl Report {
                 people(row.people_trees)
             );
         }
+        text.push_str(&self.pace.table());
         text.push_str(
             "\nDetail of 3 to 6 Hz (degrees, share that repeats)     captured      generated\n",
         );

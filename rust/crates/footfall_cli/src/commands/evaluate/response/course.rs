@@ -17,7 +17,7 @@ const AFTER_SECS: f64 = 5.0;
 /// Walkers are asked at moments of their stride that differ by this, seconds.
 const APART_SECS: f64 = 0.083;
 
-/// How a character is steered that is to face elsewhere, as `GaitCharacter3D` does: it turns what is left in so many seconds, no faster than this, rad/s,
+/// Steering of a character that is to face elsewhere, as `GaitCharacter3D` does: it turns what is left in so many seconds, no faster than this, rad/s,
 /// and slows down for what lies between these angles, radians, to this share of its speed.
 const TURN_SECS: f32 = 0.35;
 const MOST_TURN_RADPS: f32 = 3.5;
