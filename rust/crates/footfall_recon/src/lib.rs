@@ -1,6 +1,6 @@
 //! Runtime: what one or two inertial sensors measure becomes a body (Mousas 2017).
 //!
-//! Modules in the order in which data flows: [`prepared`] lays a model out for the loop that reads it, [`tracker`] tells how probable each of
+//! Modules in the order in which data flows: [`prepared`] lays a model out for the loop that reads it, `sensor` makes frames of samples, [`tracker`] tells how probable each of
 //! its frames is, [`body`] is what they say in the mean, [`blend`] keeps it continuous, [`ground`] moves it, in steps as long as the wearer's (`travel`), and keeps
 //! its feet in place.
 //! [`mounting`] finds how a sensor is worn; [`reconstructor`] is all of it for samples as they come, [`recording`] for a recording as a whole.
@@ -14,13 +14,14 @@ pub mod mounting;
 pub mod prepared;
 pub mod reconstructor;
 pub mod recording;
+mod sensor;
 mod shown_behaviour;
 pub mod tracker;
 mod travel;
 
 pub use body::BodyFrame;
 pub use mounting::{Mounting, MountingError, find_mounting};
-pub use prepared::Prepared;
+pub use prepared::{MOST_NUMBERS, Prepared};
 pub use reconstructor::{ReconConfig, Reconstructor, SensorState};
 pub use recording::{Reconstructed, reconstruct_recording};
 pub use tracker::{Measurement, Tracker, TrackerConfig};

@@ -1,11 +1,11 @@
 //! Frames of the sensors as the tracker takes them.
 
 use crate::body::BodyFrame;
+use crate::prepared::{MOST_NUMBERS, Prepared};
 use crate::tracker::Measurement;
 use footfall_core::rotation::heading;
 use footfall_imu::{FeatureFrame, SENSOR_FEATURES};
-use footfall_model::ImuModel;
-use footfall_model::imu_model::{MAX_SENSORS, MAX_WIDTH, SENSOR_COUNT, SENSOR_HEADING};
+use footfall_model::imu_model::{MAX_SENSORS, SENSOR_COUNT, SENSOR_HEADING};
 use glam::Vec3;
 
 const _: () = assert!(SENSOR_FEATURES == SENSOR_COUNT, "one layout of features");
@@ -16,20 +16,30 @@ const LEAST_UPRIGHT: f32 = 0.6;
 /// A vertical that is less certain tells no heading, radians.
 const TILT_KNOWN: f32 = 0.12;
 
+/// A sensor's frame, and whether the foot that wears it stands when the frame ends; `None` where nobody knows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SensorFrame {
+    pub(crate) frame: FeatureFrame,
+    pub(crate) stands: Option<bool>,
+}
+
+/// Frames of all sensors.
+pub(crate) type SensorFrames = [Option<SensorFrame>; MAX_SENSORS];
+
 /// What all sensors measured; `None` when none did. What is uncertain or missing counts less or nothing.
-pub(crate) fn measure(
-    model: &ImuModel,
-    frames: &[Option<FeatureFrame>; MAX_SENSORS],
-) -> Option<Measurement> {
+pub(crate) fn measure(prepared: &Prepared, frames: &SensorFrames) -> Option<Measurement> {
+    let model = &prepared.model;
     let mut measurement = Measurement {
-        values: [0.0; MAX_WIDTH],
-        weights: [0.0; MAX_WIDTH],
+        values: [0.0; MOST_NUMBERS],
+        weights: [0.0; MOST_NUMBERS],
     };
     let mut any = false;
     for (n, frame) in frames.iter().enumerate().take(model.sites.len()) {
-        let Some((frame, values)) = frame.and_then(|frame| Some((frame, frame.values?))) else {
+        let Some((heard, values)) = frame.and_then(|heard| Some((heard, heard.frame.values?)))
+        else {
             continue;
         };
+        let frame = heard.frame;
         any = true;
         let at = n * SENSOR_COUNT;
         measurement.values[at..at + SENSOR_COUNT].copy_from_slice(&values);
@@ -44,17 +54,21 @@ pub(crate) fn measure(
             let variance = deviation * deviation;
             measurement.weights[at + number] = variance / (variance + doubt * doubt);
         }
+        let contact = prepared.contacts.iter().position(|foot| foot.sensor == n);
+        if let (Some(contact), Some(stands)) = (contact, heard.stands) {
+            let at = model.sensor_width() + contact;
+            measurement.values[at] = f32::from(u8::from(stands));
+            measurement.weights[at] = 1.0;
+        }
     }
     any.then_some(measurement)
 }
 
 /// The heading of the body that the first upright sensor gives, from an unknown direction on.
-pub(crate) fn sensor_heading(
-    frames: &[Option<FeatureFrame>; MAX_SENSORS],
-    body: &BodyFrame,
-) -> Option<f32> {
+pub(crate) fn sensor_heading(frames: &SensorFrames, body: &BodyFrame) -> Option<f32> {
     frames.iter().enumerate().find_map(|(n, frame)| {
         let known = |frame: &FeatureFrame| frame.tilt_deviation < TILT_KNOWN;
+        let frame = frame.map(|heard| heard.frame);
         let frame = frame.filter(|frame| frame.values.is_some() && known(frame))?;
         let turn = frame.world_from_sensor;
         let upright = (turn * Vec3::Y).y > LEAST_UPRIGHT;
