@@ -21,7 +21,7 @@ mod travel;
 
 pub use body::BodyFrame;
 pub use mounting::{Mounting, MountingError, find_mounting};
-pub use prepared::{MOST_NUMBERS, Prepared};
+pub use prepared::Prepared;
 pub use reconstructor::{ReconConfig, Reconstructor, SensorState};
 pub use recording::{Reconstructed, reconstruct_recording};
 pub use tracker::{Measurement, Tracker, TrackerConfig};

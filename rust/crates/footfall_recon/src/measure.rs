@@ -1,11 +1,11 @@
 //! Frames of the sensors as the tracker takes them.
 
 use crate::body::BodyFrame;
-use crate::prepared::{MOST_NUMBERS, Prepared};
 use crate::tracker::Measurement;
 use footfall_core::rotation::heading;
 use footfall_imu::{FeatureFrame, SENSOR_FEATURES};
-use footfall_model::imu_model::{MAX_SENSORS, SENSOR_COUNT, SENSOR_HEADING};
+use footfall_model::ImuModel;
+use footfall_model::imu_model::{MAX_SENSORS, MAX_WIDTH, SENSOR_COUNT, SENSOR_HEADING};
 use glam::Vec3;
 
 const _: () = assert!(SENSOR_FEATURES == SENSOR_COUNT, "one layout of features");
@@ -27,19 +27,17 @@ pub(crate) struct SensorFrame {
 pub(crate) type SensorFrames = [Option<SensorFrame>; MAX_SENSORS];
 
 /// What all sensors measured; `None` when none did. What is uncertain or missing counts less or nothing.
-pub(crate) fn measure(prepared: &Prepared, frames: &SensorFrames) -> Option<Measurement> {
-    let model = &prepared.model;
+pub(crate) fn measure(model: &ImuModel, frames: &SensorFrames) -> Option<Measurement> {
     let mut measurement = Measurement {
-        values: [0.0; MOST_NUMBERS],
-        weights: [0.0; MOST_NUMBERS],
+        values: [0.0; MAX_WIDTH],
+        weights: [0.0; MAX_WIDTH],
     };
     let mut any = false;
     for (n, frame) in frames.iter().enumerate().take(model.sites.len()) {
-        let Some((heard, values)) = frame.and_then(|heard| Some((heard, heard.frame.values?)))
-        else {
+        let frame = frame.map(|heard| heard.frame);
+        let Some((frame, values)) = frame.and_then(|frame| Some((frame, frame.values?))) else {
             continue;
         };
-        let frame = heard.frame;
         any = true;
         let at = n * SENSOR_COUNT;
         measurement.values[at..at + SENSOR_COUNT].copy_from_slice(&values);
@@ -53,12 +51,6 @@ pub(crate) fn measure(prepared: &Prepared, frames: &SensorFrames) -> Option<Meas
             };
             let variance = deviation * deviation;
             measurement.weights[at + number] = variance / (variance + doubt * doubt);
-        }
-        let contact = prepared.contacts.iter().position(|foot| foot.sensor == n);
-        if let (Some(contact), Some(stands)) = (contact, heard.stands) {
-            let at = model.sensor_width() + contact;
-            measurement.values[at] = f32::from(u8::from(stands));
-            measurement.weights[at] = 1.0;
         }
     }
     any.then_some(measurement)

@@ -206,7 +206,7 @@ impl Finder<'_> {
             frame: turned,
             stands: None,
         });
-        measure(self.prepared, &frames)
+        measure(&self.prepared.model, &frames)
     }
 }
 

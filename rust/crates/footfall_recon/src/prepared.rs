@@ -4,15 +4,9 @@ use crate::kernels::BLOCK;
 use footfall_core::Side;
 use footfall_model::ImuModel;
 use footfall_model::ModelError;
-use footfall_model::imu_model::{BODY_COUNT, CONTACT, MAX_SENSORS, MAX_WIDTH};
+use footfall_model::imu_model::BODY_COUNT;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Most numbers that a frame is compared by: those of the sensors, and the contact of each foot that wears one.
-pub const MOST_NUMBERS: usize = MAX_WIDTH + MAX_SENSORS;
-
-/// Deviation of a contact that a sensor tells from that of the body, 0 to 1.
-const CONTACT_DEVIATION: f32 = 0.35;
 
 /// A foot that wears a sensor.
 #[derive(Clone, Copy, Debug)]
@@ -31,10 +25,8 @@ pub struct Prepared {
     pub(crate) padded: usize,
     /// Sensor numbers over their deviations: for each block of frames the first number of all of them, then the second.
     pub(crate) sensor: Vec<f32>,
-    /// Deviations of these numbers.
-    pub(crate) deviations: Vec<f32>,
-    /// Feet that wear sensors: their contacts are compared after the numbers of the sensors.
-    pub(crate) contacts: Vec<WornFoot>,
+    /// Feet that wear sensors.
+    pub(crate) worn_feet: Vec<WornFoot>,
     /// First frame of each segment, and the end of the last.
     pub(crate) starts: Vec<usize>,
     /// Which segment a frame belongs to.
@@ -56,7 +48,7 @@ impl Prepared {
         let width = model.sensor_width();
         let padded = frames.next_multiple_of(BLOCK);
         let sites = model.sites.iter().enumerate();
-        let contacts: Vec<WornFoot> = sites
+        let worn_feet: Vec<WornFoot> = sites
             .filter(|(_, site)| site.is_foot())
             .filter_map(|(sensor, site)| {
                 Some(WornFoot {
@@ -65,17 +57,10 @@ impl Prepared {
                 })
             })
             .collect();
-        let mut deviations = model.deviations.clone();
-        deviations.resize(width + contacts.len(), CONTACT_DEVIATION);
-        let numbers = deviations.len();
-        let mut sensor = vec![0.0; padded * numbers];
+        let mut sensor = vec![0.0; padded * width];
         for (frame, row) in model.sensor.chunks_exact(width).enumerate() {
-            let block = frame / BLOCK * BLOCK * numbers + frame % BLOCK;
-            let body = &model.body[frame * BODY_COUNT..];
-            let feet = contacts
-                .iter()
-                .map(|foot| &body[CONTACT + foot.side.index()]);
-            for (n, (value, deviation)) in row.iter().chain(feet).zip(&deviations).enumerate() {
+            let block = frame / BLOCK * BLOCK * width + frame % BLOCK;
+            for (n, (value, deviation)) in row.iter().zip(&model.deviations).enumerate() {
                 sensor[block + n * BLOCK] = value / deviation;
             }
         }
@@ -96,8 +81,7 @@ impl Prepared {
             frames,
             padded,
             sensor,
-            deviations,
-            contacts,
+            worn_feet,
             starts,
             segment_of,
             counts,

@@ -227,7 +227,7 @@ impl Reconstructor {
 
     /// One frame of the model.
     fn frame(&mut self, frames: &SensorFrames) {
-        let measured = measure(&self.prepared, frames);
+        let measured = measure(&self.prepared.model, frames);
         self.tracker.step(measured.as_ref());
         let (body, velocity) = self.tracker.body(measured.as_ref());
         self.blend.step(&body, &velocity);
@@ -280,7 +280,7 @@ impl Reconstructor {
     fn told_stands(&self) -> [Option<bool>; 2] {
         let mut stands = [None; 2];
         if self.silent_secs < TOLD_FOR_SECS {
-            for WornFoot { sensor, side } in &self.prepared.contacts {
+            for WornFoot { sensor, side } in &self.prepared.worn_feet {
                 stands[side.index()] = self.sensors[*sensor].stands();
             }
         }

@@ -57,7 +57,7 @@ pub fn reconstruct_recording(
     let mut shown = Shown {
         samples: strides.map_or(&[][..], |recording| &recording.samples),
         travel,
-        worn: &prepared.contacts,
+        worn: &prepared.worn_feet,
         live: live.then_some((ShownBehaviour::new(), config.behaviour_probability)),
         out: Reconstructed {
             clip: Clip {
@@ -75,7 +75,8 @@ pub fn reconstruct_recording(
         ground: Ground::new(skeleton, &prepared.model.skeleton),
         frame_secs: 1.0 / rate as f32,
     };
-    let measured: Vec<Option<Measurement>> = frames.iter().map(|f| measure(prepared, f)).collect();
+    let measured: Vec<Option<Measurement>> =
+        frames.iter().map(|f| measure(&prepared.model, f)).collect();
     let mut tracker = Tracker::new(prepared, config.tracker);
     if live {
         for (frame, measured) in frames.iter().zip(&measured) {
@@ -167,7 +168,7 @@ fn frames_of(prepared: &Prepared, recordings: &[ImuRecording]) -> Vec<SensorFram
 /// Tells of feet with sensors whether they stand, from their recordings as wholes. What only the meter of samples as they come has found is a
 /// swing as well: it knows steps on the spot.
 fn tell_swings(prepared: &Prepared, recordings: &[ImuRecording], frames: &mut [SensorFrames]) {
-    for WornFoot { sensor, .. } in &prepared.contacts {
+    for WornFoot { sensor, .. } in &prepared.worn_feet {
         let Some(recording) = recordings.get(*sensor) else {
             continue;
         };

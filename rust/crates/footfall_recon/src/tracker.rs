@@ -5,9 +5,9 @@ mod backward;
 mod interpolation;
 
 use crate::kernels::{add, cap, distances, weigh};
-use crate::prepared::{MOST_NUMBERS, Prepared};
+use crate::prepared::Prepared;
 use footfall_core::Behaviour;
-use footfall_model::imu_model::MAX_PHASES;
+use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
 use std::sync::Arc;
 
 /// Settings of the forward algorithm.
@@ -48,13 +48,13 @@ impl Default for TrackerConfig {
     }
 }
 
-/// What the sensors measured in a frame, in the model's order, and then whether each foot that wears one stands.
+/// What the sensors measured in a frame, in the model's order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
-    /// The numbers: [`ImuModel::sensor_width`](footfall_model::ImuModel::sensor_width) of the sensors, then 1 or 0 for each foot.
-    pub values: [f32; MOST_NUMBERS],
+    /// The numbers; the first [`ImuModel::sensor_width`](footfall_model::ImuModel::sensor_width) count.
+    pub values: [f32; MAX_WIDTH],
     /// What each number counts, 0 to 1.
-    pub weights: [f32; MOST_NUMBERS],
+    pub weights: [f32; MAX_WIDTH],
 }
 
 /// What is probable after a frame.
@@ -305,8 +305,8 @@ impl Tracker {
 
     /// How far the frames are from what was measured that are predicted with more than a limit. Returns the least distance.
     fn measure(&mut self, sensor: &Measurement, limit: f32) -> f32 {
-        let (mut measured, mut weights) = ([0.0; MOST_NUMBERS], [0.0; MOST_NUMBERS]);
-        let deviations = &self.prepared.deviations;
+        let (mut measured, mut weights) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
+        let deviations = &self.prepared.model.deviations;
         for (n, deviation) in deviations.iter().enumerate() {
             measured[n] = sensor.values[n] / deviation;
             weights[n] = sensor.weights[n];

@@ -23,7 +23,8 @@ use std::path::PathBuf;
 /// contacts` finds, foot by foot, within a tolerance. An event so near an end of the recording that its other half is not seen is left out.
 ///
 /// On sensors: each row of the index is a recording of one sensor on a foot (`path`, an IMU .csv) with its known events
-/// (`events`, a .json like `footfall imu events` prints); initial and terminal contacts are matched apart.
+/// (`events`, a .json like `footfall imu events` prints); initial and terminal contacts are matched apart. With --model the bodies that the sensors
+/// drive are judged as well, both feet; the column `foot` then says which foot wears the sensor, where the events are of both.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall evaluate contacts --corpus index.csv --where category=neutral_walk\n  \

@@ -30,7 +30,8 @@ struct Events {
 #[derive(Deserialize)]
 struct Event {
     time_s: f64,
-    foot: String,
+    /// Of the foot that wears the sensor when absent.
+    foot: Option<String>,
     kind: String,
 }
 
@@ -84,7 +85,7 @@ pub(super) fn compare(
             }
         }
         for (detector, side, found) in &detectors {
-            let known: Vec<&Event> = events.iter().filter(|e| e.foot == side.name()).collect();
+            let known: Vec<&Event> = events.iter().filter(|e| e.is_of(*side, worn)).collect();
             let times = || known.iter().map(|event| event.time_s);
             let judged = times().fold(f64::INFINITY, f64::min) - MARGIN_SECS
                 ..=times().fold(f64::NEG_INFINITY, f64::max) + MARGIN_SECS;
@@ -107,14 +108,22 @@ pub(super) fn compare(
     Ok(agreements)
 }
 
+impl Event {
+    /// Whether it is an event of a foot, when the sensor is worn on one.
+    fn is_of(&self, side: Side, worn: Side) -> bool {
+        let named = self.foot.as_deref();
+        named.map_or(side == worn, |name| name == side.name())
+    }
+}
+
 /// The foot that wears the sensor: the index says it, or all events are of one.
 fn worn_foot(row: &IndexRow, index: &Path, events: &[Event]) -> Result<Side> {
     let named = row.column(FOOT_COLUMN).unwrap_or_default();
-    let all_of = |side: &Side| {
-        let own = |event: &Event| event.foot == side.name();
-        named == side.name() || (named.is_empty() && events.iter().all(own))
-    };
-    let Some(side) = Side::BOTH.into_iter().find(all_of) else {
+    let side = Side::BOTH.into_iter().find(|side| {
+        let all_own = events.iter().all(|event| event.is_of(*side, *side));
+        named == side.name() || (named.is_empty() && all_own)
+    });
+    let Some(side) = side else {
         bail!(
             "{}, line {}: it is not told which foot wears the sensor; write left or right into a column \"{FOOT_COLUMN}\"",
             index.display(),
