@@ -1,5 +1,7 @@
 //! A model laid out for the loop that reads it.
 
+use crate::body::BodyFrame;
+use crate::confidence::standing_body;
 use crate::kernels::BLOCK;
 use footfall_core::Side;
 use footfall_model::ImuModel;
@@ -25,6 +27,8 @@ pub struct Prepared {
     pub(crate) padded: usize,
     /// Sensor numbers over their deviations: for each block of frames the first number of all of them, then the second.
     pub(crate) sensor: Vec<f32>,
+    /// The body of the people who stand, to show where the model explains little.
+    pub(crate) standing: Option<BodyFrame>,
     /// Feet that wear sensors.
     pub(crate) worn_feet: Vec<WornFoot>,
     /// First frame of each segment, and the end of the last.
@@ -77,11 +81,12 @@ impl Prepared {
         }
         starts.push(segment_of.len());
         Ok(Self {
-            model,
             frames,
             padded,
             sensor,
             worn_feet,
+            standing: standing_body(&model),
+            model,
             starts,
             segment_of,
             counts,

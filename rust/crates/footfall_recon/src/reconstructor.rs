@@ -1,6 +1,7 @@
 //! Samples to poses, as they come.
 
 use crate::blend::Blend;
+use crate::confidence::Confidence;
 use crate::ground::{Ground, GroundInput};
 use crate::measure::{SensorFrames, measure, sensor_heading};
 use crate::prepared::{Prepared, WornFoot};
@@ -67,6 +68,7 @@ pub struct Reconstructor {
     ground: Ground,
     sensors: [Sensor; MAX_SENSORS],
     travel: Travel,
+    confidence: Confidence,
     behaviour: ShownBehaviour,
     silent_secs: f32,
     /// Frames that were shown ahead of the last one measured.
@@ -94,6 +96,7 @@ impl Reconstructor {
             ground: Ground::new(skeleton, &prepared.model.skeleton),
             sensors: core::array::from_fn(|n| Sensor::new(rate, on_foot(n))),
             travel: Travel::new(&prepared.model.sites),
+            confidence: Confidence::new(),
             behaviour: ShownBehaviour::new(),
             silent_secs: 0.0,
             ahead: 0.0,
@@ -121,6 +124,7 @@ impl Reconstructor {
         self.blend.reset();
         self.ground.reset();
         self.travel = Travel::new(&self.prepared.model.sites);
+        self.confidence = Confidence::new();
         self.behaviour = ShownBehaviour::new();
         (self.silent_secs, self.ahead) = (0.0, 0.0);
         self.heading = None;
@@ -149,6 +153,15 @@ impl Reconstructor {
             SensorState::Lost
         } else {
             SensorState::Tracking
+        }
+    }
+
+    /// How well the model explains what the sensors say, 0 to 1: the probability that what is done is among what it learned. 0 where nothing is heard.
+    /// Where it is low, the body stands.
+    pub fn confidence(&self) -> f32 {
+        match self.sensor_state() {
+            SensorState::Tracking => self.confidence.value(),
+            SensorState::Waiting | SensorState::Lost => 0.0,
         }
     }
 
@@ -229,18 +242,29 @@ impl Reconstructor {
     fn frame(&mut self, frames: &SensorFrames) {
         let measured = measure(&self.prepared.model, frames);
         self.tracker.step(measured.as_ref());
-        let (body, velocity) = self.tracker.body(measured.as_ref());
+        let frame_secs = 1.0 / self.prepared.model.frame_rate_hz as f32;
+        if measured.is_some() {
+            let sensors = frames.iter().flatten().count() as f32;
+            let log_density = self.tracker.log_density() as f32 / sensors;
+            self.confidence.step(log_density, frame_secs);
+        }
+        let (mut body, mut velocity) = self.tracker.body(measured.as_ref());
+        let standing = self.prepared.standing.as_ref();
+        self.confidence.calm(standing, &mut body, &mut velocity);
         self.blend.step(&body, &velocity);
-        self.heading = sensor_heading(frames, &body);
+        self.heading = sensor_heading(frames, &body).filter(|_| self.confidence.is_trusted());
+        if !self.confidence.is_trusted() {
+            self.ground.forget_sensor_heading();
+        }
         if measured.is_some() {
             self.silent_secs = 0.0;
         }
         // What was shown ahead is part of this frame.
         self.ahead -= 1.0;
         self.behaviour.step(
-            self.tracker.behaviours(),
+            &self.confidence.behaviours(self.tracker.behaviours()),
             self.config.behaviour_probability,
-            1.0 / self.prepared.model.frame_rate_hz as f32,
+            frame_secs,
         );
     }
 
@@ -279,7 +303,7 @@ impl Reconstructor {
     /// Whether each foot stands, as far as a sensor on it tells.
     fn told_stands(&self) -> [Option<bool>; 2] {
         let mut stands = [None; 2];
-        if self.silent_secs < TOLD_FOR_SECS {
+        if self.silent_secs < TOLD_FOR_SECS && self.confidence.is_trusted() {
             for WornFoot { sensor, side } in &self.prepared.worn_feet {
                 stands[side.index()] = self.sensors[*sensor].stands();
             }

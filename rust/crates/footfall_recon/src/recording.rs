@@ -2,6 +2,7 @@
 
 use crate::blend::Blend;
 use crate::body::BodyFrame;
+use crate::confidence::Confidence;
 use crate::ground::{Ground, GroundInput};
 use crate::measure::{SensorFrame, SensorFrames, measure, sensor_heading};
 use crate::prepared::{Prepared, WornFoot};
@@ -28,8 +29,8 @@ pub struct Reconstructed {
     pub start_secs: f64,
     /// The most probable behaviour of each frame.
     pub behaviours: Vec<Behaviour>,
-    /// Whether the left and the right foot stand in each frame.
-    pub stands: Vec<[bool; 2]>,
+    /// How well the model explains each frame and those shortly before it, 0 to 1.
+    pub confidences: Vec<f32>,
 }
 
 /// Reconstructs the body of recordings, one for each site of the model, already in the sites' axes.
@@ -57,7 +58,8 @@ pub fn reconstruct_recording(
     let mut shown = Shown {
         samples: strides.map_or(&[][..], |recording| &recording.samples),
         travel,
-        worn: &prepared.worn_feet,
+        prepared,
+        confidence: Confidence::new(),
         live: live.then_some((ShownBehaviour::new(), config.behaviour_probability)),
         out: Reconstructed {
             clip: Clip {
@@ -68,7 +70,7 @@ pub fn reconstruct_recording(
             start_secs: shared_start_secs(recordings)
                 .unwrap_or_else(|| recordings.first().map_or(0.0, ImuRecording::start_secs)),
             behaviours: Vec::with_capacity(frames.len()),
-            stands: Vec::with_capacity(frames.len()),
+            confidences: Vec::with_capacity(frames.len()),
         },
         // What later frames tell is smooth already.
         blend: Blend::new(if live { config.blend_gain } else { 1.0 }),
@@ -81,12 +83,13 @@ pub fn reconstruct_recording(
     if live {
         for (frame, measured) in frames.iter().zip(&measured) {
             tracker.step(measured.as_ref());
-            shown.add(&tracker, measured.as_ref(), frame);
+            shown.add(&tracker, measured.as_ref(), frame, tracker.log_density());
         }
         return Ok(shown.out);
     }
     let mut back = Tracker::new(prepared, config.tracker);
     let mut filtered: Vec<Vec<f32>> = Vec::new();
+    let mut log_densities = Vec::with_capacity(frames.len());
     let mut later = vec![1.0_f32; prepared.frames];
     for first in (0..frames.len()).step_by(BLOCK_FRAMES) {
         let end = (first + BLOCK_FRAMES).min(frames.len());
@@ -94,6 +97,7 @@ pub fn reconstruct_recording(
         for measured in &measured[first + filtered.len()..ahead] {
             tracker.step(measured.as_ref());
             filtered.push(tracker.probabilities().to_vec());
+            log_densities.push(tracker.log_density());
         }
         later.fill(1.0);
         for frame in (first..ahead).rev() {
@@ -106,7 +110,8 @@ pub fn reconstruct_recording(
         }
         for frame in first..end {
             back.set_probabilities(&filtered[frame - first]);
-            shown.add(&back, measured[frame].as_ref(), &frames[frame]);
+            let log_density = log_densities[frame];
+            shown.add(&back, measured[frame].as_ref(), &frames[frame], log_density);
         }
         filtered.drain(..end - first);
     }
@@ -188,21 +193,13 @@ fn tell_swings(prepared: &Prepared, recordings: &[ImuRecording], frames: &mut [S
     }
 }
 
-/// Whether each foot stands, as far as a sensor on it tells.
-fn told_stands(worn: &[WornFoot], sensors: &SensorFrames) -> [Option<bool>; 2] {
-    let mut stands = [None; 2];
-    for WornFoot { sensor, side } in worn {
-        stands[side.index()] = sensors[*sensor].and_then(|heard| heard.stands);
-    }
-    stands
-}
-
 /// What is shown of each frame.
 struct Shown<'a> {
     /// Those of the sensor that measures strides which were not heard yet.
     samples: &'a [ImuSample],
     travel: Travel,
-    worn: &'a [WornFoot],
+    prepared: &'a Prepared,
+    confidence: Confidence,
     /// What a game shows, and how probable it must be.
     live: Option<(ShownBehaviour, f32)>,
     out: Reconstructed,
@@ -212,8 +209,21 @@ struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    fn add(&mut self, tracker: &Tracker, measured: Option<&Measurement>, frames: &SensorFrames) {
-        let (body, velocity) = tracker.body(measured);
+    fn add(
+        &mut self,
+        tracker: &Tracker,
+        measured: Option<&Measurement>,
+        frames: &SensorFrames,
+        log_density: f64,
+    ) {
+        if measured.is_some() {
+            let sensors = frames.iter().flatten().count() as f32;
+            self.confidence
+                .step(log_density as f32 / sensors, self.frame_secs);
+        }
+        let (mut body, mut velocity) = tracker.body(measured);
+        let standing = self.prepared.standing.as_ref();
+        self.confidence.calm(standing, &mut body, &mut velocity);
         self.blend.step(&body, &velocity);
         if self.out.clip.poses.is_empty() {
             // A frame ends when it is measured; the recording begins one frame earlier.
@@ -229,22 +239,26 @@ impl Shown<'_> {
 
     fn pose(&mut self, body: &BodyFrame, tracker: &Tracker, sensors: SensorFrames, frames: f32) {
         self.hear(&sensors);
+        let heading = sensor_heading(&sensors, body).filter(|_| self.confidence.is_trusted());
+        if !self.confidence.is_trusted() {
+            self.ground.forget_sensor_heading();
+        }
         let input = GroundInput {
-            heading: sensor_heading(&sensors, body),
+            heading,
             frames,
             dt_secs: self.frame_secs,
             stride: self.travel.step(self.frame_secs),
-            stands: told_stands(&self.worn, &sensors),
+            stands: self.told_stands(&sensors),
         };
         let mut pose = Pose::default();
         self.ground.step(body, &input, &mut pose);
         self.out.clip.poses.push(pose);
-        self.out.stands.push(self.ground.stands());
+        self.out.confidences.push(self.confidence.value());
         if let Some(side) = self.travel.side() {
             self.travel
                 .compare(self.ground.shown_ankle(side), self.ground.scale());
         }
-        let behaviours = tracker.behaviours();
+        let behaviours = &self.confidence.behaviours(tracker.behaviours());
         let shown = match &mut self.live {
             Some((shown, needed)) => shown.step(behaviours, *needed, self.frame_secs),
             None => Behaviour::ALL
@@ -253,6 +267,17 @@ impl Shown<'_> {
                 .unwrap_or(Behaviour::Stand),
         };
         self.out.behaviours.push(shown);
+    }
+
+    /// Whether each foot stands, as far as a sensor on it tells.
+    fn told_stands(&self, sensors: &SensorFrames) -> [Option<bool>; 2] {
+        let mut stands = [None; 2];
+        if self.confidence.is_trusted() {
+            for WornFoot { sensor, side } in &self.prepared.worn_feet {
+                stands[side.index()] = sensors[*sensor].and_then(|heard| heard.stands);
+            }
+        }
+        stands
     }
 
     /// Measures strides up to the end of a frame.

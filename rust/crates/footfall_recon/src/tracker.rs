@@ -85,6 +85,8 @@ pub struct Tracker {
     chosen: Vec<(u32, f32)>,
     behaviours: [f32; Behaviour::ALL.len()],
     log_likelihood: f64,
+    /// What the last frame that was measured added to it.
+    log_density: f64,
 }
 
 /// Frames that are predicted with less than this share of what each would have if all were alike are not compared with the measurement.
@@ -117,6 +119,7 @@ impl Tracker {
             chosen: Vec::with_capacity(config.interpolated.max(1)),
             behaviours: [0.0; Behaviour::ALL.len()],
             log_likelihood: 0.0,
+            log_density: 0.0,
             prepared: Arc::clone(prepared),
         };
         tracker.reset();
@@ -130,7 +133,7 @@ impl Tracker {
         self.active
             .extend(0..self.prepared.model.segments.len() as u32);
         self.turn = 0;
-        self.log_likelihood = 0.0;
+        (self.log_likelihood, self.log_density) = (0.0, 0.0);
         self.weigh_segments();
     }
 
@@ -147,6 +150,11 @@ impl Tracker {
     /// Logarithm of the density of all that was measured, up to a constant.
     pub const fn log_likelihood(&self) -> f64 {
         self.log_likelihood
+    }
+
+    /// Logarithm of the density of what was measured last, given all before it, up to a constant; 0 before anything was.
+    pub const fn log_density(&self) -> f64 {
+        self.log_density
     }
 
     /// Goes on by a frame. `sensor` holds what was measured in it; `None` when nothing was.
@@ -298,8 +306,8 @@ impl Tracker {
             nearest,
             &mut self.weighed,
         );
-        self.log_likelihood +=
-            f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
+        self.log_density = f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
+        self.log_likelihood += self.log_density;
         sum
     }
 
@@ -345,9 +353,9 @@ impl Tracker {
         }
         if self.active.is_empty() {
             // Nothing explains what was measured: start anew.
-            let log_likelihood = self.log_likelihood;
+            let known = (self.log_likelihood, self.log_density);
             self.reset();
-            self.log_likelihood = log_likelihood;
+            (self.log_likelihood, self.log_density) = known;
         }
     }
 }
