@@ -21,7 +21,7 @@ use footfall_core::Behaviour;
 use footfall_model::ImuModel;
 use footfall_model::imu_model::{BODY_COUNT, CONTACT, TURN, WAY};
 
-/// Slope of the logistic curve, and the logarithm of the density, a sensor, at which it is one half.
+/// Slope of the logistic curve, and the logarithm of the density at which it is one half.
 const SLOPE: f32 = 1.3;
 const HALF: f32 = -2.75;
 
@@ -43,7 +43,7 @@ impl Confidence {
         Self { mean: 0.0 }
     }
 
-    /// Goes on by a frame whose measurement had this logarithm of its density, a sensor.
+    /// Goes on by a frame whose measurement had this logarithm of its density, however many sensors there are.
     pub(crate) fn step(&mut self, log_density: f32, dt_secs: f32) {
         let share = 1.0 - (-dt_secs / MEAN_SECS).exp();
         self.mean += share * (log_density - self.mean);

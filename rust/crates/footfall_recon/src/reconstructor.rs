@@ -244,8 +244,7 @@ impl Reconstructor {
         self.tracker.step(measured.as_ref());
         let frame_secs = 1.0 / self.prepared.model.frame_rate_hz as f32;
         if measured.is_some() {
-            let sensors = frames.iter().flatten().count() as f32;
-            let log_density = self.tracker.log_density() as f32 / sensors;
+            let log_density = self.tracker.log_density() as f32;
             self.confidence.step(log_density, frame_secs);
         }
         let (mut body, mut velocity) = self.tracker.body(measured.as_ref());

@@ -217,9 +217,7 @@ impl Shown<'_> {
         log_density: f64,
     ) {
         if measured.is_some() {
-            let sensors = frames.iter().flatten().count() as f32;
-            self.confidence
-                .step(log_density as f32 / sensors, self.frame_secs);
+            self.confidence.step(log_density as f32, self.frame_secs);
         }
         let (mut body, mut velocity) = tracker.body(measured);
         let standing = self.prepared.standing.as_ref();

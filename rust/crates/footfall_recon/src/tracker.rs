@@ -21,9 +21,9 @@ pub struct TrackerConfig {
     pub keep_subject: f32,
     /// Probability of a frame to leave for anywhere else: the paper's exit.
     pub exit: f32,
-    /// What a frame of the sensor counts: successive frames are alike, and would count several times over.
+    /// What a frame of the sensors counts: successive frames are alike, and would count several times over, and so would two sensors on one body.
     pub evidence: f32,
-    /// Squared distance, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
+    /// Squared distance a sensor, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
     /// where none explains it the body goes on as it did.
     pub farthest: f32,
     /// How many segments are interpolated (section 5.3; there 5).
@@ -298,7 +298,7 @@ impl Tracker {
     fn update(&mut self, sensor: &Measurement) -> f32 {
         let limit = LEAST_SHARE / self.prepared.frames as f32;
         let nearest = self.measure(sensor, limit);
-        let factor = -0.5 * self.config.evidence;
+        let factor = self.factor();
         let sum = weigh(
             &self.predicted,
             &self.distance,
@@ -309,6 +309,11 @@ impl Tracker {
         self.log_density = f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
         self.log_likelihood += self.log_density;
         sum
+    }
+
+    /// What a squared distance of all sensors adds to the logarithm of a probability.
+    fn factor(&self) -> f32 {
+        -0.5 * self.config.evidence / self.prepared.model.sites.len() as f32
     }
 
     /// How far the frames are from what was measured that are predicted with more than a limit. Returns the least distance.
@@ -328,8 +333,9 @@ impl Tracker {
             limit,
             &mut self.distance,
         );
-        cap(&mut self.distance, self.config.farthest);
-        nearest.min(self.config.farthest)
+        let farthest = self.config.farthest * self.prepared.model.sites.len() as f32;
+        cap(&mut self.distance, farthest);
+        nearest.min(farthest)
     }
 
     /// Brings the weighed candidates to a sum of one, and drops those that hold next to nothing.
