@@ -67,7 +67,10 @@ enum Command {
         packed: bool,
     },
     /// Train the models that the add-on ships; `FOOTFALL_DATA` names the motion data.
-    Models,
+    Models {
+        /// The ones to train; all when absent. Styles are trained on the walk that is there
+        which: Vec<models::Which>,
+    },
     /// Compare results with those kept in `tests/golden`.
     Golden {
         /// Keep the new results instead.
@@ -130,7 +133,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Link => link::command(),
         Command::Mannequin => mannequin::command(),
         Command::Addon { packed } => addon::command(*packed),
-        Command::Models => models::command(),
+        Command::Models { which } => models::command(&which),
         Command::Golden { update } => golden::command(*update),
         Command::Csharp { check } => csharp::command(*check),
         Command::Tidy => tidy::command(),

@@ -9,6 +9,22 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// People whose hip joints are misplaced in CMU's recordings are put right first: models would crouch as they do.
+const CORRECTION: &str = "--correct-hips";
+
+/// Models that the add-on ships.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Which {
+    /// Walking, running, standing, jumping and crouching
+    Locomotion,
+    /// The two linear systems of a walk
+    Dynamics,
+    /// The sensor models
+    Sensors,
+    /// Designed and acted styles
+    Styles,
+}
+
 /// Where the data are when `FOOTFALL_DATA` does not say so, from the repository's root.
 const DATA: &str = "../shared/data";
 const WALK: &str = "addons/footfall/models/locomotion.footfall";
@@ -77,11 +93,11 @@ const WALKS_WITH_ENDS: [&str; 6] = [
 /// People who stand: idles of eight people and what one actor stands between walks.
 const STANDING: [&str; 2] = ["--standing", "license=*MIT*"];
 
-/// Trains every shipped model and style anew.
+/// Trains shipped models and styles anew: these, or all.
 ///
 /// # Errors
 /// When the data are not there or training fails.
-pub(crate) fn command() -> Result<()> {
+pub(crate) fn command(which: &[Which]) -> Result<()> {
     let root = paths::repository_root();
     let data = Data {
         index: data_folder(&root)?.join("index.csv"),
@@ -90,11 +106,40 @@ pub(crate) fn command() -> Result<()> {
     };
     fs::create_dir_all(data.root.join("addons/footfall/models"))
         .context("cannot create the folder for models")?;
+    let makes = |asked: Which| which.is_empty() || which.contains(&asked);
+    let mut made = Vec::new();
+    if makes(Which::Locomotion) {
+        train_locomotion(&data)?;
+        made.push(WALK.to_owned());
+    }
+    if makes(Which::Dynamics) {
+        fit_dynamics(&data)?;
+        made.push(DYNAMICS.to_owned());
+    }
+    if makes(Which::Sensors) {
+        for site in SENSORS {
+            train_sensor(&data, site)?;
+        }
+        made.push(format!("{} sensor models", SENSORS.len()));
+    }
+    if makes(Which::Styles) {
+        made.push(format!("{} styles", styles::make(&data)?));
+    }
+    eprintln!(
+        "made from the data: {}; the tests check them, then commit them",
+        made.join(", ")
+    );
+    Ok(())
+}
+
+/// Walking, with its ends, standing, running, jumping and crouching.
+fn train_locomotion(data: &Data) -> Result<()> {
     let mut train = data.footfall("train");
     train
         .arg("--corpus")
         .arg(&data.index)
         .args(WALKS_WITH_ENDS)
+        .arg(CORRECTION)
         .args(STANDING)
         .args(RUNNING)
         .args(MOVES)
@@ -104,7 +149,11 @@ pub(crate) fn command() -> Result<()> {
             "-o",
             WALK,
         ]);
-    process::run(&mut train)?;
+    process::run(&mut train)
+}
+
+/// Two linear systems of one person's walk.
+fn fit_dynamics(data: &Data) -> Result<()> {
     let mut fit = data.footfall("dynamics");
     fit.args(["fit", "--corpus"])
         .arg(&data.index)
@@ -115,26 +164,16 @@ pub(crate) fn command() -> Result<()> {
             "-o",
             DYNAMICS,
         ]);
-    process::run(&mut fit)?;
-    for site in SENSORS {
-        train_sensor(&data, site)?;
-    }
-    let made = styles::make(&data)?;
-    eprintln!(
-        "{WALK}, {DYNAMICS}, {} sensor models and {made} styles are made from the data: the tests check them, then commit them",
-        SENSORS.len()
-    );
-    Ok(())
+    process::run(&mut fit)
 }
 
-/// People whose hip joints are misplaced are put right first: models would crouch as they do.
 fn train_sensor(data: &Data, site: &str) -> Result<()> {
     let mut train = data.footfall("imu");
     train
         .args(["train", "--corpus"])
         .arg(&data.index)
         .args(SENSOR_RECORDINGS)
-        .arg("--correct-hips")
+        .arg(CORRECTION)
         .args(["--site", site, "--no-mirror", "--frames", SENSOR_FRAMES])
         .args([
             "--describe",

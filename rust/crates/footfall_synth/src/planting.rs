@@ -5,8 +5,10 @@
 //! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
 //! generated rotations and planted feet disagree about is spread over the swing.
 
+mod balance;
 mod cut;
 mod flight;
+mod heel;
 mod lean;
 mod lift;
 mod support;
@@ -25,19 +27,19 @@ use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 pub(crate) use lean::{Lean, Pull};
 use swing::Swing;
 pub(crate) use urge::SpeedChange;
 
-/// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once.
-const MAX_LANDING_EXTENSION: f32 = 0.985;
+/// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once. A step forwards lands straighter than
+/// one to the side, and one backwards, which lands on its toes, over a bent knee.
+const LANDING_EXTENSION: f32 = 0.985;
+const LANDING_FORWARDS: f32 = 0.011;
+const LANDING_BACKWARDS: f32 = 0.005;
 
-/// By how much less a foot that goes backwards does: it lands on its toes, over a bent knee.
-const BACKWARDS_FLEXION: f32 = 0.005;
-
-/// Share of the straight leg by which a swinging leg can be stretched beyond that.
-const SWING_ROOM: f32 = 0.0145;
+/// Share of the straight leg to which a swinging leg can be stretched.
+const SWING_EXTENSION: f32 = 0.9993;
 
 /// One frame of a walk on the ground.
 #[derive(Clone, Debug, Default)]
@@ -110,6 +112,8 @@ pub(crate) struct PlanterState {
     pub(crate) stride: f32,
     /// How the last step was turned under the body.
     pub(crate) strafe: Strafe,
+    /// How far both feet were shifted for it to land in balance, to the left and forwards.
+    pub(crate) balance: Vec2,
     /// The foot that took off in the last step, if that was one of a run.
     pub(crate) airborne: Option<Airborne>,
     /// How the trunk leans.
@@ -147,6 +151,7 @@ impl PlanterState {
             ground_velocity: self.ground_velocity.map(|velocity| rotation * velocity),
             stride: self.stride,
             strafe: self.strafe,
+            balance: self.balance,
             airborne: self.airborne.map(|foot| foot.moved(from, to)),
             lean: self.lean,
         }
@@ -193,6 +198,7 @@ impl Planter {
             ground_velocity: None,
             stride: 1.0,
             strafe: Strafe::NONE,
+            balance: Vec2::ZERO,
             airborne: None,
             lean: Lean::default(),
         };
@@ -289,6 +295,7 @@ impl Planter {
             airborne: airborne.is_some(),
             ..*timing
         };
+        self.balance(raw, timing);
         self.fill_stances(raw, timing);
         self.travel(raw, timing, course, out);
         let timing = &StepTiming {
@@ -301,6 +308,7 @@ impl Planter {
         } else {
             self.even_height(raw, timing, out);
         }
+        self.raise_heels(raw, timing, out);
         let [before, last] = [timing.frames - 1, timing.frames].map(|f| out[f].pose.root_position);
         self.state.hips = last;
         self.state.hips_velocity = Some((last - before) / self.frame_secs);
@@ -369,6 +377,8 @@ impl Planter {
         frames: &[PlantedFrame],
     ) {
         let side = side.index();
+        let extensions = [self.landing_extension(), SWING_EXTENSION]
+            .map(|share| f32x8::splat(share * self.leg_lengths[side]));
         let end = within.end;
         for index in within.step_by(LANES) {
             let at = |lane: usize| (index + lane).min(end - 1);
@@ -384,7 +394,7 @@ impl Planter {
             let hip = hips + level * Vec3x8::gather(|lane| leg(lane).hip);
             let mut target = swing.guide(index, &free, &self.feet[side]);
             let ankle = target.ankle - hip;
-            let yielded = ankle * yielding(ankle.length(), self.leg_lengths[side]);
+            let yielded = ankle * yielding(ankle.length(), extensions);
             target.ankle = hip + ankle + (yielded - ankle) * swing.freed(index);
             for lane in 0..LANES.min(end - index) {
                 raw[index + lane].legs[side].target = target.lane(lane);
@@ -409,11 +419,16 @@ impl Planter {
         let foot = &self.feet[side.index()];
         let mut plant = foot.plant_under(ankle, heading + lead + leg.heading(), leg.pitch);
         let hip = hips + from_heading(heading) * leg.hip;
-        let backwards = (-self.state.strafe.forwardness).max(0.0);
-        let extension = MAX_LANDING_EXTENSION - backwards * BACKWARDS_FLEXION;
-        let reach = extension * self.leg_lengths[side.index()];
+        let reach = self.landing_extension() * self.leg_lengths[side.index()];
         plant.flat_ankle += within_reach(foot.stand(&plant, leg.pitch).ankle - hip, reach);
         plant
+    }
+
+    /// Fraction of the straight leg with which a foot lands at most.
+    fn landing_extension(&self) -> f32 {
+        let strafe = &self.state.strafe;
+        let backwards = (-strafe.forwardness).max(0.0);
+        LANDING_EXTENSION + LANDING_FORWARDS * strafe.uprightness() - LANDING_BACKWARDS * backwards
     }
 
     /// Where the trailing foot is planted and where it would be free, at the ends of its swing.
@@ -452,10 +467,9 @@ fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget 
     }
 }
 
-/// A swinging leg that gets ever harder to stretch: one that is straightened all at once snaps its knee. The factors on its reach.
-fn yielding(reach: f32x8, length: f32) -> f32x8 {
-    let [from, room] =
-        [MAX_LANDING_EXTENSION, SWING_ROOM].map(|share| f32x8::splat(share * length));
+/// A swinging leg that gets ever harder to stretch from one length to the other: one that is straightened all at once snaps its knee. The factors on its reach.
+fn yielding(reach: f32x8, [from, most]: [f32x8; 2]) -> f32x8 {
+    let room = most - from;
     let beyond = (reach - from).fast_max(f32x8::ZERO);
     let yielded = from + room * (f32x8::ONE - (-beyond / room).exp());
     reach.simd_gt(from).bitselect(yielded / reach, f32x8::ONE)

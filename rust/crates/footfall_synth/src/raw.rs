@@ -5,6 +5,18 @@ use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, foot_heading, foot_pitches, settled_pitch};
 use glam::{Quat, Vec3};
 
+/// Least share of a leg's squared length that is left of it from the side.
+const LEAST_HEIGHT: f32 = 0.25;
+
+/// How far the legs of eight frames reach.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stride {
+    /// Factor on their reach forwards and backwards.
+    pub(crate) scale: f32x8,
+    /// How much of their length they keep: 1 where shorter strides carry the hips higher, 0 where their height stays.
+    pub(crate) upright: f32x8,
+}
+
 /// One generated frame, hips at the origin and heading removed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RawFrame {
@@ -64,16 +76,16 @@ impl Default for RawLeg {
 
 impl RawFrame {
     /// Fills frames, eight at a time, from poses that hold generated local rotations (the hips' relative to the heading).
-    /// `stride_scale` tells by how much eight frames from an index on stretch the legs' reach forwards and backwards.
+    /// `stride` gives that of eight frames from an index on.
     pub(crate) fn fill(
         frames: &mut [Self],
         poses: &[impl AsRef<Pose>],
         skeleton: &Skeleton,
-        stride_scale: impl Fn(usize) -> f32x8,
+        stride: impl Fn(usize) -> Stride,
     ) {
         let blocks = frames.chunks_mut(LANES).zip(poses.chunks(LANES));
         for (block, (frames, poses)) in blocks.enumerate() {
-            let stride_scale = stride_scale(block * LANES);
+            let Stride { scale, upright } = stride(block * LANES);
             let of_poses = |joint: Joint| {
                 Quatx8::gather(|lane| poses[lane.min(poses.len() - 1)].as_ref().rotation(joint))
             };
@@ -84,12 +96,15 @@ impl RawFrame {
                 let shank = thigh * of_poses(side.lower_leg());
                 let foot = shank * of_poses(side.foot());
                 let hip = hips * offset(side.upper_leg());
-                let mut ankle = thigh * offset(side.lower_leg()) + shank * offset(side.foot());
-                ankle.z *= stride_scale;
-                let ankle = hip + ankle;
+                let reach = thigh * offset(side.lower_leg()) + shank * offset(side.foot());
+                let [x, z] = [reach.x, reach.z * scale];
+                let squared = reach.x * reach.x + reach.y * reach.y + reach.z * reach.z;
+                let height = (squared - x * x - z * z).fast_max(squared * LEAST_HEIGHT);
+                let y = reach.y - (height.sqrt() + reach.y) * upright;
+                let ankle = hip + Vec3x8 { x, y, z };
                 let free_pitch = foot_pitches(foot);
                 // A shorter stride lands flatter and pushes off less.
-                let pitch = settled_pitch(free_pitch * stride_scale.fast_min(f32x8::ONE));
+                let pitch = settled_pitch(free_pitch * scale.fast_min(f32x8::ONE));
                 for (lane, frame) in frames.iter_mut().enumerate() {
                     let leg = &mut frame.legs[side.index()];
                     leg.hip = hip.lane(lane);
@@ -120,20 +135,26 @@ mod tests {
                 let mut pose = Pose::default();
                 for (joint, rotation) in pose.rotations.iter_mut().enumerate() {
                     let turn = |axis: usize| ((frame * 7 + joint * 3 + axis) as f32).sin();
-                    *rotation = exp_map(0.5 * Vec3::new(turn(0), turn(1), turn(2)));
+                    *rotation = exp_map(0.2 * Vec3::new(turn(0), turn(1), turn(2)));
                 }
                 pose
             })
             .collect();
         let mut frames = vec![RawFrame::default(); poses.len()];
-        RawFrame::fill(&mut frames, &poses, &skeleton, |_| f32x8::splat(1.25));
+        let stride = Stride {
+            scale: f32x8::splat(1.25),
+            upright: f32x8::ONE,
+        };
+        RawFrame::fill(&mut frames, &poses, &skeleton, |_| stride);
         for (frame, pose) in frames.iter().zip(&poses) {
             let mut model = ModelPose::default();
             forward_kinematics(&skeleton, pose, &mut model);
             for side in Side::BOTH {
                 let leg = &frame.legs[side.index()];
                 let hip = model.position(side.upper_leg());
-                let reach = (model.position(side.foot()) - hip) * Vec3::new(1.0, 1.0, 1.25);
+                let straight = model.position(side.foot()) - hip;
+                let mut reach = straight * Vec3::new(1.0, 0.0, 1.25);
+                reach.y = -(straight.length_squared() - reach.length_squared()).sqrt();
                 assert!(leg.hip.distance(hip) < 1e-6);
                 assert!(leg.ankle.distance(hip + reach) < 1e-6);
                 let forward = model.rotation(side.foot()) * Vec3::Z;

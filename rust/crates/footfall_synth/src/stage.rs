@@ -3,7 +3,7 @@
 use crate::detail::Detail;
 use crate::plan::StepShape;
 use crate::planting::{Course, Cut, PlantedFrame, Planter, PlanterState, Pull, SpeedChange};
-use crate::raw::RawFrame;
+use crate::raw::{RawFrame, Stride};
 use crate::standing::Amplitude;
 use crate::strafe::{Strafe, sway};
 use footfall_core::ease::smooth_step;
@@ -157,7 +157,12 @@ impl Stage {
         RawFrame::fill(raw, frames, &self.skeleton, |index| {
             // A foot that stands must not notice that another step has begun.
             let s = (COUNTING + f32x8::splat(index as f32)) * (timing.frames as f32).recip();
-            lanes::smooth_step(s) * (stride - stride_before) + f32x8::splat(stride_before)
+            let share = lanes::smooth_step(s);
+            let between = |from: f32, to: f32| share * (to - from) + f32x8::splat(from);
+            Stride {
+                scale: between(stride_before, stride),
+                upright: between(before.uprightness(), strafe.uprightness()),
+            }
         });
         let [_, facing] = placing.facing;
         let planter = self.planter.get_or_insert_with(|| {

@@ -5,27 +5,29 @@
 //! made again from the model.
 
 mod moving;
+mod quick;
+mod running;
 mod source;
 
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::gait::Gait;
 use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
-use crate::obeyed::Obeyed;
-use crate::planting::{Airborne, Lean, PlanterState};
-use crate::rest::Rest;
+use crate::planting::{Lean, PlanterState};
 use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
 use crate::strafe::Strafe;
 use footfall_core::StepPosition;
-use footfall_ik::{FootTarget, Plant};
-use glam::{Quat, Vec2, Vec3};
+use footfall_ik::Plant;
+use glam::{Vec2, Vec3};
 use moving::Moving;
+use quick::Quick;
+use running::Running;
 use serde::{Deserialize, Serialize};
 
-/// The version of the layout that this build writes; it reads those before, too, which knew no jumps and no steps that change in their middle, no running
-/// and no life in standing.
-const VERSION: u8 = 7;
+/// The version of the layout that this build writes; it reads those before, too, which knew no balance, no jumps and no steps that change in their middle,
+/// no running and no life in standing.
+const VERSION: u8 = 8;
+const UNBALANCED_VERSION: u8 = 7;
 const RUNNING_VERSION: u8 = 6;
 const WALKING_VERSION: u8 = 5;
 const STILL_VERSION: u8 = 4;
@@ -114,34 +116,15 @@ enum Source {
     },
 }
 
+/// What a walker has beyond that: a run, a step that obeys in its middle, a crouch or a jump, and how its last landing was balanced.
+type More = (Running, Quick, Moving, [f32; 2]);
+
 /// How far a walker's life is, behind a [`State`].
 #[derive(Default, Serialize, Deserialize)]
 struct Alive {
     secs: f64,
     share: f32,
     speed: f32,
-}
-
-/// What it takes to go on with a step that was made to obey in its middle.
-#[derive(Default, Serialize, Deserialize)]
-struct Quick {
-    /// Velocity of the step before and of this one, as their requests had them.
-    velocities_mps: [[f32; 2]; 2],
-    /// What the step obeys: velocity and turning; whether it stops, and whether it was stretched.
-    obeys: ([f32; 2], f32, bool, bool),
-    /// The state that its rest begins in, the share of that which is left, and the share of the whole step that had passed.
-    rest: Option<(u8, f32, f32)>,
-    /// How the trunk leans as the step begins, and how fast that changes.
-    lean: [[f32; 2]; 2],
-}
-
-/// What a runner has beyond that.
-#[derive(Default, Serialize, Deserialize)]
-struct Running {
-    /// Whether the step before and this one are of a run.
-    runs: [bool; 2],
-    /// The foot in the air as the step begins: ankle, rotation of foot and toes, then and a frame earlier; and the time between.
-    airborne: Option<([f32; 11], [f32; 11], f32)>,
 }
 
 /// What a step takes over from the one before.
@@ -227,7 +210,13 @@ impl GaitGenerator {
             speed: moment.speed,
         };
         // Writing to memory does not fail; an empty state is refused like any other that is not one.
-        let more = (self.running(), self.quick(), Moving::of(self));
+        let balance = planter.map_or([0.0; 2], |feet| feet.balance.to_array());
+        let more = (
+            Running::of(self),
+            Quick::of(self),
+            Moving::of(self),
+            balance,
+        );
         postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
 
@@ -239,26 +228,34 @@ impl GaitGenerator {
         let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
         let slow = Quick::of_slow(&state);
         let still = Moving::default();
-        let (alive, (running, quick, moving)): (Alive, (Running, Quick, Moving)) =
-            match state.version {
-                VERSION => postcard::from_bytes(rest)?,
-                RUNNING_VERSION => {
-                    let (alive, running) = postcard::from_bytes(rest)?;
-                    (alive, (running, slow, still))
-                }
-                WALKING_VERSION => {
-                    let alive = postcard::from_bytes(rest)?;
-                    (alive, (Running::default(), slow, still))
-                }
-                STILL_VERSION => (Alive::default(), (Running::default(), slow, still)),
-                other => return Err(StateError::Version(other)),
-            };
+        let (alive, more): (Alive, More) = match state.version {
+            VERSION => postcard::from_bytes(rest)?,
+            UNBALANCED_VERSION => {
+                let (alive, (running, quick, moving)) = postcard::from_bytes(rest)?;
+                (alive, (running, quick, moving, [0.0; 2]))
+            }
+            RUNNING_VERSION => {
+                let (alive, running) = postcard::from_bytes(rest)?;
+                (alive, (running, slow, still, [0.0; 2]))
+            }
+            WALKING_VERSION => {
+                let alive = postcard::from_bytes(rest)?;
+                (alive, (Running::default(), slow, still, [0.0; 2]))
+            }
+            STILL_VERSION => {
+                let still = (Running::default(), slow, still, [0.0; 2]);
+                (Alive::default(), still)
+            }
+            other => return Err(StateError::Version(other)),
+        };
+        let (running, quick, moving, balance) = more;
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
             running.is_sensible(),
             quick.is_sensible(),
             moving.is_sensible(),
+            balance.map(f64::from).into_iter().all(is_reasonable),
         ];
         if sensible.contains(&false) {
             return Err(StateError::Damaged);
@@ -270,10 +267,12 @@ impl GaitGenerator {
         };
         match &mut self.steps {
             Steps::Styled(steps) => {
-                let more = (&running, &quick, moving.leap_m);
+                let more = (&running, &quick, moving.leap_m, balance);
                 **steps = state.styled(steps, more, &self.skeleton, &config)?;
             }
-            Steps::Switching(steps) => state.resume(steps, quick.lean(), &config)?,
+            Steps::Switching(steps) => {
+                state.resume(steps, (quick.lean(), balance.into()), &config)?
+            }
         }
         self.config = config;
         if let Some(life) = &mut self.life {
@@ -296,148 +295,6 @@ impl GaitGenerator {
         moving.resume(self);
         self.tell_place();
         Ok(())
-    }
-}
-
-impl GaitGenerator {
-    fn quick(&self) -> Quick {
-        let lean_of = |feet: Option<PlanterState>| {
-            feet.map_or_else(Default::default, |feet| {
-                [feet.lean.angle, feet.lean.rate].map(|part| part.to_array())
-            })
-        };
-        let steps = match &self.steps {
-            Steps::Styled(steps) => steps,
-            Steps::Switching(steps) => {
-                return Quick {
-                    lean: lean_of(steps.origin.planter),
-                    ..Quick::default()
-                };
-            }
-        };
-        let (origin, obeyed) = (steps.walker.origin(), &steps.obeyed);
-        let velocities = [origin.velocity_before_mps, origin.request.velocity_mps];
-        Quick {
-            velocities_mps: velocities.map(|velocity| velocity.to_array()),
-            obeys: (
-                obeyed.velocity_mps.to_array(),
-                obeyed.turn_rate,
-                obeyed.stops,
-                obeyed.stretched,
-            ),
-            rest: origin
-                .rest
-                .map(|rest| (rest.state as u8, rest.left, rest.passed)),
-            lean: lean_of(origin.planter),
-        }
-    }
-
-    fn running(&self) -> Running {
-        let Steps::Styled(steps) = &self.steps else {
-            return Running::default();
-        };
-        let feet = steps.walker.origin().planter;
-        let airborne = feet.and_then(|feet| feet.airborne);
-        Running {
-            runs: steps.walker.blends().map(|blend| blend.gait == Gait::Run),
-            airborne: airborne.map(|foot| {
-                (
-                    numbers_of(&foot.now),
-                    numbers_of(&foot.before),
-                    foot.frame_secs,
-                )
-            }),
-        }
-    }
-}
-
-impl Quick {
-    /// Of a state that knows no such steps: one whose speed does not change.
-    fn of_slow(state: &State) -> Self {
-        Self {
-            velocities_mps: [state.velocity_mps; 2],
-            obeys: (
-                state.velocity_mps,
-                state.turn_rate,
-                state.amplitude[1] < 1.0,
-                false,
-            ),
-            rest: None,
-            lean: Default::default(),
-        }
-    }
-
-    fn lean(&self) -> Lean {
-        let [angle, rate] = self.lean.map(Vec2::from);
-        Lean { angle, rate }
-    }
-
-    fn obeyed(&self) -> Obeyed {
-        let (velocity, turn_rate, stops, stretched) = self.obeys;
-        Obeyed {
-            velocity_mps: velocity.into(),
-            turn_rate,
-            stops,
-            stretched,
-        }
-    }
-
-    fn rest(&self) -> Option<Rest> {
-        self.rest.map(|(state, left, passed)| Rest {
-            state: state.into(),
-            left,
-            passed,
-        })
-    }
-
-    fn is_sensible(&self) -> bool {
-        let (obeyed, turn_rate, ..) = self.obeys;
-        let numbers = self
-            .velocities_mps
-            .into_iter()
-            .chain(self.lean)
-            .flatten()
-            .chain(obeyed);
-        let reasonable = numbers.chain([turn_rate]).map(f64::from).all(is_reasonable);
-        reasonable && self.rest().is_none_or(|rest| rest.is_sensible())
-    }
-}
-
-impl Running {
-    fn gaits(&self) -> [Gait; 2] {
-        self.runs
-            .map(|runs| if runs { Gait::Run } else { Gait::Walk })
-    }
-
-    fn airborne(&self) -> Option<Airborne> {
-        self.airborne.map(|(now, before, frame_secs)| Airborne {
-            now: foot_of(now),
-            before: foot_of(before),
-            frame_secs,
-        })
-    }
-
-    fn is_sensible(&self) -> bool {
-        self.airborne.is_none_or(|(now, before, secs)| {
-            let numbers = now.into_iter().chain(before).chain([secs]);
-            secs > 0.0 && numbers.map(f64::from).all(is_reasonable)
-        })
-    }
-}
-
-/// A foot's numbers: ankle, rotation of the foot, rotation of the toes.
-fn numbers_of(foot: &FootTarget) -> [f32; 11] {
-    let [x, y, z] = foot.ankle.to_array();
-    let [a, b, c, d] = foot.foot.to_array();
-    let [e, f, g, h] = foot.toes.to_array();
-    [x, y, z, a, b, c, d, e, f, g, h]
-}
-
-fn foot_of([x, y, z, a, b, c, d, e, f, g, h]: [f32; 11]) -> FootTarget {
-    FootTarget {
-        ankle: Vec3::new(x, y, z),
-        foot: Quat::from_xyzw(a, b, c, d),
-        toes: Quat::from_xyzw(e, f, g, h),
     }
 }
 
@@ -538,6 +395,7 @@ impl Feet {
             ground_velocity: self.ground_velocity.map(Vec3::from),
             stride: self.stride,
             strafe: self.strafe,
+            balance: Vec2::ZERO,
             airborne: None,
             lean: Lean::default(),
         }

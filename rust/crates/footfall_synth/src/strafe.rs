@@ -88,6 +88,11 @@ impl Strafe {
         self
     }
 
+    /// How straight legs land and stand, from 0 to 1: as people's do in a walk forwards, over bent knees in steps to the side and backwards.
+    pub(crate) fn uprightness(&self) -> f32 {
+        self.forwardness.max(0.0).powi(2)
+    }
+
     /// Every number of it.
     pub(crate) const fn numbers(&self) -> [f32; 5] {
         let [left, forwards] = self.reach;

@@ -6,7 +6,7 @@ use crate::gait::{Gait, GaitChoice};
 use crate::pace::PaceTable;
 use crate::plan::{Manner, Planner, StepDraw, StepPlan};
 use crate::planting::{Course, PlantedFrame, Planter, SpeedChange};
-use crate::raw::RawFrame;
+use crate::raw::{RawFrame, Stride};
 use crate::recording;
 use crate::space::StyleSpace;
 use crate::statistics::Statistics;
@@ -207,7 +207,10 @@ pub(crate) fn put_on_ground(
             }
             layout::decode(&narrow, &mut frame.pose.rotations);
         }
-        RawFrame::fill(&mut raw, &frames, skeleton, |_| f32x8::splat(stride));
+        RawFrame::fill(&mut raw, &frames, skeleton, |_| Stride {
+            scale: f32x8::splat(stride),
+            upright: f32x8::ONE,
+        });
         begin += timing.frames;
         course.step_secs = (timing.frames as f64 * frame_secs) as f32;
         let timing = planter

@@ -51,6 +51,7 @@ impl Cut<'_> {
             ground_velocity: velocity(|frame| frame.ground_position),
             stride: self.begun.stride + share * (self.ended.stride - self.begun.stride),
             strafe: self.begun.strafe.between(&self.ended.strafe, s),
+            balance: self.begun.balance.lerp(self.ended.balance, share),
             lean: Bend::new(
                 self.begun.lean,
                 &self.pull,

@@ -7,13 +7,13 @@ use footfall_ik::reach_height;
 use glam::Vec3;
 
 /// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
-const MAX_STANCE_EXTENSION: f32 = 0.995;
+const MAX_STANCE_EXTENSION: f32 = 0.998;
 
 /// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
-pub(super) const LET_GO_EXTENSION: f32 = 0.994;
+pub(super) const LET_GO_EXTENSION: f32 = 0.998;
 
 /// Over how many metres the pelvis yields to that limit.
-const REACH_SOFTNESS_M: f32 = 0.005;
+const REACH_SOFTNESS_M: f32 = 0.002;
 
 /// Over how long a leaving leg's reach ceases to bear on the pelvis, seconds.
 const REACH_FADE_SECS: f32 = 0.07;

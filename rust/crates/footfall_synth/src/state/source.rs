@@ -11,6 +11,7 @@ use crate::walker::{Origin, Request, TIE_LEN, WINDOW, Walker};
 use crate::worn::Worn;
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::GaitModel;
+use glam::Vec2;
 
 impl Source {
     pub(super) fn of_styled(steps: &StyledSteps) -> Self {
@@ -56,7 +57,7 @@ impl State {
     pub(super) fn styled(
         &self,
         current: &StyledSteps,
-        (running, quick, leap_m): (&Running, &Quick, Option<f32>),
+        (running, quick, leap_m, balance): (&Running, &Quick, Option<f32>, [f32; 2]),
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<StyledSteps, StateError> {
@@ -121,6 +122,7 @@ impl State {
             planter: self.feet.as_ref().map(|feet| PlanterState {
                 airborne: running.airborne(),
                 lean: quick.lean(),
+                balance: balance.into(),
                 ..feet.planter()
             }),
             tie: [0.0; TIE_LEN],
@@ -154,7 +156,7 @@ impl State {
     pub(super) fn resume(
         &self,
         steps: &mut SwitchingSteps,
-        lean: Lean,
+        (lean, balance): (Lean, Vec2),
         config: &GeneratorConfig,
     ) -> Result<(), StateError> {
         let Source::Switching {
@@ -184,6 +186,7 @@ impl State {
             expected: expected.clone(),
             planter: self.feet.as_ref().map(|feet| PlanterState {
                 lean,
+                balance,
                 ..feet.planter()
             }),
         };
