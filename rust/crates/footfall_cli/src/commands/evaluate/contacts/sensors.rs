@@ -22,6 +22,9 @@ const EVENTS_COLUMN: &str = "events";
 /// The column that names the foot that wears the sensor.
 const FOOT_COLUMN: &str = "foot";
 
+/// Events in time, seconds.
+type Times = Vec<(f64, EventKind)>;
+
 #[derive(Deserialize)]
 struct Events {
     events: Vec<Event>,
@@ -62,7 +65,7 @@ pub(super) fn compare(
         let found = events_of(&detect_swings(&recording));
         let swings = found.iter().map(|event| (event.time_secs, event.kind));
         let worn = worn_foot(&row, index, &events)?;
-        let mut detectors: Vec<(&str, Side, Vec<(f64, EventKind)>)> = vec![
+        let mut detectors: Vec<(&str, Side, Times)> = vec![
             ("switches", worn, switches.collect()),
             ("swings", worn, swings.collect()),
         ];
