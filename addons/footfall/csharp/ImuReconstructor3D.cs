@@ -33,6 +33,7 @@ namespace Footfall
         {
             public static readonly StringName ForgetMounting = "forget_mounting";
             public static readonly StringName GetBehaviour = "get_behaviour";
+            public static readonly StringName GetConfidence = "get_confidence";
             public static readonly StringName GetLatency = "get_latency";
             public static readonly StringName GetMountingCertainty = "get_mounting_certainty";
             public static readonly StringName GetProblems = "get_problems";
@@ -160,6 +161,10 @@ namespace Footfall
 
         /// <summary>The body's behaviour: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
         public StringName GetBehaviour() => Native.Call(MethodName.GetBehaviour).AsStringName();
+
+        /// <summary>How well the model explains what the sensors say, 0 to 1: the probability that what the person does is among what the model learned. 0 where nothing is heard.</summary>
+        /// <remarks>Walking is about 0.85. Below 0.1, with a sensor that is shaken, worn elsewhere or mounted otherwise than is thought, the body stands.</remarks>
+        public double GetConfidence() => Native.Call(MethodName.GetConfidence).AsDouble();
 
         /// <summary>Age of the live sensors' newest sample when the pose is made, in seconds; 0 for others.</summary>
         public double GetLatency() => Native.Call(MethodName.GetLatency).AsDouble();

@@ -20,6 +20,8 @@ const NAMES: Dictionary[Kind, String] = {
 	Kind.STAND_IN: "None: a walker out of sight wears one",
 }
 const STAND_IN_PORT := 47100
+## Below this confidence the body stands.
+const UNEXPLAINED := 0.1
 
 var _source: Resource
 var _kind := Kind.PHONE
@@ -111,11 +113,19 @@ func show_state(calibration: Calibration, driven: ImuReconstructor3D) -> void:
 	%Message.visible = %Message.text != ""
 	%Step.text = Calibration.TOLD[calibration.now]
 	%Progress.value = calibration.progress
-	%Behaviour.text = "you %s" % driven.get_behaviour() if calibration.now == Calibration.Step.DONE else ""
+	%Behaviour.text = _doing(driven) if calibration.now == Calibration.Step.DONE else ""
 	if _kind == Kind.PHONE and not heard:
 		_show_code()
 	elif heard:
 		%Code.hide()
+
+
+## What the person does, and how well the model explains it.
+func _doing(driven: ImuReconstructor3D) -> String:
+	var confidence := driven.get_confidence()
+	if confidence < UNEXPLAINED:
+		return "the model does not know this: walk, or calibrate again"
+	return "you %s (confidence %d %%)" % [driven.get_behaviour(), roundi(100.0 * confidence)]
 
 
 func _show_code() -> void:

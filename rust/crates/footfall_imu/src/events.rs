@@ -178,14 +178,14 @@ fn peak(values: &[f32], first: usize, end: usize) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::sample::{GRAVITY_MPS2, ImuSample};
     use core::f32::consts::PI;
     use glam::Quat;
 
     /// Ten strides of a second each: rest, push-off until 0.5 s, swing until 0.9 s, landing; in axes of its own.
-    fn walk(rate_hz: f64, sensor_from_foot: Quat) -> ImuRecording {
+    pub(crate) fn walk(rate_hz: f64, sensor_from_foot: Quat) -> ImuRecording {
         let bump = |time: f32, from: f32, to: f32| {
             let inside = (from..to).contains(&time);
             f32::from(u8::from(inside)) * ((time - from) / (to - from) * PI).sin().powi(2)

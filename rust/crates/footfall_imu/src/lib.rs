@@ -1,14 +1,14 @@
 //! Runtime: samples, orientation, features and gait events of inertial sensors.
 //!
 //! Modules in the order in which data flows: [`sample`]s, [`csv`] recordings and their [`checks`], [`orientation`] of the sensor, the
-//! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`], which a [`stride_meter`] tells as
-//! they are made. With the feature
-//! `live`, [`live`] hears sensors over serial ports and networks; without, nothing here opens a port.
+//! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`], which a [`contact_meter`] and a
+//! [`stride_meter`] tell as they are made. With the feature `live`, [`live`] hears sensors over serial ports and networks; without, nothing here opens a port.
 //!
 //! Everywhere specific force is in m/s² and holds gravity (a sensor at rest reads +9.81 along up), angular rate is in rad/s, and axes are
 //! right-handed.
 
 pub mod checks;
+pub mod contact_meter;
 pub mod csv;
 pub mod events;
 pub mod features;
@@ -21,6 +21,7 @@ pub mod stride_meter;
 pub mod strides;
 
 pub use checks::{RecordingFault, check_recording};
+pub use contact_meter::ContactMeter;
 pub use csv::ImuCsvError;
 pub use features::{FeatureFrame, FeatureStream, SENSOR_FEATURES};
 pub use orientation::OrientationFilter;

@@ -16,8 +16,16 @@ const STANDS: [f32; 2] = [0.55, 0.4];
 /// A foot whose leg would have to stretch so far to where it stands is put anew, metres.
 const MAX_DRIFT_M: f32 = 0.15;
 
+/// A foot whose own sensor says that it is in the air is held so far off the ground, as a share of the leg's length, where the body moves it as slowly
+/// as a foot that stands: less than the first of these speeds, leg lengths a second, and not at all above the second.
+const CLEARANCE: f32 = 0.06;
+const CLEARED_SPEEDS: [f32; 2] = [1.5, 3.5];
+
+/// A foot whose own sensor says that it stands may drift so much further.
+const TOLD_DRIFT: f32 = 2.0;
+
 /// What remains of a correction when a foot lands or leaves halves in this time, seconds.
-const SETTLE_HALF_LIFE_SECS: f32 = 0.03;
+const SETTLE_HALF_LIFE_SECS: f32 = 0.02;
 
 /// The height of the pelvis follows the standing feet with this half-life, seconds.
 const HEIGHT_HALF_LIFE_SECS: f32 = 0.05;
@@ -40,6 +48,7 @@ pub struct Ground {
     skeleton: Skeleton,
     legs: [Leg; 2],
     rockers: [RockerFoot; 2],
+    leg_length_m: f32,
     /// Metres of this body for one of the model's.
     scale: f32,
     place: Vec3,
@@ -63,6 +72,8 @@ struct StandingFoot {
     /// Offset of the ankle and turn of the foot against the recordings, in the last frame.
     last: (Vec3, Quat),
     landed: bool,
+    /// Where the recordings had the ankle in the last frame.
+    free: Vec3,
 }
 
 impl StandingFoot {
@@ -72,6 +83,7 @@ impl StandingFoot {
         turn: Quat::IDENTITY,
         last: (Vec3::ZERO, Quat::IDENTITY),
         landed: false,
+        free: Vec3::ZERO,
     };
 }
 
@@ -86,6 +98,8 @@ pub struct GroundInput {
     pub dt_secs: f32,
     /// Factor on the length of the recordings' steps.
     pub stride: f32,
+    /// Whether the left and the right foot stand, where a sensor on the foot tells; the body says it of the others.
+    pub stands: [Option<bool>; 2],
 }
 
 impl Ground {
@@ -94,6 +108,7 @@ impl Ground {
         Self {
             legs: Side::BOTH.map(|side| Leg::new(skeleton, side)),
             rockers: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
+            leg_length_m: skeleton.mean_leg_length(),
             scale: skeleton.mean_leg_length() / model_skeleton.mean_leg_length(),
             place: Vec3::ZERO,
             heading: 0.0,
@@ -173,11 +188,11 @@ impl Ground {
         self.place += level * way;
         pose.root_position += self.place;
         forward_kinematics(&self.skeleton, pose, &mut self.model);
-        self.bear(body, pose);
+        self.bear(body, input.stands, pose);
         self.follow_height(input.dt_secs, pose);
         forward_kinematics(&self.skeleton, pose, &mut self.model);
         for side in Side::BOTH {
-            self.solve(side, body, input.dt_secs, pose);
+            self.solve(side, body, input, pose);
         }
     }
 
@@ -216,12 +231,15 @@ impl Ground {
     }
 
     /// Moves the body along the ground so that standing feet keep their places.
-    fn bear(&mut self, body: &BodyFrame, pose: &mut Pose) {
+    fn bear(&mut self, body: &BodyFrame, told: [Option<bool>; 2], pose: &mut Pose) {
         let (mut shift, mut weights) = (Vec3::ZERO, 0.0);
         for side in Side::BOTH {
             if let Some(plant) = self.feet[side.index()].plant {
                 let target = self.standing(side, &plant);
-                let weight = body[CONTACT + side.index()].clamp(0.05, 1.0);
+                let weight = match told[side.index()] {
+                    Some(true) => 1.0,
+                    _ => body[CONTACT + side.index()].clamp(0.05, 1.0),
+                };
                 shift += (target.ankle - self.ankle(side)).with_y(0.0) * weight;
                 weights += weight;
             }
@@ -272,8 +290,15 @@ impl Ground {
         self.rockers[side.index()].stand(plant, pitch)
     }
 
+    /// Height at which a foot that is known to be in the air is held, when the body moves its ankle so far in a step, metres.
+    fn clearance_m(&self, moved: Vec3, dt_secs: f32) -> f32 {
+        let [least, most] = CLEARED_SPEEDS.map(|speed| speed * self.leg_length_m * dt_secs);
+        let slow = (most - moved.with_y(0.0).length()) / (most - least).max(f32::MIN_POSITIVE);
+        CLEARANCE * self.leg_length_m * slow.clamp(0.0, 1.0)
+    }
+
     /// Puts one foot where it belongs.
-    fn solve(&mut self, side: Side, body: &BodyFrame, dt_secs: f32, pose: &mut Pose) {
+    fn solve(&mut self, side: Side, body: &BodyFrame, input: &GroundInput, pose: &mut Pose) {
         let index = side.index();
         let ankle = self.ankle(side);
         let (foot, toes) = (
@@ -285,25 +310,37 @@ impl Ground {
         let stood = own.plant.is_some();
         if let Some(plant) = own.plant {
             let drift = self.standing(side, &plant).ankle.distance(ankle);
-            if body[CONTACT + index] < STANDS[1] || drift > MAX_DRIFT_M {
+            let leaves = match input.stands[index] {
+                Some(told) => !told || drift > TOLD_DRIFT * MAX_DRIFT_M,
+                None => body[CONTACT + index] < STANDS[1] || drift > MAX_DRIFT_M,
+            };
+            if leaves {
                 own.plant = None;
             }
-        } else if body[CONTACT + index] > STANDS[0] {
+        } else if input.stands[index].unwrap_or(body[CONTACT + index] > STANDS[0]) {
             let pitch = settled_pitch(foot_pitch(foot));
             let settled = own.last.0.with_y(0.0);
             let heading = foot_heading(foot);
             own.plant = Some(self.rockers[index].plant_under(ankle + settled, heading, pitch));
             own.landed = true;
         }
-        let target = own.plant.map_or(FootTarget { ankle, foot, toes }, |plant| {
+        let target = if let Some(plant) = own.plant {
             self.standing(side, &plant)
-        });
+        } else {
+            let mut free = FootTarget { ankle, foot, toes };
+            if input.stands[index] == Some(false) {
+                let clearance = self.clearance_m(ankle - own.free, input.dt_secs);
+                free.ankle.y += (clearance - self.rockers[index].lowest_point(&free)).max(0.0);
+            }
+            free
+        };
+        own.free = ankle;
         let wanted = (target.ankle - ankle, target.foot * foot.inverse());
         if stood != own.plant.is_some() {
             own.ankle = own.last.0 - wanted.0;
             own.turn = own.last.1 * wanted.1.inverse();
         }
-        let left = 1.0 - follow_share(SETTLE_HALF_LIFE_SECS, dt_secs);
+        let left = 1.0 - follow_share(SETTLE_HALF_LIFE_SECS, input.dt_secs);
         own.ankle *= left;
         own.turn = Quat::IDENTITY.slerp(own.turn, left);
         own.last = (wanted.0 + own.ankle, own.turn * wanted.1);

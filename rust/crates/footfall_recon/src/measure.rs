@@ -16,17 +16,25 @@ const LEAST_UPRIGHT: f32 = 0.6;
 /// A vertical that is less certain tells no heading, radians.
 const TILT_KNOWN: f32 = 0.12;
 
+/// A sensor's frame, and whether the foot that wears it stands when the frame ends; `None` where nobody knows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SensorFrame {
+    pub(crate) frame: FeatureFrame,
+    pub(crate) stands: Option<bool>,
+}
+
+/// Frames of all sensors.
+pub(crate) type SensorFrames = [Option<SensorFrame>; MAX_SENSORS];
+
 /// What all sensors measured; `None` when none did. What is uncertain or missing counts less or nothing.
-pub(crate) fn measure(
-    model: &ImuModel,
-    frames: &[Option<FeatureFrame>; MAX_SENSORS],
-) -> Option<Measurement> {
+pub(crate) fn measure(model: &ImuModel, frames: &SensorFrames) -> Option<Measurement> {
     let mut measurement = Measurement {
         values: [0.0; MAX_WIDTH],
         weights: [0.0; MAX_WIDTH],
     };
     let mut any = false;
     for (n, frame) in frames.iter().enumerate().take(model.sites.len()) {
+        let frame = frame.map(|heard| heard.frame);
         let Some((frame, values)) = frame.and_then(|frame| Some((frame, frame.values?))) else {
             continue;
         };
@@ -49,12 +57,10 @@ pub(crate) fn measure(
 }
 
 /// The heading of the body that the first upright sensor gives, from an unknown direction on.
-pub(crate) fn sensor_heading(
-    frames: &[Option<FeatureFrame>; MAX_SENSORS],
-    body: &BodyFrame,
-) -> Option<f32> {
+pub(crate) fn sensor_heading(frames: &SensorFrames, body: &BodyFrame) -> Option<f32> {
     frames.iter().enumerate().find_map(|(n, frame)| {
         let known = |frame: &FeatureFrame| frame.tilt_deviation < TILT_KNOWN;
+        let frame = frame.map(|heard| heard.frame);
         let frame = frame.filter(|frame| frame.values.is_some() && known(frame))?;
         let turn = frame.world_from_sensor;
         let upright = (turn * Vec3::Y).y > LEAST_UPRIGHT;

@@ -6,7 +6,7 @@
 //!
 //! Found to within a few degrees from 2 s of walking, turning, jumping or hopping; of two runs of 1.4 s one was found and one was not, with certainty.
 
-use crate::measure::measure;
+use crate::measure::{SensorFrame, measure};
 use crate::prepared::Prepared;
 use crate::tracker::{Measurement, Tracker, TrackerConfig};
 use core::f32::consts::TAU;
@@ -202,7 +202,10 @@ impl Finder<'_> {
             }
         }
         let mut frames = [None; MAX_SENSORS];
-        frames[self.sensor] = Some(turned);
+        frames[self.sensor] = Some(SensorFrame {
+            frame: turned,
+            stands: None,
+        });
         measure(&self.prepared.model, &frames)
     }
 }

@@ -1,11 +1,21 @@
 //! A model laid out for the loop that reads it.
 
+use crate::body::BodyFrame;
+use crate::confidence::standing_body;
 use crate::kernels::BLOCK;
+use footfall_core::Side;
 use footfall_model::ImuModel;
 use footfall_model::ModelError;
 use footfall_model::imu_model::BODY_COUNT;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// A foot that wears a sensor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WornFoot {
+    pub(crate) sensor: usize,
+    pub(crate) side: Side,
+}
 
 /// A model, checked and laid out. One serves any number of bodies.
 #[derive(Clone, Debug)]
@@ -17,6 +27,10 @@ pub struct Prepared {
     pub(crate) padded: usize,
     /// Sensor numbers over their deviations: for each block of frames the first number of all of them, then the second.
     pub(crate) sensor: Vec<f32>,
+    /// The body of the people who stand, to show where the model explains little.
+    pub(crate) standing: Option<BodyFrame>,
+    /// Feet that wear sensors.
+    pub(crate) worn_feet: Vec<WornFoot>,
     /// First frame of each segment, and the end of the last.
     pub(crate) starts: Vec<usize>,
     /// Which segment a frame belongs to.
@@ -37,6 +51,16 @@ impl Prepared {
         let frames = model.frame_count();
         let width = model.sensor_width();
         let padded = frames.next_multiple_of(BLOCK);
+        let sites = model.sites.iter().enumerate();
+        let worn_feet: Vec<WornFoot> = sites
+            .filter(|(_, site)| site.is_foot())
+            .filter_map(|(sensor, site)| {
+                Some(WornFoot {
+                    sensor,
+                    side: site.side()?,
+                })
+            })
+            .collect();
         let mut sensor = vec![0.0; padded * width];
         for (frame, row) in model.sensor.chunks_exact(width).enumerate() {
             let block = frame / BLOCK * BLOCK * width + frame % BLOCK;
@@ -57,10 +81,12 @@ impl Prepared {
         }
         starts.push(segment_of.len());
         Ok(Self {
-            model,
             frames,
             padded,
             sensor,
+            worn_feet,
+            standing: standing_body(&model),
+            model,
             starts,
             segment_of,
             counts,

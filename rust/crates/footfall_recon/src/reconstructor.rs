@@ -1,24 +1,26 @@
 //! Samples to poses, as they come.
 
 use crate::blend::Blend;
+use crate::confidence::Confidence;
 use crate::ground::{Ground, GroundInput};
-use crate::measure::{measure, sensor_heading};
-use crate::prepared::Prepared;
+use crate::measure::{SensorFrames, measure, sensor_heading};
+use crate::prepared::{Prepared, WornFoot};
+use crate::sensor::Sensor;
 use crate::shown_behaviour::ShownBehaviour;
 use crate::tracker::{Tracker, TrackerConfig};
 use crate::travel::Travel;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Behaviour, Pose, Skeleton, SkeletonError};
-use footfall_imu::{FeatureFrame, FeatureStream, ImuSample};
+use footfall_imu::ImuSample;
 use footfall_model::imu_model::MAX_SENSORS;
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Frames of one sensor that wait for the other's; more mean that the other has stopped.
-const MOST_WAITING: usize = 6;
-
 /// Sensors whose times are further apart are on clocks of their own, seconds.
 const ONE_CLOCK_SECS: f64 = 2.0;
+
+/// What a sensor tells of its foot holds for so long, seconds.
+const TOLD_FOR_SECS: f32 = 0.1;
 
 /// Settings of a reconstructor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,41 +68,12 @@ pub struct Reconstructor {
     ground: Ground,
     sensors: [Sensor; MAX_SENSORS],
     travel: Travel,
+    confidence: Confidence,
     behaviour: ShownBehaviour,
     silent_secs: f32,
     /// Frames that were shown ahead of the last one measured.
     ahead: f32,
     heading: Option<f32>,
-}
-
-/// One sensor: its samples on their way to frames.
-#[derive(Clone, Copy, Debug)]
-struct Sensor {
-    /// `site_from_sensor` rotation.
-    mounting: Quat,
-    stream: FeatureStream,
-    waiting: [Option<FeatureFrame>; MOST_WAITING],
-    count: usize,
-}
-
-impl Sensor {
-    fn new(frame_rate_hz: f64) -> Self {
-        Self {
-            mounting: Quat::IDENTITY,
-            stream: FeatureStream::new(frame_rate_hz),
-            waiting: [None; MOST_WAITING],
-            count: 0,
-        }
-    }
-
-    fn take(&mut self) -> Option<FeatureFrame> {
-        let first = self.waiting[0].take();
-        if first.is_some() {
-            self.waiting.rotate_left(1);
-            self.count -= 1;
-        }
-        first
-    }
 }
 
 impl Reconstructor {
@@ -115,12 +88,15 @@ impl Reconstructor {
     ) -> Result<Self, SkeletonError> {
         skeleton.check()?;
         let rate = prepared.model.frame_rate_hz;
+        let sites = &prepared.model.sites;
+        let on_foot = |n: usize| sites.get(n).is_some_and(|site| site.is_foot());
         Ok(Self {
             tracker: Tracker::new(prepared, config.tracker),
             blend: Blend::new(config.blend_gain),
             ground: Ground::new(skeleton, &prepared.model.skeleton),
-            sensors: [Sensor::new(rate); MAX_SENSORS],
+            sensors: core::array::from_fn(|n| Sensor::new(rate, on_foot(n))),
             travel: Travel::new(&prepared.model.sites),
+            confidence: Confidence::new(),
             behaviour: ShownBehaviour::new(),
             silent_secs: 0.0,
             ahead: 0.0,
@@ -133,9 +109,7 @@ impl Reconstructor {
     /// How a sensor is worn: `site_from_sensor`. The identity for `aligned` mounting.
     pub fn set_mounting(&mut self, sensor: usize, site_from_sensor: Quat) {
         if let Some(sensor) = self.sensors.get_mut(sensor) {
-            sensor.mounting = site_from_sensor;
-            // What it measured in other axes means nothing any more.
-            sensor.stream = FeatureStream::new(self.prepared.model.frame_rate_hz);
+            sensor.set_mounting(site_from_sensor);
             self.ground.forget_sensor_heading();
             self.travel.forget_samples();
         }
@@ -143,17 +117,14 @@ impl Reconstructor {
 
     /// Forgets everything measured; the body stands at the origin.
     pub fn reset(&mut self) {
-        let rate = self.prepared.model.frame_rate_hz;
         for sensor in &mut self.sensors {
-            *sensor = Sensor {
-                mounting: sensor.mounting,
-                ..Sensor::new(rate)
-            };
+            sensor.reset();
         }
         self.tracker.reset();
         self.blend.reset();
         self.ground.reset();
         self.travel = Travel::new(&self.prepared.model.sites);
+        self.confidence = Confidence::new();
         self.behaviour = ShownBehaviour::new();
         (self.silent_secs, self.ahead) = (0.0, 0.0);
         self.heading = None;
@@ -182,6 +153,15 @@ impl Reconstructor {
             SensorState::Lost
         } else {
             SensorState::Tracking
+        }
+    }
+
+    /// How well the model explains what the sensors say, 0 to 1: the probability that what is done is among what it learned. 0 where nothing is heard.
+    /// Where it is low, the body stands.
+    pub fn confidence(&self) -> f32 {
+        match self.sensor_state() {
+            SensorState::Tracking => self.confidence.value(),
+            SensorState::Waiting | SensorState::Lost => 0.0,
         }
     }
 
@@ -215,10 +195,7 @@ impl Reconstructor {
 
     /// Samples that were not finite, repeated or late.
     pub fn rejected_samples(&self) -> u64 {
-        self.sensors
-            .iter()
-            .map(|sensor| sensor.stream.rejected())
-            .sum()
+        self.sensors.iter().map(Sensor::rejected).sum()
     }
 
     /// Takes a sample of a sensor (0, or 1 for the second site of the model); others are ignored.
@@ -228,20 +205,7 @@ impl Reconstructor {
             return;
         };
         self.travel.push(sensor, sample);
-        let Sensor {
-            mounting,
-            stream,
-            waiting,
-            count,
-        } = own;
-        stream.push(sample.turned(*mounting), |frame| {
-            if *count == MOST_WAITING {
-                waiting.rotate_left(1);
-                *count -= 1;
-            }
-            waiting[*count] = Some(frame);
-            *count += 1;
-        });
+        own.push(sample);
         self.catch_up();
     }
 
@@ -252,19 +216,20 @@ impl Reconstructor {
         let period_secs = 1.0 / self.prepared.model.frame_rate_hz;
         loop {
             let sensors = &mut self.sensors[..used];
-            let all = sensors.iter().all(|sensor| sensor.count > 0);
-            let full = sensors.iter().any(|sensor| sensor.count == MOST_WAITING);
+            let all = sensors.iter().all(|sensor| sensor.next_secs().is_some());
+            let full = sensors.iter().any(Sensor::is_full);
             if !all && !full {
                 return;
             }
-            let next = |sensor: &Sensor| sensor.waiting[0].map(|frame| frame.time_secs);
             let oldest = sensors
                 .iter()
-                .filter_map(next)
+                .filter_map(Sensor::next_secs)
                 .fold(f64::INFINITY, f64::min);
             let mut frames = [None; MAX_SENSORS];
             for (frame, sensor) in frames.iter_mut().zip(sensors) {
-                let ahead_secs = next(sensor).map_or(0.0, |time_secs| time_secs - oldest);
+                let ahead_secs = sensor
+                    .next_secs()
+                    .map_or(0.0, |time_secs| time_secs - oldest);
                 if !(0.5 * period_secs..ONE_CLOCK_SECS).contains(&ahead_secs) {
                     *frame = sensor.take();
                 }
@@ -274,21 +239,31 @@ impl Reconstructor {
     }
 
     /// One frame of the model.
-    fn frame(&mut self, frames: &[Option<FeatureFrame>; MAX_SENSORS]) {
+    fn frame(&mut self, frames: &SensorFrames) {
         let measured = measure(&self.prepared.model, frames);
         self.tracker.step(measured.as_ref());
-        let (body, velocity) = self.tracker.body(measured.as_ref());
+        let frame_secs = 1.0 / self.prepared.model.frame_rate_hz as f32;
+        if measured.is_some() {
+            let log_density = self.tracker.log_density() as f32;
+            self.confidence.step(log_density, frame_secs);
+        }
+        let (mut body, mut velocity) = self.tracker.body(measured.as_ref());
+        let standing = self.prepared.standing.as_ref();
+        self.confidence.calm(standing, &mut body, &mut velocity);
         self.blend.step(&body, &velocity);
-        self.heading = sensor_heading(frames, &body);
+        self.heading = sensor_heading(frames, &body).filter(|_| self.confidence.is_trusted());
+        if !self.confidence.is_trusted() {
+            self.ground.forget_sensor_heading();
+        }
         if measured.is_some() {
             self.silent_secs = 0.0;
         }
         // What was shown ahead is part of this frame.
         self.ahead -= 1.0;
         self.behaviour.step(
-            self.tracker.behaviours(),
+            &self.confidence.behaviours(self.tracker.behaviours()),
             self.config.behaviour_probability,
-            1.0 / self.prepared.model.frame_rate_hz as f32,
+            frame_secs,
         );
     }
 
@@ -315,12 +290,24 @@ impl Reconstructor {
             frames: dt_secs * rate,
             dt_secs,
             stride: self.travel.step(dt_secs),
+            stands: self.told_stands(),
         };
         self.ground.step(&body, &input, pose);
         if let Some(side) = self.travel.side() {
             self.travel
                 .compare(self.ground.shown_ankle(side), self.ground.scale());
         }
+    }
+
+    /// Whether each foot stands, as far as a sensor on it tells.
+    fn told_stands(&self) -> [Option<bool>; 2] {
+        let mut stands = [None; 2];
+        if self.silent_secs < TOLD_FOR_SECS && self.confidence.is_trusted() {
+            for WornFoot { sensor, side } in &self.prepared.worn_feet {
+                stands[side.index()] = self.sensors[*sensor].stands();
+            }
+        }
+        stands
     }
 
     /// Splits a pose that [`step`](Self::step) wrote into the place and heading of the body on the ground, and the pose above it, which faces +Z.

@@ -2,15 +2,18 @@
 
 use crate::blend::Blend;
 use crate::body::BodyFrame;
+use crate::confidence::Confidence;
 use crate::ground::{Ground, GroundInput};
-use crate::measure::{measure, sensor_heading};
-use crate::prepared::Prepared;
+use crate::measure::{SensorFrame, SensorFrames, measure, sensor_heading};
+use crate::prepared::{Prepared, WornFoot};
 use crate::reconstructor::ReconConfig;
+use crate::sensor::Frames;
 use crate::shown_behaviour::{LEAST_SHOWN_SECS, ShownBehaviour, drop_short_runs};
 use crate::tracker::{Measurement, Tracker};
 use crate::travel::Travel;
 use footfall_core::{Behaviour, Clip, Pose, Skeleton, SkeletonError};
-use footfall_imu::{FeatureFrame, FeatureStream, ImuRecording, ImuSample};
+use footfall_imu::events::{Swing, detect_swings};
+use footfall_imu::{ContactMeter, ImuRecording, ImuSample};
 use footfall_model::imu_model::MAX_SENSORS;
 use std::sync::Arc;
 
@@ -26,6 +29,8 @@ pub struct Reconstructed {
     pub start_secs: f64,
     /// The most probable behaviour of each frame.
     pub behaviours: Vec<Behaviour>,
+    /// How well the model explains each frame and those shortly before it, 0 to 1.
+    pub confidences: Vec<f32>,
 }
 
 /// Reconstructs the body of recordings, one for each site of the model, already in the sites' axes.
@@ -43,13 +48,18 @@ pub fn reconstruct_recording(
     live: bool,
 ) -> Result<Reconstructed, SkeletonError> {
     skeleton.check()?;
-    let frames = frames_of(prepared, recordings);
+    let mut frames = frames_of(prepared, recordings);
+    if !live {
+        tell_swings(prepared, recordings, &mut frames);
+    }
     let rate = prepared.model.frame_rate_hz;
     let travel = Travel::new(&prepared.model.sites);
     let strides = travel.sensor().and_then(|n| recordings.get(n));
     let mut shown = Shown {
         samples: strides.map_or(&[][..], |recording| &recording.samples),
         travel,
+        prepared,
+        confidence: Confidence::new(),
         live: live.then_some((ShownBehaviour::new(), config.behaviour_probability)),
         out: Reconstructed {
             clip: Clip {
@@ -60,6 +70,7 @@ pub fn reconstruct_recording(
             start_secs: shared_start_secs(recordings)
                 .unwrap_or_else(|| recordings.first().map_or(0.0, ImuRecording::start_secs)),
             behaviours: Vec::with_capacity(frames.len()),
+            confidences: Vec::with_capacity(frames.len()),
         },
         // What later frames tell is smooth already.
         blend: Blend::new(if live { config.blend_gain } else { 1.0 }),
@@ -72,12 +83,13 @@ pub fn reconstruct_recording(
     if live {
         for (frame, measured) in frames.iter().zip(&measured) {
             tracker.step(measured.as_ref());
-            shown.add(&tracker, measured.as_ref(), frame);
+            shown.add(&tracker, measured.as_ref(), frame, tracker.log_density());
         }
         return Ok(shown.out);
     }
     let mut back = Tracker::new(prepared, config.tracker);
     let mut filtered: Vec<Vec<f32>> = Vec::new();
+    let mut log_densities = Vec::with_capacity(frames.len());
     let mut later = vec![1.0_f32; prepared.frames];
     for first in (0..frames.len()).step_by(BLOCK_FRAMES) {
         let end = (first + BLOCK_FRAMES).min(frames.len());
@@ -85,6 +97,7 @@ pub fn reconstruct_recording(
         for measured in &measured[first + filtered.len()..ahead] {
             tracker.step(measured.as_ref());
             filtered.push(tracker.probabilities().to_vec());
+            log_densities.push(tracker.log_density());
         }
         later.fill(1.0);
         for frame in (first..ahead).rev() {
@@ -97,7 +110,8 @@ pub fn reconstruct_recording(
         }
         for frame in first..end {
             back.set_probabilities(&filtered[frame - first]);
-            shown.add(&back, measured[frame].as_ref(), &frames[frame]);
+            let log_density = log_densities[frame];
+            shown.add(&back, measured[frame].as_ref(), &frames[frame], log_density);
         }
         filtered.drain(..end - first);
     }
@@ -133,19 +147,16 @@ fn shared_start_secs(recordings: &[ImuRecording]) -> Option<f64> {
 }
 
 /// Frames of all sensors, side by side: by their times on a clock that they share, else from their first ones on.
-fn frames_of(
-    prepared: &Prepared,
-    recordings: &[ImuRecording],
-) -> Vec<[Option<FeatureFrame>; MAX_SENSORS]> {
+fn frames_of(prepared: &Prepared, recordings: &[ImuRecording]) -> Vec<SensorFrames> {
     let rate_hz = prepared.model.frame_rate_hz;
     let start_secs = shared_start_secs(recordings);
-    let sensors: Vec<(usize, Vec<FeatureFrame>)> = recordings
+    let sensors: Vec<(usize, Vec<SensorFrame>)> = recordings
         .iter()
-        .take(MAX_SENSORS)
-        .map(|recording| {
+        .zip(&prepared.model.sites)
+        .map(|(recording, site)| {
             let later_secs = start_secs.map_or(0.0, |start| recording.start_secs() - start);
             let later = (later_secs * rate_hz).round() as usize;
-            (later, FeatureStream::frames_of(recording, rate_hz))
+            (later, Frames::of(recording, rate_hz, site.is_foot()))
         })
         .collect();
     let ends = sensors.iter().map(|(later, frames)| later + frames.len());
@@ -159,11 +170,36 @@ fn frames_of(
         .collect()
 }
 
+/// Tells of feet with sensors whether they stand, from their recordings as wholes. What only the meter of samples as they come has found is a
+/// swing as well: it knows steps on the spot.
+fn tell_swings(prepared: &Prepared, recordings: &[ImuRecording], frames: &mut [SensorFrames]) {
+    for WornFoot { sensor, .. } in &prepared.worn_feet {
+        let Some(recording) = recordings.get(*sensor) else {
+            continue;
+        };
+        let mut swings = detect_swings(recording);
+        let apart = |a: &Swing, b: &Swing| {
+            a.initial_secs <= b.terminal_secs || b.initial_secs <= a.terminal_secs
+        };
+        let mut others = ContactMeter::swings_of(recording);
+        others.retain(|other| swings.iter().all(|swing| apart(swing, other)));
+        swings.append(&mut others);
+        let heard = frames.iter_mut().filter_map(|f| f[*sensor].as_mut());
+        for heard in heard {
+            let time_secs = heard.frame.time_secs;
+            let swung = |s: &Swing| (s.terminal_secs..s.initial_secs).contains(&time_secs);
+            heard.stands = Some(!swings.iter().any(swung));
+        }
+    }
+}
+
 /// What is shown of each frame.
 struct Shown<'a> {
     /// Those of the sensor that measures strides which were not heard yet.
     samples: &'a [ImuSample],
     travel: Travel,
+    prepared: &'a Prepared,
+    confidence: Confidence,
     /// What a game shows, and how probable it must be.
     live: Option<(ShownBehaviour, f32)>,
     out: Reconstructed,
@@ -177,9 +213,15 @@ impl Shown<'_> {
         &mut self,
         tracker: &Tracker,
         measured: Option<&Measurement>,
-        frames: &[Option<FeatureFrame>; MAX_SENSORS],
+        frames: &SensorFrames,
+        log_density: f64,
     ) {
-        let (body, velocity) = tracker.body(measured);
+        if measured.is_some() {
+            self.confidence.step(log_density as f32, self.frame_secs);
+        }
+        let (mut body, mut velocity) = tracker.body(measured);
+        let standing = self.prepared.standing.as_ref();
+        self.confidence.calm(standing, &mut body, &mut velocity);
         self.blend.step(&body, &velocity);
         if self.out.clip.poses.is_empty() {
             // A frame ends when it is measured; the recording begins one frame earlier.
@@ -193,28 +235,28 @@ impl Shown<'_> {
         self.pose(&self.blend.body_after(0.0), tracker, *frames, 1.0);
     }
 
-    fn pose(
-        &mut self,
-        body: &BodyFrame,
-        tracker: &Tracker,
-        sensors: [Option<FeatureFrame>; MAX_SENSORS],
-        frames: f32,
-    ) {
+    fn pose(&mut self, body: &BodyFrame, tracker: &Tracker, sensors: SensorFrames, frames: f32) {
         self.hear(&sensors);
+        let heading = sensor_heading(&sensors, body).filter(|_| self.confidence.is_trusted());
+        if !self.confidence.is_trusted() {
+            self.ground.forget_sensor_heading();
+        }
         let input = GroundInput {
-            heading: sensor_heading(&sensors, body),
+            heading,
             frames,
             dt_secs: self.frame_secs,
             stride: self.travel.step(self.frame_secs),
+            stands: self.told_stands(&sensors),
         };
         let mut pose = Pose::default();
         self.ground.step(body, &input, &mut pose);
         self.out.clip.poses.push(pose);
+        self.out.confidences.push(self.confidence.value());
         if let Some(side) = self.travel.side() {
             self.travel
                 .compare(self.ground.shown_ankle(side), self.ground.scale());
         }
-        let behaviours = tracker.behaviours();
+        let behaviours = &self.confidence.behaviours(tracker.behaviours());
         let shown = match &mut self.live {
             Some((shown, needed)) => shown.step(behaviours, *needed, self.frame_secs),
             None => Behaviour::ALL
@@ -225,10 +267,21 @@ impl Shown<'_> {
         self.out.behaviours.push(shown);
     }
 
+    /// Whether each foot stands, as far as a sensor on it tells.
+    fn told_stands(&self, sensors: &SensorFrames) -> [Option<bool>; 2] {
+        let mut stands = [None; 2];
+        if self.confidence.is_trusted() {
+            for WornFoot { sensor, side } in &self.prepared.worn_feet {
+                stands[side.index()] = sensors[*sensor].and_then(|heard| heard.stands);
+            }
+        }
+        stands
+    }
+
     /// Measures strides up to the end of a frame.
-    fn hear(&mut self, sensors: &[Option<FeatureFrame>; MAX_SENSORS]) {
+    fn hear(&mut self, sensors: &SensorFrames) {
         let sensor = self.travel.sensor();
-        if let Some((sensor, frame)) = sensor.and_then(|n| Some((n, sensors[n]?))) {
+        if let Some((sensor, frame)) = sensor.and_then(|n| Some((n, sensors[n]?.frame))) {
             let heard = self
                 .samples
                 .partition_point(|sample| sample.time_secs <= frame.time_secs);

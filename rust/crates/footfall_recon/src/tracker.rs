@@ -21,9 +21,9 @@ pub struct TrackerConfig {
     pub keep_subject: f32,
     /// Probability of a frame to leave for anywhere else: the paper's exit.
     pub exit: f32,
-    /// What a frame of the sensor counts: successive frames are alike, and would count several times over.
+    /// What a frame of the sensors counts: successive frames are alike, and would count several times over, and so would two sensors on one body.
     pub evidence: f32,
-    /// Squared distance, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
+    /// Squared distance a sensor, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
     /// where none explains it the body goes on as it did.
     pub farthest: f32,
     /// How many segments are interpolated (section 5.3; there 5).
@@ -85,6 +85,8 @@ pub struct Tracker {
     chosen: Vec<(u32, f32)>,
     behaviours: [f32; Behaviour::ALL.len()],
     log_likelihood: f64,
+    /// What the last frame that was measured added to it.
+    log_density: f64,
 }
 
 /// Frames that are predicted with less than this share of what each would have if all were alike are not compared with the measurement.
@@ -117,6 +119,7 @@ impl Tracker {
             chosen: Vec::with_capacity(config.interpolated.max(1)),
             behaviours: [0.0; Behaviour::ALL.len()],
             log_likelihood: 0.0,
+            log_density: 0.0,
             prepared: Arc::clone(prepared),
         };
         tracker.reset();
@@ -130,7 +133,7 @@ impl Tracker {
         self.active
             .extend(0..self.prepared.model.segments.len() as u32);
         self.turn = 0;
-        self.log_likelihood = 0.0;
+        (self.log_likelihood, self.log_density) = (0.0, 0.0);
         self.weigh_segments();
     }
 
@@ -147,6 +150,11 @@ impl Tracker {
     /// Logarithm of the density of all that was measured, up to a constant.
     pub const fn log_likelihood(&self) -> f64 {
         self.log_likelihood
+    }
+
+    /// Logarithm of the density of what was measured last, given all before it, up to a constant; 0 before anything was.
+    pub const fn log_density(&self) -> f64 {
+        self.log_density
     }
 
     /// Goes on by a frame. `sensor` holds what was measured in it; `None` when nothing was.
@@ -290,7 +298,7 @@ impl Tracker {
     fn update(&mut self, sensor: &Measurement) -> f32 {
         let limit = LEAST_SHARE / self.prepared.frames as f32;
         let nearest = self.measure(sensor, limit);
-        let factor = -0.5 * self.config.evidence;
+        let factor = self.factor();
         let sum = weigh(
             &self.predicted,
             &self.distance,
@@ -298,9 +306,14 @@ impl Tracker {
             nearest,
             &mut self.weighed,
         );
-        self.log_likelihood +=
-            f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
+        self.log_density = f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
+        self.log_likelihood += self.log_density;
         sum
+    }
+
+    /// What a squared distance of all sensors adds to the logarithm of a probability.
+    fn factor(&self) -> f32 {
+        -0.5 * self.config.evidence / self.prepared.model.sites.len() as f32
     }
 
     /// How far the frames are from what was measured that are predicted with more than a limit. Returns the least distance.
@@ -320,8 +333,9 @@ impl Tracker {
             limit,
             &mut self.distance,
         );
-        cap(&mut self.distance, self.config.farthest);
-        nearest.min(self.config.farthest)
+        let farthest = self.config.farthest * self.prepared.model.sites.len() as f32;
+        cap(&mut self.distance, farthest);
+        nearest.min(farthest)
     }
 
     /// Brings the weighed candidates to a sum of one, and drops those that hold next to nothing.
@@ -345,9 +359,9 @@ impl Tracker {
         }
         if self.active.is_empty() {
             // Nothing explains what was measured: start anew.
-            let log_likelihood = self.log_likelihood;
+            let known = (self.log_likelihood, self.log_density);
             self.reset();
-            self.log_likelihood = log_likelihood;
+            (self.log_likelihood, self.log_density) = known;
         }
     }
 }

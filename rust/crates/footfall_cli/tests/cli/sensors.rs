@@ -1,4 +1,4 @@
-//! `footfall evaluate contacts --sensors`, on foot sensors with reference events.
+//! `footfall evaluate contacts --sensors`, on foot sensors with reference events, and on the bodies that they drive.
 
 use crate::common::footfall;
 use footfall_motion::retarget::RetargetOptions;
@@ -11,6 +11,7 @@ use std::path::Path;
 /// Force and rate of one sensor, and when its foot landed and left, in samples.
 struct Recorded {
     name: String,
+    foot: &'static str,
     rate_hz: f64,
     /// Which samples they are: some were lost on the way.
     numbers: Vec<f64>,
@@ -24,6 +25,7 @@ fn write(folder: &Path, category: &str, recordings: &[Recorded]) {
     let mut index = "path,category,style,subject,events\n".to_owned();
     for Recorded {
         name,
+        foot,
         rate_hz,
         numbers,
         samples,
@@ -37,7 +39,7 @@ fn write(folder: &Path, category: &str, recordings: &[Recorded]) {
             writeln!(text, "{time:.6},{ax},{ay},{az},{gx},{gy},{gz}").expect("a string");
         }
         fs::write(folder.join(format!("{name}.csv")), text).expect("a file");
-        let event = |kind: &'static str| move |sample: &f64| json!({"time_s": sample / rate_hz, "foot": "left", "kind": kind});
+        let event = |kind: &'static str| move |sample: &f64| json!({"time_s": sample / rate_hz, "foot": foot, "kind": kind});
         let events: Vec<_> = landings
             .iter()
             .map(event("initial_contact"))
@@ -80,8 +82,8 @@ fn ipol(data: &Path) -> Vec<Recorded> {
             .expect("a name")
             .to_string_lossy()
             .into_owned();
-        for (foot, key) in [("lf", "LeftFootEvents"), ("rf", "RightFootEvents")] {
-            let name = format!("{stem}_{foot}");
+        for (foot, key) in [("left", "LeftFootEvents"), ("right", "RightFootEvents")] {
+            let name = format!("{stem}_{}f", &foot[..1]);
             let text =
                 fs::read_to_string(path.with_file_name(format!("{name}.txt"))).expect("a file");
             let rows = text.lines().skip(2).map(|line| numbers(line, '\t'));
@@ -90,6 +92,7 @@ fn ipol(data: &Path) -> Vec<Recorded> {
             let of = |end: usize| swings.iter().filter_map(move |swing| swing[end].as_f64());
             recorded.push(Recorded {
                 name,
+                foot,
                 rate_hz: 100.0,
                 numbers: rows.iter().map(|row| row[0]).collect(),
                 samples: rows
@@ -140,6 +143,7 @@ fn gaitmap(data: &Path) -> Vec<Recorded> {
         };
         Recorded {
             name: name.to_owned(),
+            foot: name,
             rate_hz: 204.8,
             numbers: (0..rows.len()).map(|n| n as f64).collect(),
             samples: rows
@@ -159,16 +163,47 @@ fn contacts_of_real_foot_sensors_are_found() {
     let Some(data) = recordings("sensors") else {
         return;
     };
-    // Of the initial and of the terminal contacts, by switches and by swings.
-    for (category, recorded, least) in [
-        ("ipol", ipol(&data), [[0.65, 0.65], [0.90, 0.96]]),
-        ("gaitmap", gaitmap(&data), [[0.75, 0.9], [0.95, 0.98]]),
+    // Of the initial and of the terminal contacts, by switches, by swings, and of bodies, live and whole.
+    let model = format!(
+        "{}/../../../addons/footfall/models/right_foot.footimu",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    for (category, recorded, least, bodies) in [
+        (
+            "ipol",
+            ipol(&data),
+            [[0.65, 0.65], [0.90, 0.96]],
+            [[0.86, 0.86], [0.90, 0.91]],
+        ),
+        (
+            "gaitmap",
+            gaitmap(&data),
+            [[0.75, 0.9], [0.95, 0.98]],
+            [[0.84, 0.95], [0.94, 0.96]],
+        ),
     ] {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path(), category, &recorded);
         let arguments = ["evaluate", "contacts", "--sensors", "sensors.csv"];
         let report = footfall(folder.path(), &[&arguments[..], &["--json"]].concat()).json();
         eprintln!("{}", footfall(folder.path(), &arguments).stdout);
+        let driven = [
+            &arguments[..],
+            &["--model", &model, "--tolerance", "50", "--json"],
+        ];
+        let driven = footfall(folder.path(), &driven.concat()).json();
+        for (body, least) in ["body live", "body whole"].into_iter().zip(bodies) {
+            for (kind, least) in ["initial contact", "terminal contact"]
+                .into_iter()
+                .zip(least)
+            {
+                let agreement = &driven["sensors"][format!("{category}, {kind}, {body}")];
+                assert!(
+                    agreement["f1"].as_f64().unwrap() >= least,
+                    "{body}: {agreement}"
+                );
+            }
+        }
         for (detector, least) in ["switches", "swings"].into_iter().zip(least) {
             for (kind, least) in ["initial contact", "terminal contact"]
                 .into_iter()
@@ -200,6 +235,7 @@ fn sensors_without_events_are_named() {
     };
     let still = Recorded {
         name: "still".to_owned(),
+        foot: "left",
         rate_hz: 100.0,
         numbers: (0..300).map(f64::from).collect(),
         samples: vec![[0.0, 9.81, 0.0, 0.0, 0.0, 0.0]; 300],

@@ -85,6 +85,16 @@ impl ImuReconstructor3D {
         StringName::from(behaviour.name())
     }
 
+    /// How well the model explains what the sensors say, 0 to 1: the probability that what the person does is among what the model learned. 0 where nothing
+    /// is heard.
+    ///
+    /// Walking is about 0.85. Below 0.1, with a sensor that is shaken, worn elsewhere or mounted otherwise than is thought, the body stands.
+    #[func]
+    fn get_confidence(&self) -> f64 {
+        let session = self.session.as_ref();
+        session.map_or(0.0, |s| f64::from(s.reconstructor.confidence()))
+    }
+
     /// Certainty of a sensor's mounting, 0 to 1; 0 before it was found.
     #[func]
     fn get_mounting_certainty(&self, sensor: i64) -> f64 {

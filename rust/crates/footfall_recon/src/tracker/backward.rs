@@ -26,7 +26,7 @@ impl Tracker {
         if let Some(sensor) = sensor {
             self.predicted[..later.len()].copy_from_slice(later);
             let nearest = self.measure(sensor, f32::NEG_INFINITY);
-            let factor = -0.5 * self.config.evidence;
+            let factor = self.factor();
             weigh(
                 &self.predicted,
                 &self.distance,

@@ -1,11 +1,13 @@
 //! `footfall evaluate contacts`: the contact detectors beside each other.
 
+mod bodies;
 mod people;
 mod sensors;
 
 use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
+use bodies::Bodies;
 use footfall_core::{EventKind, Side};
 use footfall_motion::corpus::{CorpusClip, Where};
 use footfall_motion::switches::{Landing, detect_switches_by};
@@ -21,7 +23,8 @@ use std::path::PathBuf;
 /// contacts` finds, foot by foot, within a tolerance. An event so near an end of the recording that its other half is not seen is left out.
 ///
 /// On sensors: each row of the index is a recording of one sensor on a foot (`path`, an IMU .csv) with its known events
-/// (`events`, a .json like `footfall imu events` prints); initial and terminal contacts are matched apart.
+/// (`events`, a .json like `footfall imu events` prints); initial and terminal contacts are matched apart. With --model the bodies that the sensors
+/// drive are judged as well, both feet; the column `foot` then says which foot wears the sensor, where the events are of both.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall evaluate contacts --corpus index.csv --where category=neutral_walk\n  \
@@ -35,6 +38,9 @@ pub(crate) struct ContactsArgs {
     /// Table of the recordings of sensors on feet, with a column `events`
     #[arg(long, value_name = "SENSORS.csv")]
     sensors: Option<PathBuf>,
+    /// Model for a sensor on one foot; contacts of the bodies that it reconstructs are judged as well, live and whole
+    #[arg(long, value_name = "FOOT.footimu", requires = "sensors")]
+    model: Option<PathBuf>,
     /// Condition on a column of the corpus, for example `category=neutral_walk`; may repeat
     #[arg(long = "where", value_name = "COLUMN=VALUE", requires = "corpus")]
     conditions: Vec<Where>,
@@ -111,7 +117,8 @@ pub(super) fn evaluate(args: &ContactsArgs) -> Result<Report> {
         }
     }
     if let Some(index) = &args.sensors {
-        report.sensors = sensors::compare(index, args.tolerance)?;
+        let bodies = args.model.as_deref().map(Bodies::read).transpose()?;
+        report.sensors = sensors::compare(index, bodies.as_ref(), args.tolerance)?;
     }
     let agreements = report.categories.values_mut();
     for agreement in agreements.chain(report.sensors.values_mut()) {

@@ -15,6 +15,10 @@ use std::sync::Arc;
 /// A mounting that is less certain is warned of.
 const CERTAIN: f32 = 0.9;
 
+/// Below this confidence a frame is unexplained; more than this share of a recording is warned of.
+const UNEXPLAINED: f32 = 0.1;
+const MOST_UNEXPLAINED: f64 = 0.1;
+
 /// Reconstruct the motion of a body from what one or two sensors on it measured
 ///
 /// Frame 0 is at the time of the first sample, at the origin, facing +Z. What comes later in the recording helps with what comes
@@ -64,6 +68,9 @@ struct Report<'a> {
     mountings: Vec<MountingReport>,
     /// Seconds of each behaviour.
     behaviours: Vec<(&'static str, f64)>,
+    /// Mean of how well the model explains the frames, 0 to 1, and seconds in which it explains them so little that the body stands instead.
+    confidence: f64,
+    unexplained_s: f64,
 }
 
 #[derive(Serialize)]
@@ -85,7 +92,7 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
         );
     }
     let model = read_imu_model(&args.model)?;
-    let sites: Vec<&str> = model.sites.iter().map(|site| site.name()).collect();
+    let sites: Vec<&'static str> = model.sites.iter().map(|site| site.name()).collect();
     ensure!(
         sites.len() == args.recordings.len(),
         "{}: the model is for {} ({}); give --imu {} times, in this order",
@@ -137,6 +144,15 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
         let frames = made.behaviours.iter().filter(|b| **b == behaviour).count();
         frames as f64 / prepared.model().frame_rate_hz
     };
+    let unexplained = made.confidences.iter().filter(|c| **c < UNEXPLAINED);
+    let unexplained_s = unexplained.count() as f64 / prepared.model().frame_rate_hz;
+    if unexplained_s > MOST_UNEXPLAINED * recordings[0].duration_secs() {
+        output::note(&format!(
+            "warning: the model explains {unexplained_s:.1} s so little that the body stands there; check that the sensor sits at {} and how it is mounted, or train with recordings of what is done",
+            sites.join(", ")
+        ));
+    }
+    let confidence = made.confidences.iter().map(|c| f64::from(*c)).sum::<f64>();
     let behaviours = Behaviour::ALL.map(|behaviour| (behaviour.name(), seconds_of(behaviour)));
     let report = Report {
         output: &args.output,
@@ -148,6 +164,8 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
             .into_iter()
             .filter(|(_, secs)| *secs > 0.0)
             .collect(),
+        confidence: confidence / made.confidences.len() as f64,
+        unexplained_s,
     };
     if args.json {
         return output::print_json(&report);
@@ -155,11 +173,12 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
     let behaviours = report.behaviours.iter();
     let behaviours: Vec<String> = behaviours.map(|(b, s)| format!("{b} {s:.1} s")).collect();
     output::note(&format!(
-        "{}: {} frames at {} fps; {}",
+        "{}: {} frames at {} fps; {}; confidence {:.2}",
         args.output.display(),
         report.frames,
         report.fps,
-        behaviours.join(", ")
+        behaviours.join(", "),
+        report.confidence
     ));
     Ok(())
 }

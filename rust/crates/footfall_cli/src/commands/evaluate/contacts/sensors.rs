@@ -1,11 +1,12 @@
 //! Switches and swings of foot sensors against the events of a reference.
 
 use super::Agreement;
-use anyhow::{Context as _, Result, ensure};
-use footfall_core::EventKind;
+use super::bodies::Bodies;
+use anyhow::{Context as _, Result, bail, ensure};
+use footfall_core::{EventKind, Side};
 use footfall_imu::csv;
 use footfall_imu::events::{detect_swings, events_of};
-use footfall_motion::corpus::read_index;
+use footfall_motion::corpus::{IndexRow, read_index};
 use footfall_motion::sensor_switches::detect_sensor_switches;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -18,6 +19,12 @@ const MARGIN_SECS: f64 = 0.2;
 /// The column that names a recording's events.
 const EVENTS_COLUMN: &str = "events";
 
+/// The column that names the foot that wears the sensor.
+const FOOT_COLUMN: &str = "foot";
+
+/// Events in time, seconds.
+type Times = Vec<(f64, EventKind)>;
+
 #[derive(Deserialize)]
 struct Events {
     events: Vec<Event>,
@@ -26,11 +33,18 @@ struct Events {
 #[derive(Deserialize)]
 struct Event {
     time_s: f64,
+    /// Of the foot that wears the sensor when absent.
+    foot: Option<String>,
     kind: String,
 }
 
-/// Agreement of every recording of an index, by category, kind of contact and detector.
-pub(super) fn compare(index: &Path, tolerance_ms: f64) -> Result<BTreeMap<String, Agreement>> {
+/// Agreement of every recording of an index, by category, kind of contact and detector; with a model, that of the bodies that the
+/// recordings drive as well.
+pub(super) fn compare(
+    index: &Path,
+    bodies: Option<&Bodies>,
+    tolerance_ms: f64,
+) -> Result<BTreeMap<String, Agreement>> {
     let mut agreements: BTreeMap<String, Agreement> = BTreeMap::new();
     for row in read_index(index)? {
         let events = row.column(EVENTS_COLUMN).unwrap_or_default();
@@ -50,16 +64,36 @@ pub(super) fn compare(index: &Path, tolerance_ms: f64) -> Result<BTreeMap<String
             .map(|switch| (recording.start_secs() + switch.time_secs, switch.kind));
         let found = events_of(&detect_swings(&recording));
         let swings = found.iter().map(|event| (event.time_secs, event.kind));
-        let detectors: [(&str, Vec<(f64, EventKind)>); 2] = [
-            ("switches", switches.collect()),
-            ("swings", swings.collect()),
+        let worn = worn_foot(&row, index, &events)?;
+        let mut detectors: Vec<(&str, Side, Times)> = vec![
+            ("switches", worn, switches.collect()),
+            ("swings", worn, swings.collect()),
         ];
-        let times = || events.iter().map(|event| event.time_s);
-        let judged = times().fold(f64::INFINITY, f64::min) - MARGIN_SECS
-            ..=times().fold(f64::NEG_INFINITY, f64::max) + MARGIN_SECS;
-        for (detector, found) in &detectors {
+        if let Some(bodies) = bodies {
+            let told = bodies
+                .events(&recording, worn)
+                .with_context(|| row.path.display().to_string())?;
+            let swings = events_of(&told.swings).into_iter();
+            let swings = swings.map(|event| (event.time_secs, event.kind));
+            detectors.push(("swings as they come", worn, swings.collect()));
+            for (name, side, found) in [
+                ("body live", worn, &told.live),
+                ("body whole", worn, &told.whole),
+                ("other foot live", worn.other(), &told.live),
+                ("other foot whole", worn.other(), &told.whole),
+            ] {
+                let own = found.iter().filter(|event| event.side == side);
+                let own = own.map(|event| (event.time_secs, event.kind));
+                detectors.push((name, side, own.collect()));
+            }
+        }
+        for (detector, side, found) in &detectors {
+            let known: Vec<&Event> = events.iter().filter(|e| e.is_of(*side, worn)).collect();
+            let times = || known.iter().map(|event| event.time_s);
+            let judged = times().fold(f64::INFINITY, f64::min) - MARGIN_SECS
+                ..=times().fold(f64::NEG_INFINITY, f64::max) + MARGIN_SECS;
             for kind in [EventKind::InitialContact, EventKind::TerminalContact] {
-                let known = events.iter().filter(|event| event.kind == kind.name());
+                let known = known.iter().filter(|event| event.kind == kind.name());
                 let found = found.iter().filter(|(_, other)| *other == kind);
                 let found = found.map(|(time_secs, _)| *time_secs);
                 let kind = kind.name().replace('_', " ");
@@ -75,6 +109,31 @@ pub(super) fn compare(index: &Path, tolerance_ms: f64) -> Result<BTreeMap<String
         }
     }
     Ok(agreements)
+}
+
+impl Event {
+    /// Whether it is an event of a foot, when the sensor is worn on one.
+    fn is_of(&self, side: Side, worn: Side) -> bool {
+        let named = self.foot.as_deref();
+        named.map_or(side == worn, |name| name == side.name())
+    }
+}
+
+/// The foot that wears the sensor: the index says it, or all events are of one.
+fn worn_foot(row: &IndexRow, index: &Path, events: &[Event]) -> Result<Side> {
+    let named = row.column(FOOT_COLUMN).unwrap_or_default();
+    let side = Side::BOTH.into_iter().find(|side| {
+        let all_own = events.iter().all(|event| event.is_of(*side, *side));
+        named == side.name() || (named.is_empty() && all_own)
+    });
+    let Some(side) = side else {
+        bail!(
+            "{}, line {}: it is not told which foot wears the sensor; write left or right into a column \"{FOOT_COLUMN}\"",
+            index.display(),
+            row.line
+        );
+    };
+    Ok(side)
 }
 
 fn read_events(path: &Path) -> Result<Vec<Event>> {

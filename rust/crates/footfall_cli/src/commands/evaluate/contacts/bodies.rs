@@ -1,0 +1,113 @@
+//! Contacts of the bodies that a sensor on a foot drives, against the events of a reference.
+
+use crate::model_file::read_imu_model;
+use anyhow::{Context as _, Result, ensure};
+use footfall_core::{EventKind, Side};
+use footfall_imu::events::Swing;
+use footfall_imu::{ContactMeter, ImuRecording, ImuSample};
+use footfall_motion::contacts::{ContactConfig, detect_contacts};
+use footfall_recon::{Prepared, ReconConfig, find_mounting, reconstruct_recording};
+use glam::Vec3;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Bodies are looked at so many times a second: between frames they go on evenly.
+const LOOK_RATE_HZ: f64 = 100.0;
+
+/// Contact of one foot of a body, on the recording's clock.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BodyEvent {
+    pub(super) time_secs: f64,
+    pub(super) side: Side,
+    pub(super) kind: EventKind,
+}
+
+/// What a recording of a sensor on a foot tells of feet.
+pub(super) struct Told {
+    /// Swings of the foot that wears it, as samples come.
+    pub(super) swings: Vec<Swing>,
+    /// Contacts of the body, live and with what comes later.
+    pub(super) live: Vec<BodyEvent>,
+    pub(super) whole: Vec<BodyEvent>,
+}
+
+/// Model that reconstructs bodies from a sensor on one foot.
+pub(super) struct Bodies {
+    prepared: Arc<Prepared>,
+    worn: Side,
+}
+
+impl Bodies {
+    /// Reads the model.
+    pub(super) fn read(path: &Path) -> Result<Self> {
+        let model = read_imu_model(path)?;
+        let side = match model.sites[..] {
+            [site] if site.is_foot() => site.side(),
+            _ => None,
+        };
+        let Some(worn) = side else {
+            anyhow::bail!(
+                "{}: the model is not for one sensor on a foot; give one that `footfall imu train --site right_foot` wrote",
+                path.display()
+            );
+        };
+        let prepared =
+            Prepared::new(Arc::new(model)).with_context(|| path.display().to_string())?;
+        Ok(Self {
+            prepared: Arc::new(prepared),
+            worn,
+        })
+    }
+
+    /// Swings and bodies that a recording of the sensor on a foot gives, whose mounting is found. Recordings of the model's other foot are mirrored,
+    /// and so are their bodies.
+    pub(super) fn events(&self, recording: &ImuRecording, foot: Side) -> Result<Told> {
+        let mirrored = foot != self.worn;
+        let recording = if mirrored {
+            mirrored_recording(recording)
+        } else {
+            recording.clone()
+        };
+        let config = ReconConfig::default();
+        let mounting = find_mounting(&self.prepared, 0, &recording, &config.tracker)?;
+        let turned = [recording.turned(mounting.site_from_sensor)];
+        let skeleton = &self.prepared.model().skeleton;
+        let body = |live: bool| -> Result<Vec<BodyEvent>> {
+            let made = reconstruct_recording(&self.prepared, &turned, skeleton, &config, live)?;
+            ensure!(
+                made.clip.poses.len() >= 2,
+                "the recording is too short for a motion"
+            );
+            let clip = made.clip.resampled(LOOK_RATE_HZ);
+            let contacts = detect_contacts(&clip, &ContactConfig::from_frame(0));
+            let events = contacts.events().into_iter().map(|event| BodyEvent {
+                time_secs: made.start_secs + event.frame as f64 / LOOK_RATE_HZ,
+                side: if mirrored {
+                    event.side.other()
+                } else {
+                    event.side
+                },
+                kind: event.kind,
+            });
+            Ok(events.collect())
+        };
+        Ok(Told {
+            swings: ContactMeter::swings_of(&turned[0]),
+            live: body(true)?,
+            whole: body(false)?,
+        })
+    }
+}
+
+/// What the sensor would have measured on the other side of a mirrored body: in a mirror rates turn the other way.
+fn mirrored_recording(recording: &ImuRecording) -> ImuRecording {
+    let mirror = Vec3::new(-1.0, 1.0, 1.0);
+    let samples = recording.samples.iter().map(|sample| ImuSample {
+        force: mirror * sample.force,
+        rate: -mirror * sample.rate,
+        ..*sample
+    });
+    ImuRecording {
+        samples: samples.collect(),
+    }
+}
