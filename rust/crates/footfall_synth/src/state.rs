@@ -271,7 +271,7 @@ impl GaitGenerator {
                 **steps = state.styled(steps, more, &self.skeleton, &config)?;
             }
             Steps::Switching(steps) => {
-                state.resume(steps, (quick.lean(), balance.into()), &config)?
+                state.resume(steps, (quick.lean(), balance.into()), &config)?;
             }
         }
         self.config = config;

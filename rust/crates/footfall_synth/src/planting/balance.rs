@@ -6,7 +6,7 @@
 use super::{Planter, StepTiming};
 use crate::raw::{RawFrame, RawLeg};
 use footfall_core::ease::smooth_step;
-use glam::{Vec2, Vec3, Vec3Swizzles};
+use glam::{Vec2, Vec3, Vec3Swizzles as _};
 
 /// How far the feet are shifted at most, as a share of the leg's length.
 const MOST_SHIFT: f32 = 0.07;

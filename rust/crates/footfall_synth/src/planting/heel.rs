@@ -11,6 +11,9 @@ use footfall_core::rotation::from_heading;
 const RISING_EXTENSION: f32 = 0.996;
 const RISING_SOFTNESS: f32 = 0.0014;
 
+/// No leg counts as stretched farther, as a multiple of that: its exponential stays a number.
+const MOST_BEYOND: f32 = 50.0;
+
 /// How far a heel rises for this at most, radians.
 const MOST_RISE: f32 = 0.4;
 
@@ -46,7 +49,7 @@ impl Planter {
         let length = self.leg_lengths[side.index()];
         let hip = frame.pose.root_position + frame.level * leg.hip;
         let extension = hip.distance(leg.target.ankle) / length;
-        let beyond = (extension - RISING_EXTENSION) / RISING_SOFTNESS;
+        let beyond = ((extension - RISING_EXTENSION) / RISING_SOFTNESS).min(MOST_BEYOND);
         let ahead = (frame.level.inverse() * (leg.target.ankle - hip)).z / (AHEAD * length);
         if beyond < -8.0 || ahead >= 1.0 || leg.pitch < 0.0 {
             return;

@@ -121,8 +121,8 @@ impl State {
             velocity_before_mps: quick.velocities_mps[0].into(),
             planter: self.feet.as_ref().map(|feet| PlanterState {
                 airborne: running.airborne(),
-                lean: quick.lean(),
                 balance: balance.into(),
+                lean: quick.lean(),
                 ..feet.planter()
             }),
             tie: [0.0; TIE_LEN],
@@ -185,8 +185,8 @@ impl State {
             chance_position: self.chance_position,
             expected: expected.clone(),
             planter: self.feet.as_ref().map(|feet| PlanterState {
-                lean,
                 balance,
+                lean,
                 ..feet.planter()
             }),
         };

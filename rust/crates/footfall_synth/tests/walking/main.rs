@@ -165,6 +165,41 @@ fn motion_is_continuous_through_changes_of_control() {
     }
 }
 
+/// People land on a nearly straight leg, whatever their speed, and their hips rise and fall by a few centimetres. Captured with corrected hip joints: knees of 6°,
+/// hips that rise and fall by 2.9 cm.
+#[test]
+fn walkers_land_on_straight_legs() {
+    let skeleton = Skeleton::standard();
+    for speed in [0.9, 1.3, 1.7] {
+        let (mut knees, mut bobs) = (vec![], vec![]);
+        for seed in 1..9 {
+            let mut generator = generator(Kind::Styled, seed);
+            run(&mut generator, &skeleton, &walking(speed), 200);
+            let (frames, _) = run(&mut generator, &skeleton, &walking(speed), 400);
+            for pair in frames.windows(2) {
+                for side in Side::BOTH {
+                    if pair[1].contact[side.index()] && !pair[0].contact[side.index()] {
+                        let [hip, knee, ankle] = [side.upper_leg(), side.lower_leg(), side.foot()]
+                            .map(|joint| pair[1].model.position(joint));
+                        knees.push((knee - hip).angle_between(ankle - knee).to_degrees());
+                    }
+                }
+            }
+            let heights = frames
+                .iter()
+                .map(|frame| frame.model.position(Joint::Hips).y);
+            bobs.push(heights.clone().fold(0.0, f32::max) - heights.fold(2.0, f32::min));
+        }
+        let mean = |values: &[f32]| values.iter().sum::<f32>() / values.len() as f32;
+        let (knee, bob) = (mean(&knees), mean(&bobs));
+        assert!(knee < 18.0, "{speed} m/s: knees of {knee}° where feet land");
+        assert!(
+            (0.015..0.055).contains(&bob),
+            "{speed} m/s: hips bob by {bob} m"
+        );
+    }
+}
+
 /// Somebody stands in both frames: feet on one place, hips no farther than people sway.
 fn assert_stays(first: &Frame, last: &Frame) {
     for side in Side::BOTH {
