@@ -109,8 +109,9 @@ fn apart_m(a: &[ModelPose], b: &[ModelPose]) -> (f32, f32) {
 fn a_sensor_that_begins_later_catches_up_with_the_other() {
     let (prepared, recordings) = prepare();
     let together = driven(&prepared, &recordings, 0, 0.0);
-    // 3.47 s later, not in the middle of frames; and again on a clock that is an hour ahead.
-    for (clock_secs, most) in [(0.0, 0.01), (3600.0, 0.05)] {
+    // 3.47 s later, not in the middle of frames; and again on a clock that is an hour ahead, whose offset is known to half a frame: feet that are planted
+    // half a frame earlier carry the body some centimetres farther.
+    for (clock_secs, most) in [(0.0, 0.01), (3600.0, 0.07)] {
         let apart = driven(&prepared, &recordings, 347, clock_secs);
         let (mean, worst) = apart_m(&together[547..], &apart[547..]);
         assert!(

@@ -169,10 +169,10 @@ fn a_sensor_on_a_foot_walks_a_body_as_far_as_its_wearer_went() {
     // Where ahead is follows from its first steps, within twenty degrees.
     assert!(way.x.abs() < 0.36 * way.z, "{way}");
     assert!((8..=12).contains(&footfalls), "{footfalls}");
-    // In most frames a standing foot does not move at all.
+    // In most frames a standing foot does not move at all; in the first few after its sensor has it land it settles.
     slips.sort_by(f32::total_cmp);
     let [median, seldom] = [slips.len() / 2, slips.len() * 19 / 20].map(|n| slips[n]);
-    assert!(median < 1e-4 && seldom < 1.5e-3, "{median} {seldom}");
+    assert!(median < 1e-4 && seldom < 2.5e-3, "{median} {seldom}");
     let sunk = heights.iter().copied().fold(f32::INFINITY, f32::min);
     let floats = heights.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     assert!(sunk > -0.03 && floats < 0.05, "{sunk} {floats}");
