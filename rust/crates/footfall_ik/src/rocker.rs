@@ -98,6 +98,25 @@ impl RockerFoot {
         }
     }
 
+    /// The least pitch from `least` on, heel up with flat toes, at which the ankle is no farther than `reach` from a point `from_plant`, seen from the
+    /// plant's flat ankle and in the axes of its heading; the pitch that comes nearest to it, where none does.
+    pub fn pitch_within_reach(&self, from_plant: Vec3, reach: f32, least: f32) -> f32 {
+        let joint = self.toe_joint;
+        let away = from_plant - joint;
+        // The squared distance is that of both from the toe joint, and twice cosine · cos(pitch) + sine · sin(pitch).
+        let cosine = away.y * joint.y + away.z * joint.z;
+        let sine = away.z * joint.y - away.y * joint.z;
+        let squares = away.length_squared() + joint.length_squared();
+        let wanted = 0.5 * (reach * reach - squares) - away.x * joint.x;
+        let (nearest, most) = (
+            (-sine).atan2(-cosine),
+            cosine.hypot(sine).max(f32::MIN_POSITIVE),
+        );
+        let before = (-wanted / most).clamp(-1.0, 1.0).acos();
+        let highest = MAX_TOE_FLEXION.max(least);
+        (nearest - before).clamp(least, highest)
+    }
+
     /// Displacement of the ankle at this pitch from its place over the flat foot, for a foot that points to +Z.
     pub fn roll(&self, pitch: f32) -> Vec3 {
         let flat = Plant {
@@ -274,6 +293,35 @@ mod tests {
                 );
             }
             previous = Some(target);
+        }
+    }
+
+    /// The closed form against all pitches, tried one by one.
+    #[test]
+    fn a_heel_rises_as_far_as_the_leg_needs() {
+        let rocker = RockerFoot::new(&Skeleton::standard(), Side::Left);
+        let trials = 20_000;
+        for (hip, least) in [
+            (Vec3::new(0.04, 0.79, 0.27), 0.0),
+            (Vec3::new(-0.05, 0.76, 0.4), 0.2),
+            (Vec3::new(0.0, 0.83, 0.05), 0.0),
+        ] {
+            let reach_at = |pitch: f32| rocker.roll(pitch).distance(hip);
+            for share in [0.5, 0.97, 0.99, 1.0, 1.1] {
+                let reach = share * reach_at(least);
+                let found = rocker.pitch_within_reach(hip, reach, least);
+                let pitches = (0..=trials)
+                    .map(|trial| least + (MAX_TOE_FLEXION - least) * trial as f32 / trials as f32);
+                let within = pitches
+                    .clone()
+                    .find(|pitch| reach_at(*pitch) <= reach + 1e-6);
+                let nearest = || pitches.min_by(|a, b| reach_at(*a).total_cmp(&reach_at(*b)));
+                let tried = within.or_else(nearest).unwrap();
+                assert!(
+                    (found - tried).abs() < 2e-3,
+                    "{hip} {share}: {found}, tried {tried}"
+                );
+            }
         }
     }
 
