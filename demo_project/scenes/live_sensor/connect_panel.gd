@@ -120,7 +120,7 @@ func show_state(calibration: Calibration, driven: ImuReconstructor3D) -> void:
 		%Code.hide()
 
 
-## What the person does, and how well the model explains it.
+## The person's behaviour, and how well the model explains it.
 func _doing(driven: ImuReconstructor3D) -> String:
 	var confidence := driven.get_confidence()
 	if confidence < UNEXPLAINED:

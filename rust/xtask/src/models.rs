@@ -167,6 +167,7 @@ fn fit_dynamics(data: &Data) -> Result<()> {
     process::run(&mut fit)
 }
 
+/// The model of a sensor at one site.
 fn train_sensor(data: &Data, site: &str) -> Result<()> {
     let mut train = data.footfall("imu");
     train

@@ -51,7 +51,7 @@ impl Leg {
         }
     }
 
-    /// Where the foot of a pose is.
+    /// Place and rotations of the foot in a pose.
     pub fn foot_of(&self, pose: &Pose) -> FootTarget {
         let hips = pose.rotation(Joint::Hips);
         let thigh = hips * pose.rotation(self.side.upper_leg());

@@ -63,7 +63,7 @@ const STRIKE_SECS: f64 = 0.15;
 /// After a gap of this length nothing is known of the foot, seconds.
 const LONGEST_GAP_SECS: f64 = 0.1;
 
-/// Tells whether the foot that wears a sensor stands. Allocates nothing.
+/// Contact of the foot that wears a sensor, sample by sample. Allocates nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactMeter {
     last_secs: Option<f64>,

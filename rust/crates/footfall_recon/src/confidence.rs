@@ -18,6 +18,7 @@
 
 use crate::body::BodyFrame;
 use footfall_core::Behaviour;
+use footfall_core::ease::smooth_step;
 use footfall_model::ImuModel;
 use footfall_model::imu_model::{BODY_COUNT, CONTACT, TURN, WAY};
 
@@ -56,9 +57,7 @@ impl Confidence {
 
     /// Share of the body that is the model's; the rest stands.
     pub(crate) fn trusted(self) -> f32 {
-        let share = (self.value() - TRUSTED[0]) / (TRUSTED[1] - TRUSTED[0]);
-        let share = share.clamp(0.0, 1.0);
-        share * share * (3.0 - 2.0 * share)
+        smooth_step((self.value() - TRUSTED[0]) / (TRUSTED[1] - TRUSTED[0]))
     }
 
     /// Whether what the sensors say of contacts and of the heading is taken.

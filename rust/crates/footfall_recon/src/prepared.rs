@@ -94,6 +94,15 @@ impl Prepared {
         })
     }
 
+    /// Whether the left and the right foot stand, as the sensors on them say by number; `None` where none is worn or nobody knows.
+    pub(crate) fn told_stands(&self, told: impl Fn(usize) -> Option<bool>) -> [Option<bool>; 2] {
+        let mut stands = [None; 2];
+        for WornFoot { sensor, side } in &self.worn_feet {
+            stands[side.index()] = told(*sensor);
+        }
+        stands
+    }
+
     /// The model.
     pub const fn model(&self) -> &Arc<ImuModel> {
         &self.model

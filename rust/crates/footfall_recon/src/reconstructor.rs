@@ -4,7 +4,7 @@ use crate::blend::Blend;
 use crate::confidence::Confidence;
 use crate::ground::{Ground, GroundInput};
 use crate::measure::{SensorFrames, measure, sensor_heading};
-use crate::prepared::{Prepared, WornFoot};
+use crate::prepared::Prepared;
 use crate::sensor::Sensor;
 use crate::shown_behaviour::ShownBehaviour;
 use crate::tracker::{Tracker, TrackerConfig};
@@ -301,13 +301,9 @@ impl Reconstructor {
 
     /// Whether each foot stands, as far as a sensor on it tells.
     fn told_stands(&self) -> [Option<bool>; 2] {
-        let mut stands = [None; 2];
-        if self.silent_secs < TOLD_FOR_SECS && self.confidence.is_trusted() {
-            for WornFoot { sensor, side } in &self.prepared.worn_feet {
-                stands[side.index()] = self.sensors[*sensor].stands();
-            }
-        }
-        stands
+        let heard = self.silent_secs < TOLD_FOR_SECS && self.confidence.is_trusted();
+        let told = |sensor: usize| self.sensors[sensor].stands().filter(|_| heard);
+        self.prepared.told_stands(told)
     }
 
     /// Splits a pose that [`step`](Self::step) wrote into the place and heading of the body on the ground, and the pose above it, which faces +Z.

@@ -269,13 +269,9 @@ impl Shown<'_> {
 
     /// Whether each foot stands, as far as a sensor on it tells.
     fn told_stands(&self, sensors: &SensorFrames) -> [Option<bool>; 2] {
-        let mut stands = [None; 2];
-        if self.confidence.is_trusted() {
-            for WornFoot { sensor, side } in &self.prepared.worn_feet {
-                stands[side.index()] = sensors[*sensor].and_then(|heard| heard.stands);
-            }
-        }
-        stands
+        let heard = self.confidence.is_trusted();
+        let told = |sensor: usize| sensors[sensor]?.stands.filter(|_| heard);
+        self.prepared.told_stands(told)
     }
 
     /// Measures strides up to the end of a frame.

@@ -3,7 +3,7 @@
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, foot_heading, foot_pitches, settled_pitch};
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3, Vec3Swizzles as _};
 
 /// Least share of a leg's squared length that is left of it from the side.
 const LEAST_HEIGHT: f32 = 0.25;
@@ -47,6 +47,15 @@ impl RawLeg {
     /// Heading of the foot relative to the walker's.
     pub(crate) fn heading(&self) -> f32 {
         foot_heading(self.foot)
+    }
+
+    /// Turns the leg about its hip joint so that the ankle is so much further to the left and ahead.
+    pub(crate) fn shift(&mut self, shift: Vec2) {
+        let reach = self.ankle - self.hip;
+        let level = reach.xz() + shift;
+        let height = (reach.length_squared() - level.length_squared())
+            .max(LEAST_HEIGHT * reach.length_squared());
+        self.ankle = self.hip + Vec3::new(level.x, -height.sqrt(), level.y);
     }
 
     /// Puts the ankle elsewhere, with the foot at another pitch: at `free` in the air and at `standing` on the ground.

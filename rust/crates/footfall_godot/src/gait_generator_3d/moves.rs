@@ -11,7 +11,7 @@ use godot::prelude::*;
 /// Mass of a body, kilograms.
 const BODY_KG: f32 = 70.0;
 
-/// What became of a jump within a frame.
+/// Events of a jump within a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Flight {
     pub(super) took_off: bool,
@@ -19,7 +19,7 @@ pub(super) struct Flight {
 }
 
 impl Flight {
-    /// What a frame made of a body that was in this phase of a jump before.
+    /// Events of a frame before which the body was in this phase of a jump.
     pub(super) fn between(before: Option<JumpPhase>, now: Option<JumpPhase>) -> Self {
         let [flew, flies] = [before, now].map(|phase| phase == Some(JumpPhase::Flight));
         Self {

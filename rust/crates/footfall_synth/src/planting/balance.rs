@@ -4,18 +4,15 @@
 //! the legs about the hips, which moves the body over its feet, and not by bending a knee.
 
 use super::{Planter, StepTiming};
-use crate::raw::{RawFrame, RawLeg};
+use crate::raw::RawFrame;
 use footfall_core::ease::smooth_step;
-use glam::{Vec2, Vec3, Vec3Swizzles as _};
+use glam::{Vec2, Vec3Swizzles as _};
 
 /// How far the feet are shifted at most, as a share of the leg's length.
 const MOST_SHIFT: f32 = 0.07;
 
 /// Feet that stand closer together than this are hardly levelled by a shift, as a share of the leg's length.
 const NEAR: f32 = 0.15;
-
-/// Least share of a leg's squared length that is left of it from above.
-const LEAST_HEIGHT: f32 = 0.25;
 
 /// Share of what a landing lacks that is made up for by then: all at once would sway a walker whose left and right steps differ.
 const TAKEN_UP: f32 = 0.5;
@@ -53,16 +50,5 @@ impl Planter {
         let shift =
             apart * (forwards * (high - low) * height / (apart.length_squared() + near * near));
         shift.clamp_length_max(MOST_SHIFT * length)
-    }
-}
-
-impl RawLeg {
-    /// Turns the leg about its hip joint so that the ankle is elsewhere over the ground.
-    fn shift(&mut self, shift: Vec2) {
-        let reach = self.ankle - self.hip;
-        let level = reach.xz() + shift;
-        let height = (reach.length_squared() - level.length_squared())
-            .max(LEAST_HEIGHT * reach.length_squared());
-        self.ankle = self.hip + Vec3::new(level.x, -height.sqrt(), level.y);
     }
 }

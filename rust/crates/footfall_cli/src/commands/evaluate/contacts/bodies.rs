@@ -22,7 +22,7 @@ pub(super) struct BodyEvent {
     pub(super) kind: EventKind,
 }
 
-/// What a recording of a sensor on a foot tells of feet.
+/// Contacts of both feet, from a recording of a sensor on one.
 pub(super) struct Told {
     /// Swings of the foot that wears it, as samples come.
     pub(super) swings: Vec<Swing>,
@@ -99,7 +99,7 @@ impl Bodies {
     }
 }
 
-/// What the sensor would have measured on the other side of a mirrored body: in a mirror rates turn the other way.
+/// Measurements of the same sensor on the other side of a mirrored body: in a mirror rates turn the other way.
 fn mirrored_recording(recording: &ImuRecording) -> ImuRecording {
     let mirror = Vec3::new(-1.0, 1.0, 1.0);
     let samples = recording.samples.iter().map(|sample| ImuSample {
