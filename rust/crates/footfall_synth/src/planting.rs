@@ -6,6 +6,7 @@
 //! generated rotations and planted feet disagree about is spread over the swing.
 
 mod balance;
+mod bounce;
 mod cut;
 mod flight;
 mod heel;

@@ -3,6 +3,7 @@
 //! Nothing but gravity acts then, so the hips go on at an even speed over the ground and on a parabola above it, from where the foot takes off to
 //! where the generated leg of the other foot has them as it lands. The foot that took off is on its swing; the next step brings it down.
 
+use super::bounce::Bounce;
 use super::support::LET_GO_EXTENSION;
 use super::swing::Swing;
 use super::{PlantedFrame, Planter, StepTiming, free_foot};
@@ -16,6 +17,10 @@ use glam::Quat;
 /// Speed upwards at which the hips leave the ground at least and at most, m/s, beyond that which brings them back to the same height. Legs that
 /// disagree more about where a short flight ends are bent or stretched.
 const MOST_LIFT_MPS: f32 = 0.3;
+
+/// The foot that lands and the one that takes off each have the hips at a height of their own. This share of the way from the first to the second they
+/// are as a run lands.
+const LEAVING_SHARE: f32 = 0.35;
 
 /// Longer flights are leaps, seconds; they keep this share of the speed over the ground that they begin with.
 const LEAP_SECS: f32 = 0.22;
@@ -100,32 +105,51 @@ impl Planter {
         frames as f32 * self.frame_secs
     }
 
-    /// Puts the hips on their parabola, and lets the standing leg push them off at its speed.
+    /// Puts the hips on their parabola, and lets the standing leg push them off at its speed. From flight to flight it does so as a spring; in the first
+    /// step of a run and before a leap it goes on as generated, and pushes harder.
     pub(super) fn fly(&self, raw: &[RawFrame], timing: &StepTiming, out: &mut [PlantedFrame]) {
         let Some(take_off) = timing.take_off else {
             return;
         };
-        let height = |frame: usize| out[frame].pose.root_position.y;
-        let secs = (timing.frames - take_off) as f32 * self.frame_secs;
-        let even = 0.5 * GRAVITY_MPS2 * secs;
         let landing = self.landing_height(&raw[timing.frames], timing.leading.other());
-        let lift = (landing - height(take_off)) / secs;
-        let rise = even + lift.clamp(-MOST_LIFT_MPS, MOST_LIFT_MPS);
-        // The generated leg pushes off nearly as fast; what is missing is added over the stance.
-        let pushed = (height(take_off) - height(take_off - 1)) / self.frame_secs;
+        let flight_secs = self.flight_secs(timing);
+        let even = 0.5 * GRAVITY_MPS2 * flight_secs;
         let stance_secs = take_off as f32 * self.frame_secs;
-        // Between two frames the leg's speed is that of half a frame earlier.
-        let missing = rise + 0.5 * GRAVITY_MPS2 * self.frame_secs * 0.5 - pushed;
-        let begin = height(take_off);
-        for (index, frame) in out[..=timing.frames].iter_mut().enumerate() {
-            let height = &mut frame.pose.root_position.y;
-            if index <= take_off {
-                let s = index as f32 / take_off as f32;
-                *height += missing * stance_secs * s * s * (s - 1.0);
-            } else {
-                let t = (index - take_off) as f32 * self.frame_secs;
-                *height = begin + rise * t - 0.5 * GRAVITY_MPS2 * t * t;
+        let limited = |lift: f32| even + lift.clamp(-MOST_LIFT_MPS, MOST_LIFT_MPS);
+        let rise = match self.state.hips_velocity {
+            Some(velocity) if timing.airborne && flight_secs <= LEAP_SECS => {
+                // A frame's velocity is that of half a frame earlier.
+                let fall = velocity.y - 0.5 * GRAVITY_MPS2 * self.frame_secs;
+                let begin = self.state.hips.y;
+                let leaving = &raw[take_off].legs[timing.leading.index()];
+                let leaving = leaving.target.ankle.y - leaving.ankle.y;
+                let end = landing + LEAVING_SHARE * (leaving - landing);
+                let short = end - begin - 0.5 * (fall + even) * stance_secs;
+                let rise = limited(short / (0.5 * stance_secs + flight_secs));
+                let bounce = Bounce::new(begin, [fall, rise], stance_secs);
+                for (index, frame) in out[..=take_off].iter_mut().enumerate() {
+                    frame.pose.root_position.y = bounce.height(index as f32 * self.frame_secs);
+                }
+                rise
             }
+            _ => {
+                let height = |frame: usize| out[frame].pose.root_position.y;
+                let rise = limited((landing - height(take_off)) / flight_secs);
+                // The generated leg pushes off nearly as fast; what is missing is added over the stance.
+                let pushed = (height(take_off) - height(take_off - 1)) / self.frame_secs;
+                // Between two frames the leg's speed is that of half a frame earlier.
+                let missing = rise + 0.5 * GRAVITY_MPS2 * self.frame_secs * 0.5 - pushed;
+                for (index, frame) in out[..=take_off].iter_mut().enumerate() {
+                    let s = index as f32 / take_off as f32;
+                    frame.pose.root_position.y += missing * stance_secs * s * s * (s - 1.0);
+                }
+                rise
+            }
+        };
+        let begin = out[take_off].pose.root_position.y;
+        for (passed, frame) in out[take_off..=timing.frames].iter_mut().enumerate() {
+            let t = passed as f32 * self.frame_secs;
+            frame.pose.root_position.y = begin + rise * t - 0.5 * GRAVITY_MPS2 * t * t;
         }
     }
 

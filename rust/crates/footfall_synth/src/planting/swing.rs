@@ -16,8 +16,8 @@ const CLEARANCE_SOFTNESS_M: f32 = 0.004;
 /// How fast the disagreement from the last stance dies away, per swing.
 const SETTLE_RATE: f32 = 8.0;
 
-/// A foot lands at most this fast, m/s: people brake their swing before the heel strikes.
-const MAX_LANDING_MPS: f32 = 1.2;
+/// A foot that walks and one that runs lands at most this fast, m/s: people brake their swing before the heel strikes.
+const MOST_LANDING_MPS: [f32; 2] = [1.2, 2.2];
 
 /// Part of the swing by which a foot is free of how it stood.
 const FREED_BY: f32 = 0.3;
@@ -26,7 +26,7 @@ const FREED_BY: f32 = 0.3;
 const LEAP_DEPARTURE_SECS: f32 = 0.5;
 
 /// Over this time at most a faster foot is braked, seconds.
-const BRAKING_SECS: f32 = 0.16;
+const BRAKING_SECS: [f32; 2] = [0.16, 0.1];
 
 /// What planted and generated foot disagree about, from the foot's last frame on the ground to its next first.
 pub(super) struct Swing {
@@ -72,14 +72,16 @@ impl Swing {
         let frames = (timing.frames - first).max(1) as f32;
         // The corrections have come to rest by then.
         let landing = ends[2].1.ankle - arrival;
+        let runs = usize::from(timing.airborne);
+        let (most_landing_mps, braking_secs) = (MOST_LANDING_MPS[runs], BRAKING_SECS[runs]);
         Self {
             freed_after: if timing.airborne {
                 0.0
             } else {
                 FREED_BY * frames
             },
-            excess: landing - landing.clamp_length_max(MAX_LANDING_MPS * frame_secs),
-            braking: (BRAKING_SECS / frame_secs).min(frames),
+            excess: landing - landing.clamp_length_max(most_landing_mps * frame_secs),
+            braking: (braking_secs / frame_secs).min(frames),
             ..Self::between(&[ends[0], ends[1]], Some(&ends[2]), first, frames)
         }
     }

@@ -85,6 +85,31 @@ fn hips_fly_on_a_parabola() {
     assert!(flights > 60, "only {flights} frames in the air");
 }
 
+/// A foot that bears catches the hips, which are lowest in the middle of its stance and not at its end.
+#[test]
+fn hips_do_not_fall_over_a_foot_that_bears() {
+    let skeleton = Skeleton::standard();
+    for (seed, speed) in [(1, 2.4), (2, 3.0), (3, 3.6)] {
+        let mut generator = generator(Kind::Styled, seed);
+        let (frames, _) = run(&mut generator, &skeleton, &walking(speed), 1200);
+        let (mut falling, mut bearing) = (0, 0);
+        for window in frames[240..].windows(3) {
+            if window.iter().any(|frame| frame.contact == [false; 2]) {
+                continue;
+            }
+            let [before, now, next] =
+                [0, 1, 2].map(|index: usize| window[index].model.position(Joint::Hips).y);
+            bearing += 1;
+            falling += usize::from((next - 2.0 * now + before) / (DT * DT) < -0.7 * GRAVITY_MPS2);
+        }
+        let share = falling as f32 / bearing as f32;
+        assert!(
+            share < 0.1,
+            "falls for {share} of the stance at {speed} m/s"
+        );
+    }
+}
+
 #[test]
 fn walkers_become_runners_and_come_to_a_stand_again() {
     let skeleton = Skeleton::standard();
