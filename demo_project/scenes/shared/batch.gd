@@ -2,16 +2,18 @@ extends Node
 ## Runs the scene without a user, as asked after `--` on the command line:
 ##
 ## `--pictures FOLDER` saves what the scene shows, a picture every quarter of a second, then three close-ups, and quits.
+## `--film FOLDER` saves twelve pictures a second of the scene's tour, and quits.
 ## `--frames N` runs N frames, checks what the scene promises, prints `DEMO OK` and quits; the exit code is 1 when it did not keep it.
 ##
 ## The scene tells what is to be seen and checked: `close_ups()`, name → [place, heading and height in degrees, distance in metres] of
 ## the camera; `FRAMES_BEFORE_PICTURES`, when half a second is too early; `begin_check()`; and `problems(frames)`, what is wrong after so many of them.
-## A scene with `is_getting_ready()` is waited for.
+## A scene with `is_getting_ready()` is waited for. One with a tour has `TOUR_SECS` and `tour(seconds)`, which does what is due by then.
 ##
 ## Start Godot with `--fixed-fps 60` for both, so that time runs by frames.
 
 const PICTURES := 16
 const FRAMES_BETWEEN := 15
+const FRAMES_OF_FILM := 5
 @onready var _scene := get_parent()
 
 
@@ -20,6 +22,8 @@ func _ready() -> void:
 	for index: int in arguments.size() - 1:
 		if arguments[index] == "--pictures":
 			_take_pictures(arguments[index + 1])
+		elif arguments[index] == "--film":
+			_film(arguments[index + 1])
 		elif arguments[index] == "--frames":
 			_run_frames(arguments[index + 1].to_int())
 
@@ -44,6 +48,20 @@ func _take_pictures(folder: String) -> void:
 		camera.distance_m = close_up[3]
 		camera.look_from(close_up[0])
 		await _save(folder.path_join("hero_%s.png" % view))
+	print("DEMO OK")
+	get_tree().quit()
+
+
+func _film(folder: String) -> void:
+	DirAccess.make_dir_recursive_absolute(folder)
+	RenderingServer.render_loop_enabled = false
+	await _until_ready()
+	_scene.get_node(^"Interface").hide()
+	for picture: int in roundi(_scene.TOUR_SECS * 60.0 / FRAMES_OF_FILM):
+		for frame: int in FRAMES_OF_FILM:
+			_scene.tour((picture * FRAMES_OF_FILM + frame) / 60.0)
+			await _frames(1)
+		await _save(folder.path_join("frame_%04d.png" % picture))
 	print("DEMO OK")
 	get_tree().quit()
 

@@ -18,6 +18,7 @@ mod display;
 mod engine_run;
 mod examples;
 mod export;
+mod film;
 mod godot;
 mod golden;
 mod library;
@@ -93,6 +94,8 @@ enum Command {
     },
     /// Build all and open the demo; without a display, leave pictures of it.
     Demo,
+    /// Film the tour of the third-person scene for the README.
+    Film,
     /// Export the demo as a game for this machine into `rust/target/export`, and start it once without a window.
     Export,
     /// Measure crowds in headless Godot; prints one JSON object, times in ms and µs.
@@ -140,6 +143,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Tidy => tidy::command(),
         Command::Verify { steps } => verify::command(steps),
         Command::Demo => demo::command(),
+        Command::Film => film::command(),
         Command::Export => export::command(),
         Command::BenchCrowd {
             instances,
