@@ -7,7 +7,8 @@ mod common;
 use common::walker::walker;
 use footfall_motion::bvh::{clip_to_bvh, write_file};
 use footfall_motion::contact_file::ContactFile;
-use footfall_motion::corpus::{Corpus, CorpusClip, CorpusError, Where};
+use footfall_motion::corpus::{Corpus, CorpusError, Where};
+use footfall_motion::recording::Recording;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -145,7 +146,7 @@ fn contacts_that_a_person_corrected_are_taken_instead_of_the_detected_ones() {
         after.contacts.feet.clone().map(|foot| foot.stances),
         stances
     );
-    let steps = |clip: &CorpusClip| clip.walks.iter().map(|w| w.steps.len()).sum::<usize>();
+    let steps = |clip: &Recording| clip.walks.iter().map(|w| w.steps.len()).sum::<usize>();
     assert!(
         steps(&after) < steps(&before),
         "a step without its contact is none"

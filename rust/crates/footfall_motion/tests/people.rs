@@ -5,8 +5,9 @@ mod common;
 use common::natural::knee_degrees;
 use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
 use footfall_motion::bvh;
-use footfall_motion::corpus::{Corpus, CorpusClip, Person, Where};
+use footfall_motion::corpus::{Corpus, Person, Where};
 use footfall_motion::figure::sole_points;
+use footfall_motion::recording::Recording;
 use footfall_motion::retarget::{HipCentres, RetargetOptions, retarget};
 
 /// Tenth percentile of the knees over a person's walks, degrees, as recorded.
@@ -41,14 +42,14 @@ fn quantile(values: &mut [f32], share: f32) -> f32 {
 }
 
 /// Frames of a clip's walks.
-fn walking_frames(clip: &CorpusClip) -> Vec<usize> {
+fn walking_frames(clip: &Recording) -> Vec<usize> {
     let steps = clip.walks.iter().flat_map(|walk| &walk.steps);
     steps.flat_map(|step| step.first..step.end).collect()
 }
 
 /// Knees over a person's walks, degrees.
-fn knees<'a>(clips: impl Iterator<Item = &'a CorpusClip>) -> Vec<f32> {
-    let of_clip = |clip: &'a CorpusClip| {
+fn knees<'a>(clips: impl Iterator<Item = &'a Recording>) -> Vec<f32> {
+    let of_clip = |clip: &'a Recording| {
         let frames = walking_frames(clip).into_iter();
         frames.flat_map(|frame| {
             Side::BOTH.map(|side| knee_degrees(&clip.retargeted.clip, frame, side))
@@ -58,7 +59,7 @@ fn knees<'a>(clips: impl Iterator<Item = &'a CorpusClip>) -> Vec<f32> {
 }
 
 /// Their tenth percentile.
-fn straightest_knee<'a>(clips: impl Iterator<Item = &'a CorpusClip>) -> f32 {
+fn straightest_knee<'a>(clips: impl Iterator<Item = &'a Recording>) -> f32 {
     quantile(&mut knees(clips), 0.1)
 }
 
@@ -72,7 +73,7 @@ fn sole_slope(clip: &Clip, frame: usize, side: Side) -> f32 {
 }
 
 /// Slopes of the soles in the middle of the stances of walking, 0.35 to 0.5 of the stance.
-fn soles(clip: &CorpusClip) -> Vec<f32> {
+fn soles(clip: &Recording) -> Vec<f32> {
     let mut slopes = Vec::new();
     for step in clip.walks.iter().flat_map(|walk| &walk.steps) {
         let stances = &clip.contacts.foot(step.side).stances;
@@ -87,7 +88,7 @@ fn soles(clip: &CorpusClip) -> Vec<f32> {
     slopes
 }
 
-fn of_person<'a>(corpus: &'a Corpus, person: &'a Person) -> impl Iterator<Item = &'a CorpusClip> {
+fn of_person<'a>(corpus: &'a Corpus, person: &'a Person) -> impl Iterator<Item = &'a Recording> {
     let clips = corpus.clips.iter();
     clips.filter(|clip| person.paths.contains(&clip.row.path))
 }
@@ -100,7 +101,7 @@ fn spread(values: &[f32]) -> f32 {
 }
 
 /// Changes of the knees' velocity over the walks, degrees in a sixtieth of a second twice.
-fn jerks<'a>(clips: impl Iterator<Item = &'a CorpusClip>) -> Vec<f32> {
+fn jerks<'a>(clips: impl Iterator<Item = &'a Recording>) -> Vec<f32> {
     let mut jerks = Vec::new();
     for clip in clips {
         let motion = &clip.retargeted.clip;

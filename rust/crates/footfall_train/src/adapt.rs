@@ -10,15 +10,17 @@ mod transforms;
 
 use crate::EmConfig;
 use crate::average::{DURATION_VARIANCE_FLOOR, STATES, expect_steps};
+use crate::encoded::{EncodedCorpus, steady_part};
 use crate::error::TrainError;
 use crate::progress::Progress;
 use crate::sequence::Sequence;
-use crate::train::{TrainConfig, TrainingClip, encode, mean_terminal, steady_part};
+use crate::train::{TrainConfig, mean_terminal};
 use footfall_core::Side;
 use footfall_model::{
     FEATURE_COUNT, GaitModel, GaitStyle, GlobalVarianceModel, OBSERVATION_COUNT, Provenance,
-    STATES_PER_STEP, StateModel, StepModel, StepSpread,
+    STATES_PER_STEP, StateModel, StepModel,
 };
+use footfall_motion::recording::Recording;
 use footfall_motion::steps::Walk;
 use footfall_prob::duration::{DurationDist, GaussianDuration};
 use footfall_prob::gaussian::DiagonalGaussian;
@@ -60,6 +62,16 @@ pub struct AdaptConfig {
     pub steps: Option<usize>,
 }
 
+impl AdaptConfig {
+    /// The way that suits a dozen steps best, with the first `steps` of them.
+    pub const fn first_steps(steps: usize) -> Self {
+        Self {
+            method: AdaptMethod::Csmaplr,
+            steps: Some(steps),
+        }
+    }
+}
+
 /// A style and how the adaptation went.
 #[derive(Clone, Debug)]
 pub struct Adapted {
@@ -83,7 +95,7 @@ pub struct Adapted {
 /// [`TrainError`] when the clips hold fewer than two steps in a row, or the base cannot explain them.
 pub fn adapt_style(
     base: &GaitModel,
-    clips: &[TrainingClip],
+    clips: &[Recording],
     name: &str,
     config: &AdaptConfig,
     provenance: Provenance,
@@ -100,7 +112,8 @@ pub fn adapt_style(
             min_gain_per_frame: 0.0,
         },
     };
-    let (corpus, counts) = encode(&chosen, &encoding)?;
+    let encoded = EncodedCorpus::of(&chosen, &encoding)?;
+    let (corpus, counts) = encoded.steady();
     let mut adapting = Adapting::new(base, &corpus, config.method)?;
     let (transforms_fit, objectives) = adapting.run(&corpus, progress)?;
     let start = States::of(base);
@@ -135,7 +148,8 @@ pub fn adapt_style(
             states.step(Side::Right, mean_terminal(&corpus, Side::Right))?,
         ],
         global_variance: global_variance(base, &corpus),
-        step_spread: own_spread(base, &chosen, &encoding)?,
+        // Of the recordings that show different steps.
+        step_spread: spread::step_spread(base, &encoded.distinct().steady().0),
         speed_mps: mean_speed(&corpus),
         cadence_hz: counts.steps as f64 * base.frame_rate_hz / frames as f64,
         provenance: Provenance {
@@ -155,26 +169,11 @@ pub fn adapt_style(
     })
 }
 
-/// Spread of the steps, by the clips that show different ones.
-fn own_spread(
-    base: &GaitModel,
-    clips: &[TrainingClip],
-    encoding: &TrainConfig,
-) -> Result<StepSpread, TrainError> {
-    let distinct: Vec<TrainingClip> = clips
-        .iter()
-        .filter(|clip| clip.repeats <= 1)
-        .cloned()
-        .collect();
-    let (corpus, _) = encode(&distinct, encoding)?;
-    Ok(spread::step_spread(base, &corpus))
-}
-
 /// Steps that were taken, those of a loop once.
-fn distinct_steps(clips: &[TrainingClip]) -> usize {
-    let of_clip = |clip: &TrainingClip| {
+fn distinct_steps(clips: &[Recording]) -> usize {
+    let of_clip = |clip: &Recording| {
         let steps: usize = clip.walks.iter().map(|walk| walk.steps.len()).sum();
-        steps.div_ceil(clip.repeats.max(1))
+        steps.div_ceil(clip.repeats())
     };
     clips.iter().map(of_clip).sum()
 }
@@ -185,7 +184,7 @@ pub fn shows_steps(walks: &[Walk]) -> bool {
 }
 
 /// The clips with only their first `limit` steps in full stride.
-fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>, TrainError> {
+fn first_steps(clips: &[Recording], limit: usize) -> Result<Vec<Recording>, TrainError> {
     if limit < LEAST_STEPS {
         return Err(TrainError::TooFewSteps { found: limit });
     }
@@ -197,8 +196,8 @@ fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>
         let total: usize = steady.iter().map(|walk| walk.steps.len()).sum();
         found += total;
         // The rounds of a loop show the same steps: they count once, and no more rounds are taken than a longer recording has steps.
-        let round = total.div_ceil(clip.repeats.max(1)).max(1);
-        let rounds = (limit / round).clamp(1, clip.repeats.max(1));
+        let round = total.div_ceil(clip.repeats()).max(1);
+        let rounds = (limit / round).clamp(1, clip.repeats());
         let mut budget = left.min(round) * rounds;
         let mut walks = Vec::new();
         for mut walk in steady {
@@ -210,11 +209,10 @@ fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>
             }
         }
         if !walks.is_empty() {
-            chosen.push(TrainingClip {
-                walks,
-                repeats: rounds,
-                ..clip.clone()
-            });
+            let mut taken = clip.clone();
+            taken.walks = walks;
+            taken.retargeted.report.repeats = rounds;
+            chosen.push(taken);
         }
     }
     if chosen.is_empty() {

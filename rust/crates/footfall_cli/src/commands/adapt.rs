@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
 use footfall_model::Provenance;
 use footfall_motion::corpus::{Corpus, Where};
-use footfall_train::{AdaptConfig, AdaptMethod, Adapted, TrainingClip, adapt_style, shows_steps};
+use footfall_train::{AdaptConfig, AdaptMethod, Adapted, adapt_style, shows_steps};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -99,10 +99,9 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     let mut progress = train::TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
     let corpus = train::read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let still = without_steps(&corpus);
     ensure!(
-        still.len() < clips.len(),
+        still.len() < corpus.clips.len(),
         "{}: no two steps in a row in {}; give clips that walk, of both feet's steps",
         args.corpus.display(),
         listed(&still)
@@ -117,7 +116,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     let read = begun.elapsed().as_secs_f64();
     let adapted = adapt_style(
         &base,
-        &clips,
+        &corpus.clips,
         args.name.trim(),
         &config,
         made_from(&corpus, args),
@@ -140,8 +139,7 @@ fn without_steps(corpus: &Corpus) -> Vec<String> {
     clips
         .filter(|clip| !shows_steps(&clip.walks))
         .map(|clip| {
-            let motion = &clip.retargeted;
-            let secs = motion.clip.duration_secs() / motion.report.repeats.max(1) as f64;
+            let secs = clip.round_secs();
             format!("{} ({secs:.1} s)", provenance::name_of(&clip.row.path))
         })
         .collect()

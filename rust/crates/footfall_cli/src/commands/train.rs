@@ -14,9 +14,7 @@ use footfall_model::GaitModel;
 use footfall_motion::corpus::{Corpus, Where};
 use footfall_prob::windows::Windows;
 use footfall_train::standing::{self, LearnedStanding, StandingClip};
-use footfall_train::{
-    ContextReport, EmConfig, TrainConfig, Trained, TrainingClip, learn_running, train_average,
-};
+use footfall_train::{ContextReport, EmConfig, TrainConfig, Trained, learn_running, train_average};
 use moves::Moves;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -162,14 +160,13 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
     let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let standing = further_corpus(args, &args.standing)?;
     let running = further_corpus(args, &args.running)?;
     let moves = Moves::read(args)?;
     let others = [standing.as_ref(), running.as_ref()];
     let others: Vec<Option<&Corpus>> = others.into_iter().chain(moves.corpora()).collect();
     let mut trained = train_average(
-        &clips,
+        &corpus.clips,
         &config(args),
         provenance::of(&corpus, &others, args),
         &mut progress,
@@ -214,9 +211,8 @@ fn running_of(
     args: &TrainArgs,
     progress: &mut TrainingProgress,
 ) -> Result<GaitModel> {
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let provenance = provenance::of(corpus, &[], args);
-    learn_running(walk, &clips, &config(args), provenance, progress).with_context(|| {
+    learn_running(walk, &corpus.clips, &config(args), provenance, progress).with_context(|| {
         format!(
             "{}: nobody runs for some steps in what --running chooses; widen it",
             args.corpus.display()

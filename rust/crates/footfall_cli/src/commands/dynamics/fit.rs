@@ -6,7 +6,6 @@ use crate::motion_input::KneesArgs;
 use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result, ensure};
 use footfall_motion::corpus::Where;
-use footfall_train::TrainingClip;
 use footfall_train::dynamics::{DynamicsConfig, FittedDynamics, fit_dynamics};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -93,7 +92,6 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
     output::refuse_overwrite(&[&args.corpus], &args.output)?;
     let config = args.size.config()?;
     let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let conditions: Vec<String> = args
         .conditions
         .iter()
@@ -121,7 +119,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
         segments,
         explained,
         one_step_error,
-    } = fit_dynamics(&clips, &config, provenance)
+    } = fit_dynamics(&corpus.clips, &config, provenance)
         .with_context(|| args.corpus.display().to_string())?;
     let bytes = model.to_bytes().context("the fitted model")?;
     write_atomic(&args.output, &bytes)?;

@@ -8,7 +8,8 @@ use crate::output::{self, write_atomic};
 use anyhow::{Context as _, Result};
 use footfall_core::Site;
 use footfall_imu::ImuRecording;
-use footfall_motion::corpus::{CorpusClip, Where};
+use footfall_motion::corpus::Where;
+use footfall_motion::recording::Recording;
 use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -107,7 +108,7 @@ struct Report<'a> {
 }
 
 /// A recording as the trainer takes it, with simulated sensors.
-pub(in crate::commands) fn imu_clip(clip: &CorpusClip) -> ImuClip<'_> {
+pub(in crate::commands) fn imu_clip(clip: &Recording) -> ImuClip<'_> {
     ImuClip {
         subject: clip.row.subject(),
         clip: &clip.retargeted.clip,
