@@ -9,20 +9,20 @@ mod spread;
 mod transforms;
 
 use crate::EmConfig;
-use crate::average::{DURATION_VARIANCE_FLOOR, STATES, expect_steps};
 use crate::encoded::{EncodedCorpus, steady_part};
 use crate::error::TrainError;
 use crate::progress::Progress;
 use crate::sequence::Sequence;
+use crate::step_hsmm::{DURATION_VARIANCE_FLOOR, StepHsmm, discretised};
 use crate::train::{TrainConfig, mean_terminal};
 use footfall_core::Side;
 use footfall_model::{
-    FEATURE_COUNT, GaitModel, GaitStyle, GlobalVarianceModel, OBSERVATION_COUNT, Provenance,
-    STATES_PER_STEP, StateModel, StepModel,
+    FEATURE_COUNT, GaitModel, GaitStyle, GlobalVarianceModel, Provenance, STATES_PER_STEP,
+    StateModel, StepModel,
 };
 use footfall_motion::recording::Recording;
 use footfall_motion::steps::Walk;
-use footfall_prob::duration::{DurationDist, GaussianDuration};
+use footfall_prob::duration::GaussianDuration;
 use footfall_prob::gaussian::DiagonalGaussian;
 use footfall_prob::hsmm::HsmmStats;
 use footfall_prob::regression::map_estimate;
@@ -116,28 +116,26 @@ pub fn adapt_style(
     let (corpus, counts) = encoded.steady();
     let mut adapting = Adapting::new(base, &corpus, config.method)?;
     let (transforms_fit, objectives) = adapting.run(&corpus, progress)?;
-    let start = States::of(base);
+    let start = StepHsmm::of(base, adapting.max_duration());
     let durations = adapting.adapted_durations()?;
+    let longest = adapting.max_duration();
     let prior = States {
-        gaussians: adapting.adapted_gaussians()?,
-        lengths: lengths(&durations, adapting.max_duration())?,
-        durations,
-        max_duration: adapting.max_duration(),
+        lengths: lengths(&durations, longest)?,
+        hsmm: StepHsmm {
+            gaussians: adapting.adapted_gaussians()?,
+            durations,
+            max_duration: longest,
+        },
     };
     let mut states = prior.clone();
     for _ in 0..MAP_ITERATIONS {
-        let stats = states.expect(&corpus)?;
+        let stats = states.hsmm.expect_in_order(&corpus)?;
         states = prior.refined(&stats, &start)?;
     }
     let log_likelihoods = [
-        States {
-            max_duration: prior.max_duration,
-            ..start
-        }
-        .expect(&corpus)?
-        .log_likelihood,
+        start.expect_in_order(&corpus)?.log_likelihood,
         transforms_fit,
-        states.expect(&corpus)?.log_likelihood,
+        states.hsmm.expect_in_order(&corpus)?.log_likelihood,
     ];
     let frames: usize = corpus.iter().map(Sequence::frames).sum();
     let style = GaitStyle {
@@ -227,16 +225,14 @@ fn first_steps(clips: &[Recording], limit: usize) -> Result<Vec<Recording>, Trai
 /// Both steps' states with Gaussians of their own.
 #[derive(Clone, Debug)]
 struct States {
-    gaussians: Vec<DiagonalGaussian>,
-    /// What explains the durations: Gaussians cut off at one frame, whose centres are not their means.
-    durations: Vec<GaussianDuration>,
+    hsmm: StepHsmm,
     /// Mean and variance of the durations themselves, which is what the generator plays.
     lengths: Vec<[f64; 2]>,
-    max_duration: usize,
 }
 
-impl States {
-    fn of(base: &GaitModel) -> Self {
+impl StepHsmm {
+    /// The states of a model.
+    fn of(base: &GaitModel, max_duration: usize) -> Self {
         let states = || base.steps.iter().flat_map(|step| &step.states);
         Self {
             gaussians: states()
@@ -248,32 +244,17 @@ impl States {
                     variance: s.duration_variance,
                 })
                 .collect(),
-            lengths: states()
-                .map(|s| [s.duration_mean, s.duration_variance])
-                .collect(),
-            max_duration: 0,
+            max_duration,
         }
     }
+}
 
-    fn expect(&self, corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
-        let durations = self.discretised()?;
-        let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
-        for sequence in corpus {
-            expect_steps(sequence, sequence, &self.gaussians, &durations, &mut stats)?;
-        }
-        Ok(stats)
-    }
-
-    fn discretised(&self) -> Result<Vec<DurationDist>, TrainError> {
-        let durations = self.durations.iter();
-        Ok(durations
-            .map(|duration| duration.discretise(self.max_duration))
-            .collect::<Result<_, _>>()?)
-    }
-
+impl States {
     /// These states, each moved towards what it saw.
-    fn refined(&self, stats: &HsmmStats, base: &Self) -> Result<Self, TrainError> {
+    fn refined(&self, stats: &HsmmStats, base: &StepHsmm) -> Result<Self, TrainError> {
+        let longest = self.hsmm.max_duration;
         let gaussians = self
+            .hsmm
             .gaussians
             .iter()
             .zip(&stats.emissions)
@@ -285,14 +266,14 @@ impl States {
                 Ok(DiagonalGaussian::new(found.mean().to_vec(), variance)?)
             })
             .collect::<Result<_, TrainError>>()?;
-        let mut durations = self.durations.clone();
+        let mut durations = self.hsmm.durations.clone();
         let mut lengths = self.lengths.clone();
         for ((duration, length), seen) in
             durations.iter_mut().zip(&mut lengths).zip(&stats.durations)
         {
             if seen.weight() > 0.0 {
-                *duration = seen.estimate(self.max_duration, DURATION_VARIANCE_FLOOR)?;
-                let own = duration.discretise(self.max_duration)?;
+                *duration = seen.estimate(longest, DURATION_VARIANCE_FLOOR)?;
+                let own = duration.discretise(longest)?;
                 let share = seen.weight() / (MAP_SEGMENTS + seen.weight());
                 let [prior, prior_variance] = *length;
                 let mean = prior + share * (own.mean() - prior);
@@ -303,10 +284,12 @@ impl States {
             }
         }
         Ok(Self {
-            gaussians,
-            durations,
+            hsmm: StepHsmm {
+                gaussians,
+                durations,
+                max_duration: longest,
+            },
             lengths,
-            max_duration: self.max_duration,
         })
     }
 
@@ -316,8 +299,8 @@ impl States {
             .map(|index| {
                 let [duration_mean, duration_variance] = self.lengths[index];
                 Ok(StateModel {
-                    mean: self.gaussians[index].mean().to_vec(),
-                    variance: self.gaussians[index].variance().to_vec(),
+                    mean: self.hsmm.gaussians[index].mean().to_vec(),
+                    variance: self.hsmm.gaussians[index].variance().to_vec(),
                     duration_mean,
                     duration_variance: duration_variance.max(DURATION_VARIANCE_FLOOR),
                 })
@@ -332,13 +315,11 @@ impl States {
 
 /// Mean and variance of durations as far as they can be.
 fn lengths(durations: &[GaussianDuration], longest: usize) -> Result<Vec<[f64; 2]>, TrainError> {
-    durations
+    let possible = discretised(durations, longest)?;
+    Ok(possible
         .iter()
-        .map(|duration| {
-            let possible = duration.discretise(longest)?;
-            Ok([possible.mean(), possible.variance()])
-        })
-        .collect()
+        .map(|duration| [duration.mean(), duration.variance()])
+        .collect())
 }
 
 /// The mean of the style's walks, with the base's relative spread.

@@ -26,6 +26,7 @@ pub mod recordings;
 mod running;
 pub mod sequence;
 pub mod standing;
+mod step_hsmm;
 pub mod train;
 pub mod training_comparison;
 pub mod walker_adaptive;

@@ -1,5 +1,6 @@
 use super::*;
 use crate::train_average;
+use footfall_model::OBSERVATION_COUNT;
 use footfall_motion::corpus::{Corpus, Where};
 use footfall_prob::gaussian::GaussianStats;
 use footfall_prob::windows::Windows;
