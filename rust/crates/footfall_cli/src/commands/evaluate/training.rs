@@ -1,6 +1,7 @@
 //! `footfall evaluate training`: what taking walkers out of the average walk gains.
 
-use crate::commands::train::{TrainingProgress, skipped};
+use crate::commands::train::TrainingProgress;
+use crate::commands::training_run::skipped;
 use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
