@@ -8,8 +8,6 @@
     reason = "tests; the figures are worth seeing"
 )]
 
-mod common;
-
 use footfall_core::{EventKind, GaitEvent, Side};
 use footfall_motion::bvh;
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
@@ -61,7 +59,7 @@ impl Agreement {
 }
 
 fn corpus(conditions: &[&str]) -> Option<Corpus> {
-    let folder = common::data_folder()?;
+    let folder = crate::common::data_folder()?;
     let conditions: Vec<Where> = conditions.iter().map(|c| c.parse().unwrap()).collect();
     Some(Corpus::read(folder.join("index.csv"), &conditions).unwrap())
 }

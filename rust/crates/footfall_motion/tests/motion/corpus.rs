@@ -2,9 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::walker::walker;
+use crate::common::walker::walker;
 use footfall_motion::bvh::{clip_to_bvh, write_file};
 use footfall_motion::contact_file::ContactFile;
 use footfall_motion::corpus::{Corpus, CorpusError, Where};
@@ -110,7 +108,7 @@ fn errors_name_file_line_and_column() {
 
 #[test]
 fn the_recordings_are_a_corpus() {
-    let Some(folder) = common::data_folder() else {
+    let Some(folder) = crate::common::data_folder() else {
         return;
     };
     let corpus = read(

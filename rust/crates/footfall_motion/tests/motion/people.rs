@@ -1,8 +1,6 @@
 //! Knees and soles of the people of the CMU walks, person by person, as recorded and with their hip joints corrected.
 
-mod common;
-
-use common::natural::knee_degrees;
+use crate::common::natural::knee_degrees;
 use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
 use footfall_motion::bvh;
 use footfall_motion::corpus::{Corpus, Person, Where};
@@ -23,7 +21,7 @@ const RECORDED: [(&str, f32); 8] = [
 ];
 
 fn corpus(conditions: &[&str], hip_centres: HipCentres) -> Option<Corpus> {
-    let folder = common::data_folder()?;
+    let folder = crate::common::data_folder()?;
     let conditions: Vec<Where> = conditions
         .iter()
         .map(|text| text.parse().expect("a condition"))
@@ -232,7 +230,7 @@ fn knees_of_the_people_in_consistent_skeletons_stay_as_recorded() {
 
 #[test]
 fn a_recording_of_an_acted_walk_keeps_its_manner_on_its_own() {
-    let Some(folder) = common::data_folder() else {
+    let Some(folder) = crate::common::data_folder() else {
         return;
     };
     for name in [
