@@ -64,7 +64,7 @@ pub struct CrowdWalker {
     footstep: Option<Footstep>,
     /// Where the body is when the current step ends.
     arrival: Arrival,
-    /// How it is alive as it stands; nothing where the model stands still.
+    /// Its life as it stands; nothing where the model stands still.
     life: Option<Life>,
     /// Where it rests; nothing before it first came to a stand.
     rest: Option<Box<Rest>>,
@@ -138,7 +138,7 @@ impl CrowdWalker {
         Ok(made)
     }
 
-    /// How much it moves as it stands, as of [`GaitGenerator::set_standing_motion`](crate::GaitGenerator::set_standing_motion). Shows within a second.
+    /// Sets how much it moves as it stands, as of [`GaitGenerator::set_standing_motion`](crate::GaitGenerator::set_standing_motion). Shows within a second.
     pub fn set_standing_motion(&mut self, amount: f32) {
         if let Some(life) = &mut self.life {
             life.set_amount(amount);
@@ -150,12 +150,12 @@ impl CrowdWalker {
         self.styled = styled.clone();
     }
 
-    /// How finely it is worked out, from the next step on.
+    /// Sets the detail in which it is worked out, from the next step on.
     pub fn set_detail(&mut self, detail: Detail) {
         self.detail = detail;
     }
 
-    /// Whether its last two steps are walked again and again instead of new ones being worked out, for walkers far away: it
+    /// Sets whether its last two steps are walked again and again instead of new ones being worked out, for walkers far away: it
     /// turns, but its speed stays. Those who start, stop or stand are not affected.
     pub fn set_repeating(&mut self, repeating: bool) {
         self.repeating = repeating;
@@ -213,7 +213,7 @@ impl CrowdWalker {
         footing::landings(self.next_footstep(), &from, &self.arrival)
     }
 
-    /// Whether the left and the right foot bear on the ground.
+    /// Returns whether the left and the right foot bear on the ground.
     pub fn feet_in_contact(&self) -> [bool; 2] {
         let (frame, weight) = self.frame_at(self.position);
         self.frames.places[frame + usize::from(weight >= 0.5)].contact
@@ -224,12 +224,12 @@ impl CrowdWalker {
         (self.shape.timing.frames as f32 - self.position).max(0.0) / self.frame_rate_hz
     }
 
-    /// Whether it has come to a stand and rests.
+    /// Returns whether it has come to a stand and rests.
     pub fn is_standing(&self) -> bool {
         self.shape.amplitude.to < 1.0 && self.position >= self.shape.timing.frames as f32
     }
 
-    /// How much of its stride is behind it: 0 when the left foot lands, 0.5 when the right one does.
+    /// Share of its stride that is behind it: 0 when the left foot lands, 0.5 when the right one does.
     pub fn phase(&self) -> f32 {
         let share = (self.position / self.shape.timing.frames as f32).min(1.0);
         let half = self.shape.timing.leading.index() as f32;

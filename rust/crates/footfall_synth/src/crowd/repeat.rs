@@ -7,11 +7,11 @@ use crate::plan::StepShape;
 use crate::standing::Amplitude;
 use footfall_core::rotation::from_heading;
 
-/// Where a step that is walked again goes.
+/// Place and turn of a step that is walked again.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Base {
     place: GroundTransform,
-    /// How far it turns from its first frame to its last, radians, about the middle of the step.
+    /// Turn from its first frame to its last, radians, about the middle of the step.
     turn: f32,
 }
 

@@ -1,4 +1,4 @@
-//! What the walkers of a crowd share: styles on a body, and the buffers in which steps are worked out.
+//! Resources that the walkers of a crowd share: styles on a body, and the buffers in which steps are worked out.
 
 use super::rest::RestBench;
 use crate::error::SynthError;
