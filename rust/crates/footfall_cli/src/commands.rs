@@ -17,6 +17,7 @@ mod studio;
 mod study;
 mod synth;
 mod train;
+mod training_run;
 mod walk_output;
 
 use anyhow::Result;

@@ -3,8 +3,7 @@
 use crate::motion_input::KneesArgs;
 use anyhow::{Context as _, Result};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
-use footfall_motion::corpus::{Corpus, CorpusClip, Where};
-use footfall_train::evaluate::StyledClip;
+use footfall_motion::corpus::{Corpus, Where};
 use std::path::PathBuf;
 
 /// An index and what its rows must meet.
@@ -109,20 +108,6 @@ impl FromArgMatches for CorpusPair {
         *self = Self::from_arg_matches(matches)?;
         Ok(())
     }
-}
-
-/// Recordings as the evaluation takes them.
-pub(crate) fn styled_clips(corpus: &Corpus) -> Vec<StyledClip> {
-    let styled = |clip: &CorpusClip| {
-        let motion = &clip.retargeted;
-        StyledClip::new(
-            clip.row.style(),
-            &motion.clip,
-            motion.first_frame,
-            &clip.walks,
-        )
-    };
-    corpus.clips.iter().map(styled).collect()
 }
 
 /// The corpora of a pair, read.

@@ -86,22 +86,10 @@ impl MapArgs {
     }
 }
 
-/// A BVH or glTF file on the canonical body.
-pub(crate) struct MotionInput {
-    /// The file as it stands.
-    pub(crate) file: BvhFile,
-    /// On the canonical body.
-    pub(crate) retargeted: Retargeted,
-}
-
-impl MotionInput {
-    /// Reads a file and retargets it.
-    pub(crate) fn read(path: &Path, options: &RetargetOptions) -> Result<Self> {
-        // The error's own text has all that its source says.
-        let (file, retargeted) =
-            read_motion(path, options).map_err(|error| anyhow::anyhow!(error.to_string()))?;
-        Ok(Self { file, retargeted })
-    }
+/// Reads a BVH or glTF file: as it stands, and on the canonical body.
+pub(crate) fn read_file(path: &Path, options: &RetargetOptions) -> Result<(BvhFile, Retargeted)> {
+    // The error's own text has all that its source says.
+    read_motion(path, options).map_err(|error| anyhow::anyhow!(error.to_string()))
 }
 
 /// Reads a recording with its contacts: a person's where there is a file of corrections beside it, else those detected.

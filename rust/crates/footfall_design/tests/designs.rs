@@ -6,7 +6,7 @@
     reason = "helpers of tests"
 )]
 
-#[path = "../../footfall_motion/tests/common/walker.rs"]
+#[path = "../../footfall_motion/tests/motion/common/walker.rs"]
 #[allow(dead_code, reason = "shared with the tests of footfall_motion")]
 mod walker;
 

@@ -3,29 +3,15 @@
 mod people;
 mod selection;
 
+pub use crate::index_row::IndexRow;
 pub use people::{Person, PersonFile, find_people, options_of};
-pub use selection::{IndexRow, Where, read_index};
+pub use selection::{Where, read_index};
 
-use crate::contacts::Contacts;
 use crate::recording::Recording;
 use crate::retarget::{HipCentres, RetargetOptions, Retargeted};
-use crate::steps::Walk;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-
-/// A recording, ready for training.
-#[derive(Clone, Debug)]
-pub struct CorpusClip {
-    /// Its row of the index.
-    pub row: IndexRow,
-    /// The motion on the canonical body.
-    pub retargeted: Retargeted,
-    /// Contacts of its feet, corrected by hand or detected.
-    pub contacts: Contacts,
-    /// Its walks.
-    pub walks: Vec<Walk>,
-}
 
 /// A recording that could not be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,7 +39,7 @@ pub struct CorpusReport {
 #[derive(Clone, Debug)]
 pub struct Corpus {
     /// In the order of the index; at least one.
-    pub clips: Vec<CorpusClip>,
+    pub clips: Vec<Recording>,
     /// Rows that were left out, and reasons.
     pub report: CorpusReport,
 }
@@ -161,7 +147,7 @@ impl Corpus {
             })
             .collect();
         // In parallel, but collected in order: the same corpus every time.
-        let results: Vec<Result<CorpusClip, SkippedClip>> = chosen
+        let results: Vec<Result<Recording, SkippedClip>> = chosen
             .into_par_iter()
             .map(|(row, motion)| {
                 let options = options_of(&people, &row.path, options);
@@ -198,7 +184,7 @@ fn read_clip(
     row: IndexRow,
     motion: Option<Retargeted>,
     options: &RetargetOptions,
-) -> Result<CorpusClip, SkippedClip> {
+) -> Result<Recording, SkippedClip> {
     let skipped = |reason: String| SkippedClip {
         path: row.path.clone(),
         line: row.line,
@@ -213,11 +199,8 @@ fn read_clip(
         }
         _ => Recording::read(&row.path, options),
     };
-    let recording = recording.map_err(|error| skipped(error.to_string()))?;
-    Ok(CorpusClip {
-        row,
-        retargeted: recording.retargeted,
-        contacts: recording.contacts,
-        walks: recording.walks,
-    })
+    match recording {
+        Ok(recording) => Ok(Recording { row, ..recording }),
+        Err(error) => Err(skipped(error.to_string())),
+    }
 }

@@ -16,6 +16,7 @@ pub mod files;
 pub mod game_clip;
 pub mod gltf;
 pub mod hip_centres;
+pub mod index_row;
 pub mod jumps;
 pub mod phases;
 pub mod published_events;

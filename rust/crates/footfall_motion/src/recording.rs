@@ -1,4 +1,4 @@
-//! A recording as everyone needs it: read, on the canonical body, with its contacts and walks.
+//! A recording as everyone needs it: read, on the canonical body, with its contacts and walks, and with what an index says of it.
 
 use crate::bvh::{self, BvhError, BvhFile};
 use crate::contact_file::{ContactFile, ContactFileError};
@@ -6,14 +6,18 @@ use crate::contacts::{ContactConfig, Contacts, detect_contacts};
 use crate::game_clip;
 use crate::gltf::{self, GltfError};
 use crate::hip_centres::WalkingEvidence;
+use crate::index_row::IndexRow;
 use crate::retarget::{RetargetError, RetargetOptions, Retargeted, retarget, retarget_as_recorded};
 use crate::skeletal::SkeletalMotion;
-use crate::steps::{Walk, segment_walks};
+use crate::steps::{Walk, running_parts, segment_walks};
+use footfall_core::Clip;
 use std::path::{Path, PathBuf};
 
-/// A recording, ready for training and to be looked at.
+/// A recording with its labels. Trainers, evaluations and tools take slices of these.
 #[derive(Clone, Debug)]
 pub struct Recording {
+    /// Its row of the index. Without an index, the file and whoever was [named](Self::of_subject).
+    pub row: IndexRow,
     /// The motion on the canonical body.
     pub retargeted: Retargeted,
     /// Contacts of its feet: as a person corrected them where there is a [file of corrections](ContactFile::beside), else as
@@ -127,6 +131,7 @@ impl Recording {
         retargeted: Retargeted,
     ) -> Result<Self, RecordingError> {
         let mut recording = Self::detected(retargeted);
+        path.clone_into(&mut recording.row.path);
         // Frame numbers of the corrections are the file's.
         let labels = ContactFile::beside(path);
         if options.frame_rate_hz.is_none() && labels.is_file() {
@@ -152,12 +157,57 @@ impl Recording {
         let config = ContactConfig::from_frame(retargeted.first_frame);
         let contacts = detect_contacts(&retargeted.clip, &config);
         Self {
+            row: IndexRow::default(),
             walks: segment_walks(&retargeted.clip, &contacts),
             retargeted,
             detected: contacts.clone(),
             contacts,
             is_corrected: false,
         }
+    }
+
+    /// The same recording, of a person with this name.
+    #[must_use]
+    pub fn of_subject(mut self, name: &str) -> Self {
+        self.row.set("subject", name);
+        self
+    }
+
+    /// Name of the person in it.
+    pub fn subject(&self) -> &str {
+        self.row.subject()
+    }
+
+    /// Name of the style that it shows.
+    pub fn style(&self) -> &str {
+        self.row.style()
+    }
+
+    /// The motion on the canonical body.
+    pub const fn clip(&self) -> &Clip {
+        &self.retargeted.clip
+    }
+
+    /// First frame of the motion proper; those before it hold an artificial T-pose, for example.
+    pub const fn first_frame(&self) -> usize {
+        self.retargeted.first_frame
+    }
+
+    /// Number of times that the clip shows the same steps: more than once for a loop that was unrolled.
+    pub fn repeats(&self) -> usize {
+        self.retargeted.report.repeats.max(1)
+    }
+
+    /// Length of what was recorded, one round of a loop, seconds.
+    pub fn round_secs(&self) -> f64 {
+        self.clip().duration_secs() / self.repeats() as f64
+    }
+
+    /// The same recording with those parts of its walks alone in which the person runs.
+    #[must_use]
+    pub fn running(mut self) -> Self {
+        self.walks = running_parts(&self.retargeted.clip, &self.walks);
+        self
     }
 
     /// Number of steps in all its walks.

@@ -60,6 +60,26 @@ pub struct Retargeted {
     pub report: RetargetReport,
 }
 
+impl Retargeted {
+    /// A motion that is on the canonical body already, such as one that was generated.
+    pub fn canonical(clip: Clip) -> Self {
+        Self {
+            clip,
+            first_frame: 0,
+            report: RetargetReport {
+                map: "canonical".to_owned(),
+                source_joints: Joint::ALL.map(|joint| Some(joint.name().to_owned())),
+                scale: 1.0,
+                flat_foot_frames: [0; 2],
+                in_place: false,
+                cycle_frames: None,
+                repeats: 1,
+                hip_centres: HipFinding::without_evidence(HipVerdict::OwnBody),
+            },
+        }
+    }
+}
+
 /// Findings of retargeting about a file.
 #[derive(Clone, Debug)]
 pub struct RetargetReport {

@@ -5,109 +5,28 @@
 //! joint is in each frame of its step. In between it costs an interpolation.
 
 mod frames;
+mod repeat;
 mod rest;
+mod workshop;
 
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footing;
 use crate::generator::{Controls, Footstep, GeneratorConfig, GroundTransform, MAX_DT_SECS, check};
 use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape};
-use crate::space::{Blend, StyleSpace};
+use crate::space::Blend;
 use crate::stage::Arrival;
 use crate::standing::{Amplitude, Life};
 use crate::steps::Ask;
-use crate::walker::{Origin, WINDOW, Walker};
-use crate::workbench::Workbench;
-use crate::worn::Worn;
-use footfall_core::Skeleton;
-use footfall_core::rotation::from_heading;
+use crate::walker::{Origin, WINDOW};
 use footfall_ik::placement::Landing;
 use frames::CrowdFrames;
 pub use frames::CrowdPose;
 use glam::Vec2;
+use repeat::{Base, Before};
 use rest::{Rest, RestBench, leave};
 use std::sync::Arc;
-
-/// A mixture of styles on a body, measured once for all walkers of a crowd that share it.
-#[derive(Clone, Debug)]
-pub struct StyledBody(Arc<Styled>);
-
-#[derive(Debug)]
-struct Styled {
-    space: Arc<StyleSpace>,
-    skeleton: Skeleton,
-    worn: Worn,
-}
-
-impl StyledBody {
-    /// Mixes the space's styles, weights as of [`GaitGenerator::set_style_weights`](crate::GaitGenerator::set_style_weights), and
-    /// measures how fast they walk on this body: about two milliseconds.
-    ///
-    /// # Errors
-    /// [`SynthError`] when the model or the skeleton cannot be used.
-    pub fn new(
-        space: &Arc<StyleSpace>,
-        style_weights: &[f32],
-        skeleton: &Skeleton,
-    ) -> Result<Self, SynthError> {
-        skeleton.check()?;
-        let blend = space.blend(style_weights);
-        let average = Planner::new(&blend.model, 0, 0.0);
-        let worn = space.at_bench(|bench| Worn::measure(&average, skeleton, blend, bench))?;
-        Ok(Self(Arc::new(Styled {
-            space: Arc::clone(space),
-            skeleton: skeleton.clone(),
-            worn,
-        })))
-    }
-
-    /// The body.
-    pub fn skeleton(&self) -> &Skeleton {
-        &self.0.skeleton
-    }
-
-    /// The speed that suits it best, m/s.
-    pub fn usual_speed_mps(&self) -> f32 {
-        self.0.worn.blend.model.speed.reference_mps as f32
-    }
-}
-
-/// Where steps are worked out, for walkers of one model on one body; one a thread.
-#[derive(Debug)]
-pub struct Workshop {
-    planner: Planner,
-    walker: Walker,
-    bench: Workbench,
-    rest: RestBench,
-}
-
-impl Workshop {
-    /// For walkers like this one.
-    pub fn new(styled: &StyledBody) -> Self {
-        let blend = &styled.0.worn.blend;
-        Self {
-            planner: Planner::new(&blend.model, 0, 0.0),
-            walker: Walker::new(&styled.0.skeleton, blend),
-            bench: Workbench::new(&blend.model),
-            rest: RestBench::new(Planner::longest_step(&blend.model)),
-        }
-    }
-}
-
-/// Where a step that is walked again goes.
-#[derive(Clone, Copy, Debug, Default)]
-struct Base {
-    place: GroundTransform,
-    /// How far it turns from its first frame to its last, radians, about the middle of the step.
-    turn: f32,
-}
-
-/// A step that can be walked again.
-#[derive(Debug)]
-struct Before {
-    frames: CrowdFrames,
-    shape: StepShape,
-}
+pub use workshop::{StyledBody, Workshop};
 
 /// One walker of a crowd: walks as a [`GaitGenerator`](crate::GaitGenerator) of its seed would, in a hundredth of the memory.
 ///
@@ -145,7 +64,7 @@ pub struct CrowdWalker {
     footstep: Option<Footstep>,
     /// Where the body is when the current step ends.
     arrival: Arrival,
-    /// How it is alive as it stands; nothing where the model stands still.
+    /// Its life as it stands; nothing where the model stands still.
     life: Option<Life>,
     /// Where it rests; nothing before it first came to a stand.
     rest: Option<Box<Rest>>,
@@ -219,7 +138,7 @@ impl CrowdWalker {
         Ok(made)
     }
 
-    /// How much it moves as it stands, as of [`GaitGenerator::set_standing_motion`](crate::GaitGenerator::set_standing_motion). Shows within a second.
+    /// Sets how much it moves as it stands, as of [`GaitGenerator::set_standing_motion`](crate::GaitGenerator::set_standing_motion). Shows within a second.
     pub fn set_standing_motion(&mut self, amount: f32) {
         if let Some(life) = &mut self.life {
             life.set_amount(amount);
@@ -231,12 +150,12 @@ impl CrowdWalker {
         self.styled = styled.clone();
     }
 
-    /// How finely it is worked out, from the next step on.
+    /// Sets the detail in which it is worked out, from the next step on.
     pub fn set_detail(&mut self, detail: Detail) {
         self.detail = detail;
     }
 
-    /// Whether its last two steps are walked again and again instead of new ones being worked out, for walkers far away: it
+    /// Sets whether its last two steps are walked again and again instead of new ones being worked out, for walkers far away: it
     /// turns, but its speed stays. Those who start, stop or stand are not affected.
     pub fn set_repeating(&mut self, repeating: bool) {
         self.repeating = repeating;
@@ -294,7 +213,7 @@ impl CrowdWalker {
         footing::landings(self.next_footstep(), &from, &self.arrival)
     }
 
-    /// Whether the left and the right foot bear on the ground.
+    /// Returns whether the left and the right foot bear on the ground.
     pub fn feet_in_contact(&self) -> [bool; 2] {
         let (frame, weight) = self.frame_at(self.position);
         self.frames.places[frame + usize::from(weight >= 0.5)].contact
@@ -305,12 +224,12 @@ impl CrowdWalker {
         (self.shape.timing.frames as f32 - self.position).max(0.0) / self.frame_rate_hz
     }
 
-    /// Whether it has come to a stand and rests.
+    /// Returns whether it has come to a stand and rests.
     pub fn is_standing(&self) -> bool {
         self.shape.amplitude.to < 1.0 && self.position >= self.shape.timing.frames as f32
     }
 
-    /// How much of its stride is behind it: 0 when the left foot lands, 0.5 when the right one does.
+    /// Share of its stride that is behind it: 0 when the left foot lands, 0.5 when the right one does.
     pub fn phase(&self) -> f32 {
         let share = (self.position / self.shape.timing.frames as f32).min(1.0);
         let half = self.shape.timing.leading.index() as f32;
@@ -351,29 +270,6 @@ impl CrowdWalker {
             let skeleton = &self.styled.0.skeleton;
             rest.reach(life, self.detail, skeleton, &mut workshop.rest);
         }
-    }
-
-    /// Walks the step before the current one again, if that is wanted and can be.
-    fn repeat_step(&mut self, controls: Controls) -> bool {
-        let wanted = self.odd || (self.repeating && !controls.is_standing());
-        let walks = self.shape.amplitude == Amplitude::WALK;
-        let end = self.end();
-        let Some(before) = self
-            .before
-            .as_mut()
-            .filter(|before| wanted && walks && before.shape.amplitude == Amplitude::WALK)
-        else {
-            return false;
-        };
-        core::mem::swap(&mut before.frames, &mut self.frames);
-        core::mem::swap(&mut before.shape, &mut self.shape);
-        self.odd = !self.odd;
-        let secs = self.shape.timing.frames as f32 / self.frame_rate_hz;
-        let turn = controls.turn_rate() * secs;
-        let first = self.frames.places.first();
-        let first = first.map(|first| first.place).unwrap_or_default();
-        self.base = Base::starting(&end, &first, turn);
-        true
     }
 
     fn next_step(&mut self, controls: Controls, workshop: &mut Workshop) {
@@ -492,29 +388,6 @@ impl CrowdWalker {
         let last = self.frames.places.last();
         self.base
             .at(&last.map(|last| last.place).unwrap_or_default(), 1.0)
-    }
-}
-
-impl Base {
-    /// The base under which a step whose first frame this is starts at `start` and turns by `turn`.
-    fn starting(start: &GroundTransform, first: &GroundTransform, turn: f32) -> Self {
-        // On the whole it goes in the direction that it has in the middle of its turn.
-        let heading = start.heading - first.heading + 0.5 * turn;
-        Self {
-            place: GroundTransform {
-                position: start.position - from_heading(heading) * first.position,
-                heading,
-            },
-            turn,
-        }
-    }
-
-    /// Where a frame of the step is, of which this share is over.
-    fn at(&self, place: &GroundTransform, share: f32) -> GroundTransform {
-        GroundTransform {
-            position: self.place.position + from_heading(self.place.heading) * place.position,
-            heading: self.place.heading + place.heading + self.turn * (share - 0.5),
-        }
     }
 }
 

@@ -1,6 +1,6 @@
-//! How finely a walker is worked out: walkers far away need fewer poses.
+//! Level of detail of a walker: walkers far away need fewer poses.
 
-/// How finely a walker is worked out.
+/// Level of detail of a walker.
 ///
 /// The trajectory is the same; with less detail fewer of its frames are put on the ground, and what lies between is
 /// interpolated. Feet then slip a little between frames, which shows only close by.

@@ -37,14 +37,14 @@ pub(crate) struct FineTables {
     directions: Vec<Vec<f32>>,
 }
 
-/// What a step needs to know about its fine motion.
+/// Facts of a step from which its fine motion follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FineDraw {
     /// The weights of the model's walker components.
     walker: [f32; MAX_COMPONENTS],
     /// Factor on the noise.
     strength: f32,
-    /// What the step's noise follows from.
+    /// Source of the step's noise.
     number: u64,
 }
 

@@ -12,7 +12,7 @@ const SETTLING_SECS: f32 = 4.0;
 const CHOICE_SECS: f32 = 120.0;
 /// A loop is at most this long, seconds.
 const MOST_SECS: f32 = 120.0;
-/// How often the asked speed is corrected, and the relative error at which it is good enough.
+/// Number of corrections of the asked speed, and the relative error at which it is good enough.
 const CORRECTIONS: usize = 6;
 const SPEED_TOLERANCE: f32 = 0.003;
 /// Time is stretched by this share at most, so that the speed is the wanted one exactly.
@@ -37,12 +37,12 @@ pub struct LoopedWalk {
     pub poses: Vec<Pose>,
     /// Speed of that point.
     pub speed_mps: f32,
-    /// How far joints were moved at most to close the loop, metres; spread evenly over it.
+    /// Largest distance that a joint was moved to close the loop, metres; spread evenly over it.
     pub seam_m: f32,
 }
 
 impl LoopedWalk {
-    /// How long one loop lasts.
+    /// Length of one loop, seconds.
     pub fn duration_secs(&self) -> f32 {
         self.frame_secs * self.poses.len().saturating_sub(1) as f32
     }

@@ -1,4 +1,4 @@
-//! What the current step was made to obey.
+//! Requests that the current step was made to obey.
 
 use crate::steps::Ask;
 use glam::Vec2;
@@ -7,13 +7,13 @@ use glam::Vec2;
 const NEW_VELOCITY_MPS: f32 = 0.2;
 const NEW_TURN_RATE_RADPS: f32 = 0.35;
 
-/// What a step was made to obey.
+/// Requests that a step was made to obey.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Obeyed {
     pub(crate) velocity_mps: Vec2,
     pub(crate) turn_rate: f32,
     pub(crate) stops: bool,
-    /// Whether it has a foothold on the ground, and may be longer or shorter for it: then it stays as it is.
+    /// Set where it has a foothold on the ground, and may be longer or shorter for it: then it stays as it is.
     pub(crate) stretched: bool,
 }
 
@@ -27,7 +27,7 @@ impl Obeyed {
         }
     }
 
-    /// Whether so much else is asked for that it shall not wait for the next step.
+    /// Returns whether so much else is asked for that it shall not wait for the next step.
     pub(crate) fn differs_from(&self, ask: &Ask) -> bool {
         let other = Self::of(ask);
         self.velocity_mps.distance(other.velocity_mps) > NEW_VELOCITY_MPS

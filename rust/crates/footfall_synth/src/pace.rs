@@ -11,10 +11,10 @@ use footfall_core::{Side, Skeleton};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// How many paces are measured.
+/// Number of paces that are measured.
 const SAMPLES: usize = 7;
 
-/// How far beyond the speeds of the corpus the speed response is trusted, as a fraction of their range.
+/// Range beyond the speeds of the corpus in which the speed response is trusted, as a fraction of their range.
 const EXTRAPOLATION: f64 = 0.15;
 
 /// Largest factor by which tempo and stride together exceed what was measured.
@@ -26,7 +26,7 @@ const MIN_TEMPO: f64 = 0.8;
 /// Factor on the tempo of the briskest walk at which steps to the side and backwards are taken at most.
 const MOST_QUICKER: f64 = 1.6;
 
-/// How closely the walk is found whose steps are quick enough, m/s.
+/// Tolerance of the search for a walk whose steps are quick enough, m/s.
 const BRISKER_MPS: f64 = 0.05;
 
 /// Which speed each pace of the model gives one walker.

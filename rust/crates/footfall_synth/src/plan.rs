@@ -1,4 +1,4 @@
-//! What the coming steps are: how long their states last and what their means are.
+//! Plan of the coming steps: how long their states last and what their means are.
 
 mod offsets;
 

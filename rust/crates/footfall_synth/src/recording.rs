@@ -64,12 +64,12 @@ pub(crate) fn from_standing(
     Ok(recording.into_walk(skeleton))
 }
 
-/// What a walker is asked to do from a time on.
+/// Controls of a walker from a time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Move {
     /// From when, seconds.
     pub time_secs: f64,
-    /// What.
+    /// The controls.
     pub controls: Controls,
     /// Rise of the hips in one jump that is asked for then, metres, as of [`GaitGenerator::jump`]; 0 asks for none.
     pub jump_m: f32,
@@ -101,16 +101,16 @@ pub fn synthesize_moves(
     Ok(recording.into_walk(skeleton))
 }
 
-/// What standing to make.
+/// Settings of a recording of somebody who stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandConfig {
-    /// How long.
+    /// Length, seconds.
     pub seconds: f64,
     /// Who stands.
     pub seed: u64,
-    /// How far people differ: 0 not at all, 1 as in the recordings.
+    /// Differences between people: 0 none, 1 as in the recordings.
     pub variation: f32,
-    /// How much they move, as of [`GaitGenerator::set_standing_motion`].
+    /// Motion of those who stand, as of [`GaitGenerator::set_standing_motion`].
     pub motion: f32,
     /// Frames per second of the clip; the model's when absent.
     pub frame_rate_hz: Option<f64>,
@@ -159,14 +159,14 @@ fn standing_recording(
     Ok((Recording::new(generator, rate), rate))
 }
 
-/// What walk of a switching model to make.
+/// Settings of a walk of a switching model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwitchingWalkConfig {
-    /// How long.
+    /// Length, seconds.
     pub seconds: f64,
     /// Which of its walks.
     pub seed: u64,
-    /// How far steps stray from the average: 0 not at all, 1 as in the recordings.
+    /// Differences of steps from the average: 0 none, 1 as in the recordings.
     pub variation: f32,
     /// Speed over the ground, m/s; that of the recordings when absent.
     pub speed_mps: Option<f32>,

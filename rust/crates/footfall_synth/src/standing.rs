@@ -19,7 +19,7 @@ use glam::Quat;
 pub(crate) use life::{Life, Moment};
 pub(crate) use sway::StandingTables;
 
-/// How far the knees of a standing walker are bent, radians.
+/// Flexion of the knees of a standing walker, radians.
 const KNEE_FLEXION: f32 = 0.1;
 
 /// Part of a starting step in which it grows: before, the weight shifts.
@@ -31,7 +31,7 @@ const SHRUNK_BY: f32 = 0.9;
 /// Least part of a starting step in which both feet stand.
 pub(crate) const START_TERMINAL: f64 = 0.22;
 
-/// How much of the walk there is at the beginning and at the end of a step: 0 is standing, 1 is walking.
+/// Share of the walk at the beginning and at the end of a step: 0 is standing, 1 is walking.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Amplitude {
     pub(crate) from: f32,
@@ -42,7 +42,7 @@ impl Amplitude {
     pub(crate) const WALK: Self = Self { from: 1.0, to: 1.0 };
     pub(crate) const STAND: Self = Self { from: 0.0, to: 0.0 };
 
-    /// How much of the walk there is at part `s` of the step.
+    /// Share of the walk at part `s` of the step.
     pub(crate) fn at(self, s: f32) -> f32 {
         let progress = if self.to < self.from {
             s / SHRUNK_BY

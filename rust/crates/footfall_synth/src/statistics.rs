@@ -1,4 +1,4 @@
-//! What all trajectories of one model share, in the precision in which they are solved.
+//! Statistics that all trajectories of one model share, in the precision in which they are solved.
 
 use core::ops::Range;
 use footfall_core::Side;
@@ -6,25 +6,25 @@ use footfall_model::{FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, STATES_PER_STE
 use footfall_prob::mlpg::Real;
 use footfall_prob::windows::Windows;
 
-/// How far below zero the pull that restores variance may go, as a fraction of the least static precision: beyond 1
+/// Bound below zero of the pull that restores variance, as a fraction of the least static precision: beyond 1
 /// a trajectory need not be determined.
 const MAX_PUSH: f64 = 0.9;
 
 /// Means of all states of a step.
 pub(crate) const STEP_MEANS: usize = STATES_PER_STEP * OBSERVATION_COUNT;
 
-/// What the means of a step are the sum of.
+/// Terms whose sum is the means of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Part {
     /// The model's own.
     Average,
-    /// What they change by with the speed.
+    /// Change with the speed.
     Speed,
     /// A component in which walkers differ.
     Walker(usize),
     /// A component in which steps differ.
     Step(usize),
-    /// What the place in the walk adds: its index among the model's contexts.
+    /// Place in the walk: its index among the model's contexts.
     Context(usize),
 }
 

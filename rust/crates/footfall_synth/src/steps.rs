@@ -10,7 +10,7 @@ use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
 use glam::Vec2;
 
-/// What the next step is asked to be.
+/// Requirements of the next step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ask {
     /// Travel to the left and forwards from where the walker faces.
@@ -24,7 +24,7 @@ pub(crate) struct Ask {
 }
 
 impl Ask {
-    /// What the controls make of the step after one like this.
+    /// Derives the requirements of the step after one like this from the controls.
     pub(crate) fn after(
         shape: &StepShape,
         controls: Controls,
@@ -89,7 +89,7 @@ pub(crate) trait StepSource {
     /// Leaves the current step as it is, whatever else is asked for.
     fn keep(&mut self) {}
 
-    /// Whether so much else is asked for that the current step would obey it where it can.
+    /// Returns whether so much else is asked for that the current step would obey it where it can.
     fn is_news(&self, _ask: &Ask) -> bool {
         false
     }

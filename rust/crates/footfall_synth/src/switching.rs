@@ -27,7 +27,7 @@ use system::{FeatureLanes, Pose, RunningSystem};
 /// A segment begins where one of so many nearest recorded ones began: the pose goes on, and still varies.
 const NEAREST: usize = 4;
 
-/// What the pose jumps by at a switch dies away in this time, seconds.
+/// Time in which the jump of the pose at a switch dies away, seconds.
 const SETTLE_SECS: f64 = 0.06;
 
 /// A segment ends this many frames before or after the end of the recorded one, where the next one begins most alike.
@@ -68,7 +68,7 @@ pub(crate) struct SwitchingSteps {
     features: Vec<FeatureLanes>,
     /// Speed of the recorded walk on this body, m/s.
     pub(crate) own_speed_mps: f64,
-    /// How long its steps last, seconds.
+    /// Mean duration of its steps, seconds.
     own_step_secs: f32,
     leg_length: f32,
     /// Headings under which the walk goes along +Z at each of [`FACING_RATIOS`], radians.
@@ -87,7 +87,7 @@ pub(crate) struct SwitchingOrigin {
     pub(crate) amplitude: Amplitude,
     pub(crate) turn_rate: f32,
     pub(crate) facing: [f32; 2],
-    /// How far chance had come.
+    /// Position in the sequence of random numbers.
     pub(crate) chance_position: u64,
     /// The next two frames of the segment before, had nothing switched; empty for the first.
     pub(crate) expected: Vec<f32>,

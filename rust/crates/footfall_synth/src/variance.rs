@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Steps of the sample walk: enough that its ends do not count.
 const SAMPLE_STEPS: usize = 12;
 
-/// How much farther or less a walk may swing than the corpus, as a ratio of variances: styles and speeds differ.
+/// Bound on how much farther or less a walk swings than the corpus, as a ratio of variances: styles and speeds differ.
 const VARIANCE_RATIO: [f64; 2] = [0.25, 4.0];
 
 /// The pull per feature under which a walk of the model keeps the corpus' variance.

@@ -1,4 +1,4 @@
-//! What benchmarks run that is no part of the interface.
+//! Workloads of benchmarks that are no part of the interface.
 
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;

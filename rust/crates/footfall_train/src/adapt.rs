@@ -9,18 +9,20 @@ mod spread;
 mod transforms;
 
 use crate::EmConfig;
-use crate::average::{DURATION_VARIANCE_FLOOR, STATES, expect_steps};
+use crate::encoded::{EncodedCorpus, steady_part};
 use crate::error::TrainError;
 use crate::progress::Progress;
 use crate::sequence::Sequence;
-use crate::train::{TrainConfig, TrainingClip, encode, mean_terminal, steady_part};
+use crate::step_hsmm::{DURATION_VARIANCE_FLOOR, StepHsmm, discretised};
+use crate::train::{TrainConfig, mean_terminal};
 use footfall_core::Side;
 use footfall_model::{
-    FEATURE_COUNT, GaitModel, GaitStyle, GlobalVarianceModel, OBSERVATION_COUNT, Provenance,
-    STATES_PER_STEP, StateModel, StepModel, StepSpread,
+    FEATURE_COUNT, GaitModel, GaitStyle, GlobalVarianceModel, Provenance, STATES_PER_STEP,
+    StateModel, StepModel,
 };
+use footfall_motion::recording::Recording;
 use footfall_motion::steps::Walk;
-use footfall_prob::duration::{DurationDist, GaussianDuration};
+use footfall_prob::duration::GaussianDuration;
 use footfall_prob::gaussian::DiagonalGaussian;
 use footfall_prob::hsmm::HsmmStats;
 use footfall_prob::regression::map_estimate;
@@ -60,6 +62,16 @@ pub struct AdaptConfig {
     pub steps: Option<usize>,
 }
 
+impl AdaptConfig {
+    /// The way that suits a dozen steps best, with the first `steps` of them.
+    pub const fn first_steps(steps: usize) -> Self {
+        Self {
+            method: AdaptMethod::Csmaplr,
+            steps: Some(steps),
+        }
+    }
+}
+
 /// A style and how the adaptation went.
 #[derive(Clone, Debug)]
 pub struct Adapted {
@@ -83,7 +95,7 @@ pub struct Adapted {
 /// [`TrainError`] when the clips hold fewer than two steps in a row, or the base cannot explain them.
 pub fn adapt_style(
     base: &GaitModel,
-    clips: &[TrainingClip],
+    clips: &[Recording],
     name: &str,
     config: &AdaptConfig,
     provenance: Provenance,
@@ -100,31 +112,30 @@ pub fn adapt_style(
             min_gain_per_frame: 0.0,
         },
     };
-    let (corpus, counts) = encode(&chosen, &encoding)?;
+    let encoded = EncodedCorpus::of(&chosen, &encoding)?;
+    let (corpus, counts) = encoded.steady();
     let mut adapting = Adapting::new(base, &corpus, config.method)?;
     let (transforms_fit, objectives) = adapting.run(&corpus, progress)?;
-    let start = States::of(base);
+    let start = StepHsmm::of(base, adapting.max_duration());
     let durations = adapting.adapted_durations()?;
+    let longest = adapting.max_duration();
     let prior = States {
-        gaussians: adapting.adapted_gaussians()?,
-        lengths: lengths(&durations, adapting.max_duration())?,
-        durations,
-        max_duration: adapting.max_duration(),
+        lengths: lengths(&durations, longest)?,
+        hsmm: StepHsmm {
+            gaussians: adapting.adapted_gaussians()?,
+            durations,
+            max_duration: longest,
+        },
     };
     let mut states = prior.clone();
     for _ in 0..MAP_ITERATIONS {
-        let stats = states.expect(&corpus)?;
+        let stats = states.hsmm.expect_in_order(&corpus)?;
         states = prior.refined(&stats, &start)?;
     }
     let log_likelihoods = [
-        States {
-            max_duration: prior.max_duration,
-            ..start
-        }
-        .expect(&corpus)?
-        .log_likelihood,
+        start.expect_in_order(&corpus)?.log_likelihood,
         transforms_fit,
-        states.expect(&corpus)?.log_likelihood,
+        states.hsmm.expect_in_order(&corpus)?.log_likelihood,
     ];
     let frames: usize = corpus.iter().map(Sequence::frames).sum();
     let style = GaitStyle {
@@ -135,7 +146,8 @@ pub fn adapt_style(
             states.step(Side::Right, mean_terminal(&corpus, Side::Right))?,
         ],
         global_variance: global_variance(base, &corpus),
-        step_spread: own_spread(base, &chosen, &encoding)?,
+        // Of the recordings that show different steps.
+        step_spread: spread::step_spread(base, &encoded.distinct().steady().0),
         speed_mps: mean_speed(&corpus),
         cadence_hz: counts.steps as f64 * base.frame_rate_hz / frames as f64,
         provenance: Provenance {
@@ -155,26 +167,11 @@ pub fn adapt_style(
     })
 }
 
-/// Spread of the steps, by the clips that show different ones.
-fn own_spread(
-    base: &GaitModel,
-    clips: &[TrainingClip],
-    encoding: &TrainConfig,
-) -> Result<StepSpread, TrainError> {
-    let distinct: Vec<TrainingClip> = clips
-        .iter()
-        .filter(|clip| clip.repeats <= 1)
-        .cloned()
-        .collect();
-    let (corpus, _) = encode(&distinct, encoding)?;
-    Ok(spread::step_spread(base, &corpus))
-}
-
 /// Steps that were taken, those of a loop once.
-fn distinct_steps(clips: &[TrainingClip]) -> usize {
-    let of_clip = |clip: &TrainingClip| {
+fn distinct_steps(clips: &[Recording]) -> usize {
+    let of_clip = |clip: &Recording| {
         let steps: usize = clip.walks.iter().map(|walk| walk.steps.len()).sum();
-        steps.div_ceil(clip.repeats.max(1))
+        steps.div_ceil(clip.repeats())
     };
     clips.iter().map(of_clip).sum()
 }
@@ -185,7 +182,7 @@ pub fn shows_steps(walks: &[Walk]) -> bool {
 }
 
 /// The clips with only their first `limit` steps in full stride.
-fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>, TrainError> {
+fn first_steps(clips: &[Recording], limit: usize) -> Result<Vec<Recording>, TrainError> {
     if limit < LEAST_STEPS {
         return Err(TrainError::TooFewSteps { found: limit });
     }
@@ -197,8 +194,8 @@ fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>
         let total: usize = steady.iter().map(|walk| walk.steps.len()).sum();
         found += total;
         // The rounds of a loop show the same steps: they count once, and no more rounds are taken than a longer recording has steps.
-        let round = total.div_ceil(clip.repeats.max(1)).max(1);
-        let rounds = (limit / round).clamp(1, clip.repeats.max(1));
+        let round = total.div_ceil(clip.repeats()).max(1);
+        let rounds = (limit / round).clamp(1, clip.repeats());
         let mut budget = left.min(round) * rounds;
         let mut walks = Vec::new();
         for mut walk in steady {
@@ -210,11 +207,10 @@ fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>
             }
         }
         if !walks.is_empty() {
-            chosen.push(TrainingClip {
-                walks,
-                repeats: rounds,
-                ..clip.clone()
-            });
+            let mut taken = clip.clone();
+            taken.walks = walks;
+            taken.retargeted.report.repeats = rounds;
+            chosen.push(taken);
         }
     }
     if chosen.is_empty() {
@@ -229,16 +225,14 @@ fn first_steps(clips: &[TrainingClip], limit: usize) -> Result<Vec<TrainingClip>
 /// Both steps' states with Gaussians of their own.
 #[derive(Clone, Debug)]
 struct States {
-    gaussians: Vec<DiagonalGaussian>,
-    /// What explains the durations: Gaussians cut off at one frame, whose centres are not their means.
-    durations: Vec<GaussianDuration>,
+    hsmm: StepHsmm,
     /// Mean and variance of the durations themselves, which is what the generator plays.
     lengths: Vec<[f64; 2]>,
-    max_duration: usize,
 }
 
-impl States {
-    fn of(base: &GaitModel) -> Self {
+impl StepHsmm {
+    /// The states of a model.
+    fn of(base: &GaitModel, max_duration: usize) -> Self {
         let states = || base.steps.iter().flat_map(|step| &step.states);
         Self {
             gaussians: states()
@@ -250,32 +244,17 @@ impl States {
                     variance: s.duration_variance,
                 })
                 .collect(),
-            lengths: states()
-                .map(|s| [s.duration_mean, s.duration_variance])
-                .collect(),
-            max_duration: 0,
+            max_duration,
         }
     }
+}
 
-    fn expect(&self, corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
-        let durations = self.discretised()?;
-        let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
-        for sequence in corpus {
-            expect_steps(sequence, sequence, &self.gaussians, &durations, &mut stats)?;
-        }
-        Ok(stats)
-    }
-
-    fn discretised(&self) -> Result<Vec<DurationDist>, TrainError> {
-        let durations = self.durations.iter();
-        Ok(durations
-            .map(|duration| duration.discretise(self.max_duration))
-            .collect::<Result<_, _>>()?)
-    }
-
+impl States {
     /// These states, each moved towards what it saw.
-    fn refined(&self, stats: &HsmmStats, base: &Self) -> Result<Self, TrainError> {
+    fn refined(&self, stats: &HsmmStats, base: &StepHsmm) -> Result<Self, TrainError> {
+        let longest = self.hsmm.max_duration;
         let gaussians = self
+            .hsmm
             .gaussians
             .iter()
             .zip(&stats.emissions)
@@ -287,14 +266,14 @@ impl States {
                 Ok(DiagonalGaussian::new(found.mean().to_vec(), variance)?)
             })
             .collect::<Result<_, TrainError>>()?;
-        let mut durations = self.durations.clone();
+        let mut durations = self.hsmm.durations.clone();
         let mut lengths = self.lengths.clone();
         for ((duration, length), seen) in
             durations.iter_mut().zip(&mut lengths).zip(&stats.durations)
         {
             if seen.weight() > 0.0 {
-                *duration = seen.estimate(self.max_duration, DURATION_VARIANCE_FLOOR)?;
-                let own = duration.discretise(self.max_duration)?;
+                *duration = seen.estimate(longest, DURATION_VARIANCE_FLOOR)?;
+                let own = duration.discretise(longest)?;
                 let share = seen.weight() / (MAP_SEGMENTS + seen.weight());
                 let [prior, prior_variance] = *length;
                 let mean = prior + share * (own.mean() - prior);
@@ -305,10 +284,12 @@ impl States {
             }
         }
         Ok(Self {
-            gaussians,
-            durations,
+            hsmm: StepHsmm {
+                gaussians,
+                durations,
+                max_duration: longest,
+            },
             lengths,
-            max_duration: self.max_duration,
         })
     }
 
@@ -318,8 +299,8 @@ impl States {
             .map(|index| {
                 let [duration_mean, duration_variance] = self.lengths[index];
                 Ok(StateModel {
-                    mean: self.gaussians[index].mean().to_vec(),
-                    variance: self.gaussians[index].variance().to_vec(),
+                    mean: self.hsmm.gaussians[index].mean().to_vec(),
+                    variance: self.hsmm.gaussians[index].variance().to_vec(),
                     duration_mean,
                     duration_variance: duration_variance.max(DURATION_VARIANCE_FLOOR),
                 })
@@ -334,13 +315,11 @@ impl States {
 
 /// Mean and variance of durations as far as they can be.
 fn lengths(durations: &[GaussianDuration], longest: usize) -> Result<Vec<[f64; 2]>, TrainError> {
-    durations
+    let possible = discretised(durations, longest)?;
+    Ok(possible
         .iter()
-        .map(|duration| {
-            let possible = duration.discretise(longest)?;
-            Ok([possible.mean(), possible.variance()])
-        })
-        .collect()
+        .map(|duration| [duration.mean(), duration.variance()])
+        .collect())
 }
 
 /// The mean of the style's walks, with the base's relative spread.

@@ -6,24 +6,18 @@
 use crate::error::TrainError;
 use crate::progress::{Progress, advance};
 use crate::sequence::{LabelledStep, Sequence};
+use crate::step_hsmm::{DURATION_VARIANCE_FLOOR, STATES, StepHsmm, chain, cut_steps, state_index};
 use footfall_core::Side;
 use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP, StateModel};
-use footfall_prob::duration::{DurationDist, GaussianDuration};
-use footfall_prob::gaussian::{DiagonalGaussian, GaussianStats, log_densities};
-use footfall_prob::hsmm::{Boundary, ChainState, HsmmStats, hsmm_forward_backward, hsmm_viterbi};
-use rayon::prelude::*;
-
-/// States of both steps together.
-pub(crate) const STATES: usize = 2 * STATES_PER_STEP;
+use footfall_prob::duration::GaussianDuration;
+use footfall_prob::gaussian::{DiagonalGaussian, GaussianStats};
+use footfall_prob::hsmm::HsmmStats;
 
 /// Least variance of a feature in a state, as a fraction of its variance over the whole corpus.
 const VARIANCE_FLOOR: f64 = 1e-3;
 
 /// Least variance of a feature, for those that never change.
 const ABSOLUTE_VARIANCE_FLOOR: f64 = 1e-8;
-
-/// Least variance of a state's duration, frames².
-pub(crate) const DURATION_VARIANCE_FLOOR: f64 = 0.25;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +31,7 @@ pub struct EmConfig {
 /// Both step models as the trainer holds them, and how training went.
 #[derive(Clone, Debug)]
 pub struct AverageWalk {
-    gaussians: Vec<DiagonalGaussian>,
-    durations: Vec<GaussianDuration>,
-    max_duration: usize,
+    hsmm: StepHsmm,
     /// Total log-likelihood of the corpus before each M-step; never falls.
     pub log_likelihoods: Vec<f64>,
 }
@@ -61,7 +53,10 @@ impl AverageWalk {
             .map(|step| step.end - step.first)
             .max()
             .ok_or(TrainError::NoSteps)?;
-        let walk = Self::maximise(&even_split(corpus)?, longest, &floor)?;
+        let walk = Self {
+            hsmm: StepHsmm::estimate(&even_split(corpus)?, longest, &floor)?,
+            log_likelihoods: Vec::new(),
+        };
         walk.refine(corpus, config, progress)
     }
 
@@ -76,7 +71,6 @@ impl AverageWalk {
         progress: &mut dyn Progress,
     ) -> Result<Self, TrainError> {
         let floor = variance_floor(corpus);
-        let longest = self.max_duration;
         let mut walk = Self {
             log_likelihoods: Vec::new(),
             ..self
@@ -89,12 +83,8 @@ impl AverageWalk {
                 .last()
                 .map(|previous| (stats.log_likelihood - previous) / stats.n_frames as f64);
             progress.fit(stats.log_likelihood);
-            let mut likelihoods = core::mem::take(&mut walk.log_likelihoods);
-            likelihoods.push(stats.log_likelihood);
-            walk = Self {
-                log_likelihoods: likelihoods,
-                ..Self::maximise(&stats, longest, &floor)?
-            };
+            walk.log_likelihoods.push(stats.log_likelihood);
+            walk.hsmm = StepHsmm::estimate(&stats, walk.hsmm.max_duration, &floor)?;
             if gain.is_some_and(|gain| gain < config.min_gain_per_frame) {
                 break;
             }
@@ -117,10 +107,11 @@ impl AverageWalk {
             .map(|state| {
                 let index = state_index(side, state);
                 // A Gaussian that is cut off at one frame has another mean than its centre.
-                let duration = self.durations[index].discretise(self.max_duration)?;
+                let duration = self.hsmm.durations[index].discretise(self.hsmm.max_duration)?;
+                let gaussian = &self.hsmm.gaussians[index];
                 Ok(StateModel {
-                    mean: self.gaussians[index].mean().to_vec(),
-                    variance: self.gaussians[index].variance().to_vec(),
+                    mean: gaussian.mean().to_vec(),
+                    variance: gaussian.variance().to_vec(),
                     duration_mean: duration.mean(),
                     duration_variance: duration.variance().max(DURATION_VARIANCE_FLOOR),
                 })
@@ -133,24 +124,24 @@ impl AverageWalk {
     /// # Errors
     /// [`TrainError::Inference`] when the sequence cannot be explained.
     pub fn align(&self, sequence: &Sequence) -> Result<Vec<usize>, TrainError> {
-        let durations = self.discretised()?;
+        let durations = self.hsmm.discretised()?;
         let chain = |step: &LabelledStep| chain(core::slice::from_ref(step));
-        cut_steps(sequence, &self.gaussians, &durations, chain)
+        cut_steps(sequence, &self.hsmm.gaussians, &durations, chain)
     }
 
     /// The longest duration of a state, frames.
     pub(crate) fn max_duration(&self) -> usize {
-        self.max_duration
+        self.hsmm.max_duration
     }
 
     /// The duration of every state, the left step's first.
     pub(crate) fn durations(&self) -> &[GaussianDuration] {
-        &self.durations
+        &self.hsmm.durations
     }
 
     /// The Gaussian of every state, the left step's first.
     pub(crate) fn gaussians(&self) -> &[DiagonalGaussian] {
-        &self.gaussians
+        &self.hsmm.gaussians
     }
 
     /// Where `aligned` sequences say that the states are, and what `seen` sequences, frame by frame the same walks, show there.
@@ -159,123 +150,8 @@ impl AverageWalk {
         aligned: &[Sequence],
         seen: &[Sequence],
     ) -> Result<HsmmStats, TrainError> {
-        let durations = self.discretised()?;
-        let parts: Vec<HsmmStats> = aligned
-            .par_iter()
-            .zip(seen)
-            .map(|(aligned, seen)| self.expect_one(aligned, seen, &durations))
-            .collect::<Result<_, _>>()?;
-        let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
-        for part in &parts {
-            stats.merge(part);
-        }
-        Ok(stats)
+        self.hsmm.expect(aligned, seen)
     }
-
-    fn expect_one(
-        &self,
-        sequence: &Sequence,
-        seen: &Sequence,
-        durations: &[DurationDist],
-    ) -> Result<HsmmStats, TrainError> {
-        let mut stats = HsmmStats::new(STATES, OBSERVATION_COUNT, STATES);
-        expect_steps(sequence, seen, &self.gaussians, durations, &mut stats)?;
-        Ok(stats)
-    }
-
-    fn maximise(stats: &HsmmStats, max_duration: usize, floor: &[f64]) -> Result<Self, TrainError> {
-        Ok(Self {
-            gaussians: stats
-                .emissions
-                .iter()
-                .map(|moments| moments.estimate(floor))
-                .collect::<Result<_, _>>()?,
-            durations: stats
-                .durations
-                .iter()
-                .map(|moments| moments.estimate(max_duration, DURATION_VARIANCE_FLOOR))
-                .collect::<Result<_, _>>()?,
-            max_duration,
-            log_likelihoods: Vec::new(),
-        })
-    }
-
-    fn discretised(&self) -> Result<Vec<DurationDist>, TrainError> {
-        let discretise = |duration: &GaussianDuration| duration.discretise(self.max_duration);
-        Ok(self
-            .durations
-            .iter()
-            .map(discretise)
-            .collect::<Result<_, _>>()?)
-    }
-}
-
-/// Where a state's parameters are.
-pub(crate) fn state_index(side: Side, state: usize) -> usize {
-    side.index() * STATES_PER_STEP + state
-}
-
-/// The states of a walk in a row.
-pub(crate) fn chain(steps: &[LabelledStep]) -> Vec<ChainState> {
-    steps
-        .iter()
-        .flat_map(|step| (0..STATES_PER_STEP).map(|state| state_index(step.side, state)))
-        .map(|index| ChainState {
-            emission: index,
-            duration: index,
-        })
-        .collect()
-}
-
-/// The most probable boundaries between the states of a sequence's steps, plus the end.
-///
-/// Step by step, not the whole walk: free boundaries between steps settle a few frames off the initial contacts, where the likelihood is
-/// best, and the generator puts a foot down where its step begins.
-pub(crate) fn cut_steps(
-    sequence: &Sequence,
-    gaussians: &[DiagonalGaussian],
-    durations: &[DurationDist],
-    chain: impl Fn(&LabelledStep) -> Vec<ChainState>,
-) -> Result<Vec<usize>, TrainError> {
-    let mut log_emissions = Vec::new();
-    let mut boundaries = vec![0];
-    for step in &sequence.steps {
-        log_densities(gaussians, sequence.rows_of(step), &mut log_emissions)?;
-        let path = hsmm_viterbi(
-            &log_emissions,
-            gaussians.len(),
-            &chain(step),
-            durations,
-            Boundary::default(),
-        )?;
-        boundaries.pop();
-        boundaries.extend(path.boundaries.iter().map(|frame| step.first + frame));
-    }
-    Ok(boundaries)
-}
-
-/// Adds what `seen`, frame by frame the same walk, shows in the states of a sequence, cut step by step as by [`cut_steps`].
-pub(crate) fn expect_steps(
-    sequence: &Sequence,
-    seen: &Sequence,
-    gaussians: &[DiagonalGaussian],
-    durations: &[DurationDist],
-    stats: &mut HsmmStats,
-) -> Result<(), TrainError> {
-    let mut log_emissions = Vec::new();
-    for step in &sequence.steps {
-        log_densities(gaussians, sequence.rows_of(step), &mut log_emissions)?;
-        let chain = chain(core::slice::from_ref(step));
-        let posterior = hsmm_forward_backward(
-            &log_emissions,
-            gaussians.len(),
-            &chain,
-            durations,
-            Boundary::default(),
-        )?;
-        stats.add(&chain, &posterior, seen.rows_of(step))?;
-    }
-    Ok(())
 }
 
 /// Statistics of the corpus with every step cut into states of equal length.

@@ -3,19 +3,19 @@
 //! Recordings come over to a body of standard lengths with feet of their own. A walk belongs on such feet: on steeper ones the leg that pushes
 //! off holds the hips lower than the leg that lands, and the body has to drop between them.
 
-use crate::train::TrainingClip;
 use footfall_core::{Side, Skeleton};
+use footfall_motion::recording::Recording;
 use glam::Vec3;
 use std::collections::BTreeMap;
 
 /// The canonical body with the mean foot of the people in these clips, each person counted once. `symmetric` gives both feet the mean slope.
-pub(crate) fn average_body(clips: &[TrainingClip], symmetric: bool) -> Skeleton {
+pub(crate) fn average_body(clips: &[Recording], symmetric: bool) -> Skeleton {
     let mut people: BTreeMap<&str, (f32, [Vec3; 2])> = BTreeMap::new();
     for clip in clips {
-        let (count, sums) = people.entry(&clip.subject).or_default();
+        let (count, sums) = people.entry(clip.subject()).or_default();
         *count += 1.0;
         for side in Side::BOTH {
-            sums[side.index()] += clip.clip.skeleton.offset(side.toes()).normalize_or_zero();
+            sums[side.index()] += clip.clip().skeleton.offset(side.toes()).normalize_or_zero();
         }
     }
     let mut directions = [Vec3::ZERO; 2];
@@ -33,24 +33,21 @@ pub(crate) fn average_body(clips: &[TrainingClip], symmetric: bool) -> Skeleton 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use footfall_core::{Clip, Joint};
+    use footfall_core::{Clip, Joint, Pose};
+    use footfall_motion::retarget::Retargeted;
 
-    fn clip(subject: &str, slopes_deg: [f32; 2]) -> TrainingClip {
+    fn clip(subject: &str, slopes_deg: [f32; 2]) -> Recording {
         let direction = |deg: f32| {
             let (sin, cos) = deg.to_radians().sin_cos();
             Vec3::new(0.0, -sin, cos)
         };
-        TrainingClip {
-            subject: subject.to_owned(),
-            clip: Clip {
-                skeleton: Skeleton::with_feet(slopes_deg.map(direction)),
-                frame_rate_hz: 60.0,
-                poses: Vec::new(),
-            },
-            skip_frames: 0,
-            walks: Vec::new(),
-            repeats: 1,
-        }
+        let skeleton = Skeleton::with_feet(slopes_deg.map(direction));
+        let clip = Clip {
+            frame_rate_hz: 60.0,
+            poses: vec![Pose::rest(&skeleton)],
+            skeleton,
+        };
+        Recording::detected(Retargeted::canonical(clip)).of_subject(subject)
     }
 
     fn slope_deg(body: &Skeleton, side: Side) -> f32 {

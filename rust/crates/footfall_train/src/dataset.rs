@@ -1,11 +1,12 @@
-//! From a clip with its steps to training sequences.
+//! From a recording to training sequences.
 
 use crate::error::TrainError;
 use crate::sequence::{LabelledStep, Sequence};
 use footfall_core::rotation::{heading, wrap_angle};
 use footfall_core::{Clip, Joint};
 use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT, layout};
-use footfall_motion::steps::Walk;
+use footfall_motion::recording::Recording;
+use footfall_motion::steps::{Step, Walk};
 use footfall_prob::windows::Windows;
 
 /// Standard deviation of the window that smooths the heading, seconds: the pelvis' swing within a stride stays in the
@@ -21,70 +22,89 @@ pub struct EncodeConfig {
     pub windows: Windows,
 }
 
-/// Encodes the walks of a clip, each from its first initial contact to its last.
-///
-/// `skip_frames` leading frames of the clip are left out (an artificial T-pose, for example). Walks of fewer than two
-/// steps are left out.
-///
-/// # Errors
-/// [`TrainError::FrameRate`] for a rate that is not usable; [`TrainError::Inference`] when a pose is not finite.
-pub fn encode_clip(
-    clip: &Clip,
-    skip_frames: usize,
-    walks: &[Walk],
-    walker: usize,
-    config: &EncodeConfig,
-) -> Result<Vec<Sequence>, TrainError> {
-    if !(20.0..=240.0).contains(&config.frame_rate_hz) {
-        return Err(TrainError::FrameRate {
-            frame_rate_hz: config.frame_rate_hz,
-        });
-    }
-    let moving = Clip {
-        poses: clip.poses.get(skip_frames..).unwrap_or_default().to_vec(),
-        ..clip.clone()
-    };
-    let observations = observe(&moving, config)?;
-    let frames = observations.len() / OBSERVATION_COUNT;
-    let scale = config.frame_rate_hz / clip.frame_rate_hz;
-    let frame_at = |frame: usize| {
-        let position = frame.saturating_sub(skip_frames) as f64 * scale;
-        (position.round() as usize).min(frames)
-    };
-    let sequences = walks.iter().filter(|walk| walk.steps.len() >= 2);
-    Ok(sequences
-        .filter_map(|walk| {
-            let first = frame_at(walk.steps.first()?.first);
-            let end = frame_at(walk.steps.last()?.end);
-            let steps = walk
-                .steps
-                .iter()
-                .map(|step| {
-                    let (from, to) = (frame_at(step.first), frame_at(step.end));
-                    let length = (step.end - step.first) as f64;
-                    LabelledStep {
-                        side: step.side,
-                        first: from - first,
-                        end: to - first,
-                        other_terminal: match (step.other_terminal, step.take_off) {
-                            (Some(frame), _) => Some((frame as f64 - step.first as f64) / length),
-                            // The flight that ends a running step is as long as the one before it.
-                            (None, Some(frame)) => Some((frame as f64 - step.end as f64) / length),
-                            (None, None) => None,
-                        },
-                        position: step.position,
-                        speed_mps: speed(clip, step.first, step.end),
-                    }
-                })
-                .collect();
-            Some(Sequence {
-                walker,
-                observations: observations[first * OBSERVATION_COUNT..end * OBSERVATION_COUNT]
-                    .to_vec(),
-                steps,
-            })
+/// A recording, encoded whole; training takes walks of it, or parts of walks.
+#[derive(Clone, Debug)]
+pub struct EncodedRecording<'a> {
+    recording: &'a Recording,
+    observations: Vec<f64>,
+    /// Frames of the features for one of the recording.
+    scale: f64,
+}
+
+impl<'a> EncodedRecording<'a> {
+    /// Encodes a recording from its [first frame](Recording::first_frame) on.
+    ///
+    /// # Errors
+    /// [`TrainError::FrameRate`] for a rate that is not usable; [`TrainError::Inference`] when a pose is not finite.
+    pub fn of(recording: &'a Recording, config: &EncodeConfig) -> Result<Self, TrainError> {
+        if !(20.0..=240.0).contains(&config.frame_rate_hz) {
+            return Err(TrainError::FrameRate {
+                frame_rate_hz: config.frame_rate_hz,
+            });
+        }
+        let clip = recording.clip();
+        let first = recording.first_frame();
+        let moving = Clip {
+            poses: clip.poses.get(first..).unwrap_or_default().to_vec(),
+            ..clip.clone()
+        };
+        Ok(Self {
+            recording,
+            observations: observe(&moving, config)?,
+            scale: config.frame_rate_hz / clip.frame_rate_hz,
         })
-        .collect())
+    }
+
+    /// The recording itself.
+    pub const fn recording(&self) -> &'a Recording {
+        self.recording
+    }
+
+    /// Walks, each from its first initial contact to its last, in frames of the recording. Walks of fewer than two steps are left out.
+    pub fn walks(&self, walks: &[Walk], walker: usize) -> Vec<Sequence> {
+        let long = walks.iter().filter(|walk| walk.steps.len() >= 2);
+        long.filter_map(|walk| self.sequence(walk, walker))
+            .collect()
+    }
+
+    fn sequence(&self, walk: &Walk, walker: usize) -> Option<Sequence> {
+        let first = self.frame_at(walk.steps.first()?.first);
+        let end = self.frame_at(walk.steps.last()?.end);
+        let steps = walk.steps.iter();
+        let steps = steps.map(|step| self.labelled(step, first)).collect();
+        let cells = first * OBSERVATION_COUNT..end * OBSERVATION_COUNT;
+        Some(Sequence {
+            walker,
+            observations: self.observations[cells].to_vec(),
+            steps,
+        })
+    }
+
+    /// A step, in frames of a sequence that begins at `first`.
+    fn labelled(&self, step: &Step, first: usize) -> LabelledStep {
+        let (from, to) = (self.frame_at(step.first), self.frame_at(step.end));
+        let length = (step.end - step.first) as f64;
+        LabelledStep {
+            side: step.side,
+            first: from - first,
+            end: to - first,
+            other_terminal: match (step.other_terminal, step.take_off) {
+                (Some(frame), _) => Some((frame as f64 - step.first as f64) / length),
+                // The flight that ends a running step is as long as the one before it.
+                (None, Some(frame)) => Some((frame as f64 - step.end as f64) / length),
+                (None, None) => None,
+            },
+            position: step.position,
+            speed_mps: speed(self.recording.clip(), step.first, step.end),
+        }
+    }
+
+    /// The frame of the features that a frame of the recording becomes.
+    fn frame_at(&self, frame: usize) -> usize {
+        let frames = self.observations.len() / OBSERVATION_COUNT;
+        let position = frame.saturating_sub(self.recording.first_frame()) as f64 * self.scale;
+        (position.round() as usize).min(frames)
+    }
 }
 
 /// Observations of a whole clip at the rate of the features, T × [`OBSERVATION_COUNT`].

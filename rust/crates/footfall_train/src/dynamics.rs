@@ -9,12 +9,14 @@ mod pose_space;
 
 pub use comparison::{DynamicsComparison, ErrorCurve, compare_dynamics};
 
-use crate::dataset::{EncodeConfig, encode_clip};
+use crate::dataset::{EncodeConfig, EncodedRecording};
+use crate::encoded::number_of;
 use crate::error::TrainError;
 use crate::sequence::Sequence;
-use crate::train::{TrainingClip, mean_terminal};
+use crate::train::mean_terminal;
 use footfall_core::Side;
 use footfall_model::{DynamicsModel, FEATURE_COUNT, OBSERVATION_COUNT, Provenance, Regime};
+use footfall_motion::recording::Recording;
 use footfall_motion::steps::Walk;
 use footfall_motion::switches::{Landing, detect_switches_by, walks};
 use footfall_prob::subspace::{
@@ -73,19 +75,19 @@ pub struct FittedDynamics {
 /// # Errors
 /// [`TrainError`] when the clips show too few steps, or the systems cannot be told from them.
 pub fn fit_dynamics(
-    clips: &[TrainingClip],
+    clips: &[Recording],
     config: &DynamicsConfig,
     provenance: Provenance,
 ) -> Result<FittedDynamics, TrainError> {
     let skeleton = clips
         .first()
         .ok_or(TrainError::NoSteps)?
-        .clip
+        .clip()
         .skeleton
         .clone();
-    let recordings = Recordings::read(clips, config)?;
-    let pose = PoseSpace::of(&recordings.sequences, &skeleton, config.components)?;
-    let outputs = Outputs::of(&recordings.sequences, &pose);
+    let walks = SwitchWalks::read(clips, config)?;
+    let pose = PoseSpace::of(&walks.sequences, &skeleton, config.components)?;
+    let outputs = Outputs::of(&walks.sequences, &pose);
     let mut segments = [0; 2];
     let mut one_step_error = [0.0; 2];
     let mut regimes = Vec::with_capacity(2);
@@ -97,7 +99,7 @@ pub fn fit_dynamics(
         let system = fit_segments(&own, config)?;
         segments[side.index()] = own.len();
         one_step_error[side.index()] = system.error / outputs.spread;
-        regimes.push(regime(&system.system, &own, &recordings.sequences, side)?);
+        regimes.push(regime(&system.system, &own, &walks.sequences, side)?);
     }
     let Ok(regimes) = <[Regime; 2]>::try_from(regimes) else {
         return Err(TrainError::NoSteps);
@@ -109,8 +111,8 @@ pub fn fit_dynamics(
         components: pose.components,
         regimes,
         provenance: Provenance {
-            clips: recordings.clips,
-            subjects: recordings.subjects,
+            clips: walks.clips,
+            subjects: walks.subjects,
             steps: segments.iter().sum(),
             ..provenance
         },
@@ -221,14 +223,15 @@ fn identify_best(segments: &[&[f64]], config: &DynamicsConfig) -> Result<AffineS
     }
 }
 
-struct Recordings {
+/// Walks as their switches cut them.
+struct SwitchWalks {
     sequences: Vec<Sequence>,
     clips: usize,
     subjects: usize,
 }
 
-impl Recordings {
-    fn read(clips: &[TrainingClip], config: &DynamicsConfig) -> Result<Self, TrainError> {
+impl SwitchWalks {
+    fn read(clips: &[Recording], config: &DynamicsConfig) -> Result<Self, TrainError> {
         let encoding = EncodeConfig {
             frame_rate_hz: config.frame_rate_hz,
             windows: Windows::Compact,
@@ -241,14 +244,12 @@ impl Recordings {
         let mut subjects: Vec<&str> = Vec::new();
         for clip in clips {
             let walks = switch_walks(clip)?;
-            let found = encode_clip(&clip.clip, clip.skip_frames, &walks, 0, &encoding)?;
+            let found = EncodedRecording::of(clip, &encoding)?.walks(&walks, 0);
             if found.is_empty() {
                 continue;
             }
             read.clips += 1;
-            if !subjects.contains(&clip.subject.as_str()) {
-                subjects.push(&clip.subject);
-            }
+            number_of(clip.subject(), &mut subjects);
             read.sequences.extend(found);
         }
         read.subjects = subjects.len();
@@ -259,14 +260,15 @@ impl Recordings {
     }
 }
 
-/// The steps of a clip as its switches cut them; when the other foot leaves the ground is taken from the kinematic steps.
-fn switch_walks(clip: &TrainingClip) -> Result<Vec<Walk>, TrainError> {
-    let rate = clip.clip.frame_rate_hz;
+/// The steps of a recording as its switches cut them; when the other foot leaves the ground is taken from the kinematic steps.
+fn switch_walks(recording: &Recording) -> Result<Vec<Walk>, TrainError> {
+    let (clip, first) = (recording.clip(), recording.first_frame());
+    let rate = clip.frame_rate_hz;
     // A model is cut where the dynamics change, within a frame of the landing.
-    let switches = detect_switches_by(&clip.clip, clip.skip_frames, Landing::LegsAndResidual)?;
+    let switches = detect_switches_by(clip, first, Landing::LegsAndResidual)?;
     let mut walks = walks(&switches, rate);
     for step in walks.iter_mut().flat_map(|walk| &mut walk.steps) {
-        let mut kinematic = clip.walks.iter().flat_map(|walk| &walk.steps);
+        let mut kinematic = recording.walks.iter().flat_map(|walk| &walk.steps);
         let same = kinematic.find(|known| {
             known.side == step.side
                 && known.first.abs_diff(step.first) as f64 <= SAME_CONTACT_SECS * rate

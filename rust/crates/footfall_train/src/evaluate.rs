@@ -16,6 +16,7 @@ pub mod resemblance;
 pub mod response;
 pub mod standing;
 pub mod stride_features;
+mod take;
 pub mod told_apart;
 
 pub use confusion::Confusion;
@@ -24,60 +25,12 @@ pub use resemblance::JointRatios;
 pub use stride_features::PHASES;
 
 use footfall_core::{Clip, Pose};
-use footfall_motion::steps::Walk;
+use footfall_motion::recording::Recording;
 use lda::{ClassMoments, Labelled};
 use rayon::prelude::*;
 use recognition::recognise;
-use stride_features::{LEAST_SPREAD, Stride, strides};
-
-/// A recording of one style.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StyledClip {
-    /// Style that it shows.
-    pub style: String,
-    /// The motion, on the canonical body, floor at y = 0.
-    pub clip: Clip,
-    /// Its walks, in frames of the clip.
-    pub walks: Vec<Walk>,
-}
-
-impl StyledClip {
-    /// A recording without its first `skip_frames` frames (an artificial T-pose, for example).
-    pub fn new(style: &str, clip: &Clip, skip_frames: usize, walks: &[Walk]) -> Self {
-        let mut walks = walks.to_vec();
-        for step in walks.iter_mut().flat_map(|walk| &mut walk.steps) {
-            let shift = |frame: usize| frame.saturating_sub(skip_frames);
-            (step.first, step.end) = (shift(step.first), shift(step.end));
-            step.other_terminal = step.other_terminal.map(shift);
-            step.heel_rise = step.heel_rise.map(shift);
-            step.take_off = step.take_off.map(shift);
-        }
-        Self {
-            style: style.to_owned(),
-            clip: Clip {
-                poses: clip.poses.get(skip_frames..).unwrap_or_default().to_vec(),
-                ..clip.clone()
-            },
-            walks,
-        }
-    }
-
-    /// Each walk as a clip of its own: what stands before, between and after is no gait.
-    fn walking(&self) -> Vec<Clip> {
-        let span = |walk: &Walk| Some((walk.steps.first()?.first, walk.steps.last()?.end));
-        self.walks
-            .iter()
-            .filter_map(|walk| {
-                let (first, end) = span(walk)?;
-                let end = end.min(self.clip.poses.len());
-                Some(Clip {
-                    poses: self.clip.poses.get(first..end)?.to_vec(),
-                    ..self.clip.clone()
-                })
-            })
-            .collect()
-    }
-}
+use stride_features::{LEAST_SPREAD, Stride};
+use take::{Moving, Take};
 
 /// Division of real strides into seen and unseen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,15 +116,6 @@ impl StyleEvaluation {
     }
 }
 
-/// A recording with its strides.
-struct Recording<'a> {
-    style: usize,
-    clip: &'a StyledClip,
-    /// Which recording of its style.
-    take: usize,
-    strides: Vec<Stride>,
-}
-
 /// Judges real recordings, and synthesised ones against them.
 ///
 /// `split: None` takes [`Split::Take`] when every style has two takes with strides, else [`Split::Half`].
@@ -179,33 +123,32 @@ struct Recording<'a> {
 /// # Errors
 /// [`EvaluateError`] says which style lacks what.
 pub fn evaluate_styles(
-    real: &[StyledClip],
-    synthesised: Option<&[StyledClip]>,
+    real: &[Recording],
+    synthesised: Option<&[Recording]>,
     split: Option<Split>,
 ) -> Result<StyleEvaluation, EvaluateError> {
     check_finite(real)?;
     check_finite(synthesised.unwrap_or_default())?;
-    let all = real.par_iter().map(|clip| strides(&clip.clip, &clip.walks));
-    let all: Vec<Vec<Stride>> = all.collect();
+    let all = strides_of(real);
     let mut names: Vec<String> = real
         .iter()
         .zip(&all)
-        .filter(|(_, strides)| !strides.is_empty())
-        .map(|(clip, _)| clip.style.clone())
+        .filter(|(_, (_, strides))| !strides.is_empty())
+        .map(|(recording, _)| recording.style().to_owned())
         .collect();
     names.sort();
     names.dedup();
     if names.len() < 2 {
         return Err(EvaluateError::OneStyle { found: names.len() });
     }
-    let real = recordings(real, all, &names);
+    let real = takes(real, all, &names);
     let synthesised = match synthesised {
         None => None,
-        Some(clips) => Some(synthesised_recordings(clips, &names)?),
+        Some(recordings) => Some(synthesised_takes(recordings, &names)?),
     };
-    let takes = |style: usize| real.iter().filter(|one| one.style == style).count();
+    let takes_of = |style: usize| real.iter().filter(|one| one.style == style).count();
     let split = split.unwrap_or_else(|| {
-        if (0..names.len()).all(|style| takes(style) >= 2) {
+        if (0..names.len()).all(|style| takes_of(style) >= 2) {
             Split::Take
         } else {
             Split::Half
@@ -236,14 +179,15 @@ pub fn evaluate_styles(
 }
 
 /// Rotations that are no numbers would pass for no rotation at all.
-fn check_finite(clips: &[StyledClip]) -> Result<(), EvaluateError> {
+fn check_finite(recordings: &[Recording]) -> Result<(), EvaluateError> {
     let is_finite = |pose: &Pose| {
         pose.root_position.is_finite() && pose.rotations.iter().all(|turn| turn.is_finite())
     };
-    for clip in clips {
-        if let Some(frame) = clip.clip.poses.iter().position(|pose| !is_finite(pose)) {
+    for recording in recordings {
+        let mut poses = recording.clip().poses.iter();
+        if let Some(frame) = poses.position(|pose| !is_finite(pose)) {
             return Err(EvaluateError::NotFinite {
-                style: clip.style.clone(),
+                style: recording.style().to_owned(),
                 frame,
             });
         }
@@ -251,65 +195,74 @@ fn check_finite(clips: &[StyledClip]) -> Result<(), EvaluateError> {
     Ok(())
 }
 
-fn labelled<'a>(recording: &'a Recording<'_>) -> impl Iterator<Item = Labelled<'a>> {
-    recording.strides.iter().map(|stride| Labelled {
+fn labelled(take: &Take) -> impl Iterator<Item = Labelled<'_>> {
+    take.strides.iter().map(|stride| Labelled {
         features: &stride.features,
-        class: recording.style,
+        class: take.style,
     })
 }
 
+/// The motion proper of each recording, and its strides.
+fn strides_of(recordings: &[Recording]) -> Vec<(Moving, Vec<Stride>)> {
+    let measured = recordings.par_iter().map(|recording| {
+        let motion = Moving::of(recording);
+        let strides = motion.strides();
+        (motion, strides)
+    });
+    measured.collect()
+}
+
 /// The recordings with strides, numbered within their style.
-fn recordings<'a>(
-    clips: &'a [StyledClip],
-    strides: Vec<Vec<Stride>>,
+fn takes(
+    recordings: &[Recording],
+    measured: Vec<(Moving, Vec<Stride>)>,
     names: &[String],
-) -> Vec<Recording<'a>> {
-    let mut takes = vec![0; names.len()];
-    let mut recordings = Vec::new();
-    for (clip, strides) in clips.iter().zip(strides) {
-        let Ok(style) = names.binary_search(&clip.style) else {
+) -> Vec<Take> {
+    let mut counts = vec![0; names.len()];
+    let mut takes = Vec::new();
+    for (recording, (motion, strides)) in recordings.iter().zip(measured) {
+        let named = names.binary_search_by(|name| name.as_str().cmp(recording.style()));
+        let Ok(style) = named else {
             continue;
         };
         if !strides.is_empty() {
-            recordings.push(Recording {
+            takes.push(Take {
                 style,
-                clip,
-                take: takes[style],
+                motion,
+                number: counts[style],
                 strides,
             });
-            takes[style] += 1;
+            counts[style] += 1;
         }
     }
-    recordings
+    takes
 }
 
-fn synthesised_recordings<'a>(
-    clips: &'a [StyledClip],
+fn synthesised_takes(
+    recordings: &[Recording],
     names: &[String],
-) -> Result<Vec<Recording<'a>>, EvaluateError> {
-    if let Some(clip) = clips.iter().find(|clip| !names.contains(&clip.style)) {
+) -> Result<Vec<Take>, EvaluateError> {
+    let is_known = |style: &str| names.iter().any(|name| name == style);
+    if let Some(unknown) = recordings.iter().find(|one| !is_known(one.style())) {
         return Err(EvaluateError::UnknownStyle {
-            style: clip.style.clone(),
+            style: unknown.style().to_owned(),
             known: names.to_vec(),
         });
     }
-    let all = clips
-        .par_iter()
-        .map(|clip| strides(&clip.clip, &clip.walks));
-    let recordings = recordings(clips, all.collect(), names);
-    if recordings.is_empty() {
+    let takes = takes(recordings, strides_of(recordings), names);
+    if takes.is_empty() {
         return Err(EvaluateError::NoSynthesisedStride);
     }
-    Ok(recordings)
+    Ok(takes)
 }
 
 /// The recordings of one style.
-fn of_style<'r, 'a>(recordings: &'r [Recording<'a>], style: usize) -> Vec<&'r Recording<'a>> {
-    recordings.iter().filter(|one| one.style == style).collect()
+fn of_style(takes: &[Take], style: usize) -> Vec<&Take> {
+    takes.iter().filter(|one| one.style == style).collect()
 }
 
-fn all_strides<'r>(recordings: &[&'r Recording<'_>]) -> Vec<Vec<&'r Stride>> {
-    recordings
+fn all_strides<'r>(takes: &[&'r Take]) -> Vec<Vec<&'r Stride>> {
+    takes
         .iter()
         .map(|one| one.strides.iter().collect())
         .collect()
@@ -318,7 +271,7 @@ fn all_strides<'r>(recordings: &[&'r Recording<'_>]) -> Vec<Vec<&'r Stride>> {
 fn measures(
     style: usize,
     name: &str,
-    (real, synthesised): (&[Recording<'_>], Option<&[Recording<'_>]>),
+    (real, synthesised): (&[Take], Option<&[Take]>),
     split: Split,
     spread: &[f64],
 ) -> StyleMeasures {
@@ -348,10 +301,10 @@ fn resemble(judged: &[Vec<&Stride>], reference: &[Vec<&Stride>], spread: &[f64])
     }
 }
 
-fn naturalness_of(recordings: &[&Recording<'_>]) -> Naturalness {
+fn naturalness_of(recordings: &[&Take]) -> Naturalness {
     let walking: Vec<Clip> = recordings
         .iter()
-        .flat_map(|one| one.clip.walking())
+        .flat_map(|one| one.motion.walking())
         .collect();
     let slips: Vec<f64> = walking
         .par_iter()

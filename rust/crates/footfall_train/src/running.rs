@@ -2,13 +2,14 @@
 
 use crate::error::TrainError;
 use crate::progress::Progress;
-use crate::train::{TrainConfig, TrainingClip, train_average};
+use crate::train::{TrainConfig, train_average};
 use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
 use footfall_model::{
     FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, Provenance, STATES_PER_STEP, StepOffset,
     carried_posture_share,
 };
+use footfall_motion::recording::Recording;
 
 /// Share of a walker's own tempo that is theirs in a run, too.
 const TEMPO_SHARE: f64 = 0.5;
@@ -20,15 +21,15 @@ const TEMPO_SHARE: f64 = 0.5;
 /// [`TrainError`] when nobody runs in the recordings, or they cannot be explained.
 pub fn learn_running(
     walk: &GaitModel,
-    clips: &[TrainingClip],
+    clips: &[Recording],
     config: &TrainConfig,
     provenance: Provenance,
     progress: &mut dyn Progress,
 ) -> Result<GaitModel, TrainError> {
-    let clips: Vec<TrainingClip> = clips
+    let clips: Vec<Recording> = clips
         .iter()
         .cloned()
-        .map(TrainingClip::running)
+        .map(Recording::running)
         .filter(|clip| !clip.walks.is_empty())
         .collect();
     let mut run = train_average(&clips, config, provenance, progress)?.model;

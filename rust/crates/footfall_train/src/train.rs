@@ -1,20 +1,18 @@
-//! The average walk from labelled clips, as one function.
+//! The average walk from recordings, as one function.
 
 use crate::average::{AverageWalk, EmConfig};
 use crate::average_body::average_body;
 use crate::contexts::{self, ContextReport};
-use crate::dataset::{EncodeConfig, encode_clip};
 use crate::differences;
+use crate::encoded::{EncodedCorpus, steady_part};
 use crate::error::TrainError;
 use crate::fine_motion;
 use crate::progress::{Progress, advance};
 use crate::sequence::Sequence;
 use crate::walker_adaptive::{self, WalkerAdaptive, WalkerTransform};
-use footfall_core::{Clip, Side, StepPosition};
+use footfall_core::Side;
 use footfall_model::{FEATURE_COUNT, GaitModel, GlobalVarianceModel, Provenance, StepModel};
-use footfall_motion::corpus::CorpusClip;
-use footfall_motion::retarget::Retargeted;
-use footfall_motion::steps::{Walk, running_parts};
+use footfall_motion::recording::Recording;
 use footfall_prob::windows::Windows;
 
 /// Least spread (relative to the mean, squared) of the global variance: a corpus of few walks knows it badly.
@@ -22,47 +20,6 @@ const GLOBAL_VARIANCE_SPREAD: f64 = 0.01;
 
 /// Least global variance of a feature, rad².
 const GLOBAL_VARIANCE_FLOOR: f64 = 1e-7;
-
-/// A clip on the canonical body with its steps marked.
-#[derive(Clone, Debug)]
-pub struct TrainingClip {
-    /// Who walks.
-    pub subject: String,
-    /// The motion.
-    pub clip: Clip,
-    /// Leading frames to leave out: an artificial T-pose, for example.
-    pub skip_frames: usize,
-    /// The walks in the clip, in its own frames.
-    pub walks: Vec<Walk>,
-    /// Number of times that the clip shows the same steps: more than once for a loop that was unrolled.
-    pub repeats: usize,
-}
-
-impl TrainingClip {
-    /// Reads of a recording what training needs.
-    pub fn new(subject: &str, motion: &Retargeted, walks: &[Walk]) -> Self {
-        Self {
-            subject: subject.to_owned(),
-            clip: motion.clip.clone(),
-            skip_frames: motion.first_frame,
-            walks: walks.to_vec(),
-            repeats: motion.report.repeats,
-        }
-    }
-
-    /// The same recording for who learns from it how people run.
-    #[must_use]
-    pub fn running(mut self) -> Self {
-        self.walks = running_parts(&self.clip, &self.walks);
-        self
-    }
-}
-
-impl From<&CorpusClip> for TrainingClip {
-    fn from(clip: &CorpusClip) -> Self {
-        Self::new(clip.row.subject(), &clip.retargeted, &clip.walks)
-    }
-}
 
 /// Settings of training.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,12 +54,13 @@ pub struct Trained {
 /// # Errors
 /// [`TrainError`] when the clips hold too few steps or cannot be explained.
 pub fn train_average(
-    clips: &[TrainingClip],
+    clips: &[Recording],
     config: &TrainConfig,
     provenance: Provenance,
     progress: &mut dyn Progress,
 ) -> Result<Trained, TrainError> {
-    let (corpus, _) = encode(clips, config)?;
+    let encoded = EncodedCorpus::of(clips, config)?;
+    let (corpus, _) = encoded.steady();
     if corpus.is_empty() {
         return Err(TrainError::NoSteps);
     }
@@ -126,8 +84,8 @@ pub fn train_average(
         .collect::<Result<_, _>>()?;
     let differences = differences::estimate(&steps, &corpus, &boundaries, config.frame_rate_hz);
     let (speed, variation) = (differences.speed, differences.variation);
-    let (whole, counts) = encode_all(clips, config, Clone::clone)?;
-    let (middles, _) = encode_all(clips, config, steady_part)?;
+    let (whole, counts) = encoded.all(Clone::clone);
+    let (middles, _) = encoded.all(steady_part);
     let whole = as_average_walkers(&walk, &transforms, &corpus, &middles, &whole)?;
     advance(progress, "ends of walks", 0, 0)?;
     let (contexts, context_report) = contexts::estimate(&walk, &steps, &speed, &whole)?;
@@ -163,46 +121,6 @@ pub fn train_average(
     })
 }
 
-pub(crate) struct Counts {
-    pub(crate) clips: usize,
-    pub(crate) subjects: usize,
-    pub(crate) steps: usize,
-}
-
-/// The steady walks of a corpus.
-///
-/// A clip that shows how a walk starts or ends is short of steady steps: it teaches the ends, and only where there is no
-/// other also the middle.
-pub(crate) fn encode(
-    clips: &[TrainingClip],
-    config: &TrainConfig,
-) -> Result<(Vec<Sequence>, Counts), TrainError> {
-    let (steady, edges) = split(clips);
-    let found = encode_walks(&steady, config, Clone::clone)?;
-    if found.0.is_empty() {
-        return encode_walks(&edges, config, steady_part);
-    }
-    Ok(found)
-}
-
-/// A part of all walks; walkers have the numbers that they have in [`encode`].
-fn encode_all(
-    clips: &[TrainingClip],
-    config: &TrainConfig,
-    part: fn(&Walk) -> Walk,
-) -> Result<(Vec<Sequence>, Counts), TrainError> {
-    let (steady, edges) = split(clips);
-    encode_walks(&[steady, edges].concat(), config, part)
-}
-
-/// The clips whose walks are steady throughout, and those that show an end.
-fn split(clips: &[TrainingClip]) -> (Vec<&TrainingClip>, Vec<&TrainingClip>) {
-    let is_steady = |walk: &Walk| steady_part(walk).steps.len() == walk.steps.len();
-    clips
-        .iter()
-        .partition(|clip| clip.walks.iter().all(is_steady))
-}
-
 /// Sequences as those of the average walker; the transform of a walker whom `trained` does not show is estimated from the
 /// middles of the walks.
 fn as_average_walkers(
@@ -231,59 +149,6 @@ fn as_average_walkers(
         );
     }
     Ok(aligned)
-}
-
-/// The part of every walk that `part` cuts out, and its mirror image if the settings ask for it.
-fn encode_walks(
-    clips: &[&TrainingClip],
-    config: &TrainConfig,
-    part: fn(&Walk) -> Walk,
-) -> Result<(Vec<Sequence>, Counts), TrainError> {
-    let encoding = EncodeConfig {
-        frame_rate_hz: config.frame_rate_hz,
-        windows: config.windows,
-    };
-    let mut subjects: Vec<&str> = Vec::new();
-    let mut corpus = Vec::new();
-    let mut used = 0;
-    for clip in clips {
-        let walker = subjects
-            .iter()
-            .position(|subject| *subject == clip.subject)
-            .unwrap_or_else(|| {
-                subjects.push(&clip.subject);
-                subjects.len() - 1
-            });
-        let walks: Vec<Walk> = clip.walks.iter().map(part).collect();
-        let sequences = encode_clip(&clip.clip, clip.skip_frames, &walks, 2 * walker, &encoding)?;
-        used += usize::from(!sequences.is_empty());
-        for sequence in sequences {
-            if config.mirror {
-                corpus.push(sequence.mirrored(2 * walker + 1));
-            }
-            corpus.push(sequence);
-        }
-    }
-    let original = corpus.iter().filter(|sequence| sequence.walker % 2 == 0);
-    let counts = Counts {
-        clips: used,
-        subjects: subjects.len(),
-        steps: original.map(|sequence| sequence.steps.len()).sum(),
-    };
-    Ok((corpus, counts))
-}
-
-/// A walk without the steps in which it starts and stops.
-pub(crate) fn steady_part(walk: &Walk) -> Walk {
-    let is_edge = |position| matches!(position, StepPosition::First | StepPosition::Last);
-    Walk {
-        steps: walk
-            .steps
-            .iter()
-            .filter(|step| !is_edge(step.position))
-            .copied()
-            .collect(),
-    }
 }
 
 pub(crate) fn mean_terminal(corpus: &[Sequence], side: Side) -> f64 {

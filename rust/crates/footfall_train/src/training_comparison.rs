@@ -1,11 +1,13 @@
 //! Gain of walker-adaptive training: sharper states, and walkers that it has not seen explained better.
 
 use crate::average::AverageWalk;
+use crate::encoded::{EncodedCorpus, number_of};
 use crate::error::TrainError;
 use crate::progress::Progress;
 use crate::sequence::Sequence;
-use crate::train::{TrainConfig, TrainingClip, encode};
+use crate::train::TrainConfig;
 use crate::walker_adaptive::{self, WalkerTransform};
+use footfall_motion::recording::Recording;
 use footfall_prob::gaussian::DiagonalGaussian;
 
 /// Plain against walker-adaptive training of the same corpus.
@@ -37,11 +39,11 @@ pub struct HeldOutWalker {
 /// # Errors
 /// As [`train_average`](crate::train_average).
 pub fn compare_training(
-    clips: &[TrainingClip],
+    clips: &[Recording],
     config: &TrainConfig,
     progress: &mut dyn Progress,
 ) -> Result<TrainingComparison, TrainError> {
-    let (corpus, _) = encode(clips, config)?;
+    let (corpus, _) = EncodedCorpus::of(clips, config)?.steady();
     let plain = AverageWalk::train(&corpus, &config.em, progress)?;
     let adaptive = walker_adaptive::train(&corpus, &config.em, progress)?.walk;
     let mut held_out = Vec::new();
@@ -75,13 +77,11 @@ pub fn compare_training(
     })
 }
 
-/// The subjects in the order in which [`encode`] numbers them.
-fn subjects(clips: &[TrainingClip]) -> Vec<&str> {
+/// The subjects in the order in which [`EncodedCorpus`] numbers them.
+fn subjects(clips: &[Recording]) -> Vec<&str> {
     let mut subjects: Vec<&str> = Vec::new();
     for clip in clips {
-        if !subjects.contains(&clip.subject.as_str()) {
-            subjects.push(&clip.subject);
-        }
+        number_of(clip.subject(), &mut subjects);
     }
     subjects
 }

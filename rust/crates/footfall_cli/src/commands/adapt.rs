@@ -1,17 +1,17 @@
 //! `footfall adapt`: a dozen recorded steps become a style.
 
-use super::train::{self, provenance};
+use super::train::TrainingProgress;
+use super::training_run::{Skipped, TrainingRun, name_of, skipped};
 use crate::model_file::read_model;
 use crate::motion_input::KneesArgs;
-use crate::output::{self, write_atomic};
+use crate::output;
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
 use footfall_model::Provenance;
 use footfall_motion::corpus::{Corpus, Where};
-use footfall_train::{AdaptConfig, AdaptMethod, Adapted, TrainingClip, adapt_style, shows_steps};
+use footfall_train::{AdaptConfig, AdaptMethod, Adapted, adapt_style, shows_steps};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Make a style from a dozen steps
 ///
@@ -80,29 +80,34 @@ struct Report<'a> {
     speed_mps: f64,
     cadence_per_minute: f64,
     bytes: usize,
-    skipped: Vec<train::Skipped>,
+    skipped: Vec<Skipped>,
     warnings: Vec<String>,
     /// Of the adaptation alone, without reading the recordings.
     adaptation_seconds: f64,
     seconds: f64,
 }
 
-#[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
 pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
-    let begun = Instant::now();
-    output::refuse_overwrite(&[&args.base, &args.corpus], &args.output)?;
+    output::refuse_overwrite(&[&args.base], &args.output)?;
+    let words = args.describe.as_deref();
+    let run = TrainingRun::begin(
+        &args.corpus,
+        &args.conditions,
+        args.knees,
+        words,
+        &args.output,
+    )?;
     ensure!(
         !args.name.trim().is_empty(),
         "a style without a name cannot be told from others; give --name a word"
     );
     let base = read_model(&args.base)?;
-    let mut progress = train::TrainingProgress(output::Progress::new());
+    let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
-    let corpus = train::read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
+    let corpus = run.read()?;
     let still = without_steps(&corpus);
     ensure!(
-        still.len() < clips.len(),
+        still.len() < corpus.clips.len(),
         "{}: no two steps in a row in {}; give clips that walk, of both feet's steps",
         args.corpus.display(),
         listed(&still)
@@ -114,22 +119,20 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
         },
         steps: args.steps.map(|steps| steps as usize),
     };
-    let read = begun.elapsed().as_secs_f64();
+    let read = run.seconds();
     let adapted = adapt_style(
         &base,
-        &clips,
+        &corpus.clips,
         args.name.trim(),
         &config,
-        made_from(&corpus, args),
+        made_from(args, &run, &corpus),
         &mut progress,
     )
     .with_context(|| args.corpus.display().to_string())?;
-    let seconds = [
-        begun.elapsed().as_secs_f64() - read,
-        begun.elapsed().as_secs_f64(),
-    ];
+    let seconds = run.seconds();
+    let seconds = [seconds - read, seconds];
     let bytes = adapted.style.to_bytes().context("the style")?;
-    write_atomic(&args.output, &bytes)?;
+    run.write(&bytes)?;
     progress.0.finish();
     report(args, &corpus, &adapted, bytes.len(), seconds)
 }
@@ -140,9 +143,8 @@ fn without_steps(corpus: &Corpus) -> Vec<String> {
     clips
         .filter(|clip| !shows_steps(&clip.walks))
         .map(|clip| {
-            let motion = &clip.retargeted;
-            let secs = motion.clip.duration_secs() / motion.report.repeats.max(1) as f64;
-            format!("{} ({secs:.1} s)", provenance::name_of(&clip.row.path))
+            let secs = clip.round_secs();
+            format!("{} ({secs:.1} s)", name_of(&clip.row.path))
         })
         .collect()
 }
@@ -157,33 +159,15 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-fn made_from(corpus: &Corpus, args: &AdaptArgs) -> Provenance {
-    let mut words = vec![
-        "footfall adapt --base".to_owned(),
-        provenance::name_of(&args.base),
-        "--corpus".to_owned(),
-        provenance::name_of(&args.corpus),
-    ];
-    words.extend(
-        args.conditions
-            .iter()
-            .map(|condition| format!("--where '{condition}'")),
-    );
-    words.extend(args.knees.words());
-    words.push(format!("--name '{}'", args.name.trim()));
-    words.extend(args.steps.map(|steps| format!("--steps {steps}")));
-    words.push(match args.method {
+fn made_from(args: &AdaptArgs, run: &TrainingRun<'_>, corpus: &Corpus) -> Provenance {
+    let mut options = vec![format!("--name '{}'", args.name.trim())];
+    options.extend(args.steps.map(|steps| format!("--steps {steps}")));
+    options.push(match args.method {
         MethodArg::Cmllr => "--method cmllr".to_owned(),
         MethodArg::Csmaplr => "--method csmaplr".to_owned(),
     });
-    words.push(format!("-o {}", provenance::name_of(&args.output)));
-    provenance::describe(
-        corpus,
-        &args.corpus,
-        &args.conditions,
-        args.describe.as_deref(),
-        words.join(" "),
-    )
+    let command = format!("footfall adapt --base {}", name_of(&args.base));
+    run.provenance(corpus, &command, &[], &options)
 }
 
 fn report(
@@ -216,7 +200,7 @@ fn report(
         speed_mps: style.speed_mps,
         cadence_per_minute: 60.0 * style.cadence_hz,
         bytes,
-        skipped: train::skipped(corpus),
+        skipped: skipped(corpus),
         warnings,
         adaptation_seconds,
         seconds,

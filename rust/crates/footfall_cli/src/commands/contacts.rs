@@ -1,6 +1,6 @@
 //! `footfall contacts`: when each foot stands, and the steps.
 
-use crate::motion_input::{MapArgs, MotionInput};
+use crate::motion_input::{MapArgs, read_file};
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
@@ -43,7 +43,7 @@ enum Method {
 }
 
 pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
-    let motion = MotionInput::read(&args.input, &args.map.read(None)?)?.retargeted;
+    let (_, motion) = read_file(&args.input, &args.map.read(None)?)?;
     let report = match args.method {
         Method::Kinematic => {
             let recording = Recording::detected(motion);

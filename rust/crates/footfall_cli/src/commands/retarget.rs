@@ -1,7 +1,7 @@
 //! `footfall retarget`: any body to the canonical body.
 
 use crate::hip_facts::HipFacts;
-use crate::motion_input::{MapArgs, MotionInput};
+use crate::motion_input::{MapArgs, read_file};
 use crate::output;
 use anyhow::Result;
 use footfall_core::Joint;
@@ -55,8 +55,7 @@ struct Report {
 
 pub(crate) fn run(args: &RetargetArgs) -> Result<()> {
     output::refuse_overwrite(&[&args.input], &args.output)?;
-    let input = MotionInput::read(&args.input, &args.map.read(args.fps)?)?;
-    let retargeted = &input.retargeted;
+    let (_, retargeted) = read_file(&args.input, &args.map.read(args.fps)?)?;
     let clip = normalised_start(&retargeted.clip, retargeted.first_frame);
     output::write_atomic(&args.output, bvh::write(&clip_to_bvh(&clip)).as_bytes())?;
     let report = Report {

@@ -1,12 +1,11 @@
 //! `footfall study`: ask people.
 
-use crate::corpus_pair::{CorpusPair, styled_clips};
+use crate::corpus_pair::CorpusPair;
 use crate::motion_input::KneesArgs;
 use crate::output;
 use crate::study::{Excerpt, StudyOptions, excerpts, page};
 use anyhow::{Context as _, Result, ensure};
 use footfall_motion::corpus::Corpus;
-use footfall_train::evaluate::StyledClip;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -74,10 +73,9 @@ pub(crate) fn run(args: &StudyArgs) -> Result<()> {
     for clip in corpora.real.clips.iter().chain(&synthesised.clips) {
         output::refuse_overwrite(&[&clip.row.path], &args.output)?;
     }
-    let (real_clips, synthesised_clips) = (styled_clips(&corpora.real), styled_clips(synthesised));
     let study = page(
-        &shown(&corpora.real, &real_clips, args.seconds),
-        &shown(synthesised, &synthesised_clips, args.seconds),
+        &shown(&corpora.real, args.seconds),
+        &shown(synthesised, args.seconds),
         &StudyOptions {
             title: args.title.clone(),
             trials: usize::from(args.trials),
@@ -119,7 +117,7 @@ pub(crate) fn run(args: &StudyArgs) -> Result<()> {
     Ok(())
 }
 
-fn shown<'a>(corpus: &Corpus, clips: &'a [StyledClip], seconds: f64) -> Vec<Excerpt<'a>> {
+fn shown(corpus: &Corpus, seconds: f64) -> Vec<Excerpt<'_>> {
     let name = |path: &Path| {
         path.file_stem()
             .map(|stem| stem.to_string_lossy().into_owned())
@@ -128,5 +126,5 @@ fn shown<'a>(corpus: &Corpus, clips: &'a [StyledClip], seconds: f64) -> Vec<Exce
         .clips
         .iter()
         .map(|clip| name(&clip.row.path).unwrap_or_default());
-    excerpts(clips.iter().zip(names), seconds)
+    excerpts(corpus.clips.iter().zip(names), seconds)
 }

@@ -1,28 +1,25 @@
 //! `footfall train`: a corpus becomes a model.
 
 mod moves;
-pub(super) mod provenance;
 
 use crate::commands::inspect::model::RunningFacts;
 use crate::commands::inspect::moves::{CrouchFacts, JumpFacts};
+use crate::commands::training_run::{Skipped, TrainingRun, skipped, terms};
 use crate::motion_input::KneesArgs;
-use crate::output::{self, write_atomic};
+use crate::output;
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
 use footfall_core::StepPosition;
-use footfall_model::GaitModel;
+use footfall_model::{GaitModel, Provenance};
 use footfall_motion::corpus::{Corpus, Where};
 use footfall_prob::windows::Windows;
 use footfall_train::standing::{self, LearnedStanding, StandingClip};
-use footfall_train::{
-    ContextReport, EmConfig, TrainConfig, Trained, TrainingClip, learn_running, train_average,
-};
+use footfall_train::{ContextReport, EmConfig, TrainConfig, Trained, learn_running, train_average};
 use moves::Moves;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Train an average walk
 ///
@@ -143,17 +140,15 @@ impl<'a> Contexts<'a> {
     }
 }
 
-/// A recording that could not be used, and why.
-#[derive(Serialize)]
-pub(super) struct Skipped {
-    file: PathBuf,
-    pub(super) reason: String,
-}
-
-#[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
 pub(crate) fn run(args: &TrainArgs) -> Result<()> {
-    let begun = Instant::now();
-    output::refuse_overwrite(&[&args.corpus], &args.output)?;
+    let words = args.describe.as_deref();
+    let run = TrainingRun::begin(
+        &args.corpus,
+        &args.conditions,
+        args.knees,
+        words,
+        &args.output,
+    )?;
     ensure!(
         (20.0..=240.0).contains(&args.fps),
         "a model at {} frames per second cannot be trained; give --fps a number from 20 to 240",
@@ -161,20 +156,19 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     );
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
-    let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
-    let standing = further_corpus(args, &args.standing)?;
-    let running = further_corpus(args, &args.running)?;
-    let moves = Moves::read(args)?;
+    let corpus = run.read()?;
+    let standing = run.read_further(&args.standing)?;
+    let running = run.read_further(&args.running)?;
+    let moves = Moves::read(args, &run)?;
     let others = [standing.as_ref(), running.as_ref()];
-    let others: Vec<Option<&Corpus>> = others.into_iter().chain(moves.corpora()).collect();
-    let mut trained = train_average(
-        &clips,
-        &config(args),
-        provenance::of(&corpus, &others, args),
-        &mut progress,
-    )
-    .with_context(|| args.corpus.display().to_string())?;
+    let others = others.into_iter().chain(moves.corpora()).flatten();
+    let all: Vec<&Corpus> = others.chain([&corpus]).collect();
+    let made_from = Provenance {
+        terms: terms(&all),
+        ..provenance(args, &run, &corpus)
+    };
+    let mut trained = train_average(&corpus.clips, &config(args), made_from, &mut progress)
+        .with_context(|| args.corpus.display().to_string())?;
     let standing = match standing {
         Some(standing) => Some(learn_standing(&standing, args)?),
         None => None,
@@ -183,40 +177,32 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     trained.model.running = match &running {
         Some(running) => {
             let walk = &trained.model;
-            Some(Box::new(running_of(walk, running, args, &mut progress)?))
+            let made_from = provenance(args, &run, running);
+            Some(Box::new(running_of(
+                walk,
+                running,
+                args,
+                made_from,
+                &mut progress,
+            )?))
         }
         None => None,
     };
     moves.learn(args, &mut trained.model)?;
     let bytes = trained.model.to_bytes().context("the trained model")?;
-    write_atomic(&args.output, &bytes)?;
+    run.write(&bytes)?;
     progress.0.finish();
-    report(
-        args,
-        &corpus,
-        &trained,
-        standing.as_ref(),
-        begun.elapsed().as_secs_f64(),
-    )
-}
-
-/// The recordings that meet conditions of their own, if some are given.
-fn further_corpus(args: &TrainArgs, conditions: &[Where]) -> Result<Option<Corpus>> {
-    if conditions.is_empty() {
-        return Ok(None);
-    }
-    read_corpus(&args.corpus, conditions, args.knees, &args.output).map(Some)
+    report(args, &corpus, &trained, standing.as_ref(), run.seconds())
 }
 
 fn running_of(
     walk: &GaitModel,
     corpus: &Corpus,
     args: &TrainArgs,
+    made_from: Provenance,
     progress: &mut TrainingProgress,
 ) -> Result<GaitModel> {
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
-    let provenance = provenance::of(corpus, &[], args);
-    learn_running(walk, &clips, &config(args), provenance, progress).with_context(|| {
+    learn_running(walk, &corpus.clips, &config(args), made_from, progress).with_context(|| {
         format!(
             "{}: nobody runs for some steps in what --running chooses; widen it",
             args.corpus.display()
@@ -238,6 +224,26 @@ fn learn_standing(corpus: &Corpus, args: &TrainArgs) -> Result<LearnedStanding> 
     })
 }
 
+/// Provenance of what is learned from a corpus of the run.
+fn provenance(args: &TrainArgs, run: &TrainingRun<'_>, corpus: &Corpus) -> Provenance {
+    let further: [(&str, &[Where]); 4] = [
+        ("standing", &args.standing),
+        ("running", &args.running),
+        ("jumping", &args.jumping),
+        ("crouching", &args.crouching),
+    ];
+    let windows = match args.windows {
+        WindowsArg::Paper => "paper",
+        WindowsArg::Compact => "compact",
+    };
+    let options = [
+        format!("--fps {}", args.fps),
+        format!("--windows {windows}"),
+        format!("--iterations {}", args.iterations),
+    ];
+    run.provenance(corpus, "footfall train", &further, &options)
+}
+
 fn config(args: &TrainArgs) -> TrainConfig {
     TrainConfig {
         frame_rate_hz: args.fps,
@@ -251,31 +257,6 @@ fn config(args: &TrainArgs) -> TrainConfig {
             min_gain_per_frame: 1e-3,
         },
     }
-}
-
-/// Reads what a model is to be made of; nothing of it may be overwritten by the model.
-pub(super) fn read_corpus(
-    index: &Path,
-    conditions: &[Where],
-    knees: KneesArgs,
-    model: &Path,
-) -> Result<Corpus> {
-    let corpus = knees.read_corpus(index, conditions)?;
-    for clip in &corpus.clips {
-        output::refuse_overwrite(&[&clip.row.path], model)?;
-    }
-    Ok(corpus)
-}
-
-/// Recordings that a corpus left out.
-pub(super) fn skipped(corpus: &Corpus) -> Vec<Skipped> {
-    let skipped = corpus.report.skipped.iter();
-    skipped
-        .map(|skipped| Skipped {
-            file: skipped.path.clone(),
-            reason: skipped.reason.clone(),
-        })
-        .collect()
 }
 
 fn report(

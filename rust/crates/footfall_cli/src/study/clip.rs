@@ -2,8 +2,8 @@
 
 use footfall_core::rotation::from_heading;
 use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
+use footfall_motion::recording::Recording;
 use footfall_motion::steps::{Step, Walk};
-use footfall_train::evaluate::StyledClip;
 use glam::{Quat, Vec3};
 
 /// Frames per second of the page.
@@ -29,16 +29,16 @@ pub(crate) struct Excerpt<'a> {
 /// One excerpt of each recording that has enough steps: of its longest walk, beginning with a left step, `seconds` long at
 /// most.
 pub(crate) fn excerpts<'a>(
-    recordings: impl Iterator<Item = (&'a StyledClip, String)>,
+    recordings: impl Iterator<Item = (&'a Recording, String)>,
     seconds: f64,
 ) -> Vec<Excerpt<'a>> {
     recordings
         .filter_map(|(recording, name)| {
-            let clip = &recording.clip;
+            let clip = recording.clip();
             let walk = recording.walks.iter().max_by_key(|walk| walk.steps.len())?;
             let steps = opening(walk, clip, (seconds * clip.frame_rate_hz) as usize);
             (steps.len() >= LEAST_STEPS).then_some(Excerpt {
-                style: &recording.style,
+                style: recording.style(),
                 name,
                 clip,
                 steps,
@@ -128,8 +128,9 @@ fn points(clip: &Clip, model: &ModelPose) -> Vec<Vec3> {
 mod tests {
     use super::*;
     use footfall_core::{Pose, Skeleton, StepPosition};
+    use footfall_motion::retarget::Retargeted;
 
-    fn recording(steps: usize) -> StyledClip {
+    fn recording(steps: usize) -> Recording {
         let skeleton = Skeleton::standard();
         let poses = (0..=steps * 20)
             .map(|frame| {
@@ -149,17 +150,17 @@ mod tests {
             heel_rise: None,
             take_off: None,
         });
-        StyledClip {
-            style: "sad".to_owned(),
-            clip: Clip {
-                skeleton,
-                frame_rate_hz: 60.0,
-                poses,
-            },
-            walks: vec![Walk {
-                steps: steps.collect(),
-            }],
-        }
+        let clip = Clip {
+            skeleton,
+            frame_rate_hz: 60.0,
+            poses,
+        };
+        let mut recording = Recording::detected(Retargeted::canonical(clip));
+        recording.row.set("style", "sad");
+        recording.walks = vec![Walk {
+            steps: steps.collect(),
+        }];
+        recording
     }
 
     #[test]

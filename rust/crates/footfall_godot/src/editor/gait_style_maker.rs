@@ -5,6 +5,7 @@ use super::style_maker::Walks;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use footfall_model::{Provenance, WalkModel};
+use footfall_train::{AdaptConfig, adapt_style};
 use godot::classes::{Resource, Skeleton3D};
 use godot::prelude::*;
 
@@ -90,9 +91,8 @@ impl GaitStyleMaker {
             command: "GaitStyleMaker.make_style()".to_owned(),
             ..Provenance::default()
         };
-        let adapted = walks
-            .recordings
-            .adapt(base, &name.to_string(), MOST_STEPS, made_from, &mut ())
+        let (name, config) = (name.to_string(), AdaptConfig::first_steps(MOST_STEPS));
+        let adapted = adapt_style(base, &walks.recordings, &name, &config, made_from, &mut ())
             .map_err(|error| error.to_string())?;
         let bytes = adapted.style.to_bytes();
         let bytes = bytes.map_err(|error| error.to_string())?;

@@ -3,8 +3,9 @@
 use super::clip_source::Clip;
 use footfall_model::{GaitModel, GaitStyle, Provenance};
 use footfall_motion::files::write_atomic;
+use footfall_motion::recording::Recording;
 use footfall_train::job::{Job, Reporter};
-use footfall_train::{Progress, Recordings, TrainError, shows_steps};
+use footfall_train::{AdaptConfig, Progress, TrainError, adapt_style, shows_steps};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -47,10 +48,12 @@ impl Order {
             command: "the style dock of the Footfall add-on".to_owned(),
             ..Provenance::default()
         };
-        let adapted = walks
-            .recordings
-            .adapt(&self.base, &self.name, self.steps, made_from, reporter)
-            .map_err(message)?;
+        let config = AdaptConfig::first_steps(self.steps);
+        let recordings = &walks.recordings;
+        let adapted = adapt_style(
+            &self.base, recordings, &self.name, &config, made_from, reporter,
+        )
+        .map_err(message)?;
         // Whoever cancelled by now wants no file.
         if reporter.tell("writing", 0, 1).is_break() {
             return Err(TrainError::Cancelled.to_string());
@@ -76,7 +79,7 @@ impl Order {
 /// The clips in which somebody walks.
 #[derive(Default)]
 pub(super) struct Walks {
-    pub(super) recordings: Recordings,
+    pub(super) recordings: Vec<Recording>,
     /// Labels and lengths of the clips in which nobody does.
     left_out: Vec<String>,
 }
@@ -98,16 +101,15 @@ impl Walks {
             }
             let recording = clip.read()?;
             if shows_steps(&recording.walks) {
-                walks.recordings.0.push((walker.to_owned(), recording));
+                walks.recordings.push(recording.of_subject(walker));
             } else {
-                let motion = &recording.retargeted;
-                let secs = motion.clip.duration_secs() / motion.report.repeats.max(1) as f64;
+                let secs = recording.round_secs();
                 walks
                     .left_out
                     .push(format!("{} ({secs:.1} s)", clip.label()));
             }
         }
-        if walks.recordings.0.is_empty() && !walks.left_out.is_empty() {
+        if walks.recordings.is_empty() && !walks.left_out.is_empty() {
             return Err(format!(
                 "No two steps in a row in {}. Choose clips that walk, with steps of both feet.",
                 walks.left_out.join(", ")

@@ -1,6 +1,7 @@
 //! The index, and conditions on its columns.
 
 use super::CorpusError;
+use crate::index_row::IndexRow;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -8,42 +9,6 @@ use std::str::FromStr;
 
 /// Columns that every index has.
 const REQUIRED: [&str; 4] = ["path", "category", "style", "subject"];
-
-/// A row of the index.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct IndexRow {
-    /// Line in the index, from 1.
-    pub line: u64,
-    /// The recording; the index gives it relative to itself.
-    pub path: PathBuf,
-    /// Every column in the order of the index: name and value.
-    pub columns: Vec<(String, String)>,
-}
-
-impl IndexRow {
-    /// The value of a column.
-    pub fn column(&self, name: &str) -> Option<&str> {
-        self.columns
-            .iter()
-            .find(|(column, _)| column == name)
-            .map(|(_, value)| value.as_str())
-    }
-
-    /// The value of the column `category`.
-    pub fn category(&self) -> &str {
-        self.column("category").unwrap_or_default()
-    }
-
-    /// The value of the column `style`.
-    pub fn style(&self) -> &str {
-        self.column("style").unwrap_or_default()
-    }
-
-    /// The value of the column `subject`.
-    pub fn subject(&self) -> &str {
-        self.column("subject").unwrap_or_default()
-    }
-}
 
 /// A condition on one column, written `column=value`, or `column!=value` for what must not be; `*` in the value stands for any run of
 /// characters.

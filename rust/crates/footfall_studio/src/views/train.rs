@@ -11,7 +11,7 @@ use compare::Compare;
 use eframe::egui::{DragValue, Panel, RichText, ScrollArea, TextEdit, Ui};
 use egui_plot::{Line, Plot, PlotPoints, Points};
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_train::{Adapted, ContextReport, Recordings, Trained};
+use footfall_train::{Adapted, ContextReport, Trained, read_recordings};
 use std::sync::Arc;
 pub(crate) use work::{adapt_to, chosen_of};
 
@@ -258,8 +258,7 @@ impl TrainView {
         self.fits.clear();
         self.page = Page::Fit;
         self.job = Some(job::start(ui.ctx(), "making the style", move |reporter| {
-            let recorded =
-                Recordings::read(&chosen, reporter).map_err(|error| error.to_string())?;
+            let recorded = read_recordings(&chosen, reporter).map_err(|error| error.to_string())?;
             let made = adapt_to(&base, &recorded, &name, steps, reporter)?;
             Ok(Made::Style(Box::new(made)))
         }));
@@ -271,8 +270,7 @@ impl TrainView {
         self.fits.clear();
         self.page = Page::Fit;
         self.job = Some(job::start(ui.ctx(), "training", move |reporter| {
-            let recorded =
-                Recordings::read(&chosen, reporter).map_err(|error| error.to_string())?;
+            let recorded = read_recordings(&chosen, reporter).map_err(|error| error.to_string())?;
             let made = work::train(&recorded, rate_hz, iterations, reporter)?;
             Ok(Made::Average(Box::new(made)))
         }));

@@ -108,7 +108,7 @@ impl CrowdFrames {
         }
     }
 
-    /// How many frames there are.
+    /// Number of frames.
     pub(super) fn len(&self) -> usize {
         self.places.len()
     }

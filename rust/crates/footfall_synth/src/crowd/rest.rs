@@ -21,7 +21,7 @@ pub(super) struct Rest {
     apart_secs: Option<f32>,
 }
 
-/// What poses are worked out in.
+/// Buffers in which poses are worked out.
 #[derive(Debug)]
 pub(super) struct RestBench {
     pub(super) planted: Vec<PlantedFrame>,

@@ -1,4 +1,4 @@
-//! What is added to a model's average step.
+//! Offsets from a model's average step.
 
 use super::MAX_COMPONENTS;
 use crate::statistics::{Part, Statistics};

@@ -1,4 +1,4 @@
-//! How much one walker is alive as it stands: it comes up at rest and dies away as a step begins.
+//! Liveliness of one walker as it stands: it comes up at rest and dies away as a step begins.
 
 use super::carry::Carrier;
 use super::sway::{Stander, StandingTables, Sway};
@@ -9,7 +9,7 @@ use footfall_core::{Pose, Skeleton};
 use glam::Quat;
 use std::sync::Arc;
 
-/// How quickly it comes up and dies away: the rate of a critically damped spring, a second.
+/// Rate at which it comes up and dies away: that of a critically damped spring, a second.
 const RISE_RATE: f32 = 2.4;
 const FALL_RATE: f32 = 9.0;
 
@@ -24,7 +24,7 @@ const MOST_AMOUNT: f32 = 2.0;
 pub(crate) struct Moment {
     /// Time that it has been alive, seconds.
     pub(crate) secs: f64,
-    /// How much of it there is, 0 to 1, and by how much more a second.
+    /// Present amount, 0 to 1, and its change a second.
     pub(crate) share: f32,
     pub(crate) speed: f32,
 }
@@ -87,7 +87,7 @@ impl Life {
         self.stander = self.tables.stander(config.seed, variation);
     }
 
-    /// How much of it shows: 0 nothing, 1 as in people.
+    /// Share of it that shows: 0 nothing, 1 as in people.
     pub(crate) fn set_amount(&mut self, amount: f32) {
         self.amount = if amount.is_finite() {
             amount.clamp(0.0, MOST_AMOUNT)
@@ -109,7 +109,7 @@ impl Life {
         self.moment = self.moment.after(secs, stands);
     }
 
-    /// Whether nothing of it shows now.
+    /// Returns whether nothing of it shows now.
     pub(crate) fn is_still(&self) -> bool {
         self.amount <= 0.0 || self.moment.share <= 0.0
     }

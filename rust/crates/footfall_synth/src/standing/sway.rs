@@ -38,7 +38,7 @@ const BREATH_DEPTH_SPREAD: f32 = 0.2;
 /// Breathing in is quicker than breathing out.
 const BREATH_SKEW: f32 = 0.35;
 
-/// How people of a model stand, ready for many walkers.
+/// Standing of a model's people, ready for many walkers.
 #[derive(Debug)]
 pub(crate) struct StandingTables {
     /// Moves everybody alike.
@@ -52,7 +52,7 @@ pub(crate) struct StandingTables {
     breath: Sway,
     breath_rate_hz: f64,
     strength_spread: f32,
-    /// How far knees are bent, radians.
+    /// Flexion of the knees, radians.
     pub(crate) knee: f32,
 }
 
@@ -63,11 +63,11 @@ struct Octave {
     directions: Vec<[Sway; AT_ONCE]>,
 }
 
-/// What one walker's standing follows from.
+/// Source of one walker's standing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stander {
     number: u64,
-    /// How far it moves, 1 as people on average.
+    /// Amplitude of its motion, 1 as people on average.
     strength: f32,
     breath_rate_hz: f64,
 }
@@ -189,7 +189,7 @@ fn least_jerk(s: f32) -> f32 {
     s * s * s * (10.0 + s * (6.0 * s - 15.0))
 }
 
-/// How full the chest is: 1 at the top of a usual breath, -1 when it is empty.
+/// Fill of the chest: 1 at the top of a usual breath, -1 when it is empty.
 fn breath(stander: &Stander, secs: f64) -> f32 {
     let [drift, depth, ..] =
         Curves::at(secs / BREATH_KNOT_SECS).values(key(stander.number, BREATH));

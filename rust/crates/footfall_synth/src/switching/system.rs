@@ -18,7 +18,7 @@ type Lanes = [f32; LANES];
 pub(super) struct RunningSystem {
     order: usize,
     channels: usize,
-    /// What every number of the state adds to the next state and, after it, to the outputs; lanes of the sum one after the other.
+    /// Contribution of every number of the state to the next state and, after it, to the outputs; lanes of the sum one after the other.
     columns: Vec<Lanes>,
     /// Drift, then output offset.
     offsets: Vec<Lanes>,

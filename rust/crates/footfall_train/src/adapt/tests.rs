@@ -1,22 +1,19 @@
 use super::*;
 use crate::train_average;
+use footfall_model::OBSERVATION_COUNT;
 use footfall_motion::corpus::{Corpus, Where};
 use footfall_prob::gaussian::GaussianStats;
 use footfall_prob::windows::Windows;
 use std::path::Path;
 
-fn clips(condition: &str) -> Vec<TrainingClip> {
+fn clips(condition: &str) -> Vec<Recording> {
     let index = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/data/index.csv");
     let condition: Where = condition.parse().unwrap();
-    let corpus = Corpus::read(index, &[condition]).unwrap();
-    let clip = |clip: &footfall_motion::corpus::CorpusClip| TrainingClip {
-        subject: clip.row.subject().to_owned(),
-        clip: clip.retargeted.clip.clone(),
-        skip_frames: clip.retargeted.first_frame,
-        walks: clip.walks.clone(),
-        repeats: 1,
-    };
-    corpus.clips.iter().map(clip).collect()
+    let mut clips = Corpus::read(index, &[condition]).unwrap().clips;
+    for clip in &mut clips {
+        clip.retargeted.report.repeats = 1;
+    }
+    clips
 }
 
 fn base() -> GaitModel {
@@ -37,7 +34,7 @@ fn base() -> GaitModel {
 
 fn adapt(
     base: &GaitModel,
-    clips: &[TrainingClip],
+    clips: &[Recording],
     method: AdaptMethod,
     steps: Option<usize>,
 ) -> Result<Adapted, TrainError> {
@@ -93,7 +90,7 @@ fn state_means_come_to_those_of_the_recording() {
             min_gain_per_frame: 0.0,
         },
     };
-    let (corpus, _) = encode(&clips, &encoding).unwrap();
+    let (corpus, _) = EncodedCorpus::of(&clips, &encoding).unwrap().steady();
     let mut seen = GaussianStats::new(FEATURE_COUNT);
     for sequence in &corpus {
         for frame in sequence.observations.chunks_exact(OBSERVATION_COUNT) {
@@ -129,9 +126,8 @@ fn too_little_is_refused() {
         clip.walks[0].steps[0].position = footfall_core::StepPosition::Inside;
     }
     one_step.truncate(1);
-    let error = |clips: &[TrainingClip], steps| {
-        adapt(&base, clips, AdaptMethod::Csmaplr, steps).unwrap_err()
-    };
+    let error =
+        |clips: &[Recording], steps| adapt(&base, clips, AdaptMethod::Csmaplr, steps).unwrap_err();
     assert!(matches!(error(&standing, None), TrainError::NoSteps));
     assert!(matches!(
         error(&one_step, None),
@@ -156,7 +152,7 @@ fn every_loop_counts_with_the_steps_of_one_round() {
     for clip in &mut looped {
         let steady = clip.walks.iter().map(steady_part);
         let steps: usize = steady.map(|walk| walk.steps.len()).sum();
-        clip.repeats = steps.div_ceil(2);
+        clip.retargeted.report.repeats = steps.div_ceil(2);
     }
     let taken = |limit: usize| {
         let chosen = first_steps(&looped, limit).unwrap();

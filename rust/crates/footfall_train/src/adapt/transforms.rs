@@ -1,20 +1,18 @@
 //! Alignment and transform estimation in turn.
 
+mod alignment;
+mod estimate;
+
 use super::AdaptMethod;
-use crate::average::{DURATION_VARIANCE_FLOOR, STATES, chain};
 use crate::error::TrainError;
 use crate::progress::{Progress, advance};
 use crate::sequence::Sequence;
+use crate::step_hsmm::{DURATION_VARIANCE_FLOOR, STATES};
 use footfall_model::{FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::ProbError;
 use footfall_prob::duration::GaussianDuration;
 use footfall_prob::gaussian::DiagonalGaussian;
-use footfall_prob::hsmm::{Boundary, hsmm_forward_backward};
-use footfall_prob::regression::{
-    LinearTransform, RegressionMember, RegressionStats, RegressionTree, TransformPrior,
-    estimate_transform,
-};
-use rayon::prelude::*;
+use footfall_prob::regression::{LinearTransform, RegressionTree};
 use std::ops::Range;
 
 /// Depth of the tree of states: four classes of at least two states.
@@ -25,18 +23,12 @@ const LEAST_STATES: usize = 2;
 const ROOT_ITERATIONS: usize = 3;
 const LEVEL_ITERATIONS: usize = 2;
 
-/// Sweeps over the rows of a transform between two alignments.
-const SWEEPS: usize = 8;
-
 /// Strength of the prior in frames, on the bias and on the matrix: how a style holds itself shows at once, how it moves
 /// one joint with another needs more evidence.
 const CSMAPLR_FRAMES: [f64; 2] = [1.0, 60.0];
 
 /// Enough to keep joints that a recording holds still from infinite likelihood; no more.
 const CMLLR_FRAMES: [f64; 2] = [0.1, 2.0];
-
-/// The same for durations, in segments.
-const DURATION_SEGMENTS: [f64; 2] = [0.5, 20.0];
 
 /// The transforms of one class of states.
 #[derive(Clone, Debug)]
@@ -48,17 +40,6 @@ struct Class {
     /// Centre of the prior: the transforms of the class that this one is a part of.
     centres: Vec<LinearTransform>,
     duration_centre: LinearTransform,
-}
-
-/// Statistics of every state by an alignment.
-struct Alignment {
-    /// Per state and block.
-    frames: Vec<Vec<RegressionStats>>,
-    /// Per state.
-    durations: Vec<RegressionStats>,
-    /// Per state, how often each duration occurs, from one frame on.
-    histograms: Vec<Vec<f64>>,
-    log_likelihood: f64,
 }
 
 /// A base model on its way to a style.
@@ -305,16 +286,6 @@ impl Adapting {
         })
     }
 
-    fn in_units(&self, sequence: &Sequence) -> Vec<f64> {
-        let mut frames = sequence.observations.clone();
-        for frame in frames.chunks_exact_mut(OBSERVATION_COUNT) {
-            for (dim, value) in frame.iter_mut().enumerate() {
-                *value = (*value - self.centre[dim]) / self.deviation[dim];
-            }
-        }
-        frames
-    }
-
     /// Replaces the classes by those at a depth of the tree.
     fn descend(&mut self, depth: usize) {
         let next = self.tree.cut(depth).into_iter().map(|node| {
@@ -342,253 +313,5 @@ impl Adapting {
             }
         });
         self.classes = next.collect();
-    }
-
-    fn row_precision(&self, class: &Class, block: usize) -> Vec<f64> {
-        let mean = |dim: usize| {
-            let of = |state: &usize| self.parts[*state][block].precision()[dim];
-            class.members.iter().map(of).sum::<f64>() / class.members.len() as f64
-        };
-        (0..self.ranges[block].len()).map(mean).collect()
-    }
-
-    fn duration_precision(&self, class: &Class) -> [f64; 1] {
-        let of = |state: &usize| self.durations[*state].precision()[0];
-        [class.members.iter().map(of).sum::<f64>() / class.members.len() as f64]
-    }
-
-    fn log_prior(&self) -> f64 {
-        let of = |class: &Class| {
-            let blocks = class.blocks.iter().zip(&class.centres).enumerate();
-            let features: f64 = blocks
-                .map(|(block, (transform, centre))| {
-                    let row_precision = self.row_precision(class, block);
-                    prior(centre, &row_precision, self.prior_frames).log_density(transform)
-                })
-                .sum();
-            let row_precision = self.duration_precision(class);
-            let durations = prior(&class.duration_centre, &row_precision, DURATION_SEGMENTS);
-            features + durations.log_density(&class.duration)
-        };
-        self.classes.iter().map(of).sum()
-    }
-
-    /// Whole walks as chains of states.
-    fn align(&self, corpus: &[Sequence], frames: &[Vec<f64>]) -> Result<Alignment, TrainError> {
-        let durations: Vec<_> = self
-            .adapted_durations()?
-            .iter()
-            .map(|duration| duration.discretise(self.max_duration))
-            .collect::<Result<_, _>>()?;
-        let mut alignment = self.empty_alignment();
-        for (sequence, frames) in corpus.iter().zip(frames) {
-            let log_emissions = self.log_emissions(frames);
-            let chain = chain(&sequence.steps);
-            let posterior = hsmm_forward_backward(
-                &log_emissions,
-                STATES,
-                &chain,
-                &durations,
-                Boundary::default(),
-            )?;
-            for (state, segment) in chain.iter().zip(&posterior.segments) {
-                for (frame, weight) in segment.frames().zip(&segment.state_probs) {
-                    self.add_frame(&mut alignment, state.emission, frames, frame, *weight);
-                }
-                for (duration, weight) in (1..).zip(&segment.duration_probs) {
-                    self.add_duration(&mut alignment, state.duration, duration, *weight);
-                }
-            }
-            alignment.log_likelihood += posterior.log_likelihood;
-        }
-        Ok(alignment)
-    }
-
-    /// Every step shared out among its states as the base shares its own.
-    fn even_alignment(&self, corpus: &[Sequence], frames: &[Vec<f64>]) -> Alignment {
-        let mut alignment = self.empty_alignment();
-        let lasts = |state: usize| {
-            self.duration_centre + self.duration_deviation * self.durations[state].mean()[0]
-        };
-        for (sequence, frames) in corpus.iter().zip(frames) {
-            for step in &sequence.steps {
-                let first_state = step.side.index() * STATES_PER_STEP;
-                let states = first_state..first_state + STATES_PER_STEP;
-                let length = step.end - step.first;
-                let total: f64 = states.clone().map(lasts).sum();
-                let (mut elapsed, mut from) = (0.0, 0);
-                for (index, state) in states.enumerate() {
-                    elapsed += lasts(state) / total * length as f64;
-                    // At least a frame for this state and for each that follows.
-                    let most = length - (STATES_PER_STEP - 1 - index);
-                    let to = (elapsed.round() as usize).clamp(from + 1, most);
-                    for frame in from..to {
-                        self.add_frame(&mut alignment, state, frames, step.first + frame, 1.0);
-                    }
-                    self.add_duration(&mut alignment, state, to - from, 1.0);
-                    from = to;
-                }
-            }
-        }
-        alignment
-    }
-
-    fn empty_alignment(&self) -> Alignment {
-        let blocks = || {
-            self.ranges
-                .iter()
-                .map(|range| RegressionStats::new(range.len()))
-        };
-        Alignment {
-            frames: (0..STATES).map(|_| blocks().collect()).collect(),
-            durations: vec![RegressionStats::new(1); STATES],
-            histograms: vec![vec![0.0; self.max_duration]; STATES],
-            log_likelihood: 0.0,
-        }
-    }
-
-    fn add_frame(
-        &self,
-        alignment: &mut Alignment,
-        state: usize,
-        frames: &[f64],
-        frame: usize,
-        weight: f64,
-    ) {
-        let row = &frames[frame * OBSERVATION_COUNT..(frame + 1) * OBSERVATION_COUNT];
-        for (stats, range) in alignment.frames[state].iter_mut().zip(&self.ranges) {
-            stats.add(&row[range.clone()], weight);
-        }
-    }
-
-    fn add_duration(&self, alignment: &mut Alignment, state: usize, frames: usize, weight: f64) {
-        let value = (frames as f64 - self.duration_centre) / self.duration_deviation;
-        alignment.durations[state].add(&[value], weight);
-        alignment.histograms[state][frames - 1] += weight;
-    }
-
-    /// T × [`STATES`] log densities of the frames under their mapped Gaussians.
-    fn log_emissions(&self, frames: &[f64]) -> Vec<f64> {
-        let log_dets: Vec<f64> = self
-            .classes
-            .iter()
-            .map(|class| {
-                class
-                    .blocks
-                    .iter()
-                    .map(LinearTransform::log_determinant)
-                    .sum()
-            })
-            .collect();
-        let mut out = vec![0.0; frames.len() / OBSERVATION_COUNT * STATES];
-        let mut mapped = vec![0.0; OBSERVATION_COUNT];
-        for (row, out) in frames
-            .chunks_exact(OBSERVATION_COUNT)
-            .zip(out.chunks_exact_mut(STATES))
-        {
-            for (class, log_det) in self.classes.iter().zip(&log_dets) {
-                for (transform, range) in class.blocks.iter().zip(&self.ranges) {
-                    transform.apply(&row[range.clone()], &mut mapped[range.clone()]);
-                }
-                for state in &class.members {
-                    out[*state] =
-                        self.gaussians[*state].log_density(&mapped) + log_det - self.log_unit;
-                }
-            }
-        }
-        out
-    }
-
-    fn maximise(&mut self, alignment: &Alignment) -> Result<(), TrainError> {
-        let jobs: Vec<(usize, usize)> = (0..self.classes.len())
-            .flat_map(|class| (0..self.ranges.len()).map(move |block| (class, block)))
-            .collect();
-        let found: Vec<LinearTransform> = jobs
-            .par_iter()
-            .map(|(class, block)| self.best_block(alignment, &self.classes[*class], *block))
-            .collect::<Result<_, _>>()?;
-        for ((class, block), transform) in jobs.into_iter().zip(found) {
-            self.classes[class].blocks[block] = transform;
-        }
-        for index in 0..self.classes.len() {
-            self.classes[index].duration = self.best_duration(alignment, &self.classes[index])?;
-        }
-        Ok(())
-    }
-
-    fn best_block(
-        &self,
-        alignment: &Alignment,
-        class: &Class,
-        block: usize,
-    ) -> Result<LinearTransform, ProbError> {
-        let members: Vec<RegressionMember<'_>> = class
-            .members
-            .iter()
-            .map(|state| RegressionMember {
-                gaussian: &self.parts[*state][block],
-                stats: &alignment.frames[*state][block],
-            })
-            .collect();
-        let row_precision = self.row_precision(class, block);
-        let prior = prior(&class.centres[block], &row_precision, self.prior_frames);
-        Ok(estimate_transform(&members, Some(&prior), &class.blocks[block], SWEEPS)?.transform)
-    }
-
-    /// The regression takes durations for plain Gaussians, but they are cut to whole frames from one on: a change that is none
-    /// for the better after the cut is taken in part, or not at all.
-    fn best_duration(
-        &self,
-        alignment: &Alignment,
-        class: &Class,
-    ) -> Result<LinearTransform, ProbError> {
-        let members: Vec<RegressionMember<'_>> = class
-            .members
-            .iter()
-            .map(|state| RegressionMember {
-                gaussian: &self.durations[*state],
-                stats: &alignment.durations[*state],
-            })
-            .collect();
-        let row_precision = self.duration_precision(class);
-        let prior = prior(&class.duration_centre, &row_precision, DURATION_SEGMENTS);
-        let wanted = estimate_transform(&members, Some(&prior), &class.duration, SWEEPS)?.transform;
-        let objective = |transform: &LinearTransform| -> Result<f64, ProbError> {
-            let mut sum = prior.log_density(transform);
-            for state in &class.members {
-                let dist = self
-                    .adapted_duration(*state, transform)?
-                    .discretise(self.max_duration)?;
-                let terms = (1..).zip(&alignment.histograms[*state]);
-                sum += terms
-                    .filter(|(_, weight)| **weight > 0.0)
-                    .map(|(duration, weight)| weight * dist.log_pmf(duration))
-                    .sum::<f64>();
-            }
-            Ok(sum)
-        };
-        let before = objective(&class.duration)?;
-        for share in [1.0, 0.5, 0.25, 0.1, 0.03] {
-            let pairs = class.duration.rows().iter().zip(wanted.rows());
-            let rows = pairs.map(|(from, to)| from + share * (to - from)).collect();
-            let candidate = LinearTransform::from_rows(1, rows)?;
-            if objective(&candidate).is_ok_and(|value| value >= before) {
-                return Ok(candidate);
-            }
-        }
-        Ok(class.duration.clone())
-    }
-}
-
-fn prior<'a>(
-    centre: &'a LinearTransform,
-    row_precision: &'a [f64],
-    [bias_weight, matrix_weight]: [f64; 2],
-) -> TransformPrior<'a> {
-    TransformPrior {
-        centre,
-        row_precision,
-        bias_weight,
-        matrix_weight,
     }
 }

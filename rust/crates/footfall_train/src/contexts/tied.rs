@@ -3,9 +3,10 @@
 use super::moments::Moments;
 use super::trees::{Trees, pool};
 use super::{CONTEXTS, context};
-use crate::average::{AverageWalk, DURATION_VARIANCE_FLOOR, STATES, cut_steps, state_index};
+use crate::average::AverageWalk;
 use crate::error::TrainError;
 use crate::sequence::{LabelledStep, Sequence};
+use crate::step_hsmm::{DURATION_VARIANCE_FLOOR, STATES, cut_steps, state_index};
 use footfall_core::{Side, StepPosition};
 use footfall_model::STATES_PER_STEP;
 use footfall_prob::duration::{DurationDist, DurationStats, GaussianDuration};

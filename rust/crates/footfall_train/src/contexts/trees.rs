@@ -2,8 +2,8 @@
 
 use super::moments::Moments;
 use super::{CONTEXTS, ContextReport, LEAST_STEPS, TreeLine, TreeReport, context};
-use crate::average::DURATION_VARIANCE_FLOOR;
 use crate::error::TrainError;
+use crate::step_hsmm::DURATION_VARIANCE_FLOOR;
 use footfall_core::{Side, StepPosition};
 use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP, SpeedResponse, StepModel, StepOffset};
 use footfall_prob::clustering::{ClusterConfig, ContextTree, OutlineNode, Question};

@@ -1,10 +1,10 @@
 //! Two systems that switch against one that does not (figure 5 of the paper): prediction errors over time.
 
 use super::pose_space::PoseSpace;
-use super::{DynamicsConfig, FittedSystem, Outputs, Recordings, fit_segments};
+use super::{DynamicsConfig, FittedSystem, Outputs, SwitchWalks, fit_segments};
 use crate::error::TrainError;
-use crate::train::TrainingClip;
 use footfall_core::Side;
+use footfall_motion::recording::Recording;
 use footfall_prob::subspace::initial_state;
 
 /// Error of a model in every frame, as a root mean square over the component weights divided by their spread.
@@ -39,21 +39,21 @@ pub struct DynamicsComparison {
     pub single: ErrorCurve,
 }
 
-/// Fits two switching systems and a single one of the same order to the longest walk of a clip, and compares how well they predict
-/// it. `None` when the clip shows too few steps.
+/// Fits two switching systems and a single one of the same order to the longest walk of a recording, and compares how well they predict
+/// it. `None` when the recording shows too few steps.
 ///
 /// # Errors
 /// [`TrainError`] when a pose is not finite.
 pub fn compare_dynamics(
-    clip: &TrainingClip,
+    recording: &Recording,
     config: &DynamicsConfig,
 ) -> Result<Option<DynamicsComparison>, TrainError> {
-    let recordings = match Recordings::read(core::slice::from_ref(clip), config) {
-        Ok(recordings) => recordings,
+    let walks = match SwitchWalks::read(core::slice::from_ref(recording), config) {
+        Ok(walks) => walks,
         Err(TrainError::NoSteps) => return Ok(None),
         Err(error) => return Err(error),
     };
-    let longest = recordings
+    let longest = walks
         .sequences
         .into_iter()
         .max_by_key(super::super::sequence::Sequence::frames);
@@ -61,7 +61,7 @@ pub fn compare_dynamics(
         return Ok(None);
     };
     let sequence = [sequence];
-    let pose = PoseSpace::of(&sequence, &clip.clip.skeleton, config.components)?;
+    let pose = PoseSpace::of(&sequence, &recording.clip().skeleton, config.components)?;
     let outputs = Outputs::of(&sequence, &pose);
     let fits = Side::BOTH.map(|side| fit_segments(&outputs.segments(side), config));
     let whole = [outputs.sequences[0].as_slice()];

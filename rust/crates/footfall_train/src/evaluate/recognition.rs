@@ -2,7 +2,7 @@
 
 use super::lda::{Labelled, Lda, Shrinkage};
 use super::stride_features::{LEAST_SPREAD, Stride};
-use super::{Confusion, EvaluateError, Recording, Split};
+use super::{Confusion, EvaluateError, Split, Take};
 use rayon::prelude::*;
 
 /// One classifier's diet.
@@ -25,7 +25,7 @@ type Answers = Vec<(usize, usize)>;
 /// Trains a classifier for each fold; it judges the fold's unseen strides and all synthesised ones.
 pub(super) fn recognise(
     folds: &[Fold<'_>],
-    synthesised: Option<&[Recording<'_>]>,
+    synthesised: Option<&[Take]>,
     names: &[String],
 ) -> Result<Judged, EvaluateError> {
     let synthetic: Option<Vec<Labelled<'_>>> =
@@ -68,7 +68,7 @@ pub(super) fn recognise(
 
 /// Fold k leaves out the k-th take of every style that has one.
 pub(super) fn take_folds<'a>(
-    real: &'a [Recording<'_>],
+    real: &'a [Take],
     names: &[String],
 ) -> Result<Vec<Fold<'a>>, EvaluateError> {
     for (style, name) in names.iter().enumerate() {
@@ -79,10 +79,10 @@ pub(super) fn take_folds<'a>(
             });
         }
     }
-    let takes = real.iter().map(|one| one.take + 1).max().unwrap_or(0);
+    let takes = real.iter().map(|one| one.number + 1).max().unwrap_or(0);
     let strides = |keep: &dyn Fn(usize) -> bool| -> Vec<Labelled<'a>> {
         real.iter()
-            .filter(|one| keep(one.take))
+            .filter(|one| keep(one.number))
             .flat_map(super::labelled)
             .collect()
     };
@@ -96,7 +96,7 @@ pub(super) fn take_folds<'a>(
 
 /// Fold 0 sees the first half of every recording, fold 1 the second.
 pub(super) fn half_folds<'a>(
-    real: &'a [Recording<'_>],
+    real: &'a [Take],
     names: &[String],
 ) -> Result<Vec<Fold<'a>>, EvaluateError> {
     let halves = |part: usize| -> Vec<Labelled<'a>> {
@@ -152,13 +152,13 @@ fn halves_of(strides: &[Stride]) -> (&[Stride], &[Stride]) {
 
 /// Two parts of a style's recordings, one list of strides for each recording.
 pub(super) fn two_parts<'r>(
-    real: &[&'r Recording<'_>],
+    real: &[&'r Take],
     split: Split,
 ) -> (Vec<Vec<&'r Stride>>, Vec<Vec<&'r Stride>>) {
     match split {
         Split::Take => {
             let takes = |rest: usize| {
-                let some = real.iter().filter(|one| one.take % 2 == rest);
+                let some = real.iter().filter(|one| one.number % 2 == rest);
                 some.map(|one| one.strides.iter().collect()).collect()
             };
             (takes(0), takes(1))

@@ -3,13 +3,14 @@
 use super::*;
 use footfall_core::rotation::exp_map;
 use footfall_core::{Joint, Side, Skeleton, StepPosition};
-use footfall_motion::steps::Step;
+use footfall_motion::retarget::Retargeted;
+use footfall_motion::steps::{Step, Walk};
 use glam::Vec3;
 
 const STEP_FRAMES: usize = 24;
 
 /// A walk whose steps vary a little; `stoop` radians is its style, `seed` its variation.
-fn walk(style: &str, stoop: f32, seed: u32, steps: usize) -> StyledClip {
+fn walk(style: &str, stoop: f32, seed: u32, steps: usize) -> Recording {
     let skeleton = Skeleton::standard();
     let poses = (0..=steps * STEP_FRAMES)
         .map(|frame| {
@@ -37,18 +38,18 @@ fn walk(style: &str, stoop: f32, seed: u32, steps: usize) -> StyledClip {
             take_off: None,
         })
         .collect();
-    StyledClip {
-        style: style.to_owned(),
-        clip: Clip {
-            skeleton,
-            frame_rate_hz: 30.0,
-            poses,
-        },
-        walks: vec![Walk { steps }],
-    }
+    let clip = Clip {
+        skeleton,
+        frame_rate_hz: 30.0,
+        poses,
+    };
+    let mut recording = Recording::detected(Retargeted::canonical(clip));
+    recording.row.set("style", style);
+    recording.walks = vec![Walk { steps }];
+    recording
 }
 
-fn real() -> Vec<StyledClip> {
+fn real() -> Vec<Recording> {
     [
         ("upright", 0.0, 1),
         ("sad", 0.3, 2),
@@ -108,7 +109,7 @@ fn a_wrong_synthesis_is_found_out() {
 #[test]
 fn damped_and_repeated_steps_are_found_out() {
     let mut damped = walk("sad", 0.3, 2, 14);
-    for pose in &mut damped.clip.poses {
+    for pose in &mut damped.retargeted.clip.poses {
         let joint = Joint::LeftUpperLeg.index();
         pose.rotations[joint] = glam::Quat::IDENTITY.slerp(pose.rotations[joint], 0.5);
     }
@@ -128,9 +129,9 @@ fn damped_and_repeated_steps_are_found_out() {
     );
     // One step over and over.
     let mut repeated = walk("sad", 0.3, 2, 14);
-    for frame in 0..repeated.clip.poses.len() {
-        repeated.clip.poses[frame].rotations =
-            repeated.clip.poses[frame % (2 * STEP_FRAMES)].rotations;
+    for frame in 0..repeated.clip().poses.len() {
+        let poses = &mut repeated.retargeted.clip.poses;
+        poses[frame].rotations = poses[frame % (2 * STEP_FRAMES)].rotations;
     }
     let judged = evaluate_styles(&real(), Some(&[repeated]), None).unwrap();
     let ratio = judged.styles[0]
@@ -151,7 +152,7 @@ fn damped_and_repeated_steps_are_found_out() {
 
 #[test]
 fn bad_input_says_what_to_do() {
-    let error = |real: &[StyledClip], synthesised: Option<&[StyledClip]>, split| {
+    let error = |real: &[Recording], synthesised: Option<&[Recording]>, split| {
         evaluate_styles(real, synthesised, split).unwrap_err()
     };
     assert_eq!(error(&[], None, None), EvaluateError::OneStyle { found: 0 });
@@ -164,7 +165,7 @@ fn bad_input_says_what_to_do() {
         single.contains("sad") && single.contains("--split half"),
         "{single}"
     );
-    let short: Vec<StyledClip> = vec![walk("sad", 0.3, 1, 3), walk("upright", 0.0, 1, 14)];
+    let short: Vec<Recording> = vec![walk("sad", 0.3, 1, 3), walk("upright", 0.0, 1, 14)];
     assert!(
         matches!(error(&short, None, None), EvaluateError::Split { style, .. } if style == "sad")
     );
@@ -176,18 +177,11 @@ fn bad_input_says_what_to_do() {
         EvaluateError::NoSynthesisedStride
     );
     let mut broken = real();
-    broken[0].clip.poses[40].rotations[3] = glam::Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0);
+    broken[0].retargeted.clip.poses[40].rotations[3] =
+        glam::Quat::from_xyzw(f32::NAN, 0.0, 0.0, 1.0);
     let frame = error(&broken, None, None);
     assert!(
         matches!(frame, EvaluateError::NotFinite { frame: 40, .. }),
         "{frame}"
     );
-}
-
-#[test]
-fn leading_frames_are_cut_off_and_steps_move_along() {
-    let whole = walk("sad", 0.3, 1, 4);
-    let cut = StyledClip::new("sad", &whole.clip, 5, &whole.walks);
-    assert_eq!(cut.clip.poses[0], whole.clip.poses[5]);
-    assert_eq!(cut.walks[0].steps[2].first, 2 * STEP_FRAMES - 5);
 }

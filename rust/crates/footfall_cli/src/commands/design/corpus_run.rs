@@ -4,7 +4,7 @@ use super::{DesignArgs, Designed, describe, write_clip};
 use crate::output;
 use anyhow::{Context as _, Result, bail};
 use footfall_design::{StyleSheet, design};
-use footfall_motion::corpus::CorpusClip;
+use footfall_motion::recording::Recording;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs;
@@ -142,9 +142,9 @@ pub(super) fn run(
 }
 
 /// One recording of each walker in turn, so that a style from few steps is not one walker's.
-fn by_turns(clips: &[CorpusClip]) -> Vec<&CorpusClip> {
+fn by_turns(clips: &[Recording]) -> Vec<&Recording> {
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut order: Vec<(usize, &CorpusClip)> = clips
+    let mut order: Vec<(usize, &Recording)> = clips
         .iter()
         .map(|clip| {
             let turn = seen.entry(clip.row.subject()).or_default();

@@ -1,16 +1,13 @@
 //! `footfall dynamics fit`: a corpus becomes two systems that switch.
 
-use crate::commands::train::provenance::{describe, name_of};
-use crate::commands::train::{read_corpus, skipped};
+use crate::commands::training_run::{TrainingRun, skipped};
 use crate::motion_input::KneesArgs;
-use crate::output::{self, write_atomic};
+use crate::output;
 use anyhow::{Context as _, Result, ensure};
 use footfall_motion::corpus::Where;
-use footfall_train::TrainingClip;
 use footfall_train::dynamics::{DynamicsConfig, FittedDynamics, fit_dynamics};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Fit two systems that switch when a foot lands
 ///
@@ -87,44 +84,32 @@ struct Report<'a> {
     seconds: f64,
 }
 
-#[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
 pub(crate) fn run(args: &FitArgs) -> Result<()> {
-    let begun = Instant::now();
-    output::refuse_overwrite(&[&args.corpus], &args.output)?;
-    let config = args.size.config()?;
-    let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
-    let conditions: Vec<String> = args
-        .conditions
-        .iter()
-        .map(|condition| format!("--where '{condition}' "))
-        .chain(args.knees.words().map(|word| format!("{word} ")))
-        .collect();
-    let command = format!(
-        "footfall dynamics fit --corpus {} {}--fps {} --components {} --order {} -o {}",
-        name_of(&args.corpus),
-        conditions.concat(),
-        args.size.fps,
-        args.size.components,
-        args.size.order,
-        name_of(&args.output)
-    );
-    let provenance = describe(
-        &corpus,
+    let words = args.describe.as_deref();
+    let run = TrainingRun::begin(
         &args.corpus,
         &args.conditions,
-        args.describe.as_deref(),
-        command,
-    );
+        args.knees,
+        words,
+        &args.output,
+    )?;
+    let config = args.size.config()?;
+    let corpus = run.read()?;
+    let options = [
+        format!("--fps {}", args.size.fps),
+        format!("--components {}", args.size.components),
+        format!("--order {}", args.size.order),
+    ];
+    let provenance = run.provenance(&corpus, "footfall dynamics fit", &[], &options);
     let FittedDynamics {
         model,
         segments,
         explained,
         one_step_error,
-    } = fit_dynamics(&clips, &config, provenance)
+    } = fit_dynamics(&corpus.clips, &config, provenance)
         .with_context(|| args.corpus.display().to_string())?;
     let bytes = model.to_bytes().context("the fitted model")?;
-    write_atomic(&args.output, &bytes)?;
+    run.write(&bytes)?;
     let report = Report {
         output: &args.output,
         clips: model.provenance.clips,
@@ -134,7 +119,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
         one_step_error,
         bytes: bytes.len(),
         skipped: skipped(&corpus).into_iter().map(|s| s.reason).collect(),
-        seconds: begun.elapsed().as_secs_f64(),
+        seconds: run.seconds(),
     };
     for reason in &report.skipped {
         output::note(&format!("warning: left out {reason}"));

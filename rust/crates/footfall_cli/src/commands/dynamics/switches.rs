@@ -1,6 +1,6 @@
 //! `footfall dynamics switches`: when the legs change roles, from joint angles alone.
 
-use crate::motion_input::{MapArgs, MotionInput};
+use crate::motion_input::{MapArgs, read_file};
 use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_motion::switches::detect_switches;
@@ -42,7 +42,7 @@ struct Entry {
 }
 
 pub(crate) fn run(args: &SwitchesArgs) -> Result<()> {
-    let motion = MotionInput::read(&args.input, &args.map.read(None)?)?.retargeted;
+    let (_, motion) = read_file(&args.input, &args.map.read(None)?)?;
     let fps = motion.clip.frame_rate_hz;
     let switches = detect_switches(&motion.clip, motion.first_frame)
         .with_context(|| args.input.display().to_string())?;

@@ -9,7 +9,8 @@ use crate::output;
 use anyhow::{Context as _, Result};
 use bodies::Bodies;
 use footfall_core::{EventKind, Side};
-use footfall_motion::corpus::{CorpusClip, Where};
+use footfall_motion::corpus::Where;
+use footfall_motion::recording::Recording;
 use footfall_motion::switches::{Landing, detect_switches_by};
 use footfall_prob::switching::median;
 use serde::Serialize;
@@ -168,7 +169,7 @@ impl Agreement {
     /// Switches of a clip against its initial contacts.
     fn add_switches(
         &mut self,
-        clip: &CorpusClip,
+        clip: &Recording,
         landing: Landing,
         tolerance_ms: f64,
     ) -> Result<()> {

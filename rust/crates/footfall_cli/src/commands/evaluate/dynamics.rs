@@ -65,8 +65,7 @@ pub(super) fn evaluate(args: &DynamicsArgs) -> Result<Report> {
         .clips
         .par_iter()
         .map(|clip| {
-            compare_dynamics(&clip.into(), &config)
-                .with_context(|| clip.row.path.display().to_string())
+            compare_dynamics(clip, &config).with_context(|| clip.row.path.display().to_string())
         })
         .collect::<Result<_>>()?;
     let mut report = Report {

@@ -4,7 +4,7 @@ mod course;
 mod report;
 
 use crate::model_file::read_model;
-use crate::motion_input::{MapArgs, MotionInput};
+use crate::motion_input::{MapArgs, read_file};
 use crate::output;
 use anyhow::{Context as _, Result};
 use course::{COURSE, Trial, run_course};
@@ -55,7 +55,7 @@ pub(super) fn evaluate(args: &ResponseArgs) -> Result<Report> {
         .takes
         .iter()
         .map(|path| {
-            let retargeted = MotionInput::read(path, &options)?.retargeted;
+            let (_, retargeted) = read_file(path, &options)?;
             let (clip, first) = (retargeted.clip, retargeted.first_frame.max(1));
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             Ok(Take::new(&name, &clip, first, &Travel::of(&clip, first)))

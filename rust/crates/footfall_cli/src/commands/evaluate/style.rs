@@ -1,7 +1,7 @@
 //! `footfall evaluate style`: are styles told apart, do they resemble their model, do they move like people?
 
 use super::style_report::{Report, tables};
-use crate::corpus_pair::{CorpusPair, styled_clips};
+use crate::corpus_pair::CorpusPair;
 use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
@@ -60,14 +60,14 @@ fn judge(args: &StyleArgs) -> Result<(StyleEvaluation, Vec<String>)> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
     let corpora = args.corpora.read(args.knees)?;
-    let real = styled_clips(&corpora.real);
-    let synthesised = corpora.synthesised.as_ref().map(styled_clips);
+    let synthesised = corpora.synthesised.as_ref();
+    let synthesised = synthesised.map(|corpus| corpus.clips.as_slice());
     progress.stage("judging", 0);
     let split = args.split.map(|split| match split {
         SplitArg::Take => Split::Take,
         SplitArg::Half => Split::Half,
     });
-    let evaluation = evaluate_styles(&real, synthesised.as_deref(), split)
+    let evaluation = evaluate_styles(&corpora.real.clips, synthesised, split)
         .with_context(|| args.corpora.real.index.display().to_string())?;
     progress.finish();
     let skipped = corpora.skipped();

@@ -1,12 +1,13 @@
 //! `footfall evaluate training`: what taking walkers out of the average walk gains.
 
-use crate::commands::train::{TrainingProgress, skipped};
+use crate::commands::train::TrainingProgress;
+use crate::commands::training_run::skipped;
 use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_motion::corpus::Where;
 use footfall_prob::windows::Windows;
-use footfall_train::{EmConfig, TrainConfig, TrainingClip, TrainingComparison, compare_training};
+use footfall_train::{EmConfig, TrainConfig, TrainingComparison, compare_training};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -73,7 +74,6 @@ pub(super) fn evaluate(args: &TrainingArgs) -> Result<Report> {
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
     let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
-    let clips: Vec<TrainingClip> = corpus.clips.iter().map(TrainingClip::from).collect();
     let config = TrainConfig {
         frame_rate_hz: args.fps,
         windows: Windows::Compact,
@@ -83,7 +83,7 @@ pub(super) fn evaluate(args: &TrainingArgs) -> Result<Report> {
             min_gain_per_frame: 1e-3,
         },
     };
-    let comparison = compare_training(&clips, &config, &mut progress)
+    let comparison = compare_training(&corpus.clips, &config, &mut progress)
         .with_context(|| args.corpus.display().to_string())?;
     progress.0.finish();
     let left_out = skipped(&corpus).into_iter().map(|s| s.reason).collect();

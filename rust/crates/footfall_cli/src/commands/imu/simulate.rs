@@ -1,7 +1,7 @@
 //! `footfall imu simulate`: what a sensor on a recorded body would have measured.
 
 use super::parse_site;
-use crate::motion_input::{MapArgs, MotionInput};
+use crate::motion_input::{MapArgs, read_file};
 use crate::output;
 use anyhow::{Result, ensure};
 use footfall_core::Site;
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<()> {
         "--noise {} is no factor of a sensor's errors; give a number from 0 to 100",
         args.noise
     );
-    let motion = MotionInput::read(&args.input, &args.map.read(None)?)?.retargeted;
+    let (_, motion) = read_file(&args.input, &args.map.read(None)?)?;
     let Angles([x, y, z]) = args.mounting;
     let config = VirtualImuConfig {
         mounting: Quat::from_euler(EulerRot::ZYXEx, z, y, x),

@@ -4,7 +4,7 @@ use crate::output;
 use anyhow::Result;
 use footfall_core::Site;
 use footfall_imu::{ImuRecording, csv};
-use footfall_motion::corpus::CorpusClip;
+use footfall_motion::recording::Recording;
 use footfall_train::imu::synchronise;
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// When the model would overwrite one.
 pub(super) fn recordings(
     index: &Path,
-    clip: &CorpusClip,
+    clip: &Recording,
     sites: &[Site],
     model: &Path,
 ) -> Result<Vec<ImuRecording>> {

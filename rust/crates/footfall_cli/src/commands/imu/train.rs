@@ -1,18 +1,17 @@
 //! `footfall imu train`: a corpus becomes a model of what sensors on a body mean.
 
 use super::{parse_site, synchronous};
-use crate::commands::train::provenance::{describe, name_of};
-use crate::commands::train::{read_corpus, skipped};
+use crate::commands::training_run::{TrainingRun, skipped};
 use crate::motion_input::KneesArgs;
-use crate::output::{self, write_atomic};
+use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_core::Site;
 use footfall_imu::ImuRecording;
-use footfall_motion::corpus::{CorpusClip, Where};
+use footfall_motion::corpus::Where;
+use footfall_motion::recording::Recording;
 use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Learn what a sensor on a body means for the whole body
 ///
@@ -107,7 +106,7 @@ struct Report<'a> {
 }
 
 /// A recording as the trainer takes it, with simulated sensors.
-pub(in crate::commands) fn imu_clip(clip: &CorpusClip) -> ImuClip<'_> {
+pub(in crate::commands) fn imu_clip(clip: &Recording) -> ImuClip<'_> {
     ImuClip {
         subject: clip.row.subject(),
         clip: &clip.retargeted.clip,
@@ -116,12 +115,17 @@ pub(in crate::commands) fn imu_clip(clip: &CorpusClip) -> ImuClip<'_> {
     }
 }
 
-#[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
 pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
-    let begun = Instant::now();
-    output::refuse_overwrite(&[&args.corpus], &args.output)?;
+    let words = args.describe.as_deref();
+    let run = TrainingRun::begin(
+        &args.corpus,
+        &args.conditions,
+        args.knees,
+        words,
+        &args.output,
+    )?;
     let config = args.model.config()?;
-    let corpus = read_corpus(&args.corpus, &args.conditions, args.knees, &args.output)?;
+    let corpus = run.read()?;
     let real: Vec<Vec<ImuRecording>> = corpus
         .clips
         .iter()
@@ -136,17 +140,11 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
             ..imu_clip(clip)
         })
         .collect();
-    let provenance = describe(
-        &corpus,
-        &args.corpus,
-        &args.conditions,
-        args.describe.as_deref(),
-        command(args),
-    );
+    let provenance = run.provenance(&corpus, "footfall imu train", &[], &options(&args.model));
     let model = train_imu_clips(&clips, &config, provenance)
         .with_context(|| args.corpus.display().to_string())?;
     let bytes = model.to_bytes().context("the trained model")?;
-    write_atomic(&args.output, &bytes)?;
+    run.write(&bytes)?;
     let report = Report {
         output: &args.output,
         sites: model.sites.iter().map(|site| site.name()).collect(),
@@ -161,7 +159,7 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
         phases: model.phases.len(),
         bytes: bytes.len(),
         skipped: skipped(&corpus).into_iter().map(|s| s.reason).collect(),
-        seconds: begun.elapsed().as_secs_f64(),
+        seconds: run.seconds(),
     };
     for reason in &report.skipped {
         output::note(&format!("warning: left out {reason}"));
@@ -183,32 +181,16 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
     Ok(())
 }
 
-fn command(args: &ImuTrainArgs) -> String {
-    let mut words = vec![format!(
-        "footfall imu train --corpus {}",
-        name_of(&args.corpus)
-    )];
-    words.extend(args.conditions.iter().map(|c| format!("--where '{c}'")));
-    words.extend(args.knees.words());
-    words.extend(
-        args.model
-            .sites
-            .iter()
-            .map(|site| format!("--site {}", site.name())),
-    );
-    if args.model.kept.no_mirror {
+/// The options of a model as they were given, for the command that its file states.
+fn options(args: &ModelArgs) -> Vec<String> {
+    let sites = args.sites.iter();
+    let mut words: Vec<String> = sites
+        .map(|site| format!("--site {}", site.name()))
+        .collect();
+    if args.kept.no_mirror {
         words.push("--no-mirror".to_owned());
     }
-    words.extend(
-        args.model
-            .kept
-            .frames
-            .map(|frames| format!("--frames {frames}")),
-    );
-    words.push(format!(
-        "--fps {} -o {}",
-        args.model.fps,
-        name_of(&args.output)
-    ));
-    words.join(" ")
+    words.extend(args.kept.frames.map(|frames| format!("--frames {frames}")));
+    words.push(format!("--fps {}", args.fps));
+    words
 }

@@ -2,7 +2,7 @@
 
 use super::fact;
 use crate::hip_facts::HipFacts;
-use crate::motion_input::{MotionInput, Walking};
+use crate::motion_input::{Walking, read_file};
 use anyhow::Result;
 use footfall_core::{Joint, Side};
 use footfall_motion::game_clip;
@@ -49,8 +49,7 @@ pub(super) struct MotionFacts {
 
 /// Reads a recording.
 pub(super) fn inspect(path: &Path, options: &RetargetOptions) -> Result<MotionFacts> {
-    let input = MotionInput::read(path, options)?;
-    let motion = &input.retargeted;
+    let (file, motion) = read_file(path, options)?;
     let report = &motion.report;
     let mut unrolled = motion.clone();
     game_clip::unroll(&mut unrolled);
@@ -76,14 +75,14 @@ pub(super) fn inspect(path: &Path, options: &RetargetOptions) -> Result<MotionFa
     Ok(MotionFacts {
         file: path.to_owned(),
         skeleton: motion.report.map.clone(),
-        joints: input.file.joints.len(),
+        joints: file.joints.len(),
         absent_joints: Joint::ALL
             .into_iter()
             .filter(|joint| motion.report.source_joints[joint.index()].is_none())
             .map(Joint::name)
             .collect(),
-        frames: input.file.frame_count,
-        fps: input.file.frame_rate_hz(),
+        frames: file.frame_count,
+        fps: file.frame_rate_hz(),
         seconds: clip.duration_secs(),
         first_motion_frame: motion.first_frame,
         metres_per_unit: motion.report.scale,

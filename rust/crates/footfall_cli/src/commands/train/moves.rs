@@ -1,6 +1,7 @@
 //! Jumps and crouches of a model: the recordings that show them, and learning from them.
 
-use super::{TrainArgs, further_corpus};
+use super::TrainArgs;
+use crate::commands::training_run::TrainingRun;
 use anyhow::{Context as _, Result};
 use footfall_core::Clip;
 use footfall_model::GaitModel;
@@ -14,10 +15,10 @@ pub(super) struct Moves {
 }
 
 impl Moves {
-    pub(super) fn read(args: &TrainArgs) -> Result<Self> {
+    pub(super) fn read(args: &TrainArgs, run: &TrainingRun<'_>) -> Result<Self> {
         Ok(Self {
-            jumping: further_corpus(args, &args.jumping)?,
-            crouching: further_corpus(args, &args.crouching)?,
+            jumping: run.read_further(&args.jumping)?,
+            crouching: run.read_further(&args.crouching)?,
         })
     }
 

@@ -15,7 +15,7 @@ use footfall_design::{KeySpec, StyleSheet, design, shipped};
 use footfall_model::{GaitModel, GaitStyle};
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::Retargeted;
-use footfall_train::Recordings;
+use footfall_train::read_recordings;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -358,21 +358,21 @@ fn style_of(
     seed: u64,
     reporter: &mut Reporter,
 ) -> Result<GaitStyle, String> {
-    let read = Recordings::read(chosen, reporter).map_err(|error| error.to_string())?;
-    let (mut styled, mut steps, mut problem) = (Recordings::default(), 0, None);
-    for (number, (subject, recording)) in read.0.into_iter().enumerate() {
+    let read = read_recordings(chosen, reporter).map_err(|error| error.to_string())?;
+    let (mut styled, mut steps, mut problem) = (Vec::new(), 0, None);
+    for (number, recording) in read.iter().enumerate() {
         if steps >= STEPS {
             break;
         }
-        match designed(&recording, sheet, seed.wrapping_add(number as u64)) {
-            Ok(recording) => {
-                steps += recording.step_count();
-                styled.0.push((subject, recording));
+        match designed(recording, sheet, seed.wrapping_add(number as u64)) {
+            Ok(designed) => {
+                steps += designed.step_count();
+                styled.push(designed.of_subject(recording.subject()));
             }
             Err(error) => problem = Some(error),
         }
     }
-    if styled.0.is_empty() {
+    if styled.is_empty() {
         return Err(problem.unwrap_or_else(|| "no recording of a walk is chosen".to_owned()));
     }
     adapt_to(base, &styled, sheet.name.trim(), STEPS, reporter).map(|adapted| adapted.style)

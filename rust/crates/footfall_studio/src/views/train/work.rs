@@ -3,8 +3,11 @@
 use crate::job::Reporter;
 use crate::library::Library;
 use footfall_model::{GaitModel, Provenance};
+use footfall_motion::recording::Recording;
 use footfall_prob::windows::Windows;
-use footfall_train::{Adapted, EmConfig, Recordings, TrainConfig, Trained, train_average};
+use footfall_train::{
+    AdaptConfig, Adapted, EmConfig, TrainConfig, Trained, adapt_style, train_average,
+};
 use std::path::PathBuf;
 
 /// Recordings to learn from: the file and who walks.
@@ -33,7 +36,7 @@ fn provenance(what: &str) -> Provenance {
 }
 
 pub(super) fn train(
-    recorded: &Recordings,
+    recorded: &[Recording],
     rate_hz: f64,
     iterations: usize,
     reporter: &mut Reporter,
@@ -48,7 +51,7 @@ pub(super) fn train(
         },
     };
     train_average(
-        &recorded.clips(),
+        recorded,
         &config,
         provenance("recordings chosen in Footfall Studio"),
         reporter,
@@ -59,13 +62,13 @@ pub(super) fn train(
 /// Adapts a base model to recordings.
 pub(crate) fn adapt_to(
     base: &GaitModel,
-    recorded: &Recordings,
+    recorded: &[Recording],
     name: &str,
     steps: usize,
     reporter: &mut Reporter,
 ) -> Result<Adapted, String> {
     let made_from = provenance("recordings chosen in Footfall Studio");
-    recorded
-        .adapt(base, name, steps, made_from, reporter)
+    let config = AdaptConfig::first_steps(steps);
+    adapt_style(base, recorded, name, &config, made_from, reporter)
         .map_err(|error| error.to_string())
 }

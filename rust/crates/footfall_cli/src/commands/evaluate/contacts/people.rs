@@ -4,8 +4,8 @@ use super::Agreement;
 use anyhow::Result;
 use footfall_core::{EventKind, GaitEvent, Side};
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
-use footfall_motion::corpus::CorpusClip;
 use footfall_motion::published_events::PublishedEvents;
+use footfall_motion::recording::Recording;
 use footfall_motion::switches::Landing;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -58,11 +58,7 @@ pub(super) struct Ablated {
 type People = BTreeMap<String, Person>;
 
 /// Judges everybody in the recordings.
-pub(super) fn judge(
-    clips: &[CorpusClip],
-    tolerance_ms: f64,
-    leave_one_out: bool,
-) -> Result<People> {
+pub(super) fn judge(clips: &[Recording], tolerance_ms: f64, leave_one_out: bool) -> Result<People> {
     let published: Vec<PublishedEvents> = clips
         .iter()
         .map(|clip| PublishedEvents::of(&clip.retargeted.clip, clip.retargeted.first_frame))
@@ -106,7 +102,7 @@ pub(super) fn judge(
 }
 
 /// Contacts of everybody under some limits.
-fn with_limits(clips: &[CorpusClip], published: &[PublishedEvents], limits: Limits) -> People {
+fn with_limits(clips: &[Recording], published: &[PublishedEvents], limits: Limits) -> People {
     let mut people = People::new();
     for (clip, published) in clips.iter().zip(published) {
         let motion = &clip.retargeted;
@@ -166,7 +162,7 @@ fn mean(values: &[f64]) -> f64 {
 
 /// Switches placed in every way.
 pub(super) fn ablate(
-    clips: &[CorpusClip],
+    clips: &[Recording],
     tolerance_ms: f64,
 ) -> Result<BTreeMap<&'static str, Ablated>> {
     let mut ablation = BTreeMap::new();

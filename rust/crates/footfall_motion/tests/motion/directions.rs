@@ -2,8 +2,6 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
 use footfall_core::{Joint, ModelPose, forward_kinematics};
 use footfall_motion::bvh::{self, BvhFile, JointTransforms};
 use footfall_motion::retarget::{HipCentres, RetargetOptions, retarget};
@@ -116,10 +114,10 @@ fn source_joints(file: &BvhFile) -> [Option<usize>; 16] {
 
 #[test]
 fn directions_agree_on_every_recording() {
-    let Some(folder) = common::data_folder() else {
+    let Some(folder) = crate::common::data_folder() else {
         return;
     };
-    let files = common::bvh_files(&folder);
+    let files = crate::common::bvh_files(&folder);
     assert!(!files.is_empty());
     let mut rows = Vec::new();
     let mut transforms = JointTransforms::default();

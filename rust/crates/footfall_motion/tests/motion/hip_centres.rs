@@ -1,8 +1,6 @@
 //! Misplaced hip joints of whole recordings: found, corrected, and left alone where there is nothing to correct.
 
-mod common;
-
-use common::natural::{knee_degrees, misfitted, natural_walker};
+use crate::common::natural::{knee_degrees, misfitted, natural_walker};
 use footfall_core::{Clip, ModelPose, Side, forward_kinematics};
 use footfall_motion::bvh::{BvhFile, clip_to_bvh, write};
 use footfall_motion::corpus::{Corpus, CorpusError, Where};

@@ -1,9 +1,7 @@
-//! What the tests on recordings share.
-#![allow(
-    dead_code,
-    clippy::allow_attributes,
+//! Walkers and recordings that the tests share.
+#![expect(
     clippy::unwrap_used,
-    reason = "each test binary uses a part of this"
+    reason = "a test without its files has nothing to say"
 )]
 
 pub(crate) mod natural;

@@ -8,13 +8,12 @@
     reason = "tests; the figures are worth seeing"
 )]
 
-mod common;
-
 use footfall_core::{EventKind, GaitEvent, Side};
 use footfall_motion::bvh;
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
-use footfall_motion::corpus::{Corpus, CorpusClip, Where};
+use footfall_motion::corpus::{Corpus, Where};
 use footfall_motion::published_events::PublishedEvents;
+use footfall_motion::recording::Recording;
 use footfall_motion::retarget::{RetargetOptions, retarget};
 use footfall_motion::switches::{Landing, detect_switches_by};
 use std::collections::BTreeMap;
@@ -60,13 +59,13 @@ impl Agreement {
 }
 
 fn corpus(conditions: &[&str]) -> Option<Corpus> {
-    let folder = common::data_folder()?;
+    let folder = crate::common::data_folder()?;
     let conditions: Vec<Where> = conditions.iter().map(|c| c.parse().unwrap()).collect();
     Some(Corpus::read(folder.join("index.csv"), &conditions).unwrap())
 }
 
 /// Detected contacts; those of a corpus may be corrected.
-fn detected(clip: &CorpusClip) -> Vec<GaitEvent> {
+fn detected(clip: &Recording) -> Vec<GaitEvent> {
     let first = clip.retargeted.first_frame;
     detect_contacts(&clip.retargeted.clip, &ContactConfig::from_frame(first)).events()
 }
@@ -84,7 +83,7 @@ fn times(
 }
 
 /// Frames that are not near an end of the motion.
-fn inside(clip: &CorpusClip, margin_secs: f64) -> impl Fn(usize) -> bool + use<> {
+fn inside(clip: &Recording, margin_secs: f64) -> impl Fn(usize) -> bool + use<> {
     let motion = &clip.retargeted;
     let margin = (margin_secs * motion.clip.frame_rate_hz) as usize;
     let frames = motion.first_frame + margin..motion.clip.poses.len().saturating_sub(margin);
@@ -130,7 +129,7 @@ fn events_of_recorded_walks_agree_with_a_published_detector() {
 }
 
 /// Contacts of everybody against the published detector where they walk straight ahead.
-fn by_person(clips: &[CorpusClip]) -> BTreeMap<(String, &'static str), Agreement> {
+fn by_person(clips: &[Recording]) -> BTreeMap<(String, &'static str), Agreement> {
     let mut people: BTreeMap<(String, &'static str), Agreement> = BTreeMap::new();
     for clip in clips {
         let motion = &clip.retargeted;
@@ -188,7 +187,7 @@ fn contacts_of_every_person_hold() {
 }
 
 /// The same recordings whose first frame of motion lasts for 20 s, read anew.
-fn with_long_standing(clips: &mut [CorpusClip]) {
+fn with_long_standing(clips: &mut [Recording]) {
     for clip in clips {
         let mut file = bvh::read(&clip.row.path).unwrap();
         let channels = file.channel_count();

@@ -1,8 +1,6 @@
 //! Contacts, events and steps of walkers whose steps are known.
 
-mod common;
-
-use common::walker::{Gait, STANCE, STRIDE_SECS, first_landing, mirrored, walker};
+use crate::common::walker::{Gait, STANCE, STRIDE_SECS, first_landing, mirrored, walker};
 use footfall_core::{Clip, EventKind, Pose, Side, StepPosition};
 use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
 use footfall_motion::steps::segment_walks;

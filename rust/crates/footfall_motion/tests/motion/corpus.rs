@@ -2,12 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::walker::walker;
+use crate::common::walker::walker;
 use footfall_motion::bvh::{clip_to_bvh, write_file};
 use footfall_motion::contact_file::ContactFile;
-use footfall_motion::corpus::{Corpus, CorpusClip, CorpusError, Where};
+use footfall_motion::corpus::{Corpus, CorpusError, Where};
+use footfall_motion::recording::Recording;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -109,7 +108,7 @@ fn errors_name_file_line_and_column() {
 
 #[test]
 fn the_recordings_are_a_corpus() {
-    let Some(folder) = common::data_folder() else {
+    let Some(folder) = crate::common::data_folder() else {
         return;
     };
     let corpus = read(
@@ -145,7 +144,7 @@ fn contacts_that_a_person_corrected_are_taken_instead_of_the_detected_ones() {
         after.contacts.feet.clone().map(|foot| foot.stances),
         stances
     );
-    let steps = |clip: &CorpusClip| clip.walks.iter().map(|w| w.steps.len()).sum::<usize>();
+    let steps = |clip: &Recording| clip.walks.iter().map(|w| w.steps.len()).sum::<usize>();
     assert!(
         steps(&after) < steps(&before),
         "a step without its contact is none"

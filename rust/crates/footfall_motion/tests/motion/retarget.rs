@@ -1,8 +1,6 @@
 //! Retargeting of a walker whose joint angles are known, dressed up as other skeletons.
 
-mod common;
-
-use common::walker::walker;
+use crate::common::walker::walker;
 use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
 use footfall_motion::bvh::{BvhFile, Channel, clip_to_bvh, parse};
 use footfall_motion::retarget::{

@@ -1,12 +1,11 @@
 //! Knees and soles of the people of the CMU walks, person by person, as recorded and with their hip joints corrected.
 
-mod common;
-
-use common::natural::knee_degrees;
+use crate::common::natural::knee_degrees;
 use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
 use footfall_motion::bvh;
-use footfall_motion::corpus::{Corpus, CorpusClip, Person, Where};
+use footfall_motion::corpus::{Corpus, Person, Where};
 use footfall_motion::figure::sole_points;
+use footfall_motion::recording::Recording;
 use footfall_motion::retarget::{HipCentres, RetargetOptions, retarget};
 
 /// Tenth percentile of the knees over a person's walks, degrees, as recorded.
@@ -22,7 +21,7 @@ const RECORDED: [(&str, f32); 8] = [
 ];
 
 fn corpus(conditions: &[&str], hip_centres: HipCentres) -> Option<Corpus> {
-    let folder = common::data_folder()?;
+    let folder = crate::common::data_folder()?;
     let conditions: Vec<Where> = conditions
         .iter()
         .map(|text| text.parse().expect("a condition"))
@@ -41,14 +40,14 @@ fn quantile(values: &mut [f32], share: f32) -> f32 {
 }
 
 /// Frames of a clip's walks.
-fn walking_frames(clip: &CorpusClip) -> Vec<usize> {
+fn walking_frames(clip: &Recording) -> Vec<usize> {
     let steps = clip.walks.iter().flat_map(|walk| &walk.steps);
     steps.flat_map(|step| step.first..step.end).collect()
 }
 
 /// Knees over a person's walks, degrees.
-fn knees<'a>(clips: impl Iterator<Item = &'a CorpusClip>) -> Vec<f32> {
-    let of_clip = |clip: &'a CorpusClip| {
+fn knees<'a>(clips: impl Iterator<Item = &'a Recording>) -> Vec<f32> {
+    let of_clip = |clip: &'a Recording| {
         let frames = walking_frames(clip).into_iter();
         frames.flat_map(|frame| {
             Side::BOTH.map(|side| knee_degrees(&clip.retargeted.clip, frame, side))
@@ -58,7 +57,7 @@ fn knees<'a>(clips: impl Iterator<Item = &'a CorpusClip>) -> Vec<f32> {
 }
 
 /// Their tenth percentile.
-fn straightest_knee<'a>(clips: impl Iterator<Item = &'a CorpusClip>) -> f32 {
+fn straightest_knee<'a>(clips: impl Iterator<Item = &'a Recording>) -> f32 {
     quantile(&mut knees(clips), 0.1)
 }
 
@@ -72,7 +71,7 @@ fn sole_slope(clip: &Clip, frame: usize, side: Side) -> f32 {
 }
 
 /// Slopes of the soles in the middle of the stances of walking, 0.35 to 0.5 of the stance.
-fn soles(clip: &CorpusClip) -> Vec<f32> {
+fn soles(clip: &Recording) -> Vec<f32> {
     let mut slopes = Vec::new();
     for step in clip.walks.iter().flat_map(|walk| &walk.steps) {
         let stances = &clip.contacts.foot(step.side).stances;
@@ -87,7 +86,7 @@ fn soles(clip: &CorpusClip) -> Vec<f32> {
     slopes
 }
 
-fn of_person<'a>(corpus: &'a Corpus, person: &'a Person) -> impl Iterator<Item = &'a CorpusClip> {
+fn of_person<'a>(corpus: &'a Corpus, person: &'a Person) -> impl Iterator<Item = &'a Recording> {
     let clips = corpus.clips.iter();
     clips.filter(|clip| person.paths.contains(&clip.row.path))
 }
@@ -100,7 +99,7 @@ fn spread(values: &[f32]) -> f32 {
 }
 
 /// Changes of the knees' velocity over the walks, degrees in a sixtieth of a second twice.
-fn jerks<'a>(clips: impl Iterator<Item = &'a CorpusClip>) -> Vec<f32> {
+fn jerks<'a>(clips: impl Iterator<Item = &'a Recording>) -> Vec<f32> {
     let mut jerks = Vec::new();
     for clip in clips {
         let motion = &clip.retargeted.clip;
@@ -231,7 +230,7 @@ fn knees_of_the_people_in_consistent_skeletons_stay_as_recorded() {
 
 #[test]
 fn a_recording_of_an_acted_walk_keeps_its_manner_on_its_own() {
-    let Some(folder) = common::data_folder() else {
+    let Some(folder) = crate::common::data_folder() else {
         return;
     };
     for name in [
