@@ -12,7 +12,7 @@ use std::path::PathBuf;
 const SCENE: &str = "res://scenes/third_person/third_person.tscn";
 const PICTURE: &str = "demo_project/pictures/tour.gif";
 /// Size of the film, pixels, and pictures a second as the scene saves them.
-const SIZE: (u16, u16) = (480, 270);
+const SIZE: (u16, u16) = (416, 234);
 const RATE_HZ: u16 = 12;
 /// Bits of each colour that are kept: fewer colours make smaller files.
 const COLOUR_BITS: u32 = 5;
