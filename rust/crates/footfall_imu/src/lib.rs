@@ -19,6 +19,7 @@ pub mod orientation;
 pub mod sample;
 pub mod stride_meter;
 pub mod strides;
+mod zero_velocity;
 
 pub use checks::{RecordingFault, check_recording};
 pub use contact_meter::ContactMeter;
