@@ -313,7 +313,13 @@ impl Foot {
         });
         self.passed = Some(place);
         let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS) * (1.0 - self.held);
-        let ahead = way * Vec3::new(1.0, 0.0, 1.0) * (left / scene.dt_secs.max(1e-3));
+        let mut ahead = way * Vec3::new(1.0, 0.0, 1.0) * (left / scene.dt_secs.max(1e-3));
+        if let Some(lands) = self.lands {
+            // It goes no farther than to its foothold: the riser behind that is no edge on its way.
+            let place = animated.flat.position + self.correction.shift;
+            let to_go = (lands - place) * Vec3::new(1.0, 0.0, 1.0);
+            ahead = ahead.clamp_length_max(to_go.dot(ahead.normalize_or_zero()).max(0.0));
+        }
         let soles = [target, &animated.foot].map(|foot| rocker.rim(foot));
         let [points, free] = soles.each_ref().map(|rim| rim.as_flattened());
         let mut short = 0.0_f32;
