@@ -22,6 +22,8 @@ const LEAST_BASE_M: f32 = 0.06;
 const EASY_RISE: f32 = 0.28;
 const MOST_RISE: f32 = 0.6;
 const RISE_COST: f32 = 6.0;
+/// Who goes up or down an edge of this height, metres, comes down on the ball of the foot.
+const EDGE_M: f32 = 0.08;
 /// Longer steps cost so much more than shorter ones.
 const LONGER_COST: f32 = 1.5;
 
@@ -162,8 +164,13 @@ impl Step<'_> {
         let next = height(2.0 * length + shift).or(height(1.5 * length + shift));
         let easy = EASY_RISE * self.leg_m;
         let ahead = next.map_or(0.0, |next| next - way.standing);
+        let mut foothold = lie.foothold(scene.terrain)?;
+        let normal = lie.sole.up();
+        let slope = -normal.dot(profile.along) / normal.dot(search.up).max(0.5);
+        let edge = sole - way.standing - slope * (length + shift);
+        foothold.on_ball |= edge.abs() > EDGE_M;
         let aim = Aim {
-            foothold: lie.foothold(scene.terrain)?,
+            foothold,
             share: (length + shift) / length,
             next_rise_m: next.map_or(0.0, |next| (next - sole).clamp(-easy, easy)),
             grade: (ahead / (2.0 * length)).clamp(-1.0, 1.0),

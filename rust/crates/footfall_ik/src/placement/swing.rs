@@ -32,8 +32,11 @@ const LATE_SHARES: [f32; 2] = [0.1, 0.6];
 const LATE_RISE_M: f32 = 0.08;
 /// Height to which it is lifted then, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
-/// A foot that lands where nothing is under its heel is level from so long before on, after so long a turn, seconds.
+/// A foot that comes down on its ball has its toes no higher than its heel from so long before on, after so long a turn, seconds.
 const LEVEL_SECS: [f32; 2] = [0.25, 0.02];
+/// Its heel comes down by this share of its height over the toes until this part of the swing, or the knee would have to bend for it.
+const LEVEL_HEEL: f32 = 0.7;
+const LEVEL_HEEL_SHARE: f32 = 0.4;
 /// Part of the swing in which a foot that goes up, or down, does so: it clears the edge before it, or after it.
 const RISE_SHARE: f32 = 0.5;
 /// A swinging foot keeps this far from ground that it passes over, metres.
@@ -113,15 +116,10 @@ impl Foot {
         }
         let mut foot = animated.foot;
         if let Some(((_, secs), _)) = planned
-            && self.plan.is_some_and(|plan| plan.foothold.heel_hangs)
+            && self.plan.is_some_and(|plan| plan.foothold.on_ball)
         {
-            let [from, until] = LEVEL_SECS;
-            let level = smooth_step((from - secs) / (from - until)) * animated.pitch.min(0.0);
-            let roll = rocker.roll(animated.pitch - level) - rocker.roll(animated.pitch);
-            let turn = Quat::from_rotation_x(-level);
-            foot.ankle += animated.flat.rotation * roll;
-            foot.foot = (foot.foot * turn).normalize();
-            foot.toes = (foot.toes * turn).normalize();
+            let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
+            self.level(rocker, animated, secs, share, &mut foot);
         }
         let mut target = self.correction.apply(&animated.flat, &foot);
         target.ankle.y += lift;
@@ -132,6 +130,27 @@ impl Foot {
             rotation: (self.correction.tilt * animated.flat.rotation).normalize(),
         };
         target
+    }
+
+    /// Levels a foot that comes down on its ball: the heel comes down to the toes in the first part of the swing, and the toes to the heel before the
+    /// landing.
+    fn level(
+        &self,
+        rocker: &RockerFoot,
+        animated: &Animated,
+        secs: f32,
+        share: f32,
+        foot: &mut FootTarget,
+    ) {
+        let [from, until] = LEVEL_SECS;
+        let toes = smooth_step((from - secs) / (from - until)) * animated.pitch.min(0.0);
+        let heel = LEVEL_HEEL * smooth_step(share / LEVEL_HEEL_SHARE) * animated.pitch.max(0.0);
+        let level = toes + heel;
+        let roll = rocker.roll(animated.pitch - level) - rocker.roll(animated.pitch);
+        let turn = Quat::from_rotation_x(-level);
+        foot.ankle += animated.flat.rotation * roll;
+        foot.foot = (foot.foot * turn).normalize();
+        foot.toes = (foot.toes * turn).normalize();
     }
 
     /// Holds a foot that goes up an edge over where it stood, for the first part of its way.
