@@ -18,6 +18,8 @@ const GUARD_M: f32 = 0.01;
 const GUARD_HALF_LIFE_SECS: f32 = 0.032;
 /// No point of its sole is deeper inside than this, even where the way over it is short, metres.
 const TOUCH_M: f32 = 0.015;
+/// A foot that goes up may graze the risers before its toes by so much and is not lifted over them, metres.
+const GRAZE_M: f32 = 0.01;
 /// So long before it lands it is no longer held up, seconds: it comes down where it was meant to.
 const COMING_DOWN_SECS: f32 = 0.05;
 /// So far ahead on its way the ground is looked at, seconds.
@@ -333,11 +335,14 @@ impl Foot {
         self.passed = Some(place);
         let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS) * (1.0 - self.held);
         let mut ahead = way * Vec3::new(1.0, 0.0, 1.0) * (left / scene.dt_secs.max(1e-3));
+        let mut back = Vec3::ZERO;
         if let Some(lands) = self.lands {
             // It goes no farther than to its foothold: the riser behind that is no edge on its way.
             let place = animated.flat.position + self.correction.shift;
             let to_go = (lands - place) * Vec3::new(1.0, 0.0, 1.0);
             ahead = ahead.clamp_length_max(to_go.dot(ahead.normalize_or_zero()).max(0.0));
+            let rise = lands.y - self.lifted(scene).shift.y;
+            back = animated.flat.forward() * (GRAZE_M * smooth_step(rise / LATE_RISE_M));
         }
         let soles = [target, &animated.foot].map(|foot| rocker.rim(foot));
         let [points, free] = soles.each_ref().map(|rim| rim.as_flattened());
@@ -346,7 +351,7 @@ impl Foot {
         for (point, free) in points.iter().zip(free) {
             // No more room than the animation leaves over its own floor.
             let room = free.y.clamp(0.0, GUARD_M);
-            let Some((height, normal)) = scene.ground(*point) else {
+            let Some((height, normal)) = scene.ground(*point - back) else {
                 continue;
             };
             short = short.max(height + room - point.y);
@@ -355,7 +360,7 @@ impl Foot {
             }
             // An edge ahead, as far as it is not the slope on which the foot goes anyway.
             let slope = -normal.dot(ahead) / normal.y.max(0.5);
-            if let Some((edge, _)) = scene.ground(*point + ahead) {
+            if let Some((edge, _)) = scene.ground(*point + ahead - back) {
                 short = short.max(edge - slope + room - point.y);
             }
         }
