@@ -351,12 +351,14 @@ impl Foot {
         for (point, free) in points.iter().zip(free) {
             // No more room than the animation leaves over its own floor.
             let room = free.y.clamp(0.0, GUARD_M);
-            let Some((height, normal)) = scene.ground(*point - back) else {
+            let Some((height, normal)) = scene.ground(*point) else {
                 continue;
             };
-            short = short.max(height + room - point.y);
             if height - point.y > inside && !scene.beside(*point, TOUCH_M) {
                 inside = height - point.y;
+            }
+            if let Some((before, _)) = scene.ground(*point - back) {
+                short = short.max(before + room - point.y);
             }
             // An edge ahead, as far as it is not the slope on which the foot goes anyway.
             let slope = -normal.dot(ahead) / normal.y.max(0.5);
