@@ -11,7 +11,7 @@ use glam::Vec3;
 const STRETCHED_UNTIL: f32 = 0.25;
 /// By how much a step is shortened and lengthened at most.
 const SHORTEST: f32 = 0.25;
-const LONGEST: f32 = 1.4;
+const LONGEST: f32 = 1.5;
 /// By how much it is quicker at most: nobody trips up stairs.
 const MOST_HASTE: f32 = 1.5;
 /// Steps are no shorter than this and near enough to what was wanted within that, metres, which takes so many trials at most.

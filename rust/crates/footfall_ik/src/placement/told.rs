@@ -89,6 +89,7 @@ impl FootPlacer {
             landing,
             rocker: &self.rockers[index],
             leg_m: self.leg_lengths[index],
+            grade: self.grade,
             may_stretch,
         })
     }
