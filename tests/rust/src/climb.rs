@@ -8,6 +8,7 @@ use footfall_model::GaitModel;
 use footfall_synth::{Controls, GaitChoice, GaitGenerator, GeneratorConfig, StyleSpace};
 use glam::Vec3;
 use std::fmt;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// Time between two frames, seconds.
@@ -144,6 +145,8 @@ pub struct Outcome {
     pub faults: Vec<Fault>,
     /// Accelerations of the hips against gravity, m/s².
     pub lift: Vec<f32>,
+    /// The same between the first edge and the last.
+    pub lift_between: Vec<f32>,
     /// Accelerations of the hips, m/s².
     pub acceleration: Vec<f32>,
     /// Fastest that the stillest of the points on which a locked sole stands moved along the ground, m/s.
@@ -277,6 +280,7 @@ impl Climb {
         };
         let mut watcher = Watcher {
             leg: skeleton.mean_leg_length(),
+            between: from..from + way.length(),
             ..Watcher::default()
         };
         let goal = from + way.length() + BEYOND_M;
@@ -286,7 +290,7 @@ impl Climb {
             walker.climb(DT, controls, &mut terrain, self.told);
             show(frame, &walker);
             watcher.see(frame, &walker, &terrain);
-            between += usize::from((from..from + way.length()).contains(&walker.hips().z));
+            between += usize::from(watcher.between.contains(&walker.hips().z));
             if walker.hips().z > goal {
                 break;
             }
@@ -302,6 +306,8 @@ impl Climb {
 #[derive(Default)]
 struct Watcher {
     leg: f32,
+    /// Along the way, from the first edge to the last, metres.
+    between: Range<f32>,
     outcome: Outcome,
     hips: Vec<Vec3>,
     knees: [Vec<f32>; 2],
@@ -397,6 +403,9 @@ impl Watcher {
         if let [.., a, b, c] = self.hips[..] {
             let bend = (a - 2.0 * b + c) / (DT * DT);
             self.outcome.lift.push(bend.y.abs());
+            if self.between.contains(&b.z) {
+                self.outcome.lift_between.push(bend.y.abs());
+            }
             self.outcome.acceleration.push(bend.length());
         }
         for knee in &self.knees {
