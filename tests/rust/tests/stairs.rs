@@ -1,7 +1,9 @@
 //! Stairs as people take them: a tread a step, hips that ride, whole soles on treads, knees no higher than need be.
 #![expect(clippy::print_stdout, reason = "the bench prints its table")]
 
+use footfall_core::Joint;
 use footfall_tests::climb::{Climb, Outcome, Way, percentile};
+use glam::Vec3;
 
 /// Rise and run of the stairs, metres: a flight of steps outdoors, one in a house, and the steepest that is built.
 const STAIRS: [[f32; 2]; 3] = [[0.15, 0.4], [0.17, 0.29], [0.2, 0.28]];
@@ -90,6 +92,36 @@ impl Row {
             self.most(|o| o.slip),
         )
     }
+}
+
+/// Mean lean of the trunk between the first edge and the last, and before the first, degrees forwards.
+fn leans(rise: f32) -> [f32; 2] {
+    let (distance, length) = (3.0, 6.0 * 0.29);
+    let mut leans = [vec![], vec![]];
+    let climb = Climb::adult(Way::Stairs { rise, run: 0.29 }, distance, 1.2);
+    climb.watch(|_, walker| {
+        let up = walker.world.rotation(Joint::UpperChest) * Vec3::Y;
+        let lean = up.z.atan2(up.y).to_degrees();
+        let along = walker.hips().z - distance;
+        // The way there counts a second after the start, until two steps before the stairs.
+        if (0.0..length).contains(&along) {
+            leans[0].push(lean);
+        } else if (-1.8..-1.0).contains(&along) {
+            leans[1].push(lean);
+        }
+    });
+    leans.map(|leans| leans.iter().sum::<f32>() / leans.len() as f32)
+}
+
+#[test]
+fn trunks_lean_into_stairs_up_and_back_from_those_down() {
+    let [up, level] = leans(0.17);
+    assert!((3.0..9.0).contains(&(up - level)), "{up} after {level}");
+    let [down, level] = leans(-0.17);
+    assert!(
+        (-6.0..-1.0).contains(&(down - level)),
+        "{down} after {level}"
+    );
 }
 
 #[test]

@@ -31,6 +31,15 @@ impl GaitGenerator {
         self.steps.source_mut().keep();
     }
 
+    /// Goes on on a way of this grade, rise by run, positive uphill: the trunk leans into it. For whoever knows the ground; until it is told otherwise.
+    ///
+    /// A grade that is not finite counts as level. Nothing happens with a switching model.
+    pub fn set_grade(&mut self, grade: f32) {
+        if let Some(moves) = &mut self.moves {
+            moves.climb(grade);
+        }
+    }
+
     /// Has the step that has just begun land at this share of its way, within what people do; the walk goes on at the speed that this
     /// gives and comes back to the one that is asked for with the steps to follow. Once a step is under way it stays as it is.
     pub fn stretch_step(&mut self, share: f32) {

@@ -192,7 +192,11 @@ impl Step<'_> {
 
     /// Largest distances by which the foot may land short of its place and beyond it, metres.
     fn bounds(&self, length: f32, may_shift: bool) -> (f32, f32) {
-        let share = if self.is_on_stairs() { STAIRS_MORE_SHARE } else { MORE_SHARE };
+        let share = if self.is_on_stairs() {
+            STAIRS_MORE_SHARE
+        } else {
+            MORE_SHARE
+        };
         let more = MOST_MORE_M.min(share * length);
         if self.may_stretch {
             ((1.0 - LEAST_SHARE) * length, more)
