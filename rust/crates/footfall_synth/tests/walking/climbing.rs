@@ -18,7 +18,9 @@ fn whoever_climbs_leans_ahead_without_a_jerk_and_comes_back() {
         let (walked, _) = run(&mut walker, &skeleton, &walking(0.8), 180);
         let up = |at: usize| {
             let lean = |frames: &[crate::world::Frame]| {
-                (frames[at].model.rotation(Joint::UpperChest) * Vec3::Y).z.asin()
+                (frames[at].model.rotation(Joint::UpperChest) * Vec3::Y)
+                    .z
+                    .asin()
             };
             lean(&climbed) - lean(&walked)
         };
