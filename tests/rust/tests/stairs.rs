@@ -1,5 +1,4 @@
 //! Stairs as people take them: a tread a step, hips that ride, whole soles on treads, knees no higher than need be.
-#![expect(clippy::print_stdout, reason = "the bench prints its table")]
 
 use footfall_core::Joint;
 use footfall_tests::climb::{Climb, Outcome, Way, percentile};
@@ -131,7 +130,6 @@ fn every_tread_is_taken_with_one_step_smoothly() {
             for speed in SPEEDS {
                 let row = Row::of([rise, run], speed);
                 let what = format!("{rise} by {run} at {speed} m/s: {}", row.line());
-                println!("{what}");
                 let treads = row.treads();
                 assert!(treads.len() >= 6 * DISTANCES, "{what}: {}", treads.len());
                 assert!(treads.iter().all(|t| *t == 1), "{what}: {treads:?}");

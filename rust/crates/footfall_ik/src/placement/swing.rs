@@ -121,7 +121,7 @@ impl Foot {
             && self.plan.is_some_and(|plan| plan.foothold.on_ball)
         {
             let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
-            self.level(rocker, animated, secs, share, &mut foot);
+            level(rocker, animated, secs, share, &mut foot);
         }
         let mut target = self.correction.apply(&animated.flat, &foot);
         target.ankle.y += lift;
@@ -132,27 +132,6 @@ impl Foot {
             rotation: (self.correction.tilt * animated.flat.rotation).normalize(),
         };
         target
-    }
-
-    /// Levels a foot that comes down on its ball: the heel comes down to the toes in the first part of the swing, and the toes to the heel before the
-    /// landing.
-    fn level(
-        &self,
-        rocker: &RockerFoot,
-        animated: &Animated,
-        secs: f32,
-        share: f32,
-        foot: &mut FootTarget,
-    ) {
-        let [from, until] = LEVEL_SECS;
-        let toes = smooth_step((from - secs) / (from - until)) * animated.pitch.min(0.0);
-        let heel = LEVEL_HEEL * smooth_step(share / LEVEL_HEEL_SHARE) * animated.pitch.max(0.0);
-        let level = toes + heel;
-        let roll = rocker.roll(animated.pitch - level) - rocker.roll(animated.pitch);
-        let turn = Quat::from_rotation_x(-level);
-        foot.ankle += animated.flat.rotation * roll;
-        foot.foot = (foot.foot * turn).normalize();
-        foot.toes = (foot.toes * turn).normalize();
     }
 
     /// Holds a foot that goes up an edge over where it stood, for the first part of its way.
@@ -386,6 +365,20 @@ impl<T: Terrain> Scene<'_, T> {
             ground.is_none_or(|(height, _)| height <= point.y)
         })
     }
+}
+
+/// Levels a foot that comes down on its ball: the heel comes down to the toes in the first part of the swing, and the toes to the heel before the
+/// landing.
+fn level(rocker: &RockerFoot, animated: &Animated, secs: f32, share: f32, foot: &mut FootTarget) {
+    let [from, until] = LEVEL_SECS;
+    let toes = smooth_step((from - secs) / (from - until)) * animated.pitch.min(0.0);
+    let heel = LEVEL_HEEL * smooth_step(share / LEVEL_HEEL_SHARE) * animated.pitch.max(0.0);
+    let level = toes + heel;
+    let roll = rocker.roll(animated.pitch - level) - rocker.roll(animated.pitch);
+    let turn = Quat::from_rotation_x(-level);
+    foot.ankle += animated.flat.rotation * roll;
+    foot.foot = (foot.foot * turn).normalize();
+    foot.toes = (foot.toes * turn).normalize();
 }
 
 /// The correction on the way from one to another, and how much the foot is lifted there.
