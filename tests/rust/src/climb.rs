@@ -8,6 +8,7 @@ use footfall_model::GaitModel;
 use footfall_synth::{Controls, GaitChoice, GaitGenerator, GeneratorConfig, StyleSpace};
 use glam::Vec3;
 use std::fmt;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// Time between two frames, seconds.
@@ -144,6 +145,8 @@ pub struct Outcome {
     pub faults: Vec<Fault>,
     /// Accelerations of the hips against gravity, m/s².
     pub lift: Vec<f32>,
+    /// The same between the first edge and the last.
+    pub lift_between: Vec<f32>,
     /// Accelerations of the hips, m/s².
     pub acceleration: Vec<f32>,
     /// Fastest that the stillest of the points on which a locked sole stands moved along the ground, m/s.
@@ -158,6 +161,34 @@ pub struct Outcome {
     pub steps: usize,
     /// Speed of the hips over the ground between the first edge and the last, m/s.
     pub pace_mps: f32,
+    /// Every landing of a foot.
+    pub landings: Vec<Landed>,
+    /// Longest part of a sole that lay on the ground with nothing under it, metres.
+    pub overhang: f32,
+    /// Greatest bend of a knee, radians.
+    pub bend: f32,
+}
+
+/// A foot that has just been locked to the ground.
+#[derive(Clone, Copy, Debug)]
+pub struct Landed {
+    /// Time since the start, seconds.
+    pub secs: f32,
+    /// The ground under the ankle of the flat foot, in the world, metres.
+    pub sole: Vec3,
+}
+
+impl Outcome {
+    /// Treads that each step on a staircase went up or down, from one landing to the next: of steps that begin or end on it.
+    pub fn treads(&self, rise_m: f32) -> impl Iterator<Item = i32> + '_ {
+        let tread = move |landed: &Landed| (landed.sole.y / rise_m).round() as i32;
+        let pairs = self.landings.windows(2);
+        pairs.filter_map(move |pair| {
+            let [from, to] = [tread(&pair[0]), tread(&pair[1])];
+            let on = |tread: i32| (1..STEPS as i32).contains(&tread);
+            (on(from) || on(to)).then_some(to - from)
+        })
+    }
 }
 
 impl fmt::Display for Outcome {
@@ -249,6 +280,7 @@ impl Climb {
         };
         let mut watcher = Watcher {
             leg: skeleton.mean_leg_length(),
+            between: from..from + way.length(),
             ..Watcher::default()
         };
         let goal = from + way.length() + BEYOND_M;
@@ -258,7 +290,7 @@ impl Climb {
             walker.climb(DT, controls, &mut terrain, self.told);
             show(frame, &walker);
             watcher.see(frame, &walker, &terrain);
-            between += usize::from((from..from + way.length()).contains(&walker.hips().z));
+            between += usize::from(watcher.between.contains(&walker.hips().z));
             if walker.hips().z > goal {
                 break;
             }
@@ -274,6 +306,8 @@ impl Climb {
 #[derive(Default)]
 struct Watcher {
     leg: f32,
+    /// Along the way, from the first edge to the last, metres.
+    between: Range<f32>,
     outcome: Outcome,
     hips: Vec<Vec3>,
     knees: [Vec<f32>; 2],
@@ -316,7 +350,14 @@ impl Watcher {
                 continue;
             }
             let placed = &walker.placer.feet()[index];
-            self.outcome.steps += usize::from(placed.landed);
+            if placed.landed {
+                self.outcome.steps += 1;
+                self.outcome.landings.push(Landed {
+                    secs: frame as f32 * DT,
+                    sole: placed.sole.position,
+                });
+            }
+            self.outcome.bend = self.outcome.bend.max(walker.knee(side));
             self.lost[index] = if contacts[index] && !placed.locked {
                 self.lost[index] + DT
             } else {
@@ -338,6 +379,8 @@ impl Watcher {
                 self.fault(Failure::Inside, frame, walker, inside);
             }
             if placed.locked {
+                let hangs = overhang(terrain, &placed.sole, soles[index]);
+                self.outcome.overhang = self.outcome.overhang.max(hangs);
                 let off = whole().map(|point| point.y - terrain.at(*point).position.y);
                 let off = off.fold(f32::MAX, f32::min);
                 if off > OFF_M {
@@ -360,6 +403,9 @@ impl Watcher {
         if let [.., a, b, c] = self.hips[..] {
             let bend = (a - 2.0 * b + c) / (DT * DT);
             self.outcome.lift.push(bend.y.abs());
+            if self.between.contains(&b.z) {
+                self.outcome.lift_between.push(bend.y.abs());
+            }
             self.outcome.acceleration.push(bend.length());
         }
         for knee in &self.knees {
@@ -388,6 +434,19 @@ fn slide(sole: &Frame, now: [Vec3; 3], then: [Vec3; 3]) -> f32 {
         let any = pairs().map(|(now, then)| along(now, then));
         any.fold(f32::MAX, f32::min)
     })
+}
+
+/// Length of the part of a sole that lies flat with nothing under it, metres; 0 for one that rolls.
+fn overhang(terrain: &Relief, sole: &Frame, points: [Vec3; 3]) -> f32 {
+    const PARTS: usize = 50;
+    let [heel, _, tip] = points;
+    let flat = points.map(|point| sole.local_point(point).y.abs() < BEARS_M);
+    if flat != [true; 3] {
+        return 0.0;
+    }
+    let places = (0..=PARTS).map(|part| heel.lerp(tip, part as f32 / PARTS as f32));
+    let hanging = places.filter(|place| place.y - terrain.at(*place).position.y > OFF_M);
+    heel.distance(tip) * hanging.count() as f32 / (PARTS + 1) as f32
 }
 
 /// Distance of a point to the nearest way out of the ground, up or along the way; 0 outside.

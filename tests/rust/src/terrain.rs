@@ -127,6 +127,7 @@ impl PlacedWalker {
             speed_mps: controls.speed_mps * self.placer.pace(),
             ..controls
         };
+        self.generator.set_grade(self.placer.way_grade());
         let origin = self.origin(dt_secs, slowed).position;
         let ground = terrain.at(origin).position.y;
         if self.height.is_nan() {

@@ -61,7 +61,8 @@
 //! impl Character {
 //!     /// Moves on by a frame; returns where the game is to put the character. `pose` is what to show there.
 //!     fn frame(&mut self, dt_secs: f32, speed_mps: f32, terrain: &mut impl Terrain) -> Frame {
-//!         // People slow down uphill.
+//!         // People slow down uphill, and lean into it.
+//!         self.walker.set_grade(self.placer.way_grade());
 //!         let controls = Controls { speed_mps: speed_mps * self.placer.pace(), ..Controls::STAND };
 //!         self.walker.step(dt_secs, &controls, &mut self.pose);
 //!         // The character rises and falls with the ground below its feet; a physics body may do this instead.

@@ -342,6 +342,7 @@ impl FootPlacement3D {
                 1.0
             };
             generator.slow_down(slowed);
+            generator.set_grade(influence * session.placer.way_grade());
             if session.placer.pace() < 1.0 {
                 // On a grade its foothold has been chosen.
                 generator.keep_step();

@@ -5,7 +5,7 @@
 //! supports a foot may move: its foothold moves along.
 //!
 //! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `lie`, `foothold`, `profile`, `aim`, `told`,
-//! `contact`, `foot`, `swing`, `pelvis`, `carry`.
+//! `contact`, `foot`, `guard`, `swing`, `pelvis`, `carry`.
 
 mod aim;
 mod carry;
@@ -16,6 +16,7 @@ mod effort;
 mod foot;
 mod foothold;
 mod frame;
+mod guard;
 mod lie;
 mod pelvis;
 mod profile;

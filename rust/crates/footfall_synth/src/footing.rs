@@ -11,7 +11,7 @@ use glam::Vec3;
 const STRETCHED_UNTIL: f32 = 0.25;
 /// By how much a step is shortened and lengthened at most.
 const SHORTEST: f32 = 0.25;
-const LONGEST: f32 = 1.4;
+const LONGEST: f32 = 1.5;
 /// By how much it is quicker at most: nobody trips up stairs.
 const MOST_HASTE: f32 = 1.5;
 /// Steps are no shorter than this and near enough to what was wanted within that, metres, which takes so many trials at most.
@@ -29,6 +29,15 @@ impl GaitGenerator {
     /// Leaves the current step as it is: something else that is asked for waits for the next one. For whoever has chosen a foothold for it.
     pub fn keep_step(&mut self) {
         self.steps.source_mut().keep();
+    }
+
+    /// Goes on on a way of this grade, rise by run, positive uphill: the trunk leans into it. For whoever knows the ground; until it is told otherwise.
+    ///
+    /// A grade that is not finite counts as level. Nothing happens with a switching model.
+    pub fn set_grade(&mut self, grade: f32) {
+        if let Some(moves) = &mut self.moves {
+            moves.climb(grade);
+        }
     }
 
     /// Has the step that has just begun land at this share of its way, within what people do; the walk goes on at the speed that this

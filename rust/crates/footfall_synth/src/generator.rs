@@ -397,6 +397,11 @@ impl GaitGenerator {
         step.amplitude.to < 1.0 && self.position >= step.timing.frames as f32
     }
 
+    /// The share of the current step that has passed; of the rest of one that was planned anew, of that.
+    pub(crate) fn share_of_step(&self) -> f32 {
+        self.position / self.shape().timing.frames as f32
+    }
+
     /// The gait of the current step.
     pub fn gait(&self) -> Gait {
         self.steps.source().gait()

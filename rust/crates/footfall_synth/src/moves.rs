@@ -1,9 +1,10 @@
-//! Moves of the whole body on top of its steps: crouching, jumping off both feet, and giving way to pushes.
+//! Moves of the whole body on top of its steps: crouching, jumping off both feet, leaning into climbs, and giving way to pushes.
 //!
 //! Steps say where the feet are and how the body is held over them; [`crouch`] lowers it there, [`jump`] takes it off the ground and back, and [`push`] moves it aside. The first two are
 //! postures beside standing that the model has learned, put on by [`body`].
 
 mod body;
+mod climb;
 mod crouch;
 mod jump;
 mod push;
@@ -11,6 +12,7 @@ mod push;
 use crate::space::StyleSpace;
 use crate::standing::standing_features;
 use body::Body;
+pub(crate) use climb::ClimbMoment;
 use crouch::Crouch;
 pub(crate) use crouch::CrouchMoment;
 use footfall_core::{Pose, Skeleton};
@@ -37,6 +39,7 @@ pub(crate) struct Moves {
     crouch: Crouch,
     jump: Option<JumpMoment>,
     push: PushMoment,
+    climb: ClimbMoment,
 }
 
 impl MoveTables {
@@ -62,6 +65,7 @@ impl Moves {
             body,
             jump: None,
             push: PushMoment::default(),
+            climb: ClimbMoment::default(),
         }
     }
 
@@ -88,6 +92,11 @@ impl Moves {
         self.push.push(velocity);
     }
 
+    /// Goes on on a way of this grade.
+    pub(crate) fn climb(&mut self, grade: f32) {
+        self.climb.go_on(grade);
+    }
+
     /// The velocity of a push that is to be stepped off.
     pub(crate) fn stepped(&self) -> Vec2 {
         self.push.stepped()
@@ -107,6 +116,7 @@ impl Moves {
     pub(crate) fn step(&mut self, secs: f32, crouch: f32) {
         self.crouch.step(secs, crouch);
         self.push.step(secs);
+        self.climb.step(secs);
         if let Some(jump) = &mut self.jump {
             jump.secs += secs;
         }
@@ -121,10 +131,21 @@ impl Moves {
 
     /// Moves a pose that faces +Z; returns how far that goes for one who jumps.
     pub(crate) fn move_pose(&self, pose: &mut Pose) -> Option<Flown> {
+        self.climb.bend(pose);
         self.push.give_way(&self.body, pose);
         self.crouch.lower(&self.body, pose);
         let (tables, jump) = (self.tables.jump.as_ref()?, self.jump.as_ref()?);
         Some(jump.move_pose(tables, &self.body, pose))
+    }
+
+    /// How it leans into the way that it climbs.
+    pub(crate) fn climb_moment(&self) -> ClimbMoment {
+        self.climb
+    }
+
+    /// Goes on climbing from such a moment.
+    pub(crate) fn resume_climb(&mut self, climb: ClimbMoment) {
+        self.climb = climb;
     }
 
     /// How deep it crouches, the push that is taken up, and the jump that is under way with the time since it began: what a state holds.

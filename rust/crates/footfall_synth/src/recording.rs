@@ -43,11 +43,11 @@ pub(crate) fn from_standing(
     for _ in 0..=rest {
         recording.step(Controls::STAND);
     }
-    // The last step is the one that stops: it is asked for while the one before is walked.
+    // The last step is the one that stops: it is asked for in the second half of the one before, which would close at once if it were asked sooner.
     let mut taken = 0;
     let steps = config.steps.max(2);
     for _ in 0..steps * longest {
-        if taken + 1 == steps {
+        if taken + 1 == steps && recording.generator.share_of_step() >= 0.5 {
             break;
         }
         taken += recording.step(walking);

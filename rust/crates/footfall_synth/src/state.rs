@@ -4,6 +4,7 @@
 //! and what it took over from the step before (where the feet stood and the last frames of the trajectory). The rest is
 //! made again from the model.
 
+mod climbing;
 mod moving;
 mod quick;
 mod running;
@@ -16,6 +17,7 @@ use crate::planting::{Lean, PlanterState};
 use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
 use crate::strafe::Strafe;
+use climbing::Climbing;
 use footfall_core::StepPosition;
 use footfall_ik::Plant;
 use glam::{Vec2, Vec3};
@@ -24,9 +26,10 @@ use quick::Quick;
 use running::Running;
 use serde::{Deserialize, Serialize};
 
-/// The version of the layout that this build writes; it reads those before, too, which knew no balance, no jumps and no steps that change in their middle,
+/// The version of the layout that this build writes; it reads those before, too, which knew no climbs, no balance, no jumps and no steps that change in their middle,
 /// no running and no life in standing.
-const VERSION: u8 = 8;
+const VERSION: u8 = 9;
+const LEVEL_VERSION: u8 = 8;
 const UNBALANCED_VERSION: u8 = 7;
 const RUNNING_VERSION: u8 = 6;
 const WALKING_VERSION: u8 = 5;
@@ -116,8 +119,9 @@ enum Source {
     },
 }
 
-/// What a walker has beyond that: a run, a step that obeys in its middle, a crouch or a jump, and how its last landing was balanced.
-type More = (Running, Quick, Moving, [f32; 2]);
+/// What a walker has beyond that: a run, a step that obeys in its middle, a crouch or a jump, how its last landing was balanced, and how it leans into a
+/// climb.
+type More = (Running, Quick, Moving, [f32; 2], Climbing);
 
 /// How far a walker's life is, behind a [`State`].
 #[derive(Default, Serialize, Deserialize)]
@@ -216,6 +220,7 @@ impl GaitGenerator {
             Quick::of(self),
             Moving::of(self),
             balance,
+            Climbing::of(self),
         );
         postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
@@ -227,34 +232,39 @@ impl GaitGenerator {
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
         let slow = Quick::of_slow(&state);
-        let still = Moving::default();
+        let (still, level) = (Moving::default(), Climbing::default());
         let (alive, more): (Alive, More) = match state.version {
             VERSION => postcard::from_bytes(rest)?,
+            LEVEL_VERSION => {
+                let (alive, (running, quick, moving, balance)) = postcard::from_bytes(rest)?;
+                (alive, (running, quick, moving, balance, level))
+            }
             UNBALANCED_VERSION => {
                 let (alive, (running, quick, moving)) = postcard::from_bytes(rest)?;
-                (alive, (running, quick, moving, [0.0; 2]))
+                (alive, (running, quick, moving, [0.0; 2], level))
             }
             RUNNING_VERSION => {
                 let (alive, running) = postcard::from_bytes(rest)?;
-                (alive, (running, slow, still, [0.0; 2]))
+                (alive, (running, slow, still, [0.0; 2], level))
             }
             WALKING_VERSION => {
                 let alive = postcard::from_bytes(rest)?;
-                (alive, (Running::default(), slow, still, [0.0; 2]))
+                (alive, (Running::default(), slow, still, [0.0; 2], level))
             }
             STILL_VERSION => {
-                let still = (Running::default(), slow, still, [0.0; 2]);
+                let still = (Running::default(), slow, still, [0.0; 2], level);
                 (Alive::default(), still)
             }
             other => return Err(StateError::Version(other)),
         };
-        let (running, quick, moving, balance) = more;
+        let (running, quick, moving, balance, climbing) = more;
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
             running.is_sensible(),
             quick.is_sensible(),
             moving.is_sensible(),
+            climbing.is_sensible(),
             balance.map(f64::from).into_iter().all(is_reasonable),
         ];
         if sensible.contains(&false) {
@@ -293,6 +303,7 @@ impl GaitGenerator {
         let frames = self.steps.source().shape().timing.frames as f32;
         self.position = state.position.clamp(0.0, frames);
         moving.resume(self);
+        climbing.resume(self);
         self.tell_place();
         Ok(())
     }

@@ -186,8 +186,9 @@ impl StepSource for StyledSteps {
         // Styles may have changed since the step began.
         self.planner.wear(&self.walker.blends()[1].model);
         let (worn, velocity) = (&self.worn, &mut self.velocity_mps);
-        let request =
-            |before: &Request, frames: f64| worn.rest_request(ask, before, frames, velocity);
+        let request = |before: &Request, frames: f64, passed: f64| {
+            worn.rest_request(ask, before, frames, passed, velocity)
+        };
         let (planner, walker) = (&mut self.planner, &mut self.walker);
         let replanned = self
             .space

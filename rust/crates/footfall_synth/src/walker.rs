@@ -321,7 +321,7 @@ impl Walker {
         &mut self,
         planner: &mut Planner,
         frame: usize,
-        request: impl FnOnce(&Request, f64) -> Request,
+        request: impl FnOnce(&Request, f64, f64) -> Request,
         bench: &mut Workbench,
     ) -> bool {
         let shape = self.plans[1].shape;
@@ -346,7 +346,7 @@ impl Walker {
         let [facing_before, facing] = [self.origin.facing_before, before.facing];
         let share = smooth_step(frame as f32 / shape.timing.frames as f32);
         self.origin = Origin {
-            request: request(&before, whole),
+            request: request(&before, whole, f64::from(rest.passed)),
             manner_before: before.manner,
             facing_before: facing_before + share * (facing - facing_before),
             velocity_before_mps: before.velocity_mps,

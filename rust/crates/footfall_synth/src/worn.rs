@@ -26,6 +26,12 @@ const FIRST_MPS: f32 = 2.0;
 /// The rest of a step is walked no faster than this, m/s.
 const REST_MOST_MPS: f32 = 2.0;
 
+/// A walked step of which less has passed can end a walk, for hips are still behind the foot that stands; and the hardest that hips brake for it, m/s².
+const CLOSED_FROM: f64 = 0.45;
+const HARDEST_BRAKING_MPS2: f64 = 6.0;
+/// Steps that go to the side by more than this share of their way forwards do not.
+const STRAIGHT: f32 = 0.2;
+
 /// A mixture of styles, and how fast each of its gaits goes on this body.
 #[derive(Debug)]
 pub(crate) struct Worn {
@@ -135,18 +141,31 @@ impl Worn {
         (request, gait)
     }
 
-    /// The rest of a walked step that came from `before` and would have so many frames in all, when something else is asked for in its middle. It takes
-    /// no longer than it would have.
+    /// The rest of a walked step that came from `before` and would have so many frames in all, of which this share has passed, when something else is asked
+    /// for in its middle. It takes no longer than it would have. Whoever is to stop closes it beside the standing foot, as long as the hips are behind that
+    /// one and need not brake too hard; otherwise the next step does.
     pub(crate) fn rest_request(
         &self,
         ask: &Ask,
         before: &Request,
         frames: f64,
+        passed: f64,
         velocity_mps: &mut Vec2,
     ) -> Request {
+        let secs = frames / self.blend.model.frame_rate_hz;
+        let left = (1.0 - passed) * secs;
+        let braking = f64::from(velocity_mps.length()) / left;
+        let forwards = velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y;
+        let closes = passed < CLOSED_FROM && braking < HARDEST_BRAKING_MPS2 && forwards;
+        if ask.amplitude.to < 1.0 && closes {
+            return Request {
+                amplitude: Amplitude { from: 1.0, to: 0.0 },
+                turn_rate: 0.0,
+                ..*before
+            };
+        }
         let wanted = ask.velocity_after(*velocity_mps, Gait::Walk);
         *velocity_mps = wanted.clamp_length_max(REST_MOST_MPS.max(velocity_mps.length()));
-        let secs = frames / self.blend.model.frame_rate_hz;
         let pace = self.walk.pace_towards(*velocity_mps);
         Request {
             manner: Manner {

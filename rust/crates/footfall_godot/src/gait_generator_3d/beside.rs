@@ -63,6 +63,13 @@ impl GaitGenerator3D {
         self.slowed = share;
     }
 
+    /// Walks on on a way of this grade.
+    pub(crate) fn set_grade(&mut self, grade: f32) {
+        if let Some(session) = &mut self.session {
+            session.generator.set_grade(grade);
+        }
+    }
+
     /// Shares of the body's parts that are the walk's. A weight that is not a number counts as 1.
     pub(super) fn layer_weights(&self) -> LayerWeights {
         let [spine, head, left_arm, right_arm] = [

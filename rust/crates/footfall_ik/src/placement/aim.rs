@@ -22,6 +22,12 @@ const LEAST_BASE_M: f32 = 0.06;
 const EASY_RISE: f32 = 0.28;
 const MOST_RISE: f32 = 0.6;
 const RISE_COST: f32 = 6.0;
+/// Who goes up or down an edge of this height, metres, comes down on the ball of the foot.
+const EDGE_M: f32 = 0.08;
+/// On a grade of more than this a tread is taken with one step: a second one on it costs so much, and steps are lengthened by this share at most.
+const STAIRS_GRADE: f32 = 0.2;
+const SAME_TREAD_COST: f32 = 0.2;
+const STAIRS_MORE_SHARE: f32 = 0.5;
 /// Longer steps cost so much more than shorter ones.
 const LONGER_COST: f32 = 1.5;
 
@@ -45,6 +51,8 @@ pub(super) struct Step<'a> {
     pub(super) landing: &'a Landing,
     pub(super) rocker: &'a RockerFoot,
     pub(super) leg_m: f32,
+    /// Grade between the two footholds before it.
+    pub(super) grade: f32,
     /// Whether the step can still be made shorter or longer; otherwise only its foot is put elsewhere.
     pub(super) may_stretch: bool,
 }
@@ -154,7 +162,8 @@ impl Step<'_> {
         let sole = lie.sole.position.dot(search.up);
         let rise = (sole - way.standing) / self.leg_m;
         let effort = RISE_COST * self.leg_m * (rise.abs() - EASY_RISE).max(0.0);
-        let cost = cost + shifted + effort;
+        let stays = (sole - way.standing).abs() < EDGE_M && self.is_on_stairs();
+        let cost = cost + shifted + effort + if stays { SAME_TREAD_COST } else { 0.0 };
         if rise.abs() > MOST_RISE || cost >= most {
             return None;
         }
@@ -162,8 +171,13 @@ impl Step<'_> {
         let next = height(2.0 * length + shift).or(height(1.5 * length + shift));
         let easy = EASY_RISE * self.leg_m;
         let ahead = next.map_or(0.0, |next| next - way.standing);
+        let mut foothold = lie.foothold(scene.terrain)?;
+        let normal = lie.sole.up();
+        let slope = -normal.dot(profile.along) / normal.dot(search.up).max(0.5);
+        let edge = sole - way.standing - slope * (length + shift);
+        foothold.on_ball |= edge.abs() > EDGE_M;
         let aim = Aim {
-            foothold: lie.foothold(scene.terrain)?,
+            foothold,
             share: (length + shift) / length,
             next_rise_m: next.map_or(0.0, |next| (next - sole).clamp(-easy, easy)),
             grade: (ahead / (2.0 * length)).clamp(-1.0, 1.0),
@@ -171,9 +185,19 @@ impl Step<'_> {
         Some((cost, aim))
     }
 
+    /// Whether the way goes up or down as stairs do.
+    fn is_on_stairs(&self) -> bool {
+        self.grade.abs() > STAIRS_GRADE
+    }
+
     /// Largest distances by which the foot may land short of its place and beyond it, metres.
     fn bounds(&self, length: f32, may_shift: bool) -> (f32, f32) {
-        let more = MOST_MORE_M.min(MORE_SHARE * length);
+        let share = if self.is_on_stairs() {
+            STAIRS_MORE_SHARE
+        } else {
+            MORE_SHARE
+        };
+        let more = MOST_MORE_M.min(share * length);
         if self.may_stretch {
             ((1.0 - LEAST_SHARE) * length, more)
         } else if may_shift {

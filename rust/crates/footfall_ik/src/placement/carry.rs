@@ -178,7 +178,14 @@ impl FootPlacer {
                 reach_height(landing.hips, hip, ankle, length, EASY_EXTENSION)
                     .map_or(0.0, |height| height - landing.hips.y)
             };
-            let real = flat.position + correction.shift + correction.tilt * (ankle - flat.position);
+            // Whoever comes down on the ball of the foot has the ankle over the flat sole.
+            let on_ball = leg == index && plan.foothold.on_ball;
+            let above = if on_ball {
+                Vec3::Y * self.rockers[leg].ankle_height()
+            } else {
+                ankle - flat.position
+            };
+            let real = flat.position + correction.shift + correction.tilt * above;
             // What the leg lacks on the animation's own floor is the animation's affair.
             offset = offset.min(limit(real) - limit(ankle).min(0.0));
         }

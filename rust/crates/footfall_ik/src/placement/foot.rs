@@ -331,7 +331,7 @@ impl Foot {
 
     /// The pitch on its foothold of a foot at this pitch: nobody lands on a heel under which there is nothing.
     fn on_ball(&self, pitch: f32) -> f32 {
-        let hangs = self.hold.is_some_and(|hold| hold.heel_hangs);
+        let hangs = self.hold.is_some_and(|hold| hold.on_ball);
         if hangs { pitch.max(0.0) } else { pitch }
     }
 

@@ -22,8 +22,8 @@ const ASIDE_M: f32 = 0.02;
 /// A place for a sole, on something that may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Foothold {
-    /// Whether the heel sticks out over an edge.
-    pub(crate) heel_hangs: bool,
+    /// Whether the foot comes down on its ball: its heel sticks out over an edge, or it has gone up or down one.
+    pub(crate) on_ball: bool,
     support: SupportId,
     support_from_sole: Frame,
 }
@@ -57,7 +57,7 @@ impl Lie {
     /// As a place on what it lies on; `None` when that is gone.
     pub(crate) fn foothold(&self, terrain: &mut impl Terrain) -> Option<Foothold> {
         Some(Foothold {
-            heel_hangs: self.heel_hangs,
+            on_ball: self.heel_hangs,
             support: self.support,
             support_from_sole: terrain.support(self.support)?.local(&self.sole),
         })

@@ -12,7 +12,7 @@ const SPACING_M: f32 = 0.05;
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
     start: Vec3,
-    along: Vec3,
+    pub(super) along: Vec3,
     up: Vec3,
     heights: [Option<f32>; SAMPLES],
 }

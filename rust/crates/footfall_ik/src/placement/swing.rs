@@ -12,16 +12,6 @@ use core::f32::consts::PI;
 use footfall_core::ease::smooth_step;
 use glam::{Quat, Vec3};
 
-/// A foot on its way is lifted to so far above what it would touch, metres.
-const GUARD_M: f32 = 0.01;
-/// Time in which a foot that would pass through something goes half of its way over it, seconds.
-const GUARD_HALF_LIFE_SECS: f32 = 0.032;
-/// No point of its sole is deeper inside than this, even where the way over it is short, metres.
-const TOUCH_M: f32 = 0.015;
-/// So long before it lands it is no longer held up, seconds: it comes down where it was meant to.
-const COMING_DOWN_SECS: f32 = 0.05;
-/// So far ahead on its way the ground is looked at, seconds.
-const LOOK_AHEAD_SECS: f32 = 0.06;
 /// A foot that goes down is over its foothold so long before it stands, beginning to hurry so long before, seconds; as one that goes down
 /// counts it from so many metres on.
 const EARLY_SECS: [f32; 2] = [0.25, 0.05];
@@ -29,11 +19,14 @@ const EARLY_FALL_M: f32 = 0.08;
 /// A foot that goes up stays over where it stood until this part of its swing, and has caught up by that one: its toes come over the edge
 /// before it and not through it. As one that goes up counts it from so many metres on.
 const LATE_SHARES: [f32; 2] = [0.1, 0.6];
-const LATE_RISE_M: f32 = 0.08;
+pub(super) const LATE_RISE_M: f32 = 0.08;
 /// Height to which it is lifted then, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
-/// A foot that lands where nothing is under its heel is level from so long before on, after so long a turn, seconds.
+/// A foot that comes down on its ball has its toes no higher than its heel from so long before on, after so long a turn, seconds.
 const LEVEL_SECS: [f32; 2] = [0.25, 0.02];
+/// Its heel comes down by this share of its height over the toes until this part of the swing, or the knee would have to bend for it.
+const LEVEL_HEEL: f32 = 0.7;
+const LEVEL_HEEL_SHARE: f32 = 0.4;
 /// Part of the swing in which a foot that goes up, or down, does so: it clears the edge before it, or after it.
 const RISE_SHARE: f32 = 0.5;
 /// A swinging foot keeps this far from ground that it passes over, metres.
@@ -113,15 +106,10 @@ impl Foot {
         }
         let mut foot = animated.foot;
         if let Some(((_, secs), _)) = planned
-            && self.plan.is_some_and(|plan| plan.foothold.heel_hangs)
+            && self.plan.is_some_and(|plan| plan.foothold.on_ball)
         {
-            let [from, until] = LEVEL_SECS;
-            let level = smooth_step((from - secs) / (from - until)) * animated.pitch.min(0.0);
-            let roll = rocker.roll(animated.pitch - level) - rocker.roll(animated.pitch);
-            let turn = Quat::from_rotation_x(-level);
-            foot.ankle += animated.flat.rotation * roll;
-            foot.foot = (foot.foot * turn).normalize();
-            foot.toes = (foot.toes * turn).normalize();
+            let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
+            level(rocker, animated, secs, share, &mut foot);
         }
         let mut target = self.correction.apply(&animated.flat, &foot);
         target.ankle.y += lift;
@@ -159,7 +147,7 @@ impl Foot {
     }
 
     /// Correction that carried the foot when it was lifted, over the floor as it is now.
-    fn lifted<T: Terrain>(&self, scene: &Scene<'_, T>) -> Correction {
+    pub(super) fn lifted<T: Terrain>(&self, scene: &Scene<'_, T>) -> Correction {
         let mut lifted = self.lifted_with;
         lifted.shift.y -= scene.floor_m() - self.lifted_from_m;
         lifted
@@ -297,63 +285,20 @@ impl Foot {
         let share = 1.0 - (-scene.dt_secs / FOLLOW_SECS).exp();
         self.correction = self.correction.toward(&toward, share, share);
     }
-
-    /// Lifts a foot that would pass through the ground now or a moment later.
-    fn guard<T: Terrain>(
-        &mut self,
-        scene: &mut Scene<'_, T>,
-        rocker: &RockerFoot,
-        animated: &Animated,
-        secs_left: Option<f32>,
-        target: &mut FootTarget,
-    ) {
-        let place = scene.world_from_floor.point(target.ankle);
-        let way = self.passed.map_or(Vec3::ZERO, |before| {
-            scene.world_from_floor.rotation.conjugate() * (place - before)
-        });
-        self.passed = Some(place);
-        let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS) * (1.0 - self.held);
-        let ahead = way * Vec3::new(1.0, 0.0, 1.0) * (left / scene.dt_secs.max(1e-3));
-        let soles = [target, &animated.foot].map(|foot| rocker.rim(foot));
-        let [points, free] = soles.each_ref().map(|rim| rim.as_flattened());
-        let mut short = 0.0_f32;
-        let mut inside = 0.0_f32;
-        for (point, free) in points.iter().zip(free) {
-            // No more room than the animation leaves over its own floor.
-            let room = free.y.clamp(0.0, GUARD_M);
-            let Some((height, normal)) = scene.ground(*point) else {
-                continue;
-            };
-            short = short.max(height + room - point.y);
-            if height - point.y > inside && !scene.beside(*point, TOUCH_M) {
-                inside = height - point.y;
-            }
-            // An edge ahead, as far as it is not the slope on which the foot goes anyway.
-            let slope = -normal.dot(ahead) / normal.y.max(0.5);
-            if let Some((edge, _)) = scene.ground(*point + ahead) {
-                short = short.max(edge - slope + room - point.y);
-            }
-        }
-        let short = short
-            // What is a step's height below is a wall and not ground.
-            .min(scene.config.max_step_m);
-        self.guard
-            .follow(short, GUARD_HALF_LIFE_SECS, scene.dt_secs);
-        let share = secs_left.map_or(1.0, |secs| smooth_step(secs / COMING_DOWN_SECS));
-        let touched = inside.min(scene.config.max_step_m) - TOUCH_M;
-        target.ankle.y += (share * self.guard.value).max(touched).max(0.0);
-    }
 }
 
-impl<T: Terrain> Scene<'_, T> {
-    /// Whether a point that is below the ground is no farther than this from a wall that it could leave it through.
-    fn beside(&mut self, point: Vec3, distance_m: f32) -> bool {
-        let ways = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
-        ways.into_iter().any(|way| {
-            let ground = self.ground(point + way * distance_m);
-            ground.is_none_or(|(height, _)| height <= point.y)
-        })
-    }
+/// Levels a foot that comes down on its ball: the heel comes down to the toes in the first part of the swing, and the toes to the heel before the
+/// landing.
+fn level(rocker: &RockerFoot, animated: &Animated, secs: f32, share: f32, foot: &mut FootTarget) {
+    let [from, until] = LEVEL_SECS;
+    let toes = smooth_step((from - secs) / (from - until)) * animated.pitch.min(0.0);
+    let heel = LEVEL_HEEL * smooth_step(share / LEVEL_HEEL_SHARE) * animated.pitch.max(0.0);
+    let level = toes + heel;
+    let roll = rocker.roll(animated.pitch - level) - rocker.roll(animated.pitch);
+    let turn = Quat::from_rotation_x(-level);
+    foot.ankle += animated.flat.rotation * roll;
+    foot.foot = (foot.foot * turn).normalize();
+    foot.toes = (foot.toes * turn).normalize();
 }
 
 /// The correction on the way from one to another, and how much the foot is lifted there.

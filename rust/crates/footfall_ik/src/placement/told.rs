@@ -17,6 +17,11 @@ impl FootPlacer {
         slowed_by(self.grade).min(slowed_by(self.grade_ahead))
     }
 
+    /// Grade of the way: of the ground under the feet and of that ahead, in equal parts; rise by run, positive uphill.
+    pub fn way_grade(&self) -> f32 {
+        0.5 * (self.grade + self.grade_ahead)
+    }
+
     /// Length that the step that has just begun needs for its foot to find ground within reach, as a share of its own; `None` for a step
     /// that is right as it is. For walks that can change their steps: pass the new landing to [`step`](Self::step) once they have.
     pub fn step_share(
@@ -89,6 +94,7 @@ impl FootPlacer {
             landing,
             rocker: &self.rockers[index],
             leg_m: self.leg_lengths[index],
+            grade: self.grade,
             may_stretch,
         })
     }

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 
+mod climbing;
 mod jumping;
 mod quick;
 mod running;

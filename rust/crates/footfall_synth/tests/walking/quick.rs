@@ -69,6 +69,34 @@ fn a_stop_takes_a_second_at_most() {
     }
 }
 
+/// At every moment of a stride; asked early in a step, that very step closes beside the standing foot.
+#[test]
+fn a_stop_from_a_walk_takes_half_a_second() {
+    let skeleton = Skeleton::standard();
+    let (mut secs, mut closed) = (vec![], 0);
+    for seed in 1..4 {
+        for moment in 0..33 {
+            let mut walker = generator(Kind::Styled, seed);
+            let before = 150 + 2 * moment;
+            let (mut frames, _) = run(&mut walker, &skeleton, &walking(1.3), before);
+            let (stopped, footsteps) = run(&mut walker, &skeleton, &Controls::STAND, 120);
+            closed += usize::from(footsteps.is_empty());
+            frames.extend(stopped);
+            let moving = (before..frames.len()).rfind(|at| velocity(&frames, *at).length() > 0.15);
+            secs.push(moving.map_or(0.0, |at| (at + 1 - before) as f32 * DT));
+            assert_planted_within(&skeleton, &frames, 0.02);
+            let [left, right] = [Joint::LeftFoot, Joint::RightFoot]
+                .map(|joint| frames[frames.len() - 1].model.position(joint).z);
+            assert!((left - right).abs() < 0.03, "{moment}: {left} {right}");
+            let hardest = hardest(&frames[100..], Joint::Hips);
+            assert!(hardest < 30.0, "{moment}: hips {hardest} m/s²");
+        }
+    }
+    let mean = secs.iter().sum::<f32>() / secs.len() as f32;
+    assert!(mean < 0.5, "{mean} s");
+    assert!(closed > 20, "{closed} of {} close at once", secs.len());
+}
+
 /// Something new is asked for at every moment of a stride.
 #[test]
 fn a_change_in_the_middle_of_a_step_is_obeyed_without_a_pop() {

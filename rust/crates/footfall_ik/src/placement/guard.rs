@@ -1,0 +1,92 @@
+//! A swinging foot keeps clear of the ground that it passes over.
+
+use crate::leg::FootTarget;
+use crate::placement::foot::{Animated, Foot, Scene};
+use crate::placement::swing::LATE_RISE_M;
+use crate::placement::terrain::Terrain;
+use crate::rocker::RockerFoot;
+use footfall_core::ease::smooth_step;
+use glam::Vec3;
+
+/// A foot on its way is lifted to so far above what it would touch, metres.
+const GUARD_M: f32 = 0.01;
+/// Time in which a foot that would pass through something goes half of its way over it, seconds.
+const GUARD_HALF_LIFE_SECS: f32 = 0.032;
+/// No point of its sole is deeper inside than this, even where the way over it is short, metres.
+const TOUCH_M: f32 = 0.015;
+/// A foot that goes up may graze the risers before its toes by so much and is not lifted over them, metres.
+const GRAZE_M: f32 = 0.01;
+/// So long before it lands it is no longer held up, seconds: it comes down where it was meant to.
+const COMING_DOWN_SECS: f32 = 0.05;
+/// So far ahead on its way the ground is looked at, seconds.
+const LOOK_AHEAD_SECS: f32 = 0.06;
+
+impl Foot {
+    /// Lifts a foot that would pass through the ground now or a moment later.
+    pub(super) fn guard<T: Terrain>(
+        &mut self,
+        scene: &mut Scene<'_, T>,
+        rocker: &RockerFoot,
+        animated: &Animated,
+        secs_left: Option<f32>,
+        target: &mut FootTarget,
+    ) {
+        let place = scene.world_from_floor.point(target.ankle);
+        let way = self.passed.map_or(Vec3::ZERO, |before| {
+            scene.world_from_floor.rotation.conjugate() * (place - before)
+        });
+        self.passed = Some(place);
+        let left = secs_left.unwrap_or(LOOK_AHEAD_SECS).min(LOOK_AHEAD_SECS) * (1.0 - self.held);
+        let mut ahead = way * Vec3::new(1.0, 0.0, 1.0) * (left / scene.dt_secs.max(1e-3));
+        let mut back = Vec3::ZERO;
+        if let Some(lands) = self.lands {
+            // It goes no farther than to its foothold: the riser behind that is no edge on its way.
+            let place = animated.flat.position + self.correction.shift;
+            let to_go = (lands - place) * Vec3::new(1.0, 0.0, 1.0);
+            ahead = ahead.clamp_length_max(to_go.dot(ahead.normalize_or_zero()).max(0.0));
+            let rise = lands.y - self.lifted(scene).shift.y;
+            back = animated.flat.forward() * (GRAZE_M * smooth_step(rise / LATE_RISE_M));
+        }
+        let soles = [target, &animated.foot].map(|foot| rocker.rim(foot));
+        let [points, free] = soles.each_ref().map(|rim| rim.as_flattened());
+        let mut short = 0.0_f32;
+        let mut inside = 0.0_f32;
+        for (point, free) in points.iter().zip(free) {
+            // No more room than the animation leaves over its own floor.
+            let room = free.y.clamp(0.0, GUARD_M);
+            let Some((height, normal)) = scene.ground(*point) else {
+                continue;
+            };
+            if height - point.y > inside && !scene.beside(*point, TOUCH_M) {
+                inside = height - point.y;
+            }
+            if let Some((before, _)) = scene.ground(*point - back) {
+                short = short.max(before + room - point.y);
+            }
+            // An edge ahead, as far as it is not the slope on which the foot goes anyway.
+            let slope = -normal.dot(ahead) / normal.y.max(0.5);
+            if let Some((edge, _)) = scene.ground(*point + ahead - back) {
+                short = short.max(edge - slope + room - point.y);
+            }
+        }
+        let short = short
+            // What is a step's height below is a wall and not ground.
+            .min(scene.config.max_step_m);
+        self.guard
+            .follow(short, GUARD_HALF_LIFE_SECS, scene.dt_secs);
+        let share = secs_left.map_or(1.0, |secs| smooth_step(secs / COMING_DOWN_SECS));
+        let touched = inside.min(scene.config.max_step_m) - TOUCH_M;
+        target.ankle.y += (share * self.guard.value).max(touched).max(0.0);
+    }
+}
+
+impl<T: Terrain> Scene<'_, T> {
+    /// Whether a point that is below the ground is no farther than this from a wall that it could leave it through.
+    fn beside(&mut self, point: Vec3, distance_m: f32) -> bool {
+        let ways = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
+        ways.into_iter().any(|way| {
+            let ground = self.ground(point + way * distance_m);
+            ground.is_none_or(|(height, _)| height <= point.y)
+        })
+    }
+}

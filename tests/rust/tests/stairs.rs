@@ -1,0 +1,150 @@
+//! Stairs as people take them: a tread a step, hips that ride, whole soles on treads, knees no higher than need be.
+
+use footfall_core::Joint;
+use footfall_tests::climb::{Climb, Outcome, Way, percentile};
+use glam::Vec3;
+
+/// Rise and run of the stairs, metres: a flight of steps outdoors, one in a house, and the steepest that is built.
+const STAIRS: [[f32; 2]; 3] = [[0.15, 0.4], [0.17, 0.29], [0.2, 0.28]];
+const SPEEDS: [f32; 4] = [0.8, 1.0, 1.2, 1.4];
+/// Distances from which each is come upon: a stride of them.
+const DISTANCES: usize = 12;
+/// Up and down, unfiltered second differences at 60 frames a second between the first edge and the last, for 99 frames of a hundred, m/s².
+const HIPS_99: f32 = 12.0;
+/// Most of a sole that lies over an edge, metres.
+const OVERHANG_M: f32 = 0.02;
+/// Steps a second.
+const CADENCES: [f32; 2] = [1.2, 2.0];
+/// Greatest bend of a knee up and down, degrees; people have about 100.
+const BEND_DEG: [f32; 2] = [120.0, 128.0];
+/// Angular acceleration of a knee, rad/s², and how far an ankle is from where it would be had it gone on, metres: of the smoothest of stairs and of a
+/// foot thrown over a riser.
+const KNEE: f32 = 1500.0;
+const JUMP_M: f32 = 0.06;
+
+/// What is seen of climbs of one staircase at one speed.
+struct Row {
+    rise: f32,
+    outcomes: Vec<Outcome>,
+}
+
+impl Row {
+    fn of([rise, run]: [f32; 2], speed_mps: f32) -> Self {
+        let climb = |index: usize| Climb {
+            seed: 7 + index as u64,
+            ..Climb::adult(
+                Way::Stairs { rise, run },
+                2.5 + 1.7 * index as f32 / DISTANCES as f32,
+                speed_mps,
+            )
+        };
+        Self {
+            rise,
+            outcomes: (0..DISTANCES).map(|index| climb(index).walk()).collect(),
+        }
+    }
+
+    fn treads(&self) -> Vec<i32> {
+        let outcomes = self.outcomes.iter();
+        outcomes.flat_map(|o| o.treads(self.rise)).collect()
+    }
+
+    /// Percentile of the hips' acceleration up and down.
+    fn lift(&self, share: f32) -> f32 {
+        let outcomes = self.outcomes.iter();
+        let all: Vec<f32> = outcomes.flat_map(|o| o.lift_between.clone()).collect();
+        percentile(&all, share)
+    }
+
+    fn most(&self, of: impl Fn(&Outcome) -> f32) -> f32 {
+        self.outcomes.iter().map(of).fold(0.0, f32::max)
+    }
+
+    fn mean(&self, of: impl Fn(&Outcome) -> f32) -> f32 {
+        self.outcomes.iter().map(of).sum::<f32>() / self.outcomes.len() as f32
+    }
+
+    fn cadence(&self) -> f32 {
+        self.mean(|outcome| {
+            let on_treads = |sole: f32| (0.5..6.5).contains(&(sole / self.rise));
+            let landings = outcome.landings.iter();
+            let secs: Vec<f32> = landings
+                .filter(|landed| on_treads(landed.sole.y))
+                .map(|landed| landed.secs)
+                .collect();
+            let spans = secs.windows(2).map(|pair| pair[1] - pair[0]);
+            (secs.len() - 1) as f32 / spans.sum::<f32>()
+        })
+    }
+
+    fn line(&self) -> String {
+        format!(
+            "{:.2} m/s, {:.2} steps/s, hips {:.1} m/s² (most {:.1}), overhang {:.3} m, knees {:.0}° {:.0} rad/s², ankles {:.3} m, slip {:.4} m/s",
+            self.mean(|o| o.pace_mps),
+            self.cadence(),
+            self.lift(0.99),
+            self.lift(1.0),
+            self.most(|o| o.overhang),
+            self.most(|o| o.bend).to_degrees(),
+            self.most(|o| o.knee),
+            self.most(|o| o.jump),
+            self.most(|o| o.slip),
+        )
+    }
+}
+
+/// Mean lean of the trunk between the first edge and the last, and before the first, degrees forwards.
+fn leans(rise: f32) -> [f32; 2] {
+    let (distance, length) = (3.0, 6.0 * 0.29);
+    let mut leans = [vec![], vec![]];
+    let climb = Climb::adult(Way::Stairs { rise, run: 0.29 }, distance, 1.2);
+    climb.watch(|_, walker| {
+        let up = walker.world.rotation(Joint::UpperChest) * Vec3::Y;
+        let lean = up.z.atan2(up.y).to_degrees();
+        let along = walker.hips().z - distance;
+        // The way there counts a second after the start, until two steps before the stairs.
+        if (0.0..length).contains(&along) {
+            leans[0].push(lean);
+        } else if (-1.8..-1.0).contains(&along) {
+            leans[1].push(lean);
+        }
+    });
+    leans.map(|leans| leans.iter().sum::<f32>() / leans.len() as f32)
+}
+
+#[test]
+fn trunks_lean_into_stairs_up_and_back_from_those_down() {
+    let [up, level] = leans(0.17);
+    assert!((3.0..9.0).contains(&(up - level)), "{up} after {level}");
+    let [down, level] = leans(-0.17);
+    assert!(
+        (-6.0..-1.0).contains(&(down - level)),
+        "{down} after {level}"
+    );
+}
+
+#[test]
+fn every_tread_is_taken_with_one_step_smoothly() {
+    for [rise, run] in STAIRS {
+        for rise in [rise, -rise] {
+            for speed in SPEEDS {
+                let row = Row::of([rise, run], speed);
+                let what = format!("{rise} by {run} at {speed} m/s: {}", row.line());
+                let treads = row.treads();
+                assert!(treads.len() >= 6 * DISTANCES, "{what}: {}", treads.len());
+                assert!(treads.iter().all(|t| *t == 1), "{what}: {treads:?}");
+                assert!(row.lift(0.99) <= HIPS_99, "{what}");
+                assert!(row.most(|o| o.overhang) <= OVERHANG_M, "{what}");
+                let [slow, quick] = CADENCES;
+                assert!((slow..quick).contains(&row.cadence()), "{what}");
+                let bend = BEND_DEG[usize::from(rise < 0.0)];
+                assert!(row.most(|o| o.bend).to_degrees() < bend, "{what}");
+                assert!(row.most(|o| o.knee) < KNEE, "{what}");
+                assert!(row.most(|o| o.jump) < JUMP_M, "{what}");
+                assert!(row.most(|o| o.slip) < 0.001, "{what}");
+                let faults = row.outcomes.iter().map(|o| o.faults.len());
+                assert_eq!(faults.sum::<usize>(), 0, "{what}");
+            }
+        }
+    }
+}
