@@ -13,7 +13,7 @@ use crate::tracker::{Measurement, Tracker};
 use crate::travel::Travel;
 use footfall_core::{Behaviour, Clip, Pose, Skeleton, SkeletonError};
 use footfall_imu::events::{Swing, detect_swings};
-use footfall_imu::{ContactMeter, ImuRecording, ImuSample};
+use footfall_imu::{ImuRecording, ImuSample};
 use footfall_model::imu_model::MAX_SENSORS;
 use std::sync::Arc;
 
@@ -170,20 +170,13 @@ fn frames_of(prepared: &Prepared, recordings: &[ImuRecording]) -> Vec<SensorFram
         .collect()
 }
 
-/// Tells of feet with sensors whether they stand, from their recordings as wholes. What only the meter of samples as they come has found is a
-/// swing as well: it knows steps on the spot.
+/// Tells of feet with sensors whether they stand, from their recordings as wholes.
 fn tell_swings(prepared: &Prepared, recordings: &[ImuRecording], frames: &mut [SensorFrames]) {
     for WornFoot { sensor, .. } in &prepared.worn_feet {
         let Some(recording) = recordings.get(*sensor) else {
             continue;
         };
-        let mut swings = detect_swings(recording);
-        let apart = |a: &Swing, b: &Swing| {
-            a.initial_secs <= b.terminal_secs || b.initial_secs <= a.terminal_secs
-        };
-        let mut others = ContactMeter::swings_of(recording);
-        others.retain(|other| swings.iter().all(|swing| apart(swing, other)));
-        swings.append(&mut others);
+        let swings = detect_swings(recording);
         let heard = frames.iter_mut().filter_map(|f| f[*sensor].as_mut());
         for heard in heard {
             let time_secs = heard.frame.time_secs;
