@@ -116,7 +116,7 @@ impl Default for ContactMeter {
 }
 
 impl ContactMeter {
-    /// Whether the foot is on the ground; `None` before the first sample.
+    /// Returns true while the foot is on the ground; `None` before the first sample.
     pub fn stands(&self) -> Option<bool> {
         self.last_secs?;
         Some(matches!(self.state, State::Contact { .. }))

@@ -63,7 +63,7 @@ const TERMINAL_SECS: f64 = 0.05;
 pub struct SensorEvent {
     /// On the recording's clock, seconds.
     pub time_secs: f64,
-    /// Which end of the stance.
+    /// End of the stance that it is.
     pub kind: EventKind,
 }
 

@@ -1,4 +1,4 @@
-//! Which way a sensor is turned, from its angular rate and from where gravity pulls when nothing else does.
+//! Orientation of a sensor, from its angular rate and from where gravity pulls when nothing else does.
 //!
 //! The angular rate is integrated, and specific force pulls the vertical to where it points: a Kalman filter with one variance for both tilts.
 //! Specific force is the less trusted the more it differs from gravity and the faster the sensor turns, so that a first swing of a limb, in which

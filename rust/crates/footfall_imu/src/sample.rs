@@ -17,7 +17,7 @@ pub struct ImuSample {
 }
 
 impl ImuSample {
-    /// Whether every number is finite.
+    /// Returns true when every number is finite.
     pub fn is_finite(&self) -> bool {
         self.time_secs.is_finite() && self.force.is_finite() && self.rate.is_finite()
     }

@@ -30,7 +30,7 @@ const LONGEST_GAP_SECS: f64 = 0.1;
 /// A foot that has come to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// How it came there; `None` when it did not rest before, or too long ago to tell.
+    /// The stride that brought it there; `None` when it did not rest before, or too long ago to tell.
     pub stride: Option<SensorStride>,
 }
 

@@ -15,7 +15,7 @@ const BLENDED: usize = HEIGHT + 1;
 /// The body as it is shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Blend {
-    /// How much of the way to the target is gone in a frame.
+    /// Share of the way to the target that is gone in a frame.
     gain: f32,
     body: BodyFrame,
     velocity: BodyFrame,
@@ -59,7 +59,7 @@ impl Blend {
         self.started = true;
     }
 
-    /// Whether there is a body.
+    /// Returns true once there is a body.
     pub const fn started(&self) -> bool {
         self.started
     }

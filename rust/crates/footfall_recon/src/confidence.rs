@@ -1,4 +1,4 @@
-//! How well the model explains what the sensors say, and the body that stands where it explains little.
+//! Confidence: how well the model explains what the sensors say, and the body that stands where it explains little.
 //!
 //! The mean logarithm of the density of what was measured, given what was probable before, is turned into a probability by a logistic curve. The curve was fitted
 //! to what a model without jumps and hops makes of walks and runs of people left out (CMU's 16 and 35, simulated right foot; ipol's 1 to 4, real) on one side, and of jumps
@@ -32,7 +32,7 @@ const MEAN_SECS: f32 = 0.33;
 /// Below the first of these confidences the body stands, above the second it is the model's.
 const TRUSTED: [f32; 2] = [0.04, 0.12];
 
-/// How well the model explains what is measured.
+/// Confidence in the model, given what is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Confidence {
     mean: f32,
@@ -60,7 +60,7 @@ impl Confidence {
         smooth_step((self.value() - TRUSTED[0]) / (TRUSTED[1] - TRUSTED[0]))
     }
 
-    /// Whether what the sensors say of contacts and of the heading is taken.
+    /// Returns true when what the sensors say of contacts and of the heading is taken.
     pub(crate) fn is_trusted(self) -> bool {
         self.trusted() > 0.5
     }

@@ -1,4 +1,4 @@
-//! Where the body goes, and feet that stay where they were put.
+//! Travel of the body over feet that stay where they were put.
 //!
 //! The body travels as the recordings do, and is then moved so that a standing foot keeps its place: the way comes from the legs. What is left
 //! when both stand is the legs' to take up. A standing foot is a rocker ([`footfall_ik::rocker`]): it cannot slide or sink.
@@ -24,7 +24,7 @@ const CLEARED_SPEEDS: [f32; 2] = [1.5, 3.5];
 /// A foot whose own sensor says that it stands may drift so much further.
 const TOLD_DRIFT: f32 = 2.0;
 
-/// What remains of a correction when a foot lands or leaves halves in this time, seconds.
+/// Half-life of what remains of a correction when a foot lands or leaves, seconds.
 const SETTLE_HALF_LIFE_SECS: f32 = 0.02;
 
 /// The height of the pelvis follows the standing feet with this half-life, seconds.
@@ -66,13 +66,13 @@ pub struct Ground {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StandingFoot {
     plant: Option<Plant>,
-    /// What is left to settle: how far the ankle is from where it should be, and how the foot is turned against it.
+    /// Remainder that settles: how far the ankle is from where it should be, and how the foot is turned against it.
     ankle: Vec3,
     turn: Quat,
     /// Offset of the ankle and turn of the foot against the recordings, in the last frame.
     last: (Vec3, Quat),
     landed: bool,
-    /// Where the recordings had the ankle in the last frame.
+    /// Position that the recordings gave the ankle in the last frame.
     free: Vec3,
 }
 
@@ -87,18 +87,18 @@ impl StandingFoot {
     };
 }
 
-/// What a body does in a step.
+/// Input of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundInput {
     /// Heading that the sensor gives the body, from an unknown direction on, radians; `None` where it tells nothing.
     pub heading: Option<f32>,
-    /// How many of the model's frames have passed.
+    /// Number of the model's frames that have passed.
     pub frames: f32,
     /// The same in seconds.
     pub dt_secs: f32,
     /// Factor on the length of the recordings' steps.
     pub stride: f32,
-    /// Whether the left and the right foot stand, where a sensor on the foot tells; the body says it of the others.
+    /// Contacts of the left and the right foot where a sensor on the foot reports them; the body has those of the others.
     pub stands: [Option<bool>; 2],
 }
 
@@ -139,7 +139,7 @@ impl Ground {
         self.scale
     }
 
-    /// Where the body is on the floor, metres.
+    /// Place of the body on the floor, metres.
     pub const fn place(&self) -> Vec3 {
         self.place
     }
@@ -158,12 +158,12 @@ impl Ground {
         }
     }
 
-    /// What the sensor says of the heading from now on begins anew: it may have been turned or exchanged.
+    /// Begins anew with the sensor's heading: the sensor may have been turned or exchanged.
     pub const fn forget_sensor_heading(&mut self) {
         self.compared_secs = 0.0;
     }
 
-    /// Where each foot that came to stand in the last step was put.
+    /// Footprints of the feet that came to stand in the last step.
     pub fn landings(&self) -> [Option<Vec3>; 2] {
         self.feet.map(|foot| {
             let plant = foot.plant.filter(|_| foot.landed)?;
@@ -171,7 +171,7 @@ impl Ground {
         })
     }
 
-    /// Whether the left and the right foot stand.
+    /// Returns true for the left and the right foot while it stands.
     pub fn stands(&self) -> [bool; 2] {
         self.feet.map(|foot| foot.plant.is_some())
     }

@@ -26,7 +26,7 @@ pub(crate) struct SensorFrame {
 /// Frames of all sensors.
 pub(crate) type SensorFrames = [Option<SensorFrame>; MAX_SENSORS];
 
-/// What all sensors measured; `None` when none did. What is uncertain or missing counts less or nothing.
+/// Joins what all sensors measured; `None` when none did. What is uncertain or missing counts less or nothing.
 pub(crate) fn measure(model: &ImuModel, frames: &SensorFrames) -> Option<Measurement> {
     let mut measurement = Measurement {
         values: [0.0; MAX_WIDTH],

@@ -1,4 +1,4 @@
-//! How a sensor is worn, from what it measures.
+//! Mounting of a sensor, found from what it measures.
 //!
 //! Gravity tells two of the three angles: the mean of up over a stretch of motion points where it does in the model. The third is the one under which
 //! the model explains the motion best; a few candidates are then refined together with the other two, by turns finding the frames of the model and the rotation
@@ -22,7 +22,7 @@ const CANDIDATES: usize = 24;
 /// The best of them that are refined.
 const REFINED: usize = 5;
 
-/// How often each is refined.
+/// Rounds of refinement for each.
 const ROUNDS: usize = 3;
 
 /// Frames that are listened to, 6 seconds at 30 frames a second.
@@ -37,7 +37,7 @@ const REST_RADPS: f32 = 0.5;
 /// Rotations closer to each other than this mean the same mounting, radians.
 const SAME: f32 = 0.6;
 
-/// How a sensor is worn.
+/// Mounting of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mounting {
     /// Turns the sensor's axes into the site's.
@@ -54,7 +54,7 @@ pub enum MountingError {
         "the sensor moves for {moving_secs:.1} s, which is too little to tell how it is mounted; take a few steps, or mount it in line with the body and say so (`--mounting aligned`)"
     )]
     TooLittleMotion {
-        /// How long it moves.
+        /// Time for which it moves.
         moving_secs: f64,
     },
 }
@@ -160,7 +160,7 @@ impl Finder<'_> {
         (footfall_core::rotation::shortest_arc(measured, up), up)
     }
 
-    /// How well the model explains the frames when they are turned so. Adds up what was expected by what was measured, if asked to.
+    /// Returns how well the model explains the frames when they are turned so. Adds up what was expected by what was measured, if asked to.
     fn explain(
         &self,
         site_from_sensor: Quat,

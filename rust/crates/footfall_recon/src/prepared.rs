@@ -33,9 +33,9 @@ pub struct Prepared {
     pub(crate) worn_feet: Vec<WornFoot>,
     /// First frame of each segment, and the end of the last.
     pub(crate) starts: Vec<usize>,
-    /// Which segment a frame belongs to.
+    /// Segment of each frame.
     pub(crate) segment_of: Vec<u32>,
-    /// How many segments each subject has in each phase, subject by subject.
+    /// Numbers of segments of each subject in each phase, subject by subject.
     pub(crate) counts: Vec<f32>,
     /// The segments of each phase.
     pub(crate) of_phase: Vec<Vec<u32>>,
@@ -94,7 +94,7 @@ impl Prepared {
         })
     }
 
-    /// Whether the left and the right foot stand, as the sensors on them say by number; `None` where none is worn or nobody knows.
+    /// Contacts of the left and the right foot, as the sensors on them report them by number; `None` where none is worn or nobody knows.
     pub(crate) fn told_stands(&self, told: impl Fn(usize) -> Option<bool>) -> [Option<bool>; 2] {
         let mut stands = [None; 2];
         for WornFoot { sensor, side } in &self.worn_feet {
@@ -113,7 +113,7 @@ impl Prepared {
         self.starts[segment]..self.starts[segment + 1]
     }
 
-    /// Whether the segment after this one follows it in the same recording.
+    /// Returns true when the segment after this one follows it in the same recording.
     pub(crate) fn is_followed(&self, segment: usize) -> bool {
         self.model
             .segments
@@ -126,7 +126,7 @@ impl Prepared {
         &self.model.body[frame * BODY_COUNT..(frame + 1) * BODY_COUNT]
     }
 
-    /// Whether a frame is the last of its chain.
+    /// Returns true for the last frame of its chain.
     pub(crate) fn ends_chain(&self, frame: usize) -> bool {
         let next = frame + 1;
         if next >= self.frames {

@@ -19,17 +19,17 @@ use std::sync::Arc;
 /// Sensors whose times are further apart are on clocks of their own, seconds.
 const ONE_CLOCK_SECS: f64 = 2.0;
 
-/// What a sensor tells of its foot holds for so long, seconds.
+/// Time for which a contact that a sensor has reported holds, seconds.
 const TOLD_FOR_SECS: f32 = 0.1;
 
 /// Settings of a reconstructor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReconConfig {
-    /// How probable frames are found.
+    /// Settings of the tracker.
     pub tracker: TrackerConfig,
     /// Share of the way to what the recordings say that the body goes in a frame.
     pub blend_gain: f32,
-    /// How long nothing may be heard of a sensor before it counts as lost, seconds.
+    /// Silence after which a sensor counts as lost, seconds.
     pub lost_after_secs: f32,
     /// A new behaviour shows when it is more probable than this.
     pub behaviour_probability: f32,
@@ -46,7 +46,7 @@ impl Default for ReconConfig {
     }
 }
 
-/// Whether anything is heard of the sensors.
+/// Reception of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorState {
     /// Nothing came yet.
@@ -106,7 +106,7 @@ impl Reconstructor {
         })
     }
 
-    /// How a sensor is worn: `site_from_sensor`. The identity for `aligned` mounting.
+    /// Sets the mounting of a sensor: `site_from_sensor`. The identity for `aligned` mounting.
     pub fn set_mounting(&mut self, sensor: usize, site_from_sensor: Quat) {
         if let Some(sensor) = self.sensors.get_mut(sensor) {
             sensor.set_mounting(site_from_sensor);
@@ -140,12 +140,12 @@ impl Reconstructor {
         self.ground.heading()
     }
 
-    /// What the body does. No behaviour is shown for less than 0.2 s.
+    /// Returns the behaviour that is shown. None is shown for less than 0.2 s.
     pub const fn behaviour(&self) -> Behaviour {
         self.behaviour.behaviour()
     }
 
-    /// Whether anything is heard of the sensors.
+    /// Reception of the sensors.
     pub fn sensor_state(&self) -> SensorState {
         if !self.blend.started() {
             SensorState::Waiting
@@ -156,7 +156,7 @@ impl Reconstructor {
         }
     }
 
-    /// How well the model explains what the sensors say, 0 to 1: the probability that what is done is among what it learned. 0 where nothing is heard.
+    /// Returns how well the model explains what the sensors say, 0 to 1: the probability that what is done is among what it learned. 0 where nothing is heard.
     /// Where it is low, the body stands.
     pub fn confidence(&self) -> f32 {
         match self.sensor_state() {
@@ -165,17 +165,17 @@ impl Reconstructor {
         }
     }
 
-    /// Where each foot that came to stand in the last step was put, metres.
+    /// Footprints of the feet that came to stand in the last step, metres.
     pub fn landings(&self) -> [Option<Vec3>; 2] {
         self.ground.landings()
     }
 
-    /// Whether the left and the right foot stand.
+    /// Returns true for the left and the right foot while it stands.
     pub fn stands(&self) -> [bool; 2] {
         self.ground.stands()
     }
 
-    /// How probable each behaviour is, in the order of [`Behaviour::ALL`].
+    /// Probabilities of the behaviours, in the order of [`Behaviour::ALL`].
     pub const fn behaviours(&self) -> &[f32; Behaviour::ALL.len()] {
         self.tracker.behaviours()
     }
@@ -299,7 +299,7 @@ impl Reconstructor {
         }
     }
 
-    /// Whether each foot stands, as far as a sensor on it tells.
+    /// Contacts of the feet, as far as sensors on them report them.
     fn told_stands(&self) -> [Option<bool>; 2] {
         let heard = self.silent_secs < TOLD_FOR_SECS && self.confidence.is_trusted();
         let told = |sensor: usize| self.sensors[sensor].stands().filter(|_| heard);

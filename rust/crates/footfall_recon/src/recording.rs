@@ -29,7 +29,7 @@ pub struct Reconstructed {
     pub start_secs: f64,
     /// The most probable behaviour of each frame.
     pub behaviours: Vec<Behaviour>,
-    /// How well the model explains each frame and those shortly before it, 0 to 1.
+    /// Confidence in the model at each frame and those shortly before it, 0 to 1.
     pub confidences: Vec<f32>,
 }
 
@@ -170,7 +170,7 @@ fn frames_of(prepared: &Prepared, recordings: &[ImuRecording]) -> Vec<SensorFram
         .collect()
 }
 
-/// Tells of feet with sensors whether they stand, from their recordings as wholes.
+/// Sets the contacts of feet with sensors from their recordings as wholes.
 fn tell_swings(prepared: &Prepared, recordings: &[ImuRecording], frames: &mut [SensorFrames]) {
     for WornFoot { sensor, .. } in &prepared.worn_feet {
         let Some(recording) = recordings.get(*sensor) else {
@@ -186,14 +186,14 @@ fn tell_swings(prepared: &Prepared, recordings: &[ImuRecording], frames: &mut [S
     }
 }
 
-/// What is shown of each frame.
+/// Writer of the frames that are shown.
 struct Shown<'a> {
     /// Those of the sensor that measures strides which were not heard yet.
     samples: &'a [ImuSample],
     travel: Travel,
     prepared: &'a Prepared,
     confidence: Confidence,
-    /// What a game shows, and how probable it must be.
+    /// The behaviour that a game shows, and how probable it must be.
     live: Option<(ShownBehaviour, f32)>,
     out: Reconstructed,
     blend: Blend,
@@ -260,7 +260,7 @@ impl Shown<'_> {
         self.out.behaviours.push(shown);
     }
 
-    /// Whether each foot stands, as far as a sensor on it tells.
+    /// Contacts of the feet, as far as sensors on them report them.
     fn told_stands(&self, sensors: &SensorFrames) -> [Option<bool>; 2] {
         let heard = self.confidence.is_trusted();
         let told = |sensor: usize| sensors[sensor]?.stands.filter(|_| heard);

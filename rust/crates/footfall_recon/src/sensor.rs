@@ -47,7 +47,7 @@ impl Frames {
             .push(sample, |frame| give(SensorFrame { frame, stands }));
     }
 
-    /// Whether the foot that wears the sensor stands.
+    /// Returns true while the foot that wears the sensor stands.
     pub(crate) fn stands(&self) -> Option<bool> {
         self.contact.as_ref().and_then(ContactMeter::stands)
     }
@@ -126,7 +126,7 @@ impl Sensor {
         first
     }
 
-    /// Whether the foot that wears it stands.
+    /// Returns true while the foot that wears it stands.
     pub(crate) fn stands(&self) -> Option<bool> {
         self.frames.stands()
     }

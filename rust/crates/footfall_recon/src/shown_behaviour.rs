@@ -5,7 +5,7 @@ use footfall_core::Behaviour;
 /// No behaviour is shown for a shorter time, seconds.
 pub(crate) const LEAST_SHOWN_SECS: f32 = 0.2;
 
-/// What is shown, and for how long it was.
+/// A behaviour that is shown, and for how long it was.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ShownBehaviour {
     behaviour: Behaviour,

@@ -1,4 +1,4 @@
-//! How probable each frame of the model is, given everything measured so far: the forward algorithm (Mousas 2017, section 6 and
+//! Probabilities of the frames of the model, given everything measured so far: the forward algorithm (Mousas 2017, section 6 and
 //! appendix A), linear in the number of frames.
 
 mod backward;
@@ -21,14 +21,14 @@ pub struct TrackerConfig {
     pub keep_subject: f32,
     /// Probability of a frame to leave for anywhere else: the paper's exit.
     pub exit: f32,
-    /// What a frame of the sensors counts: successive frames are alike, and would count several times over, and so would two sensors on one body.
+    /// Weight of a frame of the sensors: successive frames are alike, and would count several times over, and so would two sensors on one body.
     pub evidence: f32,
     /// Squared distance a sensor, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
     /// where none explains it the body goes on as it did.
     pub farthest: f32,
-    /// How many segments are interpolated (section 5.3; there 5).
+    /// Number of segments that are interpolated (section 5.3; there 5).
     pub interpolated: usize,
-    /// How much of the regression on the sensor is applied (equation 6), 0 to 1.
+    /// Share of the regression on the sensor that is applied (equation 6), 0 to 1.
     pub regression: f32,
 }
 
@@ -48,16 +48,16 @@ impl Default for TrackerConfig {
     }
 }
 
-/// What the sensors measured in a frame, in the model's order.
+/// A frame of all sensors, in the model's order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// The numbers; the first [`ImuModel::sensor_width`](footfall_model::ImuModel::sensor_width) count.
     pub values: [f32; MAX_WIDTH],
-    /// What each number counts, 0 to 1.
+    /// Weights of the numbers, 0 to 1.
     pub weights: [f32; MAX_WIDTH],
 }
 
-/// What is probable after a frame.
+/// Probabilities after a frame.
 ///
 /// Most frames are as good as impossible at any time. Only segments that hold some probability, those that can follow them, and a share of all
 /// others in turn are looked at.
@@ -72,20 +72,20 @@ pub struct Tracker {
     /// Segments that are looked at, and whether each is among them.
     candidates: Vec<u32>,
     listed: Vec<bool>,
-    /// Where the turn of the others is.
+    /// The next of the others whose turn it is.
     turn: usize,
     /// Of each frame, in whole blocks.
     predicted: Vec<f32>,
     distance: Vec<f32>,
     weighed: Vec<f32>,
-    /// What leaves for each phase, subject by subject.
+    /// Probability that leaves for each phase, subject by subject.
     entering: Vec<f32>,
     entering_any: Vec<f32>,
     /// The segments that are interpolated, and their weights.
     chosen: Vec<(u32, f32)>,
     behaviours: [f32; Behaviour::ALL.len()],
     log_likelihood: f64,
-    /// What the last frame that was measured added to it.
+    /// The part of it that the last measured frame added.
     log_density: f64,
 }
 
@@ -172,7 +172,7 @@ impl Tracker {
         self.weigh_segments();
     }
 
-    /// What leaves the segments at their ends, and which phases it enters.
+    /// Moves probability that leaves the segments at their ends to the phases it enters.
     fn leave(&mut self) {
         let prepared = &*self.prepared;
         let model = &*prepared.model;
@@ -253,7 +253,7 @@ impl Tracker {
         first..(first + size).min(all)
     }
 
-    /// Where the body may be a frame later (appendix A, "prediction"): of each frame of the candidates.
+    /// Predicts the frames a step later (appendix A, "prediction") from each frame of the candidates.
     fn predict(&mut self) {
         self.predicted.fill(0.0);
         let prepared = &*self.prepared;
@@ -311,12 +311,12 @@ impl Tracker {
         sum
     }
 
-    /// What a squared distance of all sensors adds to the logarithm of a probability.
+    /// Factor from a squared distance of all sensors to the logarithm of a probability.
     fn factor(&self) -> f32 {
         -0.5 * self.config.evidence / self.prepared.model.sites.len() as f32
     }
 
-    /// How far the frames are from what was measured that are predicted with more than a limit. Returns the least distance.
+    /// Measures how far frames that are predicted with more than a limit are from what was measured. Returns the least distance.
     fn measure(&mut self, sensor: &Measurement, limit: f32) -> f32 {
         let (mut measured, mut weights) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
         let deviations = &self.prepared.model.deviations;

@@ -14,24 +14,24 @@ const LEAST_STRIDE_M: f32 = 0.4;
 /// A stride of which the shown one differs by more is another one.
 const MOST_APART: f32 = 1.8;
 
-/// How much of the quotient of a stride the factor follows, on a logarithmic scale.
+/// Share of the quotient of a stride that the factor follows, on a logarithmic scale.
 const FOLLOWED: f32 = 0.4;
 
 /// Bounds of the factor.
 const FACTORS: [f32; 2] = [0.7, 1.4];
 
-/// What is shown follows the factor with this half-life, seconds: legs do not jump.
+/// Half-life with which what is shown follows the factor, seconds: legs do not jump.
 const HALF_LIFE_SECS: f32 = 0.15;
 
 /// Length of the wearer's steps beside those of the recordings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Travel {
-    /// Which of the sensors sits on a foot, and on which.
+    /// The sensor that sits on a foot, and the foot.
     foot: Option<(usize, Side)>,
     meter: StrideMeter,
     /// A rest that was measured and not yet compared.
     rested: Option<Rest>,
-    /// Where the foot was shown at the rest before.
+    /// Place at which the foot was shown at the rest before.
     anchor: Option<Vec3>,
     factor: f32,
     shown: f32,
@@ -65,7 +65,7 @@ impl Travel {
         }
     }
 
-    /// Which sensor measures strides.
+    /// Number of the sensor that measures strides.
     pub(crate) const fn sensor(&self) -> Option<usize> {
         match self.foot {
             Some((sensor, _)) => Some(sensor),

@@ -96,7 +96,7 @@ fn rise_votes(pitch: &[f32], rests: &[usize], rate_hz: f64) -> f32 {
     votes.sum()
 }
 
-/// Where a foot is quieter than at any time of about half a stride to either side, and far quieter than on the average.
+/// Moments at which a foot is quieter than at any time of about half a stride to either side, and far quieter than on the average.
 fn quietest(rates: &[Vec3], rate_hz: f64) -> impl Iterator<Item = usize> {
     let near = frames_of(0.5 * LEAST_REST_SECS, rate_hz);
     let far = frames_of(REST_APART_SECS, rate_hz);

@@ -111,7 +111,7 @@ impl Device {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether both are the same sensor.
+    /// Returns true when both are the same sensor.
     pub fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.shared, &other.shared)
     }

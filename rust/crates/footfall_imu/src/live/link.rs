@@ -135,7 +135,7 @@ impl Link {
         self.shared.garbage.load(Ordering::Relaxed)
     }
 
-    /// Where a network's link listens, once it does.
+    /// Address that a network's link listens on, once it does.
     pub fn address(&self) -> Option<SocketAddr> {
         *lock(&self.shared.address)
     }

@@ -11,7 +11,7 @@ pub mod websocket;
 
 use std::net::IpAddr;
 
-/// Whether an address is of this machine or of the network that it is in; others are not answered.
+/// Returns true for an address of this machine or of the network that it is in; others are not answered.
 pub(super) fn is_local(address: IpAddr) -> bool {
     match address.to_canonical() {
         IpAddr::V4(v4) => v4.is_loopback() || v4.is_private() || v4.is_link_local(),

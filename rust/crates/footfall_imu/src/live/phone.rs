@@ -41,7 +41,7 @@ pub struct PhoneConfig {
     pub port: u16,
     /// Players, each with a code.
     pub players: usize,
-    /// Where certificate and key are kept.
+    /// Folder of the certificate and the key.
     pub folder: PathBuf,
 }
 

@@ -46,7 +46,7 @@ impl Quantity {
         }
     }
 
-    /// Whether every number is finite, and an orientation is one.
+    /// Returns true when every number is finite, and an orientation is one.
     pub(crate) fn is_sound(&self) -> bool {
         match self {
             Self::Force(v) | Self::Rate(v) | Self::Acceleration(v) | Self::Gravity(v) => {

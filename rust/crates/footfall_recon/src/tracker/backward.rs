@@ -70,7 +70,7 @@ impl Tracker {
         scale(later, later.len() as f32 / sum.max(f32::MIN_POSITIVE));
     }
 
-    /// How good it is for what comes later to leave each phase of each subject at its end: into `entering`.
+    /// Values, for what comes later, of leaving each phase of each subject at its end: into `entering`.
     fn value_phases(&mut self, later: &[f32]) {
         let prepared = &*self.prepared;
         let config = &self.config;

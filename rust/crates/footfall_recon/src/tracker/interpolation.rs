@@ -79,7 +79,7 @@ impl Tracker {
         (body, velocity)
     }
 
-    /// What was measured in the probable frames, in the mean: what the sensor should have told.
+    /// Mean of what was measured in the probable frames: what the sensor should have measured.
     pub(crate) fn expected_sensor(&self, out: &mut [f32]) {
         let width = self.prepared.model.sensor_width();
         out.fill(0.0);

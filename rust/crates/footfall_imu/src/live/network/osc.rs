@@ -7,7 +7,7 @@ use crate::sample::GRAVITY_MPS2;
 use glam::Vec3;
 use rosc::{OscMessage, OscPacket, OscType};
 
-/// Whether this can be a packet of OSC.
+/// Returns true when this can be a packet of OSC.
 pub fn is_packet(bytes: &[u8]) -> bool {
     bytes.starts_with(b"/") || bytes.starts_with(b"#bundle\0")
 }

@@ -30,7 +30,7 @@ pub enum Packet {
     Handshake,
 }
 
-/// Whether this can be a packet of the protocol.
+/// Returns true when this can be a packet of the protocol.
 pub fn is_packet(bytes: &[u8]) -> bool {
     u32_at(bytes, 0).is_some_and(|kind| kind <= MOST_KIND) && bytes.len() >= 12
 }

@@ -24,7 +24,7 @@ const HEARTBEAT_SECS: f64 = 1.0;
 /// A port that is taken is tried again after so long.
 const RETRY: Duration = Duration::from_secs(2);
 
-/// Where to listen.
+/// Address to listen on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UdpConfig {
     /// The port; 0 for any that is free.

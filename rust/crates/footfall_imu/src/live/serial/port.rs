@@ -23,7 +23,7 @@ const RETRY: Duration = Duration::from_secs(1);
 /// After so long without a message, seconds, what speaks is found out anew.
 const LOST_SECS: f64 = 3.0;
 
-/// Which port, and what is known of the device there.
+/// A serial port, and what is known of the device there.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SerialConfig {
     /// Path or name of the port; empty for the first one on USB.
@@ -43,7 +43,7 @@ pub struct PortInfo {
     pub name: String,
     /// Description of the device there; empty when the system knows none.
     pub description: String,
-    /// Whether it is on USB.
+    /// True for a port on USB.
     pub is_usb: bool,
 }
 

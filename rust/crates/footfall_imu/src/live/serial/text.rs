@@ -79,7 +79,7 @@ impl Text {
         }
     }
 
-    /// Whether the line is a message; gives its readings.
+    /// Gives the readings of a line; returns true when it is a message.
     pub(in crate::live) fn line(&mut self, line: &[u8], give: &mut dyn FnMut(Reading)) -> bool {
         let Ok(text) = core::str::from_utf8(line) else {
             return false;

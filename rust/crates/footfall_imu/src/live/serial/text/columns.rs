@@ -24,7 +24,7 @@ pub(super) struct Units {
 }
 
 impl Units {
-    /// Whether header and setting give everything, so that nothing has to be guessed.
+    /// Returns true when header and setting give everything, so that nothing has to be guessed.
     pub(super) const fn are_told(self, setting: &TextFormat, row: &Row) -> bool {
         let force = self.force.is_some() || setting.force.is_some();
         let rate = self.rate.is_some() || setting.rate.is_some();
@@ -33,7 +33,7 @@ impl Units {
     }
 }
 
-/// Where each quantity stands in a line.
+/// Columns of the quantities in a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Columns {
     /// The names of a stream whose every line has them.
@@ -100,7 +100,7 @@ impl Columns {
         })
     }
 
-    /// Whether every line has the names of its columns.
+    /// Returns true when every line has the names of its columns.
     pub(super) const fn has_labels(&self) -> bool {
         !self.labels.is_empty()
     }
