@@ -4,7 +4,7 @@
 //! of other subjects. The sensors are virtual, 100 samples a second (or a phone's: [`Device`]), with the noise and biases of a phone's. The error is the mean distance between the
 //! joints of both bodies, their hips and headings brought together.
 //!
-//! Measured on the CMU recordings of the public data as recorded (72 clips, 14 subjects, not what the shipped models learned from: ARCHITECTURE has their table;
+//! Measured on the CMU recordings of the public data as recorded (72 clips, 14 subjects, not what the shipped models learned from: `DECISIONS.md` has their table;
 //! `footfall evaluate imu`), centimetres over the frames in which the
 //! body moves: live, and with what comes later in the recording. The constant pose is the mean of the training data. Paper: table 3 and figure 10, which
 //! trains and tests on the same subject. Jumps and hops are one of a kind here: what is held out was seen once or not at all.
