@@ -3,8 +3,9 @@
 use super::Violation;
 
 /// The design's folders and files at the top, beside dot files.
-const TOP_LEVEL: [&str; 7] = [
+const TOP_LEVEL: [&str; 8] = [
     "README.md",
+    "CONTRIBUTING.md",
     "LICENSE-MIT",
     "LICENSE-APACHE",
     "addons",
