@@ -27,7 +27,7 @@ impl FrameSpan {
         runs
     }
 
-    /// Whether a frame lies in the run.
+    /// Returns true when a frame lies in the run.
     pub const fn contains(self, frame: usize) -> bool {
         frame >= self.first && frame <= self.last
     }

@@ -67,7 +67,7 @@ impl Joint {
         RightToes,
     ];
 
-    /// Whether the joint is one of the hips and legs.
+    /// Returns true when the joint is one of the hips and legs.
     pub fn is_of_lower_body(self) -> bool {
         self == Self::Hips || self >= Self::LeftUpperLeg
     }

@@ -35,7 +35,7 @@ mod tests {
         proptest::array::uniform8(vector.prop_map(Vec3::from))
     }
 
-    /// Whether every lane is what `glam` makes of it.
+    /// Returns true when every lane is what `glam` makes of it.
     fn agree(found: Quatx8, expected: impl Fn(usize) -> Quat) -> bool {
         (0..LANES).all(|lane| (found.lane(lane) - expected(lane)).length() < 2e-6)
     }

@@ -53,7 +53,7 @@ impl PhaseStart {
         }
     }
 
-    /// Whether it is an event of one foot.
+    /// Returns true when it is an event of one foot.
     pub const fn has_side(self) -> bool {
         !matches!(self, Self::Lowest | Self::Apex | Self::Interval)
     }

@@ -44,7 +44,7 @@ impl Rig {
         self.names.len()
     }
 
-    /// Whether there is no bone.
+    /// Returns true when there is no bone.
     pub fn is_empty(&self) -> bool {
         self.names.is_empty()
     }
@@ -71,7 +71,7 @@ impl Rig {
             .map(|n| n + 1)
     }
 
-    /// Whether a bone hangs somewhere below another.
+    /// Returns true when a bone hangs somewhere below another.
     pub fn is_below(&self, bone: usize, above: usize) -> bool {
         self.links(bone, above).is_some()
     }

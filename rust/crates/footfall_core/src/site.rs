@@ -119,7 +119,7 @@ impl Site {
         }
     }
 
-    /// Whether the sensor sits on a foot, so that it comes to rest in every step.
+    /// Returns true when the sensor sits on a foot, so that it comes to rest in every step.
     pub const fn is_foot(self) -> bool {
         matches!(self, Self::RightFoot | Self::LeftFoot)
     }

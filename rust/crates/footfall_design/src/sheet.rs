@@ -28,7 +28,7 @@ pub struct KeySpec {
 }
 
 impl KeySpec {
-    /// Whether a value changes nothing.
+    /// Returns true when a value changes nothing.
     #[expect(
         clippy::float_cmp,
         reason = "the least change is a change, and the neutral value is written as it is here"
@@ -218,7 +218,7 @@ pub struct StyleSheet {
 }
 
 impl StyleSheet {
-    /// Whether the sheet asks for no change at all.
+    /// Returns true when the sheet asks for no change at all.
     pub fn is_neutral(&self) -> bool {
         let named = Self {
             name: self.name.clone(),

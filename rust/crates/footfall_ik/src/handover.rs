@@ -168,7 +168,7 @@ impl Handover {
         }
     }
 
-    /// Whether nothing is left of the motion that ended.
+    /// Returns true when nothing is left of the motion that ended.
     pub fn is_over(&self) -> bool {
         self.hips.is_over() && self.feet.iter().all(HeldFoot::is_over)
     }

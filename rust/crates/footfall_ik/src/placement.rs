@@ -44,16 +44,16 @@ const TELEPORT_M: f32 = 1.0;
 /// State of a foot after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedFoot {
-    /// Whether it is locked to the ground.
+    /// True when it is locked to the ground.
     pub locked: bool,
     /// `world_from_sole`: the ground under the ankle of the flat foot, +Y the ground's normal, +Z to the toes. For a foot
     /// on its way, of the place over which it is.
     pub sole: Frame,
     /// Support that it is locked to.
     pub support: Option<SupportId>,
-    /// Whether it was locked in this very frame.
+    /// True when it was locked in this very frame.
     pub landed: bool,
-    /// Whether it was let go in this very frame.
+    /// True when it was let go in this very frame.
     pub left: bool,
 }
 
@@ -276,7 +276,7 @@ impl FootPlacer {
         }
     }
 
-    /// Whether a foot stands, in an animation without known contacts.
+    /// Returns true when a foot stands, in an animation without known contacts.
     fn stands(
         &self,
         dt_secs: f32,

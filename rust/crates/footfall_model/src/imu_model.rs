@@ -52,7 +52,7 @@ pub struct Segment {
     pub subject: u16,
     /// Number of its frames.
     pub frames: u16,
-    /// Whether it follows the segment before without a gap.
+    /// True when it follows the segment before without a gap.
     pub follows: bool,
 }
 

@@ -52,7 +52,7 @@ impl Channel {
         }
     }
 
-    /// Whether the value is a length; otherwise it is an angle in degrees.
+    /// Returns true when the value is a length; otherwise it is an angle in degrees.
     pub const fn is_position(self) -> bool {
         matches!(self, Self::XPosition | Self::YPosition | Self::ZPosition)
     }

@@ -83,9 +83,9 @@ impl ContactConfig {
 /// Contact of one foot, frame by frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FootContacts {
-    /// Whether the heel bears on the ground.
+    /// True for the frames in which the heel bears on the ground.
     pub heel: Vec<bool>,
-    /// Whether the ball of the foot or the toes bear on the ground.
+    /// True for those in which the ball of the foot or the toes do.
     pub toe: Vec<bool>,
     /// Runs of frames in which any part of the foot bears on the ground, in order.
     pub stances: Vec<FrameSpan>,
@@ -131,7 +131,7 @@ impl Contacts {
         corrected
     }
 
-    /// Whether any part of a foot bears on the ground in a frame.
+    /// Returns true when any part of a foot bears on the ground in a frame.
     pub fn bears(&self, side: Side, frame: usize) -> bool {
         let foot = self.foot(side);
         let flag = |flags: &[bool]| flags.get(frame).copied().unwrap_or(false);

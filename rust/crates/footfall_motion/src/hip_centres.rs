@@ -38,7 +38,7 @@ impl HipCorrection {
         Vec3::new(0.0, up, forward)
     }
 
-    /// Whether the correction can be that of a recording: whether no leg of it would have to be longer than it is, in the mean of its
+    /// Returns true when the correction can be that of a recording: no leg of it would have to be longer than it is, in the mean of its
     /// strides.
     pub(crate) fn suits(&self, recording: &WalkingEvidence) -> bool {
         Side::BOTH.iter().all(|&side| {
@@ -111,7 +111,7 @@ pub struct WalkingEvidence {
     pub segments: [[f32; 2]; 2],
     /// Lengths of all bones in leg lengths: persons differ in them.
     pub bones: Vec<f32>,
-    /// Whether the body is the canonical one, which carries corrected or generated motion.
+    /// True when the body is the canonical one, which carries corrected or generated motion.
     pub is_own_body: bool,
     /// Source of the skeleton.
     pub origin: Origin,
@@ -120,7 +120,7 @@ pub struct WalkingEvidence {
 }
 
 impl WalkingEvidence {
-    /// Whether two recordings have one skeleton, at whatever scale.
+    /// Returns true when two recordings have one skeleton, at whatever scale.
     pub fn shares_skeleton_with(&self, other: &Self) -> bool {
         const SAME: f32 = 0.004;
         self.bones.len() == other.bones.len()

@@ -194,14 +194,14 @@ impl Body<'_> {
         way.with_y(0.0).length() < STANDING_MPS * secs
     }
 
-    /// Whether the hips go up in a jump, rather than the feet.
+    /// Returns true when the hips go up in a jump, rather than the feet.
     fn rises(&self, jump: &Jump) -> bool {
         let heights = (jump.take_off..=jump.landing).map(|frame| self.height(frame));
         let standing = self.height(jump.begin).max(self.height(jump.end));
         heights.fold(0.0, f32::max) > standing + LEAST_RISE_SHARE * self.clip.skeleton.hip_height()
     }
 
-    /// Whether a jump goes forwards or up, and does not turn.
+    /// Returns true when a jump goes forwards or up, and does not turn.
     fn is_straight(&self, jump: &Jump) -> bool {
         let [from, to] = [jump.begin, jump.end].map(|frame| &self.poses[frame]);
         let faces = |pose: &Pose| heading(pose.rotation(Joint::Hips));

@@ -27,7 +27,7 @@ pub struct Recording {
     pub detected: Contacts,
     /// Its walks, by its contacts.
     pub walks: Vec<Walk>,
-    /// Whether the contacts are a person's.
+    /// True when the contacts are a person's.
     pub is_corrected: bool,
 }
 

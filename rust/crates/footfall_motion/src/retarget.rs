@@ -91,7 +91,7 @@ pub struct RetargetReport {
     pub scale: f32,
     /// Frames in which the left and the right foot lay flat, from which the foot's zero was learned.
     pub flat_foot_frames: [usize; 2],
-    /// Whether the body walked in place, and its way was taken [from the standing foot](crate::game_clip).
+    /// True when the body walked in place, and its way was taken [from the standing foot](crate::game_clip).
     pub in_place: bool,
     /// Frames of one round, for a clip that is a loop.
     pub cycle_frames: Option<usize>,

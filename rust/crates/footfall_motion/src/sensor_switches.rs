@@ -39,7 +39,7 @@ const COMPARED_SECS: [f64; 2] = [0.04, 0.35];
 pub struct SensorSwitch {
     /// Time from the first sample, seconds.
     pub time_secs: f64,
-    /// Whether the foot lands or leaves.
+    /// Landing or leaving of the foot.
     pub kind: EventKind,
 }
 

@@ -86,7 +86,7 @@ pub fn segment_walks(clip: &Clip, contacts: &Contacts) -> Vec<Walk> {
 struct Landing {
     side: Side,
     frame: usize,
-    /// Whether the clip shows the foot in the air before, and the other foot does not land with it.
+    /// True when the clip shows the foot in the air before, and the other foot does not land with it.
     starts_a_step: bool,
 }
 
@@ -219,7 +219,7 @@ impl Motion<'_> {
         path * self.contacts.frame_rate_hz as f32 / (poses.len() - 1).max(1) as f32
     }
 
-    /// Whether both feet bear and the hips rest over a run of frames.
+    /// Returns true when both feet bear and the hips rest over a run of frames.
     fn stands(&self, first: usize, last: usize, walking_speed: f32) -> bool {
         let limit = (STANDING_SPEED * walking_speed).max(LEAST_STANDING_SPEED_MPS);
         (first..=last).all(|frame| {

@@ -29,7 +29,7 @@ pub struct ChainState {
     pub duration: usize,
 }
 
-/// Whether an end of the recording coincides with an end of a segment.
+/// End of a recording: at the end of a segment, or within one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Edge {
     /// The outermost segment is seen whole on this side.

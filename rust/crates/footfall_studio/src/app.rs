@@ -61,7 +61,7 @@ pub struct Studio {
     tab: Tab,
     shell: Shell,
     views: Views,
-    /// Whether the question is open that closing with unsaved labels asks.
+    /// True when the question is open that closing with unsaved labels asks.
     asks_to_close: bool,
     may_close: bool,
     /// The longest time that a frame took on the processor, seconds.
@@ -148,7 +148,7 @@ impl Studio {
         self.tab = tab;
     }
 
-    /// Whether work goes on in the background.
+    /// Returns true when work goes on in the background.
     pub fn is_busy(&self) -> bool {
         self.shell.library.is_busy() || self.shell.is_reading() || self.views.is_busy()
     }

@@ -30,7 +30,7 @@ pub(crate) struct Labels {
     frames: usize,
     undo: Vec<Stances>,
     redo: Vec<Stances>,
-    /// Whether a drag goes on, which is one edit.
+    /// True when a drag goes on, which is one edit.
     is_dragging: bool,
     saved: Stances,
 }
@@ -55,7 +55,7 @@ impl Labels {
         &self.stances
     }
 
-    /// Whether there is something to save.
+    /// Returns true when there is something to save.
     pub(crate) fn is_dirty(&self) -> bool {
         self.stances != self.saved
     }

@@ -18,7 +18,7 @@ pub(crate) struct Facts {
     pub(crate) steps: usize,
     /// The skeleton that it was recorded on.
     pub(crate) skeleton: String,
-    /// Whether contacts were corrected by hand.
+    /// True when contacts were corrected by hand.
     pub(crate) is_corrected: bool,
 }
 

@@ -55,9 +55,9 @@ pub struct CrowdWalker {
     base: Base,
     /// The step before, to be walked again.
     before: Option<Before>,
-    /// Whether steps are repeated instead of worked out.
+    /// True when steps are repeated instead of worked out.
     repeating: bool,
-    /// Whether an odd number of steps was repeated, so that the step before the last one worked out is walked.
+    /// True when an odd number of steps was repeated, so that the step before the last one worked out is walked.
     odd: bool,
     plan_from_start: GroundTransform,
     start_from_character: GroundTransform,

@@ -94,7 +94,7 @@ impl Controls {
         finite_or(self.speed_mps, 0.0).clamp(0.0, FASTEST_RUN_MPS)
     }
 
-    /// Whether this asks for neither travel nor turning, so that the walker stands.
+    /// Returns true when this asks for neither travel nor turning, so that the walker stands.
     pub fn is_standing(self) -> bool {
         finite_or(self.speed_mps, 0.0) < STANDING_SPEED_MPS
             && finite_or(self.turn_rate_radps, 0.0).abs() < STANDING_TURN_RATE_RADPS
@@ -391,7 +391,7 @@ impl GaitGenerator {
         Some((footstep, secs.max(0.0)))
     }
 
-    /// Whether the walker has come to a stand and rests.
+    /// Returns true when the walker has come to a stand and rests.
     pub fn is_standing(&self) -> bool {
         let step = self.shape();
         step.amplitude.to < 1.0 && self.position >= step.timing.frames as f32
@@ -407,7 +407,7 @@ impl GaitGenerator {
         self.steps.source().gait()
     }
 
-    /// Whether the left and the right foot bear on the ground; neither does in the flight of a run.
+    /// Returns the contacts of the left and the right foot; neither does in the flight of a run.
     pub fn feet_in_contact(&self) -> [bool; 2] {
         self.contact
     }

@@ -123,7 +123,7 @@ impl GaitGenerator {
         }
     }
 
-    /// Whether the jump that is asked for can be a step.
+    /// Returns true when the jump that is asked for can be a step.
     fn leaps(&self, controls: &Controls) -> bool {
         let Some(leap) = self.asked_jump else {
             return false;

@@ -69,7 +69,7 @@ impl Moves {
         }
     }
 
-    /// Whether the model knows how to jump off both feet.
+    /// Returns true when the model knows how to jump off both feet.
     pub(crate) fn can_jump(&self) -> bool {
         self.tables.jump.is_some()
     }

@@ -55,7 +55,7 @@ pub(crate) struct PlantedFrame {
     /// Heading under which the generated features are put, radians, and the rotation by it.
     pub(crate) heading: f32,
     pub(crate) level: Quat,
-    /// Whether the left and the right foot bear on the ground.
+    /// Contacts of the left and the right foot.
     pub(crate) contact: [bool; 2],
 }
 
@@ -70,19 +70,19 @@ pub(crate) struct StepTiming {
     pub(crate) terminal: usize,
     /// In a run the last frame in which the leading foot bears: from then until the step ends both are in the air.
     pub(crate) take_off: Option<usize>,
-    /// Whether the other foot is in the air as the step begins: it took off in the step before.
+    /// True when the other foot is in the air as the step begins: it took off in the step before.
     pub(crate) airborne: bool,
-    /// Whether both feet bear the body from its end on.
+    /// True when both feet bear the body from its end on.
     pub(crate) rests: bool,
 }
 
 impl StepTiming {
-    /// Whether the foot that begins the step bears in a frame of it.
+    /// Returns true when the foot that begins the step bears in a frame of it.
     pub(crate) fn leading_bears(&self, frame: usize) -> bool {
         self.take_off.is_none_or(|last| frame <= last)
     }
 
-    /// Whether the other foot still bears in a frame of it.
+    /// Returns true when the other foot still bears in a frame of it.
     pub(crate) fn trailing_bears(&self, frame: usize) -> bool {
         !self.airborne && frame <= self.terminal
     }

@@ -49,7 +49,7 @@ impl Rest {
         rest.map_or(s, |rest| rest.passed + (1.0 - rest.passed) * s)
     }
 
-    /// Whether its numbers make sense.
+    /// Returns true when its numbers make sense.
     pub(crate) fn is_sensible(&self) -> bool {
         let shares = [self.left, self.passed];
         self.state <= LAST_STATE && shares.iter().all(|share| (0.0..=1.0).contains(share))

@@ -98,7 +98,7 @@ enum Source {
     Styled {
         /// Weights of the step before, of this one and of the next.
         weights: [Vec<f32>; 3],
-        /// Whether the first step of the window is a left one; then the weights of its components.
+        /// True when the first step of the window is a left one; then the weights of its components.
         left_first: bool,
         draws: Vec<f64>,
         /// Covariate, tempo and stride of the step before and of this one.
@@ -317,7 +317,7 @@ impl State {
         }
     }
 
-    /// Whether no number is beyond reason.
+    /// Returns true when no number is beyond reason.
     fn is_sensible(&self) -> bool {
         let singles = [self.phase, self.variation, self.position, self.turn_rate];
         let feet = self.feet.iter().flat_map(Feet::numbers);

@@ -9,7 +9,7 @@ use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, Real, mlpg_part};
 /// Solves trajectories; owns every buffer that this takes.
 #[derive(Debug)]
 pub(crate) struct TrajectorySolver<R: Real> {
-    /// Whether trajectories are pulled at all.
+    /// True when trajectories are pulled at all.
     pub(crate) pulls: bool,
     pull_towards: Vec<R>,
     workspace: MlpgWorkspace<R>,

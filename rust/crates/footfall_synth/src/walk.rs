@@ -46,7 +46,7 @@ pub struct WalkConfig {
     pub direction_rad: f32,
     /// Walking or running, where the model knows both.
     pub gait: GaitChoice,
-    /// Whether the walk begins and ends standing, as one that does not go forwards does in any case; otherwise it is cut out of a longer
+    /// True when the walk begins and ends standing, as one that does not go forwards does in any case; otherwise it is cut out of a longer
     /// one.
     pub from_standing: bool,
 }

@@ -72,7 +72,7 @@ pub(crate) struct Walker {
     blend_before: Arc<Blend>,
     draws: [StepDraw; WINDOW],
     plans: [StepPlan<f32>; WINDOW],
-    /// Whether the steps ahead are not those of the last request.
+    /// True when the steps ahead are not those of the last request.
     stale: bool,
     origin: Origin,
     /// The last frames of the current step, which tie the next one to it.

@@ -176,7 +176,7 @@ fn distinct_steps(clips: &[Recording]) -> usize {
     clips.iter().map(of_clip).sum()
 }
 
-/// Whether there is enough in walks to learn a style from: a step of each foot, one after the other.
+/// Returns true when there is enough in walks to learn a style from: a step of each foot, one after the other.
 pub fn shows_steps(walks: &[Walk]) -> bool {
     walks.iter().any(|walk| walk.steps.len() >= LEAST_STEPS)
 }

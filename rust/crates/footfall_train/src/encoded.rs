@@ -116,7 +116,7 @@ pub(crate) fn number_of<'a>(subject: &'a str, seen: &mut Vec<&'a str>) -> usize 
         })
 }
 
-/// Whether no walk of a recording starts or stops.
+/// Returns true when no walk of a recording starts or stops.
 fn is_steady(recording: &Recording) -> bool {
     let is_steady = |walk: &Walk| steady_part(walk).steps.len() == walk.steps.len();
     recording.walks.iter().all(is_steady)

@@ -33,7 +33,7 @@ pub(crate) struct MissingStep {
     walker: usize,
     /// 0 left, 1 right.
     side: usize,
-    /// Whether the step before it is the one before in the list.
+    /// True when the step before it is the one before in the list.
     follows: bool,
     rows: StepRows,
 }

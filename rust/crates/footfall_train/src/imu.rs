@@ -26,7 +26,7 @@ pub struct ImuTrainConfig {
     pub frame_rate_hz: f64,
     /// Where the sensors sit; one or two.
     pub sites: Vec<Site>,
-    /// Whether every recording is used mirrored, too.
+    /// True when every recording is used mirrored, too.
     pub mirror: bool,
     /// Most frames that are kept: then the cycles of movement that stand best for all others. All are kept when `None`.
     pub most_frames: Option<usize>,

@@ -28,7 +28,7 @@ pub struct TrainConfig {
     pub frame_rate_hz: f64,
     /// Time differences of the observations.
     pub windows: Windows,
-    /// Whether every walk is also used with left and right exchanged, which makes the average walk symmetric.
+    /// True when every walk is also used with left and right exchanged, which makes the average walk symmetric.
     pub mirror: bool,
     /// When to stop.
     pub em: EmConfig,

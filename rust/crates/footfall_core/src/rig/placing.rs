@@ -29,7 +29,7 @@ impl MapKeys {
 pub(super) struct Placed {
     pub(super) placement: Placement,
     pub(super) doubts: Vec<Doubt>,
-    /// Whether the trunk's bones have the map's names. Where they have not, the bones that there are were shared out, which any map can do.
+    /// True when the trunk's bones have the map's names. Where they have not, the bones that there are were shared out, which any map can do.
     pub(super) has_named_trunk: bool,
 }
 

@@ -121,7 +121,7 @@ fn best_of(rig: &Rig, maps: &[JointMap]) -> Recognition {
     best
 }
 
-/// Whether two placements are of two bodies.
+/// Returns true when two placements are of two bodies.
 fn are_apart(a: &Placement, b: &Placement) -> bool {
     a.count() > 0
         && a.joints

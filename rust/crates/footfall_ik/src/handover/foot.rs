@@ -161,7 +161,7 @@ impl HeldFoot {
         self.parted_m() + METRES_A_RADIAN * self.parted.y.abs()
     }
 
-    /// Whether it is held elsewhere than where it should stand.
+    /// Returns true when it is held elsewhere than where it should stand.
     pub(super) fn is_held_apart(&self) -> bool {
         self.distance() > 0.0
     }
@@ -171,12 +171,12 @@ impl HeldFoot {
         level(self.parted).length()
     }
 
-    /// Whether it stands, or is as good as there.
+    /// Returns true when it stands, or is as good as there.
     pub(super) fn has_landed(&self) -> bool {
         self.going.is_none() && self.place.left().length() < LANDED_M
     }
 
-    /// Whether it is where the motion that goes on has it.
+    /// Returns true when it is where the motion that goes on has it.
     pub(super) fn is_over(&self) -> bool {
         self.place.is_over() && self.going.is_none() && self.distance() == 0.0
     }

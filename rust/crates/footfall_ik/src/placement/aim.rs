@@ -53,7 +53,7 @@ pub(super) struct Step<'a> {
     pub(super) leg_m: f32,
     /// Grade between the two footholds before it.
     pub(super) grade: f32,
-    /// Whether the step can still be made shorter or longer; otherwise only its foot is put elsewhere.
+    /// True when the step can still be made shorter or longer; otherwise only its foot is put elsewhere.
     pub(super) may_stretch: bool,
 }
 
@@ -185,7 +185,7 @@ impl Step<'_> {
         Some((cost, aim))
     }
 
-    /// Whether the way goes up or down as stairs do.
+    /// Returns true when the way goes up or down as stairs do.
     fn is_on_stairs(&self) -> bool {
         self.grade.abs() > STAIRS_GRADE
     }

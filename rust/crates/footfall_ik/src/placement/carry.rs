@@ -315,7 +315,7 @@ fn yielded(leg: Vec3, easy: f32, most: f32) -> Vec3 {
     leg.normalize() * (easy + room * (1.0 - (-beyond / room).exp()))
 }
 
-/// Whether there is ground under a foot that looks for it.
+/// Returns true when there is ground under a foot that looks for it.
 fn grounded(foot: &Foot) -> bool {
     foot.mode != Mode::Free && foot.over_ground
 }

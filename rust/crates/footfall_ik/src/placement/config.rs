@@ -20,7 +20,7 @@ pub struct PlacementConfig {
     pub max_drift_m: f32,
     /// A foot that the animation turns this far from where it is locked is put anew, radians.
     pub max_twist: f32,
-    /// Whether a foot that would stand across an edge is put ahead of it, behind it or beside it.
+    /// True when a foot that would stand across an edge is put ahead of it, behind it or beside it.
     pub adjust_footholds: bool,
     /// Thresholds of contact, for animations without known contacts.
     pub contact: ContactThresholds,
@@ -50,6 +50,6 @@ pub struct PlacementInput {
     pub contacts: Option<[bool; 2]>,
     /// Next landings of the left and the right foot, where the animation knows.
     pub landings: [Option<Landing>; 2],
-    /// Whether the character is in the air: feet are left to the animation.
+    /// True when the character is in the air: feet are left to the animation.
     pub airborne: bool,
 }

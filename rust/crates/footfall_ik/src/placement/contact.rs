@@ -25,7 +25,7 @@ impl Default for ContactThresholds {
 }
 
 impl ContactThresholds {
-    /// Whether a foot stands that did so or not a moment ago.
+    /// Returns true when a foot stands, given that it did so or not a moment ago.
     pub(crate) fn stands(&self, stood: bool, speed_mps: f32, height_m: f32) -> bool {
         if stood {
             speed_mps < self.exit_mps && height_m < self.exit_m

@@ -61,7 +61,7 @@ pub(super) enum Mode {
 pub(super) struct Foot {
     pub(super) mode: Mode,
     pub(super) hold: Option<Foothold>,
-    /// Whether there is ground within reach.
+    /// True when there is ground within reach.
     pub(super) over_ground: bool,
     /// Where the sole is, or would be if it were put down, relative to the floor of the animation.
     pub(super) sole: Frame,
@@ -94,7 +94,7 @@ pub(super) struct Foot {
     /// Residual between the locked foot and the animated one, beyond its correction.
     pub(super) at_lock: Residual,
     pub(super) begun: bool,
-    /// Whether it was let go before the animation lifts it.
+    /// True when it was let go before the animation lifts it.
     pub(super) let_go_early: bool,
 }
 

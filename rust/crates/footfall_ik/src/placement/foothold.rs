@@ -22,7 +22,7 @@ const ASIDE_M: f32 = 0.02;
 /// A place for a sole, on something that may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Foothold {
-    /// Whether the foot comes down on its ball: its heel sticks out over an edge, or it has gone up or down one.
+    /// True when the foot comes down on its ball: its heel sticks out over an edge, or it has gone up or down one.
     pub(crate) on_ball: bool,
     support: SupportId,
     support_from_sole: Frame,
@@ -74,11 +74,11 @@ pub(crate) struct Search {
     pub(crate) below_m: f32,
     /// A sole is tilted by this much at most, radians.
     pub(crate) max_tilt: f32,
-    /// Whether the sole may move ahead or back, out of the way of an edge.
+    /// True when the sole may move ahead or back, out of the way of an edge.
     pub(crate) may_shift: bool,
     /// Largest shifts to the left and to the right, metres.
     pub(crate) aside_m: [f32; 2],
-    /// Whether it does so also where its middle lies across an edge. Most edges lie across the way, and moving to the side is in vain.
+    /// True when it does so also where its middle lies across an edge. Most edges lie across the way, and moving to the side is in vain.
     pub(crate) thorough: bool,
 }
 

@@ -81,7 +81,7 @@ impl Foot {
 }
 
 impl<T: Terrain> Scene<'_, T> {
-    /// Whether a point that is below the ground is no farther than this from a wall that it could leave it through.
+    /// Returns true when a point that is below the ground is no farther than this from a wall that it could leave it through.
     fn beside(&mut self, point: Vec3, distance_m: f32) -> bool {
         let ways = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
         ways.into_iter().any(|way| {

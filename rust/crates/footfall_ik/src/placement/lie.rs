@@ -36,7 +36,7 @@ pub(crate) struct Lie {
 }
 
 impl Lie {
-    /// Whether it lies on the ground in its whole breadth.
+    /// Returns true when it lies on the ground in its whole breadth.
     pub(super) fn rim_rests(&self) -> bool {
         self.rim_cut <= FLAT_M && self.rim_hangs == 0
     }
@@ -64,7 +64,7 @@ impl Search {
         }
     }
 
-    /// Whether higher ground stands close behind the heel or before the toes of a sole.
+    /// Returns true when higher ground stands close behind the heel or before the toes of a sole.
     pub(super) fn is_tight(
         &self,
         terrain: &mut impl Terrain,

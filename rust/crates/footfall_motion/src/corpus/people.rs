@@ -35,7 +35,7 @@ pub struct PersonFile<'a> {
     pub path: &'a Path,
     /// Who it is.
     pub subject: &'a str,
-    /// Whether nobody acts in it; recordings of acted walks do not tell of hip joints.
+    /// True when nobody acts in it; recordings of acted walks do not tell of hip joints.
     pub is_plain: bool,
 }
 
@@ -45,7 +45,7 @@ struct Witness<'a> {
     evidence: WalkingEvidence,
 }
 
-/// Whether an index is unsure who it is.
+/// Returns true when an index is unsure who it is.
 fn is_unidentified(subject: &str) -> bool {
     subject.contains('?')
 }

@@ -25,7 +25,7 @@ pub struct Where {
     pub column: String,
     /// Pattern of its value.
     pub pattern: String,
-    /// Whether it must not be so instead.
+    /// True when it must not be so instead.
     pub negated: bool,
 }
 
@@ -54,7 +54,7 @@ impl fmt::Display for Where {
 }
 
 impl Where {
-    /// Whether a value of the column meets the condition.
+    /// Returns true when a value of the column meets the condition.
     pub fn matches(&self, value: &str) -> bool {
         self.fits(value) != self.negated
     }

@@ -47,7 +47,7 @@ pub enum GltfError {
     },
 }
 
-/// Whether a path, with or without `#Name`, is of a glTF file.
+/// Returns true for the path of a glTF file, with or without `#Name`.
 pub fn is_gltf(path: &Path) -> bool {
     let (file, _) = split_name(path);
     let extension = file.extension().unwrap_or_default().to_ascii_lowercase();

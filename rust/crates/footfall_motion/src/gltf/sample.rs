@@ -73,7 +73,7 @@ impl Track {
         })
     }
 
-    /// Whether it turns the node.
+    /// Returns true when it turns the node.
     pub(super) const fn is_rotation(&self) -> bool {
         matches!(self.values, Values::Turns(_))
     }

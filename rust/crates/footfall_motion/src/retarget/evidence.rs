@@ -96,7 +96,7 @@ fn stances(source: &SourceMotion, clip: &Clip) -> Vec<Stance> {
     stances
 }
 
-/// Whether a stride is plain walking straight ahead.
+/// Returns true when a stride is plain walking straight ahead.
 fn goes_ahead(clip: &Clip, first: usize, end: usize) -> bool {
     let secs = (end - first) as f64 / clip.frame_rate_hz;
     let [from, to] = [first, end].map(|frame| &clip.poses[frame.min(clip.poses.len() - 1)]);

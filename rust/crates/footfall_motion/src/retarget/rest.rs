@@ -93,7 +93,7 @@ fn reference_pose(motion: &SourceMotion) -> Option<&SourceFrame> {
         .find(|frame| stands(frame, 15.0, Some(20.0)))
 }
 
-/// Whether trunk and legs are upright and straight within `tolerance` degrees, and, if asked, the arms level.
+/// Returns true when trunk and legs are upright and straight within `tolerance` degrees, and, if asked, the arms level.
 fn stands(frame: &SourceFrame, tolerance: f32, arm_tolerance: Option<f32>) -> bool {
     let within = |direction: Vec3, target: Vec3, degrees: f32| {
         direction != Vec3::ZERO && direction.angle_between(target) < degrees.to_radians()

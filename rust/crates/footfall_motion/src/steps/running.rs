@@ -47,7 +47,7 @@ pub fn running_parts(clip: &Clip, walks: &[Walk]) -> Vec<Walk> {
     runs.into_iter().map(|steps| Walk { steps }).collect()
 }
 
-/// Whether a step goes on like the one before it.
+/// Returns true when a step goes on like the one before it.
 fn is_steady(clip: &Clip, before: &Step, step: &Step) -> bool {
     let [last, now] = [before, step].map(|step| velocity(clip, step));
     let even = (now.length() - last.length()).abs() < STEADY_SPEED_SHARE * last.length();

@@ -14,7 +14,7 @@ pub struct SimplestWalker {
     slope: f64,
     /// Angle of the stance leg to the slope's normal, of the swing leg to the stance leg, and their rates.
     state: [f64; 4],
-    /// Whether the first leg is the one that stands.
+    /// True when the first leg is the one that stands.
     first_stands: bool,
 }
 
@@ -104,7 +104,7 @@ impl SimplestWalker {
     }
 }
 
-/// Whether the swing foot comes down between two states. It scuffs the ground as the legs pass; that does not count.
+/// Returns true when the swing foot comes down between two states. It scuffs the ground as the legs pass; that does not count.
 fn strikes(before: [f64; 4], after: [f64; 4]) -> bool {
     let height = |state: [f64; 4]| state[1] - 2.0 * state[0];
     after[0] < -0.05 && height(before) < 0.0 && height(after) >= 0.0

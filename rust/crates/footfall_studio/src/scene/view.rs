@@ -29,7 +29,7 @@ pub(crate) struct Footprint {
     pub(crate) side: Side,
     /// Heel, ball and toe tip.
     pub(crate) sole: [Vec3; 3],
-    /// Whether the foot stands there now.
+    /// True when the foot stands there now.
     pub(crate) stands: bool,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Scene<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct SceneView {
     pub(crate) orbit: Orbit,
-    /// Whether the camera goes along with the first body.
+    /// True when the camera goes along with the first body.
     pub(crate) follows: bool,
 }
 

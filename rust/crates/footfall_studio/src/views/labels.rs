@@ -30,7 +30,7 @@ pub(crate) struct LabelsView {
     recovered: Vec<Kept>,
     /// Corrections that are kept already, so that they are not written in every frame.
     kept: Option<Kept>,
-    /// Whether the phases are those of other contacts than the ones that are shown.
+    /// True when the phases are those of other contacts than the ones that are shown.
     phases_are_old: bool,
     phases: Option<Job<Vec<Phase>>>,
 }

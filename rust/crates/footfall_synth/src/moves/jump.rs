@@ -61,7 +61,7 @@ pub(crate) struct JumpMoment {
 pub(crate) struct Flown {
     /// How far to the left, up and ahead of where it began the character is, metres.
     pub(crate) place: Vec3,
-    /// Whether the feet bear.
+    /// True when the feet bear.
     pub(crate) bears: bool,
 }
 

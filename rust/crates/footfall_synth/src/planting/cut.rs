@@ -23,7 +23,7 @@ pub(crate) struct Cut<'a> {
 }
 
 impl Cut<'_> {
-    /// Whether one foot stands and the other is in the air, and was in the frame before.
+    /// Returns true when one foot stands and the other is in the air, and was in the frame before.
     pub(crate) fn is_in_swing(&self) -> bool {
         let (standing, swinging) = (self.timing.leading, self.timing.leading.other());
         self.frame > 0

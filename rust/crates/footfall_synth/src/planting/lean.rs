@@ -91,7 +91,7 @@ impl Bend {
         }
     }
 
-    /// Whether the trunk stays as it is all through the step.
+    /// Returns true when the trunk stays as it is all through the step.
     fn is_none(&self) -> bool {
         self.begin == Lean::default() && [self.end, self.middle] == [Vec2::ZERO; 2]
     }

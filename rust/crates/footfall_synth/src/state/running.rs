@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// What a runner has beyond that.
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Running {
-    /// Whether the step before and this one are of a run.
+    /// True for the step before and this one where they are of a run.
     runs: [bool; 2],
     /// The foot in the air as the step begins: ankle, rotation of foot and toes, then and a frame earlier; and the time between.
     airborne: Option<([f32; 11], [f32; 11], f32)>,

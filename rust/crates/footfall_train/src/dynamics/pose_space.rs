@@ -111,7 +111,7 @@ fn reach(skeleton: &Skeleton) -> Vec<f64> {
         .collect()
 }
 
-/// Whether a joint hangs on another.
+/// Returns true when a joint hangs on another.
 fn is_beyond(joint: Joint, on: Joint) -> bool {
     let mut parent = joint.parent();
     while let Some(joint) = parent {

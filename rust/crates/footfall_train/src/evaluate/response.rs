@@ -166,7 +166,7 @@ impl Travel {
         pauses
     }
 
-    /// Whether hips go the other way after this frame, which is the slowest around.
+    /// Returns true when hips go the other way after this frame, which is the slowest around.
     fn turns_round(&self, frame: usize) -> bool {
         let around = (TURNING_SECS * self.rate_hz) as usize;
         let (Some(first), last) = (frame.checked_sub(around), frame + around) else {

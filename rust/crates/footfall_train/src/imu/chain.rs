@@ -47,7 +47,7 @@ pub struct ChainSegment {
 pub struct Chain {
     /// Who moves.
     pub subject: String,
-    /// Whether left and right are changed.
+    /// True when left and right are changed.
     pub mirrored: bool,
     /// The body.
     pub skeleton: Skeleton,

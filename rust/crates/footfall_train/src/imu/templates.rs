@@ -33,7 +33,7 @@ pub(super) struct Cycle {
 }
 
 impl Cycle {
-    /// Whether another goes on where this one ends.
+    /// Returns true when another goes on where this one ends.
     pub(super) fn is_followed_by(&self, other: &Self) -> bool {
         other.chain == self.chain && other.segments.start == self.segments.end
     }

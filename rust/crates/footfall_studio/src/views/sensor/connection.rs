@@ -190,7 +190,7 @@ impl Connection {
         }))
     }
 
-    /// Whether a recording is on its way.
+    /// Returns true when a recording is on its way.
     pub(super) const fn is_replaying(&self) -> bool {
         match &self.source {
             Source::Replay {
