@@ -62,8 +62,8 @@ impl EventKind {
 pub struct GaitEvent {
     /// Frame of the clip.
     pub frame: usize,
-    /// Which foot.
+    /// The foot.
     pub side: Side,
-    /// Which end of the stance.
+    /// End of the stance that it is.
     pub kind: EventKind,
 }

@@ -1,4 +1,4 @@
-//! Where on the body an inertial sensor sits.
+//! Sites of inertial sensors on the body.
 
 use crate::joint::{Joint, Side};
 use glam::Vec3;
@@ -106,7 +106,7 @@ impl Site {
         }
     }
 
-    /// Where the sensor sits in the joint's space on the canonical body, metres.
+    /// Returns the sensor's position in the joint's space on the canonical body, metres.
     pub fn position(self) -> Vec3 {
         let outwards = self.side().map_or(0.0, Side::sign);
         match self {

@@ -1,6 +1,6 @@
-//! Where in its walk a step is (Tilmanne et al. 2012, section 5.2.1).
+//! Position of a step in its walk (Tilmanne et al. 2012, section 5.2.1).
 
-/// Where in its walk a step is.
+/// Position of a step in its walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StepPosition {
     /// The first after standing.

@@ -15,7 +15,7 @@ const ARM_HANGS: f32 = 0.8;
 /// Least and greatest bend of an elbow, radians.
 const ELBOW: [f32; 2] = [0.05, 2.4];
 
-/// What the edits need to know about a frame.
+/// Facts of a frame that the edits need.
 struct Frame {
     level: Quat,
     phase: f32,

@@ -91,7 +91,7 @@ impl Ground<'_> {
         }
     }
 
-    /// Where one foot is in every frame.
+    /// Returns the target of one foot in every frame.
     fn foot_targets(&self, side: Side, models: &[ModelPose]) -> Vec<FootTarget> {
         let foot = RockerFoot::new(&self.captured.skeleton, side);
         let stances = &self.timeline.stances[side.index()];
@@ -155,7 +155,7 @@ impl Ground<'_> {
         pitch + raise - feet.landing.to_radians() * landing
     }
 
-    /// Where a foot stands: the captured place, seen from the course, carried to the new course.
+    /// Returns the place of a standing foot: the captured one, seen from the course, carried to the new course.
     fn plant(
         &self,
         side: Side,
@@ -323,7 +323,7 @@ impl Ground<'_> {
     }
 }
 
-/// Where in its own cycle a foot is.
+/// Progress of a foot in its own cycle.
 #[derive(Clone, Copy, Debug)]
 enum Progress {
     /// Standing, frames since it landed.

@@ -23,7 +23,7 @@ pub struct KeySpec {
     pub neutral: f32,
     /// Least and greatest value.
     pub range: RangeInclusive<f32>,
-    /// What it does.
+    /// Its effect.
     pub text: &'static str,
 }
 
@@ -185,7 +185,7 @@ pub enum Axis {
 pub struct PhaseCurve {
     /// The joint.
     pub joint: Joint,
-    /// Which turn.
+    /// Axis of the turn.
     pub axis: Axis,
     /// Degrees over the cycle, which starts when the joint's own foot lands (the left one for the trunk).
     pub offset: PeriodicCurve,
@@ -253,6 +253,6 @@ impl StyleSheet {
 pub struct SheetError {
     /// Line of the sheet, from 1.
     pub line: usize,
-    /// What is wrong, and what to write instead.
+    /// The fault, and what to write instead.
     pub what: String,
 }

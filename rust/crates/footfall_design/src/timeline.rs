@@ -112,7 +112,7 @@ impl Timeline {
         })
     }
 
-    /// How many new frames there are.
+    /// Returns the number of new frames.
     pub(crate) fn frames(&self) -> usize {
         self.source.len()
     }

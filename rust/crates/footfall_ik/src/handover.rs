@@ -46,7 +46,7 @@ pub struct Moving<'a> {
     pub before: &'a Pose,
     /// The frame now.
     pub now: &'a Pose,
-    /// Which feet stand.
+    /// True for the feet that stand.
     pub stands: [bool; 2],
 }
 

@@ -32,7 +32,7 @@ pub struct LegSolution {
     pub thigh: Quat,
     /// `model_from_shank` rotation.
     pub shank: Quat,
-    /// Where the ankle is in the end, metres.
+    /// Position of the ankle in the end, metres.
     pub ankle: Vec3,
 }
 

@@ -23,7 +23,7 @@ const FLAT_PITCH: f32 = 0.09;
 /// heel and 0.38 at the ball (ANSUR II, Gordon et al. 2014); toes taper.
 const HALF_BREADTHS: [f32; 3] = [0.135, 0.19, 0.12];
 
-/// Where a foot was put.
+/// Place where a foot was put.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plant {
     /// Position of the ankle when the sole is flat on the ground, metres.
@@ -71,7 +71,7 @@ impl RockerFoot {
         }
     }
 
-    /// Where the foot is when it stands on its plant at this pitch (positive: heel up).
+    /// Returns the target of a foot that stands on its plant at this pitch (positive: heel up).
     pub fn stand(&self, plant: &Plant, pitch: f32) -> FootTarget {
         self.stand_level(plant, from_heading(plant.heading), pitch)
     }

@@ -32,7 +32,7 @@ pub struct DynamicsModel {
     pub components: Vec<Vec<f64>>,
     /// The system while the left foot carries the body from its initial contact on, then the right.
     pub regimes: [Regime; 2],
-    /// Where the model comes from.
+    /// Provenance of the model.
     pub provenance: Provenance,
 }
 

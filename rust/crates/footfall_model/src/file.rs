@@ -61,7 +61,7 @@ pub struct Header {
     pub kind: String,
     /// The version of Footfall that wrote the file.
     pub written_by: String,
-    /// Where the model comes from.
+    /// Provenance of the model.
     pub provenance: Provenance,
 }
 
@@ -280,7 +280,7 @@ impl WalkModel {
         Ok(Self::Gait(Arc::new(GaitModel::from_bytes(bytes)?)))
     }
 
-    /// Where the model comes from.
+    /// Provenance of the model.
     pub fn provenance(&self) -> &Provenance {
         match self {
             Self::Gait(model) => &model.provenance,

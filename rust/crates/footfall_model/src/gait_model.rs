@@ -23,7 +23,7 @@ pub struct GaitModel {
     pub frame_rate_hz: f64,
     /// The body that it was trained on.
     pub skeleton: Skeleton,
-    /// Which time differences the observations hold.
+    /// Time differences that the observations hold.
     pub windows: Windows,
     /// The step that begins with the left foot's initial contact, then the one with the right's.
     pub steps: [StepModel; 2],
@@ -46,7 +46,7 @@ pub struct GaitModel {
     pub jump: Option<JumpModel>,
     /// Crouching; nothing in models of earlier versions.
     pub crouch: Option<CrouchModel>,
-    /// Where the model comes from.
+    /// Provenance of the model.
     pub provenance: Provenance,
 }
 
@@ -196,7 +196,7 @@ pub enum ModelError {
         "{part}: has {found} numbers where {expected} belong; make the model anew with `footfall train`"
     )]
     Shape {
-        /// Which part.
+        /// The part.
         part: String,
         /// Number of values expected.
         expected: usize,
@@ -208,7 +208,7 @@ pub enum ModelError {
         "{part}: a number is not finite or out of range; make the model anew with `footfall train`"
     )]
     Value {
-        /// Which part.
+        /// The part.
         part: String,
     },
 }

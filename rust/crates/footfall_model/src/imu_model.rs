@@ -16,19 +16,19 @@ pub const SENSOR_COUNT: usize = 9;
 /// Numbers that describe the body in a frame.
 pub const BODY_COUNT: usize = FEATURE_COUNT + 8;
 
-/// Where in a body row the height of the hips is, metres on the canonical body. Joint rotations come before it, as in [`crate::layout`].
+/// Place of the height of the hips in a body row, metres on the canonical body. Joint rotations come before it, as in [`crate::layout`].
 pub const HEIGHT: usize = FEATURE_COUNT;
 
-/// Where the way of the hips since the frame before is: to the body's left, then forward, metres.
+/// Place of the way of the hips since the frame before: to the body's left, then forward, metres.
 pub const WAY: usize = FEATURE_COUNT + 1;
 
-/// Where the turn since the frame before is, radians.
+/// Place of the turn since the frame before, radians.
 pub const TURN: usize = FEATURE_COUNT + 3;
 
-/// Where it is told whether the left and the right foot bear: 0 or 1.
+/// Place of the contacts of the left and the right foot: 0 or 1.
 pub const CONTACT: usize = FEATURE_COUNT + 4;
 
-/// Where the heading of each of up to two sensors relative to the body's is, radians.
+/// Place of the headings of up to two sensors relative to the body's, radians.
 pub const SENSOR_HEADING: usize = FEATURE_COUNT + 6;
 
 /// Most sensors that a model can have.
@@ -46,9 +46,9 @@ pub const MAX_FRAMES: usize = 2_000_000;
 /// One phase of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
-    /// Which of [`ImuModel::phases`] it is.
+    /// Number among [`ImuModel::phases`].
     pub phase: u16,
-    /// Who moves: an index below [`ImuModel::subjects`].
+    /// The person who moves: an index below [`ImuModel::subjects`].
     pub subject: u16,
     /// Number of its frames.
     pub frames: u16,
@@ -61,7 +61,7 @@ pub struct Segment {
 pub struct ImuModel {
     /// Frames per second.
     pub frame_rate_hz: f64,
-    /// Where the sensors sit; one or two.
+    /// Sites of the sensors; one or two.
     pub sites: Vec<Site>,
     /// The body of the recordings.
     pub skeleton: Skeleton,
@@ -82,7 +82,7 @@ pub struct ImuModel {
     /// Of each phase, the regression of body on sensor: [`BODY_COUNT`] rows of as many numbers as the sensors have. Empty where
     /// there are too few frames.
     pub regressions: Vec<Vec<f32>>,
-    /// Where the model comes from.
+    /// Provenance of the model.
     pub provenance: Provenance,
 }
 

@@ -14,7 +14,7 @@ pub const FEATURE_COUNT: usize = 3 * JOINT_COUNT;
 /// Static and dynamic features of one frame.
 pub const OBSERVATION_COUNT: usize = 3 * FEATURE_COUNT;
 
-/// Where a joint's three features begin.
+/// Returns the first of a joint's three features.
 pub const fn feature_offset(joint: Joint) -> usize {
     3 * joint.index()
 }

@@ -1,8 +1,8 @@
-//! Where a model comes from.
+//! Provenance of a model.
 
 use serde::{Deserialize, Serialize};
 
-/// Where a model comes from and under which terms: stored in every file, shown by `footfall inspect`.
+/// Provenance of a model, and its terms: stored in every file, shown by `footfall inspect`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Training data, in words a reader understands.

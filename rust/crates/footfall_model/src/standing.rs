@@ -33,7 +33,7 @@ pub struct StandingModel {
     pub stance: SwayOctave,
     /// Sway and shifts of weight, slowest first.
     pub octaves: Vec<SwayOctave>,
-    /// Where they look.
+    /// Their looks.
     pub looks: Looks,
     /// Breathing.
     pub breath: Breath,

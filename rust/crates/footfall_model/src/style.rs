@@ -32,7 +32,7 @@ pub struct GaitStyle {
     pub speed_mps: f64,
     /// Mean cadence of the recorded steps, steps per second.
     pub cadence_hz: f64,
-    /// Where the style comes from.
+    /// Provenance of the style.
     pub provenance: Provenance,
 }
 
@@ -64,7 +64,7 @@ pub enum StyleError {
         "style '{style}' was made for another base model; adapt it again with `footfall adapt --base` and this model"
     )]
     OtherBase {
-        /// Which style.
+        /// The style.
         style: String,
     },
     /// A weight is NaN or infinite.
@@ -72,7 +72,7 @@ pub enum StyleError {
         "the weight of style '{style}' is {weight}; give a finite number, 1 for the style as recorded"
     )]
     Weight {
-        /// Which style.
+        /// The style.
         style: String,
         /// The weight.
         weight: f64,
@@ -80,7 +80,7 @@ pub enum StyleError {
     /// A style or the base has content that makes no sense.
     #[error("style '{style}' cannot be used: {source}")]
     Content {
-        /// Which style.
+        /// The style.
         style: String,
         /// Fault.
         source: ModelError,

@@ -77,7 +77,7 @@ pub struct StepEntry {
     pub last: usize,
     /// `first`, `second`, `inside`, `last_but_one` or `last`.
     pub position: String,
-    /// Which walk of the file, from 0.
+    /// Number of the walk in the file, from 0.
     pub walk: usize,
 }
 
@@ -137,7 +137,7 @@ impl ContactFile {
         }
     }
 
-    /// Where contacts that a person corrected are kept: beside the recording, under its name.
+    /// Returns the path of contacts that a person corrected: beside the recording, under its name.
     pub fn beside(recording: &Path) -> PathBuf {
         let mut name = recording.file_name().unwrap_or_default().to_owned();
         name.push(".labels.json");

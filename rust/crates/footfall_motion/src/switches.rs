@@ -50,7 +50,7 @@ pub enum Landing {
     HalfCycle,
     /// The projection residual, averaged over the clip's steps, is greatest.
     Residual,
-    /// Where hip and knee put the ankle.
+    /// Place of the ankle by hip and knee.
     #[default]
     Legs,
     /// The residual is greatest within a frame of where the legs say.

@@ -17,7 +17,7 @@ pub struct Question {
     pub answers: Vec<bool>,
 }
 
-/// Which contexts share a model.
+/// Contexts that share a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContextTree {
     root: Node,

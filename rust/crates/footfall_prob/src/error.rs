@@ -20,7 +20,7 @@ pub enum ProbError {
     NotFinite {
         /// The argument.
         what: &'static str,
-        /// Where in the slice (row-major).
+        /// Place in the slice (row-major).
         index: usize,
         /// The offending value.
         value: f64,
@@ -30,7 +30,7 @@ pub enum ProbError {
     NotPositive {
         /// The argument.
         what: &'static str,
-        /// Where in the slice.
+        /// Place in the slice.
         index: usize,
         /// The offending value.
         value: f64,
@@ -40,7 +40,7 @@ pub enum ProbError {
     IndexOutOfRange {
         /// The argument.
         what: &'static str,
-        /// Where in the slice.
+        /// Place in the slice.
         index: usize,
         /// The offending index.
         value: usize,

@@ -171,7 +171,7 @@ impl Studio {
         self.views.clips.playback.secs = secs;
     }
 
-    /// Where the motion that is shown is, seconds.
+    /// Returns the time of the motion that is shown, seconds.
     pub const fn playhead_secs(&self) -> f64 {
         self.views.clips.playback.secs
     }

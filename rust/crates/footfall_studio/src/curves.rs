@@ -51,7 +51,7 @@ impl CurveCache {
     }
 }
 
-/// Which curves are shown.
+/// Choice of the curves that are shown.
 pub(crate) struct CurvePanel {
     chosen: Vec<Curve>,
     own: CurveCache,

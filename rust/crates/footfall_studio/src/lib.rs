@@ -30,7 +30,7 @@ use std::path::PathBuf;
 pub struct StudioOptions {
     /// Files and folders to open.
     pub paths: Vec<PathBuf>,
-    /// Where what must outlive a crash is kept; the user's data folder when absent.
+    /// Folder of what must outlive a crash; the user's data folder when absent.
     pub data_folder: Option<PathBuf>,
     /// Evaluator of recordings; without it the view says so.
     pub evaluator: Option<Evaluator>,

@@ -66,7 +66,7 @@ impl Motion {
         self.clip().duration_secs()
     }
 
-    /// Where the motion proper begins, seconds.
+    /// Beginning of the motion proper, seconds.
     pub(crate) fn start_secs(&self) -> f64 {
         self.recording.retargeted.first_frame as f64 / self.clip().frame_rate_hz
     }

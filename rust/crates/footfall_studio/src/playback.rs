@@ -5,7 +5,7 @@ use eframe::egui::{Button, ComboBox, Key, Slider, Ui};
 /// Speeds to choose from.
 const SPEEDS: [f64; 5] = [0.1, 0.25, 0.5, 1.0, 2.0];
 
-/// Where a motion is, and whether it goes on.
+/// Time of a motion, and whether it goes on.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Playback {
     /// Time in the motion, seconds.

@@ -55,7 +55,7 @@ pub(crate) struct Message {
     pub(crate) is_error: bool,
 }
 
-/// Which place a motion that is being read is for.
+/// Place that a motion is being read for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Current,
@@ -72,7 +72,7 @@ pub(crate) struct Shell {
     pub(crate) ghost: Option<Motion>,
     /// Counts the motions that were opened, so that views know a new one.
     pub(crate) opened: u64,
-    /// Where what must outlive a crash is kept.
+    /// Folder of what must outlive a crash.
     pub(crate) data_folder: PathBuf,
     /// The model that styles are made from, and its file.
     pub(crate) base: Option<(PathBuf, Arc<GaitModel>)>,
@@ -82,7 +82,7 @@ pub(crate) struct Shell {
     reading: Option<Reading>,
     dialog: Option<(Purpose, FileDialog)>,
     picked: Option<(Purpose, PathBuf)>,
-    /// Where the next dialog begins: the folder that was used last.
+    /// Folder in which the next dialog begins: the one that was used last.
     folder: Option<PathBuf>,
 }
 

@@ -123,7 +123,7 @@ impl GroundTransform {
 /// An initial contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footstep {
-    /// Which foot.
+    /// The foot.
     pub side: Side,
     /// The ground under the ankle, in the space where the walk began, metres.
     pub position: Vec3,

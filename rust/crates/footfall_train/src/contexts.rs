@@ -29,7 +29,7 @@ const LEAST_STEPS: f64 = 4.0;
 /// A shorter walk between two stands is a shuffle: it says nothing of how walks begin and end.
 const LEAST_WALK_STEPS: usize = 4;
 
-/// Which of the ten contexts share a model.
+/// Contexts, of ten, that share a model.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ContextReport {
     /// Steps seen of every context, mirrored ones included: place by place, the left foot first.

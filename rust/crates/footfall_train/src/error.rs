@@ -64,7 +64,7 @@ pub enum TrainError {
         site.name()
     )]
     Unsynchronised {
-        /// Where the sensor should have been.
+        /// Site at which the sensor should have been.
         site: Site,
         /// The best that was found.
         correlation: f64,

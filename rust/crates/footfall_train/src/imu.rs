@@ -24,7 +24,7 @@ use std::collections::BTreeSet;
 pub struct ImuTrainConfig {
     /// Frames per second of the model.
     pub frame_rate_hz: f64,
-    /// Where the sensors sit; one or two.
+    /// Sites of the sensors; one or two.
     pub sites: Vec<Site>,
     /// True when every recording is used mirrored, too.
     pub mirror: bool,

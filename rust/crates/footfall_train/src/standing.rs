@@ -49,7 +49,7 @@ const CHAINS: [&[Joint]; 2] = [
 /// A recording in which somebody may stand.
 #[derive(Clone, Debug)]
 pub struct StandingClip {
-    /// Who.
+    /// The person.
     pub subject: String,
     /// The motion on the canonical body.
     pub clip: Clip,

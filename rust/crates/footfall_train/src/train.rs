@@ -43,7 +43,7 @@ pub struct Trained {
     pub log_likelihoods: Vec<f64>,
     /// Log-likelihood of the corpus as recorded, the walkers' transforms counted, after every round in which they were estimated anew.
     pub adaptive_log_likelihoods: Vec<f64>,
-    /// Which of the ten contexts of a step share a model.
+    /// Contexts of a step, of ten, that share a model.
     pub contexts: ContextReport,
     /// Frames that were trained on, mirrored ones included.
     pub frames: usize,

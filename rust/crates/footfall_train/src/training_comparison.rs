@@ -22,7 +22,7 @@ pub struct TrainingComparison {
 /// An unseen walker: mean log density of its frames, as recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldOutWalker {
-    /// Who.
+    /// The person.
     pub subject: String,
     /// Number of frames that were scored.
     pub frames: usize,

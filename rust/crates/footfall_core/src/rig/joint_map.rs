@@ -22,7 +22,7 @@ impl JointMap {
     }
 }
 
-/// Where the canonical joints are in one rig.
+/// Placement of the canonical joints in one rig.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Placement {
     /// The bone of each canonical joint, where there is one.

@@ -11,7 +11,7 @@ use std::cmp::Reverse;
 pub struct Recognition {
     /// Label of the map that fits best.
     pub family: String,
-    /// Where the joints are.
+    /// Placement of the joints.
     pub placement: Placement,
     /// Reasons why joints were left out.
     pub doubts: Vec<Doubt>,

@@ -38,7 +38,7 @@ pub(super) struct MovingFoot {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeldFoot {
     rocker: RockerFoot,
-    /// Where it stands as long as it is held, and its heading.
+    /// Place at which it stands as long as it is held, and its heading.
     held: Option<(Vec3, f32)>,
     going: Option<Going>,
     /// Offset over the ground from the motion that goes on: x and z; y is the turn. And its rate.
@@ -215,7 +215,7 @@ impl HeldFoot {
         }
     }
 
-    /// Where it would lie if it were put down flat, and its heading.
+    /// Returns the place at which it would lie if it were put down flat, and its heading.
     fn footprint(&self, foot: &FootTarget) -> (Vec3, f32) {
         let heading = foot_heading(foot.foot);
         let pitch = foot_pitch(foot.foot);

@@ -1,9 +1,9 @@
-//! Where feet have to be.
+//! Targets of feet.
 
 use footfall_core::lanes::{Quatx8, Vec3x8};
 use glam::{Quat, Vec3};
 
-/// Where a foot has to be.
+/// Target of a foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootTarget {
     /// Position of the ankle (the `Foot` joint) in model space, metres.
@@ -14,7 +14,7 @@ pub struct FootTarget {
     pub toes: Quat,
 }
 
-/// Where the feet of [eight frames](footfall_core::lanes) have to be.
+/// Targets of a foot in [eight frames](footfall_core::lanes).
 #[derive(Clone, Copy, Debug)]
 pub struct FootTargetx8 {
     /// Positions of the ankle, metres.

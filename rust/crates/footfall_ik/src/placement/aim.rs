@@ -1,4 +1,4 @@
-//! Where the step that has just begun is to land.
+//! Foothold of the step that has just begun.
 
 use crate::placement::foot::{Landing, Scene};
 use crate::placement::foothold::{ASKEW_COST, Foothold, MOST_ASIDE_M, SHIFT_COST, Search};

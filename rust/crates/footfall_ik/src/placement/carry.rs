@@ -1,4 +1,4 @@
-//! Where the pelvis goes: as high as the ground under it has it, and no higher than the legs reach.
+//! Way of the pelvis: as high as the ground under it has it, and no higher than the legs reach.
 
 use crate::leg::{FootTarget, reach_height};
 use crate::placement::correction::Correction;
@@ -33,7 +33,7 @@ pub(super) struct Moment<'a> {
     pub(super) animated: &'a [Animated; 2],
 }
 
-/// Where the pelvis has to be when the next foot lands.
+/// Place of the pelvis when the next foot lands.
 struct Arrival {
     /// Above the animation's floor, metres, and how fast it rises then, m/s.
     offset_m: f32,

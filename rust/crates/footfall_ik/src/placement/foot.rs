@@ -23,14 +23,14 @@ pub(super) const REPLANT_SECS: f32 = 0.22;
 pub(super) const MAX_PITCH: f32 = 0.95;
 const PITCH_TRIALS: usize = 12;
 
-/// Where the animation will put a foot, relative to the animation's floor now.
+/// Place where the animation will put a foot, relative to the animation's floor now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landing {
     /// The flat sole: origin on the floor under the ankle, +Z to the toes.
     pub flat: Frame,
     /// Time until it lands, seconds.
     pub secs: f32,
-    /// Where the hips and both ankles will be then, metres.
+    /// Positions of the hips and both ankles then, metres.
     pub hips: Vec3,
     /// The left ankle and the right.
     pub ankles: [Vec3; 2],
@@ -40,7 +40,7 @@ pub struct Landing {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Animated {
     pub(super) foot: FootTarget,
-    /// Where it would lie if it were put down flat.
+    /// Place at which it would lie if it were put down flat.
     pub(super) flat: Frame,
     pub(super) pitch: f32,
     pub(super) contact: bool,
@@ -63,22 +63,22 @@ pub(super) struct Foot {
     pub(super) hold: Option<Foothold>,
     /// True when there is ground within reach.
     pub(super) over_ground: bool,
-    /// Where the sole is, or would be if it were put down, relative to the floor of the animation.
+    /// Place of the sole, also if it were put down, relative to the floor of the animation.
     pub(super) sole: Frame,
-    /// Where it will stand next, relative to the floor of the animation, as far as that is known.
+    /// Place at which it will stand next, relative to the floor of the animation, as far as that is known.
     pub(super) lands: Option<Vec3>,
     pub(super) plan: Option<Plan>,
-    /// Where in the world the animation's landing was when no ground was found for it.
+    /// Place in the world of the animation's landing when no ground was found for it.
     pub(super) missed_at: Option<Vec3>,
     /// Correction on the way to a foothold that was given up in this frame.
     pub(super) dropped: Option<(Correction, f32)>,
-    /// Where in the world a swinging ankle was in the last frame.
+    /// Place in the world of a swinging ankle in the last frame.
     pub(super) passed: Option<Vec3>,
-    /// Where in the world the animation had the foot when its way to a planned foothold began.
+    /// Place in the world that the animation gave the foot when its way to a planned foothold began.
     pub(super) left_from: Option<Vec3>,
     /// Share of it that is still held there.
     pub(super) held: f32,
-    /// Where in the world the animation had a foot that follows the ground.
+    /// Place in the world that the animation gave a foot that follows the ground.
     pub(super) followed: Option<Vec3>,
     /// Correction that carried it when it last changed its mode, and the height in the world of the animation's floor then.
     pub(super) lifted_with: Correction,
@@ -174,7 +174,7 @@ impl Default for Foot {
 }
 
 impl Foot {
-    /// Where the foot goes this frame, relative to the floor of the animation.
+    /// Returns the target of the foot in this frame, relative to the floor of the animation.
     pub(super) fn step<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
@@ -228,7 +228,7 @@ impl Foot {
         out
     }
 
-    /// Where the foot goes in its mode.
+    /// Returns the target of the foot in its mode.
     fn target<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
@@ -292,7 +292,7 @@ impl Foot {
         self.locked_with = Correction::between(&animated.flat, &sole);
     }
 
-    /// Where a locked foot stands; `None` when it can no longer, and swings.
+    /// Returns the target of a locked foot; `None` when it can no longer stand, and swings.
     fn stand<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
@@ -371,7 +371,7 @@ impl Foot {
         self.residual.apply(&self.standing(rocker, pitch)).ankle
     }
 
-    /// Where the ankle of a locked foot is with its heel as high as it goes; `None` for a foot that stands on nothing, or on its heel.
+    /// Returns the ankle of a locked foot with its heel as high as it goes; `None` for a foot that stands on nothing, or on its heel.
     pub(super) fn highest_ankle<T: Terrain>(
         &self,
         scene: &mut Scene<'_, T>,

@@ -1,4 +1,4 @@
-//! Where on the ground a sole can lie.
+//! Places on the ground where a sole can lie.
 
 use crate::placement::frame::Frame;
 use crate::placement::lie::Lie;

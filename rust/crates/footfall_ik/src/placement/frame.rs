@@ -5,7 +5,7 @@ use glam::{Quat, Vec3};
 /// A place with axes, without scale: `parent_from_frame`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Where its origin is, metres.
+    /// Position of its origin, metres.
     pub position: Vec3,
     /// Rotation of its axes.
     pub rotation: Quat,

@@ -56,7 +56,7 @@ pub(super) struct Plan {
 }
 
 impl Foot {
-    /// Where a foot is on its way, over what it passes.
+    /// Returns the target of a foot on its way, over what it passes.
     pub(super) fn swing<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,

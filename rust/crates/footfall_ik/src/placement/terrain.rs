@@ -9,7 +9,7 @@ pub type SupportId = u64;
 /// A point of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
-    /// Where it is in the world, metres.
+    /// Position in the world, metres.
     pub position: Vec3,
     /// The unit normal of the ground there.
     pub normal: Vec3,
@@ -25,7 +25,7 @@ pub trait Terrain {
     /// `from` itself lies is not met.
     fn cast(&mut self, from: Vec3, way: Vec3) -> Option<Ground>;
 
-    /// Where a support is in the world now: `world_from_support`. `None` when it is gone.
+    /// Returns the place of a support in the world now: `world_from_support`. `None` when it is gone.
     fn support(&mut self, support: SupportId) -> Option<Frame>;
 }
 

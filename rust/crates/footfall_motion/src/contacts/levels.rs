@@ -1,4 +1,4 @@
-//! Where the points of a sole rest.
+//! Levels at which the points of a sole rest.
 
 use super::signals::velocities;
 use glam::Vec3;
@@ -52,7 +52,7 @@ impl Levels {
 struct Point {
     /// Heights where the point is slow, else nothing.
     slow: Vec<Option<f32>>,
-    /// Where it rests in the clip as a whole.
+    /// Level at which it rests in the clip as a whole.
     level: f32,
 }
 

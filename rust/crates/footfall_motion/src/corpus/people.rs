@@ -33,7 +33,7 @@ pub struct Person {
 pub struct PersonFile<'a> {
     /// The recording.
     pub path: &'a Path,
-    /// Who it is.
+    /// The person.
     pub subject: &'a str,
     /// True when nobody acts in it; recordings of acted walks do not tell of hip joints.
     pub is_plain: bool,

@@ -103,7 +103,7 @@ impl Track {
     }
 }
 
-/// Where a time lies between keys.
+/// A time between keys.
 struct Moment {
     key: usize,
     next: usize,

@@ -1,4 +1,4 @@
-//! Where the ground of a clip is: under the feet that stand.
+//! Floor of a clip: under the feet that stand.
 
 use crate::figure::sole_points;
 use footfall_core::{Clip, ModelPose, Side, forward_kinematics};

@@ -13,7 +13,7 @@ pub(super) struct SourceFrame {
     pub(super) rotations: [Quat; JOINT_COUNT],
     /// Position of the joint, in the file's unit.
     pub(super) positions: [Vec3; JOINT_COUNT],
-    /// Where the joint's segment ends.
+    /// Ends of the joints' segments.
     pub(super) tails: [Vec3; JOINT_COUNT],
 }
 
@@ -49,7 +49,7 @@ pub(super) struct SourceMotion {
     pub(super) frames: Vec<SourceFrame>,
     /// The file's zero rotations.
     pub(super) rest: SourceFrame,
-    /// Which canonical joints the file has.
+    /// True for the canonical joints that the file has.
     pub(super) has: [bool; JOINT_COUNT],
     /// Thigh plus shank in the file, mean of both legs, in the file's unit.
     pub(super) leg_length: f32,
@@ -60,7 +60,7 @@ pub(super) struct SourceMotion {
     pub(super) frame_rate_hz: f64,
 }
 
-/// Where a segment ends.
+/// End of a segment.
 #[derive(Clone, Copy, Debug)]
 enum Tail {
     /// At another joint of the file.
@@ -223,7 +223,7 @@ fn tail_of(file: &BvhFile, placement: &Placement, rest: &JointTransforms, joint:
     }
 }
 
-/// Where a joint without a mapped child ends, in its own space.
+/// Returns the end of a joint without a mapped child, in its own space.
 fn local_tail(file: &BvhFile, joint: usize) -> Vec3 {
     let shortest = 1e-3 * file.joints[joint].offset.length().max(1e-6);
     let own_ends = &file.joints[joint].end_sites;

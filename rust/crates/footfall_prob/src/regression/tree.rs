@@ -1,4 +1,4 @@
-//! Which Gaussians share a transform.
+//! Gaussians that share a transform.
 
 use crate::error::{ProbError, check_finite, check_len};
 
@@ -7,7 +7,7 @@ use crate::error::{ProbError, check_finite, check_len};
 pub struct RegressionNode {
     /// The class that it is a part of; `None` for the root.
     pub parent: Option<usize>,
-    /// Which Gaussians belong to it, rising.
+    /// Numbers of the Gaussians that belong to it, rising.
     pub members: Vec<usize>,
     /// Steps from the root.
     pub depth: usize,

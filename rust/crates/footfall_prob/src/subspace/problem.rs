@@ -15,7 +15,7 @@ pub(super) struct Problem<'a> {
     pub(super) refinement: Refinement,
 }
 
-/// Where each part lies in a point.
+/// Ranges of the parts in a point.
 pub(super) struct Parts {
     transition: usize,
     drift: usize,

@@ -1,4 +1,4 @@
-//! Where a residual says that something switched.
+//! Peaks of a residual, at which something switched.
 
 use super::ProjectionResidual;
 use crate::error::ProbError;

@@ -45,7 +45,7 @@ impl Orbit {
         self.distance = (self.distance / factor.max(1e-3)).clamp(0.8, 40.0);
     }
 
-    /// Where things fall in a rectangle of the window.
+    /// Returns the projection into a rectangle of the window.
     pub(crate) fn projection(&self, rect: Rect) -> Projection {
         let level = Vec3::new(self.yaw.sin(), 0.0, self.yaw.cos());
         let away = level * self.pitch.cos() + Vec3::Y * self.pitch.sin();

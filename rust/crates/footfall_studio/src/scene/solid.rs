@@ -12,7 +12,7 @@ const AROUND: usize = 10;
 /// Rings of each rounded end.
 const CAP: usize = 3;
 
-/// Where light comes from, and how much there is without.
+/// Direction of the light, and how much there is without.
 const LIGHT: Vec3 = Vec3::new(0.45, 0.8, 0.4);
 const AMBIENT: f32 = 0.42;
 

@@ -161,7 +161,7 @@ fn limb_color(part: Part, look: Look, dark: bool) -> Color32 {
     color
 }
 
-/// Where the soles of a body are in a pose.
+/// Returns the soles of a body in a pose.
 pub(crate) fn soles(skeleton: &Skeleton, pose: &Pose) -> [[Vec3; 3]; 2] {
     let mut model = ModelPose::default();
     forward_kinematics(skeleton, pose, &mut model);

@@ -1,4 +1,4 @@
-//! Who is taken for whom: the paper's Table 2 and equation 16.
+//! Confusion of styles: the paper's Table 2 and equation 16.
 
 /// Counts of judgements by actual class and by the class that was named.
 #[derive(Clone, Debug, PartialEq, Eq)]

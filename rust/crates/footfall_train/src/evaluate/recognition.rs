@@ -1,4 +1,4 @@
-//! Which strides are seen in training and which are judged.
+//! Division of strides into those seen in training and those judged.
 
 use super::lda::{Labelled, Lda, Shrinkage};
 use super::stride_features::{LEAST_SPREAD, Stride};

@@ -21,7 +21,7 @@ const VIRTUAL_RATE_HZ: f64 = 120.0;
 /// A recording of a body, with what real sensors on it measured at the same time, if there were any.
 #[derive(Clone, Copy, Debug)]
 pub struct ImuClip<'a> {
-    /// Who moves.
+    /// The person who moves.
     pub subject: &'a str,
     /// The motion on the canonical body.
     pub clip: &'a Clip,
@@ -45,7 +45,7 @@ pub struct ChainSegment {
 /// A recording as the model takes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    /// Who moves.
+    /// The person who moves.
     pub subject: String,
     /// True when left and right are changed.
     pub mirrored: bool,

@@ -52,7 +52,7 @@ const PHONE_STEPS: [f32; 2] = [0.1, 0.1 * core::f32::consts::PI / 180.0];
 const CHANGE_SECS: f64 = 1.0;
 const LEAST_BEHAVIOUR_SECS: f64 = 0.5;
 
-/// Which recordings a model may have seen.
+/// Recordings that a model may have seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeldOut {
     /// All but the recording itself.
@@ -110,7 +110,7 @@ pub type Confusion = [[usize; Behaviour::ALL.len()]; Behaviour::ALL.len()];
 /// Outcome of one recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImuTrial {
-    /// Which of the clips it is.
+    /// Number of the clip.
     pub clip: usize,
     /// Frames, and those in which the body moves.
     pub frames: usize,

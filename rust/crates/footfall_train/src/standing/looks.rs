@@ -96,7 +96,7 @@ fn smooth(gaze: &[[f64; 2]]) -> Vec<[f64; 2]> {
     narrow.map(|v| [f64::from(v.x), f64::from(v.y)]).collect()
 }
 
-/// Where the gaze rests between its jumps, and goes along a smooth step in them.
+/// Returns the path of a gaze that rests between its jumps, and goes along a smooth step in them.
 fn path(stretch: &Stretch) -> Vec<[f64; 2]> {
     let jumps = jumps(stretch);
     let frames = stretch.frames();

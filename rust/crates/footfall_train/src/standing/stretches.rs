@@ -1,4 +1,4 @@
-//! Where in a recording somebody stands: upright, on planted feet, with arms that hang.
+//! Stretches of a recording in which somebody stands: upright, on planted feet, with arms that hang.
 
 use super::RATE_HZ;
 use footfall_core::rotation::heading;
@@ -33,7 +33,7 @@ pub struct Stretch {
     pub hips: Vec<[f64; 2]>,
     /// The head's joint from there, likewise.
     pub head: Vec<[f64; 2]>,
-    /// Where the face points: to the left and down, radians.
+    /// Direction of the face: to the left and down, radians.
     pub gaze: Vec<[f64; 2]>,
     /// By how much the feet point outwards, radians.
     pub turned_out: f64,

@@ -23,7 +23,7 @@ const EXPORTED_STEPS: usize = 20;
 pub(super) struct MixPage {
     styles: Vec<Arc<GaitStyle>>,
     weights: Vec<f32>,
-    /// Where the puck is, in units of the pad's radius.
+    /// Position of the puck, in units of the pad's radius.
     puck: Vec2,
     speed_mps: f32,
     turn_degps: f32,
@@ -308,7 +308,7 @@ impl MixPage {
     }
 }
 
-/// Where the styles stand around the pad, the first on top.
+/// Places of the styles around the pad, the first on top.
 fn places(count: usize) -> Vec<Vec2> {
     (0..count)
         .map(|place| {
@@ -323,7 +323,7 @@ fn within_reach(puck: Vec2) -> Vec2 {
     puck / (puck.length() / 1.35).max(1.0)
 }
 
-/// Where the puck shows weights best.
+/// Returns the position at which the puck shows weights best.
 fn puck_of(weights: &[f32]) -> Vec2 {
     let places = places(weights.len()).into_iter().zip(weights);
     within_reach(places.fold(Vec2::ZERO, |sum, (place, weight)| sum + place * *weight))

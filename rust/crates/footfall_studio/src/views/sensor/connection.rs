@@ -1,4 +1,4 @@
-//! Where samples come from.
+//! Sources of samples.
 
 use crate::palette;
 use eframe::egui::{Color32, ComboBox, DragValue, RichText, Sense, TextEdit, Ui, vec2};

@@ -9,7 +9,7 @@ use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
 use footfall_model::{GaitModel, StepModel};
 
-/// Which curve is compared.
+/// Choice of the curve that is compared.
 pub(super) struct Compare {
     curve: Curve,
 }
@@ -27,7 +27,7 @@ struct Banded {
     percent: Vec<f64>,
     mean: Vec<f64>,
     deviation: Vec<f64>,
-    /// Where the right step begins.
+    /// Beginning of the right step.
     second: f64,
 }
 

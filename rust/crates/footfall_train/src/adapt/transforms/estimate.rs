@@ -110,7 +110,7 @@ impl Adapting {
         [class.members.iter().map(of).sum::<f64>() / class.members.len() as f64]
     }
 
-    /// What the priors charge for the transforms, as a log density.
+    /// Returns the log density that the priors give the transforms.
     pub(super) fn log_prior(&self) -> f64 {
         let of = |class: &Class| {
             let blocks = class.blocks.iter().zip(&class.centres).enumerate();

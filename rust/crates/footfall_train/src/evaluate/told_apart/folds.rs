@@ -1,4 +1,4 @@
-//! Who is learned from and who is judged.
+//! Folds of people: those learned from, and those judged.
 
 use super::classifiers::Classifier;
 use crate::evaluate::EvaluateError;
