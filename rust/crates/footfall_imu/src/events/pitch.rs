@@ -29,8 +29,8 @@ const FULL_WAY_M: f32 = 0.5;
 /// Stances between which a foot goes one way are so far apart, seconds.
 const STRIDE_SECS: [f64; 2] = [0.4, 2.5];
 
-/// The ways decide when their votes, for and against, add up to this.
-const LEAST_WAY_VOTES: f32 = 1.0;
+/// The ways decide when their votes, for and against, add up to this: one alone may lie between moments of a run in which the foot did not rest.
+const LEAST_WAY_VOTES: f32 = 2.0;
 
 /// Rates about the axis that the foot pitches about, rad/s; positive when the heel rises.
 pub(super) fn pitch_rates(forces: &[Vec3], rates: &[Vec3], rate_hz: f64) -> Vec<f32> {
