@@ -22,7 +22,7 @@ const BEND_DEG: [f32; 2] = [120.0, 128.0];
 const KNEE: f32 = 1500.0;
 const JUMP_M: f32 = 0.06;
 
-/// What is seen of climbs of one staircase at one speed.
+/// Outcomes of climbs of one staircase at one speed.
 struct Row {
     rise: f32,
     outcomes: Vec<Outcome>,

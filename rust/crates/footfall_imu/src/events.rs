@@ -22,9 +22,9 @@
 mod flat;
 mod pitch;
 
-use self::flat::{flat_steps, strongest};
-use self::pitch::{frames_of, pitch_rates};
-use crate::filter::low_pass;
+use self::flat::flat_steps;
+use self::pitch::pitch_rates;
+use crate::filter::{frames_of, low_pass, strongest};
 use crate::sample::ImuRecording;
 use core::ops::Range;
 use footfall_core::EventKind;

@@ -1,5 +1,6 @@
 //! Smoothing without delay, means over windows, and the axis of most rotation.
 
+use core::ops::Range;
 use glam::{Mat3, Vec3};
 
 /// A second-order Butterworth low-pass, run forwards and backwards: no delay, and the ends held.
@@ -39,6 +40,19 @@ pub(crate) fn means_around(values: &[f32], reach: usize) -> Vec<f32> {
         window.iter().sum::<f32>() / window.len() as f32
     };
     (0..values.len()).map(around).collect()
+}
+
+/// Samples of a time, one at least.
+pub(crate) fn frames_of(secs: f64, rate_hz: f64) -> usize {
+    ((secs * rate_hz).round() as usize).max(1)
+}
+
+/// The sample of the largest value; the first of the range where it is empty.
+pub(crate) fn strongest(values: &[f32], range: Range<usize>) -> usize {
+    let first = range.start;
+    (first..range.end.min(values.len()))
+        .max_by(|a, b| values[*a].total_cmp(&values[*b]))
+        .unwrap_or(first)
 }
 
 /// The axis along which vectors are longest, sum of squares: the first eigenvector of their second moments, by powers.

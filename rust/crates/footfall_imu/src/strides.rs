@@ -6,14 +6,11 @@
 use crate::events::Swing;
 use crate::filter::means_around;
 use crate::sample::{GRAVITY_MPS2, ImuRecording};
-use crate::zero_velocity::displacement;
+use crate::zero_velocity::{REST_SECS, displacement};
 use glam::Vec3;
 
 /// The quietest moment of a stance is looked for so near the swing, seconds.
 const REST_REACH_SECS: f64 = 0.8;
-
-/// A moment is as quiet as the motion within this time to either side, seconds.
-const REST_SECS: f64 = 0.08;
 
 /// A stride is no longer than this, seconds.
 const LONGEST_SECS: f64 = 3.0;
@@ -68,7 +65,7 @@ pub fn measure_strides(recording: &ImuRecording, swings: &[Swing]) -> Vec<Sensor
     strides
 }
 
-/// Motion of the foot around each sample.
+/// Motion of the foot around each sample, within the time of a rest to either side.
 struct Quiet {
     motion: Vec<f32>,
 }

@@ -119,7 +119,7 @@ enum Source {
     },
 }
 
-/// What a walker has beyond that: a run, a step that obeys in its middle, a crouch or a jump, how its last landing was balanced, and how it leans into a
+/// State of a walker beyond that: a run, a step that obeys in its middle, a crouch or a jump, how its last landing was balanced, and how it leans into a
 /// climb.
 type More = (Running, Quick, Moving, [f32; 2], Climbing);
 

@@ -75,7 +75,7 @@ pub(super) fn machine_paths(name: &str, text: &str) -> Vec<Violation> {
         .collect()
 }
 
-/// Whether the folder stands at the beginning of a path: `res://work/` and `src/work/` are other things.
+/// Returns true when the folder stands at the beginning of a path: `res://work/` and `src/work/` are other things.
 fn begins_path(line: &str, folder: &str) -> bool {
     line.match_indices(folder).any(|(at, _)| {
         let before = line[..at].chars().next_back();

@@ -22,7 +22,7 @@ const LEAST_BASE_M: f32 = 0.06;
 const EASY_RISE: f32 = 0.28;
 const MOST_RISE: f32 = 0.6;
 const RISE_COST: f32 = 6.0;
-/// Who goes up or down an edge of this height, metres, comes down on the ball of the foot.
+/// Least height of an edge, metres, up or down which a foot lands on its ball.
 const EDGE_M: f32 = 0.08;
 /// On a grade of more than this a tread is taken with one step: a second one on it costs so much, and steps are lengthened by this share at most.
 const STAIRS_GRADE: f32 = 0.2;

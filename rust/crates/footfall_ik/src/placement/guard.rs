@@ -60,7 +60,12 @@ impl Foot {
             if height - point.y > inside && !scene.beside(*point, TOUCH_M) {
                 inside = height - point.y;
             }
-            if let Some((before, _)) = scene.ground(*point - back) {
+            let before = if back == Vec3::ZERO {
+                Some(height)
+            } else {
+                scene.ground(*point - back).map(|(height, _)| height)
+            };
+            if let Some(before) = before {
                 short = short.max(before + room - point.y);
             }
             // An edge ahead, as far as it is not the slope on which the foot goes anyway.

@@ -3,8 +3,7 @@
 //! The foot moves between two rests, and no swing was found in its pitch. It lands where the ground jolts it most. It is lifted where the heel has risen
 //! fastest, or, lifted flat, where it has begun to move.
 
-use super::pitch::frames_of;
-use crate::filter::means_around;
+use crate::filter::{frames_of, means_around, strongest};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -90,12 +89,4 @@ fn bouts(turning: &[f32], rate_hz: f64) -> Vec<Range<usize>> {
         }
     }
     bouts
-}
-
-/// The sample of the largest value; the first of the range where it is empty.
-pub(super) fn strongest(values: &[f32], range: Range<usize>) -> usize {
-    let first = range.start;
-    (first..range.end.min(values.len()))
-        .max_by(|a, b| values[*a].total_cmp(&values[*b]))
-        .unwrap_or(first)
 }

@@ -5,7 +5,7 @@
 //! turns out of it first: that is the heel rising. The vote of the way is the surer one: of 172 simulated feet in acted walks (Bandai Namco) it is right for all, that
 //! of the rising heel for 170; of 28 that walk backwards, none and 6.
 
-use crate::filter::{means_around, principal_axis};
+use crate::filter::{frames_of, means_around, principal_axis};
 use crate::zero_velocity::displacement;
 use glam::Vec3;
 
@@ -111,9 +111,4 @@ fn quietest(rates: &[Vec3], rate_hz: f64) -> impl Iterator<Item = usize> {
             && around.iter().all(|other| motion[n] <= *other)
             && later.iter().all(|other| motion[n] < *other)
     })
-}
-
-/// Samples of a time, one at least.
-pub(super) fn frames_of(secs: f64, rate_hz: f64) -> usize {
-    ((secs * rate_hz).round() as usize).max(1)
 }

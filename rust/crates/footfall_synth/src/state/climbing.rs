@@ -1,4 +1,4 @@
-//! What a state holds of climbs.
+//! Climbs in a saved state.
 
 use super::is_reasonable;
 use crate::generator::GaitGenerator;
