@@ -20,7 +20,7 @@ pub(crate) enum Display {
 }
 
 impl Display {
-    /// Whether the user sees nothing of it.
+    /// Returns whether the user sees nothing of it.
     pub(crate) fn is_virtual(&self) -> bool {
         matches!(self, Self::Virtual(_))
     }
@@ -72,7 +72,7 @@ fn missing() -> Vec<&'static str> {
         .collect()
 }
 
-/// Whether the X server has a driver that draws in software; its place differs between distributions and their ages.
+/// Returns whether the X server has a driver that draws in software; its place differs between distributions and their ages.
 fn software_gl() -> bool {
     let folders = fs::read_dir("/usr/lib")
         .into_iter()

@@ -90,7 +90,7 @@ fn name(package: &Value) -> &str {
     package["name"].as_str().unwrap_or_default()
 }
 
-/// Whether a manifest lets a crate be published: it names no registries, or some.
+/// Returns whether a manifest lets a crate be published: it names no registries, or some.
 fn is_published(package: &Value) -> bool {
     package["publish"]
         .as_array()

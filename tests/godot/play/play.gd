@@ -15,6 +15,9 @@ const SAVES := 560
 ## What a frame of everything here may last, milliseconds: a game's frame at 60 a second.
 const FRAME_MS := 16.0
 const SLOW_SHOWN := 5
+## When a frame was slow in every lap, so many more are played at most: crowds think on all processors, and on a busy machine somebody else may have
+## had one in each of a few laps.
+const LAPS_TO_CONFIRM := 10
 ## Laps until caches are full and every allocation has been made once.
 const WARM_UP := 2
 ## What may be more at the end than after the warm-up: bytes for logs and fragments, nothing else.
@@ -59,6 +62,12 @@ func _ready() -> void:
 		if lap == WARM_UP:
 			early = late
 		print("lap %d of %d: %s" % [lap + 1, laps, late])
+	for lap: int in LAPS_TO_CONFIRM:
+		if _slowest_ms() <= FRAME_MS:
+			break
+		print("a frame was slow in every lap, %.1f ms at its fastest: another lap" % _slowest_ms())
+		await _lap()
+		late = _ledger()
 	_judge_growth(early, late)
 	_judge_frames()
 	OS.remove_logger(_complaints)
@@ -145,6 +154,14 @@ func _judge_growth(early: Dictionary, late: Dictionary) -> void:
 	for kind: StringName in GROWTH:
 		if late[kind] > early[kind] + GROWTH[kind]:
 			_problems.append("%s grew from %d to %d" % [kind, early[kind], late[kind]])
+
+
+## Slowest frame of a lap, in the lap in which it was fastest.
+func _slowest_ms() -> float:
+	var slowest := 0
+	for lasted: int in _least:
+		slowest = maxi(slowest, lasted)
+	return slowest / 1000.0
 
 
 ## Laps are alike: what is slow in the same frame of all of them is ours, the rest is the machine's.

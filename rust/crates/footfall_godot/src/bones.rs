@@ -127,7 +127,7 @@ pub(crate) fn no_skeleton(modifier: &Gd<SkeletonModifier3D>) -> GString {
     ))
 }
 
-/// Whether the neck carries the arms, as in 3ds Max's Biped: then it is a part of the trunk, for a neck that turns must not turn them.
+/// Returns whether the neck carries the arms, as in 3ds Max's Biped: then it is a part of the trunk, for a neck that turns must not turn them.
 fn arms_hang_from_neck(rig: &Rig, placement: &Placement) -> bool {
     let neck = placement.joint(Joint::Neck);
     let arms = [Joint::LeftUpperArm, Joint::RightUpperArm].map(|arm| placement.joint(arm));

@@ -72,7 +72,7 @@ pub(crate) fn unscaled(with_scale: Transform3D) -> Transform3D {
     transform(rotation(&affine(with_scale)), vec3(with_scale.origin))
 }
 
-/// Whether nothing can be seen of what a transform places: it is squashed flat, or not a place at all.
+/// Returns whether nothing can be seen of what a transform places: it is squashed flat, or not a place at all.
 pub(crate) fn is_flat(transform: Transform3D) -> bool {
     const LEAST: f32 = 1e-5;
     let [x, y, z] = [

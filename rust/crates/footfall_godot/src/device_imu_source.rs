@@ -24,7 +24,7 @@ impl IResource for DeviceImuSource {}
 
 #[godot_api]
 impl DeviceImuSource {
-    /// Whether this device gives motion; if not, it has no sensors, or the project settings leave them off.
+    /// Returns whether this device gives motion; if not, it has no sensors, or the project settings leave them off.
     #[func]
     fn is_available() -> bool {
         measure().is_some()

@@ -80,25 +80,25 @@ pub(crate) struct FootPlacement3D {
     #[init(val = 0.6)]
     max_twist: f64,
 
-    /// Whether a foot that would stand across an edge, as on stairs, is put ahead of it, behind it or beside it. A `GaitGenerator3D` beside this
+    /// If `true`, a foot that would stand across an edge, as on stairs, is put ahead of it, behind it or beside it. A `GaitGenerator3D` beside this
     /// node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.
     #[export]
     #[init(val = true)]
     adjust_footholds: bool,
 
-    /// Whether a `GaitGenerator3D` beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking
+    /// If `true`, a `GaitGenerator3D` beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking
     /// function, down to 0.45 of its speed), from a step before it gets there.
     #[export]
     #[init(val = true)]
     adapt_speed: bool,
 
-    /// Whether the character rises and falls with the ground under its feet, for characters that no physics holds there.
+    /// If `true`, the character rises and falls with the ground under its feet, for characters that no physics holds there.
     ///
     /// Leave it off for a `CharacterBody3D` with gravity and `move_and_slide()`.
     #[export]
     follow_ground: bool,
 
-    /// Whether the character is in the air: feet are left to the animation. Set it from the game, for example
+    /// If `true`, the character is in the air: feet are left to the animation. Set it from the game, for example
     /// `foot_placement.in_air = not is_on_floor()`.
     #[var]
     in_air: bool,
@@ -116,7 +116,7 @@ pub(crate) struct FootPlacement3D {
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
 
-    /// Whether soles and the normals of the ground are drawn: green where a foot is locked, orange where it is not.
+    /// If `true`, soles and the normals of the ground are drawn: green where a foot is locked, orange where it is not.
     #[export]
     debug_draw: bool,
 

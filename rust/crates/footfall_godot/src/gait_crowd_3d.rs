@@ -154,12 +154,12 @@ pub(crate) struct GaitCrowd3D {
     #[init(val = 1.0)]
     standing_motion: f64,
 
-    /// Whether walkers with a goal keep out of each other's way.
+    /// If `true`, walkers with a goal keep out of each other's way.
     #[export]
     #[init(val = true)]
     avoidance: bool,
 
-    /// Whether time passes.
+    /// If `true`, time passes.
     #[export]
     #[init(val = true)]
     playing: bool,
@@ -190,12 +190,12 @@ pub(crate) struct GaitCrowd3D {
     #[init(val = 60.0)]
     near_distance: f64,
 
-    /// Whether walkers beyond that repeat their last two steps instead of taking new ones.
+    /// If `true`, walkers beyond that repeat their last two steps instead of taking new ones.
     #[export]
     #[init(val = true)]
     repeat_far: bool,
 
-    /// Whether poses of walkers whom the camera does not see are left out.
+    /// If `true`, poses of walkers whom the camera does not see are left out.
     #[export]
     #[init(val = true)]
     culling: bool,

@@ -179,12 +179,12 @@ pub(crate) struct GaitGenerator3D {
     #[export]
     detail: GaitDetail,
 
-    /// Whether the character walks. When off, it holds the pose that it is in.
+    /// If `true`, the character walks. When off, it holds the pose that it is in.
     #[export]
     #[init(val = true)]
     playing: bool,
 
-    /// Whether the walk moves the character.
+    /// If `true`, the walk moves the character.
     ///
     /// On: the node found through `character` travels, in such a way that the standing foot does not move. Off: the character
     /// walks in place, and `get_root_motion_delta()` tells how far it would have travelled.
@@ -228,7 +228,7 @@ pub(crate) struct GaitGenerator3D {
     velocity: (Vec3, f32),
     reign: Reign,
     wish: Option<Wish>,
-    /// Whether other animation has got the body at once.
+    /// True when other animation has got the body at once.
     left: bool,
     rivals: Rivals,
     /// Share of the speed that is left on the ground at hand: 1 on level ground.

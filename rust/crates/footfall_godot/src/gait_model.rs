@@ -95,7 +95,7 @@ impl GaitModel {
         })
     }
 
-    /// Whether this is a switching model, which wears no styles.
+    /// Returns whether this is a switching model, which wears no styles.
     #[func]
     pub(crate) fn is_switching(&self) -> bool {
         matches!(self.trained().as_deref(), Ok(WalkModel::Dynamics(_)))
@@ -103,7 +103,7 @@ impl GaitModel {
 }
 
 impl GaitModel {
-    /// Whether it was made by *New* and holds nothing yet.
+    /// Returns whether it was made by *New* and holds nothing yet.
     pub(crate) fn is_new(&self) -> bool {
         self.data.is_empty()
     }

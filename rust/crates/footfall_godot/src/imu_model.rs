@@ -86,7 +86,7 @@ impl ImuModel {
 }
 
 impl ImuModel {
-    /// Whether it was made by *New* and holds nothing yet.
+    /// Returns whether it was made by *New* and holds nothing yet.
     pub(crate) fn is_new(&self) -> bool {
         self.data.is_empty()
     }

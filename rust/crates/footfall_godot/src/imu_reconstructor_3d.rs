@@ -58,7 +58,7 @@ pub(crate) struct ImuReconstructor3D {
     #[var(set = set_mounting)]
     mounting: ImuMounting,
 
-    /// Whether the body's way moves the character. Off: it stays, and `get_root_motion_delta()` tells how far it would have gone.
+    /// If `true`, the body's way moves the character. Off: it stays, and `get_root_motion_delta()` tells how far it would have gone.
     #[export]
     #[init(val = true)]
     root_motion: bool,

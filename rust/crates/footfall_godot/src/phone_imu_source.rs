@@ -35,7 +35,7 @@ pub(crate) struct PhoneImuSource {
     #[export(range = (0.0, 7.0, 1.0))]
     player: i64,
 
-    /// Whether the phone vibrates when a foot of the character comes down.
+    /// If `true`, the phone vibrates when a foot of the character comes down.
     #[export]
     #[init(val = true)]
     vibrate_on_footsteps: bool,

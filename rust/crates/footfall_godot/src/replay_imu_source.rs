@@ -20,7 +20,7 @@ pub(crate) struct ReplayImuSource {
     #[var(set = set_file)]
     file: GString,
 
-    /// Whether the recording begins anew when it is over; otherwise the sensor falls silent.
+    /// If `true`, the recording begins anew when it is over; otherwise the sensor falls silent.
     #[export]
     #[init(val = true)]
     repeat: bool,

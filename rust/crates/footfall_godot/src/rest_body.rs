@@ -48,7 +48,7 @@ pub(crate) struct RestBody {
     pub(crate) floor_height: f32,
 }
 
-/// Whether a character can do without a bone for this joint.
+/// Returns whether a character can do without a bone for this joint.
 pub(crate) const fn is_optional(joint: Joint) -> bool {
     matches!(
         joint,

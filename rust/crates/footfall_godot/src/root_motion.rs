@@ -17,7 +17,7 @@ pub(crate) struct RootMotion {
 struct Tally {
     frame: u64,
     sum: Transform3D,
-    /// Whether it was asked for in that very frame.
+    /// True when it was asked for in that very frame.
     told: bool,
 }
 

@@ -138,7 +138,7 @@ impl SkeletonBinding {
         })
     }
 
-    /// Whether it still holds for this skeleton and character.
+    /// Returns whether it still holds for this skeleton and character.
     pub(crate) fn fits(&self, skeleton: &Gd<Skeleton3D>, character: &Gd<Node3D>) -> bool {
         self.scale_to(skeleton, character)
             .is_some_and(|scale| (scale - 1.0).abs() < 1e-3)
@@ -300,7 +300,7 @@ fn turned_by_links(skeleton: &Gd<Skeleton3D>, above: Quat, links: &[i32]) -> Qua
     })
 }
 
-/// Whether a joint is the hips or one of a leg.
+/// Returns whether a joint is the hips or one of a leg.
 fn is_leg(joint: Joint) -> bool {
     let of_leg = |side: Side| {
         [side.upper_leg(), side.lower_leg(), side.foot(), side.toes()].contains(&joint)

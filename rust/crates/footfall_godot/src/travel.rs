@@ -74,7 +74,7 @@ impl Traveller {
         }
     }
 
-    /// Whether this still is the character and its skeleton as they were, but for the size.
+    /// Returns whether this still is the character and its skeleton as they were, but for the size.
     pub(crate) fn is_for(&mut self, skeleton: &Gd<Skeleton3D>) -> bool {
         if !self.character.is_instance_valid() || !self.character.is_inside_tree() {
             return false;
@@ -91,7 +91,7 @@ impl Traveller {
         true
     }
 
-    /// Whether the character has another size than when it was measured.
+    /// Returns whether the character has another size than when it was measured.
     pub(crate) fn has_grown(&self) -> bool {
         (self.scale - 1.0).abs() >= LEAST_GROWTH
     }

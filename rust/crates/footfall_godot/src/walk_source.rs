@@ -31,7 +31,7 @@ impl WalkSource {
         }
     }
 
-    /// Whether both are one and the same.
+    /// Returns whether both are one and the same.
     pub(crate) fn is(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Styled(a), Self::Styled(b)) => Arc::ptr_eq(a, b),
@@ -40,7 +40,7 @@ impl WalkSource {
         }
     }
 
-    /// Whether this was made of this model.
+    /// Returns whether this was made of this model.
     pub(crate) fn is_of(&self, model: &WalkModel) -> bool {
         match (self, model) {
             (Self::Styled(space), WalkModel::Gait(model)) => Arc::ptr_eq(space.model(), model),

@@ -102,7 +102,7 @@ pub(super) fn check(name: &str, text: &str) -> Vec<Violation> {
     violations
 }
 
-/// Whether a line holds a needle that is no part of a longer word.
+/// Returns whether a line holds a needle that is no part of a longer word.
 fn holds(line: &str, needle: &str) -> bool {
     let word = |character: Option<char>| character.is_some_and(|c| c.is_alphanumeric() || c == '_');
     line.match_indices(needle).any(|(at, _)| {

@@ -31,7 +31,7 @@ pub(super) struct FootfallStyleDock {
     job: Option<Job<Result<Made, String>>>,
     /// The file of the style that was made last.
     made: Option<GString>,
-    /// Whether the dock is at a side of the editor.
+    /// True when the dock is at a side of the editor.
     narrow: bool,
     base: Base<EditorDock>,
 }
@@ -157,7 +157,7 @@ impl FootfallStyleDock {
         }
     }
 
-    /// Whether a style is being made.
+    /// Returns whether a style is being made.
     #[func]
     fn is_working(&self) -> bool {
         self.job.is_some()

@@ -8,7 +8,7 @@ use godot::prelude::*;
 
 #[godot_api(secondary)]
 impl FootPlacement3D {
-    /// Whether a foot, `left` or `right`, is locked to the ground.
+    /// Returns whether a foot, `left` or `right`, is locked to the ground.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn is_foot_planted(&self, foot: StringName) -> bool {

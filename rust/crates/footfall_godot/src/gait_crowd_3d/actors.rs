@@ -168,7 +168,7 @@ impl Actors {
         }
     }
 
-    /// Whether a scene plays this walker.
+    /// Returns whether a scene plays this walker.
     pub(super) fn plays(&self, walker: u32) -> bool {
         self.playing
             .get(walker as usize)

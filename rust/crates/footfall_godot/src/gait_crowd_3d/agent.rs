@@ -63,7 +63,7 @@ pub(super) struct Agent {
     pub(super) walker: Option<Box<CrowdWalker>>,
     /// Number that distinguishes it from others who had its place or will have it.
     pub(super) ticket: u64,
-    /// Whether it is one of the node's `count`, not one that a script added.
+    /// True when it is one of the node's `count`, not one that a script added.
     pub(super) counted: bool,
     /// Where in its stride it begins.
     pub(super) start_phase: f32,
@@ -219,7 +219,7 @@ impl Agent {
         }
     }
 
-    /// Whether it will take up a decision in this time: then is the time to decide.
+    /// Returns whether it will take up a decision in this time: then is the time to decide.
     pub(super) fn is_about_to_step(&self, dt_secs: f32) -> bool {
         let walker = self.walker.as_ref();
         walker.is_some_and(|walker| walker.secs_to_next_step() <= dt_secs / self.size.sqrt())
@@ -245,7 +245,7 @@ impl Agent {
         }
     }
 
-    /// Whether it goes somewhere and has not arrived.
+    /// Returns whether it goes somewhere and has not arrived.
     pub(super) fn is_on_its_way(&self) -> bool {
         match self.goal {
             Goal::Place(place) => !self.route.is_empty() || !self.is_at(place),

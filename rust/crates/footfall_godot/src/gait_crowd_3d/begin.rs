@@ -12,7 +12,7 @@ const MOST_BEGIN: usize = 256;
 const MOST_COME_IN: usize = 256;
 
 impl Walkers {
-    /// Whether walkers are still being made.
+    /// Returns whether walkers are still being made.
     pub(super) fn is_making(&self) -> bool {
         self.maker.is_busy() || self.are_coming()
     }

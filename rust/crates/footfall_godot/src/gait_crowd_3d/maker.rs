@@ -94,7 +94,7 @@ impl Maker {
         self.shared.kit.get()
     }
 
-    /// Whether orders have not come back.
+    /// Returns whether orders have not come back.
     pub(super) fn is_busy(&self) -> bool {
         self.waiting > 0
     }

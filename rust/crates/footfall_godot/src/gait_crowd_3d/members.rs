@@ -97,14 +97,14 @@ impl GaitCrowd3D {
         walkers.flat_map(super::walkers::Walkers::names).collect()
     }
 
-    /// Whether a walker has this id.
+    /// Returns whether a walker has this id.
     #[func]
     fn has_agent(&mut self, agent: i32) -> bool {
         self.make();
         self.place(agent).is_some()
     }
 
-    /// Whether walkers are still being made.
+    /// Returns whether walkers are still being made.
     #[func]
     fn is_making(&self) -> bool {
         let walkers = self.walkers.as_ref();

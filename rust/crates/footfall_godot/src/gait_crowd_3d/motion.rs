@@ -99,7 +99,7 @@ impl Walkers {
         });
     }
 
-    /// Whether a walker moved in the last frame.
+    /// Returns whether a walker moved in the last frame.
     pub(super) fn moved(&self, index: usize) -> bool {
         self.tiers.get(index) != Some(&Tier::Far)
             || self.frame % GROUPS as u64 == (index % GROUPS) as u64

@@ -45,7 +45,7 @@ pub(super) struct CrowdScene {
     ticks: Vec<u64>,
     /// Groups of those far away of whom no poses are written yet.
     unwritten: [bool; GROUPS],
-    /// Whether walkers are waiting for a whole scene.
+    /// True when walkers are waiting for a whole scene.
     lacking: bool,
 }
 
@@ -321,7 +321,7 @@ fn write_far(flock: &mut Flock, group: usize, walkers: &Walkers, planes: &[Vec4]
         });
 }
 
-/// Whether a walker is there, far away and seen.
+/// Returns whether a walker is there, far away and seen.
 fn is_far(tier: Tier, agent: &Agent, planes: &[Vec4]) -> bool {
     tier == Tier::Far && agent.walker.is_some() && is_seen(agent.place, planes)
 }

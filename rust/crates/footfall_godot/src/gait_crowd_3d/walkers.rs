@@ -173,7 +173,7 @@ impl Walkers {
             .collect()
     }
 
-    /// Whether there are walkers without rows.
+    /// Returns whether there are walkers without rows.
     pub(super) fn are_coming(&self) -> bool {
         !self.coming.is_empty()
     }
@@ -254,7 +254,7 @@ impl Walkers {
         everybody
     }
 
-    /// Whether walkers go from place to place of the navigation map.
+    /// Returns whether walkers go from place to place of the navigation map.
     pub(super) fn is_navigated(&self) -> bool {
         self.way.is_navigated()
     }

@@ -90,7 +90,7 @@ impl Path {
 }
 
 impl Way {
-    /// Whether it goes over the navigation map: walkers wait until a way is found.
+    /// Returns whether it goes over the navigation map: walkers wait until a way is found.
     pub(super) const fn is_navigated(&self) -> bool {
         matches!(self, Self::Navigate)
     }

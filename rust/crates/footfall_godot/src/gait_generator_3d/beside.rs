@@ -23,7 +23,7 @@ impl GaitGenerator3D {
         self.bone_map.clone()
     }
 
-    /// Whether the editor holds the walk.
+    /// Returns whether the editor holds the walk.
     pub(crate) fn is_preview_paused(&self) -> bool {
         self.preview_paused.unwrap_or(!self.playing)
     }

@@ -42,7 +42,7 @@ impl GaitGenerator3D {
         name_of(session.map_or(Gait::Walk, |session| session.generator.gait()))
     }
 
-    /// Whether any part of a foot, `left` or `right`, stands on the ground.
+    /// Returns whether any part of a foot, `left` or `right`, stands on the ground.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn is_foot_on_ground(&self, foot: StringName) -> bool {

@@ -66,7 +66,7 @@ impl GaitGenerator3D {
         };
     }
 
-    /// Whether the skeleton is left to other animation: after `hand_over()`, until `take_over()`.
+    /// Returns whether the skeleton is left to other animation: after `hand_over()`, until `take_over()`.
     #[func]
     fn is_handed_over(&self) -> bool {
         self.reign == Reign::Away

@@ -49,7 +49,7 @@ impl Seen {
         self
     }
 
-    /// Whether its speed is known.
+    /// Returns whether its speed is known.
     pub(super) const fn is_known(&self) -> bool {
         self.frames == 2
     }

@@ -76,12 +76,12 @@ impl Session {
         })
     }
 
-    /// Whether this walk still is one of the model, its styles, the skeleton and the character.
+    /// Returns whether this walk still is one of the model, its styles, the skeleton and the character.
     pub(super) fn is_for(&mut self, source: &WalkSource, skeleton: &Gd<Skeleton3D>) -> bool {
         self.source.is(source) && self.traveller.is_for(skeleton)
     }
 
-    /// Whether the character has another size than it was measured with, and keeps it.
+    /// Returns whether the character has another size than it was measured with, and keeps it.
     pub(super) fn has_new_size(&mut self) -> bool {
         let scale = self.traveller.scale();
         let kept = (scale - self.size.scale).abs() < 1e-4 * scale;
@@ -185,7 +185,7 @@ impl Session {
         travel
     }
 
-    /// Whether the motion before has just died away.
+    /// Returns whether the motion before has just died away.
     pub(super) fn has_arrived(&mut self) -> bool {
         self.handover
             .take_if(|handover| handover.is_over())

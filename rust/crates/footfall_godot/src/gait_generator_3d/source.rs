@@ -16,7 +16,7 @@ impl GaitGenerator3D {
         used.ok_or_else(|| NO_MODEL.to_owned())
     }
 
-    /// Whether there are styles that the model cannot wear.
+    /// Returns whether there are styles that the model cannot wear.
     pub(super) fn passes_over_styles(&self) -> bool {
         !self.styles.is_empty()
             && self
@@ -45,7 +45,7 @@ impl GaitGenerator3D {
         Ok(source)
     }
 
-    /// Whether a source is that of the resources as they are now.
+    /// Returns whether a source is that of the resources as they are now.
     fn is_current(&self, source: &WalkSource) -> bool {
         let model = self.used_model().and_then(|model| model.bind().trained());
         let known = source.styles();

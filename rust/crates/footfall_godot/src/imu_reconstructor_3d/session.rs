@@ -20,7 +20,7 @@ pub(super) struct Session {
     pub(super) prepared: Arc<Prepared>,
     pub(super) traveller: Traveller,
     pub(super) sensors: [Worn; MAX_SENSORS],
-    /// Whether it is found out how sensors are worn.
+    /// True when it is found out how sensors are worn.
     pub(super) finds_mountings: bool,
     /// Pose of the body before anything is heard.
     pub(super) standing: Pose,

@@ -134,7 +134,7 @@ impl SkeletonBinding {
         (own, directions)
     }
 
-    /// Whether a bone is the lowest of the spine or of the head.
+    /// Returns whether a bone is the lowest of the spine or of the head.
     fn begins_part(&self, index: usize) -> bool {
         let part = Part::of(self.bones[index].joint);
         let below = self.bones[index].parent;

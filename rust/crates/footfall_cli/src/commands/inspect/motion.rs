@@ -38,7 +38,7 @@ pub(super) struct MotionFacts {
     /// Share of the motion in which each foot stands.
     left_stance_share: f64,
     right_stance_share: f64,
-    /// Whether it walks in place; its speed is then that of its standing feet.
+    /// True when it walks in place; its speed is then that of its standing feet.
     in_place: bool,
     /// Frames of one round, if it is a loop.
     cycle_frames: Option<usize>,

@@ -26,7 +26,7 @@ pub(crate) struct Gait {
     pub(crate) size: f32,
     /// How far the heel has been raised over the flat toes when the foot lifts, radians.
     pub(crate) roll: f32,
-    /// Whether a foot swings off gently instead of at full speed.
+    /// True when a foot swings off gently instead of at full speed.
     pub(crate) is_gentle: bool,
 }
 

@@ -112,7 +112,7 @@ pub(super) fn compare(
 }
 
 impl Event {
-    /// Whether it is an event of a foot, when the sensor is worn on one.
+    /// Returns whether it is an event of a foot, when the sensor is worn on one.
     fn is_of(&self, side: Side, worn: Side) -> bool {
         let named = self.foot.as_deref();
         named.map_or(side == worn, |name| name == side.name())
