@@ -44,7 +44,7 @@ pub(crate) fn command(only_check: bool) -> Result<()> {
 /// Checks that the wrappers are those of the library as it is now, and that they do what they should.
 ///
 /// # Errors
-/// Which wrapper is out of date, does not compile or fails.
+/// Checks the wrappers; the error names the one that is out of date, does not compile or fails.
 pub(crate) fn check() -> Result<()> {
     let reference = Reference::ask()?;
     let (made, there) = (made(&reference)?, there()?);

@@ -10,7 +10,7 @@ use std::process::Command;
 /// Packages of a virtual display on Debian-like systems.
 const PACKAGES: [&str; 3] = ["xvfb", "xauth", "libgl1-mesa-dri"];
 
-/// Where a window appears.
+/// Display that a window appears on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Display {
     /// On the user's screen.

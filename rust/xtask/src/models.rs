@@ -25,7 +25,7 @@ pub(crate) enum Which {
     Styles,
 }
 
-/// Where the data are when `FOOTFALL_DATA` does not say so, from the repository's root.
+/// Folder of the data when `FOOTFALL_DATA` names none, from the repository's root.
 const DATA: &str = "../shared/data";
 const WALK: &str = "addons/footfall/models/locomotion.footfall";
 
@@ -37,7 +37,7 @@ const SENSORS: [&str; 2] = ["right_foot", "right_thigh"];
 /// A tenth of what there is, most of which is one actor's and people's who stand.
 const SENSOR_FRAMES: &str = "6000";
 
-/// What sensor models learn from: everything that is free for commercial use but the dancer's manner of subject 131, a take whose floor is not at 0
+/// Recordings that sensor models learn from: everything that is free for commercial use but the dancer's manner of subject 131, a take whose floor is not at 0
 /// (its contacts read as flights), and one of crouching, which a sensor cannot tell from standing upright.
 const SENSOR_RECORDINGS: [&str; 8] = [
     "--where",
@@ -61,7 +61,7 @@ const WALKS_OF_ONE: [&str; 4] = [
 /// The recordings that are free for commercial use: neutral walks.
 const NEUTRAL_WALKS: [&str; 4] = ["--where", "category=neutral_walk", "--where", "path=cmu/*"];
 
-/// Where one actor runs at an even speed on the straight. Other people's runs are too few to tell their manner from their skeletons: CMU's misplace ankles by
+/// Runs of one actor at an even speed on the straight. Other people's runs are too few to tell their manner from their skeletons: CMU's misplace ankles by
 /// another angle.
 const RUNNING: [&str; 6] = [
     "--running",
@@ -72,7 +72,7 @@ const RUNNING: [&str; 6] = [
     "path!=*Jumps*",
 ];
 
-/// Where people jump off both feet, and where one actor crouches: other crouches are none that is held.
+/// Takes of jumps off both feet, and of one actor's crouch: other crouches are none that is held.
 const MOVES: [&str; 4] = [
     "--jumping",
     "path=cmu/*jump*",

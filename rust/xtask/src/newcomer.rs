@@ -11,7 +11,7 @@ use std::process::Command;
 const DONE: &str = "NEWCOMER OK";
 /// Line that the editor prints when the add-on works that was unzipped while it ran.
 const DONE_IN_EDITOR: &str = "RUNNING EDITOR OK";
-/// Where the project's checks and the plugin of the running editor are.
+/// Folder of the project's checks and of the plugin of the running editor.
 const SOURCES: &str = "tests/newcomer";
 
 /// Checks the archive of the add-on with the libraries that are in `bin/`, in both flavours.

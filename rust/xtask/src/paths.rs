@@ -1,4 +1,4 @@
-//! Where things are in the repository and in the user's cache.
+//! Paths in the repository and in the user's cache.
 
 use anyhow::{Context as _, Result};
 use std::env;

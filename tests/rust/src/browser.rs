@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Where Chromium is on this machine; [notes](crate::skips::note) that the test is skipped when it is not there.
+/// Path of Chromium on this machine; [notes](crate::skips::note) that the test is skipped when it is not there.
 pub fn chromium(test: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let found = std::env::split_paths(&path)

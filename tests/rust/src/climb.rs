@@ -41,7 +41,7 @@ pub struct Climb {
     pub distance_m: f32,
     /// Carrier of the character's origin over the ground.
     pub origin: Origin,
-    /// Whether the placer knows contacts and landings.
+    /// True when the placer knows contacts and landings.
     pub told: bool,
     /// Of the walker.
     pub seed: u64,
@@ -68,7 +68,7 @@ pub enum Way {
     Blocks {
         /// Height of the highest, metres.
         height: f32,
-        /// Which blocks.
+        /// Seed of the blocks.
         seed: u32,
     },
 }
@@ -132,7 +132,7 @@ pub struct Fault {
     pub failure: Failure,
     /// After so many seconds.
     pub secs: f32,
-    /// Where the hips were.
+    /// Position of the hips.
     pub hips: Vec3,
     /// Severity, in the failure's own measure.
     pub measure: f32,

@@ -1,4 +1,4 @@
-//! Where test data lies.
+//! Location of test data.
 
 use std::path::{Path, PathBuf};
 

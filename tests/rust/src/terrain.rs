@@ -13,7 +13,7 @@ use glam::{Quat, Vec3};
 pub struct Relief {
     /// Height at x and z of the support, metres.
     pub height: Box<dyn Fn(f32, f32) -> f32>,
-    /// Where the support is in the world.
+    /// Place of the support in the world.
     pub support: Frame,
 }
 
@@ -84,7 +84,7 @@ pub struct PlacedWalker {
     pub placer: FootPlacer,
     /// The body that walks.
     pub skeleton: Skeleton,
-    /// Where the character began: `world_from_start`.
+    /// Place where the character began: `world_from_start`.
     pub world_from_start: Frame,
     /// The animation's floor in the last frame.
     pub world_from_floor: Frame,
@@ -147,7 +147,7 @@ impl PlacedWalker {
         self.put(dt_secs, terrain, told);
     }
 
-    /// Which feet the animation has on the ground.
+    /// Feet that the animation has on the ground.
     pub fn contacts(&self) -> [bool; 2] {
         self.generator.feet_in_contact()
     }
@@ -171,7 +171,7 @@ impl PlacedWalker {
         self.place(dt_secs, terrain, told, height);
     }
 
-    /// Where the character is after another frame of its walk, at the height where it began.
+    /// Place of the character after another frame of its walk, at the height where it began.
     fn origin(&mut self, dt_secs: f32, controls: Controls) -> Frame {
         self.generator.step(dt_secs, &controls, &mut self.animated);
         let place = self.generator.start_from_character();
@@ -253,7 +253,7 @@ impl PlacedWalker {
             .angle_between(Quat::IDENTITY)
     }
 
-    /// Where the hips are in the world.
+    /// Position of the hips in the world.
     pub fn hips(&self) -> Vec3 {
         self.world.position(Joint::Hips)
     }

@@ -1,4 +1,4 @@
-//! What a model does not know is told, and never shakes the body.
+//! Low confidence in unknown motion, and a body that it never shakes.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
 

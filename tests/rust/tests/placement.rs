@@ -50,7 +50,7 @@ struct Seen {
     locked: usize,
     /// Frames in which it was locked and lay flat.
     lying: usize,
-    /// Where the hips were at the end.
+    /// Position of the hips at the end.
     end: Vec3,
 }
 

@@ -57,7 +57,7 @@ fn prepare(gait: &Arc<GaitModel>, site: Site) -> Arc<Prepared> {
     Arc::new(Prepared::new(Arc::new(model)).unwrap())
 }
 
-/// What a sensor measures of a wearer who takes longer steps than anybody in the model, and how far this one goes after four seconds, metres.
+/// Measurements of a wearer who takes longer steps than anybody in the model, and the distance that this one has gone after four seconds, metres.
 fn wearer(gait: &Arc<GaitModel>, site: Site) -> (ImuRecording, f32) {
     let tall = gait.skeleton.scaled(1.2);
     let clip = walk(gait, &tall, 99, 1.5);

@@ -32,7 +32,7 @@ pub(crate) struct Subject {
 /// Part of a clip that is drawn, and the size of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SheetOptions {
-    /// Where to begin, seconds from frame 0.
+    /// First moment shown, seconds from frame 0.
     pub(crate) start_secs: f64,
     /// Length to draw; to the end when `None`.
     pub(crate) seconds: Option<f64>,

@@ -31,7 +31,7 @@ pub fn catmull_rom(s: f32) -> [f32; 4] {
     ]
 }
 
-/// How far away from rest, and how fast, something is after so long that comes back as a critically damped spring of this rate (1/s) does. However time is
+/// Offset and velocity of a critically damped spring of this rate (1/s) after a time, on its way back to rest. However time is
 /// cut into steps, it comes to the same.
 pub fn settled<T>(away: T, speed: T, rate: f32, secs: f32) -> (T, T)
 where

@@ -73,7 +73,7 @@ fn elbow(model: &ModelPose) -> f32 {
     upper.angle_between(lower).to_degrees()
 }
 
-/// How far ahead of its shoulder the left elbow is.
+/// Distance of the left elbow ahead of its shoulder.
 fn elbow_ahead(model: &ModelPose) -> f32 {
     model.position(Joint::LeftLowerArm).z - model.position(Joint::LeftUpperArm).z
 }

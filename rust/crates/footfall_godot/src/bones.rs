@@ -1,4 +1,4 @@
-//! Which bone of a `Skeleton3D` is which joint: by the user's bone map, by the profile's names, or as recognised; and which skeleton.
+//! Assignment of a `Skeleton3D`'s bones to joints: by the user's bone map, by the profile's names, or as recognised; and choice of the skeleton.
 
 use crate::rest_body::is_optional;
 use footfall_core::rig::{Placement, Recognition, recognise};

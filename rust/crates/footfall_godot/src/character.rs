@@ -1,4 +1,4 @@
-//! Which node travels when a character walks.
+//! Choice of the node that travels when a character walks.
 
 use godot::classes::Skeleton3D;
 use godot::prelude::*;

@@ -57,7 +57,7 @@ pub(crate) enum CrowdBehaviour {
 /// Give it a `model` and a `character`, a scene with a humanoid skeleton, and choose how many in `count`. Walkers wander over an area,
 /// follow a `Path3D`, or do what a script tells them, and keep out of each other's way.
 ///
-/// How a walker is drawn depends on its distance from the camera. The nearest are whole scenes, with everything that hangs from them,
+/// Walkers are drawn by their distance from the camera. The nearest are whole scenes, with everything that hangs from them,
 /// such as a `FootPlacement3D`. The next are instances of one mesh whose poses are streamed to the graphics processor, new in every
 /// frame; those farther away get a new pose in every few frames, blended in between, and repeat their last two steps. Counts and
 /// distances are settable.
@@ -143,7 +143,7 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_colours)]
     colours: PackedColorArray,
 
-    /// Which crowd of the many that there could be. Equal seeds give equal crowds.
+    /// Seed of the crowd. Equal seeds give equal crowds.
     #[export]
     #[var(set = set_seed)]
     seed: i64,

@@ -69,7 +69,7 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_styles)]
     styles: Array<Option<Gd<GaitStyle>>>,
 
-    /// How much of each style there is in the walk, in the order of `styles`: 0 is none, 1 the style as it was recorded.
+    /// Weights of the styles, in the order of `styles`: 0 is none, 1 the style as it was recorded.
     ///
     /// Any mixture goes: more than 1 exaggerates, less than 0 is the opposite, and the sum need not be 1. What is too much for a
     /// body is held back. May change at any time; the walk takes it up with the next step. A missing weight counts as 0.
@@ -77,7 +77,7 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_style_weights)]
     style_weights: PackedFloat32Array,
 
-    /// How fast the character walks or runs, in metres per second. Cadence and step length follow as they do in people, and `gait` says from where on it runs.
+    /// Walking or running speed in metres per second. Cadence and step length follow as they do in people, and `gait` says from where on it runs.
     ///
     /// May change at any time: a walk whose foot is in the air takes it up at once, any other step with the next. `GaitModel.get_speed_range()` tells what the model was
     /// trained on. At 0 the character stops within two steps and stands, or turns in place by `turn_rate`.
@@ -91,7 +91,7 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_turn_rate)]
     turn_rate: f64,
 
-    /// Where the character goes, seen from where it faces, in radians: 0 forwards, 90° to its left, -90° to its right, 180° backwards.
+    /// Direction of travel relative to where the character faces, in radians: 0 forwards, 90° to its left, -90° to its right, 180° backwards.
     ///
     /// For characters that look at something else than their way. Taken up as `speed` is, over several steps where the change is
     /// great. Steps to the side and backwards are shorter than those forwards, as people's are: sideways a character reaches about 0.65 m/s,
@@ -108,7 +108,7 @@ pub(crate) struct GaitGenerator3D {
     #[export]
     gait: GaitMode,
 
-    /// How low the character keeps, standing or walking: 0 upright, 1 as low as the model's people.
+    /// Depth of the crouch, standing or walking: 0 upright, 1 as low as the model's people.
     ///
     /// Taken up at once and smoothly; feet stay where they are. Who crouches goes no faster than those people do, about 1 m/s at 1. A model that knows
     /// no crouch (any `.footdyn`, and `.footfall` files without `footfall train --crouching`) stays upright.
@@ -116,7 +116,7 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_crouch)]
     crouch: f64,
 
-    /// How much of the spine's pose is the walk's: at 0 `Spine`, `Chest` and `UpperChest` are posed by what else animates the skeleton, such
+    /// Weight of the walk in the spine's pose: at 0 `Spine`, `Chest` and `UpperChest` are posed by what else animates the skeleton, such
     /// as an `AnimationPlayer`, an `AnimationTree` or a script. Hips and legs always walk.
     ///
     /// The spine keeps the direction that the animation gives it in the character's space, whatever the hips do, so that steps do not shake
@@ -140,7 +140,7 @@ pub(crate) struct GaitGenerator3D {
     #[init(val = 1.0)]
     right_arm_weight: f64,
 
-    /// Which walk of the many that the model can generate. Equal seeds give equal walks.
+    /// Seed of the walk. Equal seeds give equal walks.
     ///
     /// 0 gives every node a walk of its own, and a place in the stride of its own to begin at: both follow from the node's path in its
     /// scene, so a scene that is run again walks as before, and two nodes differ. `get_effective_seed()` tells which it is. A saved state
@@ -149,7 +149,7 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_seed)]
     seed: i64,
 
-    /// Where in the stride the walk starts: 0 with the left foot touching down, 0.5 with the right, up to 1.
+    /// Phase of the stride at which the walk starts: 0 with the left foot touching down, 0.5 with the right, up to 1.
     ///
     /// With a `seed` of 0 it is counted from the node's own place in the stride. Changing it starts the walk anew.
     #[export(range = (0.0, 1.0, 0.01))]
@@ -172,7 +172,7 @@ pub(crate) struct GaitGenerator3D {
     #[init(val = 1.0)]
     standing_motion: f64,
 
-    /// How finely the walk is worked out: every frame of the model, every second (half) or every fourth (quarter).
+    /// Resolution of the walk: every frame of the model, every second (half) or every fourth (quarter).
     ///
     /// Lower it for characters far from the camera. The walk is the same, but feet slip a little between frames. Taken up with
     /// the next step.
@@ -211,7 +211,7 @@ pub(crate) struct GaitGenerator3D {
     source: Option<WalkSource>,
     /// The time of the walk to go to in the next frame, seconds.
     pending_seek: Option<f64>,
-    /// Whether the editor holds the walk; `None` while `playing` says.
+    /// True while the editor holds the walk; `None` while `playing` decides.
     preview_paused: Option<bool>,
     /// The gait that was told last.
     told_gait: Gait,

@@ -94,7 +94,7 @@ impl GaitStyle {
 /// All styles of a list.
 ///
 /// # Errors
-/// Which one is empty or broken, and what to do.
+/// Trained styles of all resources; the error names the one that is empty or broken, and what to do.
 pub(crate) fn trained_all(
     styles: &Array<Option<Gd<GaitStyle>>>,
 ) -> Result<Vec<Arc<TrainedStyle>>, String> {

@@ -23,7 +23,7 @@ pub(crate) struct ImuModel {
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
-    /// Which sensors the model is for and what it was trained on, or what is wrong with its file.
+    /// Sensors that the model is for and recordings that it was trained on, or the fault of its file.
     #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
     description: PhantomVar<GString>,
 
@@ -58,7 +58,7 @@ impl ImuModel {
         self.base_mut().emit_changed();
     }
 
-    /// Which sensors the model is for and what it was trained on, or what is wrong with its file.
+    /// Sensors that the model is for and recordings that it was trained on, or the fault of its file.
     #[func]
     fn get_description(&self) -> GString {
         self.loaded.describe(|prepared| describe(prepared.model()))
@@ -71,7 +71,7 @@ impl ImuModel {
             .map_or_else(|error| GString::from(&error), |_| GString::new())
     }
 
-    /// Where the sensors sit, in order: for example `right_foot`. Empty for a broken model.
+    /// Sites of the sensors, in order: for example `right_foot`. Empty for a broken model.
     #[func]
     fn get_sites(&self) -> PackedStringArray {
         let sites = self

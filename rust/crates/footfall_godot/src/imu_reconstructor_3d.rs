@@ -42,13 +42,13 @@ pub(crate) struct ImuReconstructor3D {
     #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
     model: Option<Gd<ImuModel>>,
 
-    /// Where the samples come from: a `PhoneImuSource`, `SerialImuSource`, `NetworkImuSource`, `DeviceImuSource` or `ReplayImuSource`. Live ones are opened in the game, not in the
+    /// Source of the samples: a `PhoneImuSource`, `SerialImuSource`, `NetworkImuSource`, `DeviceImuSource` or `ReplayImuSource`. Live ones are opened in the game, not in the
     /// editor, and drive one node each. May be empty when a script pushes samples.
     #[export]
     #[var(hint = RESOURCE_TYPE, hint_string = imu_source::CLASSES)]
     source: Option<Gd<Resource>>,
 
-    /// Where the samples of the second sensor come from, for a model of two.
+    /// Source of the second sensor's samples, for a model of two.
     #[export]
     #[var(hint = RESOURCE_TYPE, hint_string = imu_source::CLASSES)]
     second_source: Option<Gd<Resource>>,

@@ -89,7 +89,7 @@ pub(crate) fn problem(source: &Gd<Resource>) -> Option<String> {
 pub(crate) trait LiveSource {
     /// Its port, once open.
     fn live(&self) -> &Live;
-    /// Which device of the port it is.
+    /// Index of the device at the port.
     fn place(&self) -> usize;
     /// Opens the port, or joins others that have it open.
     fn opened(&self) -> Result<Opened, String>;

@@ -33,7 +33,7 @@ pub(crate) struct NetworkImuSource {
     #[var(set = set_address)]
     address: GString,
 
-    /// Which sensor at the port, in the order in which they were first heard, from 0: several players share a port.
+    /// Number of the sensor at the port, from 0 in the order in which sensors were first heard: several players share a port.
     #[export(range = (0.0, 15.0, 1.0))]
     sensor: i64,
 

@@ -15,7 +15,7 @@ const MOST_PLAYERS: usize = 8;
 /// Light modules around a code, which readers need.
 const MARGIN: usize = 4;
 
-/// Where the certificate is kept.
+/// Folder of the certificate.
 const FOLDER: &str = "user://footfall_phone";
 
 /// Hears a phone through its browser: the game serves a page, shows its address as a code, and the phone that scans it is the sensor. Nothing is installed.

@@ -24,7 +24,7 @@ mod share {
     pub(super) const HEAD: f32 = 0.22;
 }
 
-/// Where the joints of a character are in its rest pose, in metres: Y up, facing +Z, its left +X, the hips at x = z = 0.
+/// Positions of a character's joints in its rest pose, in metres: Y up, facing +Z, its left +X, the hips at x = z = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct RestJoints {
     /// Place of each joint; `None` for an optional one that the character lacks.

@@ -11,10 +11,10 @@ pub(crate) const RIGHT_FOOT: &str = "right_foot.footimu";
 
 /// End of the path of the add-on's extension file.
 const EXTENSION: &str = "/footfall.gdextension";
-/// Where the add-on usually is.
+/// Usual folder of the add-on.
 const USUAL_FOLDER: &str = "res://addons/footfall";
 
-/// Where a model is: beside the extension, in whatever folder that was put.
+/// Path of a shipped model: beside the extension, in whatever folder that was put.
 pub(crate) fn path(name: &str) -> GString {
     let extensions = GDExtensionManager::singleton().get_loaded_extensions();
     let found = extensions

@@ -106,17 +106,17 @@ impl Traveller {
         self.binding.skeleton()
     }
 
-    /// Where the body is from now on, without having gone there.
+    /// Puts the body somewhere else without travel.
     pub(crate) const fn place(&mut self, start_from_ground: GroundTransform) {
         self.start_from_ground = start_from_ground;
     }
 
-    /// Where the body is.
+    /// Place of the body.
     pub(crate) fn start_from_ground(&self) -> Affine3A {
         affine(&self.start_from_ground)
     }
 
-    /// Where the body is, as place and heading.
+    /// Place and heading of the body.
     pub(crate) const fn ground_place(&self) -> GroundTransform {
         self.start_from_ground
     }

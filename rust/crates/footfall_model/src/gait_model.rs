@@ -219,7 +219,7 @@ impl GaitModel {
         &self.steps[side.index()]
     }
 
-    /// Which of the contexts says what to add to the step at a place of the walk; `None` where it is as inside.
+    /// Index of the context that applies at a place of the walk; `None` where the step is as inside.
     pub fn context(&self, position: StepPosition, side: Side) -> Option<usize> {
         let mut contexts = self.contexts.iter();
         contexts.position(|context| context.position == position && context.side == side)

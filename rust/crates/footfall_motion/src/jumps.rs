@@ -24,7 +24,7 @@ const PUSHING_MPS: f32 = 0.1;
 const STANDING_MPS: f32 = 0.4;
 /// Hips rise above standing by so much at least, as a share of their height in the T-pose: feet that are drawn up are no jump.
 const LEAST_RISE_SHARE: f32 = 0.08;
-/// Who turns farther in a jump makes another kind of it, radians.
+/// Largest turn within a jump, radians: farther turns make another kind of jump.
 const MOST_TURN_RAD: f32 = 0.5;
 
 /// One jump, in frames of its clip.

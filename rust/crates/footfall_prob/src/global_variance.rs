@@ -98,7 +98,7 @@ pub fn temporal_moments(trajectory: &[f64], dim: usize) -> (Vec<f64>, Vec<f64>) 
 /// `problem.n_fixed` frames, which count in the mean and variance over time, and writes the others.
 /// `problem.pull` is ignored.
 ///
-/// Where no trajectory reaches the target (a single frame, or means that do not vary at all), the
+/// If no trajectory reaches the target (a single frame, or means that do not vary at all), the
 /// result is the best that the states allow.
 ///
 /// # Errors

@@ -157,7 +157,7 @@ impl Reconstructor {
     }
 
     /// Returns how well the model explains what the sensors say, 0 to 1: the probability that what is done is among what it learned. 0 where nothing is heard.
-    /// Where it is low, the body stands.
+    /// The body stands where it is low.
     pub fn confidence(&self) -> f32 {
         match self.sensor_state() {
             SensorState::Tracking => self.confidence.value(),

@@ -144,7 +144,7 @@ impl AverageWalk {
         &self.hsmm.gaussians
     }
 
-    /// Where `aligned` sequences say that the states are, and what `seen` sequences, frame by frame the same walks, show there.
+    /// Statistics of the `seen` sequences at the states found in `aligned` ones, which are the same walks frame by frame.
     pub(crate) fn expect(
         &self,
         aligned: &[Sequence],

@@ -63,7 +63,7 @@ impl Upright {
         self.pose.root_position.y
     }
 
-    /// What this posture is beside another one, with its feet on the ground: [`BESIDE_COUNT`] numbers for legs of this length.
+    /// Difference of this posture from another one, with its feet on the ground: [`BESIDE_COUNT`] numbers for legs of this length.
     pub(crate) fn beside(&self, standing: &Self, leg: f32) -> Vec<f64> {
         let mut row = vec![0.0; BESIDE_COUNT];
         for joint in Joint::ALL {

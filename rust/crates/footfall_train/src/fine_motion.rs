@@ -19,7 +19,7 @@ use footfall_prob::mlpg::MlpgProblem;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// What moves faster is noise of markers, hertz. A filter's edge is soft: what counts lies below 6 Hz.
+/// Upper limit of fine motion, hertz: above it is marker noise. A filter's edge is soft, and the band that counts ends at 6 Hz.
 const CUT_OFF_HZ: f64 = 8.0;
 
 /// Steps that a walker's mean must outweigh: with few steps it is drawn towards the mean of all.

@@ -1,7 +1,7 @@
 //! Standing, from recordings of people who stand.
 //!
 //! Of every recording the [stretches] count in which somebody stands upright on planted feet with arms that hang. Their mean is the posture.
-//! What moves about it is split into looks, which jump and hold (`looks`), and the rest, a Gaussian process of octaves (`octaves`).
+//! Motion about it is split into looks, which jump and hold (`looks`), and the rest, a Gaussian process of octaves (`octaves`).
 //! People who fidget and people who hardly move weigh the same.
 
 mod looks;
@@ -20,7 +20,7 @@ pub use stretches::{Stretch, stretches};
 /// A rate at which nothing is lost of how people stand, frames per second.
 pub const RATE_HZ: f64 = 24.0;
 
-/// Who is seen longer than this counts no more for it, seconds.
+/// Length of a recording from which on a person gains no more weight, seconds.
 const ENOUGH_SECS: f64 = 60.0;
 
 /// Breaths a minute of adults at rest: 12 to 20 (Barrett et al., *Ganong's Review of Medical Physiology*).
@@ -77,7 +77,7 @@ struct Person {
 }
 
 impl StandingClip {
-    /// What is read of a recording.
+    /// Extracts the standing spells of a recording.
     pub fn new(subject: &str, motion: &Retargeted) -> Self {
         Self {
             subject: subject.to_owned(),

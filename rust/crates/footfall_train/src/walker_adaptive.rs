@@ -302,7 +302,7 @@ mod tests {
         min_gain_per_frame: 1e-4,
     };
 
-    /// What differs between these walkers is a scale and an offset: with both taken out they are one walker.
+    /// These walkers differ by a scale and an offset: with both taken out they are one walker.
     #[test]
     fn known_transforms_are_taken_out() {
         let known = [(1.0, 0.0), (1.4, 0.3), (0.7, -0.2), (1.0, 0.5)];

@@ -3,7 +3,7 @@
 use super::names::pascal;
 use super::reference::Reference;
 
-/// Where names in a text are looked up.
+/// Names that a text may refer to.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scope<'a> {
     pub(super) reference: &'a Reference,

@@ -32,7 +32,7 @@ const PACKAGES: [&str; 9] = [
     "mesa-vulkan-drivers",
     "libvulkan1",
 ];
-/// Where the export template is, from the cache folder.
+/// Path of the export template, from the cache folder.
 pub(super) const RELEASE_TEMPLATE: &str = "root/usr/bin/godot-template-release";
 /// Script that starts Godot, from the cache folder.
 const STARTER: &str = "godot";

@@ -101,7 +101,7 @@ fn snap(field: &dyn Fn(Vec3) -> f32, inside: &dyn Fn(Vec3) -> f32, mesh: &mut Me
         .collect()
 }
 
-/// Where the band's edge crosses a triangle's edge, as a share of its length.
+/// Share of a triangle's edge at which the band's border crosses it.
 fn border(inside: &dyn Fn(Vec3) -> f32, mesh: &Mesh, from: u32, to: u32) -> f32 {
     let [p, q] = [from, to].map(|vertex| mesh.positions[vertex as usize]);
     let (mut low, mut high) = (0.0, 1.0);

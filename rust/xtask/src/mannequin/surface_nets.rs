@@ -12,7 +12,7 @@ pub(super) struct Mesh {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// Where the grid's lines cross each axis, ascending.
+/// Coordinates of the grid's planes along each axis, ascending.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
     pub(super) lines: [Vec<f32>; 3],

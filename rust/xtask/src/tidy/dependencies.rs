@@ -1,4 +1,4 @@
-//! Which crate may depend on which, from `cargo metadata`.
+//! Permitted dependencies between crates, checked with `cargo metadata`.
 
 use super::Violation;
 use serde_json::Value;

@@ -47,7 +47,7 @@ pub(crate) struct AdaptArgs {
     /// Description of the data for the style's provenance, in your words; the conditions when absent
     #[arg(long, value_name = "TEXT")]
     describe: Option<String>,
-    /// Where to write the style
+    /// File to write the style to
     #[arg(short, long, value_name = "STYLE.footstyle")]
     output: PathBuf,
     /// Print one JSON object on stdout

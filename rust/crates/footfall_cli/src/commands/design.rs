@@ -47,7 +47,7 @@ pub(crate) struct DesignArgs {
     /// Least number of steps of all clips of a corpus
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
-    /// Which chance a sheet with irregular steps draws
+    /// Seed of a sheet with irregular steps
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// The file to write, or for a corpus the folder

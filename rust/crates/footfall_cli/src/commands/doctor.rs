@@ -12,7 +12,7 @@ use std::process::Command;
 /// Oldest engine that the add-on runs in.
 const LEAST_GODOT: [u32; 2] = [4, 6];
 
-/// Where phones and trackers send to by default.
+/// Port that phones and trackers send to by default.
 const UDP_PORT: u16 = 6969;
 
 /// Check that this machine has what Footfall needs

@@ -24,7 +24,7 @@ pub(crate) struct RetargetArgs {
     /// The recording, .bvh, .glb or .gltf
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// Where to write
+    /// File to write
     #[arg(short, long, value_name = "OUT.bvh")]
     output: PathBuf,
     /// Frames per second of the output; the input's when absent

@@ -25,10 +25,10 @@ pub(crate) struct SheetArgs {
     /// One or more recordings, .bvh, .glb or .gltf, drawn one below the other
     #[arg(value_name = "RECORDING", required = true)]
     inputs: Vec<PathBuf>,
-    /// Where to write the picture
+    /// File to write the picture to
     #[arg(short, long, value_name = "SHEET.png")]
     output: PathBuf,
-    /// Where to begin, in seconds from frame 0; the first frame of the motion when absent
+    /// First moment shown, in seconds from frame 0; the first frame of the motion when absent
     #[arg(long)]
     start: Option<f64>,
     /// Number of seconds to draw; all when absent

@@ -22,7 +22,7 @@ pub(crate) struct StudyArgs {
     corpora: CorpusPair,
     #[command(flatten)]
     knees: KneesArgs,
-    /// Where to write the page
+    /// File to write the page to
     #[arg(short, long, value_name = "STUDY.html")]
     output: PathBuf,
     /// Most walks, or pairs of walks, in each test

@@ -55,7 +55,7 @@ pub(crate) struct TrainArgs {
     crouching: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
-    /// Where to write the model
+    /// File to write the model to
     #[arg(short, long, value_name = "WALK.footfall")]
     output: PathBuf,
     /// Frames per second of the model
@@ -110,7 +110,7 @@ struct Report<'a> {
     seconds: f64,
 }
 
-/// Which steps of a walk share a model.
+/// Counts of the steps that share a model.
 #[derive(Serialize)]
 struct Contexts<'a> {
     /// Steps seen by place in the walk (left, right), mirrored ones included.

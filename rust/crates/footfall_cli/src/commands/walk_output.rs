@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Options of a walk, and its output files.
 #[derive(Debug, clap::Args)]
 pub(super) struct WalkArgs {
-    /// Which walker, and which of its walks
+    /// Seed of the walker, and of its walk
     #[arg(long, default_value_t = 1)]
     pub(super) seed: u64,
     /// Frames per second; the model's when absent
@@ -29,7 +29,7 @@ pub(super) struct WalkArgs {
         value_name = "DEG_PER_S"
     )]
     pub(super) turn: f32,
-    /// Where it goes, seen from where it faces: 0 forwards, 90 to the left, 180 backwards. A trained walk that does not go forwards begins and
+    /// Direction of travel, relative to where it faces: 0 forwards, 90 to the left, 180 backwards. A trained walk that does not go forwards begins and
     /// ends standing
     #[arg(
         long,
@@ -41,10 +41,10 @@ pub(super) struct WalkArgs {
     /// Variation of the walker and its steps about the average: 0 none, 1 as in the recordings
     #[arg(long, default_value_t = 1.0)]
     pub(super) variation: f32,
-    /// Where to write
+    /// File to write
     #[arg(short, long, value_name = "OUT.bvh")]
     pub(super) output: PathBuf,
-    /// Where to write the contacts, as `footfall contacts --json` prints them
+    /// File to write the contacts to, as `footfall contacts --json` prints them
     #[arg(long, value_name = "OUT.json")]
     contacts: Option<PathBuf>,
 }

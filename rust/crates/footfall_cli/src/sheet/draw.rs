@@ -24,7 +24,7 @@ pub(crate) mod palette {
 }
 use palette::Rgb;
 
-/// Where text stands relative to its anchor.
+/// Alignment of text to its anchor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Align {
     /// Starts at the anchor.

@@ -44,7 +44,7 @@ impl View {
         }
     }
 
-    /// Where a world point falls.
+    /// Pixel that a world point falls on.
     pub(crate) fn project(&self, point: Vec3) -> Vec2 {
         let offset = point - self.origin;
         self.anchor + Vec2::new(offset.dot(self.right), -offset.y) * self.scale

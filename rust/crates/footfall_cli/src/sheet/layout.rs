@@ -1,4 +1,4 @@
-//! Where the panels of one clip go. Pixels, y down, relative to the block's corner.
+//! Layout of the panels of one clip. Pixels, y down, relative to the block's corner.
 
 use super::SheetOptions;
 use super::curves::PLOT_COUNT;

@@ -10,7 +10,7 @@ use glam::{Quat, Vec3};
 pub(super) const RATE_HZ: f64 = 30.0;
 /// Points of the figure: the joints, the top of the head, and heel and toe tip of each foot.
 pub(super) const POINTS: usize = Joint::ALL.len() + 5;
-/// Where the top of the head is among the points; heel and toe tip of the left and of the right foot follow.
+/// Index of the top of the head among the points; heel and toe tip of the left and of the right foot follow.
 pub(super) const HEAD_TOP: usize = Joint::ALL.len();
 /// Fewer steps show no style.
 const LEAST_STEPS: usize = 3;

@@ -13,7 +13,7 @@ struct Recorded {
     name: String,
     foot: &'static str,
     rate_hz: f64,
-    /// Which samples they are: some were lost on the way.
+    /// Numbers of the samples that arrived: some were lost on the way.
     numbers: Vec<f64>,
     samples: Vec<[f64; 6]>,
     landings: Vec<f64>,

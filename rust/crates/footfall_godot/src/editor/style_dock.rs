@@ -163,7 +163,7 @@ impl FootfallStyleDock {
         self.job.is_some()
     }
 
-    /// What was told last.
+    /// Message shown last.
     #[func]
     fn get_message(&self) -> GString {
         let form = self.form.as_ref();

@@ -19,7 +19,7 @@ pub(super) struct Order {
     pub(super) name: String,
     /// Largest number of steps to take from them.
     pub(super) steps: usize,
-    /// Where it is written.
+    /// File that the style is written to.
     pub(super) file: PathBuf,
 }
 

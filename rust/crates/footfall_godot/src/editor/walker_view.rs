@@ -12,7 +12,7 @@ use godot::classes::{
 use godot::prelude::*;
 use std::sync::Arc;
 
-/// Where the camera is and what it looks at, metres.
+/// Place of the camera and the point that it looks at, metres.
 const EYE: Vector3 = Vector3::new(1.7, 1.25, 2.5);
 const TARGET: Vector3 = Vector3::new(0.0, 0.86, 0.0);
 

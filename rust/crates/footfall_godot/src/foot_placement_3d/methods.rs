@@ -15,7 +15,7 @@ impl FootPlacement3D {
         self.foot(&foot).is_some_and(|placed| placed.locked)
     }
 
-    /// Where the sole of a foot, `left` or `right`, is, in global space: its origin lies on the ground under the ankle of the flat foot,
+    /// Returns the place of a foot's sole (`left` or `right`) in global space: its origin lies on the ground under the ankle of the flat foot,
     /// +Y is the ground's normal and +Z points to the toes. For a foot on its way, of the place over which it is.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]

@@ -29,7 +29,7 @@ struct Actor {
 #[derive(Default)]
 pub(super) struct Actors {
     all: Vec<Actor>,
-    /// Which walkers are played.
+    /// True for walkers that a scene plays.
     playing: Vec<bool>,
     broken: bool,
 }

@@ -65,7 +65,7 @@ pub(super) struct Agent {
     pub(super) ticket: u64,
     /// True when it is one of the node's `count`, not one that a script added.
     pub(super) counted: bool,
-    /// Where in its stride it begins.
+    /// Phase of the stride at which it begins.
     pub(super) start_phase: f32,
     pub(super) goal: Goal,
     /// Preferred speed, m/s.

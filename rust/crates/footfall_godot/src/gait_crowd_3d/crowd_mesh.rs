@@ -20,7 +20,7 @@ pub(super) struct CrowdMesh {
     /// For walkers whose pose is new in every frame, and for those far away.
     pub(super) meshes: [Gd<ArrayMesh>; 2],
     pub(super) body: Skeleton,
-    /// Where the joints are in the T-pose.
+    /// Positions of the joints in the T-pose.
     pub(super) rest: [Vec3; JOINT_COUNT],
     /// The joint whose rotation each joint's bone takes.
     pub(super) turned_by: [Joint; JOINT_COUNT],

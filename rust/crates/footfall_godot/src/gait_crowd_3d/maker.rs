@@ -17,7 +17,7 @@ const MADE_A_FRAME: usize = 8;
 #[derive(Debug)]
 pub(super) struct Order {
     pub(super) place: usize,
-    /// Which walker it is for: another one may have its place when it is done.
+    /// Ticket of the walker that it is for: another one may have its place when it is done.
     pub(super) ticket: u64,
     pub(super) outfit: Outfit,
     /// Settings of its walk; none for a walker that is there and only dressed.

@@ -9,7 +9,7 @@ pub(super) struct Neighbours {
     seen: Vec<Seen>,
     /// Walkers in the order of their buckets.
     order: Vec<u32>,
-    /// Where each bucket begins in `order`; one more than buckets.
+    /// Index in `order` at which each bucket begins; one more than buckets.
     starts: Vec<u32>,
 }
 

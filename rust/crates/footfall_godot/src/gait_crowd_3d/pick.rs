@@ -35,7 +35,7 @@ fn there(walkers: &Walkers) -> impl Iterator<Item = (usize, &Agent)> {
     places.map(|place| (place, &walkers.agents[place]))
 }
 
-/// Where on the way from one point to another an upright capsule that stands there begins, as a share of the way.
+/// Share of the way between two points after which it meets an upright capsule; `None` where it passes by.
 fn share_to_capsule(from: Vec3, to: Vec3, foot: Vec3, height: f32, radius: f32) -> Option<f32> {
     let low = foot + Vec3::Y * radius;
     let high = foot + Vec3::Y * (height - radius).max(radius);

@@ -35,7 +35,7 @@ pub(super) struct SavedCrowd {
     pub(super) roster: Option<Roster>,
     /// In the order in which they came.
     pub(super) agents: Vec<SavedAgent>,
-    /// Which of them are of the node's `count`.
+    /// True for walkers of the node's `count`.
     pub(super) counted: Vec<bool>,
 }
 

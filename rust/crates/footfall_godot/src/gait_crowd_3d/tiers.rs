@@ -14,7 +14,7 @@ pub(super) enum Tier {
     Far,
 }
 
-/// Where tiers end.
+/// Borders between tiers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
     /// Most walkers in the full and in the near tier.

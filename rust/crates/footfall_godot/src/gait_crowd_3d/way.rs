@@ -1,4 +1,4 @@
-//! Where walkers of a crowd go by themselves.
+//! Ways that walkers of a crowd take by themselves.
 
 use super::agent::{Agent, Goal};
 use glam::Vec2;

@@ -12,7 +12,7 @@ use godot::prelude::*;
 
 /// The walk without a style, as clips name it.
 const PLAIN: &str = "neutral";
-/// Where the library says which track is the root's.
+/// Metadata of an animation library that names the root's track.
 const ROOT_MOTION_TRACK: &str = "root_motion_track";
 
 #[godot_api(secondary)]

@@ -1,4 +1,4 @@
-//! Where in the stride a walk begins that goes on from another motion: where it resembles that most.
+//! Phase of the stride at which a walk takes over from another motion: where the two poses resemble each other most.
 
 use super::seen::Seen;
 use crate::walk_source::WalkSource;

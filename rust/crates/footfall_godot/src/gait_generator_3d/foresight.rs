@@ -1,4 +1,4 @@
-//! Where the walk will go, for the editor to draw.
+//! Preview of the walk's way, for the editor to draw.
 
 use super::GaitGenerator3D;
 use crate::convert;

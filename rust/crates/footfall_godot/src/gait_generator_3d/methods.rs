@@ -10,7 +10,7 @@ use godot::prelude::*;
 
 #[godot_api(secondary)]
 impl GaitGenerator3D {
-    /// How far and about what the character travelled, in its own space: axes and scale are those of its node.
+    /// Returns the character's travel and turn in its own space: axes and scale are those of its node.
     ///
     /// Asked in `_physics_process()`, since the frame of the physics before; asked in `_process()`, since the frame before: whoever asks once
     /// a frame is told all of it, at any frame rate, and asked twice in a frame it says the same. After the skeleton has moved within a frame, as in a

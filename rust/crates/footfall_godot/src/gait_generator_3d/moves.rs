@@ -33,7 +33,7 @@ impl Flight {
 impl GaitGenerator3D {
     /// Asks for one jump in which the hips rise `height` metres above where they were: 0.1 to 0.5 is what adults do.
     ///
-    /// Who stands jumps off both feet at once; who walks or runs forwards leaps with the next step, off one foot onto the other; who goes sideways
+    /// A standing character jumps off both feet at once; one that walks or runs forwards leaps with the next step, off one foot onto the other; one that goes sideways
     /// or backwards comes to a stand first. The body bends its knees, `took_off` is emitted as it leaves the ground and `landed` as it is back. A
     /// jump off both feet moves the character up and down by its root motion; a leap lifts the body above the character. Asking again while a jump is
     /// waited for or under way changes nothing.

@@ -19,7 +19,7 @@ impl GaitGenerator3D {
         fnv1a(&self.place_in_scene()).max(1)
     }
 
-    /// Where in the stride a node begins that has a seed of its own, 0 to 1.
+    /// Phase of the stride, 0 to 1, at which a node with a seed of its own begins.
     pub(super) fn own_phase(&self) -> f32 {
         // The high bits of the product are mixed best.
         let mixed = self.own_seed().wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -28,7 +28,7 @@ impl GaitGenerator3D {
 
     /// The path from the root of the running or edited scene; from the tree's root for a node outside of it.
     ///
-    /// Where the engine made up a name, which differs whenever a scene is run, the place among the children stands for it.
+    /// Path of the node in its scene. The index among the children stands for a name that the engine made up, which differs whenever a scene is run.
     fn place_in_scene(&self) -> String {
         let mut node = self.base().clone().upcast::<Node>();
         let stage: Vec<Gd<Node>> = if node.is_inside_tree() {

@@ -80,7 +80,7 @@ impl Seen {
         self
     }
 
-    /// Where the hips are now.
+    /// Position of the hips now.
     pub(super) const fn hips(&self) -> Vec3 {
         self.now.root_position
     }

@@ -50,7 +50,7 @@ impl GaitGenerator3D {
         Ok(session)
     }
 
-    /// Which walk of the model's it is.
+    /// Configuration of the walk: its seed, its phase and its place.
     pub(super) fn config(&self) -> GeneratorConfig {
         let (seed, begin) = if self.seed == 0 {
             (self.own_seed(), self.own_phase())

@@ -37,7 +37,7 @@ impl Session {
         (pose, self.stands_in_place())
     }
 
-    /// Which feet stand on the ground that the character takes along.
+    /// Feet that stand on ground that the character takes along.
     pub(super) fn stands_in_place(&self) -> [bool; 2] {
         self.watched.in_place.moving().stands
     }

@@ -85,7 +85,7 @@ impl ImuReconstructor3D {
         StringName::from(behaviour.name())
     }
 
-    /// How well the model explains what the sensors say, 0 to 1: the probability that what the person does is among what the model learned. 0 where nothing
+    /// Returns the model's confidence, 0 to 1: the probability that the wearer's motion is among those the model learned. 0 where nothing
     /// is heard.
     ///
     /// Walking is about 0.85. Below 0.1, with a sensor that is shaken, worn elsewhere or mounted otherwise than is thought, the body stands.

@@ -29,7 +29,7 @@ pub(crate) struct Foothold {
 }
 
 impl Foothold {
-    /// Where the sole is in the world now: the origin lies on the ground under the ankle of a flat foot, +Y is the ground's normal
+    /// Place of the sole in the world now: the origin lies on the ground under the ankle of a flat foot, +Y is the ground's normal
     /// and +Z points to the toes. `None` when what it stands on is gone.
     pub(crate) fn world_from_sole(&self, terrain: &mut impl Terrain) -> Option<Frame> {
         let support = terrain.support(self.support)?;

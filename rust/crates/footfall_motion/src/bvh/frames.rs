@@ -3,7 +3,7 @@
 use super::{BvhFile, Channel};
 use glam::{Quat, Vec3};
 
-/// Where every joint of a file is and how it is turned, in the file's space and unit.
+/// Positions and rotations of a file's joints, in the file's space and unit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointTransforms {
     /// Position of each joint.

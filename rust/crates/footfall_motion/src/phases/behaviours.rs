@@ -53,7 +53,7 @@ pub(super) fn behaviours_of(track: &Track, contacts: &Contacts) -> Vec<Behaviour
     behaviours
 }
 
-/// Who leaves the ground and who lands tells what a flight is.
+/// Kind of a flight, by the feet that leave the ground and those that land.
 fn in_the_air(contacts: &Contacts, flight: FrameSpan, together: usize) -> Behaviour {
     let leaves = |side: Side| {
         let stances = &contacts.foot(side).stances;

@@ -1,4 +1,4 @@
-//! Which joint of a file is which joint of the canonical body: as given, or as [recognised](footfall_core::rig).
+//! Assignment of a file's joints to those of the canonical body: as given, or as [recognised](footfall_core::rig).
 
 use super::RetargetError;
 use crate::bvh::BvhFile;

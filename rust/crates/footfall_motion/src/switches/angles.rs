@@ -153,7 +153,7 @@ impl LegAngles {
     }
 }
 
-/// Where a signal is greatest from so many frames before a frame until so many after it, between frames by a parabola.
+/// Place of a signal's maximum within a window around a frame, interpolated by a parabola.
 fn greatest(signal: &[f64], around: usize, [before, after]: [usize; 2]) -> f64 {
     let first = around.saturating_sub(before);
     let last = (around + after).min(signal.len() - 1);

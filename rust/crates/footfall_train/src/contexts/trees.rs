@@ -1,4 +1,4 @@
-//! Which contexts share their parameters, and what the leaves of the ends differ in from the inside.
+//! Trees of contexts that share their parameters, and the differences of leaves at the ends of a walk from those inside it.
 
 use super::moments::Moments;
 use super::{CONTEXTS, ContextReport, LEAST_STEPS, TreeLine, TreeReport, context};
@@ -86,7 +86,7 @@ impl Trees {
         })
     }
 
-    /// What a context's leaves differ from those of the same foot inside a walk of the same speed; `None` when they are the same.
+    /// Difference of a context's leaves from those of the same foot inside a walk of the same speed; `None` when they are the same.
     pub(super) fn offset(
         &self,
         moments: &Moments,

@@ -26,7 +26,7 @@ const LEAST_SPEED_MPS: f32 = 0.6;
 /// Ways that part by more than this are a reversal, as the cosine of the angle.
 const REVERSED_COS: f32 = -0.7;
 
-/// Who turns round goes the one way so long before the slowest moment and the other so long after it, seconds.
+/// Half the length of a turn, seconds: the walker goes one way this long before the slowest moment and the other way this long after it.
 const TURNING_SECS: f64 = 0.6;
 
 /// Somebody who stands longer in between stops and starts, seconds.

@@ -102,7 +102,7 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(|n| mean(around(n))).collect()
 }
 
-/// Where in a long series a short one fits best, to a part of a sample, and their correlation there.
+/// Offset at which a short series correlates best with a long one, to a part of a sample, and that correlation.
 fn best_place(short: &[f64], long: &[f64]) -> (f64, f64) {
     let count = short.len() as f64;
     let mean = short.iter().sum::<f64>() / count;

@@ -15,13 +15,13 @@ use std::ops::Range;
 /// Frames at which segments of a phase are compared, however long they are: their ends are the same events.
 const SAMPLES: usize = 4;
 
-/// What a squared deviation of a sensor counts against a squared radian of a joint: enough to keep cycles that feel different to the sensor.
+/// Weight of a sensor's squared deviation against a joint's squared radian: enough to keep cycles that feel different to the sensor.
 const SENSOR_SHARE: f32 = 0.05;
 
 /// Distance of a frame from a phase of which no segment is kept: farther than any two segments are.
 const MISSED: f32 = 1e2;
 
-/// What counts, besides how far frames are from what is kept of other recordings, how far they are from what is kept of all. Were it only the
+/// Weight of the distance to everything kept, beside the distance to what is kept of other recordings. Were it only the
 /// latter, everything would be kept that was done once, and nobody does it again in the same way.
 const OWN_WEIGHT: f64 = 0.05;
 

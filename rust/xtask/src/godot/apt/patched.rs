@@ -21,7 +21,7 @@ impl<'a> Patcher<'a> {
         Self { root, architecture }
     }
 
-    /// Where the libraries are.
+    /// Search path of the libraries.
     fn library_path(&self) -> String {
         let libraries = self.root.join(self.architecture.libraries);
         [

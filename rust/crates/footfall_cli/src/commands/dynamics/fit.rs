@@ -25,7 +25,7 @@ pub(crate) struct FitArgs {
     conditions: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
-    /// Where to write the model
+    /// File to write the model to
     #[arg(short, long, value_name = "GAIT.footdyn")]
     output: PathBuf,
     #[command(flatten)]

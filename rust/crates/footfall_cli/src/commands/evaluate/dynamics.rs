@@ -30,7 +30,7 @@ pub(crate) struct DynamicsArgs {
     knees: KneesArgs,
     #[command(flatten)]
     size: SizeArgs,
-    /// Where to draw the errors of the first recording over time
+    /// Picture of the first recording's errors over time
     #[arg(long, value_name = "ERRORS.svg")]
     plot: Option<PathBuf>,
     /// Print one JSON object on stdout

@@ -40,7 +40,7 @@ pub(crate) struct ImuArgs {
     conditions: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
-    /// Where the sensor sits, twice for two sensors; the foot, foot and hand, and the sites of the paper's figure 10 one by one when absent
+    /// Site of the sensor, twice for two sensors; the foot, foot and hand, and the sites of the paper's figure 10 one by one when absent
     #[arg(long = "site", value_parser = parse_site)]
     sites: Vec<Site>,
     #[command(flatten)]

@@ -30,7 +30,7 @@ impl JudgedArgs {
     /// Reads both.
     ///
     /// # Errors
-    /// Which file cannot be read and why, or that no recording fulfils the conditions.
+    /// Reads the model and the recordings; the error names the file that cannot be read and why, or says that no recording fulfils the conditions.
     pub(super) fn read(&self) -> Result<(GaitModel, Corpus)> {
         let (model, _) = dressed(&self.model, &self.styles)?;
         let corpus = self.knees.read_corpus(&self.corpus, &self.conditions)?;

@@ -43,7 +43,7 @@ pub(crate) struct ReconstructArgs {
     /// Frames per second of the output; the model's when absent
     #[arg(long)]
     fps: Option<f64>,
-    /// Where to write
+    /// File to write
     #[arg(short, long, value_name = "OUT.bvh")]
     output: PathBuf,
     /// Print one JSON object on stdout

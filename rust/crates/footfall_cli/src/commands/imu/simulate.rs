@@ -22,7 +22,7 @@ pub(crate) struct SimulateArgs {
     /// The recording, .bvh, .glb or .gltf
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// Where the sensor sits
+    /// Site of the sensor
     #[arg(long, value_parser = parse_site)]
     site: Site,
     /// Samples per second
@@ -37,7 +37,7 @@ pub(crate) struct SimulateArgs {
     /// Rotation of the sensor against the site's axes: degrees about x, then y, then z of the site
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_angles, default_value = "0,0,0", allow_hyphen_values = true)]
     mounting: Angles,
-    /// Where to write
+    /// File to write
     #[arg(short, long, value_name = "IMU.csv")]
     output: PathBuf,
     #[command(flatten)]

@@ -33,7 +33,7 @@ pub(crate) struct ImuTrainArgs {
     knees: KneesArgs,
     #[command(flatten)]
     model: ModelArgs,
-    /// Where to write the model
+    /// File to write the model to
     #[arg(short, long, value_name = "BODY.footimu")]
     output: PathBuf,
     /// Description of the data for the model's provenance, in your words; the conditions when absent
@@ -47,7 +47,7 @@ pub(crate) struct ImuTrainArgs {
 /// Options of a model.
 #[derive(Clone, Debug, clap::Args)]
 pub(in crate::commands) struct ModelArgs {
-    /// Where the sensor sits; twice for two sensors
+    /// Site of the sensor; twice for two sensors
     #[arg(long = "site", value_parser = parse_site, required = true)]
     pub(in crate::commands) sites: Vec<Site>,
     /// Frames per second of the model

@@ -13,7 +13,7 @@ pub(super) struct StyleFacts {
     #[serde(flatten)]
     file: FileFacts,
     name: String,
-    /// Which base model it fits.
+    /// Fingerprint of the base model that it fits.
     base_fingerprint: String,
     speed_mps: f64,
     cadence_per_minute: f64,

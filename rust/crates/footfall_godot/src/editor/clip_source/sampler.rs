@@ -140,7 +140,7 @@ fn pose(
     }
 }
 
-/// Where a skeleton's node stands in its scene.
+/// Transform of a skeleton's node in its scene.
 fn world_from(skeleton: &Gd<Skeleton3D>) -> Transform3D {
     let mut node = Some(skeleton.clone().upcast::<Node>());
     let mut world = Transform3D::IDENTITY;

@@ -234,7 +234,7 @@ impl Form {
     }
 }
 
-/// Where a style of this name goes.
+/// Path of a style of this name.
 fn file_of(name: &str) -> String {
     let word = |letter: char| {
         if letter.is_alphanumeric() {

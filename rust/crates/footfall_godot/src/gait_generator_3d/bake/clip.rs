@@ -26,7 +26,7 @@ pub(super) struct Clips {
 /// Track of the root.
 struct Root {
     path: NodePath,
-    /// Where it is before it has travelled.
+    /// Place before any travel.
     rest: Vector3,
     /// Travel of the root for a metre ahead.
     ahead: Vector3,

@@ -16,7 +16,7 @@ pub(crate) fn first_landing(side: Side) -> f32 {
     0.2 + 0.5 * side.index() as f32
 }
 
-/// How somebody walks. Lengths and speeds are those of the standard body; the walker's own are `size` times as much.
+/// Parameters of a walk. Lengths and speeds are those of the standard body; the walker's own are `size` times as much.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gait {
     pub(crate) stride_secs: f32,
@@ -24,7 +24,7 @@ pub(crate) struct Gait {
     pub(crate) stance: f32,
     pub(crate) speed: f32,
     pub(crate) size: f32,
-    /// How far the heel has been raised over the flat toes when the foot lifts, radians.
+    /// Rotation of the heel over the flat toes by the time the foot lifts, radians.
     pub(crate) roll: f32,
     /// True when a foot swings off gently instead of at full speed.
     pub(crate) is_gentle: bool,

@@ -1,4 +1,4 @@
-//! Where samples come from, as the command line tells it.
+//! Sources of samples, as given on the command line.
 
 use crate::output;
 use anyhow::{Context as _, Result, bail};
