@@ -2,6 +2,7 @@
 
 mod dependencies;
 mod files;
+mod prose;
 mod rules;
 mod source;
 
@@ -77,6 +78,7 @@ fn check() -> Result<Vec<Violation>> {
             continue;
         };
         violations.extend(files::machine_paths(name, &text));
+        violations.extend(prose::check(name, &text));
         violations.extend(rules::check(name, &text));
     }
     violations.sort();

@@ -38,11 +38,11 @@ pub struct CrowdWalker {
     styled: StyledBody,
     /// The mixture of the current step.
     blend: Arc<Blend>,
-    /// Who it is: weights of the model's walker components.
+    /// Identity of the walker: weights of the model's walker components.
     walker: [f64; MAX_COMPONENTS],
     chance_position: u64,
     draws: Box<[StepDraw; WINDOW]>,
-    /// Where the next step comes from, all but its request. Boxed like the draws: most frames need neither.
+    /// Origin of the next step, all but its request. Boxed like the draws: most frames need neither.
     next: Box<Origin>,
     shape: StepShape,
     velocity_mps: Vec2,
@@ -51,7 +51,7 @@ pub struct CrowdWalker {
     position: f32,
     frame_rate_hz: f32,
     frames: CrowdFrames,
-    /// Where the frames' plan is in the walker's.
+    /// Place of the frames' plan in the walker's.
     base: Base,
     /// The step before, to be walked again.
     before: Option<Before>,
@@ -62,11 +62,11 @@ pub struct CrowdWalker {
     plan_from_start: GroundTransform,
     start_from_character: GroundTransform,
     footstep: Option<Footstep>,
-    /// Where the body is when the current step ends.
+    /// Place of the body when the current step ends.
     arrival: Arrival,
     /// Its life as it stands; nothing where the model stands still.
     life: Option<Life>,
-    /// Where it rests; nothing before it first came to a stand.
+    /// Resting state; `None` before it first came to a stand.
     rest: Option<Box<Rest>>,
 }
 
@@ -184,7 +184,7 @@ impl CrowdWalker {
         self.start_from_character = self.plan_from_start.local(&self.plan_from_character());
     }
 
-    /// Where it is and where it faces, from where it began.
+    /// Place and heading of the character, from where it began.
     pub fn start_from_character(&self) -> GroundTransform {
         self.start_from_character
     }
@@ -194,7 +194,7 @@ impl CrowdWalker {
         self.footstep.as_ref()
     }
 
-    /// Where the foot on its way will land, in the character's space as it is now, and the seconds until then. `None` for someone
+    /// Next landing of the foot on its way, in the character's space as it is now, and the seconds until then. `None` for someone
     /// who rests or repeats steps.
     pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
         if self.is_standing() || self.odd || self.repeating {
@@ -207,7 +207,7 @@ impl CrowdWalker {
         Some((footstep, self.secs_to_next_step()))
     }
 
-    /// Where each foot lands next and where the body is then, for who puts feet on real ground.
+    /// Next landing of each foot and the body's place then, for callers that put feet on real ground.
     pub fn landings(&self) -> [Option<Landing>; 2] {
         let from = self.plan_from_character();
         footing::landings(self.next_footstep(), &from, &self.arrival)
@@ -383,7 +383,7 @@ impl CrowdWalker {
         )
     }
 
-    /// Where the current step ends.
+    /// Place at which the current step ends.
     fn end(&self) -> GroundTransform {
         let last = self.frames.places.last();
         self.base

@@ -19,7 +19,7 @@ pub enum SynthError {
     /// A setting is not finite.
     #[error("{setting} is {value}; give a finite number")]
     Setting {
-        /// Which setting.
+        /// Name of the setting.
         setting: &'static str,
         /// Its value.
         value: f32,

@@ -51,7 +51,7 @@ pub(crate) struct FineDraw {
 /// Three steps in a row: the one that is shown is in the middle. One that is not there has no noise.
 pub(crate) type Neighbours = [FineDraw; 3];
 
-/// Where a step's fine motion is worked out.
+/// Working memory for a step's fine motion.
 #[derive(Debug)]
 pub(crate) struct FineBench {
     sources: Vec<[f32; MAX_FINE_DIRECTIONS]>,

@@ -20,7 +20,7 @@ const SAME_LENGTH_M: f32 = 0.01;
 const STRETCHES: usize = 3;
 
 impl GaitGenerator {
-    /// Where each foot lands next and where the body is then, for who puts feet on real ground.
+    /// Next landing of each foot and the body's place then, for callers that put feet on real ground.
     pub fn landings(&self) -> [Option<Landing>; 2] {
         let arrival = &self.steps.source().stage().arrival;
         landings(self.next_footstep(), &self.plan_from_character(), arrival)
@@ -68,7 +68,7 @@ impl GaitGenerator {
     }
 }
 
-/// Where the next footstep puts a foot, and the body with it, as it is seen from where the character is.
+/// Landing of the next footstep, and the body's place with it, seen from where the character is.
 pub(crate) fn landings(
     next: Option<(Footstep, f32)>,
     from: &GroundTransform,
@@ -91,7 +91,7 @@ pub(crate) fn landings(
     landings
 }
 
-/// How far ahead of the standing foot the other one lands, metres.
+/// Distance of a landing foot ahead of the standing one, metres.
 fn step_length(shape: &StepShape, stage: &Stage) -> f32 {
     let way = stage.travel(shape).normalize_or_zero();
     let leading = shape.timing.leading;

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-/// How the legs carry the body.
+/// Kind of gait: the way in which the legs carry the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Gait {
     /// One foot bears at least.
@@ -30,7 +30,7 @@ const RUN_FROM_FROUDE: f32 = 0.5;
 const WALK_FROM_FROUDE: f32 = 0.4;
 pub(crate) const GRAVITY_MPS2: f32 = 9.81;
 
-/// Who travels farther to the side than this from where they face walks, radians: nobody runs sideways.
+/// Widest direction of a run from where the runner faces, radians: beyond it people walk, as nobody runs sideways.
 pub(crate) const WIDEST_RUN_RAD: f32 = 1.1;
 
 /// Fastest speed that is walked and that is run, m/s.

@@ -34,18 +34,18 @@ const MAX_TURN_RATE_RADPS: f32 = 3.5;
 /// Closer than this share of a frame counts as on it: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;
 
-/// What makes one walker differ from another.
+/// Settings that make one walker differ from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GeneratorConfig {
     /// Seed of the walker's own way of walking and of the variation of its steps.
     pub seed: u64,
-    /// Where in the stride to begin: 0 is the left foot's initial contact, 0.5 the right's.
+    /// Phase of the stride to begin at: 0 is the left foot's initial contact, 0.5 the right's.
     pub phase: f32,
-    /// How far walkers and steps stray from the average: 0 not at all, 1 as in the recordings.
+    /// Deviation of walkers and steps from the average: 0 not at all, 1 as in the recordings.
     pub variation: f32,
 }
 
-/// What the walker is asked to do. A walker whose foot is in the air obeys at once, where enough of the step is left; otherwise it takes effect with the next
+/// Requests to a walker. A walker whose foot is in the air obeys at once, where enough of the step is left; otherwise it takes effect with the next
 /// step, as all do of runners, of walkers in less than full detail and of those of a [`DynamicsModel`].
 ///
 /// A speed and turn rate near zero stop the walker within two steps; it stands until one of them rises. Turning without
@@ -56,12 +56,12 @@ pub struct Controls {
     pub speed_mps: f32,
     /// Turning, rad/s, positive to the left.
     pub turn_rate_radps: f32,
-    /// Where the travel goes, seen from where the walker faces: 0 forwards, π/2 to the left, ±π backwards. Steps to the side and backwards
+    /// Direction of travel, relative to where the walker faces: 0 forwards, π/2 to the left, ±π backwards. Steps to the side and backwards
     /// are shorter than those forwards: an adult reaches about 0.65 m/s sideways and 1 m/s backwards, whatever speed is asked for.
     pub direction_rad: f32,
     /// Walking or running, where the model knows both.
     pub gait: GaitChoice,
-    /// How low to keep, from 0, upright, to 1, as low as the model's people; takes effect at once. Who crouches goes no faster than those do.
+    /// Depth of the crouch, from 0, upright, to 1, as low as the model's people; takes effect at once. Who crouches goes no faster than those do.
     pub crouch: f32,
 }
 
@@ -161,9 +161,9 @@ pub struct GaitGenerator {
     /// Frames since the current step began.
     pub(crate) position: f32,
     pub(crate) plan_from_start: GroundTransform,
-    /// How it is alive as it stands; nothing where the model stands still.
+    /// Life of the standing body; `None` where the model stands still.
     pub(crate) life: Option<Life>,
-    /// How it crouches and jumps; nothing with a switching model.
+    /// Crouches and jumps; `None` with a switching model.
     pub(crate) moves: Option<Moves>,
     /// The jump that is waited for.
     pub(crate) asked_jump: Option<Leap>,
@@ -258,7 +258,7 @@ impl GaitGenerator {
         }
     }
 
-    /// How much it moves as it stands: 0 is a still pose, 1 as the model's people move, 2 at most. Where the model knows nothing of standing it is
+    /// Sets the liveliness of standing: 0 is a still pose, 1 as the model's people move, 2 at most. Where the model knows nothing of standing it is
     /// still.
     pub fn set_standing_motion(&mut self, amount: f32) {
         if let Some(life) = &mut self.life {
@@ -298,7 +298,7 @@ impl GaitGenerator {
         }
     }
 
-    /// How finely the walker is worked out, from the next step on.
+    /// Sets the level of detail, from the next step on.
     pub fn set_detail(&mut self, detail: Detail) {
         self.detail = detail;
     }
@@ -361,13 +361,13 @@ impl GaitGenerator {
         }
     }
 
-    /// Tells where the character is now, as after a step of no time.
+    /// Updates the character's place, as after a step of no time.
     pub(crate) fn tell_place(&mut self) {
         self.footsteps.clear();
         self.start_from_character = self.plan_from_start.local(&self.plan_from_character());
     }
 
-    /// Where the character is and where it faces, from where it began.
+    /// Place and heading of the character, from where it began.
     pub fn start_from_character(&self) -> GroundTransform {
         self.start_from_character
     }
@@ -377,7 +377,7 @@ impl GaitGenerator {
         &self.footsteps
     }
 
-    /// Where the foot on its way will land, in the character's space as it is now, and the seconds until then: as long as the
+    /// Next landing of the foot on its way, in the character's space as it is now, and the seconds until then: as long as the
     /// character goes on as it does. `None` for a walker that rests.
     pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
         if self.is_standing() {

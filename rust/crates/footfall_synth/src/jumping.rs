@@ -1,6 +1,6 @@
 //! Jumps of a walker, asked for, waited for and made; and pushes.
 //!
-//! Who stands jumps off both feet ([`moves`](crate::moves)). Who walks or runs forwards leaps: the next step is one of the run whose flight lasts as
+//! A standing walker jumps off both feet ([`moves`](crate::moves)). One that walks or runs forwards leaps: the next step is one of the run whose flight lasts as
 //! long as the rise takes ([`StepPlan::leap`](crate::plan::StepPlan::leap)). Who goes sideways, backwards or hardly at all comes to a stand first.
 
 use crate::gait::{FASTEST_RUN_MPS, WIDEST_RUN_RAD};

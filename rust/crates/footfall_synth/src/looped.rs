@@ -265,7 +265,7 @@ impl Recording {
     }
 }
 
-/// Where the joints of a frame are, and how fast they move.
+/// Positions and velocities of a frame's joints.
 struct Look {
     positions: [Vec3; JOINT_COUNT],
     velocities: [Vec3; JOINT_COUNT],

@@ -74,7 +74,7 @@ impl Moves {
         self.tables.jump.is_some()
     }
 
-    /// How fast somebody may go who is asked to crouch by so much, m/s.
+    /// Highest speed of somebody who is asked to crouch by this amount, m/s.
     pub(crate) fn fastest_mps(&self, amount: f32, upright: f32) -> f32 {
         self.crouch.fastest_mps(amount, upright)
     }
@@ -107,7 +107,7 @@ impl Moves {
         self.jump.as_ref().map(JumpMoment::phase)
     }
 
-    /// How far to the left, up and ahead the jump that is under way goes.
+    /// Displacement of the jump under way to the left, up and ahead, metres.
     pub(crate) fn way(&self) -> Option<Vec3> {
         self.jump.as_ref().map(JumpMoment::way)
     }
@@ -122,7 +122,7 @@ impl Moves {
         }
     }
 
-    /// How far the jump went that was under way and is over; once.
+    /// Displacement of the jump that has just ended; returned once.
     pub(crate) fn landed(&mut self) -> Option<Vec3> {
         let jump = self.jump.filter(JumpMoment::is_over)?;
         self.jump = None;
@@ -138,7 +138,7 @@ impl Moves {
         Some(jump.move_pose(tables, &self.body, pose))
     }
 
-    /// How it leans into the way that it climbs.
+    /// Lean into the slope being climbed.
     pub(crate) fn climb_moment(&self) -> ClimbMoment {
         self.climb
     }
@@ -148,7 +148,7 @@ impl Moves {
         self.climb = climb;
     }
 
-    /// How deep it crouches, the push that is taken up, and the jump that is under way with the time since it began: what a state holds.
+    /// Depth of the crouch, the push that is taken up, and the jump under way with the time since it began: the moves' part of a state.
     pub(crate) fn moment(&self) -> (CrouchMoment, PushMoment, Option<(Leap, f32)>) {
         let jump = self.jump.map(|jump| (jump.leap, jump.secs));
         (self.crouch.moment, self.push, jump)

@@ -29,7 +29,7 @@ const MOST_QUICKER: f64 = 1.6;
 /// Tolerance of the search for a walk whose steps are quick enough, m/s.
 const BRISKER_MPS: f64 = 0.05;
 
-/// Which speed each pace of the model gives one walker.
+/// Speeds of one walker at the paces of the model.
 #[derive(Clone, Debug)]
 pub(crate) struct PaceTable {
     /// Covariate and realised speed, both rising, m/s, and how long a step lasts, seconds.

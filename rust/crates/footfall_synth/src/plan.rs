@@ -33,7 +33,7 @@ const LONGEST_FLIGHT: f64 = 0.6;
 /// When the other foot leaves the ground in a running step that follows a walking one, as a fraction of it.
 const RUN_TERMINAL: f64 = 0.15;
 
-/// How far the states of a step in which the gait changes have gone over into the new one.
+/// Shares by which the states of a step in which the gait changes have gone over into the new one.
 const GONE_OVER: [f32; STATES_PER_STEP] = [0.15, 0.4, 0.7, 0.9, 1.0];
 
 /// Hips of somebody who takes off from one foot are higher by about this than they were in walking and in running, metres; the rest of a leap's rise is
@@ -48,10 +48,10 @@ const LEAP_STANCE_SECS: f64 = 0.28;
 /// A step lasts at most this long, seconds.
 pub(crate) const MAX_STEP_SECS: f64 = 3.0;
 
-/// How fast a step is to be: what the speed response and the limits of the model make of a speed.
+/// Pace of a step: the result of the speed response and the limits of the model for a speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pace {
-    /// Where on the model's speed response, m/s.
+    /// Place on the model's speed response, m/s.
     pub(crate) covariate_mps: f64,
     /// Factor on the rate at which states pass.
     pub(crate) tempo: f64,
@@ -59,7 +59,7 @@ pub(crate) struct Pace {
     pub(crate) stride: f64,
 }
 
-/// How a step is to be walked.
+/// Manner of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Manner {
     pub(crate) pace: Pace,
@@ -79,20 +79,20 @@ impl Manner {
     }
 }
 
-/// What chance decided about a step; its pace may still change.
+/// Random draw of a step; its pace may still change.
 #[derive(Clone, Debug)]
 pub(crate) struct StepDraw {
     pub(crate) side: Side,
     pub(crate) weights: [f64; MAX_COMPONENTS],
 }
 
-/// What the ground has to know about a step.
+/// Shape of a step as the ground has to know it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepShape {
     pub(crate) timing: StepTiming,
     /// Factor on the legs' reach.
     pub(crate) stride: f64,
-    /// How much of the walk there is in the step.
+    /// Amplitude of the walk in the step.
     pub(crate) amplitude: Amplitude,
     pub(crate) detail: Detail,
 }
@@ -105,7 +105,7 @@ pub(crate) struct StepPlan<R> {
     pub(crate) state_frames: [usize; STATES_PER_STEP],
     /// The means of every state, state by state.
     pub(crate) means: Vec<R>,
-    /// What is added after its trajectory is solved.
+    /// Fine motion that is added after its trajectory is solved.
     pub(crate) fine: FineDraw,
 }
 
@@ -255,7 +255,7 @@ pub(crate) struct Planner {
     model: Arc<GaitModel>,
     rng: ChaCha8Rng,
     variation: f64,
-    /// How this walker differs from the average: weights of the model's walker components.
+    /// Identity of this walker: weights of the model's walker components.
     walker: [f64; MAX_COMPONENTS],
     /// The last stride's weights.
     weights: [f64; MAX_COMPONENTS],
@@ -280,7 +280,7 @@ impl Planner {
         planner
     }
 
-    /// Who this walker is: weights of the model's walker components.
+    /// Identity of this walker: weights of the model's walker components.
     pub(crate) fn walker(&self) -> &[f64; MAX_COMPONENTS] {
         &self.walker
     }
@@ -304,7 +304,7 @@ impl Planner {
         self.model = Arc::clone(model);
     }
 
-    /// How far chance has come.
+    /// Position of the random generator.
     pub(crate) fn chance_position(&self) -> u64 {
         // No walk draws 2^64 numbers.
         self.rng.get_word_pos() as u64

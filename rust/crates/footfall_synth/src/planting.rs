@@ -49,7 +49,7 @@ pub(crate) struct PlantedFrame {
     pub(crate) pose: Pose,
     /// Place of the walker on the ground: its travel without sway.
     pub(crate) ground_position: Vec3,
-    /// Where the walker faces, radians, and the rotation by it; continuous within a step.
+    /// Heading of the walker, radians, and the rotation by it; continuous within a step.
     pub(crate) ground_heading: f32,
     pub(crate) plan_from_ground: Quat,
     /// Heading under which the generated features are put, radians, and the rotation by it.
@@ -98,7 +98,7 @@ pub(crate) struct Planter {
     state: PlanterState,
 }
 
-/// What goes from step to step.
+/// State that goes from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PlanterState {
     pub(crate) plants: [Plant; 2],
@@ -111,13 +111,13 @@ pub(crate) struct PlanterState {
     pub(crate) ground_velocity: Option<Vec3>,
     /// Factor on the legs' reach at the end of the last step.
     pub(crate) stride: f32,
-    /// How the last step was turned under the body.
+    /// Strafe of the last step.
     pub(crate) strafe: Strafe,
-    /// How far both feet were shifted for it to land in balance, to the left and forwards.
+    /// Shift of both feet with which it landed in balance, to the left and forwards.
     pub(crate) balance: Vec2,
     /// The foot that took off in the last step, if that was one of a run.
     pub(crate) airborne: Option<Airborne>,
-    /// How the trunk leans.
+    /// Lean of the trunk.
     pub(crate) lean: Lean,
 }
 
@@ -159,14 +159,14 @@ impl PlanterState {
     }
 }
 
-/// Where a step goes.
+/// Course of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Course {
     /// Turning at its end, rad/s.
     pub(crate) turn_rate: f32,
     /// Headings of the features from where the walker faces, before the step and after it, radians.
     pub(crate) facing: [f32; 2],
-    /// How the speed changes within it.
+    /// Change of speed within it.
     pub(crate) change: SpeedChange,
     /// Duration of the whole step, seconds.
     pub(crate) step_secs: f32,
@@ -236,7 +236,7 @@ impl Planter {
         self.state.stride = stride;
     }
 
-    /// What the next step begins with.
+    /// State that the next step begins with.
     pub(crate) fn state(&self) -> PlanterState {
         self.state
     }
@@ -269,7 +269,7 @@ impl Planter {
         }
     }
 
-    /// Where this foot was put last.
+    /// Last plant of this foot.
     pub(crate) fn plant(&self, side: Side) -> &Plant {
         &self.state.plants[side.index()]
     }
@@ -403,7 +403,7 @@ impl Planter {
         }
     }
 
-    /// Where the trailing foot lands at the end of the step.
+    /// Plant of the trailing foot at the end of the step.
     fn next_plant(
         &self,
         raw: &[RawFrame],
@@ -432,7 +432,7 @@ impl Planter {
         LANDING_EXTENSION + LANDING_FORWARDS * strafe.uprightness() - LANDING_BACKWARDS * backwards
     }
 
-    /// Where the trailing foot is planted and where it would be free, at the ends of its swing.
+    /// Planted and free places of the trailing foot, at the ends of its swing.
     fn swing_ends(
         &self,
         raw: &[RawFrame],
@@ -457,7 +457,7 @@ impl Planter {
     }
 }
 
-/// Where a foot is when the leg is as generated.
+/// Place of a foot whose leg is as generated.
 fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget {
     let leg = &raw.legs[side.index()];
     let foot = level * leg.foot;

@@ -1,4 +1,4 @@
-//! What a frame of generated features says about the body before it is put on the ground.
+//! Legs and hips of generated features before the body is put on the ground.
 
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::{Joint, Pose, Side, Skeleton};
@@ -8,12 +8,12 @@ use glam::{Quat, Vec2, Vec3, Vec3Swizzles as _};
 /// Least share of a leg's squared length that is left of it from the side.
 const LEAST_HEIGHT: f32 = 0.25;
 
-/// How far the legs of eight frames reach.
+/// Reach of the legs in eight frames.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stride {
     /// Factor on their reach forwards and backwards.
     pub(crate) scale: f32x8,
-    /// How much of their length they keep: 1 where shorter strides carry the hips higher, 0 where their height stays.
+    /// Share of their length that they keep: 1 where shorter strides carry the hips higher, 0 where their height stays.
     pub(crate) upright: f32x8,
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct RawLeg {
     pub(crate) free_pitch: f32,
     /// The same on the ground: settled, and less of it in short strides.
     pub(crate) pitch: f32,
-    /// Where the foot belongs, on its plant or in the air; the planter fills it.
+    /// Target of the foot, on its plant or in the air; the planter fills it.
     pub(crate) target: FootTarget,
 }
 

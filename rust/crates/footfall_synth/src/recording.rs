@@ -106,7 +106,7 @@ pub fn synthesize_moves(
 pub struct StandConfig {
     /// Length, seconds.
     pub seconds: f64,
-    /// Who stands.
+    /// Seed of the person who stands.
     pub seed: u64,
     /// Differences between people: 0 none, 1 as in the recordings.
     pub variation: f32,
@@ -164,7 +164,7 @@ fn standing_recording(
 pub struct SwitchingWalkConfig {
     /// Length, seconds.
     pub seconds: f64,
-    /// Which of its walks.
+    /// Seed of the walker and of its walk.
     pub seed: u64,
     /// Differences of steps from the average: 0 none, 1 as in the recordings.
     pub variation: f32,
@@ -172,7 +172,7 @@ pub struct SwitchingWalkConfig {
     pub speed_mps: Option<f32>,
     /// Turning, rad/s, positive to the left.
     pub turn_rate_radps: f32,
-    /// Where the travel goes, seen from where the walker faces, as of [`Controls::direction_rad`].
+    /// Direction of travel, relative to where the walker faces, as of [`Controls::direction_rad`].
     pub direction_rad: f32,
     /// Frames per second of the clip; the model's when absent.
     pub frame_rate_hz: Option<f64>,

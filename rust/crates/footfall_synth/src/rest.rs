@@ -1,6 +1,6 @@
 //! The rest of a step that is planned anew while its foot is in the air.
 //!
-//! What is asked for may change in the middle of a swing. The rest of the step is then a step of its own: it begins with a foot in the air, goes on from the
+//! Requests may change in the middle of a swing. The rest of the step is then a step of its own: it begins with a foot in the air, goes on from the
 //! frames that were shown, and takes the states of the new plan that have not passed yet. So nothing of it has to fit what was planned before.
 
 use crate::plan::StepPlan;
@@ -11,7 +11,7 @@ use footfall_model::STATES_PER_STEP;
 const LAST_STATE: usize = 2;
 const LEAST_FRAMES: usize = 6;
 
-/// How much of a step has passed when its rest begins.
+/// Part of a step that has passed when its rest begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rest {
     /// The state that it is in, and the share of it that is left.
@@ -22,7 +22,7 @@ pub(crate) struct Rest {
 }
 
 impl Rest {
-    /// What is left of a plan from a frame on, of which this much was left before; nothing where it is too late to change it.
+    /// Rest of a plan from a frame on, of which this much was left before; `None` where it is too late to change it.
     pub(crate) fn of<R>(plan: &StepPlan<R>, frame: usize, before: Option<Self>) -> Option<Self> {
         let frames = plan.shape.timing.frames;
         if frame + LEAST_FRAMES > frames {

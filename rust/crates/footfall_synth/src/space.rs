@@ -20,19 +20,19 @@ pub struct StyleSpace {
     /// Per feature, the pull that keeps the variance of the base walk and of each style.
     base_pull: Vec<f64>,
     style_pulls: Vec<Vec<f64>>,
-    /// What the run of the model has of its own; nothing where it only walks.
+    /// Parts that only the model's run has; `None` where it only walks.
     running: Option<RunningParts>,
     fine: Option<Arc<FineTables>>,
-    /// How people of the model stand; nothing where it stands still.
+    /// Standing of the model's people; `None` where it stands still.
     standing: Option<Arc<StandingTables>>,
-    /// How its people crouch and jump.
+    /// Crouches and jumps of its people.
     moves: Arc<MoveTables>,
     /// Mixtures that somebody wears.
     blends: Mutex<Vec<Weak<Blend>>>,
     benches: Workbenches,
 }
 
-/// What all runs of a model share.
+/// Parts that all runs of a model share.
 #[derive(Debug)]
 struct RunningParts {
     pull: Vec<f64>,
@@ -116,12 +116,12 @@ impl StyleSpace {
         &self.styles
     }
 
-    /// How people of the model stand; `None` where it stands still.
+    /// Standing of the model's people; `None` where it stands still.
     pub(crate) fn standing(&self) -> Option<&Arc<StandingTables>> {
         self.standing.as_ref()
     }
 
-    /// How people of the model crouch and jump.
+    /// Crouches and jumps of the model's people.
     pub(crate) fn moves(&self) -> &Arc<MoveTables> {
         &self.moves
     }

@@ -16,7 +16,7 @@ use glam::{Vec2, Vec3};
 /// Static features of one posture.
 pub(crate) type Posture = [f32; FEATURE_COUNT];
 
-/// How a step is put on the ground.
+/// Placing of a step on the ground.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placing<'a> {
     pub(crate) shape: &'a StepShape,
@@ -46,9 +46,9 @@ pub(crate) struct Arrival {
 pub(crate) struct Stage {
     skeleton: Skeleton,
     frame_secs: f32,
-    /// Where the feet were put last; `None` before the first step.
+    /// Planter with the feet's last places; `None` before the first step.
     planter: Option<Planter>,
-    /// Where the body is when the step on the ground ends.
+    /// Place of the body when the step on the ground ends.
     pub(crate) arrival: Arrival,
     /// The last step on the ground, at its own detail, one frame longer than the step; what lies beyond is left from others.
     pub(crate) frames: Vec<PlantedFrame>,
@@ -66,7 +66,7 @@ impl Stage {
         }
     }
 
-    /// What [`put`](Self::put) works on, for steps of at most `longest` frames.
+    /// Working memory of [`put`](Self::put), for steps of at most `longest` frames.
     pub(crate) fn raw(longest: usize) -> Vec<RawFrame> {
         vec![RawFrame::default(); Detail::ground_room(longest) + 1]
     }
@@ -81,17 +81,17 @@ impl Stage {
         self.planter = Some(Planter::resume(&self.skeleton, self.frame_secs, state));
     }
 
-    /// What the next step begins with; `None` before the first.
+    /// State that the next step begins with; `None` before the first.
     pub(crate) fn planter_state(&self) -> Option<PlanterState> {
         self.planter.as_ref().map(Planter::state)
     }
 
-    /// Where this foot was put last; `None` before the first step.
+    /// Last plant of this foot; `None` before the first step.
     pub(crate) fn plant(&self, side: Side) -> Option<&Plant> {
         self.planter.as_ref().map(|planter| planter.plant(side))
     }
 
-    /// What the rest of the step on the ground goes on from when it is cut at a frame in which one foot is in the air; nothing where none is, and where frames
+    /// State that the rest of the step on the ground goes on from when it is cut at a frame in which one foot is in the air; `None` where none is, and where frames
     /// were left out. `begun` is what the step began with.
     pub(crate) fn cut(
         &self,
@@ -115,7 +115,7 @@ impl Stage {
         (whole && cut.is_in_swing()).then(|| cut.state())
     }
 
-    /// How far the hips travelled over the ground in the step that was put there.
+    /// Travel of the hips over the ground in the step that was put there.
     pub(crate) fn travel(&self, shape: &StepShape) -> Vec3 {
         let last = shape.ground_timing().frames;
         let [from, to] = [0, last].map(|frame| self.frames[frame].pose.root_position);
@@ -187,7 +187,7 @@ impl Stage {
 }
 
 impl Placing<'_> {
-    /// What there is to lean against in a step of so many seconds. A run leans into its turns, too; nobody leans out of a sidestep.
+    /// Accelerations to lean against in a step of so many seconds. A run leans into its turns, too; nobody leans out of a sidestep.
     fn pull(&self, secs: f32) -> Pull {
         let Amplitude { from, to } = self.shape.amplitude;
         let [before, after] = [from * self.velocity_before_mps, to * self.velocity_mps];
@@ -197,7 +197,7 @@ impl Placing<'_> {
         }
     }
 
-    /// How the speed changes from the step before to the end of this one.
+    /// Change of speed from the step before to the end of this one.
     fn change(&self) -> SpeedChange {
         let Amplitude { from, to } = self.shape.amplitude;
         let change = SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps);

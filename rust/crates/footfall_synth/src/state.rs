@@ -66,9 +66,9 @@ pub enum StateError {
         "the state was saved with {expected} styles, the walker has {found}; give it the same styles"
     )]
     OtherStyles {
-        /// How many styles the state knows.
+        /// Number of styles in the state.
         expected: usize,
-        /// How many the walker has.
+        /// Number of styles of the walker.
         found: usize,
     },
 }
@@ -123,7 +123,7 @@ enum Source {
 /// climb.
 type More = (Running, Quick, Moving, [f32; 2], Climbing);
 
-/// How far a walker's life is, behind a [`State`].
+/// Progress of a walker's life, behind a [`State`].
 #[derive(Default, Serialize, Deserialize)]
 struct Alive {
     secs: f64,
@@ -131,7 +131,7 @@ struct Alive {
     speed: f32,
 }
 
-/// What a step takes over from the one before.
+/// Feet and hips that a step takes over from the one before.
 #[derive(Serialize, Deserialize)]
 struct Feet {
     /// Flat ankle and heading, left and right.

@@ -1,4 +1,4 @@
-//! Where a walker's steps come from.
+//! Sources of a walker's steps.
 
 use crate::detail::Detail;
 use crate::gait::{Gait, GaitChoice};

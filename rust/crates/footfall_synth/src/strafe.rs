@@ -17,7 +17,7 @@ use glam::Vec2;
 use serde::{Deserialize, Serialize};
 pub(crate) use turner::Turner;
 
-/// How far the pelvis turns towards the travel at most, radians: half way between the axes.
+/// Greatest turn of the pelvis towards the travel, radians: half way between the axes.
 const MAX_PELVIS_TURN: f32 = FRAC_PI_6;
 
 /// Slower than this the pelvis turns less, m/s: feet that hardly travel need no room.
@@ -27,23 +27,23 @@ const FULL_TURN_SPEED_MPS: f32 = 0.4;
 const MAX_SIDE_STEP: f32 = 0.38;
 const MAX_BACK_STEP: f32 = 0.6;
 
-/// How much farther legs reach for a step to the side: some of it is lost where they do not reach that far.
+/// Factor on the legs' reach in a step to the side: some of it is lost where they do not reach that far.
 const SIDE_GAIN: f32 = 1.05;
 
 /// Feet that pass each other sideways keep this far from the middle, as a share of the leg, so that legs do not cross.
 const PASSING_SHARE: f32 = 0.085;
 
-/// How much arms and trunk swing in steps to the side, as a share of a walk forwards.
+/// Swing of arms and trunk in steps to the side, as a share of a walk forwards.
 const SIDE_SWAY: f32 = 0.25;
 
-/// How a step's legs and trunk are turned.
+/// Turn of a step's legs and trunk.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Strafe {
-    /// Where a metre of the legs' reach forwards goes: to the left and forwards, metres.
+    /// Displacement for each metre of the legs' reach forwards: to the left and forwards, metres.
     pub(crate) reach: [f32; 2],
-    /// How much it is a walk forwards: 1, sideways: 0, or backwards: -1.
+    /// Likeness to a walk forwards: 1, sideways: 0, or backwards: -1.
     pub(crate) forwardness: f32,
-    /// How far the pelvis is turned towards the travel, radians.
+    /// Turn of the pelvis towards the travel, radians.
     pub(crate) turn: f32,
     /// By how much each foot is set further out, metres.
     pub(crate) widening: f32,
@@ -91,7 +91,7 @@ impl Strafe {
         self
     }
 
-    /// How straight legs land and stand, from 0 to 1: as people's do in a walk forwards, over bent knees in steps to the side and backwards.
+    /// Straightness of landing and standing legs, from 0 to 1: as people's in a walk forwards, over bent knees in steps to the side and backwards.
     pub(crate) fn uprightness(&self) -> f32 {
         self.forwardness.max(0.0).powi(2)
     }
@@ -115,7 +115,7 @@ impl Strafe {
     }
 }
 
-/// How far the pelvis turns towards a velocity to the left and forwards, m/s; radians, positive to the left.
+/// Turn of the pelvis towards a velocity to the left and forwards, m/s; radians, positive to the left.
 ///
 /// Not at all along the axes: it faces forwards in steps forwards, sideways and backwards.
 pub(crate) fn pelvis_turn(velocity_mps: Vec2) -> f32 {
@@ -124,7 +124,7 @@ pub(crate) fn pelvis_turn(velocity_mps: Vec2) -> f32 {
     2.0 * direction.x * direction.y * MAX_PELVIS_TURN * share
 }
 
-/// How many times as long as people's steps a step of this velocity would be on legs of this length; at most 1 for one that is possible.
+/// Length of a step of this velocity on legs of this length, as a multiple of people's steps; at most 1 for one that is possible.
 pub(crate) fn overstep(velocity_mps: Vec2, step_secs: f32, leg: f32) -> f32 {
     let step = seen_from_pelvis(velocity_mps) * step_secs / leg;
     Vec2::new(step.x / MAX_SIDE_STEP, step.y.min(0.0) / MAX_BACK_STEP).length()
@@ -135,7 +135,7 @@ fn seen_from_pelvis(velocity_mps: Vec2) -> Vec2 {
     Vec2::from_angle(pelvis_turn(velocity_mps)).rotate(velocity_mps)
 }
 
-/// How much of the walk is left of arms and trunk: they swing against the legs, so they stop for steps to the side and turn round for
+/// Share of the walk that is left of arms and trunk: they swing against the legs, so they stop for steps to the side and turn round for
 /// steps backwards. `middle` is the posture that they swing about.
 pub(crate) fn sway(
     features: &mut [f32; FEATURE_COUNT],

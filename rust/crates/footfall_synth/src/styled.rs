@@ -21,13 +21,13 @@ pub(crate) struct StyledSteps {
     pub(crate) space: Arc<StyleSpace>,
     pub(crate) planner: Planner,
     pub(crate) walker: Walker,
-    /// What the next step wears.
+    /// Mixture of styles of the next step.
     pub(crate) worn: Worn,
     /// A mixture that the next step lets go of, kept so that it is not freed there.
     retired: Option<Arc<Blend>>,
     /// Velocity of the current step, as its request has it.
     pub(crate) velocity_mps: Vec2,
-    /// What the current step obeys, and whether something else has changed it since.
+    /// Requests that the current step was made to obey.
     pub(crate) obeyed: Obeyed,
 }
 
@@ -65,7 +65,7 @@ impl StyledSteps {
         })
     }
 
-    /// What the walker was restored to.
+    /// State after the walker was restored.
     pub(crate) fn resumed(
         space: &Arc<StyleSpace>,
         planner: Planner,

@@ -77,7 +77,7 @@ pub(crate) struct SwitchingSteps {
     pub(crate) velocity_mps: Vec2,
 }
 
-/// Where the current step came from: with the model all that it takes to make it again.
+/// Origin of the current step: with the model all that it takes to make it again.
 #[derive(Clone, Debug)]
 pub(crate) struct SwitchingOrigin {
     pub(crate) leading: Side,

@@ -77,7 +77,7 @@ impl<R: Real> TrajectorySolver<R> {
         }
     }
 
-    /// What is loaded, as a problem whose first `n_fixed` frames are given, without the pull.
+    /// The loaded features as a problem whose first `n_fixed` frames are given, without the pull.
     pub(crate) fn problem(&self, statistics: &Statistics<R>, n_fixed: usize) -> MlpgProblem<'_, R> {
         MlpgProblem {
             windows: statistics.windows,

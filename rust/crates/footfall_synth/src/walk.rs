@@ -27,14 +27,14 @@ const MIN_SPEED_MPS: f64 = 0.1;
 /// Times add up with rounding: a frame this close counts as reached.
 const TIME_SLACK_SECS: f64 = 1e-9;
 
-/// What walk to make.
+/// Settings of a walk to be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WalkConfig {
-    /// How many steps.
+    /// Number of steps.
     pub steps: usize,
     /// Seed of the walker and of the variation of its steps.
     pub seed: u64,
-    /// How far walkers and steps stray from the average: 0 not at all, 1 as in the recordings.
+    /// Deviation of walkers and steps from the average: 0 not at all, 1 as in the recordings.
     pub variation: f32,
     /// Speed over the ground, m/s; the corpus' mean when absent.
     pub speed_mps: Option<f32>,
@@ -42,7 +42,7 @@ pub struct WalkConfig {
     pub turn_rate_radps: f32,
     /// Frames per second of the clip; the model's when absent.
     pub frame_rate_hz: Option<f64>,
-    /// Where the travel goes, seen from where the walker faces, as of [`Controls::direction_rad`](crate::Controls::direction_rad).
+    /// Direction of travel, relative to where the walker faces, as of [`Controls::direction_rad`](crate::Controls::direction_rad).
     pub direction_rad: f32,
     /// Walking or running, where the model knows both.
     pub gait: GaitChoice,

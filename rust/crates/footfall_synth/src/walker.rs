@@ -33,7 +33,7 @@ const NO_SCALE: Scale = [0.0; FEATURE_COUNT];
 /// Numbers that tie a window to the one before.
 pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;
 
-/// What a step is asked to be.
+/// Request for one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Request {
     pub(crate) manner: Manner,
@@ -48,7 +48,7 @@ pub(crate) struct Request {
     pub(crate) leap_m: Option<f32>,
 }
 
-/// Where the current step came from: with the planner's and the styles' state all that it takes to make it again.
+/// Origin of the current step: with the planner's and the styles' state all that it takes to make it again.
 #[derive(Clone, Debug)]
 pub(crate) struct Origin {
     pub(crate) request: Request,
@@ -60,7 +60,7 @@ pub(crate) struct Origin {
     /// The feet before the step; `None` for the first.
     pub(crate) planter: Option<PlanterState>,
     pub(crate) tie: [f32; TIE_LEN],
-    /// Where the current step is the rest of one that was planned anew.
+    /// Rest of a step that was planned anew, where the current one is that.
     pub(crate) rest: Option<Rest>,
 }
 
@@ -213,7 +213,7 @@ impl Walker {
         whole
     }
 
-    /// Where the step after the current one will come from when it is asked to be this.
+    /// Origin of the step after the current one when this is requested of it.
     pub(crate) fn next_origin(&self, request: Request) -> Origin {
         Origin {
             request,
@@ -388,12 +388,12 @@ impl Walker {
         &self.stage
     }
 
-    /// Where the current step came from.
+    /// Origin of the current step.
     pub(crate) fn origin(&self) -> &Origin {
         &self.origin
     }
 
-    /// What chance decided about the steps of the window.
+    /// Random draws of the steps in the window.
     pub(crate) fn draws(&self) -> &[StepDraw; WINDOW] {
         &self.draws
     }
@@ -446,7 +446,7 @@ impl Walker {
     }
 }
 
-/// How a step of the window is put on the ground, after a step in one mixture and in another.
+/// Placing of a step of the window on the ground, after a step in one mixture and in another.
 fn placing<'a>(
     origin: &Origin,
     plans: &'a [StepPlan<f32>; WINDOW],

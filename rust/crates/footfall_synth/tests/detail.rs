@@ -40,7 +40,7 @@ fn walker(detail: Detail) -> GaitGenerator {
     walker
 }
 
-/// Where all joints are, from where the walk began.
+/// Positions of all joints, from where the walk began.
 fn joints(walker: &GaitGenerator, pose: &Pose) -> Vec<Vec3> {
     let mut model = ModelPose::default();
     forward_kinematics(&Skeleton::standard(), pose, &mut model);

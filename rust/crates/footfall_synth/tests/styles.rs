@@ -95,7 +95,7 @@ fn next(generator: &mut GaitGenerator, controls: Controls) -> ModelPose {
     model
 }
 
-/// How far the chest leans forwards, radians.
+/// Forward lean of the chest, radians.
 fn lean(pose: &ModelPose) -> f32 {
     let up = pose.rotation(Joint::UpperChest) * Vec3::Y;
     up.z.atan2(up.y)
@@ -189,7 +189,7 @@ fn a_foreign_style_is_refused() {
     ));
 }
 
-/// What a player might do in frame `frame`.
+/// Plays frame `frame` as a player might.
 fn play(walker: &mut GaitGenerator, frame: u32) -> Pose {
     let wave = (frame as f32 * 0.013).sin();
     match frame % 310 {

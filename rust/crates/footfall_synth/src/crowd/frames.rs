@@ -16,7 +16,7 @@ const POSITION_STEPS: f32 = 10_000.0;
 /// Bytes that memory comes in.
 const CACHE_LINE: usize = 64;
 
-/// Where every joint is and how it is turned against the T-pose, in the character's own space, in the order of [`Joint::ALL`].
+/// Positions of all joints and their rotations relative to the T-pose, in the character's own space, in the order of [`Joint::ALL`].
 #[derive(Clone, Debug)]
 #[repr(align(32))]
 pub struct CrowdPose([f32; POSE_NUMBERS]);
@@ -49,7 +49,7 @@ impl CrowdPose {
     }
 }
 
-/// Where a character is in one frame.
+/// Place of a character in one frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CrowdPlace {
     /// The character on the ground: `plan_from_character`.

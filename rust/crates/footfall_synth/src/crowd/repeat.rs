@@ -36,7 +36,7 @@ impl Base {
         }
     }
 
-    /// Where a frame of the step is, of which this share is over.
+    /// Place of a frame of the step, of which this share is over.
     pub(super) fn at(&self, place: &GroundTransform, share: f32) -> GroundTransform {
         GroundTransform {
             position: self.place.position + from_heading(self.place.heading) * place.position,

@@ -55,7 +55,7 @@ impl StyledBody {
     }
 }
 
-/// Where steps are worked out, for walkers of one model on one body; one a thread.
+/// Working memory for steps, for walkers of one model on one body; one a thread.
 #[derive(Debug)]
 pub struct Workshop {
     pub(super) planner: Planner,

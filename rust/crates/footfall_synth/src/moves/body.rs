@@ -46,7 +46,7 @@ impl Body {
         }
     }
 
-    /// Where the feet of a pose are.
+    /// Places of a pose's feet.
     pub(super) fn feet(&self, pose: &Pose) -> [FootTarget; 2] {
         self.legs.each_ref().map(|leg| leg.foot_of(pose))
     }
@@ -60,7 +60,7 @@ impl Body {
         }
     }
 
-    /// Where the feet of a pose that stands are put.
+    /// Plants of a standing pose's feet.
     pub(super) fn plants(&self, pose: &Pose) -> [Plant; 2] {
         let stood = self.feet(pose);
         core::array::from_fn(|side| {
@@ -142,7 +142,7 @@ impl Body {
     }
 }
 
-/// How far a leg is stretched that would be stretched so far, as fractions of the straight leg: from the first bound on ever harder, so that no knee
+/// Limits the stretch of a leg, as fractions of the straight leg: from the first bound on it gets ever harder to stretch, so that no knee
 /// snaps, and never beyond the second.
 fn yielded(fraction: f32, [from, most]: [f32; 2]) -> f32 {
     let beyond = (fraction - from).max(0.0);

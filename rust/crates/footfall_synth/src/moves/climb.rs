@@ -12,7 +12,7 @@ const HEAD_KEPT: f32 = 0.5;
 /// Steeper ways bend nobody farther, rise by run.
 const STEEPEST: f32 = 1.0;
 
-/// How quickly the trunk follows: the rate of a critically damped spring, 1/s.
+/// Rate of the critically damped spring by which the trunk follows, 1/s.
 const RATE: f32 = 4.0;
 
 /// Less is upright, radians and radians a second.
@@ -23,7 +23,7 @@ const LEAST: f32 = 1e-4;
 pub(crate) struct ClimbMoment {
     /// The way's rise by run, positive uphill.
     pub(crate) grade: f32,
-    /// How far the trunk leans forwards, radians, and how fast that changes.
+    /// Forward lean of the trunk, radians, and its rate of change.
     pub(crate) lean: f32,
     pub(crate) speed: f32,
 }

@@ -5,13 +5,13 @@ use footfall_core::ease::settled;
 use footfall_model::{CrouchModel, FEATURE_COUNT};
 use glam::Vec3;
 
-/// How quickly somebody goes down and comes up: the rate of a critically damped spring, a second.
+/// Rate of the critically damped spring by which somebody goes down and comes up, 1/s.
 const RATE: f32 = 9.0;
 
 /// Less is standing upright.
 const LEAST: f32 = 1e-4;
 
-/// How deep somebody crouches at a moment.
+/// Depth of a crouch at a moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct CrouchMoment {
     /// From 0, upright, to 1, and by how much more a second.
@@ -54,7 +54,7 @@ impl Crouch {
         }
     }
 
-    /// How fast somebody may go who is asked to crouch by so much and would go at most this fast upright, m/s.
+    /// Highest speed of somebody who crouches by this amount and would go at most this fast upright, m/s.
     pub(super) fn fastest_mps(&self, amount: f32, upright_mps: f32) -> f32 {
         let low = self.fastest_mps.min(upright_mps);
         upright_mps + share(amount) * (low - upright_mps)

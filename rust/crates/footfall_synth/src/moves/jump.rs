@@ -1,6 +1,6 @@
 //! Jumping off both feet, out of standing: down, off, through the air, down again and up.
 //!
-//! How the body is held comes from the model. The hips go as it says as long as the feet bear, with the speed at take-off and landing that the flight
+//! The body's posture comes from the model. The hips go as it says as long as the feet bear, with the speed at take-off and landing that the flight
 //! needs; in between nothing but gravity acts, and they are on a parabola. Feet roll off on their toes and land on them, where they were or on the place
 //! that was asked for.
 
@@ -27,12 +27,12 @@ const RECOVERY: usize = 4;
 const FREED_BY: f32 = 0.5;
 const REACHING_FROM: f32 = 0.45;
 
-/// What is asked of a jump.
+/// Request for a jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Leap {
-    /// How much higher than standing before the jump the hips come, metres.
+    /// Rise of the hips above their height before the jump, metres.
     pub(crate) rise_m: f32,
-    /// How far to the left, up and ahead the feet land, metres.
+    /// Displacement of the feet to the left, up and ahead, metres.
     pub(crate) way: Vec3,
 }
 
@@ -56,10 +56,10 @@ pub(crate) struct JumpMoment {
     course: Course,
 }
 
-/// How far a jump has come.
+/// Progress of a jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Flown {
-    /// How far to the left, up and ahead of where it began the character is, metres.
+    /// Displacement of the character to the left, up and ahead since the jump began, metres.
     pub(crate) place: Vec3,
     /// True when the feet bear.
     pub(crate) bears: bool,
@@ -68,7 +68,7 @@ pub(crate) struct Flown {
 /// The model's jumps, ready to be jumped.
 #[derive(Clone, Debug)]
 pub(crate) struct JumpTables {
-    /// How its people stand.
+    /// Standing posture of the model's people.
     standing: Pose,
     secs: [[f32; JUMP_RESPONSES]; JUMP_PHASES],
     rise: [f32; 3],
@@ -110,7 +110,7 @@ impl JumpTables {
         }
     }
 
-    /// How far a jump of this rise and way, in leg lengths, is from the mean one: what slopes are multiplied with.
+    /// Difference of a jump of this rise and way, in leg lengths, from the mean jump: the factors of the slopes.
     fn factors(&self, rise: f32, way: f32) -> [f32; JUMP_RESPONSES] {
         let deviation = |value: f32, [least, mean, most]: [f32; 3]| value.clamp(least, most) - mean;
         [1.0, deviation(rise, self.rise), deviation(way, self.way)]
@@ -169,12 +169,12 @@ impl JumpTables {
     }
 }
 
-/// How long the phases of a jump last, and how the body is held in it.
+/// Durations of a jump's phases, and the scale of its postures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Timing {
-    /// What the model's slopes are multiplied with.
+    /// Factors of the model's slopes.
     factors: [f32; JUMP_RESPONSES],
-    /// How much there is of its postures: jumps lower than recorded ones have less.
+    /// Scale of its postures: jumps lower than recorded ones have less of them.
     scale: f32,
     secs: [f32; JUMP_PHASES],
 }
@@ -208,7 +208,7 @@ impl JumpMoment {
         }
     }
 
-    /// How far to the left, up and ahead it ends.
+    /// Displacement at its end to the left, up and ahead.
     pub(super) fn way(&self) -> Vec3 {
         self.course.way()
     }

@@ -12,7 +12,7 @@ const FADING: f32 = 1.6;
 const STEPPED_MPS: f32 = 0.3;
 const MOST_MPS: f32 = 2.0;
 
-/// How quickly the body comes back over its feet: the rate of a critically damped spring, 1/s.
+/// Rate of the critically damped spring by which the body comes back over its feet, 1/s.
 const RETURN: f32 = 6.5;
 
 /// Share of a push that the body gives way with at once.
@@ -21,15 +21,15 @@ const GIVEN_WAY: f32 = 0.45;
 /// Farther the body does not give way, leg lengths.
 const FARTHEST: f32 = 0.12;
 
-/// How far the trunk stays behind hips that are pushed away, radians by leg length.
+/// Lag of the trunk behind hips that are pushed away, radians by leg length.
 const TRUNK_LAG: f32 = 0.9;
 
 /// A push that is being taken up; vectors are to the left and forwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PushMoment {
-    /// What is left to be walked off, m/s.
+    /// Velocity that remains to be walked off, m/s.
     pub(crate) velocity: Vec2,
-    /// How far the hips have given way, metres, and how fast they do, m/s.
+    /// Displacement of the hips, metres, and its rate, m/s.
     pub(crate) away: Vec2,
     pub(crate) speed: Vec2,
 }

@@ -8,7 +8,7 @@ use crate::raw::RawFrame;
 use footfall_core::ease::smooth_step;
 use glam::{Vec2, Vec3Swizzles as _};
 
-/// How far the feet are shifted at most, as a share of the leg's length.
+/// Greatest shift of the feet, as a share of the leg's length.
 const MOST_SHIFT: f32 = 0.07;
 
 /// Feet that stand closer together than this are hardly levelled by a shift, as a share of the leg's length.

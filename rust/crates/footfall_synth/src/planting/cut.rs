@@ -15,7 +15,7 @@ pub(crate) struct Cut<'a> {
     pub(crate) timing: &'a StepTiming,
     pub(crate) frames: &'a [PlantedFrame],
     pub(crate) frame: usize,
-    /// What the step began with, what the next would, and the turning at its end.
+    /// State at the step's beginning, the state that the next step would begin with, and the turning at its end.
     pub(crate) begun: &'a PlanterState,
     pub(crate) ended: PlanterState,
     pub(crate) turn_rate: f32,
@@ -32,7 +32,7 @@ impl Cut<'_> {
                 .all(|frame| frame.contact[standing.index()] && !frame.contact[swinging.index()])
     }
 
-    /// What a step goes on from that begins here, with one foot in the air.
+    /// State that a step goes on from that begins here, with one foot in the air.
     pub(crate) fn state(&self) -> PlanterState {
         let [before, now] = [self.frame - 1, self.frame].map(|frame| &self.frames[frame]);
         let s = self.frame as f32 / self.timing.frames as f32;
@@ -66,7 +66,7 @@ impl Cut<'_> {
         }
     }
 
-    /// Where a foot of a pose is.
+    /// Place of a pose's foot.
     fn foot(&self, frame: &PlantedFrame, side: Side) -> FootTarget {
         let pose = &frame.pose;
         let (mut place, mut rotation) = (pose.root_position, pose.rotation(Joint::Hips));

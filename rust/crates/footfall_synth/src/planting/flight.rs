@@ -32,7 +32,7 @@ const LEAP_EXTENSION: f32 = 0.98;
 /// A foot in the air between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Airborne {
-    /// Where it is as the step begins, and where it was a frame earlier.
+    /// Places of the foot as the step begins, and a frame earlier.
     pub(crate) now: FootTarget,
     pub(crate) before: FootTarget,
     /// Time between the two, seconds.
@@ -55,7 +55,7 @@ impl Airborne {
         }
     }
 
-    /// Where it was so long ago.
+    /// Place of the foot so long ago.
     fn earlier(&self, secs: f32) -> FootTarget {
         let share = secs / self.frame_secs;
         if (share - 1.0).abs() < 1e-3 {
@@ -208,7 +208,7 @@ impl Planter {
         });
     }
 
-    /// Where a foot that was in the air as the step began is planned and where it would be free, a frame earlier and then.
+    /// Planned and free places of a foot that was in the air as the step began, a frame earlier and then.
     pub(super) fn airborne_ends(
         &self,
         airborne: &Airborne,
@@ -233,7 +233,7 @@ impl Planter {
         ]
     }
 
-    /// How high the leg of a foot that lands has the hips, metres.
+    /// Height of the hips over the leg of a landing foot, metres.
     pub(super) fn landing_height(&self, raw: &RawFrame, side: footfall_core::Side) -> f32 {
         let leg = &raw.legs[side.index()];
         let foot = &self.feet[side.index()];

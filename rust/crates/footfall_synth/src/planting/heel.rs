@@ -17,7 +17,7 @@ const MOST_BEYOND: f32 = 50.0;
 /// A leg that is shorter by so many times as much raises no heel.
 const MOST_SHORT: f32 = 5.0;
 
-/// How far a heel rises for this at most, radians.
+/// Greatest extra rise of a heel, radians.
 const MOST_RISE: f32 = 0.4;
 
 /// A heel rises for this where the foot is not ahead of the hip by this share of the leg's length: there it has just landed.

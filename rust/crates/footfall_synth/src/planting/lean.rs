@@ -10,11 +10,11 @@ use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Pose};
 use glam::{Quat, Vec2, Vec3};
 
-/// How much of the angle of balance the trunk leans beyond the legs, and what share of that the neck takes back.
+/// Share of the angle of balance by which the trunk leans beyond the legs, and the share of that which the neck takes back.
 const SHARE: f32 = 0.5;
 const HEAD_KEPT: f32 = 0.5;
 
-/// Who has less time than this to lean and to come back, seconds, leans less.
+/// Time for leaning and coming back, seconds, below which a walker leans less.
 const UNHURRIED_SECS: f32 = 0.4;
 
 /// Weaker pulls bend nobody, m/s².
@@ -23,14 +23,14 @@ const UNNOTICED_MPS2: f32 = 0.3;
 /// Nobody's trunk leans farther, radians.
 const MOST_RAD: f32 = 0.22;
 
-/// How the trunk leans: to the left and forwards, radians, and how fast that changes, rad/s.
+/// Lean of the trunk: to the left and forwards, radians, and its rate of change, rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Lean {
     pub(crate) angle: Vec2,
     pub(crate) rate: Vec2,
 }
 
-/// What there is to lean against in a step: accelerations to the left and forwards, m/s².
+/// Accelerations that the trunk leans against in a step: to the left and forwards, m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pull {
     /// In the middle of the step, from its change of speed.

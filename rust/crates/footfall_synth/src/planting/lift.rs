@@ -9,7 +9,7 @@ const SMOOTHED_SECS: f32 = 0.035;
 const TURN_SECS: f32 = 0.05;
 /// The height is looked at beyond that for so long, seconds.
 const SEEN_SECS: f32 = 0.1;
-/// What a leg's reach allows counts so many times as much as what was generated.
+/// Weight of a height that a leg's reach allows, against one that was generated.
 const REACH_WEIGHT: f64 = 16.0;
 /// Steps of more frames, those to come included, stay as they are: models at 60 frames a second have none.
 const MOST_FRAMES: usize = 256;
@@ -53,7 +53,7 @@ impl Planter {
         }
     }
 
-    /// How high the legs that bear the body let the hips be.
+    /// Greatest height of the hips that the bearing legs allow.
     fn bearing_limit(
         &self,
         raw: &RawFrame,
@@ -83,7 +83,7 @@ struct Asked {
     last: usize,
     turn: usize,
     count: usize,
-    /// How many times as much a squared jerk counts as a squared distance.
+    /// Weight of a squared jerk against a squared distance.
     stiffness: f64,
 }
 
@@ -203,7 +203,7 @@ mod tests {
         (0..count).map(value).collect()
     }
 
-    /// Where a sum of squares is least, it has no slope.
+    /// The slope of a sum of squares is zero at its minimum.
     #[test]
     fn nothing_else_is_nearer_and_smoother() {
         for (count, fixed, weight) in [(4, 1, 2.0), (5, 2, 3e3), (9, 0, 0.5), (40, 2, 729.0)] {

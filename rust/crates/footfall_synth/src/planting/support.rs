@@ -1,4 +1,4 @@
-//! Which feet bear the body, and how high their legs let the hips be.
+//! Support: the feet that bear the body, and the height that their legs allow the hips.
 
 use super::{PlantedFrame, Planter, StepTiming, free_foot};
 use crate::raw::RawFrame;
@@ -18,10 +18,10 @@ const REACH_SOFTNESS_M: f32 = 0.003;
 /// Over how long a leaving leg's reach ceases to bear on the pelvis, seconds.
 const REACH_FADE_SECS: f32 = 0.07;
 
-/// How fast the pelvis comes up again when such a leg lets go, seconds.
+/// Time constant with which the pelvis comes up again when such a leg lets go, seconds.
 const REACH_RELEASE_SECS: f32 = 0.05;
 
-/// How far the generated leg may carry the ankle away from where the foot stands before the foot leaves the ground, as a
+/// Distance between the generated ankle and the standing foot's beyond which the foot leaves the ground, as a
 /// share of the leg's length.
 const RELEASE_SHARE: f32 = 0.03;
 
@@ -89,7 +89,7 @@ impl Planter {
         }
     }
 
-    /// How high the hips may be for this leg to reach where its foot stands; `None` when it is out of reach sideways at any
+    /// Greatest height of the hips at which this leg reaches its foot; `None` when the foot is out of reach sideways at any
     /// height: then the solver stretches the leg, and the pelvis stays human.
     pub(super) fn reach_limit(
         &self,
@@ -149,7 +149,7 @@ impl Planter {
     }
 }
 
-/// How a leg lands at the end of a step.
+/// Landing of a leg at the end of a step.
 #[derive(Clone, Copy)]
 struct Landing {
     hips: Vec3,

@@ -10,8 +10,8 @@ use core::f32::consts::TAU;
 use footfall_core::ease::smooth_step;
 use glam::{Vec2, Vec3};
 
-/// How far the speed rises above the mean and falls below it with the first harmonics of a step's frequency at most, as shares of the mean:
-/// in captured walks 0.13 and 0.05 do. Higher harmonics are surge.
+/// Greatest amplitudes of the first harmonics of a step's frequency in the hips' speed, as shares of its mean:
+/// captured walks have 0.13 and 0.05. Higher harmonics are surge.
 const MOST: [f32; 2] = [0.15, 0.06];
 
 /// Time constant with which the speed of the step before passes into this one's, seconds.

@@ -13,7 +13,7 @@ const CLEARANCE_M: f32 = 0.012;
 /// Over how many metres the foot yields to that clearance.
 const CLEARANCE_SOFTNESS_M: f32 = 0.004;
 
-/// How fast the disagreement from the last stance dies away, per swing.
+/// Rate at which the disagreement from the last stance dies away, per swing.
 const SETTLE_RATE: f32 = 8.0;
 
 /// A foot that walks and one that runs lands at most this fast, m/s: people brake their swing before the heel strikes.
@@ -28,7 +28,7 @@ const LEAP_DEPARTURE_SECS: f32 = 0.5;
 /// Over this time at most a faster foot is braked, seconds.
 const BRAKING_SECS: [f32; 2] = [0.16, 0.1];
 
-/// What planted and generated foot disagree about, from the foot's last frame on the ground to its next first.
+/// Disagreement between planted and generated foot, from the foot's last frame on the ground to its next first.
 pub(super) struct Swing {
     first: usize,
     frames: f32,
@@ -166,7 +166,7 @@ impl Swing {
         target
     }
 
-    /// How far the feet have come away from how they stood in eight frames from `index` on, from 0 to 1.
+    /// Progress of the feet away from their stance in eight frames from `index` on, from 0 to 1.
     pub(super) fn freed(&self, index: usize) -> f32x8 {
         if self.freed_after <= 0.0 {
             return f32x8::ONE;
@@ -184,7 +184,7 @@ impl Swing {
 struct Share {
     s: f32x8,
     smooth: f32x8,
-    /// What is left of a farewell.
+    /// Remaining part of a farewell.
     left: f32x8,
     /// From 0 at the ends to 1 in the middle.
     hump: f32x8,

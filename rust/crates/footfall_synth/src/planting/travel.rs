@@ -16,7 +16,7 @@ const SETTLE_SECS: f32 = 0.07;
 /// much longer to settle, as a share.
 const SHORT_SETTLE_SHARE: f32 = 1.8;
 
-/// Who falls onto a foot faster than anybody who runs takes up the fall for so much longer: m/s, and seconds by m/s.
+/// Speed of a fall, m/s, above that of any runner, beyond which it takes longer to take up, and by how much, seconds by m/s.
 const SOFT_FALL_MPS: f32 = 1.3;
 const SETTLE_BY_FALL: f32 = 0.04;
 
@@ -70,7 +70,7 @@ impl Planter {
         self.glide(timing, out);
     }
 
-    /// How the hips leave the way that they were on for that above the foot that has landed.
+    /// Settling of the hips from their former way to that above the foot that has landed.
     fn settling(&self, raw: &[RawFrame], timing: &StepTiming) -> Settling {
         let start = hips_above(&raw[0], timing.leading, from_heading(self.state.heading));
         let next_level = from_heading(self.state.heading + self.state.turn_rate * self.frame_secs);
@@ -119,7 +119,7 @@ impl Planter {
         from
     }
 
-    /// How much higher the landing foot's leg would have the hips at the end of the step than the standing foot's has them.
+    /// Difference between the heights that the landing leg and the standing leg would give the hips at the end of the step.
     fn landing_height_gap(&self, raw: &[RawFrame], timing: &StepTiming) -> f32 {
         let last = &raw[timing.frames];
         let landing = timing.leading.other();
@@ -146,19 +146,19 @@ impl Planter {
     }
 }
 
-/// How the hips settle onto another way, in frames of a step.
+/// Settling of the hips onto another way, in frames of a step.
 struct Settling {
-    /// Where they are and how fast they move in the first frame, from the new way.
+    /// Offset and velocity in the first frame, relative to the new way.
     offset: Vec3,
     velocity: Vec3,
     decay: f32,
-    /// How much higher the landing foot is to have them in the end.
+    /// Rise of the hips by the end, towards the height of the landing foot.
     meeting: f32,
     frames: f32,
 }
 
 impl Settling {
-    /// How far they are from the new way at eight times.
+    /// Distances of the hips from the new way at eight times.
     fn at(&self, time: f32x8) -> Vec3x8 {
         // A critically damped return from where the hips were to where the landed foot has them.
         let pace = Vec3x8::splat(self.velocity + self.offset * self.decay);
@@ -170,7 +170,7 @@ impl Settling {
     }
 }
 
-/// Where the hips are when this foot stands on its plant and the leg is as generated.
+/// Position of the hips over a foot on its plant, with the leg as generated.
 fn hips_above(raw: &RawFrame, side: Side, level: Quat) -> Vec3 {
     let leg = &raw.legs[side.index()];
     leg.target.ankle - level * leg.ankle

@@ -1,7 +1,7 @@
 //! Changes of speed: hips that are to be faster or slower by the end of a step gain or lose speed all through it.
 //!
 //! An even step settles to its mean speed soon after it has begun, so that somebody who sets out would be as fast as the mean of the step and no faster.
-//! Where another speed is asked for, the way of the hips is instead the cubic that begins with the speed they have and ends with the one that is asked for.
+//! On a request for another speed, the way of the hips is instead the cubic that begins with the speed they have and ends with the one that is asked for.
 
 use footfall_core::ease::smooth_step;
 use glam::Vec2;
@@ -46,13 +46,13 @@ impl SpeedChange {
         }
     }
 
-    /// How much it counts in a step of so much travel, as a share of the leg: nobody who steps on the spot goes anywhere.
+    /// Weight in a step of this travel, as a share of the leg: a step on the spot goes nowhere.
     pub(super) fn weight_over(self, travel: f32) -> f32 {
         self.weight * smooth_step(travel / LEAST_TRAVEL)
     }
 }
 
-/// How far ahead of an even way hips are at part `s` of a step that they begin and end faster by so much, in steps.
+/// Lead of the hips over an even way at part `s` of a step that they begin and end faster by so much, in steps.
 pub(super) fn urge(begins: f32, ends: f32, s: f32) -> f32 {
     let left = 1.0 - s;
     s * left * (begins * left - ends * s)

@@ -109,7 +109,7 @@ impl Carrier {
         }
     }
 
-    /// How high the hips are when the legs carry them: the lower of what each leg allows, rounded off. `None` where no leg reaches its foot.
+    /// Height of the hips on the legs: the lower of what each leg allows, rounded off. `None` where no leg reaches its foot.
     fn reach(&self, hips: Vec3, feet: &[Foot; 2]) -> Option<f32> {
         let heights =
             Side::BOTH.map(|side| self.height(hips, side, &feet[side.index()], self.extension));

@@ -1,4 +1,4 @@
-//! Where a standing body is beside its posture at a moment: octaves of sway, looks about and breath.
+//! Deviation of a standing body from its posture at a moment: octaves of sway, looks about and breath.
 
 use super::noise::{AT_ONCE, Curves, key, normal, share};
 use crate::plan::Sum as _;
@@ -109,7 +109,7 @@ impl StandingTables {
         }
     }
 
-    /// Where the body is so many seconds from the beginning.
+    /// Deviation of the body so many seconds from the beginning.
     pub(crate) fn at(&self, stander: &Stander, secs: f64) -> Sway {
         let mut sway = [0.0; SWAY_COUNT];
         self.stance
@@ -130,7 +130,7 @@ impl StandingTables {
         sway
     }
 
-    /// Where the gaze is, in standard deviations of where it rests.
+    /// Direction of the gaze, in standard deviations from its rest.
     fn look(&self, stander: &Stander, secs: f64) -> [f32; LOOK_DIRECTIONS] {
         let times = key(stander.number, LOOK_TIMES);
         let jumps =

@@ -5,7 +5,7 @@ use crate::generator::GaitGenerator;
 use crate::moves::{ClimbMoment, Moves};
 use serde::{Deserialize, Serialize};
 
-/// How a walker leans into a climb, behind a [`State`](super::State): the grade, the angle and how fast that changes; nothing on level ground.
+/// Lean into a climb, behind a [`State`](super::State): the grade, the angle and its rate of change; `None` on level ground.
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Climbing(Option<[f32; 3]>);
 

@@ -1,4 +1,4 @@
-//! What a state holds of crouches and jumps.
+//! Part of a state for crouches and jumps.
 
 use super::is_reasonable;
 use crate::generator::GaitGenerator;
@@ -7,10 +7,10 @@ use crate::steps::Steps;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-/// How a walker crouches and jumps, behind a [`State`](super::State).
+/// Crouch, push and jump of a walker, behind a [`State`](super::State).
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Moving {
-    /// How deep it crouches, and by how much more a second.
+    /// Depth of the crouch, and its rate of change, 1/s.
     crouch: [f32; 2],
     /// The push that is taken up: what is left of it, how far the hips have given way and how fast they do, to the left and forwards.
     push: Option<[[f32; 2]; 3]>,

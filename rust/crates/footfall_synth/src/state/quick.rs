@@ -9,16 +9,16 @@ use crate::steps::Steps;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-/// What it takes to go on with a step that was made to obey in its middle.
+/// Data needed to go on with a step that was made to obey in its middle.
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Quick {
     /// Velocity of the step before and of this one, as their requests had them.
     pub(super) velocities_mps: [[f32; 2]; 2],
-    /// What the step obeys: velocity and turning; whether it stops, and whether it was stretched.
+    /// Requests that the step obeys: velocity and turning; true where it stops, and where it was stretched.
     obeys: ([f32; 2], f32, bool, bool),
     /// The state that its rest begins in, the share of that which is left, and the share of the whole step that had passed.
     rest: Option<(u8, f32, f32)>,
-    /// How the trunk leans as the step begins, and how fast that changes.
+    /// Lean of the trunk as the step begins, and its rate of change.
     lean: [[f32; 2]; 2],
 }
 

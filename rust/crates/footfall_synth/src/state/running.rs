@@ -9,7 +9,7 @@ use footfall_ik::FootTarget;
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// What a runner has beyond that.
+/// Additions of a runner.
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Running {
     /// True for the step before and this one where they are of a run.

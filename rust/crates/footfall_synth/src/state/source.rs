@@ -1,4 +1,4 @@
-//! What each kind of steps adds to a state, and how it goes on from one.
+//! Parts of a state that each kind of steps adds, and their restoration.
 
 use super::{Quick, Running, Source, State, StateError, detail_of};
 use crate::error::SynthError;

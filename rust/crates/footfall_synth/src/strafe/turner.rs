@@ -9,13 +9,13 @@ use footfall_core::{Joint, Side};
 use footfall_ik::RockerFoot;
 use glam::{Vec2, Vec3};
 
-/// How far the leg that stands is stretched at most in steps to the side, as a share of its length.
+/// Greatest stretch of the standing leg in steps to the side, as a share of its length.
 const STANDING_EXTENSION: f32 = 0.97;
 
 /// Least share of a leg's squared length that is left of it from the side.
 const LEAST_HEIGHT: f32 = 0.5;
 
-/// How far toes and heels come up in a step backwards at most, radians, and how many times as much as a step forwards has it the other way
+/// Greatest rise of toes and heels in a step backwards, radians, and its factor on that of a step forwards the other way
 /// round: toes land steeper than heels do.
 const BACKWARD_PITCH: f32 = 0.3;
 const BACKWARD_GAIN: f32 = 1.8;
@@ -35,10 +35,10 @@ pub(crate) struct Turner<'a> {
     pub(crate) own_facing: f32,
 }
 
-/// What there is to know about a swinging foot.
+/// State of a swinging foot.
 #[derive(Clone, Copy)]
 struct Swing {
-    /// How far it has come away from how it stood, from 0 to 1.
+    /// Progress of the foot away from its stance, from 0 to 1.
     freed: f32,
     /// Its pitch as long before the end of the swing as this is after its beginning: steps backwards swing as steps forwards do in reverse.
     mirrored: f32,
@@ -117,7 +117,7 @@ impl Turner<'_> {
         leg.put(ankle - rise * Vec3::Y, pitch, standing);
     }
 
-    /// Where the ankle of a flat foot goes, from the hips. Its excursion is that of the middle of the sole, which is as far ahead of the
+    /// Target of a flat foot's ankle, from the hips. Its excursion is that of the middle of the sole, which is as far ahead of the
     /// hips as behind them in any walk.
     fn turn_place(&self, strafe: &Strafe, side: Side, ankle: Vec3) -> Vec3 {
         let middle = self.feet[side.index()].sole_middle();
@@ -139,7 +139,7 @@ fn standing_pitch(strafe: &Strafe, forwards: f32) -> f32 {
     turned_pitch(strafe, forwards, -BACKWARD_GAIN * forwards)
 }
 
-/// What becomes of a foot's pitch: less of it in steps to the side, another in steps backwards.
+/// Pitch of a turned foot: less of it in steps to the side, another in steps backwards.
 fn turned_pitch(strafe: &Strafe, forwards: f32, backwards: f32) -> f32 {
     if strafe.forwardness >= 0.0 {
         forwards * strafe.forwardness

@@ -23,7 +23,7 @@ fn hips(frame: &Frame) -> f32 {
     frame.model.position(Joint::Hips).y
 }
 
-/// How high the hips come above their mean height in the half second before.
+/// Rise of the hips above their mean height in the half second before.
 fn rise(before: &[Frame], frames: &[Frame]) -> f32 {
     let last = &before[before.len() - 30..];
     let level = last.iter().map(hips).sum::<f32>() / 30.0;

@@ -1,4 +1,4 @@
-//! What the generator promises, on the model that the add-on ships.
+//! Promises of the generator, on the model that the add-on ships.
 
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 
@@ -211,7 +211,7 @@ fn assert_stays(first: &Frame, last: &Frame) {
     assert!(from.distance(to) < 0.08, "its hips go from {from} to {to}");
 }
 
-/// How far apart two frames are at their most distant joint.
+/// Distance between two frames at their most distant joint.
 fn distance(a: &Frame, b: &Frame) -> f32 {
     let joints = a.model.positions.iter().zip(&b.model.positions);
     joints.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)

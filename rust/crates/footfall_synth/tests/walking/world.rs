@@ -45,7 +45,7 @@ pub(crate) fn switching_model() -> Arc<DynamicsModel> {
     Arc::clone(MODEL.get_or_init(load))
 }
 
-/// What a walker's steps come from.
+/// Source of a walker's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
     Styled,

@@ -42,15 +42,15 @@ const SLOPE_PART: f32 = 0.02;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Course {
     pub(super) timing: Timing,
-    /// How far to the left, up and ahead the feet land, metres.
+    /// Displacement of the feet to the left, up and ahead, metres.
     way: Vec3,
-    /// Where the hips are at take-off and at landing, from where they stand before and after the jump, metres.
+    /// Positions of the hips at take-off and at landing, from where they stand before and after the jump, metres.
     ends: [Vec3; 2],
-    /// How fast they are there, m/s.
+    /// Velocities of the hips there, m/s.
     speeds: [Vec3; 2],
-    /// What the model's own way lacks of both, at the end of the push and at the beginning of the absorption: metres, and metres a phase.
+    /// Errors of the model's own way in both, at the end of the push and at the beginning of the absorption: metres, and metres a phase.
     missing: [[Vec3; 2]; 2],
-    /// How much deeper than in recorded jumps the legs take up the fall, metres.
+    /// Extra depth, beyond that of recorded jumps, to which the legs take up the fall, metres.
     sink: f32,
     leg: f32,
 }
@@ -109,7 +109,7 @@ impl Course {
         }
     }
 
-    /// Where the hips are at part `s` of a phase in which the model holds the body so, from where they stand before the jump: metres.
+    /// Position of the hips at part `s` of a phase in which the model holds the body so, from where they stand before the jump: metres.
     pub(super) fn hips(&self, phase: usize, s: f32, beside: &Beside) -> Vec3 {
         let own = self.leg * hips_of(beside);
         let none = Vec3::ZERO;
@@ -130,12 +130,12 @@ impl Course {
         }
     }
 
-    /// Where the feet land, from where they stood.
+    /// Displacement of the feet from where they stood.
     pub(super) fn way(&self) -> Vec3 {
         self.way
     }
 
-    /// How far the character has come at part `s` of a phase: over the ground smoothly about the flight, and in the flight as high as the jump has it.
+    /// Displacement of the character at part `s` of a phase: over the ground smoothly about the flight, and in the flight as high as the jump has it.
     pub(super) fn place(&self, phase: usize, s: f32) -> Vec3 {
         let secs = &self.timing.secs;
         let take_off = secs[DIP] + secs[PUSH];
@@ -153,7 +153,7 @@ impl Course {
     }
 }
 
-/// How high the hips of a posture beside standing can be on feet that bear, from their height in standing.
+/// Greatest height of the hips in a posture beside standing, on feet that bear, from their height in standing.
 fn highest(tables: &JumpTables, body: &Body, beside: &Beside, end: Vec3) -> f32 {
     let mut pose = tables.standing.clone();
     let feet = body.feet(&pose);
