@@ -12,13 +12,14 @@ const PRESET: &str = "Footfall";
 /// Frames that the exported game looks into each of its scenes when it is started for a check.
 const FRAMES: &str = "20";
 
-/// Exports the demo and starts it once.
+/// Exports the demo and starts it once; `shipped` with the library as it is released.
 ///
 /// # Errors
 /// When the demo cannot be exported here, or what was exported does not run.
-pub(crate) fn command() -> Result<()> {
+pub(crate) fn command(shipped: bool) -> Result<()> {
     library::build(&library::Options {
         all: true,
+        shipped,
         ..library::Options::default()
     })?;
     let engine = godot::provision()?;

@@ -24,6 +24,9 @@ pub(crate) struct Options {
     /// Build the flavour for exported games, too.
     #[arg(long)]
     pub(crate) all: bool,
+    /// Build that flavour as it is released: two thirds of the size, in minutes more.
+    #[arg(long, requires = "all", conflicts_with = "debug")]
+    pub(crate) shipped: bool,
     /// Build for another platform: a target triple, or `universal-apple-darwin`.
     #[arg(long)]
     pub(crate) target: Option<String>,
@@ -151,12 +154,13 @@ fn build_one(
     if flavour == Flavour::Editor {
         cargo.args(["--features", "editor"]);
     }
-    if options.debug {
-        folder.push("debug");
-    } else {
-        cargo.arg("--release");
-        folder.push("release");
-    }
+    let profile = match flavour {
+        _ if options.debug => "dev",
+        Flavour::Game if options.shipped => "shipped",
+        _ => "release",
+    };
+    cargo.args(["--profile", profile]);
+    folder.push(if options.debug { "debug" } else { profile });
     process::run(&mut cargo)?;
     Ok(folder.join(platform.built()))
 }

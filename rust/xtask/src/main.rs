@@ -97,7 +97,11 @@ enum Command {
     /// Film the tour of the third-person scene for the README.
     Film,
     /// Export the demo as a game for this machine into `rust/target/export`, and start it once without a window.
-    Export,
+    Export {
+        /// Build the game's library as it is released.
+        #[arg(long)]
+        shipped: bool,
+    },
     /// Measure crowds in headless Godot; prints one JSON object, times in ms and µs.
     BenchCrowd {
         /// Instances.
@@ -144,7 +148,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Verify { steps } => verify::command(steps),
         Command::Demo => demo::command(),
         Command::Film => film::command(),
-        Command::Export => export::command(),
+        Command::Export { shipped } => export::command(*shipped),
         Command::BenchCrowd {
             instances,
             skeletons,

@@ -5,6 +5,7 @@ mod dynamics;
 mod imu;
 mod judged;
 mod naturalness;
+mod orientation;
 mod response;
 mod standing;
 mod style;
@@ -31,6 +32,7 @@ enum What {
     Dynamics(dynamics::DynamicsArgs),
     Imu(imu::ImuArgs),
     Naturalness(naturalness::NaturalnessArgs),
+    Orientation(orientation::OrientationArgs),
     Response(response::ResponseArgs),
     Standing(standing::StandingArgs),
     Style(style::StyleArgs),
@@ -43,6 +45,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<()> {
         What::Dynamics(args) => dynamics::run(args),
         What::Imu(args) => imu::run(args),
         What::Naturalness(args) => naturalness::run(args),
+        What::Orientation(args) => orientation::run(args),
         What::Response(args) => response::run(args),
         What::Standing(args) => standing::run(args),
         What::Style(args) => style::run(args),
@@ -78,6 +81,7 @@ pub(crate) fn report(request: &EvaluateRequest) -> Result<Value> {
         What::Dynamics(args) => value(&dynamics::evaluate(&args)?),
         What::Imu(args) => value(&imu::evaluate(&args)?),
         What::Naturalness(args) => value(&naturalness::evaluate(&args)?),
+        What::Orientation(args) => value(&orientation::evaluate(&args)?),
         What::Response(args) => value(&response::evaluate(&args)?),
         What::Standing(args) => value(&standing::evaluate(&args)?),
         What::Style(args) => value(&style::evaluate(&args)?),
