@@ -148,6 +148,23 @@ fn what_cannot_be_judged_is_named() {
 /// Calibration on captured people: six styles of set 2 all recognised across takes, fourteen of set 1 within a
 /// take, and fewer across takes.
 #[test]
+fn filters_of_the_vertical_are_judged_on_the_same_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    write_pair(folder.path());
+    let arguments = ["evaluate", "orientation", "--corpus", "real.csv", "--json"];
+    let report = footfall(folder.path(), &arguments).json();
+    let filters = &report["simulated"]["walk"];
+    let of = |filter: &str, name: &str| filters[filter][name].as_f64().unwrap();
+    for filter in ["Footfall", "VQF", "gyroscope alone"] {
+        assert_eq!(of(filter, "count"), of("VQF", "count"), "{report}");
+        assert!(of(filter, "median_deg") <= of(filter, "ninety_fifth_deg"));
+    }
+    assert!(of("Footfall", "rms_deg") < of("gyroscope alone", "rms_deg"));
+    assert!(of("Footfall", "rms_deg") < 6.0, "{report}");
+    footfall(folder.path(), &arguments[..2]).fails_with(&["--corpus", "--sensors"]);
+}
+
+#[test]
 fn captured_styles_are_recognised_as_the_calibration_says() {
     let Some(data) = recordings("style calibration") else {
         return;
