@@ -44,7 +44,7 @@ namespace Footfall
         /// <summary>Loads one from a file of the project.</summary>
         public static DeviceImuSource Load(string path) => From(GD.Load<Resource>(path));
 
-        /// <summary>Whether this device gives motion; if not, it has no sensors, or the project settings leave them off.</summary>
+        /// <summary>Returns whether this device gives motion; if not, it has no sensors, or the project settings leave them off.</summary>
         public static bool IsAvailable() => ClassDB.ClassCallStatic(NativeName, MethodName.IsAvailable).AsBool();
     }
 }

@@ -133,21 +133,21 @@ namespace Footfall
             set => Native.Set(PropertyName.MaxTwist, value);
         }
 
-        /// <summary>Whether a foot that would stand across an edge, as on stairs, is put ahead of it, behind it or beside it. A <see cref="GaitGenerator3D"/> beside this node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.</summary>
+        /// <summary>If <c>true</c>, a foot that would stand across an edge, as on stairs, is put ahead of it, behind it or beside it. A <see cref="GaitGenerator3D"/> beside this node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.</summary>
         public bool AdjustFootholds
         {
             get => Native.Get(PropertyName.AdjustFootholds).AsBool();
             set => Native.Set(PropertyName.AdjustFootholds, value);
         }
 
-        /// <summary>Whether a <see cref="GaitGenerator3D"/> beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking function, down to 0.45 of its speed), from a step before it gets there.</summary>
+        /// <summary>If <c>true</c>, a <see cref="GaitGenerator3D"/> beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking function, down to 0.45 of its speed), from a step before it gets there.</summary>
         public bool AdaptSpeed
         {
             get => Native.Get(PropertyName.AdaptSpeed).AsBool();
             set => Native.Set(PropertyName.AdaptSpeed, value);
         }
 
-        /// <summary>Whether the character rises and falls with the ground under its feet, for characters that no physics holds there.</summary>
+        /// <summary>If <c>true</c>, the character rises and falls with the ground under its feet, for characters that no physics holds there.</summary>
         /// <remarks>Leave it off for a <c>CharacterBody3D</c> with gravity and <c>move_and_slide()</c>.</remarks>
         public bool FollowGround
         {
@@ -155,7 +155,7 @@ namespace Footfall
             set => Native.Set(PropertyName.FollowGround, value);
         }
 
-        /// <summary>Whether the character is in the air: feet are left to the animation. Set it from the game, for example <c>foot_placement.in_air = not is_on_floor()</c>.</summary>
+        /// <summary>If <c>true</c>, the character is in the air: feet are left to the animation. Set it from the game, for example <c>foot_placement.in_air = not is_on_floor()</c>.</summary>
         public bool InAir
         {
             get => Native.Get(PropertyName.InAir).AsBool();
@@ -177,7 +177,7 @@ namespace Footfall
             set => Native.Set(PropertyName.BoneMap, value);
         }
 
-        /// <summary>Whether soles and the normals of the ground are drawn: green where a foot is locked, orange where it is not.</summary>
+        /// <summary>If <c>true</c>, soles and the normals of the ground are drawn: green where a foot is locked, orange where it is not.</summary>
         public bool DebugDraw
         {
             get => Native.Get(PropertyName.DebugDraw).AsBool();
@@ -203,7 +203,7 @@ namespace Footfall
         /// <summary>The body that a foot, <c>left</c> or <c>right</c>, is locked to, or null.</summary>
         public Node3D GetFootSupport(StringName foot) => (Node3D)Native.Call(MethodName.GetFootSupport, foot).AsGodotObject();
 
-        /// <summary>Where the sole of a foot, <c>left</c> or <c>right</c>, is, in global space: its origin lies on the ground under the ankle of the flat foot, +Y is the ground's normal and +Z points to the toes. For a foot on its way, of the place over which it is.</summary>
+        /// <summary>Returns the place of a foot's sole (<c>left</c> or <c>right</c>) in global space: its origin lies on the ground under the ankle of the flat foot, +Y is the ground's normal and +Z points to the toes. For a foot on its way, of the place over which it is.</summary>
         public Transform3D GetFootTransform(StringName foot) => Native.Call(MethodName.GetFootTransform, foot).AsTransform3D();
 
         /// <summary>Grade of the ground under the feet: rise by run, positive uphill.</summary>
@@ -216,7 +216,7 @@ namespace Footfall
         /// <remarks>The editor shows the same as configuration warnings.</remarks>
         public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
 
-        /// <summary>Whether a foot, <c>left</c> or <c>right</c>, is locked to the ground.</summary>
+        /// <summary>Returns whether a foot, <c>left</c> or <c>right</c>, is locked to the ground.</summary>
         public bool IsFootPlanted(StringName foot) => Native.Call(MethodName.IsFootPlanted, foot).AsBool();
 
         /// <summary>Forgets where the feet were put, for example after the character was put elsewhere. Also measures the skeleton anew.</summary>

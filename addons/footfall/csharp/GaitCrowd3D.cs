@@ -9,7 +9,7 @@ namespace Footfall
     /// <summary>Walks thousands of characters: each in its own style, speed, size and phase, from steps of its own.</summary>
     /// <remarks>
     /// <para>Give it a <see cref="Model"/> and a <see cref="Character"/>, a scene with a humanoid skeleton, and choose how many in <see cref="Count"/>. Walkers wander over an area, follow a <c>Path3D</c>, or do what a script tells them, and keep out of each other's way.</para>
-    /// <para>How a walker is drawn depends on its distance from the camera. The nearest are whole scenes, with everything that hangs from them, such as a <see cref="FootPlacement3D"/>. The next are instances of one mesh whose poses are streamed to the graphics processor, new in every frame; those farther away get a new pose in every few frames, blended in between, and repeat their last two steps. Counts and distances are settable.</para>
+    /// <para>Walkers are drawn by their distance from the camera. The nearest are whole scenes, with everything that hangs from them, such as a <see cref="FootPlacement3D"/>. The next are instances of one mesh whose poses are streamed to the graphics processor, new in every frame; those farther away get a new pose in every few frames, blended in between, and repeat their last two steps. Counts and distances are settable.</para>
     /// <para>Equal seeds, sizes and time steps give equal crowds, as long as the camera moves equally too: who is far away repeats steps.</para>
     /// </remarks>
     public class GaitCrowd3D : FootfallObject
@@ -199,7 +199,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Colours, value);
         }
 
-        /// <summary>Which crowd of the many that there could be. Equal seeds give equal crowds.</summary>
+        /// <summary>Seed of the crowd. Equal seeds give equal crowds.</summary>
         public long Seed
         {
             get => Native.Get(PropertyName.Seed).AsInt64();
@@ -213,14 +213,14 @@ namespace Footfall
             set => Native.Set(PropertyName.StandingMotion, value);
         }
 
-        /// <summary>Whether walkers with a goal keep out of each other's way.</summary>
+        /// <summary>If <c>true</c>, walkers with a goal keep out of each other's way.</summary>
         public bool Avoidance
         {
             get => Native.Get(PropertyName.Avoidance).AsBool();
             set => Native.Set(PropertyName.Avoidance, value);
         }
 
-        /// <summary>Whether time passes.</summary>
+        /// <summary>If <c>true</c>, time passes.</summary>
         public bool Playing
         {
             get => Native.Get(PropertyName.Playing).AsBool();
@@ -262,14 +262,14 @@ namespace Footfall
             set => Native.Set(PropertyName.NearDistance, value);
         }
 
-        /// <summary>Whether walkers beyond that repeat their last two steps instead of taking new ones.</summary>
+        /// <summary>If <c>true</c>, walkers beyond that repeat their last two steps instead of taking new ones.</summary>
         public bool RepeatFar
         {
             get => Native.Get(PropertyName.RepeatFar).AsBool();
             set => Native.Set(PropertyName.RepeatFar, value);
         }
 
-        /// <summary>Whether poses of walkers whom the camera does not see are left out.</summary>
+        /// <summary>If <c>true</c>, poses of walkers whom the camera does not see are left out.</summary>
         public bool Culling
         {
             get => Native.Get(PropertyName.Culling).AsBool();
@@ -346,10 +346,10 @@ namespace Footfall
         /// <summary>Tiers of walkers: 0 as a whole scene, 1 with a new pose in every frame, 2 as one far away, or one that is not made yet. Shapes and ids as of <see cref="GetPositions"/>; 2 for an id that nobody has.</summary>
         public byte[] GetTiers(int[] agents) => Native.Call(MethodName.GetTiers, agents).AsByteArray();
 
-        /// <summary>Whether a walker has this id.</summary>
+        /// <summary>Returns whether a walker has this id.</summary>
         public bool HasAgent(int agent) => Native.Call(MethodName.HasAgent, agent).AsBool();
 
-        /// <summary>Whether walkers are still being made.</summary>
+        /// <summary>Returns whether walkers are still being made.</summary>
         public bool IsMaking() => Native.Call(MethodName.IsMaking).AsBool();
 
         /// <summary>The id of the first walker that a ray meets, or -1. In global space, as <c>Camera3D.project_ray_origin()</c> and <c>Camera3D.project_ray_normal()</c> have it: from one point to another. Bodies count as capsules.</summary>

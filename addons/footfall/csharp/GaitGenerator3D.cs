@@ -115,7 +115,7 @@ namespace Footfall
             set => SetList(PropertyName.Styles, value);
         }
 
-        /// <summary>How much of each style there is in the walk, in the order of <see cref="Styles"/>: 0 is none, 1 the style as it was recorded.</summary>
+        /// <summary>Weights of the styles, in the order of <see cref="Styles"/>: 0 is none, 1 the style as it was recorded.</summary>
         /// <remarks>Any mixture goes: more than 1 exaggerates, less than 0 is the opposite, and the sum need not be 1. What is too much for a body is held back. May change at any time; the walk takes it up with the next step. A missing weight counts as 0.</remarks>
         public float[] StyleWeights
         {
@@ -123,7 +123,7 @@ namespace Footfall
             set => Native.Set(PropertyName.StyleWeights, value);
         }
 
-        /// <summary>How fast the character walks or runs, in metres per second. Cadence and step length follow as they do in people, and <see cref="Gait"/> says from where on it runs.</summary>
+        /// <summary>Walking or running speed in metres per second. Cadence and step length follow as they do in people, and <see cref="Gait"/> says from where on it runs.</summary>
         /// <remarks>May change at any time: a walk whose foot is in the air takes it up at once, any other step with the next. <see cref="GaitModel.GetSpeedRange"/> tells what the model was trained on. At 0 the character stops within two steps and stands, or turns in place by <see cref="TurnRate"/>.</remarks>
         public double Speed
         {
@@ -138,7 +138,7 @@ namespace Footfall
             set => Native.Set(PropertyName.TurnRate, value);
         }
 
-        /// <summary>Where the character goes, seen from where it faces, in radians: 0 forwards, 90° to its left, -90° to its right, 180° backwards.</summary>
+        /// <summary>Direction of travel relative to where the character faces, in radians: 0 forwards, 90° to its left, -90° to its right, 180° backwards.</summary>
         /// <remarks>For characters that look at something else than their way. Taken up as <see cref="Speed"/> is, over several steps where the change is great. Steps to the side and backwards are shorter than those forwards, as people's are: sideways a character reaches about 0.65 m/s, backwards 1 m/s, whatever <see cref="Speed"/> says.</remarks>
         public double Direction
         {
@@ -154,7 +154,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Gait, (long)value);
         }
 
-        /// <summary>How low the character keeps, standing or walking: 0 upright, 1 as low as the model's people.</summary>
+        /// <summary>Depth of the crouch, standing or walking: 0 upright, 1 as low as the model's people.</summary>
         /// <remarks>Taken up at once and smoothly; feet stay where they are. Who crouches goes no faster than those people do, about 1 m/s at 1. A model that knows no crouch (any <c>.footdyn</c>, and <c>.footfall</c> files without <c>footfall train --crouching</c>) stays upright.</remarks>
         public double Crouch
         {
@@ -162,7 +162,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Crouch, value);
         }
 
-        /// <summary>How much of the spine's pose is the walk's: at 0 <c>Spine</c>, <c>Chest</c> and <c>UpperChest</c> are posed by what else animates the skeleton, such as an <c>AnimationPlayer</c>, an <c>AnimationTree</c> or a script. Hips and legs always walk.</summary>
+        /// <summary>Weight of the walk in the spine's pose: at 0 <c>Spine</c>, <c>Chest</c> and <c>UpperChest</c> are posed by what else animates the skeleton, such as an <c>AnimationPlayer</c>, an <c>AnimationTree</c> or a script. Hips and legs always walk.</summary>
         /// <remarks>The spine keeps the direction that the animation gives it in the character's space, whatever the hips do, so that steps do not shake what is aimed. Like the other weights it may be keyed and changed at any time; nothing pops on the way.</remarks>
         public double SpineWeight
         {
@@ -191,7 +191,7 @@ namespace Footfall
             set => Native.Set(PropertyName.RightArmWeight, value);
         }
 
-        /// <summary>Which walk of the many that the model can generate. Equal seeds give equal walks.</summary>
+        /// <summary>Seed of the walk. Equal seeds give equal walks.</summary>
         /// <remarks>0 gives every node a walk of its own, and a place in the stride of its own to begin at: both follow from the node's path in its scene, so a scene that is run again walks as before, and two nodes differ. <see cref="GetEffectiveSeed"/> tells which it is. A saved state holds it, so a walk that is loaded goes on alike wherever the node is then. Changing it starts the walk anew.</remarks>
         public long Seed
         {
@@ -199,7 +199,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Seed, value);
         }
 
-        /// <summary>Where in the stride the walk starts: 0 with the left foot touching down, 0.5 with the right, up to 1.</summary>
+        /// <summary>Phase of the stride at which the walk starts: 0 with the left foot touching down, 0.5 with the right, up to 1.</summary>
         /// <remarks>With a <see cref="Seed"/> of 0 it is counted from the node's own place in the stride. Changing it starts the walk anew.</remarks>
         public double Phase
         {
@@ -223,7 +223,7 @@ namespace Footfall
             set => Native.Set(PropertyName.StandingMotion, value);
         }
 
-        /// <summary>How finely the walk is worked out: every frame of the model, every second (half) or every fourth (quarter).</summary>
+        /// <summary>Resolution of the walk: every frame of the model, every second (half) or every fourth (quarter).</summary>
         /// <remarks>Lower it for characters far from the camera. The walk is the same, but feet slip a little between frames. Taken up with the next step.</remarks>
         public GaitDetail Detail
         {
@@ -231,14 +231,14 @@ namespace Footfall
             set => Native.Set(PropertyName.Detail, (long)value);
         }
 
-        /// <summary>Whether the character walks. When off, it holds the pose that it is in.</summary>
+        /// <summary>If <c>true</c>, the character walks. When off, it holds the pose that it is in.</summary>
         public bool Playing
         {
             get => Native.Get(PropertyName.Playing).AsBool();
             set => Native.Set(PropertyName.Playing, value);
         }
 
-        /// <summary>Whether the walk moves the character.</summary>
+        /// <summary>If <c>true</c>, the walk moves the character.</summary>
         /// <remarks>On: the node found through <see cref="Character"/> travels, in such a way that the standing foot does not move. Off: the character walks in place, and <see cref="GetRootMotionDelta"/> tells how far it would have travelled.</remarks>
         public bool RootMotion
         {
@@ -334,7 +334,7 @@ namespace Footfall
         /// <remarks>The editor shows the same as configuration warnings.</remarks>
         public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
 
-        /// <summary>How far and about what the character travelled, in its own space: axes and scale are those of its node.</summary>
+        /// <summary>Returns the character's travel and turn in its own space: axes and scale are those of its node.</summary>
         /// <remarks>
         /// <para>Asked in <c>_physics_process()</c>, since the frame of the physics before; asked in <c>_process()</c>, since the frame before: whoever asks once a frame is told all of it, at any frame rate, and asked twice in a frame it says the same. After the skeleton has moved within a frame, as in a function connected to <c>modification_processed</c>, it is that frame's. For a skeleton that is advanced by hand, it is what the last <c>advance()</c> did.</para>
         /// <para>With <see cref="RootMotion"/> off, move the character by it in a function connected to <c>modification_processed</c>, so that body and feet move in the same frame: <c>character.global_transform *= gait.get_root_motion_delta()</c>, or with collisions <c>character.move_and_collide(character.global_basis * gait.get_root_motion_delta().origin)</c>.</para>
@@ -352,15 +352,15 @@ namespace Footfall
         /// <remarks>With 0 seconds it does nothing from the next frame on.</remarks>
         public void HandOver(double seconds) => Native.Call(MethodName.HandOver, seconds);
 
-        /// <summary>Whether any part of a foot, <c>left</c> or <c>right</c>, stands on the ground.</summary>
+        /// <summary>Returns whether any part of a foot, <c>left</c> or <c>right</c>, stands on the ground.</summary>
         public bool IsFootOnGround(StringName foot) => Native.Call(MethodName.IsFootOnGround, foot).AsBool();
 
-        /// <summary>Whether the skeleton is left to other animation: after <see cref="HandOver"/>, until <see cref="TakeOver"/>.</summary>
+        /// <summary>Returns whether the skeleton is left to other animation: after <see cref="HandOver"/>, until <see cref="TakeOver"/>.</summary>
         public bool IsHandedOver() => Native.Call(MethodName.IsHandedOver).AsBool();
 
         /// <summary>Asks for one jump in which the hips rise <c>height</c> metres above where they were: 0.1 to 0.5 is what adults do.</summary>
         /// <remarks>
-        /// <para>Who stands jumps off both feet at once; who walks or runs forwards leaps with the next step, off one foot onto the other; who goes sideways or backwards comes to a stand first. The body bends its knees, <see cref="TookOff"/> is emitted as it leaves the ground and <see cref="Landed"/> as it is back. A jump off both feet moves the character up and down by its root motion; a leap lifts the body above the character. Asking again while a jump is waited for or under way changes nothing.</para>
+        /// <para>A standing character jumps off both feet at once; one that walks or runs forwards leaps with the next step, off one foot onto the other; one that goes sideways or backwards comes to a stand first. The body bends its knees, <see cref="TookOff"/> is emitted as it leaves the ground and <see cref="Landed"/> as it is back. A jump off both feet moves the character up and down by its root motion; a leap lifts the body above the character. Asking again while a jump is waited for or under way changes nothing.</para>
         /// <para>Returns whether there will be a jump: not before the first frame of the walk, with a model that knows none (any <c>.footdyn</c>, and <c>.footfall</c> files without <c>footfall train --jumping</c>), or for a height that is none.</para>
         /// </remarks>
         public bool Jump(double height) => Native.Call(MethodName.Jump, height).AsBool();

@@ -76,7 +76,7 @@ namespace Footfall
         /// <remarks>A <see cref="GaitGenerator3D"/> also walks outside this range, by extrapolation.</remarks>
         public Vector2 GetSpeedRange() => Native.Call(MethodName.GetSpeedRange).AsVector2();
 
-        /// <summary>Whether this is a switching model, which wears no styles.</summary>
+        /// <summary>Returns whether this is a switching model, which wears no styles.</summary>
         public bool IsSwitching() => Native.Call(MethodName.IsSwitching).AsBool();
     }
 }

@@ -61,7 +61,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Data, value);
         }
 
-        /// <summary>Which sensors the model is for and what it was trained on, or what is wrong with its file.</summary>
+        /// <summary>Sensors that the model is for and recordings that it was trained on, or the fault of its file.</summary>
         public string Description => Native.Get(PropertyName.Description).AsString();
 
         /// <summary>Makes a model from the bytes of a <c>.footimu</c> file, for example one that the game downloaded.</summary>
@@ -71,7 +71,7 @@ namespace Footfall
         /// <summary>Problem of the model's file, with the next thing to do; empty without one.</summary>
         public string GetError() => Native.Call(MethodName.GetError).AsString();
 
-        /// <summary>Where the sensors sit, in order: for example <c>right_foot</c>. Empty for a broken model.</summary>
+        /// <summary>Sites of the sensors, in order: for example <c>right_foot</c>. Empty for a broken model.</summary>
         public string[] GetSites() => Native.Call(MethodName.GetSites).AsStringArray();
     }
 }

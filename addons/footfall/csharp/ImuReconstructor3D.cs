@@ -84,14 +84,14 @@ namespace Footfall
             set => Native.Set(PropertyName.Model, value);
         }
 
-        /// <summary>Where the samples come from: a <see cref="PhoneImuSource"/>, <see cref="SerialImuSource"/>, <see cref="NetworkImuSource"/>, <see cref="DeviceImuSource"/> or <see cref="ReplayImuSource"/>. Live ones are opened in the game, not in the editor, and drive one node each. May be empty when a script pushes samples.</summary>
+        /// <summary>Source of the samples: a <see cref="PhoneImuSource"/>, <see cref="SerialImuSource"/>, <see cref="NetworkImuSource"/>, <see cref="DeviceImuSource"/> or <see cref="ReplayImuSource"/>. Live ones are opened in the game, not in the editor, and drive one node each. May be empty when a script pushes samples.</summary>
         public Resource Source
         {
             get => (Resource)Native.Get(PropertyName.Source).AsGodotObject();
             set => Native.Set(PropertyName.Source, value);
         }
 
-        /// <summary>Where the samples of the second sensor come from, for a model of two.</summary>
+        /// <summary>Source of the second sensor's samples, for a model of two.</summary>
         public Resource SecondSource
         {
             get => (Resource)Native.Get(PropertyName.SecondSource).AsGodotObject();
@@ -105,7 +105,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Mounting, (long)value);
         }
 
-        /// <summary>Whether the body's way moves the character. Off: it stays, and <see cref="GetRootMotionDelta"/> tells how far it would have gone.</summary>
+        /// <summary>If <c>true</c>, the body's way moves the character. Off: it stays, and <see cref="GetRootMotionDelta"/> tells how far it would have gone.</summary>
         public bool RootMotion
         {
             get => Native.Get(PropertyName.RootMotion).AsBool();
@@ -162,7 +162,7 @@ namespace Footfall
         /// <summary>The body's behaviour: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
         public StringName GetBehaviour() => Native.Call(MethodName.GetBehaviour).AsStringName();
 
-        /// <summary>How well the model explains what the sensors say, 0 to 1: the probability that what the person does is among what the model learned. 0 where nothing is heard.</summary>
+        /// <summary>Returns the model's confidence, 0 to 1: the probability that the wearer's motion is among those the model learned. 0 where nothing is heard.</summary>
         /// <remarks>Walking is about 0.85. Below 0.1, with a sensor that is shaken, worn elsewhere or mounted otherwise than is thought, the body stands.</remarks>
         public double GetConfidence() => Native.Call(MethodName.GetConfidence).AsDouble();
 

@@ -78,7 +78,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Address, value);
         }
 
-        /// <summary>Which sensor at the port, in the order in which they were first heard, from 0: several players share a port.</summary>
+        /// <summary>Number of the sensor at the port, from 0 in the order in which sensors were first heard: several players share a port.</summary>
         public long Sensor
         {
             get => Native.Get(PropertyName.Sensor).AsInt64();

@@ -72,7 +72,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Player, value);
         }
 
-        /// <summary>Whether the phone vibrates when a foot of the character comes down.</summary>
+        /// <summary>If <c>true</c>, the phone vibrates when a foot of the character comes down.</summary>
         public bool VibrateOnFootsteps
         {
             get => Native.Get(PropertyName.VibrateOnFootsteps).AsBool();

@@ -59,7 +59,7 @@ namespace Footfall
             set => Native.Set(PropertyName.File, value);
         }
 
-        /// <summary>Whether the recording begins anew when it is over; otherwise the sensor falls silent.</summary>
+        /// <summary>If <c>true</c>, the recording begins anew when it is over; otherwise the sensor falls silent.</summary>
         public bool Repeat
         {
             get => Native.Get(PropertyName.Repeat).AsBool();

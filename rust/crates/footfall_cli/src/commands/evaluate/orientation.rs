@@ -225,14 +225,14 @@ impl Report {
             if categories.is_empty() {
                 continue;
             }
-            let _ = writeln!(
+            let _written = writeln!(
                 text,
                 "{title}: error of the vertical, degrees\n{:<44}{:>8}{:>8}{:>8}{:>8}",
                 "category, filter", "count", "rms", "median", "95 %"
             );
             for (category, filters) in categories {
                 for (filter, errors) in filters {
-                    let _ = writeln!(
+                    let _written = writeln!(
                         text,
                         "{:<44}{:>8}{:>8.2}{:>8.2}{:>8.2}",
                         format!("{category}, {filter}"),
