@@ -21,7 +21,7 @@ const SENSOR_SHARE: f32 = 0.05;
 /// Distance of a frame from a phase of which no segment is kept: farther than any two segments are.
 const MISSED: f32 = 1e2;
 
-/// Weight of the distance to everything kept, beside the distance to what is kept of other recordings. Were it only the
+/// Weight, beside the distance to what is kept of other recordings, of the distance to all that is kept. Were it only the
 /// latter, everything would be kept that was done once, and nobody does it again in the same way.
 const OWN_WEIGHT: f64 = 0.05;
 
