@@ -14,6 +14,10 @@ pub(crate) struct PhysicsGround {
     ray: Gd<PhysicsRayQueryParameters3D>,
     sphere: Gd<PhysicsShapeQueryParameters3D>,
     radius: f32,
+    /// Keys of a ray's answer. Made once: a search for a foothold casts hundreds of rays, and each would make them anew.
+    position: Variant,
+    normal: Variant,
+    collider_id: Variant,
 }
 
 /// The ground in one frame.
@@ -39,6 +43,9 @@ impl PhysicsGround {
             ray,
             sphere,
             radius,
+            position: "position".to_variant(),
+            normal: "normal".to_variant(),
+            collider_id: "collider_id".to_variant(),
         }
     }
 
@@ -83,9 +90,9 @@ impl GroundNow<'_> {
         ray.set_from(convert::vector3(from));
         ray.set_to(convert::vector3(to));
         let hit = self.space.intersect_ray(&*ray);
-        let position = hit.get("position")?.try_to::<Vector3>().ok()?;
-        let normal = hit.get("normal")?.try_to::<Vector3>().ok()?;
-        let collider = hit.get("collider_id")?.try_to::<i64>().ok()?;
+        let position = hit.get(&self.ground.position)?.try_to::<Vector3>().ok()?;
+        let normal = hit.get(&self.ground.normal)?.try_to::<Vector3>().ok()?;
+        let collider = hit.get(&self.ground.collider_id)?.try_to::<i64>().ok()?;
         Some(Ground {
             position: convert::vec3(position),
             normal: convert::vec3(normal).try_normalize()?,

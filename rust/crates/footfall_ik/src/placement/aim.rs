@@ -123,7 +123,8 @@ impl Step<'_> {
     ) -> Option<(f32, Aim)> {
         let (least, most) = way.bounds;
         let mut best: Option<(f32, Aim)> = None;
-        for trial in 0..=((least.max(most) / TRIAL_M) as i32) {
+        let trials = (least.max(most) / TRIAL_M) as usize;
+        for trial in (0..=trials).step_by(search.spread()) {
             let shift = TRIAL_M * trial as f32;
             // No farther one is better.
             if best.is_some_and(|(cost, _)| cost <= SHIFT_COST * shift) {

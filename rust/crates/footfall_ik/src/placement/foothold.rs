@@ -78,11 +78,20 @@ pub(crate) struct Search {
     pub(crate) may_shift: bool,
     /// Largest shifts to the left and to the right, metres.
     pub(crate) aside_m: [f32; 2],
-    /// True when it does so also where its middle lies across an edge. Most edges lie across the way, and moving to the side is in vain.
+    /// True when it does so also where its middle lies across an edge. Most edges lie across the way, and moving to the side is in vain. Places are then
+    /// [farther apart](Self::spread): thousands of rays in one frame would be felt.
     pub(crate) thorough: bool,
 }
 
+/// Distance between the places of a thorough search, as a multiple of that of another one.
+const THOROUGH_SPREAD: usize = 2;
+
 impl Search {
+    /// Distance between places that are tried, as a multiple of the smallest.
+    pub(crate) fn spread(&self) -> usize {
+        if self.thorough { THOROUGH_SPREAD } else { 1 }
+    }
+
     /// The ground above or below a point.
     pub(crate) fn cast(&self, terrain: &mut impl Terrain, at: Vec3) -> Option<Ground> {
         let way = self.up * (self.above_m + self.below_m);
@@ -141,7 +150,8 @@ impl Search {
             return best;
         }
         let left = flat.rotation * Vec3::X;
-        for trial in 1..=(MOST_ASIDE_M / ASIDE_M) as i32 {
+        let trials = (MOST_ASIDE_M / ASIDE_M) as usize;
+        for trial in (self.spread()..=trials).step_by(self.spread()) {
             let aside = ASIDE_M * trial as f32;
             let way = ASIDE_COST * aside;
             for (aside, room) in [(aside, self.aside_m[0]), (-aside, self.aside_m[1])] {
