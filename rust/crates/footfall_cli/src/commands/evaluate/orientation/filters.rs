@@ -1,8 +1,7 @@
 //! The filters that are compared, each as a function from samples to the vertical.
 
 use footfall_core::rotation::{exp_map, shortest_arc};
-use footfall_imu::ImuRecording;
-use footfall_imu::OrientationFilter;
+use footfall_imu::{ImuRecording, OrientationFilter};
 use glam::{DQuat, DVec3, Quat, Vec3};
 use vqf_rs::VQF;
 
