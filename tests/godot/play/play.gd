@@ -12,17 +12,17 @@ const USUAL_MINUTES := 1.5
 const LAP := 1200
 const CROWDS: Array[Vector2i] = [Vector2i(120, 480), Vector2i(720, 1140)]
 const SAVES := 560
-## What a frame of everything here may last, milliseconds: a game's frame at 60 a second.
+## Longest time that a frame of everything here may last, milliseconds: a game's frame at 60 a second.
 const FRAME_MS := 16.0
-## The usual frame on a machine that is as fast as that is meant for, milliseconds: slower ones may take longer in proportion.
+## Usual frame of a machine as fast as that limit is meant for, milliseconds. The limit grows in proportion on slower ones.
 const USUAL_MS := 6.0
 const SLOW_SHOWN := 5
-## When a frame was slow in every lap, so many more are played at most: crowds think on all processors, and on a busy machine somebody else may have
-## had one in each of a few laps.
+## Most further laps that are played when a frame was slow in every lap: crowds think on all processors, and other programs on a busy machine may
+## have had one of them in each of a few laps.
 const LAPS_TO_CONFIRM := 10
 ## Laps until caches are full and every allocation has been made once.
 const WARM_UP := 2
-## What may be more at the end than after the warm-up: bytes for logs and fragments, nothing else.
+## Greatest growth from the warm-up to the end: bytes for logs and fragments, nothing else.
 const GROWTH: Dictionary[StringName, int] = {
 	&"static_bytes": 256 * 1024,
 	&"resident_bytes": 6 * 1024 * 1024,
@@ -65,9 +65,11 @@ func _ready() -> void:
 			early = late
 		print("lap %d of %d: %s" % [lap + 1, laps, late])
 	for lap: int in LAPS_TO_CONFIRM:
-		if _slowest_ms() <= _bar_ms():
+		var ranked := _ranked()
+		var slowest_ms := ranked[-1].x / 1000.0
+		if slowest_ms <= _longest_ms(ranked):
 			break
-		print("a frame was slow in every lap, %.1f ms at its fastest: another lap" % _slowest_ms())
+		print("a frame was slow in every lap, %.1f ms at its fastest: another lap" % slowest_ms)
 		await _lap()
 		late = _ledger()
 	_judge_growth(early, late)
@@ -140,7 +142,7 @@ func _clock() -> int:
 	return Time.get_ticks_usec() - waited
 
 
-## What there is at the end of a lap.
+## Returns the memory and the objects in use at the end of a lap.
 func _ledger() -> Dictionary[StringName, int]:
 	# A file without a length: it has to be read by lines. Other systems do not tell.
 	var process := FileAccess.open("/proc/self/statm", FileAccess.READ)
@@ -158,29 +160,26 @@ func _judge_growth(early: Dictionary, late: Dictionary) -> void:
 			_problems.append("%s grew from %d to %d" % [kind, early[kind], late[kind]])
 
 
-## What a frame may last on this machine.
-func _bar_ms() -> float:
-	var lasted := Array(_least)
-	lasted.sort()
-	return FRAME_MS * maxf(1.0, lasted[LAP / 2] / 1000.0 / USUAL_MS)
+## Frames of a lap from the fastest to the slowest, each as in the lap in which it was fastest: microseconds and number.
+func _ranked() -> Array[Vector2i]:
+	var ranked: Array[Vector2i] = []
+	for frame: int in LAP:
+		ranked.append(Vector2i(_least[frame], frame))
+	ranked.sort()
+	return ranked
 
 
-## Slowest frame of a lap, in the lap in which it was fastest.
-func _slowest_ms() -> float:
-	var slowest := 0
-	for lasted: int in _least:
-		slowest = maxi(slowest, lasted)
-	return slowest / 1000.0
+## Longest time that a frame may last on this machine, milliseconds.
+static func _longest_ms(ranked: Array[Vector2i]) -> float:
+	return FRAME_MS * maxf(1.0, ranked[LAP / 2].x / 1000.0 / USUAL_MS)
 
 
 ## Laps are alike: what is slow in the same frame of all of them is ours, the rest is the machine's.
 func _judge_frames() -> void:
-	var lasted: Array[Vector2i] = []
-	for frame: int in LAP:
-		lasted.append(Vector2i(_least[frame], frame))
-	lasted.sort()
-	print("the usual frame: %.1f ms" % (lasted[LAP / 2].x / 1000.0))
-	for slow: Vector2i in lasted.slice(-SLOW_SHOWN):
+	var ranked := _ranked()
+	var longest_ms := _longest_ms(ranked)
+	print("the usual frame: %.1f ms; none may last longer than %.1f ms" % [ranked[LAP / 2].x / 1000.0, longest_ms])
+	for slow: Vector2i in ranked.slice(-SLOW_SHOWN):
 		print("frame %d of a lap: %.1f ms" % [slow.y, slow.x / 1000.0])
-		if slow.x > _bar_ms() * 1000.0:
+		if slow.x > longest_ms * 1000.0:
 			_problems.append("frame %d of a lap takes %.1f ms" % [slow.y, slow.x / 1000.0])
