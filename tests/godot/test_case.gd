@@ -1,10 +1,10 @@
 class_name TestCase
 extends Node
-## What a test file extends: checks that note a failure and go on.
+## Base of test files: checks that note a failure and go on.
 
-## What went wrong, with the line of the check.
+## Failures, each with the line of its check.
 var failures := PackedStringArray()
-## How many checks were made.
+## Number of checks made.
 var checks := 0
 
 

@@ -30,7 +30,7 @@ const BODY := {
 const FEET: Array[StringName] = [&"left", &"right"]
 const MODEL := "res://addons/footfall/models/locomotion.footfall"
 
-## How the body is built. Set before `build()`.
+## Parts of the body that are left out. Set before `build()`.
 var missing: PackedStringArray = []
 ## Joint → global rest rotation of its bone. Bones without an entry rest parallel to the model.
 var rest_rotations: Dictionary[String, Quaternion] = {}
@@ -121,7 +121,7 @@ func joint(joint_name: String) -> Vector3:
 	return bones[joint_name].origin
 
 
-## How a joint's bone is turned against its rest, in the axes of the skeleton's node.
+## Turn of a joint's bone against its rest, in the axes of the skeleton's node.
 func turn_of(joint_name: String) -> Quaternion:
 	var world := skeleton.global_basis.orthonormalized()
 	var turned := world.inverse() * bones[joint_name].basis.orthonormalized()
@@ -139,7 +139,7 @@ func sole(foot: StringName, of_bones: Dictionary[String, Transform3D] = bones) -
 	return [ankle * Vector3(x, 0, -0.0504), toes * Vector3(x, 0, 0.135), toes * Vector3(x, 0, 0.2106)]
 
 
-## How fast the stillest point under a foot moved during the last step, metres per second.
+## Speed of the stillest point under a foot during the last step, metres per second.
 func slip(foot: StringName, delta := 1.0 / 60.0) -> float:
 	var now := sole(foot)
 	var before := sole(foot, bones_before)

@@ -5,7 +5,7 @@ const DELTA := 1.0 / 60.0
 const GRAVITY_MPS2 := 9.80665
 
 
-## What the sensor measures, frame by frame: [time, force, rate].
+## Measurements of the sensor, frame by frame: [time, force, rate].
 static func measure(walker: Walker, frames: int) -> Array[Array]:
 	var places: Array[Vector3] = []
 	var turns: Array[Quaternion] = []

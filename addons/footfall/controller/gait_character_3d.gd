@@ -48,7 +48,7 @@ const EYE_HEIGHT := 0.8
 	set(value):
 		bone_map = value
 		_wear()
-## Whether the capsule takes its size from the character's skeleton.
+## If [code]true[/code], the capsule takes its size from the character's skeleton.
 @export var measure_capsule := true
 
 @export_group("Walking")
@@ -70,9 +70,9 @@ const EYE_HEIGHT := 0.8
 @export_range(0.0, 20.0, 0.1, "suffix:m/s²") var air_acceleration := 3.0
 
 @export_group("Steering")
-## Whether keyboard, gamepad and touch steer it. Off for characters that only scripts or `navigation` steer.
+## If [code]true[/code], keyboard, gamepad and touch steer it. Off for characters that only scripts or `navigation` steer.
 @export var player_controlled := true
-## Whether it faces where the camera looks, whatever way it goes; the action `aim` does the same.
+## If [code]true[/code], it faces where the camera looks, whatever way it goes; the action `aim` does the same.
 @export var aims := false
 ## Walks where this agent is sent, around what is in the way, while nobody steers.
 @export var navigation: NavigationAgent3D
@@ -91,12 +91,12 @@ var placement: FootPlacement3D:
 		return _figure.placement if _figure else null
 
 var _standing_height := 0.0
-## Whether the body still has to move in this frame, and the steps that it moves by.
+## True while the body still has to move in this frame, and the steps that it moves by.
 var _due := false
 var _steps := Transform3D.IDENTITY
 var _wish := Vector3.ZERO
 var _leaps := false
-## Whether the generator has the body in the air, in a jump of its own, and how far a wall has kept it from going with that.
+## True while the generator has the body in the air, in a jump of its own, and the distance by which a wall has kept it from going with that.
 var _soars := false
 var _behind := Vector3.ZERO
 var _air_secs := 0.0
@@ -178,7 +178,7 @@ func _wear() -> void:
 	update_configuration_warnings()
 
 
-## Where it is to go: a direction on the ground, of length 0 to 1.
+## Returns the wished direction on the ground, of length 0 to 1.
 func _wished() -> Vector3:
 	if autopilot != Vector3.ZERO:
 		return Vector3(autopilot.x, 0.0, autopilot.z).limit_length(1.0)
@@ -189,7 +189,7 @@ func _wished() -> Vector3:
 	return Vector3(stick.x, 0.0, stick.y).rotated(Vector3.UP, _view_heading())
 
 
-## Where the camera is, seen from what it looks at, radians about +Y.
+## Returns the camera's heading as seen from its target, radians about +Y.
 func _view_heading() -> float:
 	var camera := get_viewport().get_camera_3d()
 	if camera == null:

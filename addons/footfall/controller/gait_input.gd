@@ -69,12 +69,12 @@ static func is_just_pressed(wish: StringName) -> bool:
 	return Input.is_action_just_pressed(action(wish))
 
 
-## Where the left stick or the keys point: x to the right, y backwards, at most 1 long.
+## Direction of the left stick or the keys: x to the right, y backwards, at most 1 long.
 static func move() -> Vector2:
 	return Input.get_vector(action(&"left"), action(&"right"), action(&"forward"), action(&"back"))
 
 
-## Where the right stick points.
+## Direction of the right stick.
 static func look() -> Vector2:
 	return Input.get_vector(action(&"look_left"), action(&"look_right"), action(&"look_up"), action(&"look_down"))
 

@@ -10,7 +10,7 @@ const STYLES: Array[GaitStyle] = [
 	preload("res://addons/footfall/models/cool.footstyle"),
 	preload("res://addons/footfall/models/topmodel.footstyle"),
 ]
-## How many there are where pictures are drawn in software.
+## Number of walkers where pictures are drawn in software.
 const FEW := 260
 
 var _starts := PackedVector3Array()

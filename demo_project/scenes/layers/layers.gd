@@ -10,7 +10,7 @@ const GESTURES: Array[Array] = [
 	["aim", Color("6f9a5c"), [&"spine_weight", &"head_weight", &"left_arm_weight", &"right_arm_weight"]],
 	["attack", Color("b58a3c"), [&"spine_weight", &"right_arm_weight"]],
 ]
-## How long a layer takes to come or go.
+## Time in which a layer comes or goes, seconds.
 const FADE_SECS := 0.2
 
 var _layers_on := true
@@ -140,7 +140,7 @@ func close_ups() -> Dictionary[String, Array]:
 	}
 
 
-## What a clip poses is as the clip has it, and everybody walks.
+## Checks that a clip's bones are as the clip has them, and that everybody walks.
 func problems(frames: int) -> PackedStringArray:
 	var found := super(frames)
 	var skeleton: Skeleton3D = gait_of(walkers[1]).get_parent()

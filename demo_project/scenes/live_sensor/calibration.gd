@@ -9,7 +9,7 @@ const STILL_RADPS := 0.25
 const STILL_SECS := 1.5
 ## A mounting is trusted when it is as certain as this.
 const CERTAIN := 0.8
-## Who walks on without standing first is not held up, seconds.
+## Longest wait for somebody to stand, seconds: a player who walks on is not held up.
 const PATIENCE_SECS := 6.0
 
 const TOLD: Dictionary[Step, String] = {
@@ -20,7 +20,7 @@ const TOLD: Dictionary[Step, String] = {
 }
 
 var now := Step.CONNECT
-## How far this step is, 0 to 1.
+## Progress of this step, 0 to 1.
 var progress := 0.0
 
 var _still_secs := 0.0

@@ -1,6 +1,6 @@
 class_name ConnectPanel
 extends PanelContainer
-## Where the player connects a sensor: what kind, where it is worn, what arrives, and what to do next.
+## Panel in which the player connects a sensor: its kind, where it is worn, what arrives, and what to do next.
 
 signal source_chosen(source: Resource, kind: Kind)
 signal place_chosen(place: int)
@@ -84,7 +84,7 @@ func _make(kind: Kind) -> Resource:
 	return source
 
 
-## What is known of the sensor; empty before it is heard.
+## State of the sensor; empty before it is heard.
 func sensor() -> Dictionary:
 	if _source is DeviceImuSource:
 		var force := -Input.get_accelerometer()
@@ -93,7 +93,7 @@ func sensor() -> Dictionary:
 	return _source.get_sensor_status()
 
 
-## What is told of the connection.
+## Message about the connection.
 func told() -> String:
 	if _source is DeviceImuSource:
 		return "" if DeviceImuSource.is_available() else "This device gives no motion: it has no sensors, or the project settings leave them off."

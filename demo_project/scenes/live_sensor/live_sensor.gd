@@ -10,7 +10,7 @@ const MODELS: Array[ImuModel] = [
 const COLOURS: PackedColorArray = [
 	Color("d9d4c7"), Color("5f8fb0"), Color("d1a24c"), Color("6fa287"), Color("8d7bb0"), Color("6b7078"),
 ]
-## How fast a stick or the arrow keys turn the character, radians a second.
+## Turning speed of the character by a stick or the arrow keys, radians a second.
 const TURN_SPEED := 1.8
 ## Before, it is not known how the sensor is worn, and the player stands.
 const FRAMES_BEFORE_PICTURES := 480
@@ -84,7 +84,7 @@ func _take_source(source: Resource, kind: ConnectPanel.Kind) -> void:
 	_calibrate()
 
 
-## How the sensor is worn is found out anew.
+## Finds out anew how the sensor is worn.
 func _calibrate() -> void:
 	_driven.forget_mounting()
 	_calibration.begin()
@@ -110,7 +110,7 @@ func begin_check() -> void:
 	_start = _character.global_position
 
 
-## What a walker sends over the network is heard at once, and walks the player when it is known how the sensor is worn, after five seconds.
+## Checks that a walker heard over the network walks the player once its mounting is known, after five seconds.
 func problems(frames: int) -> PackedStringArray:
 	var found := PackedStringArray()
 	var sensor := _panel.sensor()

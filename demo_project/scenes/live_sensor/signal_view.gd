@@ -5,7 +5,7 @@ extends Control
 const MOST := 240
 const FORCE_COLOUR := Color("2d9cdb")
 const RATE_COLOUR := Color("f2c94c")
-## What reaches the top: m/s² and rad/s.
+## Values at the top of the view: m/s² and rad/s.
 const MOST_FORCE := 40.0
 const MOST_RATE := 12.0
 

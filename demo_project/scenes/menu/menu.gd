@@ -1,5 +1,5 @@
 extends Control
-## Where the demo begins: its scenes by topic.
+## Start of the demo: its scenes by topic.
 
 ## Scene → title and what it shows.
 const SCENES: Array[Array] = [

@@ -73,7 +73,7 @@ func close_ups() -> Dictionary[String, Array]:
 	}
 
 
-## Who did not keep up.
+## Walkers that did not keep up.
 func problems(frames: int) -> PackedStringArray:
 	var found := PackedStringArray()
 	var ways: Array[float] = []

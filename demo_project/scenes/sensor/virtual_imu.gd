@@ -3,7 +3,7 @@ extends RefCounted
 ## An inertial sensor in the game's world: what one would measure that moves as it is told.
 
 const GRAVITY_MPS2 := 9.80665
-## Where a sensor on a foot sits, metres ahead of and below the ankle.
+## Place of a sensor on a foot, metres ahead of and below the ankle.
 const ON_THE_FOOT := Vector3(0.0, -0.01, 0.07)
 
 var _places: Array[Vector3] = []

@@ -9,11 +9,11 @@ const SPEED := 1.3
 const TURN := 0.0
 const FIRST_SEED := 1
 
-## What the panel says above its sliders.
+## Title above the panel's sliders.
 @export var title := ""
 ## The fastest speed to ask for: from about 2 m/s on a trained model runs.
 @export_range(0.5, 6.0, 0.1, "suffix:m/s") var fastest := 2.0
-## What the button to another scene says, and the scene.
+## Label of the button to another scene, and that scene.
 @export var other_title := ""
 @export_file("*.tscn") var other_scene := ""
 

@@ -1,10 +1,10 @@
 class_name WalkingScene
 extends Node3D
-## What scenes of walkers have in common: walkers of their own seeds and phases, their footprints, and a panel for all of them.
+## Base of scenes of walkers: walkers of their own seeds and phases, their footprints, and a panel for all of them.
 
 const WALKER: PackedScene = preload("res://scenes/shared/walker.tscn")
 
-## How many footsteps were signalled.
+## Number of footsteps signalled.
 var footsteps := 0
 var walkers: Array[Node3D] = []
 
@@ -58,7 +58,7 @@ func follow(panel: Control) -> void:
 	set_all(&"speed", panel.SPEED)
 
 
-## What pictures show closely: walkers whom nobody hides.
+## Views that pictures show closely: walkers whom nobody hides.
 func close_ups() -> Dictionary[String, Array]:
 	var at := func(index: int) -> Vector3: return walkers[index].global_position + Vector3.UP * 0.9
 	return {
@@ -73,7 +73,7 @@ func begin_check() -> void:
 		_starts.append(walker.global_position)
 
 
-## Who did not walk as far as its speed promises in so many frames.
+## Walkers that did not walk as far as their speed promises in so many frames.
 func problems(frames: int) -> PackedStringArray:
 	var found := PackedStringArray()
 	if _starts.is_empty():

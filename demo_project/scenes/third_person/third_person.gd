@@ -3,7 +3,7 @@ extends Node3D
 
 const TOUR_FROM_Z := -19.0
 const TOUR_SECS := 10.0
-## Where the player is sent from a time on, seconds: speed in m/s, and whether it jumps then and crouches from then on.
+## Orders to the player from a time on, seconds: speed in m/s, and true for a jump then and for a crouch from then on.
 const TOUR: Array[Array] = [
 	[0.0, 1.3, false, false],
 	[1.2, 3.4, false, false],

@@ -1,7 +1,7 @@
 extends WalkingScene
 ## Several characters walk side by side, each from its own seed and phase.
 
-## Where the walkers begin, metres: far enough from each other for their ways never to cross.
+## Places at which the walkers begin, metres: far enough from each other for their ways never to cross.
 const PLACES: Array[Vector2] = [
 	Vector2(0.0, 0.6), Vector2(-1.5, -0.5), Vector2(1.5, -0.2), Vector2(-3.0, 0.9), Vector2(3.0, 0.7),
 	Vector2(-0.8, -2.1), Vector2(0.9, -2.4),

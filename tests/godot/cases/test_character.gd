@@ -1,5 +1,5 @@
 extends TestCase
-## Which node travels.
+## Choice of the node that travels.
 
 
 func _skeleton() -> Walker:

@@ -1,5 +1,5 @@
 extends TestCase
-## What the add-on registers with the engine.
+## Classes that the add-on registers with the engine.
 
 
 func test_no_member_hides_one_of_the_engine() -> void:

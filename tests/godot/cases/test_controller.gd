@@ -3,7 +3,7 @@ extends TestCase
 
 const CONTROLLER: PackedScene = preload("res://addons/footfall/controller/gait_character_3d.tscn")
 const RATE := 60.0
-## How much faster than the clock time passes.
+## Factor by which time passes faster than the clock.
 const HASTE := 10
 
 

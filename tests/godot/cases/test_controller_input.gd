@@ -1,5 +1,5 @@
 extends TestCase
-## What keyboard, touch and the project's own actions do to the add-on's `GaitCharacter3D`.
+## Effects of keyboard, touch and the project's own actions on the add-on's `GaitCharacter3D`.
 
 const CONTROLLER: PackedScene = preload("res://addons/footfall/controller/gait_character_3d.tscn")
 const GaitInput := preload("res://addons/footfall/controller/gait_input.gd")

@@ -6,7 +6,7 @@ const PROUD := preload("res://addons/footfall/models/proud.footstyle")
 const SAD := preload("res://addons/footfall/models/sad.footstyle")
 const DT := 1.0 / 60.0
 const MANY := 10_000
-## What a crowd may take of a frame, milliseconds of its thread.
+## Longest time that a crowd may take of a frame, milliseconds of its thread.
 const FRAME_SHARE_MS := 4.0
 
 
@@ -173,7 +173,7 @@ func test_a_rig_that_is_no_use_is_a_problem() -> void:
 	crowd.free()
 
 
-## How long this thread has worked, as the system's scheduler counts it from time to time: what others do meanwhile does not count.
+## Working time of this thread, as the system's scheduler counts it from time to time: that of others does not count.
 func _worked_ms() -> float:
 	var status := FileAccess.open("/proc/thread-self/schedstat", FileAccess.READ)
 	return status.get_line().get_slice(" ", 0).to_int() / 1e6 if status else 0.0

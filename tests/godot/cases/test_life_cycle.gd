@@ -1,5 +1,5 @@
 extends TestCase
-## What becomes of a walk when its character is paused, hidden, moved, taken out of the tree or saved: the table in the add-on's README.
+## Fate of a walk whose character is paused, hidden, moved, taken out of the tree or saved: the table in the add-on's README.
 
 const RATE := 60.0
 ## A save as a game would have it.
@@ -19,7 +19,7 @@ func _frames(count: int) -> void:
 		await get_tree().process_frame
 
 
-## Where the bones are, seen from the character.
+## Places of the bones, seen from the character.
 func _pose(walker: Walker) -> Dictionary:
 	var pose := {}
 	for joint: String in walker.bones:

@@ -16,7 +16,7 @@ for line in sys.stdin.buffer:
 """
 
 
-## What a sensor on a walker's foot measures: [time, force, rate].
+## Measurements of a sensor on a walker's foot: [time, force, rate].
 func _measured(frames: int) -> Array[Array]:
 	var walker := Walker.new()
 	walker.gait.speed = 1.2

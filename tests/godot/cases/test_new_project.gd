@@ -1,5 +1,5 @@
 extends TestCase
-## What a new user meets: nodes that were given no model, files of a project that no editor has opened, Godot that starts itself.
+## Encounters of a new user: nodes that were given no model, files of a project that no editor has opened, Godot that starts itself.
 
 const SWITCHING := "res://addons/footfall/models/walk.footdyn"
 const STYLE := "res://addons/footfall/models/proud.footstyle"

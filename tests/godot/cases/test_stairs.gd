@@ -42,7 +42,7 @@ func _height(z: float) -> float:
 	return clampf(floorf(z / RUN) + 1.0, 0.0, STEPS) * RISE
 
 
-## How far a point is in a step, up or to the front or back.
+## Depth of a point in a step, up or to the front or back.
 func _depth(point: Vector3) -> float:
 	var out := minf(point.z - floorf(point.z / RUN) * RUN, ceilf(point.z / RUN) * RUN - point.z)
 	return minf(_height(point.z) - point.y, maxf(out, 0.0)) if point.z > 0.0 else 0.0

@@ -24,7 +24,7 @@ func _walker(motion: float, seed_number := 3) -> Walker:
 	return walker
 
 
-## How far the head goes from where it was, metres.
+## Distance of the head from where it was, metres.
 func _head_way(walker: Walker, frames: int) -> float:
 	walker.walk(1)
 	var first := walker.joint("Head")

@@ -188,7 +188,7 @@ func _test_scene(dock: Node) -> void:
 	_check(not FileAccess.get_file_as_string(SCENE).contains("preview"), "nothing of the preview is saved")
 
 
-## What a developer of the add-on does: the library is built anew while the editor is open.
+## Rebuilds the library while the editor is open, as a developer of the add-on does.
 func _test_hot_reload() -> void:
 	var character: Node3D = EditorInterface.get_edited_scene_root()
 	var gait: GaitGenerator3D = character.find_children("*", "GaitGenerator3D")[0]

@@ -15,7 +15,7 @@ const BODIES := 10
 const CROWD := 2000
 ## Of so many one waves.
 const WAVES_EACH := 4
-## Where walkers without physics go, they keep out of the town's middle.
+## Radius of the ring on which walkers without physics go: they keep out of the town's middle.
 const RING_M := 14.0
 
 ## Set before it enters the tree: they go on from there.

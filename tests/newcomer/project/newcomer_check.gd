@@ -3,7 +3,7 @@ class_name NewcomerCheck
 extends Node3D
 ## Something that a newcomer does with the add-on, and what must come of it.
 
-## What went wrong.
+## Failures so far.
 var failures := PackedStringArray()
 
 

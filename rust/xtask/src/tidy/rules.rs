@@ -1,7 +1,7 @@
 //! Rules on the text of Rust sources.
 
 use super::Violation;
-use super::source::{code_only, without_tests};
+use super::source::{code_only, is_a, without_tests};
 
 /// Crates whose results depend on their arguments alone.
 const PURE: [&str; 6] = [
@@ -43,10 +43,7 @@ const UNFINISHED: [&str; 3] = ["todo!", "unimplemented!", "#[ignore"];
 
 /// Checks one file; what is no Rust source passes.
 pub(super) fn check(name: &str, text: &str) -> Vec<Violation> {
-    if std::path::Path::new(name)
-        .extension()
-        .is_none_or(|extension| extension != "rs")
-    {
+    if !is_a(name, "rs") {
         return Vec::new();
     }
     let code = code_only(text);

@@ -1,5 +1,14 @@
 //! Rust sources without what is not code: comments, what strings hold, and tests.
 
+use std::path::Path;
+
+/// Returns true for a file with this extension.
+pub(super) fn is_a(name: &str, extension: &str) -> bool {
+    Path::new(name)
+        .extension()
+        .is_some_and(|own| own == extension)
+}
+
 /// The text with comments and the insides of strings and characters blanked; lines stay where they are.
 pub(super) fn code_only(text: &str) -> String {
     let bytes = text.as_bytes();
