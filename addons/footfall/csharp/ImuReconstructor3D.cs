@@ -84,7 +84,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Model, value);
         }
 
-        /// <summary>Source of the samples: a <see cref="PhoneImuSource"/>, <see cref="SerialImuSource"/>, <see cref="NetworkImuSource"/>, <see cref="DeviceImuSource"/> or <see cref="ReplayImuSource"/>. Live ones are opened in the game, not in the editor, and drive one node each. May be empty when a script pushes samples.</summary>
+        /// <summary>Source of the samples: a <see cref="PhoneImuSource"/>, <see cref="SerialImuSource"/>, <see cref="NetworkImuSource"/>, <see cref="DeviceImuSource"/>, <see cref="NodeImuSource"/> or <see cref="ReplayImuSource"/>. Live ones are opened in the game, not in the editor, and drive one node each. May be empty when a script pushes samples.</summary>
         public Resource Source
         {
             get => (Resource)Native.Get(PropertyName.Source).AsGodotObject();

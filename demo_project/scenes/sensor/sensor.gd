@@ -2,13 +2,11 @@ extends WalkingScene
 ## A walker wears a sensor on the right foot; all that the second one knows is what this sensor measures.
 
 const MODEL: ImuModel = preload("res://addons/footfall/models/right_foot.footimu")
+## Place of the sensor on the instep, metres from the ankle.
+const ON_THE_FOOT := Vector3(0.0, -0.01, 0.07)
 
 var _leader: GaitGenerator3D
-var _skeleton: Skeleton3D
-var _foot := -1
-var _imu := VirtualImu.new()
 var _driven: ImuReconstructor3D
-var _delta := 0.0
 
 
 func _ready() -> void:
@@ -17,15 +15,14 @@ func _ready() -> void:
 	_camera.height = deg_to_rad(12.0)
 	_leader = add_walker("Leader", Vector3(1.1, 0.0, 0.0), Color("c96f53"))
 	Paint.label(walkers[0], "sensor")
-	_skeleton = _leader.get_skeleton()
-	_foot = _skeleton.find_bone("RightFoot")
-	_leader.modification_processed.connect(_measure)
 	_add_driven()
+	var source := NodeImuSource.new()
+	source.node = _add_sensor(_leader.get_skeleton()).get_path()
+	_driven.source = source
 	follow(%Panel)
 
 
-func _process(delta: float) -> void:
-	_delta = delta
+func _process(_delta: float) -> void:
 	_camera.target_position = middle() + Vector3.UP * 0.85
 	%Behaviour.text = "the sensor says: %s" % _driven.get_behaviour()
 
@@ -50,10 +47,16 @@ func _add_driven() -> void:
 	walkers.append(character)
 
 
-func _measure() -> void:
-	var sample := _imu.move_with_foot(_skeleton, _foot, _delta)
-	if not sample.is_empty():
-		_driven.push_sample(0, sample[0], sample[1], sample[2])
+## Straps a node to the right foot that looks ahead while the walker stands.
+func _add_sensor(skeleton: Skeleton3D) -> Node3D:
+	var strap := BoneAttachment3D.new()
+	strap.bone_name = "RightFoot"
+	var rest := skeleton.get_bone_global_rest(skeleton.find_bone(strap.bone_name))
+	var sensor := Node3D.new()
+	sensor.transform = rest.affine_inverse() * Transform3D(Basis(Vector3.UP, PI), rest.origin + ON_THE_FOOT)
+	strap.add_child(sensor)
+	skeleton.add_child(strap)
+	return sensor
 
 
 func gait_of(walker: Node3D) -> GaitGenerator3D:

@@ -32,11 +32,13 @@ pub enum Site {
     LeftForearm,
     /// On the lower back.
     Root,
+    /// Between the eyes: a headset.
+    Head,
 }
 
 impl Site {
     /// Every site.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::RightFoot,
         Self::LeftFoot,
         Self::RightKnee,
@@ -48,6 +50,7 @@ impl Site {
         Self::RightForearm,
         Self::LeftForearm,
         Self::Root,
+        Self::Head,
     ];
 
     /// The name on the command line and in files, for example `right_foot`.
@@ -64,6 +67,7 @@ impl Site {
             Self::RightForearm => "right_forearm",
             Self::LeftForearm => "left_forearm",
             Self::Root => "root",
+            Self::Head => "head",
         }
     }
 
@@ -72,7 +76,7 @@ impl Site {
         Self::ALL.into_iter().find(|site| site.name() == name)
     }
 
-    /// The side of the body; `None` for the lower back.
+    /// The side of the body; `None` for the lower back and the head.
     pub const fn side(self) -> Option<Side> {
         match self {
             Self::RightFoot
@@ -85,7 +89,7 @@ impl Site {
             | Self::LeftThigh
             | Self::LeftHand
             | Self::LeftForearm => Some(Side::Left),
-            Self::Root => None,
+            Self::Root | Self::Head => None,
         }
     }
 
@@ -103,6 +107,7 @@ impl Site {
             Self::RightForearm => Joint::RightLowerArm,
             Self::LeftForearm => Joint::LeftLowerArm,
             Self::Root => Joint::Hips,
+            Self::Head => Joint::Head,
         }
     }
 
@@ -116,6 +121,7 @@ impl Site {
             Self::RightHand | Self::LeftHand => Vec3::new(0.08 * outwards, 0.0, 0.0),
             Self::RightForearm | Self::LeftForearm => Vec3::new(0.21 * outwards, 0.02, 0.0),
             Self::Root => Vec3::new(0.0, 0.03, -0.11),
+            Self::Head => Vec3::new(0.0, 0.08, 0.09),
         }
     }
 

@@ -42,7 +42,7 @@ pub(crate) struct ImuReconstructor3D {
     #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
     model: Option<Gd<ImuModel>>,
 
-    /// Source of the samples: a `PhoneImuSource`, `SerialImuSource`, `NetworkImuSource`, `DeviceImuSource` or `ReplayImuSource`. Live ones are opened in the game, not in the
+    /// Source of the samples: a `PhoneImuSource`, `SerialImuSource`, `NetworkImuSource`, `DeviceImuSource`, `NodeImuSource` or `ReplayImuSource`. Live ones are opened in the game, not in the
     /// editor, and drive one node each. May be empty when a script pushes samples.
     #[export]
     #[var(hint = RESOURCE_TYPE, hint_string = imu_source::CLASSES)]
@@ -204,7 +204,10 @@ impl ImuReconstructor3D {
     fn source_problems(&self) -> Vec<String> {
         let sources = [&self.source, &self.second_source];
         let sources = sources.into_iter().flatten();
-        sources.filter_map(imu_source::problem).collect()
+        let listener = self.base().clone().upcast();
+        sources
+            .filter_map(|source| imu_source::problem(source, &listener))
+            .collect()
     }
 
     fn restart(&mut self) {
@@ -267,9 +270,10 @@ impl ImuReconstructor3D {
         let in_editor = Engine::singleton().is_editor_hint();
         let delta = if in_editor { 0.0 } else { delta.max(0.0) };
         let sources = [self.source.clone(), self.second_source.clone()];
+        let listener = self.base().clone().upcast();
         for (sensor, source) in sources.iter().enumerate() {
             if let Some(source) = source.as_ref().filter(|_| !in_editor) {
-                session.hear(sensor, imu_source::hear(source), delta);
+                session.hear(sensor, imu_source::hear(source, &listener), delta);
             }
         }
         if session.finds_mountings {

@@ -3,12 +3,14 @@
 use crate::convert;
 use crate::device_imu_source::{self, DeviceImuSource};
 use crate::network_imu_source::NetworkImuSource;
+use crate::node_imu_source::NodeImuSource;
 use crate::phone_imu_source::PhoneImuSource;
 use crate::replay_imu_source::ReplayImuSource;
 use crate::serial_imu_source::SerialImuSource;
 use footfall_imu::live::phone::PhoneServer;
 use footfall_imu::live::{Device, DeviceStatus, Link};
 use footfall_imu::{ImuRecording, ImuSample};
+use glam::{Quat, Vec3};
 use godot::classes::Resource;
 use godot::prelude::*;
 use std::cell::RefCell;
@@ -16,7 +18,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// Classes that a node takes as its source, for the inspector.
 pub(crate) const CLASSES: &str =
-    "ReplayImuSource,PhoneImuSource,SerialImuSource,NetworkImuSource,DeviceImuSource";
+    "ReplayImuSource,PhoneImuSource,SerialImuSource,NetworkImuSource,DeviceImuSource,NodeImuSource";
 
 /// A device that says nothing for so long is silent, seconds.
 const SILENT_SECS: f64 = 0.5;
@@ -29,12 +31,14 @@ pub(crate) enum Heard {
     Device(Device),
     /// Measurement of the device that the game runs on.
     Now(ImuSample),
+    /// Position and orientation of an object that stands for a sensor, now.
+    Pose(Vec3, Quat),
     /// Nothing, yet or any more.
     Nothing,
 }
 
-/// Asks a source for what it gives; live ones open their ports.
-pub(crate) fn hear(source: &Gd<Resource>) -> Heard {
+/// Asks a source for what it gives to a node; live ones open their ports.
+pub(crate) fn hear(source: &Gd<Resource>, listener: &Gd<Node>) -> Heard {
     if let Ok(replay) = source.clone().try_cast::<ReplayImuSource>() {
         let replay = replay.bind();
         let recording = replay.recording();
@@ -44,6 +48,10 @@ pub(crate) fn hear(source: &Gd<Resource>) -> Heard {
     }
     if source.clone().try_cast::<DeviceImuSource>().is_ok() {
         return device_imu_source::measure().map_or(Heard::Nothing, Heard::Now);
+    }
+    if let Ok(source) = source.clone().try_cast::<NodeImuSource>() {
+        let pose = source.bind().pose(listener);
+        return pose.map_or(Heard::Nothing, |(place, turn)| Heard::Pose(place, turn));
     }
     let live = |live: &dyn LiveSource| {
         live.live().open(|| live.opened());
@@ -71,9 +79,12 @@ pub(crate) fn footstep(source: &Gd<Resource>) {
 }
 
 /// Problem with a source's settings, for the node that uses it.
-pub(crate) fn problem(source: &Gd<Resource>) -> Option<String> {
+pub(crate) fn problem(source: &Gd<Resource>, listener: &Gd<Node>) -> Option<String> {
     if let Ok(replay) = source.clone().try_cast::<ReplayImuSource>() {
         return replay.bind().recording().err();
+    }
+    if let Ok(source) = source.clone().try_cast::<NodeImuSource>() {
+        return source.bind().problem(listener);
     }
     let known = CLASSES.split(',').any(|class| source.is_class(class));
     (!known).then(|| {

@@ -37,6 +37,7 @@ mod imu_reconstructor_3d;
 mod imu_source;
 mod loaded;
 mod network_imu_source;
+mod node_imu_source;
 mod phone_imu_source;
 mod physics_ground;
 mod replay_imu_source;

@@ -4,7 +4,7 @@ use crate::imu_source::Heard;
 use footfall_imu::live::Device;
 use footfall_imu::live::device::now_secs;
 use footfall_imu::live::recorder::Recorder;
-use footfall_imu::{ImuRecording, ImuSample};
+use footfall_imu::{ImuRecording, ImuSample, PoseMeter};
 use footfall_recon::{Mounting, Prepared, TrackerConfig, find_mounting};
 use glam::Quat;
 use std::path::Path;
@@ -28,12 +28,21 @@ pub(super) struct Worn {
     device: Option<Device>,
     /// When the newest sample of a live sensor was measured, by our clock.
     live_secs: Option<f64>,
+    tracked: Tracked,
     recorder: Option<Recorder>,
     kept: Kept,
     looked_at_secs: Option<f64>,
     worker: Option<JoinHandle<Option<Mounting>>>,
     /// The best that was found.
     pub(super) mounting: Option<Mounting>,
+}
+
+/// An object of the game that stands for a sensor.
+#[derive(Debug, Default)]
+struct Tracked {
+    meter: PoseMeter,
+    /// Time that the game has played, seconds.
+    played_secs: f64,
 }
 
 /// The last samples of a sensor, whose times rise.
@@ -124,6 +133,13 @@ impl Worn {
             Heard::Now(sample) => {
                 self.live_secs = Some(sample.time_secs);
                 taken(self, sample);
+            }
+            Heard::Pose(position, turn) => {
+                self.tracked.played_secs += dt_secs;
+                let secs = self.tracked.played_secs;
+                if let Some(sample) = self.tracked.meter.push(secs, position, turn) {
+                    taken(self, sample);
+                }
             }
             Heard::Nothing => {}
         }
