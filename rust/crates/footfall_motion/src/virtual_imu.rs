@@ -4,13 +4,17 @@
 //! band-limited alike (near 10 Hz). Impacts, soft tissue and what a capture smooths away are not in a pose: on a real recording the magnitude of
 //! the angular rate of a foot agrees with the simulated one (r = 0.996), that of specific force only at 0.53 to 0.73.
 
+mod errors;
+mod wear;
+
+pub use errors::SensorNoise;
+pub use wear::Wear;
+
+use errors::Errors;
 use footfall_core::rotation::log_map;
 use footfall_core::{Clip, ModelPose, Site, forward_kinematics};
 use footfall_imu::{GRAVITY_MPS2, ImuRecording, ImuSample};
 use glam::{Quat, Vec3};
-use rand::SeedableRng as _;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution as _, StandardNormal};
 
 /// Half of the window over which a position is differentiated twice, seconds.
 const FORCE_WINDOW_SECS: f64 = 0.034;
@@ -18,32 +22,7 @@ const FORCE_WINDOW_SECS: f64 = 0.034;
 /// Half of the window over which an orientation is differentiated, seconds.
 const RATE_WINDOW_SECS: f64 = 0.017;
 
-/// Errors of a sensor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SensorNoise {
-    /// Standard deviation of a sample of specific force, m/s².
-    pub force_mps2: f32,
-    /// Standard deviation of the constant bias of specific force, m/s².
-    pub force_bias_mps2: f32,
-    /// Standard deviation of a sample of angular rate, rad/s.
-    pub rate_radps: f32,
-    /// Standard deviation of the constant bias of angular rate, rad/s.
-    pub rate_bias_radps: f32,
-}
-
-impl SensorNoise {
-    /// A sensor as in phones and hobby boards, times a factor.
-    pub const fn consumer(factor: f32) -> Self {
-        Self {
-            force_mps2: 0.05 * factor,
-            force_bias_mps2: 0.15 * factor,
-            rate_radps: 0.005 * factor,
-            rate_bias_radps: 0.01 * factor,
-        }
-    }
-}
-
-/// Mounting and errors of a sensor.
+/// Mounting, errors and wear of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VirtualImuConfig {
     /// Samples per second.
@@ -52,7 +31,9 @@ pub struct VirtualImuConfig {
     pub mounting: Quat,
     /// Errors; none for an ideal sensor.
     pub noise: Option<SensorNoise>,
-    /// Seed of the errors.
+    /// Strap that holds it; none for a sensor that is one with the body, exactly at the site.
+    pub wear: Option<Wear>,
+    /// Seed of the errors and of the place on the strap.
     pub seed: u64,
 }
 
@@ -63,7 +44,21 @@ impl VirtualImuConfig {
             rate_hz,
             mounting: Quat::IDENTITY,
             noise: None,
+            wear: None,
             seed: 0,
+        }
+    }
+
+    /// A board that nobody calibrated, on a strap that gives, `aligned` but for that. Its clock is true, so that its times are the clip's.
+    pub fn strapped(rate_hz: f64, seed: u64) -> Self {
+        Self {
+            noise: Some(SensorNoise {
+                clock: 0.0,
+                ..SensorNoise::uncalibrated(1.0)
+            }),
+            wear: Some(Wear::strapped(1.0)),
+            seed,
+            ..Self::ideal(rate_hz)
         }
     }
 }
@@ -77,12 +72,18 @@ pub fn simulate(
     config: &VirtualImuConfig,
 ) -> ImuRecording {
     let fps = clip.frame_rate_hz;
-    let track = Track::of(clip, first_frame, site);
+    let mut errors = Errors::new(config);
+    let off = config
+        .wear
+        .map_or(Vec3::ZERO, |wear| errors.place(wear.off_m));
+    let mut track = Track::of(clip, first_frame, site, off);
+    if let Some(wear) = config.wear {
+        wear.swing(&mut track, fps);
+    }
     let start_secs = first_frame as f64 / fps;
     let last = track.turns.len().saturating_sub(1) as f64;
     let count = (last / fps * config.rate_hz * (1.0 + 1e-9)).floor() as usize;
-    let mut errors = Errors::new(config);
-    let samples = (0..=count).filter(|_| last > 0.0).map(|n| {
+    let samples = (0..=count).filter(|_| last > 0.0).filter_map(|n| {
         let frame = (n as f64 / config.rate_hz * fps).min(last);
         let (turn, acceleration, rate) = track.at(frame);
         let force = turn.inverse() * (acceleration + Vec3::Y * GRAVITY_MPS2);
@@ -109,13 +110,14 @@ struct Track {
 }
 
 impl Track {
-    fn of(clip: &Clip, first_frame: usize, site: Site) -> Self {
+    /// The site, or a place this far from it, over the frames of a clip.
+    fn of(clip: &Clip, first_frame: usize, site: Site, off: Vec3) -> Self {
         let fps = clip.frame_rate_hz;
         let mut model = ModelPose::default();
         let (mut places, mut turns): (Vec<Vec3>, Vec<Quat>) = (Vec::new(), Vec::new());
         for pose in clip.poses.iter().skip(first_frame) {
             forward_kinematics(&clip.skeleton, pose, &mut model);
-            places.push(model.point(site.joint(), site.position()));
+            places.push(model.point(site.joint(), site.position() + off));
             turns.push(model.rotation(site.joint()));
         }
         let window = |secs: f64| {
@@ -174,43 +176,6 @@ fn rates(turns: &[Quat], half: usize, fps: f32) -> Vec<Vec3> {
         log_map(before.inverse() * after) * (fps / (2 * half) as f32)
     };
     (0..turns.len()).map(centred).collect()
-}
-
-/// Draws the errors of a sensor.
-struct Errors {
-    noise: Option<SensorNoise>,
-    random: ChaCha8Rng,
-    biases: [Vec3; 2],
-}
-
-impl Errors {
-    fn new(config: &VirtualImuConfig) -> Self {
-        let mut errors = Self {
-            noise: config.noise,
-            random: ChaCha8Rng::seed_from_u64(config.seed),
-            biases: [Vec3::ZERO; 2],
-        };
-        if let Some(noise) = config.noise {
-            errors.biases = [
-                errors.draw() * noise.force_bias_mps2,
-                errors.draw() * noise.rate_bias_radps,
-            ];
-        }
-        errors
-    }
-
-    fn draw(&mut self) -> Vec3 {
-        let [x, y, z]: [f32; 3] = core::array::from_fn(|_| StandardNormal.sample(&mut self.random));
-        Vec3::new(x, y, z)
-    }
-
-    fn add(&mut self, mut sample: ImuSample) -> ImuSample {
-        if let Some(noise) = self.noise {
-            sample.force += self.biases[0] + self.draw() * noise.force_mps2;
-            sample.rate += self.biases[1] + self.draw() * noise.rate_radps;
-        }
-        sample
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Why training cannot go on.
 
-use footfall_core::{Side, Site};
+use footfall_core::{Side, Site, SkeletonError};
 use footfall_model::ModelError;
 use footfall_motion::recording::RecordingError;
 use footfall_prob::ProbError;
@@ -25,6 +25,9 @@ pub enum TrainError {
         /// Number found.
         found: usize,
     },
+    /// A body has a leg or a foot without length.
+    #[error("the body cannot be reconstructed: {0}")]
+    Skeleton(#[from] SkeletonError),
     /// The base model, or what came of it, makes no sense.
     #[error("the model cannot be used: {0}")]
     Model(#[from] ModelError),

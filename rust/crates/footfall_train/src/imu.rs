@@ -30,6 +30,8 @@ pub struct ImuTrainConfig {
     pub mirror: bool,
     /// Most frames that are kept: then the cycles of movement that stand best for all others. All are kept when `None`.
     pub most_frames: Option<usize>,
+    /// True when simulated sensors are those of a board that nobody calibrated on a strap that gives, not ideal ones. It was measured to help nobody.
+    pub strapped: bool,
 }
 
 impl ImuTrainConfig {
@@ -40,6 +42,7 @@ impl ImuTrainConfig {
             sites: sites.to_vec(),
             mirror: true,
             most_frames: None,
+            strapped: false,
         }
     }
 

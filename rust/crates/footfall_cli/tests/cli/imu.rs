@@ -496,6 +496,10 @@ fn what_cannot_be_used_is_named() {
         "imu", "simulate", &walk, "--site", "root", "--rate", "0", "-o", "x.csv",
     ];
     footfall(folder, &onto).fails_with(&["--rate"]);
+    let loose = [
+        "imu", "simulate", &walk, "--site", "root", "--strap", "11", "-o", "x.csv",
+    ];
+    footfall(folder, &loose).fails_with(&["--strap 11", "0 to 10"]);
 }
 
 #[test]
@@ -527,10 +531,25 @@ fn bodies_from_the_cmu_recordings_are_as_close_as_promised() {
     assert!(figure("other_recordings", "neutral_walk", "whole_cm") < 2.2);
     assert!(figure("other_subjects", "neutral_walk", "live_cm") < 4.0);
     assert!(figure("other_recordings", "running", "whole_cm") < 3.1);
-    for category in ["neutral_walk", "running", "jumping", "hopping", "turning"] {
-        let constant = figure("other_recordings", category, "constant_cm");
+    // Measured shares of the constant pose's error: 0.32, 0.29, 0.92, 0.88, 0.74.
+    for (category, most) in [
+        ("neutral_walk", 0.35),
+        ("running", 0.35),
+        ("jumping", 0.95),
+        ("hopping", 0.95),
+        ("turning", 0.8),
+    ] {
+        let error = |name| figure("other_recordings", category, name);
+        assert!(error("live_cm") < most * error("constant_cm"), "{category}");
         assert!(
-            figure("other_recordings", category, "live_cm") < 0.95 * constant,
+            error("nearest_cm") < error("live_cm") && error("nearest_cm") < error("average_cm"),
+            "{category}: no tracker is closer than the nearest pose"
+        );
+    }
+    for (category, most) in [("neutral_walk", 1.0), ("running", 0.7)] {
+        let strangers = |name| figure("other_subjects", category, name);
+        assert!(
+            strangers("live_cm") < most * strangers("average_cm"),
             "{category}"
         );
     }

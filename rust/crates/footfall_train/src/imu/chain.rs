@@ -121,16 +121,21 @@ pub fn observe(clip: &ImuClip<'_>, config: &ImuTrainConfig) -> Vec<Chain> {
 }
 
 fn observe_one(clip: &ImuClip<'_>, config: &ImuTrainConfig, mirrored: bool) -> Option<Chain> {
-    let virtual_config = VirtualImuConfig::ideal(VIRTUAL_RATE_HZ);
+    let simulated = |site: Site| {
+        let sensor = if config.strapped {
+            VirtualImuConfig::strapped(VIRTUAL_RATE_HZ, clip.clip.poses.len() as u64)
+        } else {
+            VirtualImuConfig::ideal(VIRTUAL_RATE_HZ)
+        };
+        simulate(clip.clip, clip.first_frame, site, &sensor)
+    };
     let sensors: Vec<Vec<FeatureFrame>> = config
         .sites
         .iter()
         .enumerate()
         .map(|(n, site)| {
-            let recording =
-                clip.recordings.get(n).cloned().unwrap_or_else(|| {
-                    simulate(clip.clip, clip.first_frame, *site, &virtual_config)
-                });
+            let recording = clip.recordings.get(n).cloned();
+            let recording = recording.unwrap_or_else(|| simulated(*site));
             FeatureStream::frames_of(&recording, config.frame_rate_hz)
         })
         .collect();

@@ -1,7 +1,7 @@
 //! Errors of reconstructed bodies against the recorded ones (Mousas 2017, section 7.2).
 //!
 //! Every recording is reconstructed by a model that has not seen it: trained on all other recordings (the same subject's stay in), or on those
-//! of other subjects. The sensors are virtual, 100 samples a second (or a phone's: [`Device`]), with the noise and biases of a phone's. The error is the mean distance between the
+//! of other subjects. The sensors are virtual, of one of the [`Device`]s. The error is the mean distance between the
 //! joints of both bodies, their hips and headings brought together.
 //!
 //! Measured on the CMU recordings of the public data as recorded (72 clips, 14 subjects, not what the shipped models learned from: `DECISIONS.md` has their table;
@@ -28,25 +28,24 @@
 //!
 //! Changes of behaviour are recognised live within 0.33 s in the median (other recordings, foot), 0.4 s on other subjects.
 
+mod body;
+mod device;
+mod trivial;
+
+pub use device::Device;
+pub use trivial::TrivialErrors;
+
 use super::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
 use crate::error::TrainError;
-use footfall_core::rotation::{from_heading, heading};
-use footfall_core::{
-    Behaviour, Clip, JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics,
-};
-use footfall_imu::{ImuRecording, ImuSample};
+use body::{Body, body, distance_cm, pose_of_row};
+use footfall_core::{Behaviour, Pose, Side};
 use footfall_model::Provenance;
-use footfall_model::imu_model::BODY_COUNT;
-use footfall_motion::virtual_imu::{SensorNoise, VirtualImuConfig, simulate};
-use footfall_recon::body::pose_of;
-use footfall_recon::{Prepared, ReconConfig, reconstruct_recording};
-use glam::{Quat, Vec3};
+use footfall_recon::{Prepared, ReconConfig, Reconstructed, reconstruct_recording};
+use glam::Quat;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-
-/// Steps in which browsers round a phone's measurements, m/s² and rad/s (0.1 °/s).
-const PHONE_STEPS: [f32; 2] = [0.1, 0.1 * core::f32::consts::PI / 180.0];
+use trivial::Trivial;
 
 /// A change of behaviour counts as recognised within this time, seconds; a behaviour that lasts less is not asked for.
 const CHANGE_SECS: f64 = 1.0;
@@ -59,38 +58,6 @@ pub enum HeldOut {
     Recording,
     /// Those of other subjects.
     Subject,
-}
-
-/// Simulated sensor that bodies are reconstructed from. All have a phone's noise and biases.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Device {
-    /// 100 samples a second, as measured.
-    #[default]
-    Board,
-    /// A phone's browser: 60 samples a second, rounded to 0.1 m/s² and 0.1 °/s.
-    Phone,
-}
-
-impl Device {
-    const fn rate_hz(self) -> f64 {
-        match self {
-            Self::Board => 100.0,
-            Self::Phone => 60.0,
-        }
-    }
-
-    /// A sample as the device tells it.
-    fn round(self, sample: ImuSample) -> ImuSample {
-        let to_steps = |value: Vec3, step: f32| (value / step).round() * step;
-        match self {
-            Self::Board => sample,
-            Self::Phone => ImuSample {
-                force: to_steps(sample.force, PHONE_STEPS[0]),
-                rate: to_steps(sample.rate, PHONE_STEPS[1]),
-                ..sample
-            },
-        }
-    }
 }
 
 /// Error of a body, centimetres.
@@ -120,8 +87,8 @@ pub struct ImuTrial {
     pub live: JointError,
     /// With what comes later.
     pub whole: JointError,
-    /// One pose for all: the mean of the training data, centimetres over moving frames.
-    pub constant_cm: f64,
+    /// Trivial answers over the frames in which the body moves.
+    pub trivial: TrivialErrors,
     /// Frames of each behaviour (row) that are recognised live as each (column), in the order of [`Behaviour::ALL`].
     pub confusion: Confusion,
     /// Bend of both knees in each frame in which the body stands, degrees: as recorded, and live.
@@ -163,8 +130,9 @@ pub fn evaluate_imu(
                 .flat_map(|clip| &chains[clip])
                 .collect();
             let model = train_imu(&training, config, Provenance::default())?;
-            let prepared = Arc::new(Prepared::new(Arc::new(model))?);
-            let constant = pose_of_row(&mean_row(&training));
+            let model = Arc::new(model);
+            let prepared = Arc::new(Prepared::new(Arc::clone(&model))?);
+            let trivial = Trivial::of(&training, &model);
             let trials = (0..clips.len()).into_par_iter();
             let trials = trials.filter(|clip| is_held(clip) && judged(*clip));
             let trials = trials.filter_map(|clip| {
@@ -174,11 +142,11 @@ pub fn evaluate_imu(
                     &clips[clip],
                     truth,
                     &prepared,
-                    &constant,
+                    &trivial,
                     device,
                 ))
             });
-            Ok(trials.collect())
+            trials.collect()
         })
         .collect::<Result<_, TrainError>>()?;
     let mut trials: Vec<ImuTrial> = trials.into_iter().flatten().collect();
@@ -191,28 +159,17 @@ fn try_clip(
     clip: &ImuClip<'_>,
     truth: &Chain,
     prepared: &Arc<Prepared>,
-    constant: &Pose,
+    trivial: &Trivial<'_>,
     device: Device,
-) -> ImuTrial {
+) -> Result<ImuTrial, TrainError> {
     let sites = &prepared.model().sites;
     let recordings: Vec<_> = sites
         .iter()
         .enumerate()
-        .map(|(n, site)| {
-            let config = VirtualImuConfig {
-                noise: Some(SensorNoise::consumer(1.0)),
-                seed: (own * 2 + n) as u64,
-                ..VirtualImuConfig::ideal(device.rate_hz())
-            };
-            let measured = simulate(clip.clip, clip.first_frame, *site, &config);
-            let samples = measured.samples.into_iter();
-            ImuRecording {
-                samples: samples.map(|sample| device.round(sample)).collect(),
-            }
-        })
+        .map(|(n, site)| device.measure(clip, *site, (own * 2 + n) as u64))
         .collect();
-    let bodies: Vec<[Vec3; JOINT_COUNT]> = (0..truth.frames())
-        .map(|frame| joints(&pose_of_row(truth.body_row(frame)), &truth.skeleton))
+    let bodies: Vec<Body> = (0..truth.frames())
+        .map(|frame| body(&pose_of_row(truth.body_row(frame)), &truth.skeleton))
         .collect();
     let behaviours: Vec<Behaviour> = truth
         .segments
@@ -221,59 +178,44 @@ fn try_clip(
         .collect();
     let skeleton = &truth.skeleton;
     let config = ReconConfig::default();
-    let mut delays_secs = Vec::new();
+    let reconstruct = |live| reconstruct_recording(prepared, &recordings, skeleton, &config, live);
+    let (live, whole) = (reconstruct(true)?, reconstruct(false)?);
+    // The first pose is that of the recording's first sample, a frame before the first of the chain.
+    let found = live.behaviours.get(1..).unwrap_or_default();
     let mut confusion = Confusion::default();
-    let mut standing_knees_deg = Vec::new();
-    let [live, whole] = [true, false].map(|live| {
-        let Ok(made) = reconstruct_recording(prepared, &recordings, skeleton, &config, live) else {
-            return JointError::default();
-        };
-        // The first pose is that of the recording's first sample, a frame before the first of the chain.
-        let found = made.behaviours.get(1..).unwrap_or_default();
-        if live {
-            delays_secs = delays(&behaviours, found, prepared.model().frame_rate_hz);
-            for (truth, found) in behaviours.iter().zip(found) {
-                confusion[truth.index()][found.index()] += 1;
-            }
-            let poses = made.clip.poses.iter().skip(1).zip(&behaviours);
-            for (frame, (pose, _)) in poses
-                .enumerate()
-                .filter(|(_, (_, behaviour))| **behaviour == Behaviour::Stand)
-            {
-                let recorded = pose_of_row(truth.body_row(frame));
-                standing_knees_deg.push([&recorded, pose].map(mean_knee_deg));
-            }
-        }
-        judge(&made.clip, found, &bodies, &behaviours)
+    for (truth, found) in behaviours.iter().zip(found) {
+        confusion[truth.index()][found.index()] += 1;
+    }
+    let shown = live.clip.poses.iter().skip(1).zip(&behaviours).enumerate();
+    let standing = shown.filter(|(_, (_, behaviour))| **behaviour == Behaviour::Stand);
+    let standing_knees_deg = standing.map(|(frame, (pose, _))| {
+        let recorded = pose_of_row(truth.body_row(frame));
+        [&recorded, pose].map(mean_knee_deg)
     });
-    let moving = |frame: &usize| behaviours[*frame] != Behaviour::Stand;
-    let constant = joints(constant, skeleton);
-    let errors = (0..bodies.len()).filter(moving);
-    let errors: Vec<f64> = errors
-        .map(|frame| distance_cm(&constant, &bodies[frame]))
-        .collect();
-    ImuTrial {
+    let [live_error, whole_error] = [&live, &whole].map(|made| judge(made, &bodies, &behaviours));
+    let moving = |frame: usize| behaviours[frame] != Behaviour::Stand;
+    Ok(ImuTrial {
         clip: own,
         frames: bodies.len(),
-        moving: errors.len(),
-        live,
-        whole,
-        constant_cm: mean(&errors),
+        moving: (0..bodies.len()).filter(|frame| moving(*frame)).count(),
+        live: live_error,
+        whole: whole_error,
+        trivial: trivial.errors(truth, &bodies, moving),
         confusion,
-        standing_knees_deg,
-        delays_secs,
-    }
+        standing_knees_deg: standing_knees_deg.collect(),
+        delays_secs: delays(&behaviours, found, prepared.model().frame_rate_hz),
+    })
 }
 
-fn judge(
-    made: &Clip,
-    found: &[Behaviour],
-    bodies: &[[Vec3; JOINT_COUNT]],
-    behaviours: &[Behaviour],
-) -> JointError {
-    let poses = made.poses.iter().skip(1).zip(bodies);
-    let errors: Vec<f64> = poses
-        .map(|(pose, truth)| distance_cm(&joints(pose, &made.skeleton), truth))
+/// Errors of a reconstruction. Where it shows nothing, a body at rest counts.
+fn judge(made: &Reconstructed, bodies: &[Body], behaviours: &[Behaviour]) -> JointError {
+    let skeleton = &made.clip.skeleton;
+    let rest = Pose::rest(skeleton);
+    let shown = |frame: usize| made.clip.poses.get(frame + 1).unwrap_or(&rest);
+    let found = made.behaviours.get(1..).unwrap_or_default();
+    let truths = bodies.iter().enumerate();
+    let errors: Vec<f64> = truths
+        .map(|(frame, truth)| distance_cm(&body(shown(frame), skeleton), truth))
         .collect();
     let moving: Vec<f64> = errors
         .iter()
@@ -321,61 +263,4 @@ fn delays(behaviours: &[Behaviour], found: &[Behaviour], rate_hz: f64) -> Vec<f6
 
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
-fn mean_row(chains: &[&Chain]) -> Vec<f32> {
-    let mut sum = vec![0.0_f64; BODY_COUNT];
-    for row in chains
-        .iter()
-        .flat_map(|chain| chain.body.chunks_exact(BODY_COUNT))
-    {
-        for (sum, value) in sum.iter_mut().zip(row) {
-            *sum += f64::from(*value);
-        }
-    }
-    let frames: usize = chains.iter().map(|chain| chain.frames()).sum();
-    sum.iter()
-        .map(|sum| (sum / frames.max(1) as f64) as f32)
-        .collect()
-}
-
-fn pose_of_row(row: &[f32]) -> Pose {
-    let mut body = [0.0; BODY_COUNT];
-    body.copy_from_slice(row);
-    let mut pose = Pose::default();
-    pose_of(&body, 1.0, &mut pose);
-    pose
-}
-
-/// Joints relative to the hips, with the hips' heading removed.
-fn joints(pose: &Pose, skeleton: &Skeleton) -> [Vec3; JOINT_COUNT] {
-    let mut model = ModelPose::default();
-    forward_kinematics(skeleton, pose, &mut model);
-    let level = from_heading(-heading(pose.rotation(Joint::Hips)));
-    let hips = model.position(Joint::Hips);
-    model.positions.map(|position| level * (position - hips))
-}
-
-fn distance_cm(a: &[Vec3; JOINT_COUNT], b: &[Vec3; JOINT_COUNT]) -> f64 {
-    let sum: f32 = a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum();
-    100.0 * f64::from(sum) / JOINT_COUNT as f64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_phone_rounds_what_it_measures() {
-        let sample = ImuSample {
-            time_secs: 0.5,
-            force: Vec3::new(9.84, -0.06, 0.0),
-            rate: Vec3::new(0.0, 1.26_f32.to_radians(), -0.04_f32.to_radians()),
-        };
-        let told = Device::Phone.round(sample);
-        assert!(told.force.abs_diff_eq(Vec3::new(9.8, -0.1, 0.0), 1e-5));
-        let expected = Vec3::new(0.0, 1.3_f32.to_radians(), 0.0);
-        assert!(told.rate.abs_diff_eq(expected, 1e-5), "{}", told.rate);
-        assert_eq!(Device::Board.round(sample), sample);
-    }
 }

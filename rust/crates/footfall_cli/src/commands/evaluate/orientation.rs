@@ -12,7 +12,7 @@ use footfall_core::{Clip, ModelPose, Site, forward_kinematics};
 use footfall_imu::{GRAVITY_MPS2, ImuRecording, csv};
 use footfall_motion::corpus::{Where, read_index};
 use footfall_motion::virtual_imu::{SensorNoise, VirtualImuConfig, simulate};
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use report::{ByFilter, Report};
 use std::path::PathBuf;
 
@@ -106,10 +106,9 @@ fn judge(recording: &ImuRecording, truths: &[Truth], filters: &mut ByFilter) {
 /// A simulated sensor, and the truth in its samples from when the filters have settled.
 fn simulated(clip: &Clip, first_frame: usize, site: Site, seed: u64) -> (ImuRecording, Vec<Truth>) {
     let config = VirtualImuConfig {
-        rate_hz: clip.frame_rate_hz,
-        mounting: Quat::IDENTITY,
         noise: Some(SensorNoise::consumer(1.0)),
         seed,
+        ..VirtualImuConfig::ideal(clip.frame_rate_hz)
     };
     let recording = simulate(clip, first_frame, site, &config);
     let mut model = ModelPose::default();

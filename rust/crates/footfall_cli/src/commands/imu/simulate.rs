@@ -6,7 +6,7 @@ use crate::output;
 use anyhow::{Result, ensure};
 use footfall_core::Site;
 use footfall_imu::csv;
-use footfall_motion::virtual_imu::{SensorNoise, VirtualImuConfig, simulate};
+use footfall_motion::virtual_imu::{SensorNoise, VirtualImuConfig, Wear, simulate};
 use glam::{EulerRot, Quat};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall imu simulate walk.bvh --site right_foot -o imu.csv\n  \
-    footfall imu simulate walk.bvh --site right_thigh --rate 50 --noise 1 --mounting 90,0,30 -o imu.csv")]
+    footfall imu simulate walk.bvh --site right_thigh --rate 50 --noise 1 --uncalibrated --strap 1 --mounting 90,0,30 -o imu.csv")]
 pub(crate) struct SimulateArgs {
     /// The recording, .bvh, .glb or .gltf
     #[arg(value_name = "IN")]
@@ -31,7 +31,13 @@ pub(crate) struct SimulateArgs {
     /// Errors of the sensor: 0 for none, 1 for a phone's or hobby board's
     #[arg(long, default_value_t = 0.0)]
     noise: f32,
-    /// Seed of the errors
+    /// Make them those of a board that nobody calibrated: scales, clock, lost samples and a range of 4 g and 1000 °/s as well
+    #[arg(long, requires = "noise")]
+    uncalibrated: bool,
+    /// Looseness of the strap: 0 for a sensor that is one with the body, 1 for one up to 5 cm off the site that swings at 8 Hz
+    #[arg(long, default_value_t = 0.0)]
+    strap: f32,
+    /// Seed of the errors and of the place on the strap
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Rotation of the sensor against the site's axes: degrees about x, then y, then z of the site
@@ -84,11 +90,22 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<()> {
         "--noise {} is no factor of a sensor's errors; give a number from 0 to 100",
         args.noise
     );
+    ensure!(
+        (0.0..=10.0).contains(&args.strap),
+        "--strap {} is no looseness of a strap; give a number from 0 to 10",
+        args.strap
+    );
+    let noise = if args.uncalibrated {
+        SensorNoise::uncalibrated
+    } else {
+        SensorNoise::consumer
+    };
     let (_, motion) = read_file(&args.input, &args.map.read(None)?)?;
     let Angles([x, y, z]) = args.mounting;
     let config = VirtualImuConfig {
         mounting: Quat::from_euler(EulerRot::ZYXEx, z, y, x),
-        noise: (args.noise > 0.0).then(|| SensorNoise::consumer(args.noise)),
+        noise: (args.noise > 0.0).then(|| noise(args.noise)),
+        wear: (args.strap > 0.0).then(|| Wear::strapped(args.strap)),
         seed: args.seed,
         ..VirtualImuConfig::ideal(args.rate)
     };

@@ -66,6 +66,9 @@ pub(in crate::commands) struct KeptArgs {
     /// Keep this many frames at most: the cycles of movement that stand best for all others
     #[arg(long, value_name = "N")]
     frames: Option<usize>,
+    /// Learn from simulated sensors of a board that nobody calibrated, on a strap that gives, instead of ideal ones
+    #[arg(long)]
+    learn_strapped: bool,
 }
 
 impl KeptArgs {
@@ -73,6 +76,7 @@ impl KeptArgs {
         ImuTrainConfig {
             mirror: !self.no_mirror,
             most_frames: self.frames,
+            strapped: self.learn_strapped,
             ..ImuTrainConfig::new(sites)
         }
     }
