@@ -1,5 +1,11 @@
 //! Walks over stairs and rough ground from a distance on, and what goes wrong on the way.
 
+mod outcome;
+mod way;
+
+pub use outcome::{Failure, Fault, Landed, Outcome, percentile};
+pub use way::Way;
+
 use crate::data::repository;
 use crate::terrain::{Origin, PlacedWalker, Relief};
 use footfall_core::{Side, Skeleton};
@@ -7,7 +13,6 @@ use footfall_ik::placement::{Frame, PlacementConfig};
 use footfall_model::GaitModel;
 use footfall_synth::{Controls, GaitChoice, GaitGenerator, GeneratorConfig, StyleSpace};
 use glam::Vec3;
-use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -45,184 +50,6 @@ pub struct Climb {
     pub told: bool,
     /// Of the walker.
     pub seed: u64,
-}
-
-/// Kinds of ground to walk over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Way {
-    /// Level ground.
-    Level,
-    /// Six steps up, or down where the rise is negative.
-    Stairs {
-        /// Height of a step, metres.
-        rise: f32,
-        /// Depth of a tread, metres.
-        run: f32,
-    },
-    /// A ramp of this slope, 3 m long, down where negative.
-    Ramp {
-        /// Rise by run.
-        slope: f32,
-    },
-    /// Blocks of 45 cm, up to this high, for 9 m.
-    Blocks {
-        /// Height of the highest, metres.
-        height: f32,
-        /// Seed of the blocks.
-        seed: u32,
-    },
-}
-
-const STEPS: f32 = 6.0;
-const BLOCK_M: f32 = 0.45;
-
-impl Way {
-    /// Height of the ground so far behind the first edge and to the side, metres.
-    pub fn height(self, x: f32, z: f32) -> f32 {
-        match self {
-            Self::Level => 0.0,
-            Self::Stairs { rise, run } => ((z / run).floor() + 1.0).clamp(0.0, STEPS) * rise,
-            Self::Ramp { slope } => z.clamp(0.0, self.length()) * slope,
-            Self::Blocks { height, seed } => {
-                if z < 0.0 || z > self.length() {
-                    return 0.0;
-                }
-                let cell = |value: f32| (value / BLOCK_M).floor() as i32 as u32;
-                let mut hash =
-                    cell(x).wrapping_mul(0x9E37_79B9) ^ cell(z).wrapping_mul(0x85EB_CA6B);
-                hash ^= seed.wrapping_mul(0xC2B2_AE35);
-                hash = (hash ^ (hash >> 15)).wrapping_mul(0x2C1B_3C6D);
-                hash = (hash ^ (hash >> 12)).wrapping_mul(0x297A_2D39);
-                height * ((hash ^ (hash >> 15)) >> 8) as f32 / 16_777_216.0
-            }
-        }
-    }
-
-    fn length(self) -> f32 {
-        match self {
-            Self::Level => 6.0,
-            Self::Stairs { run, .. } => STEPS * run,
-            Self::Ramp { .. } => 3.0,
-            Self::Blocks { .. } => 9.0,
-        }
-    }
-}
-
-/// Failures that end a climb early.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Failure {
-    /// A foot that the animation puts down is locked to nothing.
-    GroundLost,
-    /// An ankle is higher than its hip joint.
-    FootAboveHip,
-    /// A point of a sole is inside a step.
-    Inside,
-    /// The body is in the ground, or far above it.
-    BodyLeft,
-    /// No point of a locked sole is at the ground.
-    OffGround,
-    /// It does not arrive.
-    Stuck,
-}
-
-/// A failure, where and when.
-#[derive(Clone, Copy, Debug)]
-pub struct Fault {
-    /// The kind.
-    pub failure: Failure,
-    /// After so many seconds.
-    pub secs: f32,
-    /// Position of the hips.
-    pub hips: Vec3,
-    /// Severity, in the failure's own measure.
-    pub measure: f32,
-}
-
-/// Observations of a climb.
-#[derive(Clone, Debug, Default)]
-pub struct Outcome {
-    /// The first failure of every kind.
-    pub faults: Vec<Fault>,
-    /// Accelerations of the hips against gravity, m/s².
-    pub lift: Vec<f32>,
-    /// The same between the first edge and the last.
-    pub lift_between: Vec<f32>,
-    /// Accelerations of the hips, m/s².
-    pub acceleration: Vec<f32>,
-    /// Fastest that the stillest of the points on which a locked sole stands moved along the ground, m/s.
-    pub slip: f32,
-    /// Highest angular acceleration of a knee, rad/s².
-    pub knee: f32,
-    /// Farthest that an ankle jumped beyond how it moved the frame before, metres.
-    pub jump: f32,
-    /// Duration, seconds.
-    pub secs: f32,
-    /// Number of steps on the way.
-    pub steps: usize,
-    /// Speed of the hips over the ground between the first edge and the last, m/s.
-    pub pace_mps: f32,
-    /// Every landing of a foot.
-    pub landings: Vec<Landed>,
-    /// Longest part of a sole that lay on the ground with nothing under it, metres.
-    pub overhang: f32,
-    /// Greatest bend of a knee, radians.
-    pub bend: f32,
-}
-
-/// A foot that has just been locked to the ground.
-#[derive(Clone, Copy, Debug)]
-pub struct Landed {
-    /// Time since the start, seconds.
-    pub secs: f32,
-    /// The ground under the ankle of the flat foot, in the world, metres.
-    pub sole: Vec3,
-}
-
-impl Outcome {
-    /// Treads that each step on a staircase went up or down, from one landing to the next: of steps that begin or end on it.
-    pub fn treads(&self, rise_m: f32) -> impl Iterator<Item = i32> + '_ {
-        let tread = move |landed: &Landed| (landed.sole.y / rise_m).round() as i32;
-        let pairs = self.landings.windows(2);
-        pairs.filter_map(move |pair| {
-            let [from, to] = [tread(&pair[0]), tread(&pair[1])];
-            let on = |tread: i32| (1..STEPS as i32).contains(&tread);
-            (on(from) || on(to)).then_some(to - from)
-        })
-    }
-}
-
-impl fmt::Display for Outcome {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for fault in &self.faults {
-            write!(
-                f,
-                "{:?} {:.3} at {:.2} s {:.2}; ",
-                fault.failure, fault.measure, fault.secs, fault.hips
-            )?;
-        }
-        write!(
-            f,
-            "lift 99 %: {:.1}, all: {:.1}, slip {:.4}, knee {:.0}, jump {:.3}, {:.1} s, {} steps",
-            percentile(&self.lift, 0.99),
-            percentile(&self.acceleration, 0.99),
-            self.slip,
-            self.knee,
-            self.jump,
-            self.secs,
-            self.steps
-        )
-    }
-}
-
-/// The value below which this share of all lies.
-pub fn percentile(values: &[f32], share: f32) -> f32 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f32::total_cmp);
-    let last = sorted.len().saturating_sub(1);
-    sorted
-        .get((share * last as f32).round() as usize)
-        .copied()
-        .unwrap_or(0.0)
 }
 
 fn space() -> &'static Arc<StyleSpace> {

@@ -5,12 +5,13 @@
 //! transform is named `target_from_source`. Nothing here reads a file, a clock or a random number.
 //!
 //! Modules in suggested reading order: [`joint`], [`skeleton`], [`pose`], [`rotation`], [`clip`], [`contact`],
-//! [`step_position`], [`rig`], [`behaviour`], [`phase`], [`site`], [`ease`], [`lanes`].
+//! [`step_position`], [`ground`], [`rig`], [`behaviour`], [`phase`], [`site`], [`ease`], [`lanes`].
 
 pub mod behaviour;
 pub mod clip;
 pub mod contact;
 pub mod ease;
+pub mod ground;
 pub mod joint;
 pub mod lanes;
 pub mod phase;
@@ -24,6 +25,7 @@ pub mod step_position;
 pub use behaviour::Behaviour;
 pub use clip::Clip;
 pub use contact::{EventKind, FrameSpan, GaitEvent};
+pub use ground::GroundTransform;
 pub use joint::{JOINT_COUNT, Joint, Side};
 pub use phase::{PhaseKind, PhaseStart};
 pub use pose::{ModelPose, Pose, forward_kinematics};

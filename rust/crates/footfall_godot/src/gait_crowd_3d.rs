@@ -5,6 +5,7 @@ mod agent;
 mod avoidance;
 mod batch;
 mod begin;
+mod bounds;
 mod crowd_mesh;
 mod flock;
 mod frame;

@@ -1,6 +1,6 @@
 //! Crouching: the posture of somebody who keeps low, standing or walking.
 
-use crate::gait_model::{ModelError, check_finite, check_len};
+use crate::check::{ModelError, check_finite, check_len};
 use crate::jumping::BESIDE_COUNT;
 
 /// Posture of people who keep low.

@@ -3,7 +3,7 @@
 //! *Gait as a switching dynamical system*, sections 3.2 and 4: the pose is a mean plus a few principal components of the
 //! features of [`crate::layout`]; their weights are put out by the system of the foot that carries the body.
 
-use crate::gait_model::{ModelError, check_finite, check_len, check_positive};
+use crate::check::{ModelError, check_finite, check_len, check_positive};
 use crate::layout::FEATURE_COUNT;
 use crate::provenance::Provenance;
 use footfall_core::{Side, Skeleton};

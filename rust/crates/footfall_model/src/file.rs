@@ -10,6 +10,7 @@
 //! | … | payload: postcard encoding of the version's own types (`v1` to `v6`) |
 //! | 4 | CRC-32 of all that precedes |
 
+mod container;
 mod dynamics_v1;
 mod imu_v1;
 mod style_v1;
@@ -21,11 +22,15 @@ mod v4;
 mod v5;
 mod v6;
 
+pub use container::read_header;
+
+use crate::check::ModelError;
 use crate::dynamics::DynamicsModel;
-use crate::gait_model::{GaitModel, ModelError};
+use crate::gait_model::GaitModel;
 use crate::imu_model::ImuModel;
 use crate::provenance::Provenance;
 use crate::style::GaitStyle;
+use container::{read_container, write_container};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -48,7 +53,6 @@ const FORMAT_4: u32 = 4;
 /// The version without [`GaitModel::jump`] and [`GaitModel::crouch`].
 const FORMAT_5: u32 = 5;
 
-const MAGIC: &[u8; 8] = b"FOOTFALL";
 const GAIT_KIND: &str = "gait";
 const STYLE_KIND: &str = "style";
 const DYNAMICS_KIND: &str = "dynamics";
@@ -345,93 +349,6 @@ fn check_kind(header: &Header, expected: &'static str) -> Result<(), ModelFileEr
         expected,
         found: header.kind.clone(),
     })
-}
-
-/// The header of any model file, also of one that a later version wrote.
-///
-/// # Errors
-/// [`ModelFileError`] when the bytes are no model file or are cut short.
-pub fn read_header(bytes: &[u8]) -> Result<(u32, Header), ModelFileError> {
-    let truncated = || ModelFileError::Truncated { found: bytes.len() };
-    let rest = bytes.strip_prefix(MAGIC).ok_or(ModelFileError::NotAModel)?;
-    let (version, rest) = rest.split_first_chunk::<4>().ok_or_else(truncated)?;
-    let (length, rest) = rest.split_first_chunk::<4>().ok_or_else(truncated)?;
-    let header = rest
-        .get(..u32::from_le_bytes(*length) as usize)
-        .ok_or_else(truncated)?;
-    let header = serde_json::from_slice(header).map_err(|error| undecodable("header", &error))?;
-    Ok((u32::from_le_bytes(*version), header))
-}
-
-fn write_container(
-    version: u32,
-    kind: &str,
-    provenance: &Provenance,
-    payload: &[u8],
-) -> Result<Vec<u8>, ModelFileError> {
-    let header = serde_json::to_vec(&Header {
-        kind: kind.to_owned(),
-        written_by: env!("CARGO_PKG_VERSION").to_owned(),
-        provenance: provenance.clone(),
-    })
-    .map_err(|error| undecodable("header", &error))?;
-    let mut bytes = MAGIC.to_vec();
-    bytes.extend_from_slice(&version.to_le_bytes());
-    bytes.extend_from_slice(&(header.len() as u32).to_le_bytes());
-    bytes.extend_from_slice(&header);
-    bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
-    bytes.extend_from_slice(payload);
-    let checksum = crc32fast::hash(&bytes);
-    bytes.extend_from_slice(&checksum.to_le_bytes());
-    Ok(bytes)
-}
-
-fn read_container(bytes: &[u8]) -> Result<(u32, Header, &[u8]), ModelFileError> {
-    if !bytes.starts_with(MAGIC) {
-        return Err(ModelFileError::NotAModel);
-    }
-    let truncated = || ModelFileError::Truncated { found: bytes.len() };
-    // The checksum comes before the header is decoded: a damaged length or header must not be taken at its word. A
-    // newer file is the exception, for it may end differently.
-    let version = bytes
-        .get(MAGIC.len()..)
-        .and_then(<[u8]>::first_chunk::<4>)
-        .ok_or_else(truncated)?;
-    let version = u32::from_le_bytes(*version);
-    if version > FORMAT_VERSION {
-        let written_by = read_header(bytes).map_or_else(
-            |_| "an unknown version".to_owned(),
-            |(_, header)| header.written_by,
-        );
-        return Err(ModelFileError::Newer {
-            version,
-            written_by,
-        });
-    }
-    let header_length = bytes
-        .get(MAGIC.len() + 4..)
-        .and_then(<[u8]>::first_chunk::<4>)
-        .ok_or_else(truncated)?;
-    let payload_length_at = MAGIC.len() + 8 + u32::from_le_bytes(*header_length) as usize;
-    let payload_length = bytes
-        .get(payload_length_at..)
-        .and_then(<[u8]>::first_chunk::<8>)
-        .ok_or_else(truncated)?;
-    let payload_at = payload_length_at + 8;
-    let payload_end = usize::try_from(u64::from_le_bytes(*payload_length))
-        .ok()
-        .and_then(|length| payload_at.checked_add(length))
-        .ok_or_else(truncated)?;
-    let payload = bytes.get(payload_at..payload_end).ok_or_else(truncated)?;
-    let checksum = bytes
-        .get(payload_end..)
-        .and_then(<[u8]>::first_chunk::<4>)
-        .ok_or_else(truncated)?;
-    if crc32fast::hash(&bytes[..payload_end]) != u32::from_le_bytes(*checksum) {
-        return Err(ModelFileError::Damaged);
-    }
-    let (_, header) = read_header(bytes)?;
-    Ok((version, header, payload))
 }
 
 fn undecodable(part: &'static str, error: &dyn core::fmt::Display) -> ModelFileError {

@@ -4,7 +4,7 @@
 //! what differs from step to step within a state is gone. Both are added to it after it is solved: tables over the step's phase for
 //! what repeats, and coloured noise for what does not.
 
-use crate::gait_model::{ModelError, check_finite, check_len, check_positive};
+use crate::check::{ModelError, check_finite, check_len, check_positive};
 use crate::layout::FEATURE_COUNT;
 
 /// Points of a table over a step, equally spaced in time; the next step's table goes on where this one ends.

@@ -5,7 +5,7 @@
 //! frames are the paper's lower level, template states of a left-to-right Markov chain. A frame's two rows are the means of the joint
 //! Gaussian of equation 2; what the Gaussians of a phase share is its regression U^XY (U^YY)⁻¹ of equation 6.
 
-use crate::gait_model::ModelError;
+use crate::check::ModelError;
 use crate::layout::FEATURE_COUNT;
 use crate::provenance::Provenance;
 use footfall_core::{PhaseKind, Site, Skeleton};

@@ -3,7 +3,7 @@
 //! A jump has five phases: the body goes down, pushes off until take-off, flies, takes up the fall until it is lowest, and stands up. Each phase is a
 //! mean course over its own time, as a linear regression on how high and how far the jump goes.
 
-use crate::gait_model::{ModelError, check_finite, check_len, check_positive};
+use crate::check::{ModelError, check_finite, check_len, check_positive};
 use crate::layout::FEATURE_COUNT;
 
 /// Numbers of a posture beside standing: a rotation vector for each joint, in the joint's own frame, in the order of the

@@ -5,6 +5,7 @@
 //!
 //! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`imu_model`], [`standing`], [`jumping`], [`crouching`], [`provenance`], [`mod@file`].
 
+mod check;
 pub mod crouching;
 pub mod dynamics;
 pub mod file;
@@ -17,6 +18,7 @@ pub mod provenance;
 pub mod standing;
 pub mod style;
 
+pub use check::ModelError;
 pub use crouching::CrouchModel;
 pub use dynamics::{DynamicsModel, Regime, SEGMENT_SLACK};
 pub use file::{FORMAT_VERSION, ModelFileError, WalkModel};
@@ -24,8 +26,8 @@ pub use fine_motion::{
     FINE_POINTS, FINE_REACH, FINE_TAPS, FineChance, FineMotion, FineTable, MAX_FINE_DIRECTIONS,
 };
 pub use gait_model::{
-    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, SpeedResponse, StateModel,
-    StepContext, StepModel, StepOffset, Variation,
+    GaitModel, GlobalVarianceModel, STATES_PER_STEP, SpeedResponse, StateModel, StepContext,
+    StepModel, StepOffset, Variation,
 };
 pub use imu_model::ImuModel;
 pub use jumping::{

@@ -3,7 +3,7 @@
 //! Motion is a sum of seeded noises of octaves (Perlin 1985), each a stationary Gaussian process with a covariance of its own, of looks that jump
 //! and hold, and of breathing. Everything is an offset of the posture: a rotation of each joint after its own, and the hips' way over feet that stay.
 
-use crate::gait_model::{ModelError, check_finite, check_len, check_positive};
+use crate::check::{ModelError, check_finite, check_len, check_positive};
 use crate::layout::{FEATURE_COUNT, feature_offset, mirror};
 use footfall_core::rotation::{exp_map, log_map};
 use footfall_core::{Joint, Side};

@@ -4,10 +4,8 @@ mod running;
 
 pub use running::carried_posture_share;
 
-use crate::gait_model::{
-    GaitModel, GlobalVarianceModel, ModelError, STATES_PER_STEP, StateModel, StepModel, check_len,
-    check_positive,
-};
+use crate::check::{ModelError, check_len, check_positive};
+use crate::gait_model::{GaitModel, GlobalVarianceModel, STATES_PER_STEP, StateModel, StepModel};
 use crate::layout::{FEATURE_COUNT, OBSERVATION_COUNT, feature_offset};
 use crate::provenance::Provenance;
 use footfall_core::Joint;

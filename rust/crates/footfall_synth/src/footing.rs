@@ -1,8 +1,10 @@
 //! The walk and the ground that it is put on: where feet will land, and steps that are to land elsewhere.
 
-use crate::generator::{Footstep, GaitGenerator, GroundTransform};
+use crate::footstep::Footstep;
+use crate::generator::GaitGenerator;
 use crate::plan::StepShape;
 use crate::stage::{Arrival, Stage};
+use footfall_core::GroundTransform;
 use footfall_core::rotation::from_heading;
 use footfall_ik::placement::{Frame, Landing};
 use glam::Vec3;

@@ -1,8 +1,10 @@
 //! The streaming generator: one walker, for as long as you like.
 
+use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::gait::{FASTEST_RUN_MPS, Gait, GaitChoice};
+use crate::footstep::Footstep;
+use crate::gait::Gait;
 use crate::moves::{Leap, Moves};
 use crate::plan::StepShape;
 use crate::planting::PlantedFrame;
@@ -11,11 +13,10 @@ use crate::standing::Life;
 use crate::steps::{Ask, Steps};
 use crate::styled::StyledSteps;
 use crate::switching::SwitchingSteps;
-use footfall_core::rotation::{blend_near, from_heading, wrap_angle};
-use footfall_core::{Joint, Pose, Side, Skeleton};
-use footfall_ik::{Plant, RockerFoot};
+use footfall_core::rotation::{blend_near, from_heading};
+use footfall_core::{GroundTransform, Joint, Pose, Side, Skeleton};
 use footfall_model::DynamicsModel;
-use glam::{Quat, Vec2, Vec3};
+use glam::Quat;
 use std::sync::Arc;
 
 /// Initial contacts that one call of [`GaitGenerator::step`] reports at most.
@@ -23,13 +24,6 @@ const MAX_FOOTSTEPS: usize = 64;
 
 /// A single call advances by this much at most, seconds.
 pub(crate) const MAX_DT_SECS: f32 = 10.0;
-
-/// Slower and turning less than this is standing.
-pub(crate) const STANDING_SPEED_MPS: f32 = 0.1;
-const STANDING_TURN_RATE_RADPS: f32 = 0.05;
-
-/// Fastest turning that is walked.
-const MAX_TURN_RATE_RADPS: f32 = 3.5;
 
 /// Closer than this share of a frame counts as on it: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;
@@ -43,107 +37,6 @@ pub struct GeneratorConfig {
     pub phase: f32,
     /// Deviation of walkers and steps from the average: 0 not at all, 1 as in the recordings.
     pub variation: f32,
-}
-
-/// Requests to a walker. A walker whose foot is in the air obeys at once, where enough of the step is left; otherwise it takes effect with the next
-/// step, as all do of runners, of walkers in less than full detail and of those of a [`DynamicsModel`].
-///
-/// A speed and turn rate near zero stop the walker within two steps; it stands until one of them rises. Turning without
-/// speed turns in place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Controls {
-    /// Speed over the ground, m/s.
-    pub speed_mps: f32,
-    /// Turning, rad/s, positive to the left.
-    pub turn_rate_radps: f32,
-    /// Direction of travel, relative to where the walker faces: 0 forwards, π/2 to the left, ±π backwards. Steps to the side and backwards
-    /// are shorter than those forwards: an adult reaches about 0.65 m/s sideways and 1 m/s backwards, whatever speed is asked for.
-    pub direction_rad: f32,
-    /// Walking or running, where the model knows both.
-    pub gait: GaitChoice,
-    /// Depth of the crouch, from 0, upright, to 1, as low as the model's people; takes effect at once. Who crouches goes no faster than those do.
-    pub crouch: f32,
-}
-
-impl Controls {
-    /// Standing still.
-    pub const STAND: Self = Self {
-        speed_mps: 0.0,
-        turn_rate_radps: 0.0,
-        direction_rad: 0.0,
-        gait: GaitChoice::Auto,
-        crouch: 0.0,
-    };
-
-    /// The velocity that is walked, to the left and forwards from where the walker faces.
-    pub(crate) fn velocity(self) -> Vec2 {
-        let direction = wrap_angle(finite_or(self.direction_rad, 0.0));
-        if direction == 0.0 {
-            return self.speed() * Vec2::Y;
-        }
-        self.speed() * Vec2::new(direction.sin(), direction.cos())
-    }
-
-    /// The turning that is walked: within bounds, and none where it is not finite.
-    pub(crate) fn turn_rate(self) -> f32 {
-        finite_or(self.turn_rate_radps, 0.0).clamp(-MAX_TURN_RATE_RADPS, MAX_TURN_RATE_RADPS)
-    }
-
-    /// The speed that is walked.
-    pub(crate) fn speed(self) -> f32 {
-        finite_or(self.speed_mps, 0.0).clamp(0.0, FASTEST_RUN_MPS)
-    }
-
-    /// Returns true when this asks for neither travel nor turning, so that the walker stands.
-    pub fn is_standing(self) -> bool {
-        finite_or(self.speed_mps, 0.0) < STANDING_SPEED_MPS
-            && finite_or(self.turn_rate_radps, 0.0).abs() < STANDING_TURN_RATE_RADPS
-    }
-}
-
-/// A place on the ground with a heading: `start_from_character` and the like.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GroundTransform {
-    /// Position with y = 0, metres.
-    pub position: Vec3,
-    /// Heading in radians, positive to the left.
-    pub heading: f32,
-}
-
-impl GroundTransform {
-    /// A place of the space that this one is in, as it is seen from here.
-    pub(crate) fn local(&self, place: &Self) -> Self {
-        Self {
-            position: from_heading(-self.heading) * (place.position - self.position),
-            heading: wrap_angle(place.heading - self.heading),
-        }
-    }
-}
-
-/// An initial contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Footstep {
-    /// The foot.
-    pub side: Side,
-    /// The ground under the ankle, in the space where the walk began, metres.
-    pub position: Vec3,
-    /// Heading of the foot in that space, radians.
-    pub heading: f32,
-}
-
-impl Footstep {
-    /// A foot that was put there, as it is seen from a place of the same space.
-    pub(crate) fn seen_from(from: &GroundTransform, side: Side, plant: &Plant) -> Self {
-        let place = from.local(&GroundTransform {
-            position: RockerFoot::footprint(plant),
-            heading: plant.heading,
-        });
-        Self {
-            side,
-            position: place.position,
-            heading: place.heading,
-        }
-    }
 }
 
 /// Walks one body in real time, in styles of a [`GaitModel`](footfall_model::GaitModel) or as a [`DynamicsModel`] does.
@@ -485,8 +378,4 @@ pub(crate) fn check(skeleton: &Skeleton, config: &GeneratorConfig) -> Result<Sid
     }
     let phase = config.phase.rem_euclid(1.0);
     Ok(if phase < 0.5 { Side::Left } else { Side::Right })
-}
-
-fn finite_or(value: f32, otherwise: f32) -> f32 {
-    if value.is_finite() { value } else { otherwise }
 }

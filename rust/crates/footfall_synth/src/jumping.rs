@@ -3,8 +3,10 @@
 //! A standing walker jumps off both feet ([`moves`](crate::moves)). One that walks or runs forwards leaps: the next step is one of the run whose flight lasts as
 //! long as the rise takes ([`StepPlan::leap`](crate::plan::StepPlan::leap)). Who goes sideways, backwards or hardly at all comes to a stand first.
 
+use crate::controls::Controls;
+use crate::footstep::Footstep;
 use crate::gait::{FASTEST_RUN_MPS, WIDEST_RUN_RAD};
-use crate::generator::{Controls, Footstep, GaitGenerator};
+use crate::generator::GaitGenerator;
 use crate::moves::{JumpPhase, Leap, Moves};
 use crate::steps::Steps;
 use footfall_core::Side;

@@ -5,11 +5,13 @@
 //! the ground (`stage` and `planting`, on `rocker` feet). What the whole body does on top of its steps, crouching and jumping, is in `moves`. [`GaitGenerator`] does so in real time; [`synthesize`] solves a whole walk
 //! at once.
 
+mod controls;
 mod crowd;
 mod detail;
 mod error;
 mod fine_motion;
 mod footing;
+mod footstep;
 mod gait;
 mod generator;
 mod jumping;
@@ -40,11 +42,14 @@ mod workbench;
 pub mod workload;
 mod worn;
 
+pub use controls::Controls;
 pub use crowd::{CrowdPose, CrowdWalker, StyledBody, Workshop};
 pub use detail::Detail;
 pub use error::SynthError;
+pub use footfall_core::GroundTransform;
+pub use footstep::Footstep;
 pub use gait::{Gait, GaitChoice};
-pub use generator::{Controls, Footstep, GaitGenerator, GeneratorConfig, GroundTransform};
+pub use generator::{GaitGenerator, GeneratorConfig};
 pub use looped::LoopedWalk;
 pub use moves::JumpPhase;
 pub use recording::{

@@ -1,9 +1,12 @@
 //! Walks that end as they begin, for tools that play clips.
 
-use crate::generator::{Controls, GaitGenerator, GroundTransform};
+use crate::controls::Controls;
+use crate::generator::GaitGenerator;
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{from_heading, wrap_angle};
-use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, forward_kinematics};
+use footfall_core::{
+    GroundTransform, JOINT_COUNT, Joint, ModelPose, Pose, Side, forward_kinematics,
+};
 use glam::{Quat, Vec3};
 
 /// Walked before anything is kept, seconds: speed and style have settled.

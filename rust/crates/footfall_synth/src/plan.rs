@@ -1,31 +1,19 @@
 //! Plan of the coming steps: how long their states last and what their means are.
 
 mod offsets;
+mod planner;
 
 use crate::detail::Detail;
 use crate::fine_motion::FineDraw;
 use crate::gait::{GRAVITY_MPS2, Gait};
 use crate::planting::StepTiming;
 use crate::standing::{Amplitude, START_TERMINAL};
-use crate::statistics::{Part, STEP_MEANS, Statistics};
+use crate::statistics::STEP_MEANS;
 use footfall_core::{Side, StepPosition};
-use footfall_model::{GaitModel, OBSERVATION_COUNT, STATES_PER_STEP};
+use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::mlpg::Real;
-use offsets::Offsets;
 pub(crate) use offsets::Sum;
-use rand::SeedableRng as _;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution as _, StandardNormal};
-use std::sync::Arc;
-
-/// Components of the variation that a step can hold; a model has no more.
-pub(crate) const MAX_COMPONENTS: usize = 16;
-
-/// Weights of components stay within this many standard deviations, so that every walker is a plausible one.
-const MAX_WALKER_WEIGHT: f64 = 2.0;
-
-/// The same for steps, which are many: cut off closer, they would be too alike.
-const MAX_STEP_WEIGHT: f64 = 2.5;
+pub(crate) use planner::{MAX_COMPONENTS, Planner};
 
 /// Share of a running step that is spent in the air at most.
 const LONGEST_FLIGHT: f64 = 0.6;
@@ -246,181 +234,5 @@ impl StepPlan<f32> {
         timing.terminal = warped(timing.terminal).clamp(1, timing.frames - 2);
         timing.take_off = Some(warped(take_off).clamp(2, timing.frames - 1));
         self.shape.detail = Detail::Full;
-    }
-}
-
-/// One walker: draws steps that vary as the corpus does.
-#[derive(Clone, Debug)]
-pub(crate) struct Planner {
-    model: Arc<GaitModel>,
-    rng: ChaCha8Rng,
-    variation: f64,
-    /// Identity of this walker: weights of the model's walker components.
-    walker: [f64; MAX_COMPONENTS],
-    /// The last stride's weights.
-    weights: [f64; MAX_COMPONENTS],
-}
-
-impl Planner {
-    /// A walker drawn by `seed`; `variation` scales how far it and its steps stray from the average.
-    pub(crate) fn new(model: &Arc<GaitModel>, seed: u64, variation: f64) -> Self {
-        let mut planner = Self {
-            model: Arc::clone(model),
-            rng: ChaCha8Rng::seed_from_u64(seed),
-            variation,
-            walker: [0.0; MAX_COMPONENTS],
-            weights: [0.0; MAX_COMPONENTS],
-        };
-        for component in 0..model.variation.walker.len().min(MAX_COMPONENTS) {
-            planner.walker[component] = planner.normal(MAX_WALKER_WEIGHT);
-        }
-        for component in 0..MAX_COMPONENTS {
-            planner.weights[component] = planner.normal(MAX_STEP_WEIGHT);
-        }
-        planner
-    }
-
-    /// Identity of this walker: weights of the model's walker components.
-    pub(crate) fn walker(&self) -> &[f64; MAX_COMPONENTS] {
-        &self.walker
-    }
-
-    /// Is the walker that [`new`](Self::new) made of these, in another place of its walk: see [`resume`](Self::resume).
-    pub(crate) fn become_walker(
-        &mut self,
-        model: &Arc<GaitModel>,
-        seed: u64,
-        variation: f64,
-        walker: [f64; MAX_COMPONENTS],
-    ) {
-        self.model = Arc::clone(model);
-        self.rng = ChaCha8Rng::seed_from_u64(seed);
-        self.variation = variation;
-        self.walker = walker;
-    }
-
-    /// Wears another mixture of styles from the next step that is worked out.
-    pub(crate) fn wear(&mut self, model: &Arc<GaitModel>) {
-        self.model = Arc::clone(model);
-    }
-
-    /// Position of the random generator.
-    pub(crate) fn chance_position(&self) -> u64 {
-        // No walk draws 2^64 numbers.
-        self.rng.get_word_pos() as u64
-    }
-
-    /// Takes chance up where [`chance_position`](Self::chance_position) was, after these steps.
-    pub(crate) fn resume(&mut self, chance_position: u64, last: &[StepDraw]) {
-        self.rng.set_word_pos(u128::from(chance_position));
-        if let Some(draw) = last.last() {
-            self.weights = draw.weights;
-        }
-    }
-
-    /// Draws the next step that begins with this foot's initial contact. A stride begins with the left foot's, and both its steps have
-    /// the same weights: drawn one by one, a slow step would be followed by a fast one as often as not, and the walker limp.
-    pub(crate) fn draw(&mut self, side: Side) -> StepDraw {
-        if side == Side::Left {
-            let memory = self.model.variation.step_correlation.clamp(0.0, 0.99);
-            let news = (1.0 - memory * memory).sqrt();
-            for component in 0..MAX_COMPONENTS {
-                let fresh = self.normal(MAX_STEP_WEIGHT);
-                let weight = &mut self.weights[component];
-                *weight =
-                    (memory * *weight + news * fresh).clamp(-MAX_STEP_WEIGHT, MAX_STEP_WEIGHT);
-            }
-        }
-        StepDraw {
-            side,
-            weights: self.weights,
-        }
-    }
-
-    /// Frames of the longest step that [`realise`](Self::realise) can make.
-    pub(crate) fn longest_step(model: &GaitModel) -> usize {
-        let longest = (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize + STATES_PER_STEP;
-        Detail::Quarter.whole_frames(longest)
-    }
-
-    /// The step of this walker without chance, for measuring.
-    pub(crate) fn mean_draw(side: Side) -> StepDraw {
-        StepDraw {
-            side,
-            weights: [0.0; MAX_COMPONENTS],
-        }
-    }
-
-    /// Works out a drawn step; the statistics are those of the mixture that is worn.
-    pub(crate) fn realise<R: Sum>(
-        &self,
-        draw: &StepDraw,
-        manner: Manner,
-        statistics: &Statistics<R>,
-        plan: &mut StepPlan<R>,
-    ) {
-        self.realise_from(draw, manner, 0, statistics, plan);
-    }
-
-    /// Works out how a drawn step ends: its frames, but the means of the states from this one on only.
-    pub(crate) fn realise_from<R: Sum>(
-        &self,
-        draw: &StepDraw,
-        manner: Manner,
-        from_state: usize,
-        statistics: &Statistics<R>,
-        plan: &mut StepPlan<R>,
-    ) {
-        let Manner {
-            pace,
-            position,
-            detail,
-        } = manner;
-        let side = draw.side.index();
-        let model = &self.model;
-        let deviation = pace.covariate_mps - model.speed.reference_mps;
-        let mut offsets = Offsets::of(Part::Speed, &model.speed.slopes[side], deviation);
-        if let Some(index) = model.context(position, draw.side) {
-            // Who turns on the spot hardly sets out.
-            let context = &model.contexts[index].offset;
-            offsets.add(Part::Context(index), context, pace.stride.min(1.0));
-        }
-        let walkers = model.variation.walker.iter().zip(&self.walker);
-        for (index, (component, weight)) in walkers.enumerate() {
-            let weight = self.variation * weight;
-            offsets.add(Part::Walker(index), &component[side], weight);
-        }
-        let steps = model.variation.step.iter().zip(&draw.weights);
-        for (index, (component, weight)) in steps.enumerate() {
-            let weight = self.variation * weight;
-            offsets.add(Part::Step(index), &component[side], weight);
-        }
-
-        let within = from_state * OBSERVATION_COUNT..STEP_MEANS;
-        offsets.add_means(statistics, draw.side, within, &mut plan.means);
-        let step = &model.steps[side];
-        let mut elapsed = 0.0;
-        let mut passed = 0;
-        for (state, parameters) in step.states.iter().enumerate() {
-            let longest = MAX_STEP_SECS * model.frame_rate_hz / STATES_PER_STEP as f64;
-            let stretch = offsets.log_duration(state).clamp(-1.5, 1.5).exp();
-            let frames = parameters.duration_mean * stretch / pace.tempo;
-            // Rounding the running sum keeps the step's duration true to half a frame.
-            elapsed += frames.clamp(1.0, longest);
-            let end = (elapsed.round() as usize).max(passed + 1);
-            plan.state_frames[state] = end - passed;
-            passed = end;
-        }
-        let detail = detail.holding(passed);
-        let whole = detail.whole_frames(passed);
-        plan.state_frames[STATES_PER_STEP - 1] += whole - passed;
-        let terminal = step.other_terminal + offsets.other_terminal();
-        plan.shape = StepShape::of_walk(draw.side, whole, terminal, pace.stride, detail);
-        plan.fine = FineDraw::new(model, &self.walker, draw, self.variation);
-    }
-
-    fn normal(&mut self, most: f64) -> f64 {
-        let value: f64 = StandardNormal.sample(&mut self.rng);
-        value.clamp(-most, most)
     }
 }

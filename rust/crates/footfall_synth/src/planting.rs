@@ -7,20 +7,23 @@
 
 mod balance;
 mod bounce;
+mod carried;
 mod cut;
 mod flight;
 mod heel;
 mod lean;
 mod lift;
+mod reach;
 mod support;
 mod surge;
 mod swing;
+mod timing;
 mod travel;
 mod urge;
 
-use crate::generator::GroundTransform;
 use crate::raw::RawFrame;
 use crate::strafe::{Strafe, Turner};
+pub(crate) use carried::PlanterState;
 use core::ops::Range;
 pub(crate) use cut::Cut;
 pub(crate) use flight::Airborne;
@@ -30,7 +33,9 @@ use footfall_core::{Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
 use glam::{Quat, Vec2, Vec3};
 pub(crate) use lean::{Lean, Pull};
+use reach::{within_reach, yielding};
 use swing::Swing;
+pub(crate) use timing::StepTiming;
 pub(crate) use urge::SpeedChange;
 
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once. A step forwards lands straighter than
@@ -59,35 +64,6 @@ pub(crate) struct PlantedFrame {
     pub(crate) contact: [bool; 2],
 }
 
-/// One step in frames of the model.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct StepTiming {
-    /// The foot whose initial contact begins the step, at frame 0.
-    pub(crate) leading: Side,
-    /// Frames until the other foot's initial contact.
-    pub(crate) frames: usize,
-    /// The last frame in which the other foot is still on the ground from its step before.
-    pub(crate) terminal: usize,
-    /// In a run the last frame in which the leading foot bears: from then until the step ends both are in the air.
-    pub(crate) take_off: Option<usize>,
-    /// True when the other foot is in the air as the step begins: it took off in the step before.
-    pub(crate) airborne: bool,
-    /// True when both feet bear the body from its end on.
-    pub(crate) rests: bool,
-}
-
-impl StepTiming {
-    /// Returns true when the foot that begins the step bears in a frame of it.
-    pub(crate) fn leading_bears(&self, frame: usize) -> bool {
-        self.take_off.is_none_or(|last| frame <= last)
-    }
-
-    /// Returns true when the other foot still bears in a frame of it.
-    pub(crate) fn trailing_bears(&self, frame: usize) -> bool {
-        !self.airborne && frame <= self.terminal
-    }
-}
-
 /// Carries plants, hips and heading from step to step.
 #[derive(Clone, Debug)]
 pub(crate) struct Planter {
@@ -96,29 +72,6 @@ pub(crate) struct Planter {
     leg_lengths: [f32; 2],
     frame_secs: f32,
     state: PlanterState,
-}
-
-/// State that goes from step to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PlanterState {
-    pub(crate) plants: [Plant; 2],
-    pub(crate) hips: Vec3,
-    /// Velocity of the hips in the last frame, m/s; none before the first step.
-    pub(crate) hips_velocity: Option<Vec3>,
-    pub(crate) heading: f32,
-    pub(crate) turn_rate: f32,
-    pub(crate) ground_position: Vec3,
-    pub(crate) ground_velocity: Option<Vec3>,
-    /// Factor on the legs' reach at the end of the last step.
-    pub(crate) stride: f32,
-    /// Strafe of the last step.
-    pub(crate) strafe: Strafe,
-    /// Shift of both feet with which it landed in balance, to the left and forwards.
-    pub(crate) balance: Vec2,
-    /// The foot that took off in the last step, if that was one of a run.
-    pub(crate) airborne: Option<Airborne>,
-    /// Lean of the trunk.
-    pub(crate) lean: Lean,
 }
 
 impl AsRef<Pose> for PlantedFrame {
@@ -130,32 +83,6 @@ impl AsRef<Pose> for PlantedFrame {
 impl AsMut<Pose> for PlantedFrame {
     fn as_mut(&mut self) -> &mut Pose {
         &mut self.pose
-    }
-}
-
-impl PlanterState {
-    /// The same feet and hips for a walker who is at `to` instead of at `from`.
-    pub(crate) fn moved(&self, from: &GroundTransform, to: &GroundTransform) -> Self {
-        let turn = to.heading - from.heading;
-        let rotation = from_heading(turn);
-        let point = |point: Vec3| to.position + rotation * (point - from.position);
-        Self {
-            plants: self.plants.map(|plant| Plant {
-                flat_ankle: point(plant.flat_ankle),
-                heading: plant.heading + turn,
-            }),
-            hips: point(self.hips),
-            hips_velocity: self.hips_velocity.map(|velocity| rotation * velocity),
-            heading: self.heading + turn,
-            turn_rate: self.turn_rate,
-            ground_position: point(self.ground_position),
-            ground_velocity: self.ground_velocity.map(|velocity| rotation * velocity),
-            stride: self.stride,
-            strafe: self.strafe,
-            balance: self.balance,
-            airborne: self.airborne.map(|foot| foot.moved(from, to)),
-            lean: self.lean,
-        }
     }
 }
 
@@ -466,19 +393,4 @@ fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget 
         foot,
         toes: foot,
     }
-}
-
-/// A swinging leg that gets ever harder to stretch from one length to the other: one that is straightened all at once snaps its knee. The factors on its reach.
-fn yielding(reach: f32x8, [from, most]: [f32x8; 2]) -> f32x8 {
-    let room = most - from;
-    let beyond = (reach - from).fast_max(f32x8::ZERO);
-    let yielded = from + room * (f32x8::ONE - (-beyond / room).exp());
-    reach.simd_gt(from).bitselect(yielded / reach, f32x8::ONE)
-}
-
-/// The shift over the ground that brings the end of a leg within reach of the hip.
-fn within_reach(ankle_from_hip: Vec3, reach: f32) -> Vec3 {
-    let level = Vec3::new(ankle_from_hip.x, 0.0, ankle_from_hip.z);
-    let level_reach = (reach * reach - ankle_from_hip.y.powi(2)).max(0.0).sqrt();
-    level.clamp_length_max(level_reach) - level
 }

@@ -1,7 +1,8 @@
 //! Whole walks as the streaming generator walks them.
 
+use crate::controls::Controls;
 use crate::error::SynthError;
-use crate::generator::{Controls, GaitGenerator, GeneratorConfig};
+use crate::generator::{GaitGenerator, GeneratorConfig};
 use crate::space::StyleSpace;
 use crate::walk::{SynthesizedWalk, WalkConfig};
 use footfall_core::rotation::from_heading;

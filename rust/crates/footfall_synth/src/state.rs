@@ -5,6 +5,7 @@
 //! made again from the model.
 
 mod climbing;
+mod feet;
 mod moving;
 mod quick;
 mod running;
@@ -12,15 +13,13 @@ mod source;
 
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::generator::{GaitGenerator, GeneratorConfig, GroundTransform};
-use crate::planting::{Lean, PlanterState};
+use crate::generator::{GaitGenerator, GeneratorConfig};
 use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
-use crate::strafe::Strafe;
 use climbing::Climbing;
-use footfall_core::StepPosition;
-use footfall_ik::Plant;
-use glam::{Vec2, Vec3};
+use feet::Feet;
+use footfall_core::{GroundTransform, StepPosition};
+use glam::Vec3;
 use moving::Moving;
 use quick::Quick;
 use running::Running;
@@ -129,21 +128,6 @@ struct Alive {
     secs: f64,
     share: f32,
     speed: f32,
-}
-
-/// Feet and hips that a step takes over from the one before.
-#[derive(Serialize, Deserialize)]
-struct Feet {
-    /// Flat ankle and heading, left and right.
-    plants: [[f32; 4]; 2],
-    hips: [f32; 3],
-    hips_velocity: Option<[f32; 3]>,
-    heading: f32,
-    turn_rate: f32,
-    ground_position: [f32; 3],
-    ground_velocity: Option<[f32; 3]>,
-    stride: f32,
-    strafe: Strafe,
 }
 
 impl GaitGenerator {
@@ -372,55 +356,4 @@ fn is_reasonable(value: f64) -> bool {
 fn detail_of(index: u8) -> Detail {
     let detail = Detail::ALL.get(usize::from(index));
     detail.copied().unwrap_or_default()
-}
-
-impl Feet {
-    fn of(planter: &PlanterState) -> Self {
-        Self {
-            plants: planter.plants.map(|plant| {
-                let [x, y, z] = plant.flat_ankle.to_array();
-                [x, y, z, plant.heading]
-            }),
-            hips: planter.hips.to_array(),
-            hips_velocity: planter.hips_velocity.map(|v| v.to_array()),
-            heading: planter.heading,
-            turn_rate: planter.turn_rate,
-            ground_position: planter.ground_position.to_array(),
-            ground_velocity: planter.ground_velocity.map(|v| v.to_array()),
-            stride: planter.stride,
-            strafe: planter.strafe,
-        }
-    }
-
-    fn planter(&self) -> PlanterState {
-        PlanterState {
-            plants: self.plants.map(|[x, y, z, heading]| Plant {
-                flat_ankle: Vec3::new(x, y, z),
-                heading,
-            }),
-            hips: self.hips.into(),
-            hips_velocity: self.hips_velocity.map(Vec3::from),
-            heading: self.heading,
-            turn_rate: self.turn_rate,
-            ground_position: self.ground_position.into(),
-            ground_velocity: self.ground_velocity.map(Vec3::from),
-            stride: self.stride,
-            strafe: self.strafe,
-            balance: Vec2::ZERO,
-            airborne: None,
-            lean: Lean::default(),
-        }
-    }
-
-    fn numbers(&self) -> impl Iterator<Item = f32> {
-        let velocities = [self.hips_velocity, self.ground_velocity];
-        self.plants
-            .into_iter()
-            .flatten()
-            .chain(self.hips)
-            .chain(self.ground_position)
-            .chain([self.heading, self.turn_rate, self.stride])
-            .chain(self.strafe.numbers())
-            .chain(velocities.into_iter().flatten().flatten())
-    }
 }

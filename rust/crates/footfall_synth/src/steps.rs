@@ -1,8 +1,8 @@
 //! Sources of a walker's steps.
 
+use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::gait::{Gait, GaitChoice};
-use crate::generator::Controls;
 use crate::plan::StepShape;
 use crate::stage::Stage;
 use crate::standing::Amplitude;

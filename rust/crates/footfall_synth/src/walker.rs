@@ -1,17 +1,19 @@
 //! One walker, step after step: planning, trajectory and planting in a row.
 
-use crate::detail::Detail;
+mod origin;
+mod replan;
+
+pub(crate) use origin::{Origin, Request, TIE_LEN};
+
 use crate::error::SynthError;
 use crate::fine_motion::{Scale, neighbours};
 use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan, StepShape};
-use crate::planting::PlanterState;
 use crate::rest::Rest;
 use crate::space::Blend;
 use crate::stage::{Placing, Stage};
 use crate::standing::Amplitude;
 use crate::steps::Stretches;
 use crate::workbench::Workbench;
-use footfall_core::ease::smooth_step;
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::{FEATURE_COUNT, STATES_PER_STEP};
 use glam::Vec2;
@@ -29,40 +31,6 @@ const TIE_FROM_STATE: usize = STATES_PER_STEP - TIE;
 
 /// No fine motion.
 const NO_SCALE: Scale = [0.0; FEATURE_COUNT];
-
-/// Numbers that tie a window to the one before.
-pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;
-
-/// Request for one step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Request {
-    pub(crate) manner: Manner,
-    pub(crate) amplitude: Amplitude,
-    /// Turning at its end, rad/s.
-    pub(crate) turn_rate: f32,
-    /// Travel to the left and forwards from where the walker faces.
-    pub(crate) velocity_mps: Vec2,
-    /// Heading under which the walk goes along +Z, radians: people hold their hips a little askew.
-    pub(crate) facing: f32,
-    /// Rise of the hips in a leap, if it is one, metres.
-    pub(crate) leap_m: Option<f32>,
-}
-
-/// Origin of the current step: with the planner's and the styles' state all that it takes to make it again.
-#[derive(Clone, Debug)]
-pub(crate) struct Origin {
-    pub(crate) request: Request,
-    /// The manner and the facing of the step before.
-    pub(crate) manner_before: Manner,
-    pub(crate) facing_before: f32,
-    /// Velocity of the step before.
-    pub(crate) velocity_before_mps: Vec2,
-    /// The feet before the step; `None` for the first.
-    pub(crate) planter: Option<PlanterState>,
-    pub(crate) tie: [f32; TIE_LEN],
-    /// Rest of a step that was planned anew, where the current one is that.
-    pub(crate) rest: Option<Rest>,
-}
 
 /// One walker between the planner's draws and frames on the ground; allocates nothing after it was made.
 #[derive(Debug)]
@@ -313,52 +281,6 @@ impl Walker {
             rest.hold(&mut self.plans[0]);
             self.plans[0].fine = fine;
         }
-    }
-
-    /// Plans the rest of the current step anew from a frame of it on, where one foot is in the air and enough is left; whether it did. `request` makes of
-    /// the current request what is asked for now.
-    pub(crate) fn replan(
-        &mut self,
-        planner: &mut Planner,
-        frame: usize,
-        request: impl FnOnce(&Request, f64, f64) -> Request,
-        bench: &mut Workbench,
-    ) -> bool {
-        let shape = self.plans[1].shape;
-        let before = self.origin.request;
-        let same = Arc::ptr_eq(&self.blend_before, &self.blend);
-        let usual = before.amplitude == Amplitude::WALK && before.manner.detail == Detail::Full;
-        let (Some(begun), true) = (self.origin.planter, same && usual) else {
-            return false;
-        };
-        let Some(rest) = Rest::of(&self.plans[1], frame, self.origin.rest) else {
-            return false;
-        };
-        let blends = [&*self.blend_before, &*self.blend];
-        let placing = placing(&self.origin, &self.plans, blends, 1);
-        let Some(feet) = self.stage.cut(&shape, frame, &begun, &placing) else {
-            return false;
-        };
-        // Nobody kept the trajectory.
-        bench.go_on(&self.blend.statistics, &self.plans, &self.origin.tie, false);
-        let tie = bench.tie_at(frame);
-        let whole = shape.timing.frames as f64 / (1.0 - self.passed());
-        let [facing_before, facing] = [self.origin.facing_before, before.facing];
-        let share = smooth_step(frame as f32 / shape.timing.frames as f32);
-        self.origin = Origin {
-            request: request(&before, whole, f64::from(rest.passed)),
-            manner_before: before.manner,
-            facing_before: facing_before + share * (facing - facing_before),
-            velocity_before_mps: before.velocity_mps,
-            planter: Some(feet),
-            tie,
-            rest: Some(rest),
-        };
-        self.stage.resume(&feet);
-        self.stale = false;
-        self.realise(planner, 1, bench);
-        self.solve_tied(bench);
-        true
     }
 
     /// The share of the current step that had passed when it was planned anew.

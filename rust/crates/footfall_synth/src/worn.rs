@@ -1,9 +1,9 @@
 //! A mixture of styles on one body, and what it makes of the next step that is asked for.
 
+use crate::controls::STANDING_SPEED_MPS;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::gait::{FASTEST_RUN_MPS, FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
-use crate::generator::STANDING_SPEED_MPS;
 use crate::pace::PaceTable;
 use crate::plan::{Manner, Planner};
 use crate::space::Blend;

@@ -2,6 +2,7 @@
 
 use super::actors::Actors;
 use super::agent::Agent;
+use super::bounds::Bounds;
 use super::flock::{Flock, INSTANCE_NUMBERS, POSE_BYTES, write_instance, write_pose};
 use super::motion::{FETCHED, GROUPS};
 use super::tiers::{Chooser, Limits, Tier};
@@ -348,40 +349,6 @@ fn far(host: &Gd<Node3D>, walkers: &Walkers, room: usize, look: &Look) -> Option
         2 * room,
         look.material.as_ref(),
     )
-}
-
-/// A box around places.
-struct Bounds {
-    low: Vec3,
-    high: Vec3,
-}
-
-impl Default for Bounds {
-    fn default() -> Self {
-        Self {
-            low: Vec3::MAX,
-            high: Vec3::MIN,
-        }
-    }
-}
-
-impl Bounds {
-    fn add(&mut self, place: Vec3) {
-        self.low = self.low.min(place);
-        self.high = self.high.max(place);
-    }
-
-    /// Around the bodies of who stands there.
-    fn aabb(&self) -> Aabb {
-        let (low, high) = (
-            self.low - Vec3::new(1.5, 0.5, 1.5),
-            self.high + Vec3::new(1.5, 3.0, 1.5),
-        );
-        if low.x > high.x {
-            return Aabb::default();
-        }
-        Aabb::new(convert::vector3(low), convert::vector3(high - low))
-    }
 }
 
 /// The planes around what a camera sees, in the crowd's space: normals outwards, and distances.

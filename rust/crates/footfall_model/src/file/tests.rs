@@ -1,3 +1,4 @@
+use super::container::MAGIC;
 use super::*;
 use crate::crouching::CrouchModel;
 use crate::fine_motion::{FINE_POINTS, FINE_TAPS, FineChance, FineMotion};

@@ -1,8 +1,9 @@
 //! A step as a crowd keeps it: joints where they are drawn, in small numbers.
 
-use crate::generator::GroundTransform;
 use crate::planting::PlantedFrame;
-use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics};
+use footfall_core::{
+    GroundTransform, JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics,
+};
 use glam::{Quat, Vec3};
 use multiversion::multiversion;
 

@@ -2,9 +2,10 @@
 
 use super::CrowdWalker;
 use super::frames::CrowdFrames;
-use crate::generator::{Controls, GroundTransform};
+use crate::controls::Controls;
 use crate::plan::StepShape;
 use crate::standing::Amplitude;
+use footfall_core::GroundTransform;
 use footfall_core::rotation::from_heading;
 
 /// Place and turn of a step that is walked again.

@@ -1,9 +1,9 @@
 //! The steps of a switching model, one after the other.
 
 use super::SwitchingSteps;
+use crate::controls::STANDING_SPEED_MPS;
 use crate::detail::Detail;
 use crate::gait::{FASTEST_WALK_MPS, Gait};
-use crate::generator::STANDING_SPEED_MPS;
 use crate::plan::StepShape;
 use crate::stage::Stage;
 use crate::standing::Amplitude;

@@ -5,6 +5,7 @@
 )]
 
 pub(crate) mod natural;
+pub(crate) mod rigs;
 pub(crate) mod walker;
 
 use footfall_tests::data::recordings;

@@ -1,0 +1,57 @@
+//! Feet, hips and heading as they are carried from step to step.
+
+use super::{Airborne, Lean};
+use crate::strafe::Strafe;
+use footfall_core::GroundTransform;
+use footfall_core::rotation::from_heading;
+use footfall_ik::Plant;
+use glam::{Vec2, Vec3};
+
+/// State that goes from step to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PlanterState {
+    pub(crate) plants: [Plant; 2],
+    pub(crate) hips: Vec3,
+    /// Velocity of the hips in the last frame, m/s; none before the first step.
+    pub(crate) hips_velocity: Option<Vec3>,
+    pub(crate) heading: f32,
+    pub(crate) turn_rate: f32,
+    pub(crate) ground_position: Vec3,
+    pub(crate) ground_velocity: Option<Vec3>,
+    /// Factor on the legs' reach at the end of the last step.
+    pub(crate) stride: f32,
+    /// Strafe of the last step.
+    pub(crate) strafe: Strafe,
+    /// Shift of both feet with which it landed in balance, to the left and forwards.
+    pub(crate) balance: Vec2,
+    /// The foot that took off in the last step, if that was one of a run.
+    pub(crate) airborne: Option<Airborne>,
+    /// Lean of the trunk.
+    pub(crate) lean: Lean,
+}
+
+impl PlanterState {
+    /// The same feet and hips for a walker who is at `to` instead of at `from`.
+    pub(crate) fn moved(&self, from: &GroundTransform, to: &GroundTransform) -> Self {
+        let turn = to.heading - from.heading;
+        let rotation = from_heading(turn);
+        let point = |point: Vec3| to.position + rotation * (point - from.position);
+        Self {
+            plants: self.plants.map(|plant| Plant {
+                flat_ankle: point(plant.flat_ankle),
+                heading: plant.heading + turn,
+            }),
+            hips: point(self.hips),
+            hips_velocity: self.hips_velocity.map(|velocity| rotation * velocity),
+            heading: self.heading + turn,
+            turn_rate: self.turn_rate,
+            ground_position: point(self.ground_position),
+            ground_velocity: self.ground_velocity.map(|velocity| rotation * velocity),
+            stride: self.stride,
+            strafe: self.strafe,
+            balance: self.balance,
+            airborne: self.airborne.map(|foot| foot.moved(from, to)),
+            lean: self.lean,
+        }
+    }
+}
