@@ -6,8 +6,17 @@ use anyhow::{Context as _, Result};
 /// Builds the library, runs the measurement and prints its JSON object.
 ///
 /// # Errors
-/// When something cannot be built or had, or Godot fails.
+/// As [`measure`].
 pub(crate) fn command(instances: u32, skeletons: u32) -> Result<()> {
+    println!("{}", measure(instances, skeletons)?);
+    Ok(())
+}
+
+/// Builds the library, runs the measurement and returns its JSON object.
+///
+/// # Errors
+/// When something cannot be built or had, or Godot fails.
+pub(crate) fn measure(instances: u32, skeletons: u32) -> Result<String> {
     library::build(&library::Options::default())?;
     let engine = godot::provision()?;
     link::ensure()?;
@@ -24,6 +33,5 @@ pub(crate) fn command(instances: u32, skeletons: u32) -> Result<()> {
         .lines()
         .find_map(|line| line.strip_prefix("BENCH "))
         .context("the measurement printed no figures")?;
-    println!("{figures}");
-    Ok(())
+    Ok(figures.to_owned())
 }

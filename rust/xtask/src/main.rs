@@ -10,6 +10,7 @@
 
 mod addon;
 mod apt;
+mod bench;
 mod bench_crowd;
 mod contact_sheet;
 mod csharp;
@@ -102,6 +103,12 @@ enum Command {
         #[arg(long)]
         shipped: bool,
     },
+    /// Measure kernels and crowds on this machine, each beside its peer or limit, in one table.
+    Bench {
+        /// Keep the measurement in `rust/benchmarks`, and write `rust/BENCHMARKS.md` anew.
+        #[arg(long)]
+        keep: bool,
+    },
     /// Measure crowds in headless Godot; prints one JSON object, times in ms and µs.
     BenchCrowd {
         /// Instances.
@@ -149,6 +156,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Demo => demo::command(),
         Command::Film => film::command(),
         Command::Export { shipped } => export::command(*shipped),
+        Command::Bench { keep } => bench::command(*keep),
         Command::BenchCrowd {
             instances,
             skeletons,

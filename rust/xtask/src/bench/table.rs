@@ -1,0 +1,197 @@
+//! The table of measurements.
+
+use super::machine::Machine;
+
+/// Peer or limit of a line.
+enum Beside {
+    /// Another program or a slower way, measured in the same process: its name and its figure.
+    Peer(&'static str, &'static str),
+    /// What the project asks of itself, or others report: a number in the line's unit, and where it comes from.
+    Limit(f64, &'static str),
+}
+
+use Beside::{Limit, Peer};
+
+/// A line: what is measured, its unit, the figure, and what stands beside it.
+struct Line(&'static str, &'static str, &'static str, Beside);
+
+const LINES: [Line; 12] = [
+    Line(
+        "Trajectory of 1,000 frames by MLPG, f64, a frame",
+        "µs",
+        "kernels.mlpg_f64_us_per_frame",
+        Peer("jbonsai", "kernels.jbonsai_us_per_frame"),
+    ),
+    Line(
+        "One walker, a frame",
+        "µs",
+        "kernels.walker_us_per_frame",
+        Limit(0.5, "asked"),
+    ),
+    Line(
+        "Switching model, fit of ten segments",
+        "ms",
+        "kernels.dynamics_fit_ms",
+        Peer("dense SVD", "kernels.dynamics_fit_dense_ms"),
+    ),
+    Line(
+        "Projection residual of 400 frames",
+        "ms",
+        "kernels.projection_400_frames_ms",
+        Peer("dense pseudo-inverse", "kernels.projection_dense_ms"),
+    ),
+    Line(
+        "Switching model, features of a frame",
+        "µs",
+        "kernels.switching_us_per_frame",
+        Peer("dense matrices", "kernels.switching_dense_us_per_frame"),
+    ),
+    Line(
+        "A body from one sensor, model of 10,000 frames, a frame",
+        "µs",
+        "kernels.imu_us_per_frame_10k",
+        Limit(40.0, "asked; the paper has 758,000"),
+    ),
+    Line(
+        "From a sample over UDP to its pose, one in a hundred",
+        "ms",
+        "kernels.imu_sample_to_pose_p99_ms",
+        Limit(16.7, "a frame at 60 Hz"),
+    ),
+    Line(
+        "Crowd of 10,000, all fresh, a frame",
+        "ms",
+        "crowds.all_fresh_ms",
+        Limit(6.0, "asked"),
+    ),
+    Line(
+        "Crowd of 10,000 in tiers, a frame",
+        "ms",
+        "crowds.tiers_ms",
+        Limit(16.7, "a frame at 60 Hz"),
+    ),
+    Line(
+        "Whole skeleton of a crowd beyond the engine's own cost, a frame",
+        "µs",
+        "crowds.skeleton_us_per_walker",
+        Limit(2.5, "asked"),
+    ),
+    Line(
+        "Adding 10,000 walkers, the call",
+        "ms",
+        "crowds.add_agents_ms",
+        Limit(16.7, "a frame at 60 Hz"),
+    ),
+    Line(
+        "Longest part of a frame while they are made",
+        "ms",
+        "crowds.making_longest_ms",
+        Limit(16.7, "a frame at 60 Hz"),
+    ),
+];
+
+impl Line {
+    /// The figure, and what stands beside it with the factor between both.
+    fn cells(&self, machine: &Machine) -> [String; 2] {
+        let Self(_, unit, name, beside) = self;
+        let Some(own) = machine.figure(name) else {
+            return ["-", "-"].map(str::to_owned);
+        };
+        let (label, other) = match beside {
+            Peer(label, name) => (*label, machine.figure(name)),
+            Limit(limit, label) => (*label, Some(*limit)),
+        };
+        let beside = other.map_or_else(
+            || "-".to_owned(),
+            |other| {
+                format!(
+                    "{} {unit} ({label}), {:.1} times",
+                    rounded(other),
+                    other / own
+                )
+            },
+        );
+        [format!("{} {unit}", rounded(own)), beside]
+    }
+}
+
+/// Three digits that count.
+fn rounded(value: f64) -> String {
+    let before = value.abs().log10().floor().max(-9.0) as i32 + 1;
+    format!("{value:.*}", (3 - before).clamp(0, 6) as usize)
+}
+
+/// The table of one machine for the terminal.
+pub(super) fn text(machine: &Machine) -> String {
+    let head = format!(
+        "{}, {} threads, {}\n",
+        machine.processor, machine.threads, machine.platform
+    );
+    let lines = LINES.iter().map(|line| {
+        let [own, beside] = line.cells(machine);
+        format!("{:64} {own:>12}   {beside}\n", line.0)
+    });
+    head + &lines.collect::<String>()
+}
+
+/// The page with all machines that were kept.
+pub(super) fn page(machines: &[Machine]) -> String {
+    let head = "# Benchmarks\n\n\
+        Each line stands beside a peer that ran in the same process, or beside a limit. \"Times\" says how often the figure goes into what is beside it: below 1 the limit is missed.\n\
+        `cargo xtask bench` prints the table for your machine, `cargo xtask bench --keep` adds your machine to this page.\n\
+        Machines that others use at the same time are noisy: trust ratios more than times.\n";
+    let tables = machines.iter().map(|machine| {
+        let lines = LINES.iter().map(|line| {
+            let [own, beside] = line.cells(machine);
+            format!("| {} | {own} | {beside} |\n", line.0)
+        });
+        format!(
+            "\n## {}, {} threads\n\n{}, Footfall {}.\n\n| | here | beside |\n| --- | --- | --- |\n{}",
+            machine.processor,
+            machine.threads,
+            machine.platform,
+            machine.version,
+            lines.collect::<String>()
+        )
+    });
+    head.to_owned() + &tables.collect::<String>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn machine() -> Machine {
+        let kernels = json!({"mlpg_f64_us_per_frame": 0.25, "jbonsai_us_per_frame": 9.0, "walker_us_per_frame": 1.0});
+        let mut machine = Machine::here(kernels, json!({"all_fresh_ms": 5.5}));
+        machine.processor = "Test(R) CPU @ 2.0GHz".to_owned();
+        machine.threads = 2;
+        machine
+    }
+
+    #[test]
+    fn a_line_says_how_often_it_goes_into_its_peer_or_limit() {
+        let machine = machine();
+        assert_eq!(machine.file_name(), "test_r_cpu_2_0ghz_2_threads.json");
+        assert_eq!(
+            LINES[0].cells(&machine),
+            ["0.250 µs", "9.00 µs (jbonsai), 36.0 times"]
+        );
+        assert_eq!(
+            LINES[1].cells(&machine),
+            ["1.00 µs", "0.500 µs (asked), 0.5 times"]
+        );
+        assert_eq!(LINES[2].cells(&machine), ["-", "-"]);
+        let page = page(&[machine]);
+        assert!(page.contains(
+            "| Crowd of 10,000, all fresh, a frame | 5.50 ms | 6.00 ms (asked), 1.1 times |"
+        ));
+    }
+
+    #[test]
+    fn three_digits_count() {
+        let shown = [0.012_345, 1.0, 12.345, 1234.5, 0.0].map(rounded);
+        assert_eq!(shown, ["0.0123", "1.00", "12.3", "1234", "0.000000"]);
+    }
+}
