@@ -12,7 +12,7 @@ const STANDING_TURN_RATE_RADPS: f32 = 0.05;
 const MAX_TURN_RATE_RADPS: f32 = 3.5;
 
 /// Requests to a walker. A walker whose foot is in the air obeys at once, where enough of the step is left; otherwise it takes effect with the next
-/// step, as all do of runners, of walkers in less than full detail and of those of a [`DynamicsModel`].
+/// step, as all do of runners, of walkers in less than full detail and of those of a [`DynamicsModel`](footfall_model::DynamicsModel).
 ///
 /// A speed and turn rate near zero stop the walker within two steps; it stands until one of them rises. Turning without
 /// speed turns in place.
