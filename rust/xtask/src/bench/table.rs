@@ -15,7 +15,7 @@ use Beside::{Limit, Peer};
 /// A line: what is measured, its unit, the figure, and what stands beside it.
 struct Line(&'static str, &'static str, &'static str, Beside);
 
-const LINES: [Line; 12] = [
+const LINES: [Line; 11] = [
     Line(
         "Trajectory of 1,000 frames by MLPG, f64, a frame",
         "µs",
@@ -69,12 +69,6 @@ const LINES: [Line; 12] = [
         "ms",
         "crowds.tiers_ms",
         Limit(16.7, "a frame at 60 Hz"),
-    ),
-    Line(
-        "Whole skeleton of a crowd beyond the engine's own cost, a frame",
-        "µs",
-        "crowds.skeleton_us_per_walker",
-        Limit(2.5, "asked"),
     ),
     Line(
         "Adding 10,000 walkers, the call",
