@@ -6,7 +6,7 @@ use super::machine::Machine;
 enum Beside {
     /// Another program or a slower way, measured in the same process: its name and its figure.
     Peer(&'static str, &'static str),
-    /// What the project asks of itself, or others report: a number in the line's unit, and where it comes from.
+    /// Number in the line's unit that the project asks of itself or others report, and its source.
     Limit(f64, &'static str),
 }
 
