@@ -36,12 +36,14 @@ const TRUSTED: [f32; 2] = [0.04, 0.12];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Confidence {
     mean: f32,
+    /// False when the model is trusted whatever it explains.
+    doubts: bool,
 }
 
 impl Confidence {
     /// Nothing speaks against the model yet.
-    pub(crate) const fn new() -> Self {
-        Self { mean: 0.0 }
+    pub(crate) const fn new(doubts: bool) -> Self {
+        Self { mean: 0.0, doubts }
     }
 
     /// Goes on by a frame whose measurement had this logarithm of its density, however many sensors there are.
@@ -57,6 +59,9 @@ impl Confidence {
 
     /// Share of the body that is the model's; the rest stands.
     pub(crate) fn trusted(self) -> f32 {
+        if !self.doubts {
+            return 1.0;
+        }
         smooth_step((self.value() - TRUSTED[0]) / (TRUSTED[1] - TRUSTED[0]))
     }
 
@@ -125,7 +130,7 @@ mod tests {
 
     #[test]
     fn what_is_explained_is_trusted_and_what_is_not_stands() {
-        let mut confidence = Confidence::new();
+        let mut confidence = Confidence::new(true);
         let mut settle = |log_density: f32| {
             for _ in 0..90 {
                 confidence.step(log_density, 1.0 / 30.0);

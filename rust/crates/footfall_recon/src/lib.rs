@@ -4,6 +4,7 @@
 //! its frames is, [`body`] is what they say in the mean, `confidence` how well they say it, [`blend`] keeps it continuous, [`ground`] moves it, in steps as long as the wearer's (`travel`), and keeps
 //! its feet in place.
 //! [`mounting`] finds how a sensor is worn; [`reconstructor`] is all of it for samples as they come, [`recording`] for a recording as a whole.
+//! [`Published`] names what the paper does otherwise, to compare.
 
 pub mod blend;
 pub mod body;
@@ -13,6 +14,7 @@ mod kernels;
 mod measure;
 pub mod mounting;
 pub mod prepared;
+mod published;
 pub mod reconstructor;
 pub mod recording;
 mod sensor;
@@ -23,6 +25,7 @@ mod travel;
 pub use body::BodyFrame;
 pub use mounting::{Mounting, MountingError, find_mounting};
 pub use prepared::Prepared;
+pub use published::Published;
 pub use reconstructor::{ReconConfig, Reconstructor, SensorState};
 pub use recording::{Reconstructed, reconstruct_recording};
 pub use tracker::{Measurement, Tracker, TrackerConfig};

@@ -3,6 +3,7 @@
 use crate::body::BodyFrame;
 use crate::confidence::standing_body;
 use crate::kernels::BLOCK;
+use crate::published::PhaseDeviations;
 use footfall_core::Side;
 use footfall_model::ImuModel;
 use footfall_model::ModelError;
@@ -27,6 +28,8 @@ pub struct Prepared {
     pub(crate) padded: usize,
     /// Sensor numbers over their deviations: for each block of frames the first number of all of them, then the second.
     pub(crate) sensor: Vec<f32>,
+    /// Deviations of the sensors within each phase, where they take the place of the model's.
+    pub(crate) phase_deviations: Option<PhaseDeviations>,
     /// The body of the people who stand, to show where the model explains little.
     pub(crate) standing: Option<BodyFrame>,
     /// Feet that wear sensors.
@@ -84,6 +87,7 @@ impl Prepared {
             frames,
             padded,
             sensor,
+            phase_deviations: None,
             worn_feet,
             standing: standing_body(&model),
             model,
@@ -92,6 +96,13 @@ impl Prepared {
             counts,
             of_phase,
         })
+    }
+
+    /// Learns how far sensors deviate within each phase ([`Published::Gaussians`](crate::Published::Gaussians)).
+    #[must_use]
+    pub fn with_phase_deviations(mut self) -> Self {
+        self.phase_deviations = Some(PhaseDeviations::learn(&self));
+        self
     }
 
     /// Contacts of the left and the right foot, as the sensors on them report them by number; `None` where none is worn or nobody knows.

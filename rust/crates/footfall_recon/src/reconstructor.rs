@@ -31,6 +31,8 @@ pub struct ReconConfig {
     pub blend_gain: f32,
     /// Silence after which a sensor counts as lost, seconds.
     pub lost_after_secs: f32,
+    /// Stands where the model explains little of what is measured, rather than showing what explains it best.
+    pub stands_unexplained: bool,
     /// A new behaviour shows when it is more probable than this.
     pub behaviour_probability: f32,
 }
@@ -41,6 +43,7 @@ impl Default for ReconConfig {
             tracker: TrackerConfig::default(),
             blend_gain: 0.6,
             lost_after_secs: 0.5,
+            stands_unexplained: true,
             behaviour_probability: 0.6,
         }
     }
@@ -96,7 +99,7 @@ impl Reconstructor {
             ground: Ground::new(skeleton, &prepared.model.skeleton),
             sensors: core::array::from_fn(|n| Sensor::new(rate, on_foot(n))),
             travel: Travel::new(&prepared.model.sites),
-            confidence: Confidence::new(),
+            confidence: Confidence::new(config.stands_unexplained),
             behaviour: ShownBehaviour::new(),
             silent_secs: 0.0,
             ahead: 0.0,
@@ -124,7 +127,7 @@ impl Reconstructor {
         self.blend.reset();
         self.ground.reset();
         self.travel = Travel::new(&self.prepared.model.sites);
-        self.confidence = Confidence::new();
+        self.confidence = Confidence::new(self.config.stands_unexplained);
         self.behaviour = ShownBehaviour::new();
         (self.silent_secs, self.ahead) = (0.0, 0.0);
         self.heading = None;

@@ -59,7 +59,7 @@ pub fn reconstruct_recording(
         samples: strides.map_or(&[][..], |recording| &recording.samples),
         travel,
         prepared,
-        confidence: Confidence::new(),
+        confidence: Confidence::new(config.stands_unexplained),
         live: live.then_some((ShownBehaviour::new(), config.behaviour_probability)),
         out: Reconstructed {
             clip: Clip {

@@ -26,8 +26,12 @@ pub struct TrackerConfig {
     /// Squared distance a sensor, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
     /// where none explains it the body goes on as it did.
     pub farthest: f32,
+    /// Frames within which every segment is entered from anywhere once: what exits is handed to one part of the segments after the other.
+    pub round_frames: usize,
     /// Number of segments that are interpolated (section 5.3; there 5).
     pub interpolated: usize,
+    /// Interpolates segments of the most probable phase only, as section 5.3 does.
+    pub one_phase: bool,
     /// Share of the regression on the sensor that is applied (equation 6), 0 to 1.
     pub regression: f32,
 }
@@ -41,7 +45,9 @@ impl Default for TrackerConfig {
             exit: 0.01,
             evidence: 0.5,
             farthest: 25.0,
+            round_frames: 24,
             interpolated: 20,
+            one_phase: false,
             // On recordings that a model has not seen it makes walks worse by half a centimetre.
             regression: 0.0,
         }
@@ -94,9 +100,6 @@ const LEAST_SHARE: f32 = 0.15;
 
 /// Segments that held less than this are dropped.
 const LEAST_MASS: f32 = 2e-5;
-
-/// All segments are looked at within so many frames.
-const ROUND_FRAMES: usize = 24;
 
 impl Tracker {
     /// Every frame is as probable as any other.
@@ -245,10 +248,14 @@ impl Tracker {
         }
     }
 
+    fn round_frames(&self) -> usize {
+        self.config.round_frames.max(1)
+    }
+
     /// The segments whose turn it is to be entered from anywhere.
     fn turn(&self) -> core::ops::Range<usize> {
         let all = self.prepared.model.segments.len();
-        let size = all.div_ceil(ROUND_FRAMES);
+        let size = all.div_ceil(self.round_frames());
         let first = (self.turn * size).min(all);
         first..(first + size).min(all)
     }
@@ -263,7 +270,7 @@ impl Tracker {
         let [stay, next, skip] = self.moves();
         let turn = self.turn();
         // What exits goes anywhere; with each turn as much as all of its frames would have had in the round.
-        let anywhere = config.exit * ROUND_FRAMES as f32 / prepared.frames as f32;
+        let anywhere = config.exit * self.round_frames() as f32 / prepared.frames as f32;
         for &n in &self.candidates {
             let segment = &model.segments[n as usize];
             let frames = prepared.frames_of(n as usize);
@@ -291,7 +298,7 @@ impl Tracker {
             let any = self.entering_any[phase] / prepared.of_phase[phase].len().max(1) as f32;
             new[0] += config.keep_subject * own + (1.0 - config.keep_subject) * any;
         }
-        self.turn = (self.turn + 1) % ROUND_FRAMES;
+        self.turn = (self.turn + 1) % self.round_frames();
     }
 
     /// Weighs what may be with what was measured (appendix A, "update"). Returns the sum.
@@ -318,6 +325,12 @@ impl Tracker {
 
     /// Measures how far frames that are predicted with more than a limit are from what was measured. Returns the least distance.
     fn measure(&mut self, sensor: &Measurement, limit: f32) -> f32 {
+        let farthest = self.config.farthest * self.prepared.model.sites.len() as f32;
+        if let Some(phases) = &self.prepared.phase_deviations {
+            phases.distances(&self.prepared, sensor, &mut self.distance);
+            cap(&mut self.distance, farthest);
+            return self.distance.iter().copied().fold(farthest, f32::min);
+        }
         let (mut measured, mut weights) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
         let deviations = &self.prepared.model.deviations;
         for (n, deviation) in deviations.iter().enumerate() {
@@ -333,7 +346,6 @@ impl Tracker {
             limit,
             &mut self.distance,
         );
-        let farthest = self.config.farthest * self.prepared.model.sites.len() as f32;
         cap(&mut self.distance, farthest);
         nearest.min(farthest)
     }

@@ -3,7 +3,7 @@
 use footfall_core::{Behaviour, PhaseKind, PhaseStart, Side, Site, Skeleton};
 use footfall_model::imu_model::{BODY_COUNT, SENSOR_COUNT, Segment};
 use footfall_model::{ImuModel, Provenance};
-use footfall_recon::{Measurement, Prepared, Tracker, TrackerConfig};
+use footfall_recon::{Measurement, Prepared, Published, ReconConfig, Tracker, TrackerConfig};
 use std::sync::Arc;
 
 const WIDTH: usize = SENSOR_COUNT * 2;
@@ -63,7 +63,7 @@ fn measured(n: usize) -> Measurement {
     measurement
 }
 
-/// Probability to go from each frame to each, without exits.
+/// Probability to go from each frame to each.
 fn transitions(model: &ImuModel, config: &TrackerConfig) -> Vec<Vec<f64>> {
     let places: Vec<(usize, usize)> = model
         .segments
@@ -122,21 +122,41 @@ fn transitions(model: &ImuModel, config: &TrackerConfig) -> Vec<Vec<f64>> {
             }
         }
     }
+    let anywhere = f64::from(config.exit) / places.len() as f64;
+    for row in &mut matrix {
+        for share in row {
+            *share = (1.0 - f64::from(config.exit)) * *share + anywhere;
+        }
+    }
     matrix
 }
 
 #[test]
 fn the_forward_algorithm_is_that_of_the_whole_matrix() {
+    check_against_the_whole_matrix(TrackerConfig {
+        exit: 0.0,
+        ..TrackerConfig::default()
+    });
+}
+
+#[test]
+fn the_published_transitions_are_those_of_the_whole_matrix() {
+    let mut config = ReconConfig::default();
+    Published::Transitions.set(&mut config);
+    check_against_the_whole_matrix(config.tracker);
+}
+
+fn check_against_the_whole_matrix(config: TrackerConfig) {
     let model = model();
     let config = TrackerConfig {
-        exit: 0.0,
         // Of what is measured here some frames are farther and some are not.
         farthest: 12.0,
-        ..TrackerConfig::default()
+        ..config
     };
     let matrix = transitions(&model, &config);
     let frames = matrix.len();
-    let prepared = Arc::new(Prepared::new(Arc::new(model.clone())).unwrap());
+    let prepared =
+        Arc::new(Prepared::new(Arc::new(model.clone())).expect("a model that fits together"));
     let mut tracker = Tracker::new(&prepared, config);
     let mut slow = vec![1.0 / frames as f64; frames];
     let (mut near, mut far) = (0, 0);

@@ -348,3 +348,41 @@ fn bodies_from_the_cmu_recordings_are_as_close_as_promised() {
     }
     assert!(figure("other_recordings", "total", "median_delay_s") < 0.4);
 }
+
+#[test]
+fn parts_of_the_published_method_are_switched_one_by_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    write_index(folder, "index.csv", &SEEN);
+    let evaluate = [
+        "evaluate",
+        "imu",
+        "--corpus",
+        "index.csv",
+        "--site",
+        "right_foot",
+    ];
+    let run = |parts: &[&str]| footfall(folder, &[&evaluate[..], parts, &["--json"]].concat());
+    let figures = |parts: &[&str]| {
+        let report = run(parts).json();
+        let total = &report["sensors"][0]["other_recordings"]["walk"];
+        let [live, constant] = ["live_cm", "constant_cm"].map(|name| total[name].as_f64());
+        (
+            report["as_published"].clone(),
+            live.expect("cm"),
+            constant.expect("cm"),
+        )
+    };
+    let (none, own, _) = figures(&[]);
+    assert_eq!(none, serde_json::json!([]));
+    for part in ["transitions", "gaussians", "interpolation", "regression"] {
+        let (parts, live, constant) = figures(&["--as-published", part]);
+        assert_eq!(parts, serde_json::json!([part]));
+        assert!((live - own).abs() > 1e-6, "{part} changes nothing");
+        assert!(live < 0.7 * constant, "{part}: {live} of {constant} cm");
+    }
+    let (all, live, constant) = figures(&["--as-published", "all"]);
+    assert_eq!(all.as_array().map(Vec::len), Some(4));
+    assert!(live < 0.7 * constant, "all: {live} of {constant} cm");
+    assert_eq!(run(&["--as-published", "everything"]).code, 2);
+}

@@ -4,7 +4,7 @@ use super::{Measurement, Tracker};
 use crate::body::BodyFrame;
 use crate::kernels::add;
 use footfall_core::Behaviour;
-use footfall_model::imu_model::{BODY_COUNT, MAX_WIDTH};
+use footfall_model::imu_model::{BODY_COUNT, MAX_PHASES, MAX_WIDTH};
 
 impl Tracker {
     /// Sums up behaviours, and chooses the segments to interpolate.
@@ -13,13 +13,23 @@ impl Tracker {
         self.behaviours = [0.0; Behaviour::ALL.len()];
         self.chosen.clear();
         let most = self.config.interpolated.max(1);
+        let mut phases = [0.0_f32; MAX_PHASES];
         for &n in &self.active {
-            let mass: f32 = self.probability[prepared.frames_of(n as usize)]
-                .iter()
-                .sum();
-            let segment = &prepared.model.segments[n as usize];
-            let behaviour = prepared.model.phases[usize::from(segment.phase)].behaviour;
+            let phase = usize::from(prepared.model.segments[n as usize].phase);
+            let mass = self.mass(n);
+            phases[phase] += mass;
+            let behaviour = prepared.model.phases[phase].behaviour;
             self.behaviours[behaviour.index()] += mass;
+        }
+        let only = (0..prepared.model.phases.len())
+            .max_by(|a, b| phases[*a].total_cmp(&phases[*b]))
+            .filter(|_| self.config.one_phase);
+        for &n in &self.active {
+            let phase = usize::from(prepared.model.segments[n as usize].phase);
+            if only.is_some_and(|only| only != phase) {
+                continue;
+            }
+            let mass = self.mass(n);
             let full = self.chosen.len() == most;
             if full && self.chosen.last().is_some_and(|(_, least)| *least >= mass) {
                 continue;
@@ -30,6 +40,12 @@ impl Tracker {
             let place = self.chosen.partition_point(|(_, other)| *other >= mass);
             self.chosen.insert(place, (n, mass));
         }
+    }
+
+    /// Probability of a segment.
+    fn mass(&self, segment: u32) -> f32 {
+        let frames = self.prepared.frames_of(segment as usize);
+        self.probability[frames].iter().sum()
     }
 
     /// The body of the most probable segments, interpolated (equations 11 and 13), and how it changes to the next frame.

@@ -40,7 +40,7 @@ use crate::error::TrainError;
 use body::{Body, body, distance_cm, pose_of_row};
 use footfall_core::{Behaviour, Pose, Side};
 use footfall_model::Provenance;
-use footfall_recon::{Prepared, ReconConfig, Reconstructed, reconstruct_recording};
+use footfall_recon::{Prepared, Published, ReconConfig, Reconstructed, reconstruct_recording};
 use glam::Quat;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -58,6 +58,17 @@ pub enum HeldOut {
     Recording,
     /// Those of other subjects.
     Subject,
+}
+
+/// Conditions under which bodies are reconstructed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conditions {
+    /// Recordings that a model may have seen.
+    pub held_out: HeldOut,
+    /// Simulated sensor that bodies are reconstructed from.
+    pub device: Device,
+    /// Parts of the method that are as published.
+    pub published: Vec<Published>,
 }
 
 /// Error of a body, centimetres.
@@ -104,8 +115,7 @@ pub struct ImuTrial {
 pub fn evaluate_imu(
     clips: &[ImuClip<'_>],
     config: &ImuTrainConfig,
-    held_out: HeldOut,
-    device: Device,
+    conditions: &Conditions,
     judged: &(dyn Fn(usize) -> bool + Sync),
 ) -> Result<Vec<ImuTrial>, TrainError> {
     config.check()?;
@@ -113,7 +123,7 @@ pub fn evaluate_imu(
     // What is held out together shares a model.
     let held: BTreeSet<(&str, usize)> = (0..clips.len())
         .filter(|clip| judged(*clip))
-        .map(|clip| match held_out {
+        .map(|clip| match conditions.held_out {
             HeldOut::Recording => (clips[clip].subject, clip),
             HeldOut::Subject => (clips[clip].subject, clips.len()),
         })
@@ -131,7 +141,8 @@ pub fn evaluate_imu(
                 .collect();
             let model = train_imu(&training, config, Provenance::default())?;
             let model = Arc::new(model);
-            let prepared = Arc::new(Prepared::new(Arc::clone(&model))?);
+            let prepared = Prepared::new(Arc::clone(&model))?;
+            let prepared = Arc::new(Published::prepare(&conditions.published, prepared));
             let trivial = Trivial::of(&training, &model);
             let trials = (0..clips.len()).into_par_iter();
             let trials = trials.filter(|clip| is_held(clip) && judged(*clip));
@@ -143,7 +154,7 @@ pub fn evaluate_imu(
                     truth,
                     &prepared,
                     &trivial,
-                    device,
+                    conditions,
                 ))
             });
             trials.collect()
@@ -160,13 +171,13 @@ fn try_clip(
     truth: &Chain,
     prepared: &Arc<Prepared>,
     trivial: &Trivial<'_>,
-    device: Device,
+    conditions: &Conditions,
 ) -> Result<ImuTrial, TrainError> {
     let sites = &prepared.model().sites;
     let recordings: Vec<_> = sites
         .iter()
         .enumerate()
-        .map(|(n, site)| device.measure(clip, *site, (own * 2 + n) as u64))
+        .map(|(n, site)| conditions.device.measure(clip, *site, (own * 2 + n) as u64))
         .collect();
     let bodies: Vec<Body> = (0..truth.frames())
         .map(|frame| body(&pose_of_row(truth.body_row(frame)), &truth.skeleton))
@@ -177,7 +188,10 @@ fn try_clip(
         .flat_map(|s| core::iter::repeat_n(s.kind.behaviour, s.end - s.first))
         .collect();
     let skeleton = &truth.skeleton;
-    let config = ReconConfig::default();
+    let mut config = ReconConfig::default();
+    for part in &conditions.published {
+        part.set(&mut config);
+    }
     let reconstruct = |live| reconstruct_recording(prepared, &recordings, skeleton, &config, live);
     let (live, whole) = (reconstruct(true)?, reconstruct(false)?);
     // The first pose is that of the recording's first sample, a frame before the first of the chain.

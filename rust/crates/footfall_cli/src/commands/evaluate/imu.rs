@@ -6,7 +6,8 @@ use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_core::{Behaviour, Site};
 use footfall_motion::corpus::Where;
-use footfall_train::imu::evaluate::{Device, HeldOut, ImuTrial, evaluate_imu};
+use footfall_recon::Published;
+use footfall_train::imu::evaluate::{Conditions, Device, HeldOut, ImuTrial, evaluate_imu};
 use footfall_train::imu::{ImuClip, ImuTrainConfig};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -55,6 +56,9 @@ pub(crate) struct ImuArgs {
     /// Simulated sensor that bodies are reconstructed from
     #[arg(long, value_enum, default_value_t)]
     device: DeviceArg,
+    /// Part of the method as published, for comparison; comma-separated, may repeat
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "PART")]
+    as_published: Vec<PartArg>,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -72,8 +76,37 @@ enum DeviceArg {
     Strapped,
 }
 
+/// Parts of the published method (Mousas 2017).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum PartArg {
+    /// All of them
+    All,
+    /// Equal transitions: frames are kept, followed or skipped, phases left at any time
+    Transitions,
+    /// A Gaussian for each phase, refined by its segments, with every frame in full
+    Gaussians,
+    /// Five segments of the most probable phase
+    Interpolation,
+    /// Regression of the body on the sensor
+    Regression,
+}
+
+impl PartArg {
+    fn parts(self) -> &'static [Published] {
+        match self {
+            Self::All => &Published::ALL,
+            Self::Transitions => &[Published::Transitions],
+            Self::Gaussians => &[Published::Gaussians],
+            Self::Interpolation => &[Published::Interpolation],
+            Self::Regression => &[Published::Regression],
+        }
+    }
+}
+
 #[derive(Serialize)]
 pub(super) struct Report {
+    /// Parts of the method that are as published.
+    as_published: Vec<&'static str>,
     sensors: Vec<SensorReport>,
 }
 
@@ -147,12 +180,19 @@ pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
         DeviceArg::Phone => Device::Phone,
         DeviceArg::Strapped => Device::Strapped,
     };
+    let parts = args.as_published.iter().flat_map(|part| part.parts());
+    let published: Vec<Published> = parts.copied().collect();
     let mut sensors = Vec::new();
     for config in &asked {
         let names: Vec<&str> = config.sites.iter().map(|site| site.name()).collect();
         output::note(&format!("reconstructing from {}", names.join(" and ")));
         let figures = |held_out: HeldOut| -> Result<BTreeMap<String, Figures>> {
-            let trials = evaluate_imu(&clips, config, held_out, device, &judged)
+            let conditions = Conditions {
+                held_out,
+                device,
+                published: published.clone(),
+            };
+            let trials = evaluate_imu(&clips, config, &conditions, &judged)
                 .with_context(|| args.corpus.display().to_string())?;
             Ok(summarise(&trials, &categories))
         };
@@ -170,7 +210,10 @@ pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
             },
         });
     }
-    Ok(Report { sensors })
+    Ok(Report {
+        as_published: published.iter().map(|part| part.name()).collect(),
+        sensors,
+    })
 }
 
 pub(crate) fn run(args: &ImuArgs) -> Result<()> {
