@@ -30,9 +30,11 @@
 
 mod body;
 mod device;
+mod transitions;
 mod trivial;
 
 pub use device::Device;
+pub use transitions::{TRANSITIONS, TransitionTrial, evaluate_transitions};
 pub use trivial::TrivialErrors;
 
 use super::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};

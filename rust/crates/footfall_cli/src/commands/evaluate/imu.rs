@@ -1,5 +1,7 @@
 //! `footfall evaluate imu`: bodies from sensors against the recorded ones.
 
+mod transitions;
+
 use crate::commands::imu::{KeptArgs, imu_clip, parse_site};
 use crate::motion_input::KneesArgs;
 use crate::output;
@@ -7,7 +9,9 @@ use anyhow::{Context as _, Result};
 use footfall_core::{Behaviour, Site};
 use footfall_motion::corpus::Where;
 use footfall_recon::Published;
-use footfall_train::imu::evaluate::{Conditions, Device, HeldOut, ImuTrial, evaluate_imu};
+use footfall_train::imu::evaluate::{
+    Conditions, Device, HeldOut, ImuTrial, evaluate_imu, evaluate_transitions,
+};
 use footfall_train::imu::{ImuClip, ImuTrainConfig};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -59,6 +63,9 @@ pub(crate) struct ImuArgs {
     /// Part of the method as published, for comparison; comma-separated, may repeat
     #[arg(long, value_enum, value_delimiter = ',', value_name = "PART")]
     as_published: Vec<PartArg>,
+    /// Show how suddenly bodies move where one motion gives way to another, instead of how close they come: eight changes of each kind, of people left out
+    #[arg(long)]
+    transitions: bool,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -113,6 +120,8 @@ pub(super) struct Report {
 #[derive(Serialize)]
 struct SensorReport {
     sites: Vec<&'static str>,
+    /// Changes from one motion to another; empty without --transitions, and then the only figures.
+    transitions: Vec<transitions::Figures>,
     /// Models that have seen all other recordings; empty with --strangers.
     other_recordings: BTreeMap<String, Figures>,
     /// Models that have seen other subjects only; empty when there is but one.
@@ -186,18 +195,31 @@ pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
     for config in &asked {
         let names: Vec<&str> = config.sites.iter().map(|site| site.name()).collect();
         output::note(&format!("reconstructing from {}", names.join(" and ")));
+        let conditions = |held_out: HeldOut| Conditions {
+            held_out,
+            device,
+            published: published.clone(),
+        };
+        if args.transitions {
+            let conditions = conditions(HeldOut::Subject);
+            let trials = evaluate_transitions(&clips, config, &conditions, &judged)?;
+            sensors.push(SensorReport {
+                sites: names,
+                transitions: transitions::figures(&trials),
+                other_recordings: BTreeMap::new(),
+                other_subjects: BTreeMap::new(),
+            });
+            continue;
+        }
         let figures = |held_out: HeldOut| -> Result<BTreeMap<String, Figures>> {
-            let conditions = Conditions {
-                held_out,
-                device,
-                published: published.clone(),
-            };
+            let conditions = conditions(held_out);
             let trials = evaluate_imu(&clips, config, &conditions, &judged)
                 .with_context(|| args.corpus.display().to_string())?;
             Ok(summarise(&trials, &categories))
         };
         sensors.push(SensorReport {
             sites: names,
+            transitions: Vec::new(),
             other_recordings: if args.strangers {
                 BTreeMap::new()
             } else {
@@ -223,6 +245,10 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
     }
     let mut lines = Vec::new();
     for sensor in &report.sensors {
+        lines.extend(transitions::lines(
+            &sensor.sites.join(" and "),
+            &sensor.transitions,
+        ));
         for (seen, figures) in [
             ("other recordings", &sensor.other_recordings),
             ("other subjects", &sensor.other_subjects),
