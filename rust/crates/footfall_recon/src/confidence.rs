@@ -16,7 +16,7 @@
 //!
 //! To a foot, walking backwards is walking: what a sensor cannot tell apart is not found out.
 
-use crate::body::BodyFrame;
+use crate::body::{BodyFrame, Course};
 use footfall_core::Behaviour;
 use footfall_core::ease::smooth_step;
 use footfall_model::ImuModel;
@@ -82,17 +82,13 @@ impl Confidence {
     }
 
     /// Draws a body and how it changes to one that stands, by as much as the model is not trusted.
-    pub(crate) fn calm(
-        self,
-        standing: Option<&BodyFrame>,
-        body: &mut BodyFrame,
-        velocity: &mut BodyFrame,
-    ) {
+    pub(crate) fn calm(self, standing: Option<&BodyFrame>, course: &mut Course) {
         let trusted = self.trusted();
         if let Some(standing) = standing.filter(|_| trusted < 1.0) {
             for n in 0..BODY_COUNT {
-                body[n] = standing[n] + trusted * (body[n] - standing[n]);
-                velocity[n] *= trusted;
+                course.body[n] = standing[n] + trusted * (course.body[n] - standing[n]);
+                course.arrival[n] *= trusted;
+                course.velocity[n] *= trusted;
             }
         }
     }
@@ -149,10 +145,18 @@ mod tests {
         assert_eq!(explained.behaviours(&jumps), jumps);
         assert_eq!(shaken.behaviours(&jumps)[Behaviour::Stand.index()], 1.0);
 
-        let (mut body, mut velocity) = ([1.0; BODY_COUNT], [0.5; BODY_COUNT]);
-        shaken.calm(Some(&[0.25; BODY_COUNT]), &mut body, &mut velocity);
-        assert!(body == [0.25; BODY_COUNT] && velocity == [0.0; BODY_COUNT]);
-        explained.calm(Some(&[0.5; BODY_COUNT]), &mut body, &mut velocity);
-        assert_eq!(body, [0.25; BODY_COUNT]);
+        let mut course = Course {
+            body: [1.0; BODY_COUNT],
+            arrival: [0.5; BODY_COUNT],
+            velocity: [0.5; BODY_COUNT],
+        };
+        shaken.calm(Some(&[0.25; BODY_COUNT]), &mut course);
+        let still = Course {
+            body: [0.25; BODY_COUNT],
+            ..Course::REST
+        };
+        assert_eq!(course, still);
+        explained.calm(Some(&[0.5; BODY_COUNT]), &mut course);
+        assert_eq!(course, still);
     }
 }

@@ -4,6 +4,7 @@
 //! when both stand is the legs' to take up. A standing foot is a rocker ([`footfall_ik::rocker`]): it cannot slide or sink.
 
 use crate::body::{BodyFrame, pose_of};
+use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_ik::{FootTarget, Leg, Plant, RockerFoot, foot_heading, foot_pitch, settled_pitch};
@@ -21,11 +22,17 @@ const MAX_DRIFT_M: f32 = 0.15;
 const CLEARANCE: f32 = 0.06;
 const CLEARED_SPEEDS: [f32; 2] = [1.5, 3.5];
 
+/// It is raised so far within this time from when it left the ground, seconds.
+const CLEARED_AFTER_SECS: f32 = 0.1;
+
 /// A foot whose own sensor says that it stands may drift so much further.
 const TOLD_DRIFT: f32 = 2.0;
 
-/// Half-life of what remains of a correction when a foot lands or leaves, seconds.
+/// Half-life of what remains of a correction when a foot lands, seconds.
 const SETTLE_HALF_LIFE_SECS: f32 = 0.02;
+
+/// What remains when a foot leaves the ground dies away as in a critically damped spring of this rate, 1/s.
+const RELEASE_RATE: f32 = 60.0;
 
 /// The height of the pelvis follows the standing feet with this half-life, seconds.
 const HEIGHT_HALF_LIFE_SECS: f32 = 0.05;
@@ -66,12 +73,15 @@ pub struct Ground {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StandingFoot {
     plant: Option<Plant>,
-    /// Remainder that settles: how far the ankle is from where it should be, and how the foot is turned against it.
+    /// Remainder that settles: how far the ankle is from where it should be, how fast that changes (m/s), and how the foot is turned against it.
     ankle: Vec3,
+    drift: Vec3,
     turn: Quat,
     /// Offset of the ankle and turn of the foot against the recordings, in the last frame.
     last: (Vec3, Quat),
     landed: bool,
+    /// Time since it left the ground, seconds.
+    free_secs: f32,
     /// Position that the recordings gave the ankle in the last frame.
     free: Vec3,
 }
@@ -80,11 +90,29 @@ impl StandingFoot {
     const FREE: Self = Self {
         plant: None,
         ankle: Vec3::ZERO,
+        drift: Vec3::ZERO,
         turn: Quat::IDENTITY,
         last: (Vec3::ZERO, Quat::IDENTITY),
         landed: false,
+        free_secs: CLEARED_AFTER_SECS,
         free: Vec3::ZERO,
     };
+
+    /// Lets what remains of a correction die away for some time.
+    fn settle(&mut self, dt_secs: f32) {
+        let left = if self.plant.is_some() {
+            let left = 1.0 - follow_share(SETTLE_HALF_LIFE_SECS, dt_secs);
+            self.ankle *= left;
+            left
+        } else {
+            let left = (-RELEASE_RATE * dt_secs).exp();
+            let toward = self.drift + RELEASE_RATE * self.ankle;
+            self.ankle = left * (self.ankle + dt_secs * toward);
+            self.drift = left * (self.drift - RELEASE_RATE * dt_secs * toward);
+            left
+        };
+        self.turn = Quat::IDENTITY.slerp(self.turn, left);
+    }
 }
 
 /// Input of a step.
@@ -316,6 +344,7 @@ impl Ground {
             };
             if leaves {
                 own.plant = None;
+                own.free_secs = 0.0;
             }
         } else if input.stands[index].unwrap_or(body[CONTACT + index] > STANDS[0]) {
             let pitch = settled_pitch(foot_pitch(foot));
@@ -328,8 +357,10 @@ impl Ground {
             self.standing(side, &plant)
         } else {
             let mut free = FootTarget { ankle, foot, toes };
+            own.free_secs += input.dt_secs;
             if input.stands[index] == Some(false) {
-                let clearance = self.clearance_m(ankle - own.free, input.dt_secs);
+                let clearance = self.clearance_m(ankle - own.free, input.dt_secs)
+                    * smooth_step(own.free_secs / CLEARED_AFTER_SECS);
                 free.ankle.y += (clearance - self.rockers[index].lowest_point(&free)).max(0.0);
             }
             free
@@ -338,11 +369,10 @@ impl Ground {
         let wanted = (target.ankle - ankle, target.foot * foot.inverse());
         if stood != own.plant.is_some() {
             own.ankle = own.last.0 - wanted.0;
+            own.drift = Vec3::ZERO;
             own.turn = own.last.1 * wanted.1.inverse();
         }
-        let left = 1.0 - follow_share(SETTLE_HALF_LIFE_SECS, input.dt_secs);
-        own.ankle *= left;
-        own.turn = Quat::IDENTITY.slerp(own.turn, left);
+        own.settle(input.dt_secs);
         own.last = (wanted.0 + own.ankle, own.turn * wanted.1);
         let mut target = FootTarget {
             ankle: ankle + own.last.0,

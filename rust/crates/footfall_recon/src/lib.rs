@@ -22,7 +22,8 @@ mod shown_behaviour;
 pub mod tracker;
 mod travel;
 
-pub use body::BodyFrame;
+pub use blend::Blending;
+pub use body::{BodyFrame, Course};
 pub use mounting::{Mounting, MountingError, find_mounting};
 pub use prepared::Prepared;
 pub use published::Published;

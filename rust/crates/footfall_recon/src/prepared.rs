@@ -137,13 +137,12 @@ impl Prepared {
         &self.model.body[frame * BODY_COUNT..(frame + 1) * BODY_COUNT]
     }
 
-    /// Returns true for the last frame of its chain.
-    pub(crate) fn ends_chain(&self, frame: usize) -> bool {
-        let next = frame + 1;
-        if next >= self.frames {
+    /// Returns true for the first frame of a chain, and past the last of all.
+    pub(crate) fn begins_chain(&self, frame: usize) -> bool {
+        if frame >= self.frames {
             return true;
         }
-        let segment = self.segment_of[next] as usize;
-        self.starts[segment] == next && !self.model.segments[segment].follows
+        let segment = self.segment_of[frame] as usize;
+        self.starts[segment] == frame && !self.model.segments[segment].follows
     }
 }

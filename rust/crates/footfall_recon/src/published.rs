@@ -4,6 +4,7 @@ mod phase_deviations;
 
 pub(crate) use phase_deviations::PhaseDeviations;
 
+use crate::blend::Blending;
 use crate::prepared::Prepared;
 use crate::reconstructor::ReconConfig;
 
@@ -19,15 +20,18 @@ pub enum Published {
     Interpolation,
     /// Regression of the body on the sensor (equation 6).
     Regression,
+    /// Velocity-based blending (section 6).
+    Blending,
 }
 
 impl Published {
     /// All parts.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Transitions,
         Self::Gaussians,
         Self::Interpolation,
         Self::Regression,
+        Self::Blending,
     ];
 
     /// Name on the command line.
@@ -37,6 +41,7 @@ impl Published {
             Self::Gaussians => "gaussians",
             Self::Interpolation => "interpolation",
             Self::Regression => "regression",
+            Self::Blending => "blending",
         }
     }
 
@@ -61,6 +66,7 @@ impl Published {
                 config.one_phase = true;
             }
             Self::Regression => config.regression = 1.0,
+            Self::Blending => recon.blending = Blending::Velocity { gain: 0.6 },
         }
     }
 

@@ -1,6 +1,6 @@
 //! Samples to poses, as they come.
 
-use crate::blend::Blend;
+use crate::blend::{Blend, Blending};
 use crate::confidence::Confidence;
 use crate::ground::{Ground, GroundInput};
 use crate::measure::{SensorFrames, measure, sensor_heading};
@@ -27,8 +27,8 @@ const TOLD_FOR_SECS: f32 = 0.1;
 pub struct ReconConfig {
     /// Settings of the tracker.
     pub tracker: TrackerConfig,
-    /// Share of the way to what the recordings say that the body goes in a frame.
-    pub blend_gain: f32,
+    /// How the body goes over from one course of the recordings to another.
+    pub blending: Blending,
     /// Silence after which a sensor counts as lost, seconds.
     pub lost_after_secs: f32,
     /// Stands where the model explains little of what is measured, rather than showing what explains it best.
@@ -41,7 +41,9 @@ impl Default for ReconConfig {
     fn default() -> Self {
         Self {
             tracker: TrackerConfig::default(),
-            blend_gain: 0.6,
+            blending: Blending::Inertial {
+                rates: [50.0, 10.0],
+            },
             lost_after_secs: 0.5,
             stands_unexplained: true,
             behaviour_probability: 0.6,
@@ -95,7 +97,7 @@ impl Reconstructor {
         let on_foot = |n: usize| sites.get(n).is_some_and(|site| site.is_foot());
         Ok(Self {
             tracker: Tracker::new(prepared, config.tracker),
-            blend: Blend::new(config.blend_gain),
+            blend: Blend::new(config.blending, rate as f32),
             ground: Ground::new(skeleton, &prepared.model.skeleton),
             sensors: core::array::from_fn(|n| Sensor::new(rate, on_foot(n))),
             travel: Travel::new(&prepared.model.sites),
@@ -250,11 +252,12 @@ impl Reconstructor {
             let log_density = self.tracker.log_density() as f32;
             self.confidence.step(log_density, frame_secs);
         }
-        let (mut body, mut velocity) = self.tracker.body(measured.as_ref());
+        let mut course = self.tracker.body(measured.as_ref());
         let standing = self.prepared.standing.as_ref();
-        self.confidence.calm(standing, &mut body, &mut velocity);
-        self.blend.step(&body, &velocity);
-        self.heading = sensor_heading(frames, &body).filter(|_| self.confidence.is_trusted());
+        self.confidence.calm(standing, &mut course);
+        self.blend.step(&course);
+        self.heading =
+            sensor_heading(frames, &course.body).filter(|_| self.confidence.is_trusted());
         if !self.confidence.is_trusted() {
             self.ground.forget_sensor_heading();
         }

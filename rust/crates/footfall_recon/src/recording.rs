@@ -1,6 +1,6 @@
 //! A recording as a whole: what is measured later helps, too.
 
-use crate::blend::Blend;
+use crate::blend::{Blend, Blending};
 use crate::body::BodyFrame;
 use crate::confidence::Confidence;
 use crate::ground::{Ground, GroundInput};
@@ -73,7 +73,10 @@ pub fn reconstruct_recording(
             confidences: Vec::with_capacity(frames.len()),
         },
         // What later frames tell is smooth already.
-        blend: Blend::new(if live { config.blend_gain } else { 1.0 }),
+        blend: Blend::new(
+            if live { config.blending } else { Blending::Off },
+            rate as f32,
+        ),
         ground: Ground::new(skeleton, &prepared.model.skeleton),
         frame_secs: 1.0 / rate as f32,
     };
@@ -212,10 +215,10 @@ impl Shown<'_> {
         if measured.is_some() {
             self.confidence.step(log_density as f32, self.frame_secs);
         }
-        let (mut body, mut velocity) = tracker.body(measured);
+        let mut course = tracker.body(measured);
         let standing = self.prepared.standing.as_ref();
-        self.confidence.calm(standing, &mut body, &mut velocity);
-        self.blend.step(&body, &velocity);
+        self.confidence.calm(standing, &mut course);
+        self.blend.step(&course);
         if self.out.clip.poses.is_empty() {
             // A frame ends when it is measured; the recording begins one frame earlier.
             self.pose(

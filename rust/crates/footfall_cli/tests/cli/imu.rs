@@ -375,14 +375,20 @@ fn parts_of_the_published_method_are_switched_one_by_one() {
     };
     let (none, own, _) = figures(&[]);
     assert_eq!(none, serde_json::json!([]));
-    for part in ["transitions", "gaussians", "interpolation", "regression"] {
+    for part in [
+        "transitions",
+        "gaussians",
+        "interpolation",
+        "regression",
+        "blending",
+    ] {
         let (parts, live, constant) = figures(&["--as-published", part]);
         assert_eq!(parts, serde_json::json!([part]));
         assert!((live - own).abs() > 1e-6, "{part} changes nothing");
         assert!(live < 0.7 * constant, "{part}: {live} of {constant} cm");
     }
     let (all, live, constant) = figures(&["--as-published", "all"]);
-    assert_eq!(all.as_array().map(Vec::len), Some(4));
+    assert_eq!(all.as_array().map(Vec::len), Some(5));
     assert!(live < 0.7 * constant, "all: {live} of {constant} cm");
     assert_eq!(run(&["--as-published", "everything"]).code, 2);
 }

@@ -1,10 +1,10 @@
 //! The most probable segments, and the body that they make together (Mousas 2017, section 5.3).
 
 use super::{Measurement, Tracker};
-use crate::body::BodyFrame;
+use crate::body::Course;
 use crate::kernels::add;
 use footfall_core::Behaviour;
-use footfall_model::imu_model::{BODY_COUNT, MAX_PHASES, MAX_WIDTH};
+use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
 
 impl Tracker {
     /// Sums up behaviours, and chooses the segments to interpolate.
@@ -48,13 +48,13 @@ impl Tracker {
         self.probability[frames].iter().sum()
     }
 
-    /// The body of the most probable segments, interpolated (equations 11 and 13), and how it changes to the next frame.
+    /// The body of the most probable segments, interpolated (equations 11 and 13), and how it changes from frame to frame.
     ///
     /// `sensor` as given to the last [`step`](Self::step).
-    pub fn body(&self, sensor: Option<&Measurement>) -> (BodyFrame, BodyFrame) {
+    pub fn body(&self, sensor: Option<&Measurement>) -> Course {
         let prepared = &*self.prepared;
         let model = &*prepared.model;
-        let (mut body, mut velocity) = ([0.0; BODY_COUNT], [0.0; BODY_COUNT]);
+        let mut course = Course::REST;
         let sum: f32 = self.chosen.iter().map(|(_, mass)| mass).sum();
         let norm = 1.0 / sum.max(1e-30);
         let width = model.sensor_width();
@@ -68,10 +68,14 @@ impl Tracker {
                     continue;
                 }
                 let row = prepared.body_row(frame);
-                add(weight, row, &mut body);
-                if !prepared.ends_chain(frame) {
-                    add(weight, prepared.body_row(frame + 1), &mut velocity);
-                    add(-weight, row, &mut velocity);
+                add(weight, row, &mut course.body);
+                if !prepared.begins_chain(frame) {
+                    add(weight, row, &mut course.arrival);
+                    add(-weight, prepared.body_row(frame - 1), &mut course.arrival);
+                }
+                if !prepared.begins_chain(frame + 1) {
+                    add(weight, prepared.body_row(frame + 1), &mut course.velocity);
+                    add(-weight, row, &mut course.velocity);
                 }
                 add(
                     weight,
@@ -85,14 +89,14 @@ impl Tracker {
                 && self.config.regression > 0.0
             {
                 let weight = mass * norm;
-                for (body, row) in body.iter_mut().zip(regression.chunks_exact(width)) {
+                for (body, row) in course.body.iter_mut().zip(regression.chunks_exact(width)) {
                     let terms = row.iter().zip(&sensor.values).zip(&expected);
                     let change: f32 = terms.map(|((r, y), e)| r * (weight * y - e)).sum();
                     *body += self.config.regression * change;
                 }
             }
         }
-        (body, velocity)
+        course
     }
 
     /// Mean of what was measured in the probable frames: what the sensor should have measured.

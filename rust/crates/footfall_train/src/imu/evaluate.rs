@@ -39,7 +39,7 @@ pub use trivial::TrivialErrors;
 
 use super::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
 use crate::error::TrainError;
-use body::{Body, body, distance_cm, pose_of_row};
+use body::{Body, accelerations, body, distance_cm, pose_of_row};
 use footfall_core::{Behaviour, Pose, Side};
 use footfall_model::Provenance;
 use footfall_recon::{Prepared, Published, ReconConfig, Reconstructed, reconstruct_recording};
@@ -106,6 +106,8 @@ pub struct ImuTrial {
     pub confusion: Confusion,
     /// Bend of both knees in each frame in which the body stands, degrees: as recorded, and live.
     pub standing_knees_deg: Vec<[f32; 2]>,
+    /// Acceleration that one frame in twenty exceeds, root mean square over the joints relative to the hips, m/s²: as recorded, and live.
+    pub sudden_m_s2: [f64; 2],
     /// Delays with which changes of behaviour are recognised live, seconds; those that are not within a second count as one.
     pub delays_secs: Vec<f64>,
 }
@@ -210,6 +212,9 @@ fn try_clip(
     });
     let [live_error, whole_error] = [&live, &whole].map(|made| judge(made, &bodies, &behaviours));
     let moving = |frame: usize| behaviours[frame] != Behaviour::Stand;
+    let rate_hz = prepared.model().frame_rate_hz;
+    let poses = live.clip.poses.iter().skip(1);
+    let shown_bodies: Vec<Body> = poses.map(|pose| body(pose, skeleton)).collect();
     Ok(ImuTrial {
         clip: own,
         frames: bodies.len(),
@@ -219,7 +224,8 @@ fn try_clip(
         trivial: trivial.errors(truth, &bodies, moving),
         confusion,
         standing_knees_deg: standing_knees_deg.collect(),
-        delays_secs: delays(&behaviours, found, prepared.model().frame_rate_hz),
+        sudden_m_s2: [&bodies, &shown_bodies].map(|bodies| sudden(bodies, rate_hz)),
+        delays_secs: delays(&behaviours, found, rate_hz),
     })
 }
 
@@ -245,6 +251,14 @@ fn judge(made: &Reconstructed, bodies: &[Body], behaviours: &[Behaviour]) -> Joi
         moving_cm: mean(&moving),
         recognised: right as f64 / behaviours.len().max(1) as f64,
     }
+}
+
+/// Acceleration that one frame in twenty exceeds.
+fn sudden(bodies: &[Body], frame_rate_hz: f64) -> f64 {
+    let mut accelerations = accelerations(bodies, frame_rate_hz);
+    accelerations.sort_by(f64::total_cmp);
+    let place = accelerations.len() * 19 / 20;
+    accelerations.get(place).copied().unwrap_or(0.0)
 }
 
 /// Mean bend of the knees, degrees.

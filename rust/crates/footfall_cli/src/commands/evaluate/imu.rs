@@ -96,6 +96,8 @@ enum PartArg {
     Interpolation,
     /// Regression of the body on the sensor
     Regression,
+    /// Velocity-based blending
+    Blending,
 }
 
 impl PartArg {
@@ -106,6 +108,7 @@ impl PartArg {
             Self::Gaussians => &[Published::Gaussians],
             Self::Interpolation => &[Published::Interpolation],
             Self::Regression => &[Published::Regression],
+            Self::Blending => &[Published::Blending],
         }
     }
 }
@@ -149,6 +152,8 @@ struct Figures {
     nearest_cm: f64,
     /// Share of the frames whose behaviour is recognised live.
     recognised: f64,
+    /// Acceleration of the joints that one frame in twenty exceeds, m/s²: recorded, and live.
+    sudden_m_s2: [f64; 2],
     /// Changes of behaviour, and the median delay with which they are recognised live.
     changes: usize,
     median_delay_s: Option<f64>,
@@ -261,7 +266,7 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
                 sensor.sites.join(" and ")
             ));
             lines.push(format!(
-                "{:28} {:>10} {:>7} {:>6} {:>7} {:>6} {:>9} {:>8} {:>8} {:>11} {:>6} {:>16}",
+                "{:28} {:>10} {:>7} {:>6} {:>7} {:>6} {:>9} {:>8} {:>8} {:>11} {:>6} {:>16} {:>12}",
                 "",
                 "recordings",
                 "frames",
@@ -273,7 +278,8 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
                 "nearest",
                 "recognised",
                 "delay",
-                "standing knee"
+                "standing knee",
+                "sudden, m/s²"
             ));
             lines.extend(
                 figures
@@ -315,7 +321,7 @@ impl Figures {
                 format!("{live:.0}° of {truth:.0}°")
             });
         format!(
-            "{category:28} {:10} {:7} {:6.2} {:7.2} {:6.2} {:9.2} {:8.2} {:8.2} {:9.0} % {delay:>6} {knee:>16}",
+            "{category:28} {:10} {:7} {:6.2} {:7.2} {:6.2} {:9.2} {:8.2} {:8.2} {:9.0} % {delay:>6} {knee:>16} {:>12}",
             self.recordings,
             self.moving_frames,
             self.live_cm,
@@ -325,6 +331,7 @@ impl Figures {
             self.average_cm,
             self.nearest_cm,
             100.0 * self.recognised,
+            format!("{:.0} of {:.0}", self.sudden_m_s2[1], self.sudden_m_s2[0]),
         )
     }
 }
@@ -380,6 +387,7 @@ fn figures_of(trials: &[&ImuTrial]) -> Figures {
         constant_cm: moving(|t| t.trivial.constant),
         average_cm: moving(|t| t.trivial.average),
         nearest_cm: moving(|t| t.trivial.nearest),
+        sudden_m_s2: [all(|t| t.sudden_m_s2[0]), all(|t| t.sudden_m_s2[1])],
         recognised: all(|t| t.live.recognised),
         changes: delays.len(),
         median_delay_s: delays.get(delays.len() / 2).copied(),

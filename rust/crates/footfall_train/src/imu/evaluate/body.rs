@@ -46,6 +46,16 @@ pub(super) fn nearest_cm(bodies: &[Body], truth: &Body) -> f64 {
     cm(nearest)
 }
 
+/// Accelerations of a body from frame to frame, without the first and the last: root mean square over the joints, m/s².
+pub(super) fn accelerations(bodies: &[Body], frame_rate_hz: f64) -> Vec<f64> {
+    let frames = bodies.windows(3).map(|frames| {
+        let joints = frames[0].iter().zip(&frames[1]).zip(&frames[2]);
+        let squares = joints.map(|((a, b), c)| f64::from((*a - 2.0 * *b + *c).length_squared()));
+        (squares.sum::<f64>() / JOINT_COUNT as f64).sqrt() * frame_rate_hz.powi(2)
+    });
+    frames.collect()
+}
+
 fn sum(a: &Body, b: &Body, joints: core::ops::Range<usize>) -> f32 {
     let pairs = a[joints.clone()].iter().zip(&b[joints]);
     pairs.map(|(a, b)| a.distance(*b)).sum()
@@ -75,5 +85,17 @@ mod tests {
             assert!((nearest_cm(&bodies, &truth) - least).abs() < 1e-4);
         }
         assert!(nearest_cm(&[], &bodies[0]).is_infinite());
+    }
+
+    #[test]
+    fn a_jump_is_its_own_acceleration() {
+        let at = |x: f32| [Vec3::X * x; JOINT_COUNT];
+        let mut bodies: Vec<Body> = (0..10).map(|n| at(0.1 * n as f32)).collect();
+        assert!(accelerations(&bodies, 30.0).iter().all(|a| *a < 1e-3));
+        for body in &mut bodies[5..] {
+            *body = body.map(|place| place + Vec3::X);
+        }
+        let greatest = accelerations(&bodies, 30.0).into_iter().fold(0.0, f64::max);
+        assert!((greatest - 900.0).abs() < 1e-2, "{greatest}");
     }
 }
