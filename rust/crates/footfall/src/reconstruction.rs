@@ -70,6 +70,6 @@
 
 pub use footfall_core::Behaviour;
 pub use footfall_recon::{
-    Mounting, MountingError, Prepared, ReconConfig, Reconstructed, Reconstructor, SensorState,
-    TrackerConfig, find_mounting, reconstruct_recording,
+    Blending, Mounting, MountingError, Prepared, ReconConfig, Reconstructed, Reconstructor,
+    SensorState, TrackerConfig, find_mounting, reconstruct_recording,
 };

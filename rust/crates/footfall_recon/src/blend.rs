@@ -20,7 +20,7 @@ const PARTED_SECS: f32 = 0.2;
 /// For so long a body that has just begun goes over to any course as to a near one, seconds: what it shows is a guess.
 const BEGINNING_SECS: f32 = 0.5;
 
-/// How the body goes over from one course of the recordings to another.
+/// Transition of the body from one course of the recordings to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Blending {
     /// At once.
@@ -30,7 +30,7 @@ pub enum Blending {
         /// Share of the way to the target that is gone in a frame.
         gain: f32,
     },
-    /// What parts the two, in place and in velocity, dies away as in a critically damped spring (inertialization, after Bollo 2018).
+    /// Offsets in place and in velocity die away as in a critically damped spring (inertialization, after Bollo 2018).
     Inertial {
         /// Rates of the spring, 1/s: where the two are near each other, and where they are far apart.
         rates: [f32; 2],
@@ -46,7 +46,7 @@ pub struct Blend {
     /// The body that is shown less the target, and how that changes in a frame.
     offset: BodyFrame,
     drift: BodyFrame,
-    /// How far courses parted lately, between [`PARTED`]: 0 to 1.
+    /// Distance at which courses parted lately, between [`PARTED`]: 0 to 1.
     parted: f32,
     /// Time since the first frame, seconds.
     shown_secs: f32,

@@ -31,7 +31,7 @@ const TOLD_DRIFT: f32 = 2.0;
 /// Half-life of what remains of a correction when a foot lands, seconds.
 const SETTLE_HALF_LIFE_SECS: f32 = 0.02;
 
-/// What remains when a foot leaves the ground dies away as in a critically damped spring of this rate, 1/s.
+/// Rate of the critically damped spring by which the correction of a foot that leaves the ground dies away, 1/s.
 const RELEASE_RATE: f32 = 60.0;
 
 /// The height of the pelvis follows the standing feet with this half-life, seconds.

@@ -27,7 +27,7 @@ const TOLD_FOR_SECS: f32 = 0.1;
 pub struct ReconConfig {
     /// Settings of the tracker.
     pub tracker: TrackerConfig,
-    /// How the body goes over from one course of the recordings to another.
+    /// Transition of the body from one course of the recordings to another.
     pub blending: Blending,
     /// Silence after which a sensor counts as lost, seconds.
     pub lost_after_secs: f32,

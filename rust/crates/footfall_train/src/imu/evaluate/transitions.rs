@@ -1,6 +1,6 @@
 //! Changes from one motion to another (Mousas 2017, section 7.2.4), where the paper asks people how natural they look: how suddenly bodies move there.
 //!
-//! What a sensor measured of one person up to a moment is followed by what it measured of another from a moment on. Bodies are shown by a model that has seen
+//! The measurements of one person up to a moment are followed by those of another from a moment on. Bodies are shown by a model that has seen
 //! neither: people are dealt into four groups, both come from one, and the model has seen the others.
 
 use super::body::{Body, accelerations, body, pose_of_row};
