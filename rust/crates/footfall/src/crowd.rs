@@ -34,5 +34,80 @@
 //! assert!(crowd.iter().all(|walker| walker.start_from_character().position.z > 1.5));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Whole crowds
+//!
+//! A [`Crowd`] also decides who walks where. A [`CrowdRecipe`] is what its walkers are made of, on threads of its own; [`CrowdSettings`] are how they differ. Its
+//! [`Way`] leads them over an area, along a [`Path`], or as each [`Agent`] is told. They keep out of each other's way.
+//!
+//! ```
+//! use footfall::crowd::{Crowd, CrowdRecipe, CrowdSettings, Limits, Tier, Way};
+//! use footfall::glam::{Vec2, Vec3};
+//! use footfall::model::GaitModel;
+//! use std::sync::Arc;
+//!
+//! # std::env::set_current_dir("../../..")?;
+//! let model = Arc::new(GaitModel::from_bytes(&std::fs::read("addons/footfall/models/locomotion.footfall")?)?);
+//! let body = model.skeleton.clone();
+//! let recipe = CrowdRecipe { model, styles: Vec::new(), space: None, body };
+//! let wander = Way::Wander { half: Vec2::splat(20.0) };
+//! let mut crowd = Crowd::new(recipe, wander, CrowdSettings { seed: 7, ..CrowdSettings::default() });
+//! crowd.set_count(50);
+//!
+//! let limits = Limits { counts: [5, 20], distances_m: [8.0, 40.0] };
+//! for frame in 0..120 {
+//!     // A game calls `begin_some`, which waits for nobody.
+//!     crowd.begin_all()?;
+//!     crowd.advance(1.0 / 60.0, true);
+//!     if frame % 8 == 0 {
+//!         crowd.choose_tiers(Vec3::ZERO, &limits);
+//!     }
+//!     for (drawn, tier) in crowd.drawn().iter().zip(crowd.tiers()) {
+//!         // Put a character at `drawn.places[1]`: one with a skeleton for `Tier::Full`, an instance else.
+//!         assert!(drawn.places[1].is_finite() && *tier <= Tier::Far);
+//!     }
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A walker keeps its name in the [`Roster`] for as long as it is there. Here one is sent to a place, and the crowd is saved with it.
+//!
+//! ```
+//! # use footfall::crowd::{CrowdRecipe, CrowdSettings};
+//! use footfall::crowd::{Crowd, SavedCrowd, Way};
+//! use footfall::glam::{Vec2, Vec3};
+//! # use footfall::model::GaitModel;
+//! # use std::sync::Arc;
+//! # std::env::set_current_dir("../../..")?;
+//! # let model = Arc::new(GaitModel::from_bytes(&std::fs::read("addons/footfall/models/locomotion.footfall")?)?);
+//! # let body = model.skeleton.clone();
+//! # let recipe = CrowdRecipe { model, styles: Vec::new(), space: None, body };
+//!
+//! let mut crowd = Crowd::new(recipe, Way::Told, CrowdSettings::default());
+//! let names = crowd.add([(Vec3::ZERO, 0.0), (Vec3::X, 0.0)].into_iter());
+//! crowd.begin_all()?;
+//! let row = crowd.roster().place(names[1]).expect("it is there");
+//! crowd.agents_mut()[row].go_to(Vec2::new(0.0, 6.0));
+//! for _ in 0..60 {
+//!     crowd.begin_all()?;
+//!     crowd.advance(1.0 / 60.0, true);
+//! }
+//! let place = crowd.agents()[row].place;
+//! assert!(place.z > 0.5, "it walks: {place}");
+//! assert_eq!(crowd.nearest(Vec3::X, 2.0), Some(row));
+//!
+//! let saved = SavedCrowd::from_bytes(&crowd.save())?;
+//! crowd.clear();
+//! crowd.restore(&saved);
+//! assert_eq!(crowd.names().collect::<Vec<_>>(), names);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A walker's [`Goal`] is what it does by itself, [`Drawn`] its places for drawing. Of those far away one group of [`GROUPS`] moves in each frame; a renderer that writes many
+//! poses fetches [`FETCHED`] of them together ([`Agent::fetch_pose`]). A crowd has at most [`MOST_AGENTS`]. [`CrowdStateError`] says what is wrong with bytes.
 
+pub use footfall_rig::crowd::{
+    Agent, Crowd, CrowdRecipe, CrowdSettings, CrowdStateError, Drawn, FETCHED, GROUPS, Goal,
+    Limits, MOST_AGENTS, Path, Roster, SavedCrowd, Tier, Way,
+};
 pub use footfall_synth::{CrowdPose, CrowdWalker, StyledBody, Workshop};

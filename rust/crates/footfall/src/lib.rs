@@ -30,7 +30,7 @@
 //!
 //! [`Pose`](body::Pose) holds the place of the hips and one rotation a joint, in the space of the character: origin on the ground below it, +Z
 //! where it faces. [`start_from_character`](gait::GaitGenerator::start_from_character) is where the character has come to. An engine puts its
-//! object there and the rotations on its bones; [`body::recognise`] finds the joints in a rig by names and structure. Give
+//! object there and the rotations on its bones: [`rig`] measures a character and writes poses to it, whatever the axes of its bones are. Give
 //! [`GaitGenerator::new`](gait::GaitGenerator::new) the lengths of your character as a [`Skeleton`](body::Skeleton), and its feet meet the ground exactly.
 //!
 //! # A game loop
@@ -174,7 +174,7 @@
 //!
 //! `live` opens serial ports and sockets for sensors; it brings an HTTP server, TLS and their dependencies. Nothing is on by default.
 //!
-//! Modules in suggested reading order: [`body`], [`model`], [`gait`], [`ground`], [`handover`], [`crowd`], [`sensor`], [`reconstruction`].
+//! Modules in suggested reading order: [`body`], [`model`], [`gait`], [`rig`], [`ground`], [`handover`], [`crowd`], [`sensor`], [`reconstruction`].
 
 pub mod body;
 pub mod crowd;
@@ -183,6 +183,7 @@ pub mod ground;
 pub mod handover;
 pub mod model;
 pub mod reconstruction;
+pub mod rig;
 pub mod sensor;
 
 pub use glam;

@@ -43,6 +43,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`Blending`], in [`ReconConfig`], is how the shown body goes over from one course of the recordings to another.
+//!
 //! [`find_mounting`] finds the [`Mounting`] of a sensor that is worn in any orientation, from a recording of a few steps; a [`MountingError`] says when there is too
 //! little motion. Give [`Mounting::site_from_sensor`] to [`Reconstructor::set_mounting`].
 //!

@@ -6,7 +6,7 @@
 use crate::joint::JOINT_COUNT;
 use core::f32::consts::{PI, TAU};
 use core::ops::{Add, Mul};
-use glam::{Quat, Vec3};
+use glam::{Affine3A, Mat3, Quat, Vec3};
 use multiversion::multiversion;
 
 /// Largest square of half an angle for which the polynomials below are exact to the last digit of f32: a little more than
@@ -174,6 +174,15 @@ pub fn shortest_arc(from: Vec3, to: Vec3) -> Quat {
     Quat::from_vec4(from.cross(to).extend(w)).normalize()
 }
 
+/// The rotation of a transform, its scale removed.
+pub fn of_transform(transform: &Affine3A) -> Quat {
+    let columns = Mat3::from(transform.matrix3);
+    // Gram-Schmidt in Godot's own order, so that the frame is the one that `Basis.orthonormalized()` gives.
+    let x = columns.x_axis.normalize_or(Vec3::X);
+    let y = (columns.y_axis - x * x.dot(columns.y_axis)).normalize_or(x.any_orthonormal_vector());
+    Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -242,5 +251,22 @@ mod tests {
         let forward = from_heading(0.5) * Vec3::Z;
         assert!(forward.x > 0.0);
         assert!((wrap_angle(3.0 * PI) - PI).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_scale_does_not_change_the_rotation_of_a_transform() {
+        let turn = Quat::from_euler(glam::EulerRot::YXZ, 0.4, -1.1, 2.0);
+        for scale in [
+            Vec3::ONE,
+            Vec3::splat(0.01),
+            Vec3::new(2.0, 0.5, 3.0),
+            Vec3::new(1.0, 1.0, -1.0),
+        ] {
+            let transform = Affine3A::from_scale_rotation_translation(scale, turn, Vec3::X);
+            let found = of_transform(&transform);
+            assert!(found.angle_between(turn) < 1e-3, "{scale}: {found}");
+        }
+        let flat = Affine3A::from_scale(Vec3::ZERO);
+        assert!(of_transform(&flat).is_normalized());
     }
 }

@@ -1,5 +1,6 @@
 //! Vectors and rotations between Godot and glam. Both are right-handed with Y up, so only the types differ.
 
+pub(crate) use footfall_core::rotation::of_transform as rotation;
 use footfall_ik::placement::Frame;
 use glam::{Affine3A, Quat, Vec3};
 use godot::builtin::{Basis, Quaternion, Transform3D, Vector3};
@@ -56,15 +57,6 @@ pub(crate) fn scaled(transform: &Affine3A) -> Transform3D {
         Basis::from_cols(x, y, z),
         vector3(transform.translation.into()),
     )
-}
-
-/// The rotation of a transform, its scale removed.
-pub(crate) fn rotation(transform: &Affine3A) -> Quat {
-    let columns = glam::Mat3::from(transform.matrix3);
-    // Gram-Schmidt in Godot's own order, so that the frame is the one that `Basis.orthonormalized()` gives.
-    let x = columns.x_axis.normalize_or(Vec3::X);
-    let y = (columns.y_axis - x * x.dot(columns.y_axis)).normalize_or(x.any_orthonormal_vector());
-    Quat::from_mat3(&glam::Mat3::from_cols(x, y, x.cross(y))).normalize()
 }
 
 /// A transform without its scale. Unlike Godot's own, it is content with a scale of 0.

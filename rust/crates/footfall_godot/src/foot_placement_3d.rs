@@ -298,7 +298,7 @@ impl FootPlacement3D {
     }
 
     /// One frame: the pose is read, put on the ground and written.
-    fn place(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
+    fn place(&mut self, mut session: Session, skeleton: Gd<Skeleton3D>, delta: f64) {
         self.reported = None;
         let space = skeleton
             .get_world_3d()
@@ -368,7 +368,7 @@ impl FootPlacement3D {
         session
             .placer
             .step(dt_secs, &input, &mut ground, &mut session.pose);
-        session.binding.write_legs(&mut skeleton, &session.pose);
+        session.binding.write_legs(&skeleton, &session.pose);
         let feet = *session.placer.feet();
         self.session = Some(session);
         let host = skeleton.upcast::<Node>();

@@ -1,43 +1,31 @@
 //! `GaitCrowd3D`: thousands of walkers from one node.
 
 mod actors;
-mod agent;
-mod avoidance;
 mod batch;
-mod begin;
 mod bounds;
 mod crowd_mesh;
 mod flock;
 mod frame;
 mod ground;
-mod kit;
-mod maker;
 mod making;
 mod members;
-mod motion;
 mod navigation;
-mod neighbours;
-mod pick;
-mod roster;
-mod save;
 mod scene;
-mod tiers;
-mod walkers;
-mod way;
 
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use crate::shipped::{self, Fallback};
+use crowd_mesh::CrowdMesh;
+use footfall_rig::crowd::Crowd;
 use godot::classes::{Engine, INode3D, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
 use scene::CrowdScene;
-use walkers::Walkers;
 
 /// Warning where there is no character.
 const NO_CHARACTER: &str = "No character. Load a scene with a humanoid character into Character, for example an imported .glb.";
 
-/// More walkers than this are refused: their steps alone would take gigabytes.
-const MOST_AGENTS: i64 = 100_000;
+/// More walkers than this are refused.
+const MOST_AGENTS: i64 = footfall_rig::crowd::MOST_AGENTS as i64;
 
 /// Nobody walks or runs faster, m/s.
 const FASTEST_MPS: f32 = 6.0;
@@ -209,7 +197,9 @@ pub(crate) struct GaitCrowd3D {
 
     /// The add-on's own walk, where `model` is empty.
     fallback: Fallback<GaitModel>,
-    walkers: Option<Walkers>,
+    walkers: Option<Crowd>,
+    /// Mesh of the character, until the scene has it.
+    mesh: Option<CrowdMesh>,
     scene: Option<CrowdScene>,
     /// Why the crowd could not be made, as long as nothing has changed since.
     problem: Option<String>,
@@ -383,6 +373,7 @@ impl GaitCrowd3D {
             scene.free();
         }
         self.walkers = None;
+        self.mesh = None;
         self.problem = None;
     }
 }

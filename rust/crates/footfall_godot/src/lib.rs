@@ -5,8 +5,7 @@
 //! `imu_model` is the resource that knows what sensors mean, `replay_imu_source` one that plays their recordings,
 //! `serial_`, `network_`, `phone_` and `device_imu_source` those that hear them live, `imu_source` what all of these are to `imu_reconstructor_3d`, the node that they drive; `loaded` is what a resource made of a file,
 //! `format_loader` what loads it, `shipped` where the models are that come with the add-on.
-//! Between the engine and the runtime stand `rest_body` (proportions of any character from its rest pose),
-//! `skeleton_binding` (joints to bones and back), `character` and `travel` (which node travels, and how), `physics_ground` (what feet stand on) and `convert` (vectors).
+//! Between the engine and the runtime, which is `footfall_rig` where bones and crowds are concerned, stand `skeleton_binding` (the engine's bones), `character` and `travel` (which node travels, and how), `physics_ground` (what feet stand on) and `convert` (vectors).
 //!
 //! Two flavours are built. With the feature `editor` the library also holds `editor` (a dock, gizmos, a preview bar) and the
 //! class reference that Godot shows; exported games get the library without. Both register the same runtime classes.
@@ -42,7 +41,6 @@ mod phone_imu_source;
 mod physics_ground;
 mod replay_imu_source;
 mod report;
-mod rest_body;
 mod root_motion;
 mod serial_imu_source;
 mod shipped;

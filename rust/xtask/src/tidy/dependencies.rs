@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Crates that games ship.
-const RUNTIME: [&str; 9] = [
+const RUNTIME: [&str; 10] = [
     "footfall_core",
     "footfall_prob",
     "footfall_model",
@@ -13,6 +13,7 @@ const RUNTIME: [&str; 9] = [
     "footfall_imu",
     "footfall_recon",
     "footfall_ik",
+    "footfall_rig",
     "footfall",
     "footfall_godot",
 ];

@@ -4,13 +4,14 @@ use super::Violation;
 use super::source::{code_only, is_a, without_tests};
 
 /// Crates whose results depend on their arguments alone.
-const PURE: [&str; 6] = [
+const PURE: [&str; 7] = [
     "footfall_core",
     "footfall_prob",
     "footfall_model",
     "footfall_synth",
     "footfall_recon",
     "footfall_ik",
+    "footfall_rig",
 ];
 /// Crates that talk to a user.
 const TOOLS: [&str; 3] = ["footfall_cli", "footfall_studio", "xtask"];

@@ -1,14 +1,12 @@
 //! Whole scenes with skeletons, lent to the walkers that are nearest.
 
-use super::agent::Agent;
 use super::crowd_mesh::skeleton_of;
-use super::tiers::Tier;
 use crate::convert;
 use crate::foot_placement_3d::FootPlacement3D;
 use crate::gait_generator_3d::GaitGenerator3D;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::rotation::from_heading;
-use footfall_ik::placement::{Frame, Landing};
+use footfall_rig::crowd::{Agent, Tier};
 use footfall_synth::CrowdPose;
 use godot::classes::node::ProcessMode;
 use godot::classes::{BaseMaterial3D, MeshInstance3D, Node, Node3D, PackedScene, Skeleton3D};
@@ -136,33 +134,16 @@ impl Actors {
         let mut pose = CrowdPose::default();
         for actor in &mut self.all {
             let agent = actor.plays.and_then(|index| agents.get(index as usize));
-            let Some((agent, walker)) =
-                agent.and_then(|agent| Some((agent, agent.walker.as_ref()?)))
-            else {
+            let Some(agent) = agent.filter(|agent| agent.pose(&mut pose)) else {
                 continue;
             };
             let turn = Basis::from_quaternion(convert::quaternion(from_heading(agent.heading)));
             let scaled = turn.scaled(Vector3::splat(agent.size));
             let place = Transform3D::new(scaled, convert::vector3(agent.place));
             actor.node.set_transform(place);
-            walker.pose(&mut pose);
-            actor.binding.write_joints(&mut actor.skeleton, &pose);
+            actor.binding.write_joints(&actor.skeleton, &pose);
             if let Some(placement) = &mut actor.placement {
-                // The scene is scaled, and a large body takes longer for its steps.
-                let landings = walker.landings().map(|landing| {
-                    let landing = landing?;
-                    let flat = Frame {
-                        position: landing.flat.position * agent.size,
-                        ..landing.flat
-                    };
-                    Some(Landing {
-                        flat,
-                        secs: landing.secs * agent.size.sqrt(),
-                        hips: landing.hips * agent.size,
-                        ankles: landing.ankles.map(|ankle| ankle * agent.size),
-                    })
-                });
-                let contacts = walker.feet_in_contact();
+                let (contacts, landings) = (agent.feet_in_contact(), agent.landings());
                 placement.bind_mut().feed(contacts, landings);
             }
         }

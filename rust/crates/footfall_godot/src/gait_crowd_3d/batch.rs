@@ -1,9 +1,9 @@
 //! Questions and requests of scripts to walkers: many at once, in packed arrays.
 
-use super::agent::{Agent, Goal};
 use super::navigation::Navigation;
 use super::{GaitCrowd3D, linear};
 use crate::convert;
+use footfall_rig::crowd::Agent;
 use glam::Vec2;
 use godot::classes::Node3D;
 use godot::prelude::*;
@@ -64,7 +64,7 @@ impl GaitCrowd3D {
         self.make_whole();
         let tier = |place: Option<usize>| {
             let walkers = self.walkers.as_ref();
-            let tier = walkers.and_then(|walkers| walkers.tiers.get(place?));
+            let tier = walkers.and_then(|walkers| walkers.tiers().get(place?));
             tier.copied().unwrap_or_default() as u8
         };
         self.places(&agents).into_iter().map(tier).collect()
@@ -97,8 +97,7 @@ impl GaitCrowd3D {
     ) {
         self.set_each(turn_rates.as_slice(), &agents, |agent, rate| {
             if rate.is_finite() {
-                agent.goal = Goal::Turn(*rate);
-                agent.route.clear();
+                agent.turn(*rate);
             }
         });
     }
@@ -114,8 +113,7 @@ impl GaitCrowd3D {
     ) {
         self.set_each(targets.as_slice(), &agents, |agent, target| {
             if target.is_finite() {
-                agent.goal = Goal::Place(Vec2::new(target.x, target.z));
-                agent.route.clear();
+                agent.go_to(Vec2::new(target.x, target.z));
             }
         });
     }
@@ -165,7 +163,7 @@ impl GaitCrowd3D {
     fn set_agent_style(&mut self, agent: i32, weights: PackedFloat32Array) {
         self.make_whole();
         if let Some(walkers) = &mut self.walkers
-            && let Some(place) = walkers.roster.place(agent)
+            && let Some(place) = walkers.roster().place(agent)
         {
             walkers.wear(place, weights.as_slice());
         }
@@ -178,7 +176,7 @@ impl GaitCrowd3D {
         let Some(walkers) = &self.walkers else {
             return vec![None; agents.len()];
         };
-        let roster = &walkers.roster;
+        let roster = walkers.roster();
         if agents.is_empty() {
             return roster
                 .order()
@@ -198,7 +196,7 @@ impl GaitCrowd3D {
     ) -> C {
         self.make_whole();
         let places = self.places(agents);
-        let agent = |place: Option<usize>| self.walkers.as_ref()?.agents.get(place?);
+        let agent = |place: Option<usize>| self.walkers.as_ref()?.agents().get(place?);
         places
             .into_iter()
             .map(|place| agent(place).map_or_else(|| nobody.clone(), &of))
@@ -217,7 +215,7 @@ impl GaitCrowd3D {
             return;
         };
         for (place, value) in places.into_iter().zip(values) {
-            if let Some(agent) = place.and_then(|place| walkers.agents.get_mut(place)) {
+            if let Some(agent) = place.and_then(|place| walkers.agents_mut().get_mut(place)) {
                 set(agent, value);
             }
         }

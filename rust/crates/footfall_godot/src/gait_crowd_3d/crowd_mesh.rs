@@ -1,5 +1,6 @@
 //! A character's meshes as a crowd draws them: in the T-pose, with joints and weights where a shader finds them.
 
+use crate::bones;
 use crate::convert;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics};
@@ -16,6 +17,7 @@ use godot::prelude::*;
 const INFLUENCES: usize = 4;
 
 /// Character of a crowd: its mesh and its body.
+#[derive(Clone)]
 pub(super) struct CrowdMesh {
     /// For walkers whose pose is new in every frame, and for those far away.
     pub(super) meshes: [Gd<ArrayMesh>; 2],
@@ -24,15 +26,6 @@ pub(super) struct CrowdMesh {
     pub(super) rest: [Vec3; JOINT_COUNT],
     /// The joint whose rotation each joint's bone takes.
     pub(super) turned_by: [Joint; JOINT_COUNT],
-}
-
-impl CrowdMesh {
-    /// Height of its highest joint in the T-pose.
-    pub(super) fn height(&self) -> f32 {
-        self.rest
-            .iter()
-            .fold(0.0, |height, joint| height.max(joint.y))
-    }
 }
 
 /// Finds the skeleton of a character.
@@ -74,7 +67,7 @@ impl CrowdMesh {
         )?;
         let binding = SkeletonBinding::new(&skeleton, character, None)
             .map_err(|error| format!("Character: {error}"))?;
-        let bones = binding.t_pose_of_bones(&skeleton);
+        let bones = binding.t_pose_of_bones(&bones::at_rest(&skeleton));
         let mut instances: Vec<(f32, Gd<MeshInstance3D>)> = Vec::new();
         for node in skeleton
             .find_children_ex("*")
@@ -113,7 +106,7 @@ impl CrowdMesh {
             meshes,
             rest: t_pose.positions,
             turned_by: binding.turned_by(),
-            body: binding.body,
+            body: binding.body.clone(),
         })
     }
 }

@@ -1,9 +1,9 @@
 //! Walkers that are drawn together: one `MultiMesh`, and the texture that its shader reads their poses from.
 
-use super::agent::Drawn;
 use super::crowd_mesh::{CrowdMesh, give_poses};
 use crate::convert;
 use footfall_core::{JOINT_COUNT, Joint};
+use footfall_rig::crowd::Drawn;
 use footfall_synth::CrowdPose;
 use glam::{Quat, Vec3};
 use godot::classes::image::Format;

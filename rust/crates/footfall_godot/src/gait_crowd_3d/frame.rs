@@ -2,10 +2,9 @@
 
 use super::navigation::Navigation;
 use super::scene::{CrowdScene, Look};
-use super::tiers::Limits;
-use super::walkers::Walkers;
 use super::{GaitCrowd3D, MOST_AGENTS, ground};
 use crate::convert;
+use footfall_rig::crowd::{Crowd, Limits};
 use godot::classes::{Engine, Node3D};
 use godot::prelude::*;
 
@@ -30,7 +29,7 @@ impl GaitCrowd3D {
         };
         walkers.repeats = repeat_far;
         walkers.standing_motion = standing_motion;
-        if walkers.is_navigated()
+        if walkers.way().is_navigated()
             && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)
         {
             navigation.wander(&mut walkers);
@@ -38,8 +37,9 @@ impl GaitCrowd3D {
         walkers.advance(dt_secs, avoidance);
         ground::find(&mut walkers, &host, mask);
         let scene = scene.or_else(|| {
+            let mesh = self.mesh.clone()?;
             let _released = self.base_mut();
-            CrowdScene::new(&host, &walkers, &look)
+            CrowdScene::new(&host, mesh, &look)
         });
         let drawn = scene.map(|mut scene| {
             let _released = self.base_mut();
@@ -47,7 +47,7 @@ impl GaitCrowd3D {
             scene
         });
         let landed = self.landed(&walkers);
-        let began: PackedInt32Array = walkers.began.iter().copied().collect();
+        let began: PackedInt32Array = walkers.began().iter().copied().collect();
         // A script that was called in between may have made everything anew.
         if self.walkers.is_none() && self.base().is_inside_tree() {
             self.walkers = Some(walkers);
@@ -82,8 +82,8 @@ impl GaitCrowd3D {
                 }
                 true
             }
-            Err(problem) => {
-                self.fail(problem);
+            Err(error) => {
+                self.fail(format!("The walk cannot start: {error}"));
                 false
             }
         }
@@ -107,7 +107,7 @@ impl GaitCrowd3D {
     /// Arguments of the signal `footsteps`, if any feet landed; nothing in the editor.
     fn landed(
         &self,
-        walkers: &Walkers,
+        walkers: &Crowd,
     ) -> Option<(PackedInt32Array, PackedByteArray, PackedVector3Array)> {
         walkers.landed().next()?;
         if Engine::singleton().is_editor_hint() {
@@ -116,7 +116,7 @@ impl GaitCrowd3D {
         let world = self.base().get_global_transform();
         let agents = walkers
             .landed()
-            .map(|(place, ..)| walkers.roster.name(place));
+            .map(|(place, ..)| walkers.roster().name(place));
         let feet = walkers.landed().map(|(_, side, _)| side.index() as u8);
         let places = walkers
             .landed()

@@ -1,9 +1,9 @@
 //! The ground under a crowd: a ray for every step of every walker.
 
-use super::walkers::Walkers;
 use crate::convert;
 use crate::physics_ground::PhysicsGround;
 use footfall_ik::placement::Terrain as _;
+use footfall_rig::crowd::Crowd;
 use glam::Vec3;
 use godot::classes::Node3D;
 use godot::prelude::*;
@@ -12,7 +12,7 @@ use godot::prelude::*;
 const GROUND_REACH_M: f32 = 1.5;
 
 /// Finds the ground under walkers that have just put a foot down.
-pub(super) fn find(walkers: &mut Walkers, host: &Gd<Node3D>, mask: u32) {
+pub(super) fn find(walkers: &mut Crowd, host: &Gd<Node3D>, mask: u32) {
     if mask == 0 {
         return;
     }
@@ -25,14 +25,15 @@ pub(super) fn find(walkers: &mut Walkers, host: &Gd<Node3D>, mask: u32) {
     let world = convert::frame(host.get_global_transform());
     let mut rays = PhysicsGround::new(mask, 0.0, &Array::new());
     let mut ground = rays.now(space);
-    for index in 0..walkers.agents.len() {
+    for index in 0..walkers.agents().len() {
         let moved = walkers.moved(index);
-        let agent = &mut walkers.agents[index];
-        if !moved || agent.landed.is_none() {
+        let agent = &mut walkers.agents_mut()[index];
+        if !moved || !agent.has_landed() {
             continue;
         }
         // A little ahead, where it will be in the middle of the step.
-        let ahead = agent.place + 0.25 * Vec3::new(agent.velocity.x, 0.0, agent.velocity.y);
+        let velocity = agent.velocity();
+        let ahead = agent.place + 0.25 * Vec3::new(velocity.x, 0.0, velocity.y);
         let from = world.point(ahead + Vec3::Y * GROUND_REACH_M);
         let way = world.up() * (-2.0 * GROUND_REACH_M);
         if let Some(hit) = ground.cast(from, way) {

@@ -1,14 +1,12 @@
 //! A crowd made of what its node was given.
 
 use super::crowd_mesh::CrowdMesh;
-use super::kit::Recipe;
-use super::walkers::{Settings, Walkers};
-use super::way::{Path, Way};
 use super::{CrowdBehaviour, GaitCrowd3D, NO_CHARACTER, linear};
 use crate::gait_model::{self, NO_MODEL};
 use crate::gait_style;
 use crate::shipped;
 use footfall_model::{GaitModel, GaitStyle};
+use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdSettings, Path, Way};
 use footfall_synth::StyleSpace;
 use glam::Vec2;
 use godot::classes::{Engine, Node3D, Path3D};
@@ -71,7 +69,10 @@ impl GaitCrowd3D {
             return false;
         }
         match self.made() {
-            Ok(walkers) => self.walkers = Some(walkers),
+            Ok((walkers, mesh)) => {
+                self.walkers = Some(walkers);
+                self.mesh = Some(mesh);
+            }
             Err(problem) => self.fail(problem),
         }
         self.walkers.is_some()
@@ -127,7 +128,7 @@ impl GaitCrowd3D {
         problems.iter().map(GString::from).collect()
     }
 
-    fn made(&mut self) -> Result<Walkers, String> {
+    fn made(&mut self) -> Result<(Crowd, CrowdMesh), String> {
         let (model, styles, space) = self.walk()?;
         let character = self.character.clone().ok_or(NO_CHARACTER)?;
         let way = self.way()?;
@@ -137,7 +138,7 @@ impl GaitCrowd3D {
             CrowdMesh::new(&character, &mut host)?
         };
         let tints = self.colours.as_slice().iter().map(|colour| linear(*colour));
-        let settings = Settings {
+        let settings = CrowdSettings {
             seed: self.seed.cast_unsigned(),
             speeds_mps: [self.speed_range.x, self.speed_range.y],
             sizes: [self.size_range.x, self.size_range.y],
@@ -146,16 +147,14 @@ impl GaitCrowd3D {
             half_area: 0.5 * Vec2::new(self.area.x, self.area.y),
             path_width: self.path_width as f32,
         };
-        let recipe = Recipe {
+        let recipe = CrowdRecipe {
             model,
             styles,
             space,
             body: mesh.body.clone(),
-            // One for each thread, and one for who calls.
-            threads: rayon::current_num_threads() + 1,
         };
-        let mut walkers = Walkers::new(recipe, mesh, way, settings);
+        let mut walkers = Crowd::new(recipe, way, settings);
         walkers.set_count(self.count as usize);
-        Ok(walkers)
+        Ok((walkers, mesh))
     }
 }

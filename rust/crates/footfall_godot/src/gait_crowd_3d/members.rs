@@ -1,7 +1,8 @@
 //! Members of a crowd, as scripts see them: walkers come, go, are named, found and saved.
 
-use super::{GaitCrowd3D, MOST_AGENTS, pick, save};
+use super::GaitCrowd3D;
 use crate::convert;
+use footfall_rig::crowd::{Crowd, MOST_AGENTS, SavedCrowd};
 use godot::classes::{Node, Node3D};
 use godot::prelude::*;
 
@@ -27,7 +28,7 @@ impl GaitCrowd3D {
         let Some(walkers) = &mut self.walkers else {
             return PackedInt32Array::new();
         };
-        let room = (MOST_AGENTS as usize).saturating_sub(walkers.roster.order().len());
+        let room = (MOST_AGENTS as usize).saturating_sub(walkers.roster().order().len());
         if positions.len() > room {
             godot_warn!(
                 "A crowd holds {MOST_AGENTS} walkers at most: {} are left out.",
@@ -52,7 +53,7 @@ impl GaitCrowd3D {
         };
         let names = agents.as_slice().iter();
         let mut places: Vec<usize> = names
-            .filter_map(|name| walkers.roster.place(*name))
+            .filter_map(|name| walkers.roster().place(*name))
             .collect();
         places.sort_unstable();
         places.dedup();
@@ -82,7 +83,7 @@ impl GaitCrowd3D {
         self.make();
         let walkers = self.walkers.as_ref();
         walkers.map_or(0, |walkers| {
-            i64::from(convert::count(walkers.roster.order().len()))
+            i64::from(convert::count(walkers.roster().order().len()))
         })
     }
 
@@ -94,7 +95,7 @@ impl GaitCrowd3D {
     fn get_agents(&mut self) -> PackedInt32Array {
         self.make();
         let walkers = self.walkers.iter();
-        walkers.flat_map(super::walkers::Walkers::names).collect()
+        walkers.flat_map(Crowd::names).collect()
     }
 
     /// Returns whether a walker has this id.
@@ -108,7 +109,7 @@ impl GaitCrowd3D {
     #[func]
     fn is_making(&self) -> bool {
         let walkers = self.walkers.as_ref();
-        walkers.is_some_and(super::walkers::Walkers::is_making)
+        walkers.is_some_and(Crowd::is_making)
     }
 
     /// The id of the first walker that a ray meets, or -1. In global space, as `Camera3D.project_ray_origin()` and
@@ -119,7 +120,7 @@ impl GaitCrowd3D {
         let crowd_from_world = self.base().get_global_transform().affine_inverse();
         let [from, to] = [from, to].map(|point| convert::vec3(crowd_from_world * point));
         let walkers = self.walkers.as_ref();
-        let met = walkers.and_then(|walkers| pick::first(walkers, from, to));
+        let met = walkers.and_then(|walkers| walkers.first_met(from, to));
         self.name_at(met)
     }
 
@@ -136,7 +137,7 @@ impl GaitCrowd3D {
         let scale = world.basis.get_scale().x.abs().max(1e-6);
         let reach = max_distance as f32 / scale;
         let walkers = self.walkers.as_ref();
-        let nearest = walkers.and_then(|walkers| pick::nearest(walkers, near, reach));
+        let nearest = walkers.and_then(|walkers| walkers.nearest(near, reach));
         self.name_at(nearest)
     }
 
@@ -164,7 +165,7 @@ impl GaitCrowd3D {
     fn get_state(&mut self) -> PackedByteArray {
         self.make_whole();
         let walkers = self.walkers.as_ref();
-        let bytes = walkers.map(super::walkers::Walkers::save);
+        let bytes = walkers.map(Crowd::save);
         bytes.unwrap_or_default().into()
     }
 
@@ -172,7 +173,7 @@ impl GaitCrowd3D {
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_state(&mut self, state: PackedByteArray) {
-        match save::read(state.as_slice()) {
+        match SavedCrowd::from_bytes(state.as_slice()) {
             Ok(saved) if self.make_whole() => {
                 if let Some(walkers) = &mut self.walkers {
                     let everybody = walkers.clear();
@@ -209,12 +210,12 @@ impl GaitCrowd3D {
 
 impl GaitCrowd3D {
     fn place(&self, name: i32) -> Option<usize> {
-        self.walkers.as_ref()?.roster.place(name)
+        self.walkers.as_ref()?.roster().place(name)
     }
 
     fn name_at(&self, place: Option<usize>) -> i32 {
         let walkers = self.walkers.as_ref().zip(place);
-        walkers.map_or(NOBODY, |(walkers, place)| walkers.roster.name(place))
+        walkers.map_or(NOBODY, |(walkers, place)| walkers.roster().name(place))
     }
 
     /// Those who had these places are gone.

@@ -1,8 +1,7 @@
 //! Ways around what stands between walkers and where they go: over the navigation map of the world.
 
-use super::agent::{Agent, Goal};
-use super::walkers::Walkers;
 use crate::convert;
+use footfall_rig::crowd::{Agent, Crowd};
 use glam::{Vec2, Vec3};
 use godot::classes::{Engine, Node3D, Object};
 use godot::prelude::*;
@@ -49,28 +48,23 @@ impl Navigation {
             return false;
         }
         let crowd_from_world = self.world_from_crowd.affine_inverse();
-        agent.route.clear();
-        // The last first: they are taken from the end. Where the walker stands is no place to go to.
-        let places = path.as_slice().iter().skip(1).rev().map(|place| {
+        // Where the walker stands is no place to go to.
+        agent.go_along(path.as_slice().iter().skip(1).map(|place| {
             let place = crowd_from_world * *place;
             Vec2::new(place.x, place.z)
-        });
-        agent.route.extend(places);
-        if let Some(first) = agent.route.pop() {
-            agent.goal = Goal::Place(first);
-        }
+        }));
         true
     }
 
     /// Sends those who have arrived somewhere else on the map, a few in every frame.
-    pub(super) fn wander(&mut self, walkers: &mut Walkers) {
+    pub(super) fn wander(&mut self, walkers: &mut Crowd) {
         let mut left = MOST_A_FRAME;
         let mut bounds = None;
-        for agent in &mut walkers.agents {
+        for agent in walkers.agents_mut() {
             if left == 0 {
                 break;
             }
-            if agent.walker.is_none() || agent.is_on_its_way() {
+            if !agent.is_made() || agent.is_on_its_way() {
                 continue;
             }
             left -= 1;

@@ -1,13 +1,12 @@
 //! Visible part of a crowd.
 
 use super::actors::Actors;
-use super::agent::Agent;
 use super::bounds::Bounds;
+use super::crowd_mesh::CrowdMesh;
 use super::flock::{Flock, INSTANCE_NUMBERS, POSE_BYTES, write_instance, write_pose};
-use super::motion::{FETCHED, GROUPS};
-use super::tiers::{Chooser, Limits, Tier};
-use super::walkers::Walkers;
 use crate::convert;
+use footfall_core::{JOINT_COUNT, Joint};
+use footfall_rig::crowd::{Agent, Crowd, FETCHED, GROUPS, Limits, Tier};
 use footfall_synth::CrowdPose;
 use glam::{Vec3, Vec4};
 use godot::classes::{Node, Node3D, PackedScene, ShaderMaterial};
@@ -30,10 +29,10 @@ pub(super) struct Look {
 
 /// Drawing of a crowd.
 pub(super) struct CrowdScene {
+    mesh: CrowdMesh,
     near: Flock,
     far: Vec<Flock>,
     actors: Actors,
-    chooser: Chooser,
     /// Frames that were drawn.
     drawn: u64,
     /// The crowd's frame that was drawn last.
@@ -52,14 +51,14 @@ pub(super) struct CrowdScene {
 
 impl CrowdScene {
     /// Without room for anybody yet.
-    pub(super) fn new(host: &Gd<Node3D>, walkers: &Walkers, look: &Look) -> Option<Self> {
+    pub(super) fn new(host: &Gd<Node3D>, mesh: CrowdMesh, look: &Look) -> Option<Self> {
         Some(Self {
-            near: near(host, walkers, 1, look)?,
+            near: near(host, &mesh, 1, look)?,
             far: (0..GROUPS)
-                .map(|_| far(host, walkers, 1, look))
+                .map(|_| far(host, &mesh, 1, look))
                 .collect::<Option<Vec<_>>>()?,
             actors: Actors::default(),
-            chooser: Chooser::default(),
+            mesh,
             drawn: 0,
             frame: 0,
             planes: Vec::new(),
@@ -71,14 +70,14 @@ impl CrowdScene {
     }
 
     /// Gives it room for everybody; where many come at once, within some frames.
-    fn fit(&mut self, host: &Gd<Node3D>, walkers: &Walkers, limits: &Limits, look: &Look) {
+    fn fit(&mut self, host: &Gd<Node3D>, walkers: &Crowd, limits: &Limits, look: &Look) {
         let (room, each) = rooms(walkers, limits);
-        let places = walkers.agents.len();
+        let places = walkers.agents().len();
         self.shown.reserve(room.saturating_sub(self.shown.len()));
         self.ticks.resize(places, 0);
         let mut left = look.most_made;
         if room > self.near.room
-            && let Some(made) = near(host, walkers, room, look)
+            && let Some(made) = near(host, &self.mesh, room, look)
         {
             core::mem::replace(&mut self.near, made).free();
             left -= 1;
@@ -87,7 +86,7 @@ impl CrowdScene {
             // Half as much again, so that it seldom happens.
             if left > 0
                 && each > flock.room
-                && let Some(made) = far(host, walkers, each.max(flock.room * 3 / 2), look)
+                && let Some(made) = far(host, &self.mesh, each.max(flock.room * 3 / 2), look)
             {
                 core::mem::replace(flock, made).free();
                 left -= 1;
@@ -118,18 +117,18 @@ impl CrowdScene {
     /// Draws everybody as they are now.
     pub(super) fn draw(
         &mut self,
-        walkers: &mut Walkers,
+        walkers: &mut Crowd,
         host: &Gd<Node3D>,
         limits: &Limits,
         look: &Look,
     ) {
         self.drawn += 1;
         self.fit(host, walkers, limits, look);
-        if !walkers.began.is_empty() && self.frame == walkers.frame {
+        if !walkers.began().is_empty() && self.frame == walkers.frame() {
             // While time stands still it is nobody's turn.
             self.unwritten = [true; GROUPS];
         }
-        self.frame = walkers.frame;
+        self.frame = walkers.frame();
         let camera = host
             .get_viewport()
             .and_then(|viewport| viewport.get_camera_3d());
@@ -137,10 +136,7 @@ impl CrowdScene {
             let place = camera.as_ref().map_or(Vec3::ZERO, |camera| {
                 convert::vec3(host.to_local(camera.get_global_position()))
             });
-            let agents = walkers.agents.iter();
-            let places = agents.map(|agent| agent.walker.as_ref().map(|_| agent.place));
-            self.chooser
-                .choose(place, limits, places, &mut walkers.tiers);
+            walkers.choose_tiers(place, limits);
             self.lend(walkers, host, look);
         } else if self.lacking {
             self.lend(walkers, host, look);
@@ -153,7 +149,7 @@ impl CrowdScene {
         self.draw_near(walkers, &planes);
         self.draw_far(walkers, &planes);
         self.planes = planes;
-        self.actors.pose(&walkers.agents);
+        self.actors.pose(walkers.agents());
     }
 
     /// Removes what was drawn.
@@ -165,12 +161,12 @@ impl CrowdScene {
         }
     }
 
-    fn lend(&mut self, walkers: &Walkers, host: &Gd<Node3D>, look: &Look) {
+    fn lend(&mut self, walkers: &Crowd, host: &Gd<Node3D>, look: &Look) {
         if let Some(character) = &look.character {
             let mut host = host.clone();
             self.lacking = self.actors.lend(
-                &walkers.tiers,
-                &walkers.agents,
+                walkers.tiers(),
+                walkers.agents(),
                 character,
                 &mut host,
                 look.most_made,
@@ -179,14 +175,8 @@ impl CrowdScene {
     }
 
     /// Everybody with a new pose in every frame, and those for whom there was no scene.
-    fn draw_near(&mut self, walkers: &Walkers, planes: &[Vec4]) {
-        let Walkers {
-            agents,
-            tiers,
-            mesh,
-            drawn,
-            ..
-        } = walkers;
+    fn draw_near(&mut self, walkers: &Crowd, planes: &[Vec4]) {
+        let (agents, tiers, drawn) = (walkers.agents(), walkers.tiers(), walkers.drawn());
         self.shown.clear();
         let room = self.near.poses().len() / POSE_BYTES;
         for (index, (drawn, tier)) in drawn.iter().zip(tiers).enumerate() {
@@ -201,7 +191,7 @@ impl CrowdScene {
             }
         }
         let shown = &self.shown;
-        let turned_by = &mesh.turned_by;
+        let turned_by = &self.mesh.turned_by;
         self.near
             .poses()
             .par_chunks_mut(FETCHED * POSE_BYTES)
@@ -240,21 +230,16 @@ impl CrowdScene {
 
     /// Everybody far away: the group that has just moved gets the poses where it was and where it is, and is drawn on its way from
     /// the one to the other.
-    fn draw_far(&mut self, walkers: &Walkers, planes: &[Vec4]) {
-        let Walkers {
-            agents,
-            tiers,
-            drawn,
-            frame,
-            ..
-        } = walkers;
-        let frame = *frame;
+    fn draw_far(&mut self, walkers: &Crowd, planes: &[Vec4]) {
+        let (agents, tiers, drawn) = (walkers.agents(), walkers.tiers(), walkers.drawn());
+        let frame = walkers.frame();
+        let turned_by = &self.mesh.turned_by;
         for (group, flock) in self.far.iter_mut().enumerate() {
             let since = (frame + GROUPS as u64 - group as u64) % GROUPS as u64;
             // At first all are, so that a crowd whose time stands still is seen.
             let unwritten = core::mem::take(&mut self.unwritten[group]);
             if since == 0 || unwritten {
-                write_far(flock, group, walkers, planes, &self.ticks);
+                write_far(flock, group, walkers, turned_by, planes, &self.ticks);
                 for index in (group..drawn.len()).step_by(GROUPS).take(flock.room) {
                     if is_far(tiers[index], &agents[index], planes) {
                         self.ticks[index] = frame;
@@ -287,15 +272,15 @@ impl CrowdScene {
 }
 
 /// Writes the two poses of every walker of a group that is far away and seen: where it was, and where it is.
-fn write_far(flock: &mut Flock, group: usize, walkers: &Walkers, planes: &[Vec4], ticks: &[u64]) {
-    let Walkers {
-        agents,
-        tiers,
-        mesh,
-        frame,
-        ..
-    } = walkers;
-    let (agents, tiers, turned_by) = (agents.as_slice(), tiers.as_slice(), &mesh.turned_by);
+fn write_far(
+    flock: &mut Flock,
+    group: usize,
+    walkers: &Crowd,
+    turned_by: &[Joint; JOINT_COUNT],
+    planes: &[Vec4],
+    ticks: &[u64],
+) {
+    let (agents, tiers, frame) = (walkers.agents(), walkers.tiers(), walkers.frame());
     let (poses, last) = flock.poses_and_last();
     poses
         .par_chunks_mut(2 * POSE_BYTES)
@@ -324,31 +309,24 @@ fn write_far(flock: &mut Flock, group: usize, walkers: &Walkers, planes: &[Vec4]
 
 /// Returns whether a walker is there, far away and seen.
 fn is_far(tier: Tier, agent: &Agent, planes: &[Vec4]) -> bool {
-    tier == Tier::Far && agent.walker.is_some() && is_seen(agent.place, planes)
+    tier == Tier::Far && agent.is_made() && is_seen(agent.place, planes)
 }
 
 /// Room for walkers whose pose is new in every frame, and for each group of those far away.
-fn rooms(walkers: &Walkers, limits: &Limits) -> (usize, usize) {
-    let places = walkers.agents.len();
+fn rooms(walkers: &Crowd, limits: &Limits) -> (usize, usize) {
+    let places = walkers.agents().len();
     let near = places.min(limits.counts[0] + limits.counts[1]);
     (near.max(1), places.div_ceil(GROUPS).max(1))
 }
 
-fn near(host: &Gd<Node3D>, walkers: &Walkers, room: usize, look: &Look) -> Option<Flock> {
+fn near(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &Look) -> Option<Flock> {
     let node = host.clone().upcast::<Node>();
-    Flock::new(&node, &walkers.mesh, 0, room, room, look.material.as_ref())
+    Flock::new(&node, mesh, 0, room, room, look.material.as_ref())
 }
 
-fn far(host: &Gd<Node3D>, walkers: &Walkers, room: usize, look: &Look) -> Option<Flock> {
+fn far(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &Look) -> Option<Flock> {
     let node = host.clone().upcast::<Node>();
-    Flock::new(
-        &node,
-        &walkers.mesh,
-        1,
-        room,
-        2 * room,
-        look.material.as_ref(),
-    )
+    Flock::new(&node, mesh, 1, room, 2 * room, look.material.as_ref())
 }
 
 /// The planes around what a camera sees, in the crowd's space: normals outwards, and distances.

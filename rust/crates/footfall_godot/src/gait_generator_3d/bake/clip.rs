@@ -69,7 +69,7 @@ impl Clips {
         let mut keys = vec![Vec::with_capacity(walk.poses.len()); bones.len()];
         let mut places = Vec::with_capacity(walk.poses.len());
         for pose in &walk.poses {
-            self.binding.write(&mut self.posed, pose);
+            self.binding.write(&self.posed, pose);
             for (bone, keys) in bones.iter().zip(&mut keys) {
                 keys.push(self.posed.get_bone_pose_rotation(*bone));
             }

@@ -1,7 +1,7 @@
 //! Walkers made on threads of their own, so that no frame waits for them. Who is made when does not change who they are.
 
-use super::kit::{Kit, Outfit, Recipe};
-use footfall_synth::{CrowdWalker, GeneratorConfig, StyledBody, Workshop};
+use super::kit::{CrowdRecipe, Kit, Outfit};
+use footfall_synth::{CrowdWalker, GeneratorConfig, StyledBody, SynthError, Workshop};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -45,10 +45,13 @@ struct Queue {
     working: usize,
 }
 
+/// A kit, or the reason why nobody can walk.
+pub(super) type Prepared = Result<Arc<Kit>, Arc<SynthError>>;
+
 #[derive(Debug)]
 struct Shared {
-    recipe: Recipe,
-    kit: OnceLock<Result<Arc<Kit>, String>>,
+    recipe: CrowdRecipe,
+    kit: OnceLock<Prepared>,
     queue: Mutex<Queue>,
     made: Mutex<VecDeque<Made>>,
 }
@@ -68,7 +71,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Maker {
     /// Begins to prepare what walkers are made with.
-    pub(super) fn new(recipe: Recipe) -> Self {
+    pub(super) fn new(recipe: CrowdRecipe) -> Self {
         let shared = Shared {
             recipe,
             kit: OnceLock::new(),
@@ -90,7 +93,7 @@ impl Maker {
     }
 
     /// Kit with which walkers are made, once it is there, or the reason why it cannot be.
-    pub(super) fn kit(&self) -> Option<&Result<Arc<Kit>, String>> {
+    pub(super) fn kit(&self) -> Option<&Prepared> {
         self.shared.kit.get()
     }
 
@@ -201,9 +204,9 @@ impl Drop for Maker {
 }
 
 impl Shared {
-    fn prepared(&self) -> &Result<Arc<Kit>, String> {
+    fn prepared(&self) -> &Prepared {
         self.kit
-            .get_or_init(|| Kit::new(&self.recipe).map(Arc::new))
+            .get_or_init(|| Kit::new(&self.recipe).map(Arc::new).map_err(Arc::new))
     }
 
     /// A thread's whole life.

@@ -1,38 +1,41 @@
 //! Walkers found by where they are.
 
+use super::Crowd;
 use super::agent::Agent;
-use super::walkers::Walkers;
 use glam::Vec3;
 
 /// Half the width of a walker as a share of its height, and that height over the one of its highest joint.
 const RADIUS: f32 = 0.16;
 const SKULL: f32 = 1.12;
 
-/// The walker whose body a line from one point to another meets first.
-pub(super) fn first(walkers: &Walkers, from: Vec3, to: Vec3) -> Option<usize> {
-    if !(from.is_finite() && to.is_finite()) {
-        return None;
+impl Crowd {
+    /// The row of the walker whose body a line from one point to another meets first. Bodies count as capsules.
+    pub fn first_met(&self, from: Vec3, to: Vec3) -> Option<usize> {
+        if !(from.is_finite() && to.is_finite()) {
+            return None;
+        }
+        let height = SKULL * self.height_m;
+        let met = self.there().filter_map(|(place, agent)| {
+            let height = height * agent.size;
+            let share = share_to_capsule(from, to, agent.place, height, RADIUS * height)?;
+            Some((share, place))
+        });
+        met.min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, place)| place)
     }
-    let height = SKULL * walkers.mesh.height();
-    let met = there(walkers).filter_map(|(place, agent)| {
-        let height = height * agent.size;
-        let share = share_to_capsule(from, to, agent.place, height, RADIUS * height)?;
-        Some((share, place))
-    });
-    met.min_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, place)| place)
-}
 
-/// The walker that is nearest to a point.
-pub(super) fn nearest(walkers: &Walkers, point: Vec3, reach: f32) -> Option<usize> {
-    let far = there(walkers).map(|(place, agent)| (agent.place.distance_squared(point), place));
-    let (far, place) = far.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (far <= reach * reach).then_some(place)
-}
+    /// The row of the walker that is nearest to a point, at most so far away.
+    pub fn nearest(&self, point: Vec3, reach_m: f32) -> Option<usize> {
+        let far = self.there();
+        let far = far.map(|(place, agent)| (agent.place.distance_squared(point), place));
+        let (far, place) = far.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (far <= reach_m * reach_m).then_some(place)
+    }
 
-fn there(walkers: &Walkers) -> impl Iterator<Item = (usize, &Agent)> {
-    let places = walkers.roster.order().iter().map(|place| *place as usize);
-    places.map(|place| (place, &walkers.agents[place]))
+    fn there(&self) -> impl Iterator<Item = (usize, &Agent)> {
+        let places = self.roster.order().iter().map(|place| *place as usize);
+        places.map(|place| (place, &self.agents[place]))
+    }
 }
 
 /// Share of the way between two points after which it meets an upright capsule; `None` where it passes by.

@@ -1,8 +1,8 @@
 //! Everybody in a crowd, moved on many threads at once.
 
+use super::Crowd;
 use super::agent::Agent;
 use super::tiers::Tier;
-use super::walkers::Walkers;
 use footfall_core::Side;
 use footfall_synth::Detail;
 use glam::Vec3;
@@ -12,15 +12,15 @@ use std::sync::PoisonError;
 /// Walkers that one thread takes at a time.
 const CHUNK: usize = 128;
 /// Walkers whose memory is fetched together.
-pub(super) const FETCHED: usize = 16;
+pub const FETCHED: usize = 16;
 /// Walkers far away are in so many groups, of which one moves in each frame.
-pub(super) const GROUPS: usize = 4;
+pub const GROUPS: usize = 4;
 /// Interval at which neighbours are found anew, in frames.
 const NEIGHBOURS_EVERY: u64 = 4;
 
-impl Walkers {
+impl Crowd {
     /// Lets time pass for everybody.
-    pub(super) fn advance(&mut self, dt_secs: f32, avoidance: bool) {
+    pub fn advance(&mut self, dt_secs: f32, avoidance: bool) {
         if dt_secs <= 0.0 {
             for agent in &mut self.agents {
                 agent.landed = None;
@@ -100,13 +100,13 @@ impl Walkers {
     }
 
     /// Returns whether a walker moved in the last frame.
-    pub(super) fn moved(&self, index: usize) -> bool {
+    pub fn moved(&self, index: usize) -> bool {
         self.tiers.get(index) != Some(&Tier::Far)
             || self.frame % GROUPS as u64 == (index % GROUPS) as u64
     }
 
     /// Landings in the last frame: walker, foot and place.
-    pub(super) fn landed(&self) -> impl Iterator<Item = (usize, Side, Vec3)> {
+    pub fn landed(&self) -> impl Iterator<Item = (usize, Side, Vec3)> {
         let agents = self.agents.iter().enumerate();
         agents.filter_map(|(index, agent)| {
             let (side, place) = agent.landed.filter(|_| self.moved(index))?;

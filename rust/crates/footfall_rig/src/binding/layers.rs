@@ -1,20 +1,22 @@
 //! Layers: bones that take the gait's pose, and bones that keep that of other animation.
 
-use super::{SkeletonBinding, turned_by_links};
-use crate::convert;
-use footfall_core::rotation::{exp_map, log_map};
+use super::bones::turned_by_links;
+use super::{Bones, RigBinding};
+use footfall_core::rotation::{exp_map, log_map, of_transform};
 use footfall_core::{JOINT_COUNT, Joint, Pose, forward_kinematics};
 use glam::Quat;
-use godot::classes::Skeleton3D;
-use godot::prelude::*;
 
 /// Share of the gait in each part of the body: 0 none, 1 all. Hips and legs take all.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LayerWeights {
-    pub(crate) spine: f32,
-    pub(crate) head: f32,
-    pub(crate) left_arm: f32,
-    pub(crate) right_arm: f32,
+pub struct LayerWeights {
+    /// Of the spine.
+    pub spine: f32,
+    /// Of neck and head.
+    pub head: f32,
+    /// Of the left arm, from the shoulder on.
+    pub left_arm: f32,
+    /// Of the right arm.
+    pub right_arm: f32,
 }
 
 impl LayerWeights {
@@ -67,30 +69,25 @@ impl Part {
 /// Rotations of the bound bones, in the order of the binding.
 type Rotations = [Quat; JOINT_COUNT];
 
-impl SkeletonBinding {
-    /// As [`write`](Self::write), but parts of the body keep the pose that the skeleton has, as much as the weights say.
+impl RigBinding {
+    /// As [`write`](Self::write), but parts of the body keep the pose that the rig has, as much as the weights say.
     ///
     /// Arms hang from the chest as the animation has them. Spine and head begin with the direction that the animation gives them in the
     /// character's space, whatever the hips and the chest below them do: else every step would shake what is aimed at and looked at.
-    pub(crate) fn write_layered(
-        &mut self,
-        skeleton: &mut Gd<Skeleton3D>,
-        pose: &Pose,
-        weights: &LayerWeights,
-    ) {
+    pub fn write_layered(&mut self, bones: &mut impl Bones, pose: &Pose, weights: &LayerWeights) {
         if weights.is_gait() {
-            self.write(skeleton, pose);
+            self.write(bones, pose);
             return;
         }
         forward_kinematics(&self.body, pose, &mut self.model_pose);
-        let (own, directions) = self.animated(skeleton);
+        let (own, directions) = self.animated(bones);
         let mut gait: Rotations = [Quat::IDENTITY; JOINT_COUNT];
         let mut shown: Rotations = [Quat::IDENTITY; JOINT_COUNT];
         for (index, bound) in self.bones.iter().enumerate() {
             let [above_in_gait, above] = match bound.parent {
                 Some(parent) => [gait[parent], shown[parent]]
-                    .map(|above| turned_by_links(skeleton, above, &bound.links)),
-                None => [self.write_hips(skeleton, bound); 2],
+                    .map(|above| turned_by_links(bones, above, &bound.links)),
+                None => [self.write_hips(bones, bound); 2],
             };
             gait[index] = self.model_pose.rotation(bound.turned_by) * bound.ground_from_bone;
             let of_gait = (above_in_gait.conjugate() * gait[index]).normalize();
@@ -107,13 +104,13 @@ impl SkeletonBinding {
             };
             shown[index] = (above * local).normalize();
             if weight > 0.0 || self.begins_part(index) {
-                skeleton.set_bone_pose_rotation(bound.bone, convert::quaternion(local));
+                bones.set_rotation(bound.bone, local);
             }
         }
     }
 
-    /// Pose of the skeleton: each bone's own rotation, and for hips, spine and head the rotation on the ground.
-    fn animated(&self, skeleton: &Gd<Skeleton3D>) -> (Rotations, Rotations) {
+    /// Pose of the rig: each bone's own rotation, and for hips, spine and head the rotation on the ground.
+    fn animated(&self, bones: &impl Bones) -> (Rotations, Rotations) {
         let mut own = [Quat::IDENTITY; JOINT_COUNT];
         let mut directions = own;
         for (index, bound) in self.bones.iter().enumerate() {
@@ -121,13 +118,13 @@ impl SkeletonBinding {
             if part == Part::Legs && bound.parent.is_some() {
                 continue;
             }
-            own[index] = convert::quat(skeleton.get_bone_pose_rotation(bound.bone));
+            own[index] = bones.rotation(bound.bone);
             if part == Part::LeftArm || part == Part::RightArm {
                 continue;
             }
             let above = match bound.parent {
-                Some(parent) => turned_by_links(skeleton, directions[parent], &bound.links),
-                None => convert::rotation(&self.above_hips(skeleton, &bound.links)),
+                Some(parent) => turned_by_links(bones, directions[parent], &bound.links),
+                None => of_transform(&self.above_hips(bones, &bound.links)),
             };
             directions[index] = (above * own[index]).normalize();
         }

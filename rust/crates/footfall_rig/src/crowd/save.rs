@@ -9,6 +9,20 @@ use serde::{Deserialize, Serialize};
 const HEADER: &[u8; 8] = b"footcrw2";
 const HEADER_1: &[u8; 8] = b"footcrw1";
 
+/// Reasons why bytes are no crowd.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum CrowdStateError {
+    /// The header is another one.
+    #[error("these are not the bytes of a crowd, or those of another version of Footfall")]
+    NotACrowd,
+    /// The content breaks off, or is none.
+    #[error("the bytes are damaged ({0})")]
+    Damaged(String),
+    /// The crowd is larger than any.
+    #[error("it has more than {MOST_AGENTS} walkers")]
+    TooMany,
+}
+
 /// Saved state of a walker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedAgent {
@@ -26,9 +40,9 @@ pub(super) struct SavedAgent {
     pub(super) weights: Vec<f32>,
 }
 
-/// A crowd as it is kept.
+/// A crowd as it is kept, checked.
 #[derive(Debug, PartialEq)]
-pub(super) struct SavedCrowd {
+pub struct SavedCrowd {
     /// Number of walkers that there ever were.
     pub(super) made: u64,
     /// None for a crowd that was saved before walkers had names.
@@ -60,45 +74,46 @@ pub(super) fn write<'a>(
     bytes
 }
 
-/// Reads everybody.
-///
-/// # Errors
-/// Text for the user that says what is wrong with the bytes.
-pub(super) fn read(bytes: &[u8]) -> Result<SavedCrowd, String> {
-    let damaged = |error| format!("the bytes are damaged ({error})");
-    let saved = if let Some(content) = bytes.strip_prefix(HEADER) {
-        let (made, roster, agents, counted): Content =
-            postcard::from_bytes(content).map_err(damaged)?;
-        let roster = Roster::restored(&roster)
-            .filter(|roster| roster.order().len() == agents.len())
-            .ok_or("the bytes are damaged: its walkers and their names do not agree")?;
-        SavedCrowd {
-            made,
-            roster: Some(roster),
-            agents,
-            counted,
+impl SavedCrowd {
+    /// Reads a crowd that [`Crowd::save`](super::Crowd::save) wrote, in this version or an older one.
+    ///
+    /// # Errors
+    /// [`CrowdStateError`] for bytes that are no crowd.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CrowdStateError> {
+        let damaged = |error: postcard::Error| CrowdStateError::Damaged(error.to_string());
+        let saved = if let Some(content) = bytes.strip_prefix(HEADER) {
+            let (made, roster, agents, counted): Content =
+                postcard::from_bytes(content).map_err(damaged)?;
+            let roster = Roster::restored(&roster)
+                .filter(|roster| roster.order().len() == agents.len())
+                .ok_or_else(|| {
+                    CrowdStateError::Damaged("its walkers and their names do not agree".into())
+                })?;
+            Self {
+                made,
+                roster: Some(roster),
+                agents,
+                counted,
+            }
+        } else if let Some(content) = bytes.strip_prefix(HEADER_1) {
+            let agents: Vec<SavedAgent> = postcard::from_bytes(content).map_err(damaged)?;
+            Self {
+                made: agents.len() as u64,
+                roster: None,
+                counted: vec![true; agents.len()],
+                agents,
+            }
+        } else {
+            return Err(CrowdStateError::NotACrowd);
+        };
+        if saved.agents.len() > MOST_AGENTS as usize {
+            return Err(CrowdStateError::TooMany);
         }
-    } else if let Some(content) = bytes.strip_prefix(HEADER_1) {
-        let agents: Vec<SavedAgent> = postcard::from_bytes(content).map_err(damaged)?;
-        SavedCrowd {
-            made: agents.len() as u64,
-            roster: None,
-            counted: vec![true; agents.len()],
-            agents,
+        if saved.agents.iter().all(SavedAgent::is_sound) {
+            Ok(saved)
+        } else {
+            Err(CrowdStateError::Damaged("a number is not finite".into()))
         }
-    } else {
-        return Err(
-            "these are not the bytes of a crowd, or those of another version of Footfall"
-                .to_owned(),
-        );
-    };
-    if saved.agents.len() > MOST_AGENTS as usize {
-        return Err(format!("it has more than {MOST_AGENTS} walkers"));
-    }
-    if saved.agents.iter().all(SavedAgent::is_sound) {
-        Ok(saved)
-    } else {
-        Err("the bytes are damaged: a number is not finite".to_owned())
     }
 }
 
@@ -151,8 +166,10 @@ mod tests {
 
     #[test]
     fn bytes_that_are_no_crowd_are_refused() {
-        assert!(read(b"").is_err());
-        assert!(read(b"footcrw9").is_err());
+        let read = SavedCrowd::from_bytes;
+        for strange in [b"".as_slice(), b"footcrw9"] {
+            assert_eq!(read(strange), Err(CrowdStateError::NotACrowd));
+        }
         assert!(read(b"footcrw1\xff\xff\xff\xff").is_err());
         assert!(read(b"footcrw2\xff\xff\xff\xff").is_err());
         let empty = read(&write(3, &Roster::default(), core::iter::empty())).unwrap();
@@ -173,6 +190,7 @@ mod tests {
             .collect();
         roster.leave(&[1]);
         let there = roster.order().iter().map(|place| &agents[*place as usize]);
+        let read = SavedCrowd::from_bytes;
         let saved = read(&write(3, &roster, there)).unwrap();
         assert_eq!(saved.roster, Some(roster));
         assert_eq!(saved.agents.len(), 2);

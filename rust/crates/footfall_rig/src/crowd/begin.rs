@@ -1,9 +1,9 @@
 //! Walkers begin to walk, and dress, as they are made.
 
+use super::Crowd;
 use super::kit::Outfit;
 use super::maker::Order;
-use super::walkers::Walkers;
-use footfall_synth::{Detail, StyleSpace};
+use footfall_synth::{Detail, StyleSpace, SynthError};
 use std::sync::Arc;
 
 /// Walkers that begin in one frame at most.
@@ -11,17 +11,17 @@ const MOST_BEGIN: usize = 256;
 /// Walkers that get their rows in one frame at most.
 const MOST_COME_IN: usize = 256;
 
-impl Walkers {
+impl Crowd {
     /// Returns whether walkers are still being made.
-    pub(super) fn is_making(&self) -> bool {
+    pub fn is_making(&self) -> bool {
         self.maker.is_busy() || self.are_coming()
     }
 
     /// Lets those begin who were made meanwhile, a few hundred at most; returns what they are made with when that has just come.
     ///
     /// # Errors
-    /// Why nobody can walk, for the user.
-    pub(super) fn begin_some(&mut self) -> Result<Option<Arc<StyleSpace>>, String> {
+    /// [`SynthError`] when nobody can walk.
+    pub fn begin_some(&mut self) -> Result<Option<Arc<StyleSpace>>, Arc<SynthError>> {
         self.began.clear();
         self.come_in(MOST_COME_IN);
         let mut come = None;
@@ -40,8 +40,8 @@ impl Walkers {
     /// Waits until everybody is made, and lets them begin.
     ///
     /// # Errors
-    /// Why nobody can walk, for the user.
-    pub(super) fn begin_all(&mut self) -> Result<Option<Arc<StyleSpace>>, String> {
+    /// [`SynthError`] when nobody can walk.
+    pub fn begin_all(&mut self) -> Result<Option<Arc<StyleSpace>>, Arc<SynthError>> {
         self.come_in(usize::MAX);
         self.maker.finish();
         let come = self.begin_some()?;
@@ -54,7 +54,7 @@ impl Walkers {
     }
 
     /// Lets a walker wear a mixture of styles, at once where others wear it already.
-    pub(super) fn wear(&mut self, place: usize, weights: &[f32]) {
+    pub fn wear(&mut self, place: usize, weights: &[f32]) {
         let outfit = Outfit::of(&weights[..weights.len().min(self.maker.styles())]);
         let agent = &mut self.agents[place];
         agent.outfit.clone_from(&outfit);

@@ -4,8 +4,8 @@ use glam::Vec3;
 
 /// Ways of drawing a walker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub(super) enum Tier {
-    /// A whole scene with a skeleton and what hangs from it.
+pub enum Tier {
+    /// A whole character with a skeleton and what hangs from it.
     Full,
     /// An instance whose pose is new in every frame.
     Near,
@@ -16,11 +16,11 @@ pub(super) enum Tier {
 
 /// Borders between tiers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Limits {
+pub struct Limits {
     /// Most walkers in the full and in the near tier.
-    pub(super) counts: [usize; 2],
+    pub counts: [usize; 2],
     /// Distances from the camera where they end, metres.
-    pub(super) distances_m: [f32; 2],
+    pub distances_m: [f32; 2],
 }
 
 /// Factor on the distance up to which a walker keeps a better tier.

@@ -8,8 +8,8 @@ const AHEAD_M: f32 = 2.5;
 
 /// Ways of all walkers of a crowd.
 #[derive(Debug, Default)]
-pub(super) enum Way {
-    /// As scripts command.
+pub enum Way {
+    /// As each walker is told.
     #[default]
     Told,
     /// From one place of a rectangle about the origin to another.
@@ -19,13 +19,13 @@ pub(super) enum Way {
     },
     /// Along a path, beside each other.
     Path(Path),
-    /// From one place of the navigation map to another, around what is between them.
+    /// From one place to another along ways that the game finds for each walker that is not on its way.
     Navigate,
 }
 
 /// A line through points of the plane.
 #[derive(Debug, Default)]
-pub(super) struct Path {
+pub struct Path {
     points: Vec<Vec2>,
     /// Length of the way to each point.
     lengths: Vec<f32>,
@@ -33,8 +33,8 @@ pub(super) struct Path {
 }
 
 impl Path {
-    /// `None` for a line without length.
-    pub(super) fn new(points: Vec<Vec2>) -> Option<Self> {
+    /// A line through these points; `None` for one without length.
+    pub fn new(points: Vec<Vec2>) -> Option<Self> {
         let mut lengths = Vec::with_capacity(points.len());
         let mut length = 0.0;
         let mut before: Option<Vec2> = None;
@@ -52,12 +52,13 @@ impl Path {
         })
     }
 
-    pub(super) fn length(&self) -> f32 {
+    /// Length from one end to the other, metres.
+    pub fn length(&self) -> f32 {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
     /// The place and the direction at so many metres from its beginning. A closed path goes round, an open one there and back.
-    pub(super) fn at(&self, along: f32) -> (Vec2, Vec2) {
+    pub fn at(&self, along: f32) -> (Vec2, Vec2) {
         let length = self.length();
         let (along, sign) = if self.closed {
             (along.rem_euclid(length), 1.0)
@@ -81,7 +82,7 @@ impl Path {
     }
 
     /// The place beside it: positive to the left.
-    pub(super) fn beside(&self, along: f32, aside: f32) -> (Vec2, Vec2) {
+    pub fn beside(&self, along: f32, aside: f32) -> (Vec2, Vec2) {
         let (place, direction) = self.at(along);
         // Seen from above with +X to the right and +Z towards the viewer, left of +Z is +X.
         let left = Vec2::new(direction.y, -direction.x);
@@ -90,8 +91,8 @@ impl Path {
 }
 
 impl Way {
-    /// Returns whether it goes over the navigation map: walkers wait until a way is found.
-    pub(super) const fn is_navigated(&self) -> bool {
+    /// Returns whether walkers wait until the game finds ways for them.
+    pub const fn is_navigated(&self) -> bool {
         matches!(self, Self::Navigate)
     }
 

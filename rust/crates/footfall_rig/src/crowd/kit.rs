@@ -1,8 +1,8 @@
-//! Material of a crowd's walkers: the model with its styles on the crowd's body, and mixtures of them.
+//! Kit of a crowd's walkers: the model with its styles on the crowd's body, and mixtures of them.
 
 use footfall_core::Skeleton;
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_synth::{StyleSpace, StyledBody, Workshop};
+use footfall_synth::{StyleSpace, StyledBody, SynthError, Workshop};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -40,16 +40,17 @@ impl Outfit {
     }
 }
 
-/// Ingredients of a kit.
-#[derive(Debug)]
-pub(super) struct Recipe {
-    pub(super) model: Arc<GaitModel>,
-    pub(super) styles: Vec<Arc<GaitStyle>>,
+/// Walk, styles and body of a crowd's walkers.
+#[derive(Clone, Debug)]
+pub struct CrowdRecipe {
+    /// The walk.
+    pub model: Arc<GaitModel>,
+    /// Styles that walkers wear.
+    pub styles: Vec<Arc<GaitStyle>>,
     /// The two prepared, if somebody else has done so.
-    pub(super) space: Option<Arc<StyleSpace>>,
-    pub(super) body: Skeleton,
-    /// Threads that work steps out at the same time.
-    pub(super) threads: usize,
+    pub space: Option<Arc<StyleSpace>>,
+    /// Proportions of the character.
+    pub body: Skeleton,
 }
 
 /// Everything that all walkers of a crowd share.
@@ -65,15 +66,16 @@ impl Kit {
     /// Prepares it, some 10 ms a style.
     ///
     /// # Errors
-    /// Why nobody can walk, for the user.
-    pub(super) fn new(recipe: &Recipe) -> Result<Self, String> {
-        let cannot = |error| format!("The walk cannot start: {error}");
+    /// [`SynthError`] when nobody can walk.
+    pub(super) fn new(recipe: &CrowdRecipe) -> Result<Self, SynthError> {
         let space = match &recipe.space {
             Some(space) => Arc::clone(space),
-            None => Arc::new(StyleSpace::new(&recipe.model, &recipe.styles).map_err(cannot)?),
+            None => Arc::new(StyleSpace::new(&recipe.model, &recipe.styles)?),
         };
-        let plain = StyledBody::new(&space, &[], &recipe.body).map_err(cannot)?;
-        let workshops = (0..recipe.threads).map(|_| Mutex::new(Workshop::new(&plain)));
+        let plain = StyledBody::new(&space, &[], &recipe.body)?;
+        // One for each thread, and one for who calls.
+        let threads = rayon::current_num_threads() + 1;
+        let workshops = (0..threads).map(|_| Mutex::new(Workshop::new(&plain)));
         Ok(Self {
             workshops: workshops.collect(),
             worn: Mutex::new(HashMap::from([(Outfit::default(), plain.clone())])),

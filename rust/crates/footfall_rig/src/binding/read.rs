@@ -1,29 +1,23 @@
-//! Reading of a skeleton as a pose of the body.
+//! Reading of a rig as a pose of the body.
 
-use super::{SkeletonBinding, is_leg, turned_by_links};
-use crate::convert;
+use super::bones::turned_by_links;
+use super::{Bones, RigBinding, is_leg};
+use footfall_core::rotation::of_transform;
 use footfall_core::{JOINT_COUNT, Joint, Pose};
 use glam::Quat;
-use godot::classes::Skeleton3D;
-use godot::prelude::*;
 
-impl SkeletonBinding {
+impl RigBinding {
     /// Reads how the bones of hips and legs are posed, on the ground; other joints of `pose` stay as they are.
-    pub(crate) fn read_legs(&self, skeleton: &Gd<Skeleton3D>, pose: &mut Pose) {
-        self.read_where(skeleton, pose, is_leg);
+    pub fn read_legs(&self, bones: &impl Bones, pose: &mut Pose) {
+        self.read_where(bones, pose, is_leg);
     }
 
     /// Reads how all bones are posed, on the ground. A joint without a bone moves with the one below it.
-    pub(crate) fn read(&self, skeleton: &Gd<Skeleton3D>, pose: &mut Pose) {
-        self.read_where(skeleton, pose, |_| true);
+    pub fn read(&self, bones: &impl Bones, pose: &mut Pose) {
+        self.read_where(bones, pose, |_| true);
     }
 
-    fn read_where(
-        &self,
-        skeleton: &Gd<Skeleton3D>,
-        pose: &mut Pose,
-        wanted: impl Fn(Joint) -> bool,
-    ) {
+    fn read_where(&self, bones: &impl Bones, pose: &mut Pose, wanted: impl Fn(Joint) -> bool) {
         let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
         let mut turned: [Option<Quat>; JOINT_COUNT] = [None; JOINT_COUNT];
         for (index, bound) in self.bones.iter().enumerate() {
@@ -31,14 +25,14 @@ impl SkeletonBinding {
                 continue;
             }
             let above = if let Some(parent) = bound.parent {
-                turned_by_links(skeleton, rotations[parent], &bound.links)
+                turned_by_links(bones, rotations[parent], &bound.links)
             } else {
-                let above = self.above_hips(skeleton, &bound.links);
-                let hips = convert::vec3(skeleton.get_bone_pose_position(bound.bone));
+                let above = self.above_hips(bones, &bound.links);
+                let hips = bones.position(bound.bone);
                 pose.root_position = above.transform_point3(hips);
-                convert::rotation(&above)
+                of_transform(&above)
             };
-            let local = convert::quat(skeleton.get_bone_pose_rotation(bound.bone));
+            let local = bones.rotation(bound.bone);
             rotations[index] = (above * local).normalize();
             let model = rotations[index] * bound.ground_from_bone.conjugate();
             turned[bound.turned_by.index()] = Some(model);

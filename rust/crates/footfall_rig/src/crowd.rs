@@ -1,55 +1,102 @@
-//! Everybody in a crowd: coming, going, and the settings of each.
+//! Crowds: thousands of walkers who come and go, find their ways round each other, and are drawn by how near they are.
+//!
+//! A [`Crowd`] is one row for each walker: an [`Agent`], its [`Tier`] and what is [`Drawn`] of it. Names last while rows are used again. In every frame a game lets walkers
+//! begin ([`Crowd::begin_some`]), lets time pass ([`Crowd::advance`]) and draws the rows.
 
-use super::agent::{Agent, Drawn, Goal, WHITE};
-use super::crowd_mesh::CrowdMesh;
-use super::kit::{Kit, Outfit, Recipe};
-use super::maker::{Maker, Order};
-use super::neighbours::Neighbours;
-use super::roster::Roster;
-use super::save::{self, SavedAgent, SavedCrowd};
-use super::tiers::Tier;
-use super::way::Way;
+mod agent;
+mod avoidance;
+mod begin;
+mod kit;
+mod maker;
+mod motion;
+mod neighbours;
+mod pick;
+mod roster;
+mod save;
+mod tiers;
+mod way;
+
+use agent::WHITE;
+pub use agent::{Agent, Drawn, Goal};
+use footfall_core::{ModelPose, Pose, Skeleton, forward_kinematics};
 use footfall_synth::GeneratorConfig;
 use glam::{Vec2, Vec3};
+pub use kit::CrowdRecipe;
+use kit::{Kit, Outfit};
+use maker::{Maker, Order};
+pub use motion::{FETCHED, GROUPS};
+use neighbours::Neighbours;
+pub use roster::Roster;
+use save::SavedAgent;
+pub use save::{CrowdStateError, SavedCrowd};
 use std::collections::VecDeque;
 use std::sync::Arc;
+use tiers::Chooser;
+pub use tiers::{Limits, Tier};
+pub use way::{Path, Way};
+
+/// Most walkers of a crowd: the steps of more alone would take gigabytes.
+pub const MOST_AGENTS: u32 = 100_000;
 
 /// The golden ratio spreads phases evenly, and the plastic number places in a rectangle, however many there are.
 const GOLDEN: f32 = 0.618_034;
 const PLASTIC: [f32; 2] = [0.754_877_7, 0.569_840_3];
 
 /// Settings by which walkers differ.
-pub(super) struct Settings {
-    pub(super) seed: u64,
-    pub(super) speeds_mps: [f32; 2],
-    pub(super) sizes: [f32; 2],
-    pub(super) style_amount: f32,
-    pub(super) tints: Vec<[f32; 4]>,
-    pub(super) half_area: Vec2,
-    pub(super) path_width: f32,
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrowdSettings {
+    /// Equal seeds give equal crowds.
+    pub seed: u64,
+    /// The slowest and the fastest walker.
+    pub speeds_mps: [f32; 2],
+    /// The smallest and the largest walker, against the character.
+    pub sizes: [f32; 2],
+    /// Greatest weight of a walker's style.
+    pub style_amount: f32,
+    /// Tints of which each walker gets one: red, green, blue and opacity. None is white.
+    pub tints: Vec<[f32; 4]>,
+    /// Half the sides of the rectangle about the origin in which walkers begin, metres.
+    pub half_area: Vec2,
+    /// Width of the stream of walkers along a path, metres.
+    pub path_width: f32,
 }
 
-/// Everybody. Whoever is in the crowd has a place in `agents`, `tiers` and `drawn` for as long as it is there.
-pub(super) struct Walkers {
-    pub(super) agents: Vec<Agent>,
-    pub(super) tiers: Vec<Tier>,
-    /// Places of each for drawing.
-    pub(super) drawn: Vec<Drawn>,
-    pub(super) roster: Roster,
-    /// Walkers that began in the last frame, by name.
-    pub(super) began: Vec<i32>,
-    /// Number of frames so far.
-    pub(super) frame: u64,
-    pub(super) time_secs: f64,
-    pub(super) mesh: CrowdMesh,
-    pub(super) kit: Option<Arc<Kit>>,
-    pub(super) neighbours: Neighbours,
-    pub(super) way: Way,
-    pub(super) repeats: bool,
-    /// Amount of motion of those who stand.
-    pub(super) standing_motion: f32,
-    pub(super) maker: Maker,
-    settings: Settings,
+impl Default for CrowdSettings {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            speeds_mps: [0.95, 1.55],
+            sizes: [0.92, 1.08],
+            style_amount: 1.0,
+            tints: Vec::new(),
+            half_area: Vec2::splat(20.0),
+            path_width: 4.0,
+        }
+    }
+}
+
+/// Everybody. Whoever is in the crowd has a row in [`agents`](Self::agents), [`tiers`](Self::tiers) and [`drawn`](Self::drawn) for as long as it is there.
+#[derive(Debug)]
+pub struct Crowd {
+    agents: Vec<Agent>,
+    tiers: Vec<Tier>,
+    drawn: Vec<Drawn>,
+    roster: Roster,
+    began: Vec<i32>,
+    frame: u64,
+    time_secs: f64,
+    /// Height of the character's highest joint in the T-pose.
+    height_m: f32,
+    kit: Option<Arc<Kit>>,
+    neighbours: Neighbours,
+    way: Way,
+    chooser: Chooser,
+    /// True when walkers far away repeat their last two steps instead of taking new ones.
+    pub repeats: bool,
+    /// Amount of motion of those who stand: 0 rests in a still pose, 1 moves as people do.
+    pub standing_motion: f32,
+    maker: Maker,
+    settings: CrowdSettings,
     /// Number of walkers that there ever were: the number of the next, which identifies it.
     made: u64,
     tickets: u64,
@@ -58,15 +105,16 @@ pub(super) struct Walkers {
 }
 
 /// A walker with a name and no row yet: where it will stand, and its heading.
+#[derive(Debug)]
 struct Coming {
     place: usize,
     start: Vec3,
     heading: f32,
 }
 
-impl Walkers {
+impl Crowd {
     /// A crowd of nobody yet; what its walkers are made with is prepared meanwhile.
-    pub(super) fn new(recipe: Recipe, mesh: CrowdMesh, way: Way, settings: Settings) -> Self {
+    pub fn new(recipe: CrowdRecipe, way: Way, settings: CrowdSettings) -> Self {
         Self {
             agents: Vec::new(),
             tiers: Vec::new(),
@@ -76,10 +124,11 @@ impl Walkers {
             // So that nobody's pose seems to have been written just now.
             frame: 1000,
             time_secs: 0.0,
-            mesh,
+            height_m: height_m(&recipe.body),
             kit: None,
             neighbours: Neighbours::default(),
             way,
+            chooser: Chooser::default(),
             repeats: true,
             standing_motion: 1.0,
             maker: Maker::new(recipe),
@@ -90,15 +139,62 @@ impl Walkers {
         }
     }
 
+    /// One walker a row; rows that nobody has are of walkers that are not made.
+    pub fn agents(&self) -> &[Agent] {
+        &self.agents
+    }
+
+    /// The same, to be changed.
+    pub fn agents_mut(&mut self) -> &mut [Agent] {
+        &mut self.agents
+    }
+
+    /// Tier of each row.
+    pub fn tiers(&self) -> &[Tier] {
+        &self.tiers
+    }
+
+    /// Places of each row for drawing.
+    pub fn drawn(&self) -> &[Drawn] {
+        &self.drawn
+    }
+
+    /// Names of the rows.
+    pub fn roster(&self) -> &Roster {
+        &self.roster
+    }
+
+    /// Walkers that began in the last frame, by name.
+    pub fn began(&self) -> &[i32] {
+        &self.began
+    }
+
+    /// Number of frames so far.
+    pub fn frame(&self) -> u64 {
+        self.frame
+    }
+
+    /// Ways that walkers take by themselves.
+    pub fn way(&self) -> &Way {
+        &self.way
+    }
+
+    /// Chooses everybody's tier by the distance from the camera, given in the crowd's space.
+    pub fn choose_tiers(&mut self, camera: Vec3, limits: &Limits) {
+        let agents = self.agents.iter();
+        let places = agents.map(|agent| agent.is_made().then_some(agent.place));
+        self.chooser.choose(camera, limits, places, &mut self.tiers);
+    }
+
     /// Names of all, in the order in which they came.
-    pub(super) fn names(&self) -> impl Iterator<Item = i32> {
+    pub fn names(&self) -> impl Iterator<Item = i32> {
         let order = self.roster.order().iter();
         order.map(|place| self.roster.name(*place as usize))
     }
 
     /// Makes the crowd's own walkers, those that no script added, so many. Who is too much leaves, the last first; returns their
     /// places.
-    pub(super) fn set_count(&mut self, count: usize) -> Vec<usize> {
+    pub fn set_count(&mut self, count: usize) -> Vec<usize> {
         self.come_in(usize::MAX);
         let own = |place: &u32| self.agents[*place as usize].counted;
         let there = self
@@ -157,7 +253,7 @@ impl Walkers {
     }
 
     /// Adds walkers at these places under these headings; returns their names. Their rows come with [`come_in`](Self::come_in).
-    pub(super) fn add(&mut self, starts: impl ExactSizeIterator<Item = (Vec3, f32)>) -> Vec<i32> {
+    pub fn add(&mut self, starts: impl ExactSizeIterator<Item = (Vec3, f32)>) -> Vec<i32> {
         self.roster.reserve(starts.len());
         self.coming.reserve(starts.len());
         starts
@@ -174,13 +270,13 @@ impl Walkers {
     }
 
     /// Returns whether there are walkers without rows.
-    pub(super) fn are_coming(&self) -> bool {
+    fn are_coming(&self) -> bool {
         !self.coming.is_empty()
     }
 
     /// Gives so many of those who were added their rows, and orders them to be made. The memory of ten thousand rows takes the system
     /// longer than a frame to come by.
-    pub(super) fn come_in(&mut self, most: usize) {
+    pub fn come_in(&mut self, most: usize) {
         let count = self.coming.len().min(most);
         if count == 0 {
             return;
@@ -201,7 +297,7 @@ impl Walkers {
     }
 
     /// Goes on with those who were saved, when nobody is there.
-    pub(super) fn restore(&mut self, saved: &SavedCrowd) {
+    pub fn restore(&mut self, saved: &SavedCrowd) {
         self.made = saved.made;
         if let Some(roster) = &saved.roster {
             self.roster = roster.clone();
@@ -228,7 +324,7 @@ impl Walkers {
     }
 
     /// Removes those who have these places.
-    pub(super) fn leave(&mut self, places: &[usize]) {
+    pub fn leave(&mut self, places: &[usize]) {
         self.roster.leave(places);
         let mut left = Vec::new();
         for place in places {
@@ -241,7 +337,7 @@ impl Walkers {
     }
 
     /// Removes everybody; returns the places that they had.
-    pub(super) fn clear(&mut self) -> Vec<usize> {
+    pub fn clear(&mut self) -> Vec<usize> {
         self.come_in(usize::MAX);
         self.maker.cancel();
         let everybody: Vec<usize> = self
@@ -254,13 +350,8 @@ impl Walkers {
         everybody
     }
 
-    /// Returns whether walkers go from place to place of the navigation map.
-    pub(super) fn is_navigated(&self) -> bool {
-        self.way.is_navigated()
-    }
-
-    /// Everybody, to be saved.
-    pub(super) fn save(&self) -> Vec<u8> {
+    /// Everybody as bytes: who walks where, how, in which phase and by which name. Their next steps are drawn anew after [`restore`](Self::restore).
+    pub fn save(&self) -> Vec<u8> {
         let places = self.roster.order().iter();
         let agents = places.map(|place| &self.agents[*place as usize]);
         save::write(self.made, &self.roster, agents)
@@ -353,4 +444,12 @@ impl Walkers {
         self.agents[place] = agent;
         order
     }
+}
+
+/// Height of a body's highest joint in the T-pose.
+fn height_m(body: &Skeleton) -> f32 {
+    let mut t_pose = ModelPose::default();
+    forward_kinematics(body, &Pose::rest(body), &mut t_pose);
+    let heights = t_pose.positions.iter().map(|place| place.y);
+    heights.fold(0.0, f32::max)
 }

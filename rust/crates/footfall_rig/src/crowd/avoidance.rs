@@ -1,7 +1,7 @@
 //! Steering around others: the direction and the speed, of a few, that cost least.
 //!
 //! Each is judged by the detour that it is and by whom it would meet when, as in Moussaïd, Helbing and Theraulaz, "How simple rules determine
-//! pedestrian behavior and crowd disasters", PNAS 2011, with others going on as they do. Nothing here knows the engine.
+//! pedestrian behavior and crowd disasters", PNAS 2011, with others going on as they do.
 
 use super::agent::{SIGHT_M, Seen};
 use glam::Vec2;

@@ -1,8 +1,10 @@
-//! One walker of a crowd: where it is, where it wants to go, and how it gets there. Nothing here knows the engine.
+//! One walker of a crowd: where it is, where it wants to go, and how it gets there.
 
 use super::avoidance::Wayfarer;
 use super::kit::Outfit;
+use footfall_core::Side;
 use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_ik::placement::{Frame, Landing};
 use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop};
 use glam::{Vec2, Vec3};
 
@@ -21,10 +23,10 @@ pub(super) const WHITE: [f32; 4] = [1.0; 4];
 
 /// Goals of a walker.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Goal {
+pub enum Goal {
     /// A turn rate, rad/s.
     Turn(f32),
-    /// A place, in the plane of the crowd.
+    /// A place, in the plane of the crowd: x and z of its space.
     Place(Vec2),
 }
 
@@ -37,17 +39,20 @@ pub(super) struct Seen {
 
 /// Places of a walker for drawing: where it was when it moved last but one, and where it is.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Drawn {
-    pub(super) places: [Vec3; 2],
-    /// The second is within half a turn of the first.
-    pub(super) headings: [f32; 2],
-    pub(super) size: f32,
-    pub(super) tint: [f32; 4],
+pub struct Drawn {
+    /// The two places.
+    pub places: [Vec3; 2],
+    /// Its headings there. The second is within half a turn of the first.
+    pub headings: [f32; 2],
+    /// Its height against that of the character.
+    pub size: f32,
+    /// Its tint: red, green, blue and opacity.
+    pub tint: [f32; 4],
 }
 
 impl Drawn {
     /// Place and heading on the way from the one to the other.
-    pub(super) fn at(&self, share: f32) -> (Vec3, f32) {
+    pub fn at(&self, share: f32) -> (Vec3, f32) {
         let [from, to] = self.headings;
         (
             self.places[0].lerp(self.places[1], share),
@@ -58,7 +63,7 @@ impl Drawn {
 
 /// One walker in the space of the crowd: +Y up.
 #[derive(Debug)]
-pub(super) struct Agent {
+pub struct Agent {
     /// Its walk, in memory that the thread that made it asked for; none before it is made, and for places that nobody has.
     pub(super) walker: Option<Box<CrowdWalker>>,
     /// Number that distinguishes it from others who had its place or will have it.
@@ -69,14 +74,18 @@ pub(super) struct Agent {
     pub(super) start_phase: f32,
     pub(super) goal: Goal,
     /// Preferred speed, m/s.
-    pub(super) speed_mps: f32,
+    pub speed_mps: f32,
     /// Its height against that of the character.
-    pub(super) size: f32,
-    pub(super) tint: [f32; 4],
+    pub size: f32,
+    /// Its tint: red, green, blue and opacity.
+    pub tint: [f32; 4],
     pub(super) seed: u64,
-    pub(super) place: Vec3,
-    pub(super) heading: f32,
-    pub(super) ground_m: f32,
+    /// Its place, on the ground.
+    pub place: Vec3,
+    /// Heading about +Y from +Z, radians.
+    pub heading: f32,
+    /// Height of the ground to which it rises or falls, metres.
+    pub ground_m: f32,
     pub(super) velocity: Vec2,
     /// Weights of the styles that it wears, in parts: see [`Kit`](super::kit::Kit).
     pub(super) outfit: Outfit,
@@ -86,7 +95,7 @@ pub(super) struct Agent {
     pub(super) progress_m: f32,
     pub(super) aside_m: f32,
     /// The foot that landed in the last frame and where, if one did.
-    pub(super) landed: Option<(footfall_core::Side, Vec3)>,
+    pub(super) landed: Option<(Side, Vec3)>,
     /// The crowd's time until which it has walked, seconds.
     pub(super) clock_secs: f64,
     chance: u64,
@@ -135,10 +144,72 @@ impl Agent {
         self.walker = Some(walker);
     }
 
-    /// Share of its stride that is behind it.
-    pub(super) fn phase(&self) -> f32 {
+    /// Share of its stride that is behind it: 0 when its left foot lands, 0.5 when its right foot does.
+    pub fn phase(&self) -> f32 {
         let walker = self.walker.as_ref();
         walker.map_or(self.start_phase, |walker| walker.phase())
+    }
+
+    /// Returns whether it walks: it was made, and has begun.
+    pub fn is_made(&self) -> bool {
+        self.walker.is_some()
+    }
+
+    /// Gives up its goal and turns at this rate, rad/s.
+    pub fn turn(&mut self, rate_radps: f32) {
+        self.goal = Goal::Turn(rate_radps);
+        self.route.clear();
+    }
+
+    /// Goes to a place and stops there: x and z of the crowd's space.
+    pub fn go_to(&mut self, place: Vec2) {
+        self.goal = Goal::Place(place);
+        self.route.clear();
+    }
+
+    /// Goes from place to place and stops at the last; without places it keeps the goal that it has.
+    pub fn go_along(&mut self, places: impl DoubleEndedIterator<Item = Vec2>) {
+        self.route.clear();
+        self.route.extend(places.rev());
+        if let Some(first) = self.route.pop() {
+            self.goal = Goal::Place(first);
+        }
+    }
+
+    /// Velocity over the ground, m/s, x and z of the crowd's space.
+    pub fn velocity(&self) -> Vec2 {
+        self.velocity
+    }
+
+    /// Returns whether a foot has landed in the last frame in which it moved.
+    pub fn has_landed(&self) -> bool {
+        self.landed.is_some()
+    }
+
+    /// Feet that bear on the ground.
+    pub fn feet_in_contact(&self) -> [bool; 2] {
+        let walker = self.walker.as_ref();
+        walker.map_or([true; 2], |walker| walker.feet_in_contact())
+    }
+
+    /// The next landing of each foot in the space of the character, for a body of its size: a large one takes longer for its steps.
+    pub fn landings(&self) -> [Option<Landing>; 2] {
+        let Some(walker) = &self.walker else {
+            return [None; 2];
+        };
+        walker.landings().map(|landing| {
+            let landing = landing?;
+            let flat = Frame {
+                position: landing.flat.position * self.size,
+                ..landing.flat
+            };
+            Some(Landing {
+                flat,
+                secs: landing.secs * self.size.sqrt(),
+                hips: landing.hips * self.size,
+                ankles: landing.ankles.map(|ankle| ankle * self.size),
+            })
+        })
     }
 
     /// Decides what to do next; what it decides is taken up with the next step.
@@ -226,7 +297,7 @@ impl Agent {
     }
 
     /// A number between 0 and 1, another one at every call and the same ones for equal seeds (`SplitMix64`).
-    pub(super) fn chance(&mut self) -> f32 {
+    pub fn chance(&mut self) -> f32 {
         self.chance = self.chance.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.chance;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -246,7 +317,7 @@ impl Agent {
     }
 
     /// Returns whether it goes somewhere and has not arrived.
-    pub(super) fn is_on_its_way(&self) -> bool {
+    pub fn is_on_its_way(&self) -> bool {
         match self.goal {
             Goal::Place(place) => !self.route.is_empty() || !self.is_at(place),
             Goal::Turn(_) => false,
@@ -276,14 +347,14 @@ impl Agent {
     }
 
     /// Has memory bring what [`pose`](Self::pose) reads.
-    pub(super) fn fetch_pose(&self) {
+    pub fn fetch_pose(&self) {
         if let Some(walker) = &self.walker {
             walker.fetch_pose();
         }
     }
 
-    /// Writes its pose; whether there is one.
-    pub(super) fn pose(&self, out: &mut CrowdPose) -> bool {
+    /// Writes its pose in the space of the character; returns whether there is one.
+    pub fn pose(&self, out: &mut CrowdPose) -> bool {
         if let Some(walker) = &self.walker {
             walker.pose(out);
         }

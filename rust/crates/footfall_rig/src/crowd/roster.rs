@@ -1,6 +1,5 @@
 //! Roster of a crowd: names that last while others come and go, and places in arrays that are used again.
 
-use crate::convert;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
@@ -13,7 +12,7 @@ const MOST_PLACES: usize = 1 << PLACE_BITS;
 
 /// One name a walker: the place that it has in all arrays, and how many had it before.
 #[derive(Debug, Default, Clone, PartialEq)]
-pub(super) struct Roster {
+pub struct Roster {
     /// Per place, how many have left it.
     turns: Vec<u16>,
     taken: Vec<bool>,
@@ -25,7 +24,7 @@ pub(super) struct Roster {
 
 impl Roster {
     /// The places of all, in the order in which they came.
-    pub(super) fn order(&self) -> &[u32] {
+    pub fn order(&self) -> &[u32] {
         &self.order
     }
 
@@ -99,13 +98,13 @@ impl Roster {
     }
 
     /// The name of who has a place.
-    pub(super) fn name(&self, place: usize) -> i32 {
+    pub fn name(&self, place: usize) -> i32 {
         let turn = i32::from(self.turns.get(place).copied().unwrap_or(0));
-        turn << PLACE_BITS | convert::count(place)
+        turn << PLACE_BITS | i32::try_from(place).unwrap_or(i32::MAX)
     }
 
     /// The place of who has this name, while it is there.
-    pub(super) fn place(&self, name: i32) -> Option<usize> {
+    pub fn place(&self, name: i32) -> Option<usize> {
         let (place, turn) = parts(name)?;
         let there = self.taken.get(place) == Some(&true) && self.turns[place] == turn;
         there.then_some(place)

@@ -1,0 +1,73 @@
+//! A game's own character as a body, and poses on its bones.
+//!
+//! A [`RestRig`] has the bones as they rest: names, parents and transforms, in any units and axes. [`joint_bones`] finds the joints among them. A [`RigBinding`] is both
+//! measured: the [`Skeleton`](crate::body::Skeleton) for the walker, and the way from a pose to rotations of bones. Rest poses may be A-poses, and bones may be missing.
+//!
+//! ```
+//! use footfall::body::{JOINT_COUNT, Joint, Pose, Skeleton};
+//! use footfall::glam::{Affine3A, Quat, Vec3};
+//! use footfall::rig::{Bones, RestRig, RigBinding, joint_bones};
+//!
+//! /// Bones of a character in a game: a transform each, relative to the bone above.
+//! struct Character(Vec<Affine3A>);
+//!
+//! impl Bones for Character {
+//!     fn rotation(&self, bone: usize) -> Quat {
+//!         self.0[bone].to_scale_rotation_translation().1
+//!     }
+//!     fn position(&self, bone: usize) -> Vec3 {
+//!         self.0[bone].translation.into()
+//!     }
+//!     fn transform(&self, bone: usize) -> Affine3A {
+//!         self.0[bone]
+//!     }
+//!     fn set_rotation(&mut self, bone: usize, rotation: Quat) {
+//!         self.0[bone] = Affine3A::from_rotation_translation(rotation, self.position(bone));
+//!     }
+//!     fn set_position(&mut self, bone: usize, position: Vec3) {
+//!         self.0[bone].translation = position.into();
+//!     }
+//! }
+//!
+//! // A character of a game: here the joints themselves, in centimetres.
+//! let standard = Skeleton::standard();
+//! let bones = Joint::ALL.map(|joint| {
+//!     let rest = Affine3A::from_translation(100.0 * standard.offset(joint));
+//!     (joint.name().to_owned(), joint.parent().map(Joint::index), rest)
+//! });
+//! let mut character = Character(bones.iter().map(|(.., rest)| *rest).collect());
+//! let rig = RestRig::new(bones);
+//!
+//! let metres = Affine3A::from_scale(Vec3::splat(0.01));
+//! let mapped = [None; JOINT_COUNT]; // Nothing is mapped by hand.
+//! let bones = joint_bones(rig.rig(), &mapped)?;
+//! let mut binding = RigBinding::new(&rig, &bones, &metres)?;
+//! assert!((binding.body.offset(Joint::Hips).y - standard.offset(Joint::Hips).y).abs() < 1e-3);
+//!
+//! // A walker on `binding.body` gives such poses in every frame.
+//! let mut pose = Pose::rest(&binding.body);
+//! pose.rotations[Joint::LeftUpperLeg.index()] = Quat::from_rotation_x(-0.5);
+//! binding.write(&mut character, &pose);
+//! let mut seen = Pose::default();
+//! binding.read(&character, &mut seen);
+//! let leg = Joint::LeftUpperLeg;
+//! assert!(seen.rotation(leg).angle_between(pose.rotation(leg)) < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`RigBinding::write_layered`] leaves arms, spine or head to other animation by [`LayerWeights`]. [`BindingError`] names the bone that is wrong, and [`MissingJoints`] what a rig
+//! lacks: then fill in [`MappedBones`] by hand. [`relative_size`] says whether a character was scaled since it was measured.
+//!
+//! ```
+//! use footfall::glam::{Affine3A, Vec3};
+//! use footfall::rig::relative_size;
+//!
+//! let measured = Affine3A::from_translation(Vec3::Y);
+//! let now = Affine3A::from_scale(Vec3::splat(1.5)) * measured;
+//! assert!(relative_size(&measured, &now).is_some_and(|size| (size - 1.5).abs() < 1e-5));
+//! ```
+
+pub use footfall_rig::{
+    BindingError, Bones, LayerWeights, MappedBones, MissingJoints, RestRig, RigBinding,
+    joint_bones, relative_size,
+};

@@ -1,0 +1,170 @@
+//! A crowd of the shipped walk: equal seeds, saved and restored crowds, goals and avoidance.
+
+use footfall_core::Side;
+use footfall_model::GaitModel;
+use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdSettings, Limits, SavedCrowd, Tier, Way};
+use glam::{Vec2, Vec3};
+use std::f32::consts::PI;
+use std::path::Path;
+use std::sync::{Arc, LazyLock};
+
+const DT_SECS: f32 = 1.0 / 60.0;
+
+const LIMITS: Limits = Limits {
+    counts: [2, 4],
+    distances_m: [5.0, 20.0],
+};
+
+static MODEL: LazyLock<Arc<GaitModel>> = LazyLock::new(|| {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
+    let bytes = std::fs::read(root.join("addons/footfall/models/locomotion.footfall"))
+        .expect("the shipped walk");
+    Arc::new(GaitModel::from_bytes(&bytes).expect("a walk"))
+});
+
+fn crowd(way: Way) -> Crowd {
+    let recipe = CrowdRecipe {
+        model: Arc::clone(&MODEL),
+        styles: Vec::new(),
+        space: None,
+        body: MODEL.skeleton.clone(),
+    };
+    Crowd::new(recipe, way, CrowdSettings::default())
+}
+
+fn places(crowd: &Crowd) -> Vec<Vec3> {
+    let rows = crowd.roster().order().iter();
+    rows.map(|row| crowd.agents()[*row as usize].place)
+        .collect()
+}
+
+fn walk(crowd: &mut Crowd, secs: f32, look: impl FnMut(&Crowd)) {
+    walk_with(crowd, secs, true, look);
+}
+
+fn walk_with(crowd: &mut Crowd, secs: f32, avoidance: bool, mut look: impl FnMut(&Crowd)) {
+    for _ in 0..(secs / DT_SECS) as usize {
+        crowd.begin_all().expect("a walk");
+        crowd.advance(DT_SECS, avoidance);
+        look(crowd);
+    }
+}
+
+#[test]
+fn equal_seeds_give_equal_crowds_that_wander_and_others_do_not() {
+    let half = Vec2::splat(20.0);
+    let mut twins = [0, 1].map(|_| crowd(Way::Wander { half }));
+    for twin in &mut twins {
+        twin.set_count(30);
+        walk(twin, 3.0, |_| {});
+    }
+    assert_eq!(places(&twins[0]), places(&twins[1]));
+    let begin = {
+        let mut crowd = crowd(Way::Wander { half });
+        crowd.set_count(30);
+        places(&crowd)
+    };
+    let ways = places(&twins[0]).into_iter().zip(begin);
+    let moved = ways.filter(|(now, then)| now.distance(*then) > 1.0);
+    assert!(moved.count() > 20);
+}
+
+#[test]
+fn names_and_places_outlast_saving_and_others_who_leave() {
+    let mut first = crowd(Way::Told);
+    let starts = (0..5_u8).map(|index| (Vec3::X * f32::from(index) * 3.0, 0.5));
+    let names = first.add(starts);
+    walk(&mut first, 0.2, |_| {});
+    let left = first.roster().place(names[1]).expect("its row");
+    first.leave(&[left]);
+
+    let bytes = first.save();
+    let saved = SavedCrowd::from_bytes(&bytes).expect("a crowd");
+    let mut second = crowd(Way::Told);
+    second.restore(&saved);
+    assert_eq!(second.names().collect::<Vec<_>>(), [0, 2, 3, 4]);
+    assert_eq!(places(&second), places(&first));
+    assert_eq!(second.roster().place(names[1]), None);
+    let near = second.nearest(Vec3::X * 8.9, 1.0);
+    assert_eq!(near, second.roster().place(names[3]));
+    let over = Vec3::new(12.0, 10.0, 0.0);
+    let met = second.first_met(over, over.with_y(-1.0));
+    assert_eq!(met, second.roster().place(names[4]));
+}
+
+#[test]
+fn who_is_sent_somewhere_arrives_there_by_way_of_the_places_between() {
+    let mut crowd = crowd(Way::Told);
+    let names = crowd.add([(Vec3::ZERO, 0.0)].into_iter());
+    walk(&mut crowd, 0.1, |_| {});
+    crowd.choose_tiers(Vec3::ZERO, &LIMITS);
+    let row = crowd.roster().place(names[0]).expect("its row");
+    let corner = Vec2::new(0.0, 5.0);
+    let goal = Vec2::new(5.0, 5.0);
+    crowd.agents_mut()[row].go_along([corner, goal].into_iter());
+    let (mut from_corner, mut steps) = (f32::INFINITY, [0_u32; 2]);
+    walk(&mut crowd, 15.0, |crowd| {
+        let place = crowd.agents()[row].place;
+        from_corner = from_corner.min(Vec2::new(place.x, place.z).distance(corner));
+        for (_, side, _) in crowd.landed() {
+            steps[usize::from(side == Side::Right)] += 1;
+        }
+    });
+    let agent = &crowd.agents()[row];
+    let end = Vec2::new(agent.place.x, agent.place.z);
+    assert!(from_corner < 1.0, "{from_corner}");
+    assert!(end.distance(goal) < 0.6 && !agent.is_on_its_way(), "{end}");
+    assert!(agent.velocity().length() < 0.05, "it stands");
+    assert!(
+        steps[0].abs_diff(steps[1]) <= 2 && steps[0] > 4,
+        "{steps:?}"
+    );
+}
+
+/// Seconds for which two of eight walkers touch, of two rows that pass through each other.
+fn touching_secs(avoidance: bool) -> f32 {
+    let mut crowd = crowd(Way::Told);
+    let row = |z: f32, heading: f32| {
+        (0..4_u8).map(move |index| (Vec3::new(1.5 * f32::from(index), 0.0, z), heading))
+    };
+    let starts: Vec<_> = row(-6.0, 0.0).chain(row(6.0, PI)).collect();
+    crowd.add(starts.into_iter());
+    walk(&mut crowd, 0.1, |_| {});
+    for agent in crowd.agents_mut() {
+        agent.go_to(Vec2::new(agent.place.x, -2.0 * agent.place.z));
+    }
+    let mut frames = 0;
+    walk_with(&mut crowd, 10.0, avoidance, |crowd| {
+        let places = places(crowd);
+        let others = |index: usize| places[index + 1..].iter();
+        let touch = |(index, place): (usize, &Vec3)| {
+            others(index).any(|other| place.distance(*other) < 0.4)
+        };
+        frames += u32::from(places.iter().enumerate().any(touch));
+    });
+    let agents = crowd.agents().iter().zip(0..8);
+    let passed = agents.filter(|(agent, index)| (agent.place.z > 2.0) == (*index < 4));
+    assert_eq!(passed.count(), 8, "{:?}", places(&crowd));
+    frames as f32 * DT_SECS
+}
+
+#[test]
+fn rows_that_meet_pass_through_each_other_without_bumping() {
+    let [avoiding, straight] = [true, false].map(touching_secs);
+    assert!(straight > 0.3, "the rows meet: {straight} s");
+    assert!(avoiding < 0.2 * straight, "{avoiding} of {straight} s");
+}
+
+#[test]
+fn the_nearest_are_drawn_best_and_all_have_poses() {
+    let mut crowd = crowd(Way::Told);
+    let starts = (0..12_u8).map(|index| (Vec3::Z * f32::from(index), 0.0));
+    crowd.add(starts);
+    walk(&mut crowd, 0.2, |_| {});
+    crowd.choose_tiers(Vec3::ZERO, &LIMITS);
+    let count = |tier: Tier| crowd.tiers().iter().filter(|own| **own == tier).count();
+    assert_eq!([Tier::Full, Tier::Near, Tier::Far].map(count), [2, 4, 6]);
+    assert_eq!(crowd.tiers()[0], Tier::Full);
+    let mut pose = footfall_synth::CrowdPose::default();
+    assert!(crowd.agents().iter().all(|agent| agent.pose(&mut pose)));
+}
