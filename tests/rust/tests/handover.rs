@@ -1,7 +1,7 @@
 //! One motion gives way to another: nothing pops, and feet that stand stay where they are.
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 
-use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics, rotation};
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, rotation};
 use footfall_ik::FootTarget;
 use footfall_ik::RockerFoot;
 use footfall_ik::handover::{Handover, Moving};
@@ -46,8 +46,7 @@ fn step(walker: &mut GaitGenerator, controls: &Controls) -> (Pose, [bool; 2]) {
 }
 
 fn joints(pose: &Pose) -> [Vec3; 22] {
-    let mut model = ModelPose::default();
-    forward_kinematics(&Skeleton::standard(), pose, &mut model);
+    let model = ModelPose::of(&Skeleton::standard(), pose);
     model.positions
 }
 
@@ -55,8 +54,7 @@ fn joints(pose: &Pose) -> [Vec3; 22] {
 fn slip(side: Side, before: &Pose, now: &Pose) -> f32 {
     let skeleton = Skeleton::standard();
     let points = |pose: &Pose| {
-        let mut model = ModelPose::default();
-        forward_kinematics(&skeleton, pose, &mut model);
+        let model = ModelPose::of(&skeleton, pose);
         RockerFoot::new(&skeleton, side).points(&FootTarget {
             ankle: model.position(side.foot()),
             foot: model.rotation(side.foot()),

@@ -1,7 +1,7 @@
 //! Standing that lives: on planted feet, in no loop, by seed, and gone without a pop as a step begins.
 
 use footfall_core::rotation::from_heading;
-use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
 use footfall_ik::placement::PlacementConfig;
 use footfall_model::{FORMAT_VERSION, GaitModel, GaitStyle};
 use footfall_synth::{
@@ -61,8 +61,7 @@ fn frame(generator: &mut GaitGenerator, controls: &Controls) -> (Pose, ModelPose
     let turn = from_heading(place.heading);
     placed.root_position = turn * placed.root_position + place.position;
     placed.rotations[0] = turn * placed.rotations[0];
-    let mut body = ModelPose::default();
-    forward_kinematics(&Skeleton::standard(), &placed, &mut body);
+    let body = ModelPose::of(&Skeleton::standard(), &placed);
     (pose, body)
 }
 
@@ -384,11 +383,7 @@ fn a_loop_of_standing_closes_on_planted_feet() {
     let bodies: Vec<ModelPose> = looped
         .poses
         .iter()
-        .map(|pose| {
-            let mut body = ModelPose::default();
-            forward_kinematics(&Skeleton::standard(), pose, &mut body);
-            body
-        })
+        .map(|pose| ModelPose::of(&Skeleton::standard(), pose))
         .collect();
     assert_eq!(looped.poses.first(), looped.poses.last());
     assert!((looped.duration_secs() - 6.0).abs() < 0.05);

@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
 
-use footfall_core::{Clip, ModelPose, Pose, Site, forward_kinematics};
+use footfall_core::{Clip, ModelPose, Pose, Site};
 use footfall_imu::{ImuRecording, ImuSample};
 use footfall_model::{GaitModel, Provenance};
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
@@ -55,8 +55,7 @@ fn driven(
         }
         body.step((1.0 / RATE_HZ) as f32, &mut pose);
         body.split(&mut pose);
-        let mut model = ModelPose::default();
-        forward_kinematics(skeleton, &pose, &mut model);
+        let model = ModelPose::of(skeleton, &pose);
         joints.push(model);
     }
     joints
@@ -133,9 +132,7 @@ fn recordings_on_one_clock_are_laid_side_by_side() {
             let mut pose = pose.clone();
             pose.root_position = glam::Vec3::ZERO;
             pose.rotations[0] = glam::Quat::IDENTITY;
-            let mut model = ModelPose::default();
-            forward_kinematics(skeleton, &pose, &mut model);
-            model
+            ModelPose::of(skeleton, &pose)
         };
         made.clip.poses.iter().map(above_hips).collect()
     };

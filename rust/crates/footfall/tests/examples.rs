@@ -10,7 +10,7 @@ mod replay_sensor;
 #[path = "../examples/walk_once.rs"]
 mod walk_once;
 
-use footfall::body::{ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall::body::{ModelPose, Pose, Side, Skeleton};
 use footfall::gait::EventKind;
 use footfall::glam::Vec3;
 use footfall::ground::Frame;
@@ -27,8 +27,7 @@ fn model() -> Arc<GaitModel> {
 
 /// Heel, ball and toe tip of both feet over a floor, in the world, metres.
 fn soles(skeleton: &Skeleton, world_from_floor: &Frame, pose: &Pose) -> [[Vec3; 3]; 2] {
-    let mut model = ModelPose::default();
-    forward_kinematics(skeleton, pose, &mut model);
+    let model = ModelPose::of(skeleton, pose);
     Side::BOTH.map(|side| {
         let foot = skeleton.foot(side);
         [

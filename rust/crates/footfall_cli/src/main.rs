@@ -3,7 +3,6 @@
 mod commands;
 mod corpus_pair;
 mod hip_facts;
-mod model_file;
 mod motion_input;
 mod output;
 mod sheet;

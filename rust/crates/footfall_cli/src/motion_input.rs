@@ -65,6 +65,26 @@ impl KneesArgs {
     }
 }
 
+/// Recordings that an index lists.
+#[derive(Debug, clap::Args)]
+pub(crate) struct CorpusArgs {
+    /// Table of the recordings
+    #[arg(long = "corpus", value_name = "INDEX.csv")]
+    pub(crate) index: PathBuf,
+    /// Condition on a column, for example `category=neutral_walk`; may repeat
+    #[arg(long = "where", value_name = "COLUMN=VALUE")]
+    pub(crate) conditions: Vec<Where>,
+    #[command(flatten)]
+    pub(crate) knees: KneesArgs,
+}
+
+impl CorpusArgs {
+    /// Reads the chosen recordings, and says whose hip joints moved.
+    pub(crate) fn read(&self) -> Result<Corpus> {
+        self.knees.read_corpus(&self.index, &self.conditions)
+    }
+}
+
 impl MapArgs {
     /// Reads the joint map that was given and returns the options, with the recording's own rate unless another is given.
     pub(crate) fn read(&self, frame_rate_hz: Option<f64>) -> Result<RetargetOptions> {

@@ -1,6 +1,6 @@
 //! Motion at a fixed rate.
 
-use crate::pose::Pose;
+use crate::pose::{ModelPose, Pose};
 use crate::skeleton::Skeleton;
 
 /// Motion of one body at a fixed rate. Frame 0 is at time 0.
@@ -18,6 +18,12 @@ impl Clip {
     /// From the first frame to the last, seconds.
     pub fn duration_secs(&self) -> f64 {
         self.poses.len().saturating_sub(1) as f64 / self.frame_rate_hz
+    }
+
+    /// All joints, frame by frame.
+    pub fn model_poses(&self) -> impl Iterator<Item = ModelPose> {
+        let poses = self.poses.iter();
+        poses.map(|pose| ModelPose::of(&self.skeleton, pose))
     }
 
     /// The pose at a time; held at both ends. `None` for a clip without frames.

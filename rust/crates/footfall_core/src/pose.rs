@@ -125,6 +125,13 @@ impl ModelPose {
         self.rotations[joint.index()]
     }
 
+    /// All joints of a pose.
+    pub fn of(skeleton: &Skeleton, pose: &Pose) -> Self {
+        let mut model = Self::default();
+        forward_kinematics(skeleton, pose, &mut model);
+        model
+    }
+
     /// A point given in a joint's space, in model space.
     pub fn point(&self, joint: Joint, joint_space: Vec3) -> Vec3 {
         self.position(joint) + self.rotation(joint) * joint_space
@@ -173,8 +180,7 @@ mod tests {
         #[test]
         fn segments_keep_their_length(pose in any_pose()) {
             let skeleton = Skeleton::standard();
-            let mut model = ModelPose::default();
-            forward_kinematics(&skeleton, &pose, &mut model);
+            let model = ModelPose::of(&skeleton, &pose);
             for joint in Joint::ALL {
                 if let Some(parent) = joint.parent() {
                     let length = model.position(joint).distance(model.position(parent));

@@ -184,14 +184,13 @@ impl Skeleton {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pose::{ModelPose, Pose, forward_kinematics};
+    use crate::pose::{ModelPose, Pose};
 
     #[test]
     fn standard_body_stands_on_its_soles() {
         let skeleton = Skeleton::standard();
         skeleton.check().unwrap();
-        let mut model = ModelPose::default();
-        forward_kinematics(&skeleton, &Pose::rest(&skeleton), &mut model);
+        let model = ModelPose::of(&skeleton, &Pose::rest(&skeleton));
         for side in Side::BOTH {
             let foot = skeleton.foot(side);
             let ankle = model.position(side.foot());

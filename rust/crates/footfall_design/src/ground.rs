@@ -357,11 +357,7 @@ fn progress(stances: &[FrameSpan], frame: usize) -> Progress {
 fn models_of(skeleton: &Skeleton, poses: &[Pose]) -> Vec<ModelPose> {
     poses
         .iter()
-        .map(|pose| {
-            let mut model = ModelPose::default();
-            forward_kinematics(skeleton, pose, &mut model);
-            model
-        })
+        .map(|pose| ModelPose::of(skeleton, pose))
         .collect()
 }
 

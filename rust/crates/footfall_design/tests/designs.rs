@@ -10,7 +10,7 @@
 #[allow(dead_code, reason = "shared with the tests of footfall_motion")]
 mod walker;
 
-use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
+use footfall_core::{Clip, Joint, ModelPose, Side};
 use footfall_design::{DesignError, StyleSheet, design, shipped};
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
 use footfall_motion::steps::{Step, segment_walks};
@@ -32,11 +32,7 @@ fn styled_with(text: &str, seed: u64) -> Clip {
 }
 
 fn models(clip: &Clip) -> Vec<ModelPose> {
-    let solve = |pose| {
-        let mut model = ModelPose::default();
-        forward_kinematics(&clip.skeleton, pose, &mut model);
-        model
-    };
+    let solve = |pose| ModelPose::of(&clip.skeleton, pose);
     clip.poses.iter().map(solve).collect()
 }
 
@@ -96,8 +92,7 @@ fn almost_nothing_changes_almost_nothing() {
         let source = clip
             .pose_at(f64::from(pose.root_position.z / SPEED))
             .unwrap();
-        let mut then = ModelPose::default();
-        forward_kinematics(&clip.skeleton, &source, &mut then);
+        let then = ModelPose::of(&clip.skeleton, &source);
         for joint in Joint::ALL {
             let moved = model.position(joint).distance(then.position(joint));
             let is_leg = joint >= Joint::LeftUpperLeg;

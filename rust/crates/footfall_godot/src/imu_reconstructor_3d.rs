@@ -105,7 +105,7 @@ impl ISkeletonModifier3D for ImuReconstructor3D {
             return;
         }
         match self.take_session(&skeleton) {
-            Ok(session) => self.drive(session, skeleton, delta),
+            Ok(session) => self.drive(session, &skeleton, delta),
             Err(problem) => {
                 if self.reported.as_ref() != Some(&problem) {
                     report::tell(&self.base_mut(), &problem);
@@ -265,7 +265,7 @@ impl ImuReconstructor3D {
     }
 
     /// One frame: samples are heard, the character travels, bones are posed, signals are emitted.
-    fn drive(&mut self, mut session: Session, skeleton: Gd<Skeleton3D>, delta: f64) {
+    fn drive(&mut self, mut session: Session, skeleton: &Gd<Skeleton3D>, delta: f64) {
         self.reported = None;
         let in_editor = Engine::singleton().is_editor_hint();
         let delta = if in_editor { 0.0 } else { delta.max(0.0) };
@@ -301,7 +301,7 @@ impl ImuReconstructor3D {
             if travels {
                 session.traveller.move_character(&travel);
             }
-            session.traveller.binding.write(&skeleton, &session.pose);
+            session.traveller.binding.write(skeleton, &session.pose);
         }
         let state = session.reconstructor.sensor_state();
         let behaviour = session.reconstructor.behaviour();

@@ -144,7 +144,7 @@ impl SkeletonBinding {
     }
 }
 
-/// What was measured: proportions, the ground, which bones.
+/// Measurements: proportions, the ground, which bones.
 impl Deref for SkeletonBinding {
     type Target = RigBinding;
 

@@ -263,7 +263,6 @@ pub fn reach_height(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use footfall_core::forward_kinematics;
     use footfall_core::rotation::exp_map;
     use proptest::prelude::*;
 
@@ -286,8 +285,7 @@ mod tests {
             let skeleton = Skeleton::standard();
             for side in Side::BOTH {
                 let mut pose = crouched(flexion, lean);
-                let mut model = ModelPose::default();
-                forward_kinematics(&skeleton, &pose, &mut model);
+                let mut model = ModelPose::of(&skeleton, &pose);
                 let target = FootTarget {
                     ankle: Vec3::new(0.09 * side.sign() + x, 0.12 + y, z),
                     foot: Quat::from_rotation_x(pitch),
@@ -297,8 +295,7 @@ mod tests {
                 prop_assume!(hip.distance(target.ankle) < 0.83);
                 let missed = solve_leg(&skeleton, side, &target, &mut pose, &mut model);
                 prop_assert!(missed < 1e-4, "missed by {missed}");
-                let mut check = ModelPose::default();
-                forward_kinematics(&skeleton, &pose, &mut check);
+                let check = ModelPose::of(&skeleton, &pose);
                 prop_assert!(check.position(side.foot()).distance(target.ankle) < 1e-4);
                 prop_assert!(check.rotation(side.foot()).angle_between(target.foot) < 2e-3);
                 prop_assert!(check.rotation(side.toes()).angle_between(target.toes) < 2e-3);
@@ -343,8 +340,7 @@ mod tests {
         let skeleton = Skeleton::standard();
         let mut pose = crouched(0.6, 0.1);
         let before = pose.clone();
-        let mut model = ModelPose::default();
-        forward_kinematics(&skeleton, &pose, &mut model);
+        let mut model = ModelPose::of(&skeleton, &pose);
         let target = FootTarget {
             ankle: model.position(Joint::LeftFoot),
             foot: model.rotation(Joint::LeftFoot),
@@ -360,8 +356,7 @@ mod tests {
     fn out_of_reach_stretches_towards_the_target() {
         let skeleton = Skeleton::standard();
         let mut pose = crouched(0.6, 0.0);
-        let mut model = ModelPose::default();
-        forward_kinematics(&skeleton, &pose, &mut model);
+        let mut model = ModelPose::of(&skeleton, &pose);
         let target = FootTarget {
             ankle: Vec3::new(0.09, -1.0, 0.5),
             foot: Quat::IDENTITY,

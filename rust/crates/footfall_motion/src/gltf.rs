@@ -1,5 +1,6 @@
-//! Motion as glTF 2.0: [writing](clip_to_glb) of clips, [reading](read) of animations that other programs made.
+//! Motion as glTF 2.0: [writing](clip_to_glb) of clips and of [any file](glb), [reading](read) of animations that other programs made.
 
+pub mod glb;
 mod read;
 mod sample;
 mod write;

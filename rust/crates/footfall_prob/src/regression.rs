@@ -14,6 +14,7 @@ mod dense;
 mod transform;
 mod tree;
 
+use dense::Factor;
 pub use transform::LinearTransform;
 pub use tree::{RegressionNode, RegressionTree};
 
@@ -231,20 +232,20 @@ fn sweep(
         // Column i of the inverse is row i of the cofactors over the determinant.
         let mut cofactors = vec![0.0; dim + 1];
         for j in 0..dim {
-            cofactors[j + 1] = inverse[j * dim + i];
+            cofactors[j + 1] = inverse[(j, i)];
         }
         let best = problem.best_row(&cofactors, weight);
         let row = &mut transform.rows[i * (dim + 1)..(i + 1) * (dim + 1)];
         let change: Vec<f64> = (1..=dim).map(|j| best[j] - row[j]).collect();
         row.copy_from_slice(&best);
-        dense::update_inverse(&mut inverse, dim, i, &change);
+        dense::update_inverse(&mut inverse, i, &change);
     }
     Ok(())
 }
 
 /// Everything about one row that does not change: its quadratic form, factored, and its linear term.
 struct RowProblem {
-    factor: Vec<f64>,
+    factor: Factor,
     /// The linear term k, and G⁻¹k.
     linear: Vec<f64>,
     solved: Vec<f64>,
@@ -277,24 +278,20 @@ impl RowProblem {
                 linear[j] += precision * prior.centre.row(i)[j];
             }
         }
-        if !dense::cholesky(&mut quadratic, size) {
-            return Err(ProbError::Degenerate {
-                what: "row of a transform",
-            });
-        }
-        let mut solved = linear.clone();
-        dense::solve_cholesky(&quadratic, size, &mut solved);
+        let degenerate = ProbError::Degenerate {
+            what: "row of a transform",
+        };
+        let factor = Factor::new(&quadratic, size).ok_or(degenerate)?;
         Ok(Self {
-            factor: quadratic,
+            solved: factor.solve(&linear),
+            factor,
             linear,
-            solved,
         })
     }
 
     /// Maximises N ln|p·w| − ½ wᵀGw + kᵀw: w = G⁻¹(αp + k) with α²·pᵀG⁻¹p + α·pᵀG⁻¹k = N.
     fn best_row(&self, cofactors: &[f64], weight: f64) -> Vec<f64> {
-        let mut direction = cofactors.to_vec();
-        dense::solve_cholesky(&self.factor, cofactors.len(), &mut direction);
+        let direction = self.factor.solve(cofactors);
         let square = dot(cofactors, &direction);
         let mixed = dot(&direction, &self.linear);
         let root = (mixed * mixed + 4.0 * weight * square).sqrt();

@@ -11,7 +11,7 @@ use crate::rest_rig::RestRig;
 pub use bones::{Bones, relative_size};
 use bones::{BoundBone, bind};
 use footfall_core::rotation::of_transform;
-use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton};
 use glam::{Affine3A, Quat, Vec3};
 pub use layers::LayerWeights;
 
@@ -125,8 +125,7 @@ impl RigBinding {
     /// For every bone of the rig that was measured, the joint that it moves with, and how its rest pose becomes the T-pose: from the rig's space to the
     /// ground. Bones above the hips move with them.
     pub fn t_pose_of_bones(&self, rig: &RestRig) -> Vec<(Joint, Affine3A)> {
-        let mut t_pose = ModelPose::default();
-        forward_kinematics(&self.body, &Pose::rest(&self.body), &mut t_pose);
+        let t_pose = ModelPose::of(&self.body, &Pose::rest(&self.body));
         let of_bound = |bound: &BoundBone| {
             let rest = self.ground_from_rig * rig.rest(bound.bone);
             let turn = bound.ground_from_bone * of_transform(&rest).conjugate();

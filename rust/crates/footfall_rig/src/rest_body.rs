@@ -235,12 +235,11 @@ fn turned_by(joints: &RestJoints) -> [Joint; JOINT_COUNT] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use footfall_core::{ModelPose, Pose, forward_kinematics};
+    use footfall_core::{ModelPose, Pose};
 
     fn standard_joints() -> RestJoints {
         let skeleton = Skeleton::standard();
-        let mut model = ModelPose::default();
-        forward_kinematics(&skeleton, &Pose::rest(&skeleton), &mut model);
+        let model = ModelPose::of(&skeleton, &Pose::rest(&skeleton));
         RestJoints {
             positions: model.positions.map(Some),
             ..RestJoints::default()
@@ -281,8 +280,7 @@ mod tests {
             pose.rotations[side.upper_leg().index()] = splay;
             pose.rotations[side.foot().index()] = splay.inverse();
         }
-        let mut model = ModelPose::default();
-        forward_kinematics(&skeleton, &pose, &mut model);
+        let model = ModelPose::of(&skeleton, &pose);
         let lowered = model.position(Joint::LeftFoot).y - 0.085;
         let joints = RestJoints {
             positions: model.positions.map(|place| Some(place - Vec3::Y * lowered)),
@@ -305,8 +303,7 @@ mod tests {
         let body = RestBody::new(&joints).unwrap();
         assert_eq!(body.turned_by[Joint::Spine.index()], Joint::UpperChest);
         let skeleton = &body.skeleton;
-        let mut model = ModelPose::default();
-        forward_kinematics(skeleton, &Pose::rest(skeleton), &mut model);
+        let model = ModelPose::of(skeleton, &Pose::rest(skeleton));
         for joint in Joint::ALL.into_iter().filter(|joint| !is_optional(*joint)) {
             let expected = joints.positions[joint.index()].unwrap();
             assert_near(model.position(joint), expected, 1e-5);

@@ -1,5 +1,7 @@
 //! A crowd of the shipped walk: equal seeds, saved and restored crowds, goals and avoidance.
 
+#![expect(clippy::disallowed_methods, reason = "the shipped walk is a file")]
+
 use footfall_core::Side;
 use footfall_model::GaitModel;
 use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdSettings, Limits, SavedCrowd, Tier, Way};

@@ -2,7 +2,7 @@
 
 use crate::job::{self, Job, finished};
 use crate::library::{Facts, Library, ListAction};
-use crate::model_file::{read_model, shipped_model};
+use crate::model_file::shipped_model;
 use crate::motion::Motion;
 use crate::palette;
 use eframe::egui::{Context, Ui};
@@ -11,6 +11,7 @@ use footfall_core::Clip;
 use footfall_model::GaitModel;
 use footfall_motion::bvh::{self, clip_to_bvh};
 use footfall_motion::gltf::clip_to_glb;
+use footfall_train::read_model_file;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -117,7 +118,7 @@ impl Shell {
 
     /// Chooses the model that styles are made from.
     pub(crate) fn set_base(&mut self, path: &Path) {
-        match read_model(path) {
+        match read_model_file(path, GaitModel::from_bytes).map_err(|error| error.to_string()) {
             Ok(model) => self.base = Some((path.to_owned(), Arc::new(model))),
             Err(error) => self.complain(error),
         }

@@ -1,6 +1,7 @@
 //! Walkers of a crowd walk as a generator of their seed does, and not in step with each other.
 
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
+#![expect(clippy::disallowed_methods, reason = "the shipped walk is a file")]
 
 use core::f32::consts::TAU;
 use footfall_core::{Joint, ModelPose, Pose, Skeleton, forward_kinematics};

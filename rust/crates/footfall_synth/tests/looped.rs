@@ -1,6 +1,7 @@
 //! Walks that end as they begin.
 
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
+#![expect(clippy::disallowed_methods, reason = "the shipped walk is a file")]
 
 use footfall_core::{Joint, ModelPose, Pose, Skeleton, forward_kinematics};
 use footfall_model::GaitModel;

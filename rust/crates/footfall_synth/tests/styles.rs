@@ -1,6 +1,7 @@
 //! Styles that change while a walker walks, and walkers that are saved and go on elsewhere.
 
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
+#![expect(clippy::disallowed_methods, reason = "the shipped walk is a file")]
 
 use footfall_core::{Joint, ModelPose, Pose, Skeleton, forward_kinematics};
 use footfall_model::layout::feature_offset;

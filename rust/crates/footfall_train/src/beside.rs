@@ -2,7 +2,7 @@
 
 use crate::standing::spread_chains;
 use footfall_core::rotation::{blend_near, from_heading, heading, log_map};
-use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
 use footfall_model::layout::{feature_offset, mirror};
 use footfall_model::{BESIDE_COUNT, FEATURE_COUNT};
 use glam::{Quat, Vec3};
@@ -19,8 +19,7 @@ pub(crate) struct Upright {
 impl Upright {
     /// The posture of a body.
     pub(crate) fn new(skeleton: &Skeleton, pose: &Pose) -> Self {
-        let mut body = ModelPose::default();
-        forward_kinematics(skeleton, pose, &mut body);
+        let body = ModelPose::of(skeleton, pose);
         let level = from_heading(-heading(pose.rotation(Joint::Hips)));
         let [left, right] = Side::BOTH.map(|side| body.position(side.foot()));
         let mut pose = pose.clone();

@@ -2,7 +2,7 @@
 //!
 //! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
 //! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps), [`contexts`] (the ends of a walk);
-//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); [`standing`], [`jumping`] and [`crouching`] (how people do that); [`recordings`] and [`job`] (for tools with windows); and [`evaluate`], which judges what comes out.
+//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); [`standing`], [`jumping`] and [`crouching`] (how people do that); [`recordings`], [`model_file`] (what tools read) and [`job`] (for tools with windows); and [`evaluate`], which judges what comes out.
 
 pub mod adapt;
 pub mod average;
@@ -20,6 +20,7 @@ pub mod fine_motion;
 pub mod imu;
 pub mod job;
 pub mod jumping;
+pub mod model_file;
 pub mod normalise;
 pub mod progress;
 pub mod recordings;
@@ -35,6 +36,7 @@ pub use adapt::{AdaptConfig, AdaptMethod, Adapted, adapt_style, shows_steps};
 pub use average::EmConfig;
 pub use contexts::ContextReport;
 pub use error::TrainError;
+pub use model_file::{ReadModelError, read_model_file};
 pub use progress::Progress;
 pub use recordings::read_recordings;
 pub use running::learn_running;

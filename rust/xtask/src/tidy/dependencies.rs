@@ -20,7 +20,12 @@ const RUNTIME: [&str; 10] = [
 /// Crates for work at the desk.
 const OFFLINE: [&str; 2] = ["footfall_motion", "footfall_train"];
 /// Crates that may use `anyhow`.
-const TOOLS: [&str; 3] = ["footfall_cli", "footfall_studio", "xtask"];
+const TOOLS: [&str; 4] = [
+    "footfall_cli",
+    "footfall_mannequin",
+    "footfall_studio",
+    "xtask",
+];
 
 /// One line of a crate's dependencies.
 struct Dependency<'a> {

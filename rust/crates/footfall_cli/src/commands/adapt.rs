@@ -1,14 +1,14 @@
 //! `footfall adapt`: a dozen recorded steps become a style.
 
 use super::train::TrainingProgress;
-use super::training_run::{Skipped, TrainingRun, name_of, skipped};
-use crate::model_file::read_model;
-use crate::motion_input::KneesArgs;
+use super::training_run::{Skipped, TrainingRun, conclude, name_of, skipped};
+use crate::motion_input::CorpusArgs;
 use crate::output;
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
-use footfall_model::Provenance;
-use footfall_motion::corpus::{Corpus, Where};
+use footfall_model::{GaitModel, Provenance};
+use footfall_motion::corpus::Corpus;
+use footfall_train::read_model_file;
 use footfall_train::{AdaptConfig, AdaptMethod, Adapted, adapt_style, shows_steps};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -27,14 +27,8 @@ pub(crate) struct AdaptArgs {
     /// The model to start from
     #[arg(long, value_name = "WALK.footfall")]
     base: PathBuf,
-    /// Table of the recordings
-    #[arg(long, value_name = "INDEX.csv")]
-    corpus: PathBuf,
-    /// Condition on a column, for example `style=sad`; may repeat
-    #[arg(long = "where", value_name = "COLUMN=VALUE")]
-    conditions: Vec<Where>,
     #[command(flatten)]
-    knees: KneesArgs,
+    corpus: CorpusArgs,
     /// Name of the style
     #[arg(long)]
     name: String,
@@ -89,19 +83,12 @@ struct Report<'a> {
 
 pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     output::refuse_overwrite(&[&args.base], &args.output)?;
-    let words = args.describe.as_deref();
-    let run = TrainingRun::begin(
-        &args.corpus,
-        &args.conditions,
-        args.knees,
-        words,
-        &args.output,
-    )?;
+    let run = TrainingRun::begin(&args.corpus, args.describe.as_deref(), &args.output)?;
     ensure!(
         !args.name.trim().is_empty(),
         "a style without a name cannot be told from others; give --name a word"
     );
-    let base = read_model(&args.base)?;
+    let base = read_model_file(&args.base, GaitModel::from_bytes)?;
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
     let corpus = run.read()?;
@@ -109,7 +96,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     ensure!(
         still.len() < corpus.clips.len(),
         "{}: no two steps in a row in {}; give clips that walk, of both feet's steps",
-        args.corpus.display(),
+        args.corpus.index.display(),
         listed(&still)
     );
     let config = AdaptConfig {
@@ -128,7 +115,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
         made_from(args, &run, &corpus),
         &mut progress,
     )
-    .with_context(|| args.corpus.display().to_string())?;
+    .with_context(|| args.corpus.index.display().to_string())?;
     let seconds = run.seconds();
     let seconds = [seconds - read, seconds];
     let bytes = adapted.style.to_bytes().context("the style")?;
@@ -205,23 +192,16 @@ fn report(
         adaptation_seconds,
         seconds,
     };
-    for skipped in &report.skipped {
-        output::note(&format!("warning: left out {}", skipped.reason));
-    }
-    for warning in &report.warnings {
-        output::note(&format!("warning: {warning}"));
-    }
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::note(&format!(
-        "{}: '{}' from {} steps in {} clips, {:.2} m/s, {:.0} steps a minute, {bytes} bytes, {adaptation_seconds:.1} s",
-        args.output.display(),
-        style.name,
-        report.steps,
-        report.clips,
-        report.speed_mps,
-        report.cadence_per_minute,
-    ));
-    Ok(())
+    let left_out = report.skipped.iter().map(|skipped| &skipped.reason);
+    conclude(args.json, &report, left_out, &report.warnings, |report| {
+        vec![format!(
+            "{}: '{}' from {} steps in {} clips, {:.2} m/s, {:.0} steps a minute, {bytes} bytes, {adaptation_seconds:.1} s",
+            args.output.display(),
+            style.name,
+            report.steps,
+            report.clips,
+            report.speed_mps,
+            report.cadence_per_minute,
+        )]
+    })
 }

@@ -6,10 +6,10 @@ mod inference;
 mod mlpg;
 mod runtime;
 
-use crate::model_file::read_model;
 use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_model::GaitModel;
+use footfall_train::read_model_file;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -98,7 +98,7 @@ const TEN_THOUSAND: usize = 5;
 
 pub(crate) fn run(args: &BenchArgs) -> Result<()> {
     let model = match &args.model {
-        Some(path) => read_model(path)?,
+        Some(path) => read_model_file(path, GaitModel::from_bytes)?,
         None => GaitModel::from_bytes(BUILT_IN_MODEL).context("the built-in model")?,
     };
     let mut ours = mlpg::Ours::new()?;

@@ -3,7 +3,6 @@
 mod controls;
 
 use crate::commands::walk_output::{WalkArgs, WalkFacts};
-use crate::model_file::{read_model, read_style};
 use crate::output;
 use anyhow::{Context as _, Result, bail, ensure};
 use footfall_core::EventKind;
@@ -12,6 +11,7 @@ use footfall_synth::{
     GaitChoice, StandConfig, SynthesizedWalk, WalkConfig, synthesize, synthesize_moves,
     synthesize_standing,
 };
+use footfall_train::read_model_file;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -225,7 +225,7 @@ fn stand(args: &SynthArgs, model: &Arc<GaitModel>, styles: Vec<StyleReport>) -> 
 
 /// The model in the given styles.
 pub(crate) fn dressed(path: &Path, styles: &[StyleArg]) -> Result<(GaitModel, Vec<StyleReport>)> {
-    let model = read_model(path)?;
+    let model = read_model_file(path, GaitModel::from_bytes)?;
     if styles.is_empty() {
         return Ok((model, Vec::new()));
     }
@@ -238,7 +238,7 @@ pub(crate) fn dressed(path: &Path, styles: &[StyleArg]) -> Result<(GaitModel, Ve
                 path.display()
             );
         }
-        styles.push((read_style(path)?, *weight));
+        styles.push((read_model_file(path, GaitStyle::from_bytes)?, *weight));
     }
     let weighted: Vec<(&GaitStyle, f64)> = styles.iter().map(|(s, weight)| (s, *weight)).collect();
     let dressed = model

@@ -4,8 +4,8 @@ mod moves;
 
 use crate::commands::inspect::model::RunningFacts;
 use crate::commands::inspect::moves::{CrouchFacts, JumpFacts};
-use crate::commands::training_run::{Skipped, TrainingRun, skipped, terms};
-use crate::motion_input::KneesArgs;
+use crate::commands::training_run::{Skipped, TrainingRun, conclude, skipped, terms};
+use crate::motion_input::CorpusArgs;
 use crate::output;
 use anyhow::{Context as _, Result, ensure};
 use clap::ValueEnum;
@@ -33,12 +33,8 @@ use std::path::{Path, PathBuf};
     footfall train --corpus index.csv --where category=neutral_walk --standing category=idle -o walk.footfall\n  \
     footfall train --corpus index.csv --where category=neutral_walk --running category=running -o locomotion.footfall")]
 pub(crate) struct TrainArgs {
-    /// Table of the recordings
-    #[arg(long, value_name = "INDEX.csv")]
-    corpus: PathBuf,
-    /// Condition on a column, for example `category=neutral_walk`; may repeat
-    #[arg(long = "where", value_name = "COLUMN=VALUE")]
-    conditions: Vec<Where>,
+    #[command(flatten)]
+    corpus: CorpusArgs,
     /// Condition on recordings of people who stand, for example `category=idle`; may repeat. The model learns from them how to stand;
     /// without, it stands still
     #[arg(long = "standing", value_name = "COLUMN=VALUE")]
@@ -53,8 +49,6 @@ pub(crate) struct TrainArgs {
     /// Condition on recordings in which people go upright and crouched, for example `path=o3de/Crouching1.bvh`; may repeat
     #[arg(long = "crouching", value_name = "COLUMN=VALUE")]
     crouching: Vec<Where>,
-    #[command(flatten)]
-    knees: KneesArgs,
     /// File to write the model to
     #[arg(short, long, value_name = "WALK.footfall")]
     output: PathBuf,
@@ -141,14 +135,7 @@ impl<'a> Contexts<'a> {
 }
 
 pub(crate) fn run(args: &TrainArgs) -> Result<()> {
-    let words = args.describe.as_deref();
-    let run = TrainingRun::begin(
-        &args.corpus,
-        &args.conditions,
-        args.knees,
-        words,
-        &args.output,
-    )?;
+    let run = TrainingRun::begin(&args.corpus, args.describe.as_deref(), &args.output)?;
     ensure!(
         (20.0..=240.0).contains(&args.fps),
         "a model at {} frames per second cannot be trained; give --fps a number from 20 to 240",
@@ -168,7 +155,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
         ..provenance(args, &run, &corpus)
     };
     let mut trained = train_average(&corpus.clips, &config(args), made_from, &mut progress)
-        .with_context(|| args.corpus.display().to_string())?;
+        .with_context(|| args.corpus.index.display().to_string())?;
     let standing = match standing {
         Some(standing) => Some(learn_standing(&standing, args)?),
         None => None,
@@ -205,7 +192,7 @@ fn running_of(
     learn_running(walk, &corpus.clips, &config(args), made_from, progress).with_context(|| {
         format!(
             "{}: nobody runs for some steps in what --running chooses; widen it",
-            args.corpus.display()
+            args.corpus.index.display()
         )
     })
 }
@@ -219,7 +206,7 @@ fn learn_standing(corpus: &Corpus, args: &TrainArgs) -> Result<LearnedStanding> 
     standing::learn(&clips).with_context(|| {
         format!(
             "{}: nobody stands upright with hanging arms for some seconds in what --standing chooses; widen it",
-            args.corpus.display()
+            args.corpus.index.display()
         )
     })
 }
@@ -295,47 +282,49 @@ fn report(
         warnings,
         seconds,
     };
-    for skipped in &report.skipped {
-        output::note(&format!("warning: left out {}", skipped.reason));
-    }
-    for warning in &report.warnings {
-        output::note(&format!("warning: {warning}"));
-    }
-    if args.json {
-        return output::print_json(&report);
-    }
-    let [slowest, fastest] = report.speed_range_mps;
-    output::note(&format!(
-        "{}: {} steps of {} subjects in {} clips, {slowest:.2} to {fastest:.2} m/s, {} iterations, {:.1} s",
-        args.output.display(),
-        report.steps,
-        report.subjects,
-        report.clips,
-        report.log_likelihoods.len(),
-        report.seconds
-    ));
-    if !report.standing_seconds.is_empty() {
-        output::note(&format!(
-            "standing: {:.0} s of {} people",
-            report.standing_seconds.values().sum::<f64>(),
-            report.standing_seconds.len()
+    let left_out = report.skipped.iter().map(|skipped| &skipped.reason);
+    conclude(
+        args.json,
+        &report,
+        left_out,
+        &report.warnings,
+        Report::lines,
+    )
+}
+
+impl Report<'_> {
+    /// The report in words.
+    fn lines(&self) -> Vec<String> {
+        let [slowest, fastest] = self.speed_range_mps;
+        let mut lines = vec![format!(
+            "{}: {} steps of {} subjects in {} clips, {slowest:.2} to {fastest:.2} m/s, {} iterations, {:.1} s",
+            self.output.display(),
+            self.steps,
+            self.subjects,
+            self.clips,
+            self.log_likelihoods.len(),
+            self.seconds
+        )];
+        if !self.standing_seconds.is_empty() {
+            lines.push(format!(
+                "standing: {:.0} s of {} people",
+                self.standing_seconds.values().sum::<f64>(),
+                self.standing_seconds.len()
+            ));
+        }
+        let running = self.running.as_ref();
+        lines.extend(running.map(|facts| format!("running: {}", facts.line())));
+        let jumping = self.jumping.as_ref();
+        lines.extend(jumping.map(|facts| format!("jumping: {}", facts.line())));
+        let crouching = self.crouching.as_ref();
+        lines.extend(crouching.map(|facts| format!("crouching: {}", facts.line())));
+        let contexts = &self.contexts;
+        lines.push(format!(
+            "{} step models for ten contexts: leaves of the trees of outputs {:?}, of durations {}",
+            contexts.models, contexts.output_leaves, contexts.duration_leaves
         ));
+        lines
     }
-    if let Some(running) = &report.running {
-        output::note(&format!("running: {}", running.line()));
-    }
-    if let Some(jumping) = &report.jumping {
-        output::note(&format!("jumping: {}", jumping.line()));
-    }
-    if let Some(crouching) = &report.crouching {
-        output::note(&format!("crouching: {}", crouching.line()));
-    }
-    let contexts = &report.contexts;
-    output::note(&format!(
-        "{} step models for ten contexts: leaves of the trees of outputs {:?}, of durations {}",
-        contexts.models, contexts.output_leaves, contexts.duration_leaves
-    ));
-    Ok(())
 }
 
 /// Shows what the trainer tells.

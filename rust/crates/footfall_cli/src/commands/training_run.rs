@@ -1,6 +1,6 @@
 //! A run of a command that trains: what it reads, what the model's file says of its making, and where it is written.
 
-use crate::motion_input::KneesArgs;
+use crate::motion_input::CorpusArgs;
 use crate::output::{self, write_atomic};
 use anyhow::Result;
 use footfall_model::Provenance;
@@ -15,9 +15,7 @@ const LICENSE_COLUMN: &str = "license";
 
 /// A run of `train`, `adapt`, `dynamics fit` or `imu train`.
 pub(super) struct TrainingRun<'a> {
-    index: &'a Path,
-    conditions: &'a [Where],
-    knees: KneesArgs,
+    corpus: &'a CorpusArgs,
     /// Description of the data in the user's words.
     words: Option<&'a str>,
     output: &'a Path,
@@ -35,18 +33,14 @@ impl<'a> TrainingRun<'a> {
     /// Begins a run; its output must not be the index.
     #[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
     pub(super) fn begin(
-        index: &'a Path,
-        conditions: &'a [Where],
-        knees: KneesArgs,
+        corpus: &'a CorpusArgs,
         words: Option<&'a str>,
         output: &'a Path,
     ) -> Result<Self> {
         let begun = Instant::now();
-        output::refuse_overwrite(&[index], output)?;
+        output::refuse_overwrite(&[&corpus.index], output)?;
         Ok(Self {
-            index,
-            conditions,
-            knees,
+            corpus,
             words,
             output,
             begun,
@@ -60,12 +54,15 @@ impl<'a> TrainingRun<'a> {
 
     /// Reads the recordings that meet the run's conditions.
     pub(super) fn read(&self) -> Result<Corpus> {
-        self.read_where(self.conditions)
+        self.read_where(&self.corpus.conditions)
     }
 
     /// Reads the recordings that meet conditions. The model may overwrite none of them.
     fn read_where(&self, conditions: &[Where]) -> Result<Corpus> {
-        let corpus = self.knees.read_corpus(self.index, conditions)?;
+        let corpus = self
+            .corpus
+            .knees
+            .read_corpus(&self.corpus.index, conditions)?;
         for clip in &corpus.clips {
             output::refuse_overwrite(&[&clip.row.path], self.output)?;
         }
@@ -90,12 +87,15 @@ impl<'a> TrainingRun<'a> {
         further: &[(&str, &[Where])],
         options: &[String],
     ) -> Provenance {
-        let mut words = vec![format!("{command} --corpus {}", name_of(self.index))];
-        let own = [("where", self.conditions)];
+        let mut words = vec![format!(
+            "{command} --corpus {}",
+            name_of(&self.corpus.index)
+        )];
+        let own = [("where", self.corpus.conditions.as_slice())];
         for (option, conditions) in own.iter().chain(further) {
             words.extend(conditions.iter().map(|one| format!("--{option} '{one}'")));
         }
-        words.extend(self.knees.words());
+        words.extend(self.corpus.knees.words());
         words.extend_from_slice(options);
         words.push(format!("-o {}", name_of(self.output)));
         Provenance {
@@ -112,11 +112,11 @@ impl<'a> TrainingRun<'a> {
         if let Some(words) = self.words {
             return words.to_owned();
         }
-        let index = name_of(self.index);
-        let mut described = if self.conditions.is_empty() {
+        let index = name_of(&self.corpus.index);
+        let mut described = if self.corpus.conditions.is_empty() {
             format!("all of {index}")
         } else {
-            format!("{index} where {}", joined(self.conditions))
+            format!("{index} where {}", joined(&self.corpus.conditions))
         };
         for (behaviour, conditions) in further.iter().filter(|(_, all)| !all.is_empty()) {
             described.extend(["; ", behaviour, " where ", &joined(conditions)]);
@@ -152,6 +152,29 @@ pub(super) fn terms(corpora: &[&Corpus]) -> String {
 pub(super) fn name_of(path: &Path) -> String {
     path.file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+/// Ends a command that made something: warnings about recordings that were left out and others, then the report as JSON or the lines that it is in words.
+pub(super) fn conclude<R: Serialize>(
+    json: bool,
+    report: &R,
+    left_out: impl IntoIterator<Item = impl AsRef<str>>,
+    warnings: &[String],
+    words: impl FnOnce(&R) -> Vec<String>,
+) -> Result<()> {
+    for reason in left_out {
+        output::note(&format!("warning: left out {}", reason.as_ref()));
+    }
+    for warning in warnings {
+        output::note(&format!("warning: {warning}"));
+    }
+    if json {
+        return output::print_json(report);
+    }
+    for line in words(report) {
+        output::note(&line);
+    }
+    Ok(())
 }
 
 /// Recordings that a corpus left out.

@@ -3,7 +3,7 @@
 use super::{SheetOptions, Subject};
 use anyhow::{Result, ensure};
 use footfall_core::rotation::{heading, wrap_angle};
-use footfall_core::{Clip, FrameSpan, Joint, ModelPose, Side, forward_kinematics};
+use footfall_core::{Clip, FrameSpan, Joint, ModelPose, Side};
 use glam::{Vec2, Vec3};
 use std::ops::Range;
 
@@ -43,11 +43,7 @@ impl Measured {
         );
         let frames: Vec<ModelPose> = clip.poses[window.clone()]
             .iter()
-            .map(|pose| {
-                let mut model = ModelPose::default();
-                forward_kinematics(&clip.skeleton, pose, &mut model);
-                model
-            })
+            .map(|pose| ModelPose::of(&clip.skeleton, pose))
             .collect();
         let headings = smooth_headings(&frames, clip.frame_rate_hz);
         let travel = direction_of_travel(&frames, &headings);

@@ -1,7 +1,7 @@
 //! Recordings as participants see them.
 
 use footfall_core::rotation::from_heading;
-use footfall_core::{Clip, Joint, ModelPose, Side, forward_kinematics};
+use footfall_core::{Clip, Joint, ModelPose, Side};
 use footfall_motion::recording::Recording;
 use footfall_motion::steps::{Step, Walk};
 use glam::{Quat, Vec3};
@@ -82,8 +82,7 @@ impl Excerpt<'_> {
             .poses
             .iter()
             .map(|pose| {
-                let mut model = ModelPose::default();
-                forward_kinematics(&clip.skeleton, pose, &mut model);
+                let model = ModelPose::of(&clip.skeleton, pose);
                 points(&clip, &model)
             })
             .collect();

@@ -6,7 +6,7 @@ mod unusable;
 use crate::common::{Run, footfall};
 use crate::evaluate::write_index;
 use footfall_core::rotation::{from_heading, heading};
-use footfall_core::{Clip, Joint, ModelPose, forward_kinematics};
+use footfall_core::{Clip, Joint, ModelPose};
 use footfall_motion::bvh;
 use footfall_motion::retarget::{RetargetOptions, retarget};
 use footfall_tests::data::recordings;
@@ -53,8 +53,7 @@ fn canonical(path: &Path) -> Clip {
 fn apart_cm(truth: &Clip, made: &Clip, start_secs: f64) -> f64 {
     let places = |clip: &Clip, secs: f64| {
         let pose = clip.pose_at(secs).expect("frames");
-        let mut model = ModelPose::default();
-        forward_kinematics(&clip.skeleton, &pose, &mut model);
+        let model = ModelPose::of(&clip.skeleton, &pose);
         let level = from_heading(-heading(pose.rotation(Joint::Hips)));
         model
             .positions

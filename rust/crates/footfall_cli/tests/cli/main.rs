@@ -1,5 +1,6 @@
 //! The program from the outside: exit codes, what it prints, what it writes.
 
+mod bad_corpus;
 mod bad_input;
 mod common;
 mod corrections;
@@ -10,6 +11,7 @@ mod evaluate;
 mod game_clips;
 mod imu;
 mod knees;
+mod looked_at;
 mod monitor;
 mod pipeline;
 mod recordings;

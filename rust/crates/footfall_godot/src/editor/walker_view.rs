@@ -1,7 +1,7 @@
 //! A small stage on which a body of capsules walks, to look at a style.
 
 use crate::convert;
-use footfall_core::{ModelPose, Pose, Skeleton, forward_kinematics};
+use footfall_core::{ModelPose, Pose, Skeleton};
 use footfall_motion::figure::{Limb, Part, limbs};
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
 use glam::{Affine3A, Mat3, Quat, Vec3};
@@ -81,8 +81,7 @@ impl FootfallWalkerView {
             return;
         };
         let mut body = Node3D::new_alloc();
-        let mut rest = ModelPose::default();
-        forward_kinematics(&skeleton, &Pose::rest(&skeleton), &mut rest);
+        let rest = ModelPose::of(&skeleton, &Pose::rest(&skeleton));
         let nodes = limbs(&skeleton, &rest)
             .iter()
             .map(|limb| LimbNodes::hang(limb, &mut body))
@@ -110,8 +109,7 @@ impl ISubViewportContainer for FootfallWalkerView {
         let mut pose = Pose::default();
         let controls = walking.controls;
         walking.generator.step(delta as f32, &controls, &mut pose);
-        let mut model = ModelPose::default();
-        forward_kinematics(&walking.skeleton, &pose, &mut model);
+        let model = ModelPose::of(&walking.skeleton, &pose);
         let now = limbs(&walking.skeleton, &model);
         for (nodes, limb) in walking.limbs.iter_mut().zip(&now) {
             nodes.place(limb);

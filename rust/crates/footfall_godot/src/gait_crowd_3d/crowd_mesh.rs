@@ -3,7 +3,7 @@
 use crate::bones;
 use crate::convert;
 use crate::skeleton_binding::SkeletonBinding;
-use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics};
+use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton};
 use glam::{Affine3A, Vec3, Vec3A};
 use godot::classes::mesh::{ArrayCustomFormat, ArrayFormat, ArrayType, PrimitiveType};
 use godot::classes::{
@@ -100,8 +100,7 @@ impl CrowdMesh {
             }
             mesh
         });
-        let mut t_pose = ModelPose::default();
-        forward_kinematics(&binding.body, &Pose::rest(&binding.body), &mut t_pose);
+        let t_pose = ModelPose::of(&binding.body, &Pose::rest(&binding.body));
         Ok(Self {
             meshes,
             rest: t_pose.positions,

@@ -2,7 +2,7 @@
 
 use super::seen::Seen;
 use crate::walk_source::WalkSource;
-use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
 use footfall_ik::handover::Moving;
 use footfall_ik::placement::Frame;
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, GroundTransform, SynthError};
@@ -142,11 +142,7 @@ struct Look {
 
 impl Look {
     fn of(body: &Skeleton, moving: &Moving<'_>, dt_secs: f32) -> Self {
-        let models = [moving.before, moving.now].map(|pose| {
-            let mut model = ModelPose::default();
-            forward_kinematics(body, pose, &mut model);
-            model
-        });
+        let models = [moving.before, moving.now].map(|pose| ModelPose::of(body, pose));
         let [before, now] = &models;
         let speed = |joint: Joint| {
             let way = now.position(joint) - before.position(joint);

@@ -1,5 +1,7 @@
 //! One foot: locked where it was put, or on its way to the next place.
 
+mod heel;
+
 use crate::leg::FootTarget;
 use crate::placement::PlacementConfig;
 use crate::placement::correction::{Correction, Residual};
@@ -11,6 +13,7 @@ use crate::placement::terrain::Terrain;
 use crate::rocker::{Plant, RockerFoot};
 use footfall_core::rotation::{heading, wrap_angle};
 use glam::{Quat, Vec3};
+pub(super) use heel::MAX_PITCH;
 
 /// Time constant with which what is left of a jump fades, seconds.
 const RESIDUAL_SECS: f32 = 0.06;
@@ -18,10 +21,6 @@ const RESIDUAL_SECS: f32 = 0.06;
 pub(super) const FOLLOW_SECS: f32 = 0.08;
 /// A foot that slid too far from its lock is put anew, for at least so long, seconds.
 pub(super) const REPLANT_SECS: f32 = 0.22;
-
-/// The heel of a standing foot is raised to this pitch at most, for its leg to reach, radians, which is found in so many trials.
-pub(super) const MAX_PITCH: f32 = 0.95;
-const PITCH_TRIALS: usize = 12;
 
 /// Place where the animation will put a foot, relative to the animation's floor now.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -333,55 +332,6 @@ impl Foot {
     fn on_ball(&self, pitch: f32) -> f32 {
         let hangs = self.hold.is_some_and(|hold| hold.on_ball);
         if hangs { pitch.max(0.0) } else { pitch }
-    }
-
-    /// A locked foot with its heel so much higher that the leg reaches from the hip; at most [`MAX_PITCH`].
-    pub(super) fn rise(
-        &mut self,
-        rocker: &RockerFoot,
-        animated: &Animated,
-        hip: Vec3,
-        reach: f32,
-        target: &mut FootTarget,
-    ) {
-        let lacks = |foot: &FootTarget| foot.ankle.distance(hip) - reach;
-        if self.mode != Mode::Locked || animated.pitch < 0.0 || lacks(target) <= 0.0 {
-            return;
-        }
-        let [mut low, mut high] = [animated.pitch, MAX_PITCH.max(animated.pitch)];
-        for _ in 0..PITCH_TRIALS {
-            let middle = 0.5 * (low + high);
-            let foot = self.residual.apply(&self.standing(rocker, middle));
-            if lacks(&foot) > 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        let risen = self.residual.apply(&self.standing(rocker, high));
-        if lacks(&risen) < lacks(target) {
-            *target = risen;
-            let unlocked = self.correction.apply(&animated.flat, &animated.foot);
-            self.at_lock = Residual::of(target, &unlocked);
-        }
-    }
-
-    /// The ankle of a locked foot at this pitch.
-    pub(super) fn ankle_at(&self, rocker: &RockerFoot, pitch: f32) -> Vec3 {
-        self.residual.apply(&self.standing(rocker, pitch)).ankle
-    }
-
-    /// Returns the ankle of a locked foot with its heel as high as it goes; `None` for a foot that stands on nothing, or on its heel.
-    pub(super) fn highest_ankle<T: Terrain>(
-        &self,
-        scene: &mut Scene<'_, T>,
-        rocker: &RockerFoot,
-        pitch: f32,
-    ) -> Option<Vec3> {
-        let hold = self.hold.filter(|_| pitch >= 0.0)?;
-        let sole = scene.sole(&hold)?;
-        let risen = Self { sole, ..*self };
-        Some(risen.ankle_at(rocker, MAX_PITCH.max(pitch)))
     }
 
     /// In the air a foot is where the animation has it.

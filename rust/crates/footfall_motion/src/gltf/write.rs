@@ -2,57 +2,21 @@
 //!
 //! glTF has our axes and units: metres, Y up, a character faces +Z. There is no mesh.
 
+use super::glb::{GlbBuffer, Layout};
 use footfall_core::{Clip, JOINT_COUNT, Joint};
 use glam::Vec3;
+use gltf::json::accessor::Type;
 use serde_json::{Value, json};
-
-/// Component type `FLOAT`.
-const FLOAT: u32 = 5126;
-
-/// Binary data and how it is cut up.
-#[derive(Default)]
-struct Buffer {
-    bytes: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
-}
-
-impl Buffer {
-    /// Appends vectors of equal length and returns their accessor.
-    fn push(
-        &mut self,
-        kind: &str,
-        width: usize,
-        values: &[f32],
-        bounds: Option<[f32; 2]>,
-    ) -> usize {
-        let first = self.bytes.len();
-        self.bytes
-            .extend(values.iter().flat_map(|value| value.to_le_bytes()));
-        self.views.push(json!({
-            "buffer": 0, "byteOffset": first, "byteLength": self.bytes.len() - first,
-        }));
-        let mut accessor = json!({
-            "bufferView": self.views.len() - 1, "componentType": FLOAT,
-            "count": values.len() / width, "type": kind,
-        });
-        if let Some([least, greatest]) = bounds {
-            accessor["min"] = json!([least]);
-            accessor["max"] = json!([greatest]);
-        }
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
-    }
-}
 
 /// The bytes of a `.glb` file with one animation of this name.
 pub fn clip_to_glb(clip: &Clip, name: &str) -> Vec<u8> {
-    let mut buffer = Buffer::default();
+    let mut buffer = GlbBuffer::default();
     let times: Vec<f32> = (0..clip.poses.len())
         .map(|frame| (frame as f64 / clip.frame_rate_hz) as f32)
         .collect();
     let last = times.last().copied().unwrap_or(0.0);
-    let input = buffer.push("SCALAR", 1, &times, Some([0.0, last]));
+    let input = buffer.push_floats(&times, Layout::floats(Type::Scalar));
+    buffer.bound(input, &[0.0], &[last]);
     let mut samplers = Vec::new();
     let mut channels = Vec::new();
     let mut animate = |output: usize, joint: Joint, path: &str| {
@@ -61,23 +25,16 @@ pub fn clip_to_glb(clip: &Clip, name: &str) -> Vec<u8> {
         }));
         samplers.push(json!({"input": input, "output": output}));
     };
-    let way: Vec<f32> = clip
-        .poses
-        .iter()
-        .flat_map(|pose| pose.root_position.to_array())
-        .collect();
-    animate(
-        buffer.push("VEC3", 3, &way, None),
-        Joint::Hips,
-        "translation",
-    );
+    let way: Vec<Vec3> = clip.poses.iter().map(|pose| pose.root_position).collect();
+    animate(buffer.push_vectors(&way, None), Joint::Hips, "translation");
     for joint in Joint::ALL {
         let turns: Vec<f32> = clip
             .poses
             .iter()
             .flat_map(|pose| pose.rotation(joint).normalize().to_array())
             .collect();
-        animate(buffer.push("VEC4", 4, &turns, None), joint, "rotation");
+        let turns = buffer.push_floats(&turns, Layout::floats(Type::Vec4));
+        animate(turns, joint, "rotation");
     }
     // Axes are parallel in the T-pose: the joints' places are all there is to undo.
     let mut places = [Vec3::ZERO; JOINT_COUNT];
@@ -90,7 +47,7 @@ pub fn clip_to_glb(clip: &Clip, name: &str) -> Vec<u8> {
         let to_joint = glam::Mat4::from_translation(-places[joint.index()]);
         bind.extend(to_joint.to_cols_array());
     }
-    let bind = buffer.push("MAT4", 16, &bind, None);
+    let bind = buffer.push_floats(&bind, Layout::floats(Type::Mat4));
     let nodes: Vec<Value> = Joint::ALL
         .into_iter()
         .map(|joint| node(clip, joint))
@@ -103,11 +60,8 @@ pub fn clip_to_glb(clip: &Clip, name: &str) -> Vec<u8> {
         "nodes": nodes,
         "skins": [{"name": "Body", "joints": joints, "skeleton": 0, "inverseBindMatrices": bind}],
         "animations": [{"name": name, "samplers": samplers, "channels": channels}],
-        "buffers": [{"byteLength": buffer.bytes.len()}],
-        "bufferViews": buffer.views,
-        "accessors": buffer.accessors,
     });
-    container(document.to_string().into_bytes(), buffer.bytes)
+    buffer.into_file(document)
 }
 
 fn node(clip: &Clip, joint: Joint) -> Value {
@@ -122,25 +76,6 @@ fn node(clip: &Clip, joint: Joint) -> Value {
         node["children"] = children.into();
     }
     node
-}
-
-/// Header, JSON chunk padded with spaces, binary chunk padded with zeros.
-fn container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Vec<u8> {
-    json.resize(json.len().next_multiple_of(4), b' ');
-    binary.resize(binary.len().next_multiple_of(4), 0);
-    let mut bytes = b"glTF".to_vec();
-    let word = |bytes: &mut Vec<u8>, value: usize| {
-        bytes.extend((value as u32).to_le_bytes());
-    };
-    word(&mut bytes, 2);
-    word(&mut bytes, 12 + 8 + json.len() + 8 + binary.len());
-    word(&mut bytes, json.len());
-    bytes.extend(b"JSON");
-    bytes.extend(json);
-    word(&mut bytes, binary.len());
-    bytes.extend(b"BIN\0");
-    bytes.extend(binary);
-    bytes
 }
 
 #[cfg(test)]

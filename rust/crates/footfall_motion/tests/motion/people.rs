@@ -63,8 +63,7 @@ fn straightest_knee<'a>(clips: impl Iterator<Item = &'a Recording>) -> f32 {
 
 /// Slope of a sole in a frame, degrees: positive with the toes up.
 fn sole_slope(clip: &Clip, frame: usize, side: Side) -> f32 {
-    let mut model = ModelPose::default();
-    forward_kinematics(&clip.skeleton, &clip.poses[frame], &mut model);
+    let model = ModelPose::of(&clip.skeleton, &clip.poses[frame]);
     let [heel, ball, _] = sole_points(&clip.skeleton, &model, side);
     let along = ball - heel;
     (along.y / along.length()).asin().to_degrees()

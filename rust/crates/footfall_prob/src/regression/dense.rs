@@ -1,105 +1,77 @@
-//! The little dense algebra that transforms need, on row-major slices.
+//! Dense algebra of transforms: nalgebra's, with the limits below which a matrix counts as singular.
 
-use super::dot;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Factors a symmetric matrix in place, reading and writing its lower triangle; false when it is not positive definite.
-pub(super) fn cholesky(matrix: &mut [f64], size: usize) -> bool {
-    for i in 0..size {
-        let (done, rest) = matrix.split_at_mut(i * size);
-        let row = &mut rest[..size];
-        for j in 0..i {
-            let other = &done[j * size..=j * size + j];
-            row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
-        }
-        let scale = row[i];
-        let pivot = scale - dot(&row[..i], &row[..i]);
+/// Factor of a symmetric matrix.
+pub(super) struct Factor(Cholesky<f64, Dyn>);
+
+impl Factor {
+    /// Factors a symmetric matrix, of which the lower triangle is given, row-major; `None` when it is not positive definite.
+    pub(super) fn new(matrix: &[f64], size: usize) -> Option<Self> {
+        let matrix = DMatrix::from_row_slice(size, size, matrix);
+        let scales = matrix.diagonal();
+        let factor = Cholesky::new(matrix)?;
+        let pivots = factor.l_dirty().diagonal();
         // What is left of the diagonal by rounding alone counts as nothing.
-        if pivot.is_nan() || pivot <= scale * 1e-13 {
-            return false;
-        }
-        row[i] = pivot.sqrt();
+        let mut pairs = pivots.iter().zip(scales.iter());
+        pairs
+            .all(|(pivot, scale)| pivot * pivot > scale * 1e-13)
+            .then_some(Self(factor))
     }
-    true
-}
 
-/// Solves with a factor of [`cholesky`], in place.
-pub(super) fn solve_cholesky(factor: &[f64], size: usize, values: &mut [f64]) {
-    for i in 0..size {
-        let row = &factor[i * size..=i * size + i];
-        values[i] = (values[i] - dot(&row[..i], &values[..i])) / row[i];
-    }
-    for i in (0..size).rev() {
-        let row = &factor[i * size..=i * size + i];
-        let value = values[i] / row[i];
-        values[i] = value;
-        for (rest, entry) in values[..i].iter_mut().zip(row) {
-            *rest -= entry * value;
-        }
+    /// Solves for one right-hand side.
+    pub(super) fn solve(&self, values: &[f64]) -> Vec<f64> {
+        let solved = self.0.solve(&DVector::from_column_slice(values));
+        solved.as_slice().to_vec()
     }
 }
 
-/// The inverse and ln |det|, by Gauss-Jordan elimination with row pivots; `None` when singular.
-pub(super) fn invert(matrix: &[f64], size: usize) -> Option<(Vec<f64>, f64)> {
-    let mut left = matrix.to_vec();
-    let mut right = vec![0.0; size * size];
-    for i in 0..size {
-        right[i * size + i] = 1.0;
+/// The inverse of a row-major matrix and ln |det|; `None` when it is singular.
+pub(super) fn invert(matrix: &[f64], size: usize) -> Option<(DMatrix<f64>, f64)> {
+    let factors = DMatrix::from_row_slice(size, size, matrix).lu();
+    let pivots = factors.u().diagonal();
+    if !pivots.iter().all(|pivot| pivot.is_normal()) {
+        return None;
     }
-    let mut log_det = 0.0;
-    for column in 0..size {
-        let pivot_row = (column..size)
-            .max_by(|a, b| {
-                let entry = |row: usize| left[row * size + column].abs();
-                entry(*a).total_cmp(&entry(*b))
-            })
-            .unwrap_or(column);
-        let pivot = left[pivot_row * size + column];
-        if !pivot.is_normal() {
-            return None;
-        }
-        log_det += pivot.abs().ln();
-        for j in 0..size {
-            left.swap(pivot_row * size + j, column * size + j);
-            right.swap(pivot_row * size + j, column * size + j);
-        }
-        for half in [&mut left, &mut right] {
-            for value in &mut half[column * size..(column + 1) * size] {
-                *value /= pivot;
-            }
-        }
-        for row in (0..size).filter(|row| *row != column) {
-            let factor = left[row * size + column];
-            if factor.abs() > 0.0 {
-                subtract_row(&mut left, size, row, column, factor);
-                subtract_row(&mut right, size, row, column, factor);
-            }
-        }
-    }
-    Some((right, log_det))
-}
-
-fn subtract_row(matrix: &mut [f64], size: usize, row: usize, from: usize, factor: f64) {
-    let source = matrix[from * size..(from + 1) * size].to_vec();
-    let target = &mut matrix[row * size..(row + 1) * size];
-    for (value, other) in target.iter_mut().zip(source) {
-        *value -= factor * other;
-    }
+    let log_det = pivots.iter().map(|pivot| pivot.abs().ln()).sum();
+    Some((factors.try_inverse()?, log_det))
 }
 
 /// The inverse after `change` was added to row `row` of the matrix (Sherman and Morrison).
-pub(super) fn update_inverse(inverse: &mut [f64], size: usize, row: usize, change: &[f64]) {
-    let column: Vec<f64> = (0..size).map(|i| inverse[i * size + row]).collect();
-    let mut product = vec![0.0; size];
-    for (factor, source) in change.iter().zip(inverse.chunks_exact(size)) {
-        for (sum, value) in product.iter_mut().zip(source) {
-            *sum += factor * value;
-        }
-    }
+pub(super) fn update_inverse(inverse: &mut DMatrix<f64>, row: usize, change: &[f64]) {
+    let column = inverse.column(row).into_owned();
+    let product = inverse.tr_mul(&DVector::from_column_slice(change));
     let denominator = 1.0 + product[row];
-    for (i, factor) in column.iter().enumerate() {
-        let target = &mut inverse[i * size..(i + 1) * size];
-        for (value, product) in target.iter_mut().zip(&product) {
-            *value -= factor * product / denominator;
+    inverse.ger(-1.0 / denominator, &column, &product, 1.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_inverse_follows_a_row_that_changes() {
+        let mut matrix = [4.0, 1.0, 0.0, -2.0, 3.0, 0.5, 1.0, 0.0, 2.0];
+        let (mut inverse, log_det) = invert(&matrix, 3).unwrap();
+        // 4 (3·2 − 0.5·0) − 1 (−2·2 − 0.5·1) = 28.5
+        assert!((log_det - 28.5_f64.ln()).abs() < 1e-12);
+        let change = [0.5, -1.0, 2.0];
+        update_inverse(&mut inverse, 1, &change);
+        for (entry, change) in matrix[3..6].iter_mut().zip(change) {
+            *entry += change;
         }
+        let (expected, _) = invert(&matrix, 3).unwrap();
+        assert!((inverse - expected).amax() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_singular_but_for_rounding_is_refused() {
+        assert!(invert(&[1.0, 2.0, 2.0, 4.0], 2).is_none());
+        // The upper triangle is not read.
+        let factor = Factor::new(&[4.0, 9.0, 2.0, 5.0], 2).unwrap();
+        let solved = factor.solve(&[8.0, 8.0]);
+        assert!((solved[0] - 1.5).abs() < 1e-12 && (solved[1] - 1.0).abs() < 1e-12);
+        assert!(Factor::new(&[1.0, 0.0, 1.0, 1.0 + 1e-15], 2).is_none());
+        assert!(Factor::new(&[1.0, 0.0, 2.0, 1.0], 2).is_none());
     }
 }

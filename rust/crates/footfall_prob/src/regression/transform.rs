@@ -86,8 +86,10 @@ impl LinearTransform {
                 let centred: Vec<f64> = (0..self.dim)
                     .map(|i| gaussian.mean()[i] - self.row(i)[0])
                     .collect();
-                let rows = || inverse.chunks_exact(self.dim);
-                let mean = rows().map(|row| dot(row, &centred)).collect();
+                let rows = || inverse.row_iter();
+                let mean = rows()
+                    .map(|row| row.iter().zip(&centred).map(|(a, c)| a * c).sum())
+                    .collect();
                 let variance = rows()
                     .map(|row| {
                         let terms = row.iter().zip(gaussian.variance());

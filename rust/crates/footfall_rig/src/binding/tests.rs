@@ -54,8 +54,7 @@ fn crooked() -> Character {
     for (joint, side) in [(Joint::LeftUpperArm, 1.0), (Joint::RightUpperArm, -1.0)] {
         pose.rotations[joint.index()] = Quat::from_rotation_z(-0.9 * side);
     }
-    let mut model = ModelPose::default();
-    forward_kinematics(&body, &pose, &mut model);
+    let model = ModelPose::of(&body, &pose);
     let rig_from_ground = Affine3A::from_scale_rotation_translation(
         Vec3::splat(100.0),
         from_heading(-0.5 * PI),
@@ -114,8 +113,7 @@ fn farthest(
     bones: &[usize; JOINT_COUNT],
     pose: &Pose,
 ) -> f32 {
-    let mut model = ModelPose::default();
-    forward_kinematics(&binding.body, pose, &mut model);
+    let model = ModelPose::of(&binding.body, pose);
     let off = |joint: Joint| {
         let wanted = binding
             .character_from_ground
@@ -213,8 +211,7 @@ fn rest_poses_of_bones_become_the_t_pose() {
     let character = crooked();
     let (binding, bones) = bound(&character);
     let t_pose = binding.t_pose_of_bones(&character.rig);
-    let mut model = ModelPose::default();
-    forward_kinematics(&binding.body, &Pose::rest(&binding.body), &mut model);
+    let model = ModelPose::of(&binding.body, &Pose::rest(&binding.body));
     for joint in Joint::ALL {
         let bone = bones[joint.index()];
         let (moved_by, ground_from_rest) = t_pose[bone];

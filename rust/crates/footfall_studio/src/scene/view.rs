@@ -163,7 +163,6 @@ fn limb_color(part: Part, look: Look, dark: bool) -> Color32 {
 
 /// Returns the soles of a body in a pose.
 pub(crate) fn soles(skeleton: &Skeleton, pose: &Pose) -> [[Vec3; 3]; 2] {
-    let mut model = ModelPose::default();
-    forward_kinematics(skeleton, pose, &mut model);
+    let model = ModelPose::of(skeleton, pose);
     Side::BOTH.map(|side| footfall_motion::figure::sole_points(skeleton, &model, side))
 }

@@ -2,7 +2,7 @@
 
 use crate::error::TrainError;
 use crate::sequence::Sequence;
-use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton};
 use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -89,8 +89,7 @@ impl PoseSpace {
 /// Distance from a joint of those that it moves, root mean square over all joints, for every feature: what a radian there
 /// moves, metres. A leg's joints move the foot half of the time, and all the rest of the body while the foot stands.
 fn reach(skeleton: &Skeleton) -> Vec<f64> {
-    let mut rest = ModelPose::default();
-    forward_kinematics(skeleton, &Pose::rest(skeleton), &mut rest);
+    let rest = ModelPose::of(skeleton, &Pose::rest(skeleton));
     let legs = Side::BOTH.map(|side| [side.upper_leg(), side.lower_leg(), side.foot()]);
     let reach = |joint: Joint| {
         let of_leg = legs.iter().flatten().any(|leg| *leg == joint);

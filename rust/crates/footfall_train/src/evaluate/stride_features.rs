@@ -7,7 +7,7 @@
 
 use crate::dataset::smooth_headings;
 use footfall_core::rotation::{from_heading, log_map, log_map_near};
-use footfall_core::{Clip, Joint, ModelPose, Side, StepPosition, forward_kinematics};
+use footfall_core::{Clip, Joint, ModelPose, Side, StepPosition};
 use footfall_motion::steps::{Step, Walk};
 use glam::Vec3;
 
@@ -109,8 +109,7 @@ impl Motion {
                 .collect();
             angles.extend(now.iter().flat_map(Vec3::to_array).map(f64::from));
             previous = Some(now);
-            let mut model = ModelPose::default();
-            forward_kinematics(&clip.skeleton, pose, &mut model);
+            let model = ModelPose::of(&clip.skeleton, pose);
             frames.push(model);
         }
         Self {

@@ -2,7 +2,7 @@
 
 use super::RATE_HZ;
 use footfall_core::rotation::heading;
-use footfall_core::{Clip, Joint, ModelPose, Pose, Side, forward_kinematics};
+use footfall_core::{Clip, Joint, ModelPose, Pose, Side};
 use footfall_imu::filter::low_pass;
 use footfall_model::{FEATURE_COUNT, layout};
 use glam::{Vec2, Vec3};
@@ -50,15 +50,7 @@ impl Stretch {
 pub fn stretches(clip: &Clip, skip_frames: usize) -> Vec<Stretch> {
     let skip = (skip_frames as f64 * RATE_HZ / clip.frame_rate_hz).ceil() as usize;
     let clip = clip.resampled(RATE_HZ);
-    let bodies: Vec<ModelPose> = clip
-        .poses
-        .iter()
-        .map(|pose| {
-            let mut body = ModelPose::default();
-            forward_kinematics(&clip.skeleton, pose, &mut body);
-            body
-        })
-        .collect();
+    let bodies: Vec<ModelPose> = clip.model_poses().collect();
     let mut stands = standing_frames(&clip, &bodies);
     let skipped = skip.min(stands.len());
     stands[..skipped].fill(false);

@@ -1,10 +1,8 @@
 //! `footfall dynamics fit`: a corpus becomes two systems that switch.
 
-use crate::commands::training_run::{TrainingRun, skipped};
-use crate::motion_input::KneesArgs;
-use crate::output;
+use crate::commands::training_run::{TrainingRun, conclude, skipped};
+use crate::motion_input::CorpusArgs;
 use anyhow::{Context as _, Result, ensure};
-use footfall_motion::corpus::Where;
 use footfall_train::dynamics::{DynamicsConfig, FittedDynamics, fit_dynamics};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -17,14 +15,8 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Example:\n  \
     footfall dynamics fit --corpus index.csv --where subject=cmu_35 --where category=neutral_walk -o gait.footdyn")]
 pub(crate) struct FitArgs {
-    /// Table of the recordings
-    #[arg(long, value_name = "INDEX.csv")]
-    corpus: PathBuf,
-    /// Condition on a column, for example `category=neutral_walk`; may repeat
-    #[arg(long = "where", value_name = "COLUMN=VALUE")]
-    conditions: Vec<Where>,
     #[command(flatten)]
-    knees: KneesArgs,
+    corpus: CorpusArgs,
     /// File to write the model to
     #[arg(short, long, value_name = "GAIT.footdyn")]
     output: PathBuf,
@@ -85,14 +77,7 @@ struct Report<'a> {
 }
 
 pub(crate) fn run(args: &FitArgs) -> Result<()> {
-    let words = args.describe.as_deref();
-    let run = TrainingRun::begin(
-        &args.corpus,
-        &args.conditions,
-        args.knees,
-        words,
-        &args.output,
-    )?;
+    let run = TrainingRun::begin(&args.corpus, args.describe.as_deref(), &args.output)?;
     let config = args.size.config()?;
     let corpus = run.read()?;
     let options = [
@@ -107,7 +92,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
         explained,
         one_step_error,
     } = fit_dynamics(&corpus.clips, &config, provenance)
-        .with_context(|| args.corpus.display().to_string())?;
+        .with_context(|| args.corpus.index.display().to_string())?;
     let bytes = model.to_bytes().context("the fitted model")?;
     run.write(&bytes)?;
     let report = Report {
@@ -121,24 +106,19 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
         skipped: skipped(&corpus).into_iter().map(|s| s.reason).collect(),
         seconds: run.seconds(),
     };
-    for reason in &report.skipped {
-        output::note(&format!("warning: left out {reason}"));
-    }
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::note(&format!(
-        "{}: {} and {} segments of {} subjects in {} clips, {:.1} % of the variance, one-step error {:.3} and {:.3}, {} bytes, {:.1} s",
-        args.output.display(),
-        segments[0],
-        segments[1],
-        report.subjects,
-        report.clips,
-        100.0 * explained,
-        one_step_error[0],
-        one_step_error[1],
-        report.bytes,
-        report.seconds
-    ));
-    Ok(())
+    conclude(args.json, &report, &report.skipped, &[], |report| {
+        vec![format!(
+            "{}: {} and {} segments of {} subjects in {} clips, {:.1} % of the variance, one-step error {:.3} and {:.3}, {} bytes, {:.1} s",
+            args.output.display(),
+            segments[0],
+            segments[1],
+            report.subjects,
+            report.clips,
+            100.0 * explained,
+            one_step_error[0],
+            one_step_error[1],
+            report.bytes,
+            report.seconds
+        )]
+    })
 }

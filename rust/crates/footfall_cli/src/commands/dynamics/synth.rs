@@ -1,10 +1,11 @@
 //! `footfall dynamics synth`: a switching model walks.
 
 use crate::commands::walk_output::WalkArgs;
-use crate::model_file::read_dynamics;
 use crate::output;
 use anyhow::{Context as _, Result, ensure};
+use footfall_model::DynamicsModel;
 use footfall_synth::{SwitchingWalkConfig, synthesize_switching};
+use footfall_train::read_model_file;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -36,7 +37,7 @@ pub(crate) fn run(args: &DynamicsSynthArgs) -> Result<()> {
         "a walk of {} seconds cannot be written; give --seconds a number from 0.1 to 7200",
         args.seconds
     );
-    let model = read_dynamics(&args.model)?;
+    let model = read_model_file(&args.model, DynamicsModel::from_bytes)?;
     let model = Arc::new(model);
     let config = SwitchingWalkConfig {
         seconds: args.seconds,

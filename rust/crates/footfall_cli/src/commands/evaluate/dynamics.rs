@@ -1,10 +1,9 @@
 //! `footfall evaluate dynamics`: systems that switch against one that does not.
 
 use crate::commands::dynamics::SizeArgs;
-use crate::motion_input::KneesArgs;
+use crate::motion_input::CorpusArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
-use footfall_motion::corpus::Where;
 use footfall_train::dynamics::{DynamicsComparison, compare_dynamics};
 use plotters::prelude::*;
 use rayon::prelude::*;
@@ -20,14 +19,8 @@ use std::path::PathBuf;
 #[command(after_help = "Example:\n  \
     footfall evaluate dynamics --corpus index.csv --where category=neutral_walk --plot errors.svg")]
 pub(crate) struct DynamicsArgs {
-    /// Table of the recordings
-    #[arg(long, value_name = "INDEX.csv")]
-    corpus: PathBuf,
-    /// Condition on a column, for example `category=running`; may repeat
-    #[arg(long = "where", value_name = "COLUMN=VALUE")]
-    conditions: Vec<Where>,
     #[command(flatten)]
-    knees: KneesArgs,
+    corpus: CorpusArgs,
     #[command(flatten)]
     size: SizeArgs,
     /// Picture of the first recording's errors over time
@@ -60,7 +53,7 @@ pub(super) struct Report {
 /// Evaluates, and returns the report that is printed as JSON. Draws the errors of the first recording if that was asked for.
 pub(super) fn evaluate(args: &DynamicsArgs) -> Result<Report> {
     let config = args.size.config()?;
-    let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
+    let corpus = args.corpus.read()?;
     let compared: Vec<Option<DynamicsComparison>> = corpus
         .clips
         .par_iter()

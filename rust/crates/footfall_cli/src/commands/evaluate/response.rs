@@ -3,12 +3,13 @@
 mod course;
 mod report;
 
-use crate::model_file::read_model;
 use crate::motion_input::{MapArgs, read_file};
 use crate::output;
 use anyhow::{Context as _, Result};
 use course::{COURSE, Trial, run_course};
+use footfall_model::GaitModel;
 use footfall_train::evaluate::response::Travel;
+use footfall_train::read_model_file;
 use rayon::prelude::*;
 use report::{Report, Take};
 use std::path::PathBuf;
@@ -49,7 +50,7 @@ pub(crate) fn run(args: &ResponseArgs) -> Result<()> {
 
 /// The report, as JSON has it.
 pub(super) fn evaluate(args: &ResponseArgs) -> Result<Report> {
-    let model = Arc::new(read_model(&args.model)?);
+    let model = Arc::new(read_model_file(&args.model, GaitModel::from_bytes)?);
     let options = args.map.read(None)?;
     let takes: Vec<Take> = args
         .takes

@@ -2,15 +2,13 @@
 
 use crate::commands::train::TrainingProgress;
 use crate::commands::training_run::skipped;
-use crate::motion_input::KneesArgs;
+use crate::motion_input::CorpusArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
-use footfall_motion::corpus::Where;
 use footfall_prob::windows::Windows;
 use footfall_train::{EmConfig, TrainConfig, TrainingComparison, compare_training};
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 /// Walker-adaptive training against plain training
 ///
@@ -20,14 +18,8 @@ use std::path::PathBuf;
 #[command(after_help = "Example:\n  \
     footfall evaluate training --corpus index.csv --where category=neutral_walk --where 'path=cmu/*'")]
 pub(crate) struct TrainingArgs {
-    /// Table of the recordings
-    #[arg(long, value_name = "INDEX.csv")]
-    corpus: PathBuf,
-    /// Condition on a column, for example `category=neutral_walk`; may repeat
-    #[arg(long = "where", value_name = "COLUMN=VALUE")]
-    conditions: Vec<Where>,
     #[command(flatten)]
-    knees: KneesArgs,
+    corpus: CorpusArgs,
     /// Frames per second of the models
     #[arg(long, default_value_t = 60.0)]
     fps: f64,
@@ -73,7 +65,7 @@ pub(crate) fn run(args: &TrainingArgs) -> Result<()> {
 pub(super) fn evaluate(args: &TrainingArgs) -> Result<Report> {
     let mut progress = TrainingProgress(output::Progress::new());
     progress.0.stage("reading the corpus", 0);
-    let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
+    let corpus = args.corpus.read()?;
     let config = TrainConfig {
         frame_rate_hz: args.fps,
         windows: Windows::Compact,
@@ -84,7 +76,7 @@ pub(super) fn evaluate(args: &TrainingArgs) -> Result<Report> {
         },
     };
     let comparison = compare_training(&corpus.clips, &config, &mut progress)
-        .with_context(|| args.corpus.display().to_string())?;
+        .with_context(|| args.corpus.index.display().to_string())?;
     progress.0.finish();
     let left_out = skipped(&corpus).into_iter().map(|s| s.reason).collect();
     Ok(Report::new(comparison, left_out))

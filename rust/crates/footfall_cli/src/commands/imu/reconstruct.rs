@@ -1,13 +1,14 @@
 //! `footfall imu reconstruct`: recordings of sensors become the motion of a body.
 
 use super::read_recording;
-use crate::model_file::read_imu_model;
 use crate::output;
 use anyhow::{Context as _, Result, ensure};
 use footfall_core::Behaviour;
 use footfall_imu::ImuRecording;
+use footfall_model::ImuModel;
 use footfall_motion::bvh::{self, clip_to_bvh};
 use footfall_recon::{Mounting, Prepared, ReconConfig, find_mounting, reconstruct_recording};
+use footfall_train::read_model_file;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -91,7 +92,7 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
             "{fps} frames a second cannot be written; give --fps a number from 1 to 1000"
         );
     }
-    let model = read_imu_model(&args.model)?;
+    let model = read_model_file(&args.model, ImuModel::from_bytes)?;
     let sites: Vec<&'static str> = model.sites.iter().map(|site| site.name()).collect();
     ensure!(
         sites.len() == args.recordings.len(),

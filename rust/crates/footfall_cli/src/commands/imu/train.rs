@@ -1,13 +1,11 @@
 //! `footfall imu train`: a corpus becomes a model of what sensors on a body mean.
 
 use super::{parse_site, synchronous};
-use crate::commands::training_run::{TrainingRun, skipped};
-use crate::motion_input::KneesArgs;
-use crate::output;
+use crate::commands::training_run::{TrainingRun, conclude, skipped};
+use crate::motion_input::CorpusArgs;
 use anyhow::{Context as _, Result};
 use footfall_core::Site;
 use footfall_imu::ImuRecording;
-use footfall_motion::corpus::Where;
 use footfall_motion::recording::Recording;
 use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
 use serde::Serialize;
@@ -23,14 +21,8 @@ use std::path::{Path, PathBuf};
     footfall imu train --corpus index.csv --where 'path=cmu/*' --site right_foot -o body.footimu\n  \
     footfall imu train --corpus index.csv --site right_foot --site right_hand -o body.footimu")]
 pub(crate) struct ImuTrainArgs {
-    /// Table of the recordings
-    #[arg(long, value_name = "INDEX.csv")]
-    corpus: PathBuf,
-    /// Condition on a column, for example `category=neutral_walk`; may repeat
-    #[arg(long = "where", value_name = "COLUMN=VALUE")]
-    conditions: Vec<Where>,
     #[command(flatten)]
-    knees: KneesArgs,
+    corpus: CorpusArgs,
     #[command(flatten)]
     model: ModelArgs,
     /// File to write the model to
@@ -120,20 +112,13 @@ pub(in crate::commands) fn imu_clip(clip: &Recording) -> ImuClip<'_> {
 }
 
 pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
-    let words = args.describe.as_deref();
-    let run = TrainingRun::begin(
-        &args.corpus,
-        &args.conditions,
-        args.knees,
-        words,
-        &args.output,
-    )?;
+    let run = TrainingRun::begin(&args.corpus, args.describe.as_deref(), &args.output)?;
     let config = args.model.config()?;
     let corpus = run.read()?;
     let real: Vec<Vec<ImuRecording>> = corpus
         .clips
         .iter()
-        .map(|clip| synchronous::recordings(&args.corpus, clip, &config.sites, &args.output))
+        .map(|clip| synchronous::recordings(&args.corpus.index, clip, &config.sites, &args.output))
         .collect::<Result<_>>()?;
     let clips: Vec<ImuClip<'_>> = corpus
         .clips
@@ -146,7 +131,7 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
         .collect();
     let provenance = run.provenance(&corpus, "footfall imu train", &[], &options(&args.model));
     let model = train_imu_clips(&clips, &config, provenance)
-        .with_context(|| args.corpus.display().to_string())?;
+        .with_context(|| args.corpus.index.display().to_string())?;
     let bytes = model.to_bytes().context("the trained model")?;
     run.write(&bytes)?;
     let report = Report {
@@ -165,24 +150,19 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
         skipped: skipped(&corpus).into_iter().map(|s| s.reason).collect(),
         seconds: run.seconds(),
     };
-    for reason in &report.skipped {
-        output::note(&format!("warning: left out {reason}"));
-    }
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::note(&format!(
-        "{}: {} frames in {} segments of {} phases, {} subjects in {} clips, {} bytes, {:.1} s",
-        args.output.display(),
-        report.frames,
-        report.segments,
-        report.phases,
-        report.subjects,
-        report.clips,
-        report.bytes,
-        report.seconds
-    ));
-    Ok(())
+    conclude(args.json, &report, &report.skipped, &[], |report| {
+        vec![format!(
+            "{}: {} frames in {} segments of {} phases, {} subjects in {} clips, {} bytes, {:.1} s",
+            args.output.display(),
+            report.frames,
+            report.segments,
+            report.phases,
+            report.subjects,
+            report.clips,
+            report.bytes,
+            report.seconds
+        )]
+    })
 }
 
 /// The options of a model as they were given, for the command that its file states.

@@ -1,9 +1,10 @@
 //! Facts of a switching model.
 
 use super::{FileFacts, fact};
-use crate::model_file::read_dynamics;
 use anyhow::Result;
 use footfall_core::Side;
+use footfall_model::DynamicsModel;
+use footfall_train::read_model_file;
 use serde::Serialize;
 use std::path::Path;
 
@@ -30,7 +31,7 @@ struct SystemFacts {
 
 /// Reads a switching model.
 pub(super) fn inspect(path: &Path) -> Result<DynamicsFacts> {
-    let model = read_dynamics(path)?;
+    let model = read_model_file(path, DynamicsModel::from_bytes)?;
     let systems = Side::BOTH.map(|side| {
         let regime = model.regime(side);
         let poles = regime.system.transition.complex_eigenvalues();

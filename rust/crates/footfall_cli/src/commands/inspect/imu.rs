@@ -1,10 +1,11 @@
 //! Facts of a sensor model, and of a sensor's recording.
 
 use super::{FileFacts, fact};
-use crate::model_file::read_imu_model;
 use anyhow::Result;
 use footfall_core::Behaviour;
 use footfall_imu::{check_recording, csv};
+use footfall_model::ImuModel;
+use footfall_train::read_model_file;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -25,7 +26,7 @@ pub(super) struct ImuModelFacts {
 
 /// Reads a sensor model.
 pub(super) fn inspect_model(path: &Path) -> Result<ImuModelFacts> {
-    let model = read_imu_model(path)?;
+    let model = read_model_file(path, ImuModel::from_bytes)?;
     let seconds_of = |behaviour: Behaviour| {
         let of = |segment: &&footfall_model::imu_model::Segment| {
             model.phases[usize::from(segment.phase)].behaviour == behaviour

@@ -2,11 +2,11 @@
 
 use super::moves::{CrouchFacts, JumpFacts};
 use super::{FileFacts, fact};
-use crate::model_file::read_model;
 use anyhow::Result;
 use footfall_core::{Joint, Side};
 use footfall_model::layout::feature_offset;
 use footfall_model::{GaitModel, OBSERVATION_COUNT, StandingModel};
+use footfall_train::read_model_file;
 use serde::Serialize;
 use std::path::Path;
 
@@ -101,7 +101,7 @@ struct StepFacts {
 
 /// Reads a model.
 pub(super) fn inspect(path: &Path) -> Result<ModelFacts> {
-    let model = read_model(path)?;
+    let model = read_model_file(path, GaitModel::from_bytes)?;
     let step = |side: Side| {
         let step = model.step(side);
         let secs = |frames: f64| frames / model.frame_rate_hz;

@@ -1,9 +1,9 @@
 //! Facts of a style.
 
 use super::{FileFacts, fact};
-use crate::model_file::read_style;
 use anyhow::Result;
 use footfall_model::{GaitStyle, StepModel};
+use footfall_train::read_model_file;
 use serde::Serialize;
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub(super) struct StyleFacts {
 
 /// Reads a style.
 pub(super) fn inspect(path: &Path) -> Result<StyleFacts> {
-    let style: GaitStyle = read_style(path)?;
+    let style: GaitStyle = read_model_file(path, GaitStyle::from_bytes)?;
     Ok(StyleFacts {
         warnings: style.thin_warning().into_iter().collect(),
         file: FileFacts::of(path)?,

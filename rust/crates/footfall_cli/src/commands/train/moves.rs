@@ -32,7 +32,7 @@ impl Moves {
             let learned = jumping::learn(&clips(corpus)).with_context(|| {
                 format!(
                     "{}: nobody jumps off both feet three times, out of standing, in what --jumping chooses; widen it",
-                    args.corpus.display()
+                    args.corpus.index.display()
                 )
             })?;
             model.jump = Some(learned.model);
@@ -41,7 +41,7 @@ impl Moves {
             let learned = crouching::learn(&clips(corpus)).with_context(|| {
                 format!(
                     "{}: nobody goes both upright and crouched for some seconds in what --crouching chooses; widen it",
-                    args.corpus.display()
+                    args.corpus.index.display()
                 )
             })?;
             model.crouch = Some(learned.model);

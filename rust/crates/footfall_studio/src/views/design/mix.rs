@@ -1,6 +1,5 @@
 //! Mixtures of styles on a pad, walked as they change.
 
-use crate::model_file::read_style;
 use crate::palette;
 use crate::scene::{Body, Look, Scene, SceneView};
 use crate::shell::{Purpose, Shell};
@@ -11,6 +10,7 @@ use footfall_model::{GaitModel, GaitStyle};
 use footfall_synth::{
     Controls, GaitGenerator, GeneratorConfig, StyleSpace, WalkConfig, synthesize,
 };
+use footfall_train::read_model_file;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ impl Default for MixPage {
 
 impl MixPage {
     pub(super) fn add_file(&mut self, shell: &mut Shell, path: &Path) {
-        match read_style(path) {
+        match read_model_file(path, GaitStyle::from_bytes).map_err(|error| error.to_string()) {
             Ok(style) => self.add(shell, style),
             Err(error) => shell.complain(error),
         }
@@ -180,30 +180,11 @@ impl MixPage {
             }
         });
         self.pad(ui);
-        let (mut left_out, mut has_slid) = (None, false);
-        for (place, (style, weight)) in self.styles.iter().zip(&mut self.weights).enumerate() {
-            ui.horizontal(|ui| {
-                let color = palette::SERIES[place % palette::SERIES.len()];
-                ui.colored_label(color, "•");
-                ui.spacing_mut().slider_width = 110.0;
-                ui.add(
-                    Slider::new(weight, WEIGHTS)
-                        .text(&style.name)
-                        .max_decimals(2),
-                );
-                if ui.small_button("✖").on_hover_text("Leave out").clicked() {
-                    left_out = Some(place);
-                }
-            });
-        }
-        if let (Some(place), Some(base)) = (left_out, base) {
+        if let (Some(place), Some(base)) = (self.sliders(ui), base) {
             self.styles.remove(place);
             self.weights.remove(place);
-            self.rebuild(base);
-            has_slid = true;
-        }
-        if has_slid {
             self.puck = puck_of(&self.weights);
+            self.rebuild(base);
         }
         ui.separator();
         let range = base.map_or([0.0, 2.0], |base| base.speed_range());
@@ -225,6 +206,27 @@ impl MixPage {
                 self.rebuild(base);
             }
         });
+    }
+
+    /// A slider for each style, which the puck follows. Returns the style that is to be left out, if one is.
+    fn sliders(&mut self, ui: &mut Ui) -> Option<usize> {
+        let (mut left_out, mut has_slid) = (None, false);
+        for (place, (style, weight)) in self.styles.iter().zip(&mut self.weights).enumerate() {
+            ui.horizontal(|ui| {
+                let color = palette::SERIES[place % palette::SERIES.len()];
+                ui.colored_label(color, "•");
+                ui.spacing_mut().slider_width = 110.0;
+                let slider = Slider::new(weight, WEIGHTS).text(&style.name);
+                has_slid |= ui.add(slider.max_decimals(2)).changed();
+                if ui.small_button("✖").on_hover_text("Leave out").clicked() {
+                    left_out = Some(place);
+                }
+            });
+        }
+        if has_slid {
+            self.puck = puck_of(&self.weights);
+        }
+        left_out
     }
 
     /// The pad: styles around the plain walk. The nearer the puck is to a style, the more of it; beyond it exaggerates.
@@ -357,6 +359,38 @@ fn pad_weights(at: Vec2, count: usize) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use eframe::egui::Key;
+    use eframe::egui::accesskit::Role;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable as _;
+
+    #[test]
+    fn the_puck_follows_a_slider() {
+        let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../addons/footfall/models");
+        let style = |name: &str| {
+            let read = read_model_file(&models.join(name), GaitStyle::from_bytes);
+            Arc::new(read.unwrap())
+        };
+        let page = MixPage {
+            styles: vec![style("sad.footstyle"), style("proud.footstyle")],
+            weights: vec![0.0, 0.0],
+            ..MixPage::default()
+        };
+        let sliders = |ui: &mut Ui, page: &mut MixPage| assert_eq!(page.sliders(ui), None);
+        let mut window = Harness::new_ui_state(sliders, page);
+        window.get_all_by_role(Role::Slider).next().unwrap().focus();
+        window.run();
+        window.key_press(Key::ArrowRight);
+        window.run();
+        let page = window.state();
+        assert!(page.weights[0] > 0.0 && page.weights[1].abs() < 1e-6);
+        // The first style is on top of the pad.
+        assert!(
+            page.puck.y < 0.0 && page.puck.x.abs() < 1e-6,
+            "{:?}",
+            page.puck
+        );
+    }
 
     #[test]
     fn each_style_is_itself_at_its_place_and_nothing_in_the_middle() {

@@ -1,15 +1,17 @@
 //! The body that a sensor moves.
 
 use crate::job::{self, Job, finished};
-use crate::model_file::{read_imu_model, shipped_model};
+use crate::model_file::shipped_model;
 use crate::palette;
 use crate::shell::{Purpose, Shell};
 use eframe::egui::{Context, Ui};
 use footfall_core::{Behaviour, PhaseKind, Pose, Skeleton};
 use footfall_imu::{ImuRecording, ImuSample};
+use footfall_model::ImuModel;
 use footfall_recon::{
     Mounting, Prepared, ReconConfig, Reconstructor, TrackerConfig, find_mounting,
 };
+use footfall_train::read_model_file;
 use glam::Quat;
 use std::path::Path;
 use std::sync::Arc;
@@ -60,17 +62,19 @@ impl LiveBody {
     }
 
     pub(super) fn load(&mut self, shell: &mut Shell, path: &Path) {
-        let made = read_imu_model(path).and_then(|model| {
-            if model.sites.len() != 1 {
-                return Err(format!(
-                    "{}: the model is for {} sensors; the studio hears one at a time",
-                    path.display(),
-                    model.sites.len()
-                ));
-            }
-            let prepared = Prepared::new(Arc::new(model));
-            prepared.map_err(|error| format!("{}: {error}", path.display()))
-        });
+        let made = read_model_file(path, ImuModel::from_bytes)
+            .map_err(|error| error.to_string())
+            .and_then(|model| {
+                if model.sites.len() != 1 {
+                    return Err(format!(
+                        "{}: the model is for {} sensors; the studio hears one at a time",
+                        path.display(),
+                        model.sites.len()
+                    ));
+                }
+                let prepared = Prepared::new(Arc::new(model));
+                prepared.map_err(|error| format!("{}: {error}", path.display()))
+            });
         match made {
             Ok(prepared) => {
                 self.prepared = Some(Arc::new(prepared));

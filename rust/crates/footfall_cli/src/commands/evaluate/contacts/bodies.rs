@@ -1,12 +1,13 @@
 //! Contacts of the bodies that a sensor on a foot drives, against the events of a reference.
 
-use crate::model_file::read_imu_model;
 use anyhow::{Context as _, Result, ensure};
 use footfall_core::{EventKind, Side};
 use footfall_imu::events::Swing;
 use footfall_imu::{ContactMeter, ImuRecording, ImuSample};
+use footfall_model::ImuModel;
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
 use footfall_recon::{Prepared, ReconConfig, find_mounting, reconstruct_recording};
+use footfall_train::read_model_file;
 use glam::Vec3;
 use std::path::Path;
 use std::sync::Arc;
@@ -40,7 +41,7 @@ pub(super) struct Bodies {
 impl Bodies {
     /// Reads the model.
     pub(super) fn read(path: &Path) -> Result<Self> {
-        let model = read_imu_model(path)?;
+        let model = read_model_file(path, ImuModel::from_bytes)?;
         let side = match model.sites[..] {
             [site] if site.is_foot() => site.side(),
             _ => None,

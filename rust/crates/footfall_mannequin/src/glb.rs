@@ -5,6 +5,7 @@ use super::paint::Painted;
 use super::rest::model_from_bone;
 use anyhow::{Result, bail};
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics};
+use footfall_motion::gltf::glb::{ComponentType, GlbBuffer, Layout, Target, Type};
 use glam::{Mat4, Quat, Vec3};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -23,81 +24,21 @@ fn colour(region: Region) -> [u8; 4] {
     }
 }
 
-/// The bytes of a glTF file that grows.
-#[derive(Default)]
-struct Buffer {
-    bytes: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
-}
+const VERTEX: Option<Target> = Some(Target::ArrayBuffer);
 
-/// Layout of an accessor's elements.
-struct Layout {
-    /// `FLOAT` 5126, `UNSIGNED_BYTE` 5121 or `UNSIGNED_SHORT` 5123.
-    component: u32,
-    kind: &'static str,
-    normalized: bool,
-    /// `ARRAY_BUFFER` 34962 or `ELEMENT_ARRAY_BUFFER` 34963.
-    target: Option<u32>,
-}
-
-const VERTEX: Option<u32> = Some(34_962);
-
-impl Buffer {
-    /// Appends data and returns its accessor.
-    fn push(&mut self, data: &[u8], count: usize, layout: &Layout) -> usize {
-        while !self.bytes.len().is_multiple_of(4) {
-            self.bytes.push(0);
-        }
-        let mut view =
-            json!({"buffer": 0, "byteOffset": self.bytes.len(), "byteLength": data.len()});
-        if let Some(target) = layout.target {
-            view["target"] = target.into();
-        }
-        self.bytes.extend_from_slice(data);
-        self.views.push(view);
-        let mut accessor = json!({
-            "bufferView": self.views.len() - 1, "componentType": layout.component, "count": count, "type": layout.kind,
-        });
-        if layout.normalized {
-            accessor["normalized"] = true.into();
-        }
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
-    }
-
-    fn push_vectors(&mut self, vectors: &[Vec3]) -> usize {
-        let data: Vec<u8> = vectors
-            .iter()
-            .flat_map(Vec3::to_array)
-            .flat_map(f32::to_le_bytes)
-            .collect();
-        self.push(
-            &data,
-            vectors.len(),
-            &Layout {
-                component: 5126,
-                kind: "VEC3",
-                normalized: false,
-                target: VERTEX,
-            },
-        )
-    }
-
-    fn push_bytes(&mut self, quads: &[[u8; 4]], normalized: bool) -> usize {
-        let layout = Layout {
-            component: 5121,
-            kind: "VEC4",
-            normalized,
-            target: VERTEX,
-        };
-        self.push(quads.as_flattened(), quads.len(), &layout)
+/// Layout of four bytes a vertex.
+const fn bytes(normalized: bool) -> Layout {
+    Layout {
+        component: ComponentType::U8,
+        shape: Type::Vec4,
+        normalized,
+        target: VERTEX,
     }
 }
 
 /// The file's bytes: a node tree with the humanoid's names and one skinned mesh per level of detail.
 pub(super) fn encode(skeleton: &Skeleton, levels: &[Painted]) -> Result<Vec<u8>> {
-    let mut buffer = Buffer::default();
+    let mut buffer = GlbBuffer::default();
     let mut nodes = Joint::ALL.map(|joint| bone(skeleton, joint)).to_vec();
     let mut roots = vec![Joint::Hips.index()];
     let skin = skin(skeleton, &mut buffer);
@@ -134,11 +75,8 @@ pub(super) fn encode(skeleton: &Skeleton, levels: &[Painted]) -> Result<Vec<u8>>
         "meshes": meshes,
         "skins": [skin],
         "materials": [material("Shell", [0.52, 0.505, 0.475], 0.6), material("Trim", [1.0, 1.0, 1.0], 0.6)],
-        "accessors": buffer.accessors,
-        "bufferViews": buffer.views,
-        "buffers": [{"byteLength": buffer.bytes.len()}],
     });
-    Ok(container(document.to_string().into_bytes(), buffer.bytes))
+    Ok(buffer.into_file(document))
 }
 
 /// One bone as a node; children follow from [`Joint::parent`].
@@ -158,10 +96,10 @@ fn bone(skeleton: &Skeleton, joint: Joint) -> Value {
     node
 }
 
-fn skin(skeleton: &Skeleton, buffer: &mut Buffer) -> Value {
+fn skin(skeleton: &Skeleton, buffer: &mut GlbBuffer) -> Value {
     let mut model = ModelPose::default();
     forward_kinematics(skeleton, &Pose::rest(skeleton), &mut model);
-    let inverse_binds: Vec<u8> = Joint::ALL
+    let inverse_binds: Vec<f32> = Joint::ALL
         .iter()
         .flat_map(|&joint| {
             let axes = Quat::from_mat3(&model_from_bone(joint));
@@ -169,15 +107,8 @@ fn skin(skeleton: &Skeleton, buffer: &mut Buffer) -> Value {
                 .inverse()
                 .to_cols_array()
         })
-        .flat_map(f32::to_le_bytes)
         .collect();
-    let layout = Layout {
-        component: 5126,
-        kind: "MAT4",
-        normalized: false,
-        target: None,
-    };
-    let accessor = buffer.push(&inverse_binds, JOINT_COUNT, &layout);
+    let accessor = buffer.push_floats(&inverse_binds, Layout::floats(Type::Mat4));
     let joints: Vec<usize> = (0..JOINT_COUNT).collect();
     json!({"name": "Mannequin", "joints": joints, "skeleton": Joint::Hips.index(), "inverseBindMatrices": accessor})
 }
@@ -187,7 +118,7 @@ fn primitive(
     painted: &Painted,
     material: usize,
     wanted: impl Fn(Region) -> bool,
-    buffer: &mut Buffer,
+    buffer: &mut GlbBuffer,
 ) -> Result<Value> {
     let mut index_of = BTreeMap::new();
     let (mut positions, mut normals, mut colours) = (Vec::new(), Vec::new(), Vec::new());
@@ -226,26 +157,27 @@ fn primitive(
         .fold((Vec3::MAX, Vec3::MIN), |(low, high), &position| {
             (low.min(position), high.max(position))
         });
-    let position = buffer.push_vectors(&positions);
-    buffer.accessors[position]["min"] = json!(low.to_array());
-    buffer.accessors[position]["max"] = json!(high.to_array());
+    let position = buffer.push_vectors(&positions, VERTEX);
+    buffer.bound(position, &low.to_array(), &high.to_array());
     let layout = Layout {
-        component: 5123,
-        kind: "SCALAR",
+        component: ComponentType::U16,
+        shape: Type::Scalar,
         normalized: false,
-        target: Some(34_963),
+        target: Some(Target::ElementArrayBuffer),
     };
+
     let mut attributes = json!({
         "POSITION": position,
-        "NORMAL": buffer.push_vectors(&normals),
-        "JOINTS_0": buffer.push_bytes(&joints, false),
-        "WEIGHTS_0": buffer.push_bytes(&weights, true),
+        "NORMAL": buffer.push_vectors(&normals, VERTEX),
+        "JOINTS_0": buffer.push(joints.as_flattened(), joints.len(), bytes(false)),
+        "WEIGHTS_0": buffer.push(weights.as_flattened(), weights.len(), bytes(true)),
     });
     if material == TRIM {
-        attributes["COLOR_0"] = buffer.push_bytes(&colours, true).into();
+        let accessor = buffer.push(colours.as_flattened(), colours.len(), bytes(true));
+        attributes["COLOR_0"] = accessor.into();
     }
     Ok(
-        json!({"attributes": attributes, "indices": buffer.push(&indices, count, &layout), "material": material}),
+        json!({"attributes": attributes, "indices": buffer.push(&indices, count, layout), "material": material}),
     )
 }
 
@@ -264,24 +196,6 @@ fn quantised(weights: &[f32; JOINT_COUNT]) -> ([u8; 4], [u8; 4]) {
         }
     });
     (joints, bytes)
-}
-
-/// Header, JSON chunk and binary chunk, each padded to four bytes.
-fn container(mut json: Vec<u8>, mut binary: Vec<u8>) -> Vec<u8> {
-    json.resize(json.len().next_multiple_of(4), b' ');
-    binary.resize(binary.len().next_multiple_of(4), 0);
-    let total = 12 + 8 + json.len() + 8 + binary.len();
-    let mut file = Vec::with_capacity(total);
-    file.extend_from_slice(b"glTF");
-    for word in [2, total as u32, json.len() as u32] {
-        file.extend_from_slice(&word.to_le_bytes());
-    }
-    file.extend_from_slice(b"JSON");
-    file.extend_from_slice(&json);
-    file.extend_from_slice(&(binary.len() as u32).to_le_bytes());
-    file.extend_from_slice(b"BIN\0");
-    file.extend_from_slice(&binary);
-    file
 }
 
 #[cfg(test)]

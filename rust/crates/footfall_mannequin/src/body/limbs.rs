@@ -1,7 +1,7 @@
 //! Arms, hands, legs and shoes.
 
 use super::Body;
-use crate::mannequin::field::{Loft, Shape, Station};
+use crate::field::{Loft, Shape, Station};
 use footfall_core::{Joint, Side, Skeleton};
 use glam::Vec3;
 

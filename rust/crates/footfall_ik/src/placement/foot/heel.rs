@@ -1,0 +1,62 @@
+//! The heel of a standing foot, raised so that the leg reaches.
+
+use super::{Animated, Foot, Mode, Residual, Scene};
+use crate::leg::FootTarget;
+use crate::placement::terrain::Terrain;
+use crate::rocker::RockerFoot;
+use glam::Vec3;
+
+/// The heel of a standing foot is raised to this pitch at most, radians, which is found in so many trials.
+pub(in crate::placement) const MAX_PITCH: f32 = 0.95;
+const PITCH_TRIALS: usize = 12;
+
+impl Foot {
+    /// A locked foot with its heel so much higher that the leg reaches from the hip; at most [`MAX_PITCH`].
+    pub(in crate::placement) fn rise(
+        &mut self,
+        rocker: &RockerFoot,
+        animated: &Animated,
+        hip: Vec3,
+        reach: f32,
+        target: &mut FootTarget,
+    ) {
+        let lacks = |foot: &FootTarget| foot.ankle.distance(hip) - reach;
+        if self.mode != Mode::Locked || animated.pitch < 0.0 || lacks(target) <= 0.0 {
+            return;
+        }
+        let [mut low, mut high] = [animated.pitch, MAX_PITCH.max(animated.pitch)];
+        for _ in 0..PITCH_TRIALS {
+            let middle = 0.5 * (low + high);
+            let foot = self.residual.apply(&self.standing(rocker, middle));
+            if lacks(&foot) > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let risen = self.residual.apply(&self.standing(rocker, high));
+        if lacks(&risen) < lacks(target) {
+            *target = risen;
+            let unlocked = self.correction.apply(&animated.flat, &animated.foot);
+            self.at_lock = Residual::of(target, &unlocked);
+        }
+    }
+
+    /// The ankle of a locked foot at this pitch.
+    pub(in crate::placement) fn ankle_at(&self, rocker: &RockerFoot, pitch: f32) -> Vec3 {
+        self.residual.apply(&self.standing(rocker, pitch)).ankle
+    }
+
+    /// Returns the ankle of a locked foot with its heel as high as it goes; `None` for a foot that stands on nothing, or on its heel.
+    pub(in crate::placement) fn highest_ankle<T: Terrain>(
+        &self,
+        scene: &mut Scene<'_, T>,
+        rocker: &RockerFoot,
+        pitch: f32,
+    ) -> Option<Vec3> {
+        let hold = self.hold.filter(|_| pitch >= 0.0)?;
+        let sole = scene.sole(&hold)?;
+        let risen = Self { sole, ..*self };
+        Some(risen.ankle_at(rocker, MAX_PITCH.max(pitch)))
+    }
+}
