@@ -6,15 +6,13 @@ mod way;
 pub use outcome::{Failure, Fault, Landed, Outcome, percentile};
 pub use way::Way;
 
-use crate::data::repository;
 use crate::terrain::{Origin, PlacedWalker, Relief};
+use crate::walkers;
 use footfall_core::{Side, Skeleton};
 use footfall_ik::placement::{Frame, PlacementConfig};
-use footfall_model::GaitModel;
-use footfall_synth::{Controls, GaitChoice, GaitGenerator, GeneratorConfig, StyleSpace};
+use footfall_synth::{Controls, GaitChoice};
 use glam::Vec3;
 use std::ops::Range;
-use std::sync::{Arc, OnceLock};
 
 /// Time between two frames, seconds.
 pub const DT: f32 = 1.0 / 60.0;
@@ -52,25 +50,13 @@ pub struct Climb {
     pub seed: u64,
 }
 
-fn space() -> &'static Arc<StyleSpace> {
-    static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
-    SPACE.get_or_init(|| {
-        let path = repository().join("addons/footfall/models/locomotion.footfall");
-        let bytes = std::fs::read(path).expect("the shipped model is there");
-        let model = GaitModel::from_bytes(&bytes).expect("the shipped model can be read");
-        Arc::new(StyleSpace::new(&Arc::new(model), &[]).expect("the shipped model walks"))
-    })
-}
-
 /// A walker of the shipped model with this body.
 pub fn walker(skeleton: &Skeleton, seed: u64) -> PlacedWalker {
-    let config = GeneratorConfig {
-        seed,
-        phase: 0.0,
-        variation: 1.0,
-    };
-    let generator = GaitGenerator::new(space(), &[], skeleton, &config).expect("the body walks");
-    PlacedWalker::of(generator, skeleton, &PlacementConfig::default())
+    PlacedWalker::of(
+        walkers::generator(skeleton, seed),
+        skeleton,
+        &PlacementConfig::default(),
+    )
 }
 
 impl Climb {

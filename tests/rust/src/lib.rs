@@ -1,5 +1,5 @@
 //! Helpers that the integration tests share: where the recordings are, a walk's quality judged from its BVH file alone,
-//! text goldens, ground from formulas and climbs over it, and a browser.
+//! text goldens, ground from formulas and climbs over it, walkers and models of sensors on them, and a browser.
 
 pub mod browser;
 pub mod climb;
@@ -8,3 +8,4 @@ pub mod evaluator;
 pub mod golden;
 pub mod skips;
 pub mod terrain;
+pub mod walkers;

@@ -5,11 +5,9 @@ use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, rotation};
 use footfall_ik::FootTarget;
 use footfall_ik::RockerFoot;
 use footfall_ik::handover::{Handover, Moving};
-use footfall_model::GaitModel;
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
-use footfall_tests::data::repository;
+use footfall_synth::{Controls, GaitGenerator};
+use footfall_tests::walkers;
 use glam::{Quat, Vec3};
-use std::sync::{Arc, OnceLock};
 
 const DT: f32 = 1.0 / 60.0;
 /// A walk that goes on undisturbed accelerates the knee of a leg that is almost straight by 103 m/s² already.
@@ -20,18 +18,7 @@ const MOST_OF_HIPS: f32 = 60.0;
 const MOST_SLIP: f32 = 0.2;
 
 fn walker(seed: u64) -> GaitGenerator {
-    static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
-    let space = SPACE.get_or_init(|| {
-        let path = repository().join("addons/footfall/models/locomotion.footfall");
-        let model = GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
-        Arc::new(StyleSpace::new(&Arc::new(model), &[]).unwrap())
-    });
-    let config = GeneratorConfig {
-        seed,
-        phase: 0.0,
-        variation: 1.0,
-    };
-    GaitGenerator::new(space, &[], &Skeleton::standard(), &config).unwrap()
+    walkers::generator(&Skeleton::standard(), seed)
 }
 
 /// One frame of a walk, in the space where it began.

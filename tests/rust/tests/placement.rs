@@ -4,28 +4,15 @@
 use core::f32::consts::{FRAC_PI_2, PI};
 use footfall_core::{Side, Skeleton};
 use footfall_ik::placement::{Frame, PlacementConfig};
-use footfall_model::GaitModel;
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
-use footfall_tests::data::repository;
+use footfall_synth::Controls;
 use footfall_tests::terrain::{PlacedWalker, Relief};
+use footfall_tests::walkers;
 use glam::{Quat, Vec3};
-use std::sync::{Arc, OnceLock};
 
 const DT: f32 = 1.0 / 60.0;
 
 fn walker(seed: u64) -> PlacedWalker {
-    static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
-    let space = SPACE.get_or_init(|| {
-        let path = repository().join("addons/footfall/models/locomotion.footfall");
-        let model = GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
-        Arc::new(StyleSpace::new(&Arc::new(model), &[]).unwrap())
-    });
-    let config = GeneratorConfig {
-        seed,
-        phase: 0.0,
-        variation: 1.0,
-    };
-    let generator = GaitGenerator::new(space, &[], &Skeleton::standard(), &config).unwrap();
+    let generator = walkers::generator(&Skeleton::standard(), seed);
     PlacedWalker::new(generator, &PlacementConfig::default())
 }
 

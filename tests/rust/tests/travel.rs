@@ -4,63 +4,31 @@
 
 use footfall_core::{Clip, ModelPose, Pose, Side, Site, Skeleton, forward_kinematics};
 use footfall_imu::ImuRecording;
-use footfall_model::{GaitModel, Provenance};
+use footfall_model::GaitModel;
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
 use footfall_recon::{Prepared, ReconConfig, Reconstructor, reconstruct_recording};
-use footfall_synth::{WalkConfig, synthesize};
-use footfall_tests::data::repository;
-use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
+use footfall_tests::walkers::{self, recorded};
 use glam::Vec3;
 use std::sync::Arc;
 
 const RATE_HZ: f64 = 100.0;
 
-fn walk(gait: &Arc<GaitModel>, skeleton: &Skeleton, seed: u64, speed: f32) -> Clip {
-    let config = WalkConfig {
-        steps: 24,
-        seed,
-        variation: 1.0,
-        speed_mps: Some(speed),
-        turn_rate_radps: 0.0,
-        direction_rad: 0.0,
-        gait: footfall_synth::GaitChoice::Auto,
-        frame_rate_hz: Some(60.0),
-        from_standing: false,
-    };
-    synthesize(gait, skeleton, &config).unwrap().clip
-}
-
 fn gait() -> Arc<GaitModel> {
-    let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall")).unwrap();
-    Arc::new(GaitModel::from_bytes(&bytes).unwrap())
+    walkers::model("tests/model_versions/v1.footfall")
 }
 
 /// A model of one walker's body, made from walks of these speeds.
 fn prepare(gait: &Arc<GaitModel>, site: Site) -> Arc<Prepared> {
-    let walks: Vec<(String, Clip)> = (0..8)
-        .map(|seed| {
-            let speed = 0.9 + 0.05 * seed as f32;
-            (seed.to_string(), walk(gait, &gait.skeleton, seed, speed))
-        })
+    let walks: Vec<Clip> = (0..8)
+        .map(|seed| recorded(gait, &gait.skeleton, seed, 0.9 + 0.05 * seed as f32))
         .collect();
-    let clips: Vec<ImuClip<'_>> = walks
-        .iter()
-        .map(|(subject, clip)| ImuClip {
-            subject,
-            clip,
-            first_frame: 0,
-            recordings: &[],
-        })
-        .collect();
-    let config = ImuTrainConfig::new(&[site]);
-    let model = train_imu_clips(&clips, &config, Provenance::default()).unwrap();
-    Arc::new(Prepared::new(Arc::new(model)).unwrap())
+    walkers::sensor_model(&walks, &[site])
 }
 
 /// Measurements of a wearer who takes longer steps than anybody in the model, and the distance that this one has gone after four seconds, metres.
 fn wearer(gait: &Arc<GaitModel>, site: Site) -> (ImuRecording, f32) {
     let tall = gait.skeleton.scaled(1.2);
-    let clip = walk(gait, &tall, 99, 1.5);
+    let clip = recorded(gait, &tall, 99, 1.5);
     let recording = simulate(&clip, 0, site, &VirtualImuConfig::ideal(RATE_HZ));
     (recording, way_m(clip.poses.iter(), 60))
 }

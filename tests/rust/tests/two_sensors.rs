@@ -4,30 +4,17 @@
 
 use footfall_core::{Clip, ModelPose, Pose, Site};
 use footfall_imu::{ImuRecording, ImuSample};
-use footfall_model::{GaitModel, Provenance};
+use footfall_model::GaitModel;
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
 use footfall_recon::{Prepared, ReconConfig, Reconstructor, reconstruct_recording};
-use footfall_synth::{WalkConfig, synthesize};
-use footfall_tests::data::repository;
-use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
+use footfall_tests::walkers;
 use std::sync::Arc;
 
 const SITES: [Site; 2] = [Site::RightFoot, Site::RightHand];
 const RATE_HZ: f64 = 100.0;
 
 fn clip(gait: &Arc<GaitModel>, seed: u64, speed: f32) -> Clip {
-    let config = WalkConfig {
-        steps: 24,
-        seed,
-        variation: 1.0,
-        speed_mps: Some(speed),
-        turn_rate_radps: 0.0,
-        direction_rad: 0.0,
-        frame_rate_hz: Some(60.0),
-        from_standing: false,
-        gait: footfall_synth::GaitChoice::Auto,
-    };
-    synthesize(gait, &gait.skeleton, &config).unwrap().clip
+    walkers::recorded(gait, &gait.skeleton, seed, speed)
 }
 
 /// Joints above the hips' place, every hundredth of a second, while sensors are heard whose second begins later, on its own clock or not.
@@ -63,28 +50,11 @@ fn driven(
 
 /// A model of both sites, and what sensors measure of a walk that it has not seen.
 fn prepare() -> (Arc<Prepared>, [ImuRecording; 2]) {
-    let bytes = std::fs::read(repository().join("tests/model_versions/v1.footfall")).unwrap();
-    let gait = Arc::new(GaitModel::from_bytes(&bytes).unwrap());
-    let config = ImuTrainConfig::new(&SITES);
-    let walks: Vec<(String, Clip)> = (0..8)
-        .map(|seed| {
-            (
-                seed.to_string(),
-                clip(&gait, seed, 0.9 + 0.08 * seed as f32),
-            )
-        })
+    let gait = walkers::model("tests/model_versions/v1.footfall");
+    let walks: Vec<Clip> = (0..8)
+        .map(|seed| clip(&gait, seed, 0.9 + 0.08 * seed as f32))
         .collect();
-    let clips: Vec<ImuClip<'_>> = walks
-        .iter()
-        .map(|(subject, clip)| ImuClip {
-            subject,
-            clip,
-            first_frame: 0,
-            recordings: &[],
-        })
-        .collect();
-    let model = train_imu_clips(&clips, &config, Provenance::default()).unwrap();
-    let prepared = Arc::new(Prepared::new(Arc::new(model)).unwrap());
+    let prepared = walkers::sensor_model(&walks, &SITES);
     let unseen = clip(&gait, 99, 1.17);
     let recordings =
         SITES.map(|site| simulate(&unseen, 0, site, &VirtualImuConfig::ideal(RATE_HZ)));

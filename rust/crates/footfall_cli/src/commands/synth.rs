@@ -2,8 +2,8 @@
 
 mod controls;
 
+use crate::commands::training_run::conclude;
 use crate::commands::walk_output::{WalkArgs, WalkFacts};
-use crate::output;
 use anyhow::{Context as _, Result, bail, ensure};
 use footfall_core::EventKind;
 use footfall_model::{GaitModel, GaitStyle};
@@ -266,21 +266,17 @@ fn report(
         styles,
         warnings,
     };
-    for warning in &report.warnings {
-        output::note(&format!("warning: {warning}"));
-    }
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::note(&format!(
-        "{}: {} steps in {:.2} s, {} frames at {} fps, {:.2} m/s, {:.0} steps a minute",
-        args.walk.output.display(),
-        report.steps,
-        report.walk.seconds,
-        report.walk.frames,
-        report.walk.fps,
-        report.walk.speed_mps,
-        report.cadence_per_minute
-    ));
-    Ok(())
+    let all = core::iter::empty::<&str>();
+    conclude(args.json, &report, all, &report.warnings, |report| {
+        vec![format!(
+            "{}: {} steps in {:.2} s, {} frames at {} fps, {:.2} m/s, {:.0} steps a minute",
+            args.walk.output.display(),
+            report.steps,
+            report.walk.seconds,
+            report.walk.frames,
+            report.walk.fps,
+            report.walk.speed_mps,
+            report.cadence_per_minute
+        )]
+    })
 }
