@@ -1,5 +1,4 @@
 //! One motion gives way to another: nothing pops, and feet that stand stay where they are.
-#![expect(clippy::unwrap_used, reason = "tests may fail")]
 
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, rotation};
 use footfall_ik::FootTarget;

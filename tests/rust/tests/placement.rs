@@ -1,5 +1,4 @@
 //! Feet on slopes, stairs, rough ground and things that move: where soles stand, how still, and how smoothly legs go.
-#![expect(clippy::unwrap_used, reason = "tests may fail")]
 
 use core::f32::consts::{FRAC_PI_2, PI};
 use footfall_core::{Side, Skeleton};

@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
 
-use footfall_core::{Clip, ModelPose, Pose, Side, Site, Skeleton, forward_kinematics};
+use footfall_core::{Clip, ModelPose, Pose, Side, Site, forward_kinematics};
 use footfall_imu::ImuRecording;
 use footfall_model::GaitModel;
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
