@@ -8,6 +8,7 @@ use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_ik::{FootTarget, Leg, Plant, RockerFoot, foot_heading, foot_pitch, settled_pitch};
+use footfall_imu::ToldContact;
 use footfall_model::imu_model::{CONTACT, TURN, WAY};
 use glam::{Quat, Vec3};
 
@@ -19,17 +20,17 @@ const MAX_DRIFT_M: f32 = 0.15;
 
 /// A foot whose own sensor says that it is in the air is held so far off the ground, as a share of the leg's length, where the body moves it as slowly
 /// as a foot that stands: less than the first of these speeds, leg lengths a second, and not at all above the second.
-const CLEARANCE: f32 = 0.06;
+const CLEARANCE: f32 = 0.08;
 const CLEARED_SPEEDS: [f32; 2] = [1.5, 3.5];
 
 /// It is raised so far within this time from when it left the ground, seconds.
-const CLEARED_AFTER_SECS: f32 = 0.1;
+const CLEARED_AFTER_SECS: f32 = 0.05;
 
 /// A foot whose own sensor says that it stands may drift so much further.
 const TOLD_DRIFT: f32 = 2.0;
 
 /// Half-life of what remains of a correction when a foot lands, seconds.
-const SETTLE_HALF_LIFE_SECS: f32 = 0.02;
+const SETTLE_HALF_LIFE_SECS: f32 = 0.01;
 
 /// Rate of the critically damped spring by which the correction of a foot that leaves the ground dies away, 1/s.
 const RELEASE_RATE: f32 = 60.0;
@@ -127,7 +128,7 @@ pub struct GroundInput {
     /// Factor on the length of the recordings' steps.
     pub stride: f32,
     /// Contacts of the left and the right foot where a sensor on the foot reports them; the body has those of the others.
-    pub stands: [Option<bool>; 2],
+    pub contacts: [Option<ToldContact>; 2],
 }
 
 impl Ground {
@@ -216,7 +217,7 @@ impl Ground {
         self.place += level * way;
         pose.root_position += self.place;
         forward_kinematics(&self.skeleton, pose, &mut self.model);
-        self.bear(body, input.stands, pose);
+        self.bear(body, input.contacts, pose);
         self.follow_height(input.dt_secs, pose);
         forward_kinematics(&self.skeleton, pose, &mut self.model);
         for side in Side::BOTH {
@@ -259,13 +260,13 @@ impl Ground {
     }
 
     /// Moves the body along the ground so that standing feet keep their places.
-    fn bear(&mut self, body: &BodyFrame, told: [Option<bool>; 2], pose: &mut Pose) {
+    fn bear(&mut self, body: &BodyFrame, told: [Option<ToldContact>; 2], pose: &mut Pose) {
         let (mut shift, mut weights) = (Vec3::ZERO, 0.0);
         for side in Side::BOTH {
             if let Some(plant) = self.feet[side.index()].plant {
                 let target = self.standing(side, &plant);
                 let weight = match told[side.index()] {
-                    Some(true) => 1.0,
+                    Some(told) if told.stands => 1.0,
                     _ => body[CONTACT + side.index()].clamp(0.05, 1.0),
                 };
                 shift += (target.ankle - self.ankle(side)).with_y(0.0) * weight;
@@ -338,15 +339,21 @@ impl Ground {
         let stood = own.plant.is_some();
         if let Some(plant) = own.plant {
             let drift = self.standing(side, &plant).ankle.distance(ankle);
-            let leaves = match input.stands[index] {
-                Some(told) => !told || drift > TOLD_DRIFT * MAX_DRIFT_M,
+            let leaves = match input.contacts[index] {
+                Some(told) => !told.stands || drift > TOLD_DRIFT * MAX_DRIFT_M,
                 None => body[CONTACT + index] < STANDS[1] || drift > MAX_DRIFT_M,
             };
             if leaves {
                 own.plant = None;
-                own.free_secs = 0.0;
+                // The frame in which it left counts from when it did.
+                own.free_secs = match input.contacts[index] {
+                    Some(told) if !told.stands => told.for_secs.min(input.dt_secs) - input.dt_secs,
+                    _ => 0.0,
+                };
             }
-        } else if input.stands[index].unwrap_or(body[CONTACT + index] > STANDS[0]) {
+        } else if input.contacts[index]
+            .map_or(body[CONTACT + index] > STANDS[0], |told| told.stands)
+        {
             let pitch = settled_pitch(foot_pitch(foot));
             let settled = own.last.0.with_y(0.0);
             let heading = foot_heading(foot);
@@ -358,7 +365,7 @@ impl Ground {
         } else {
             let mut free = FootTarget { ankle, foot, toes };
             own.free_secs += input.dt_secs;
-            if input.stands[index] == Some(false) {
+            if input.contacts[index].is_some_and(|told| !told.stands) {
                 let clearance = self.clearance_m(ankle - own.free, input.dt_secs)
                     * smooth_step(own.free_secs / CLEARED_AFTER_SECS);
                 free.ankle.y += (clearance - self.rockers[index].lowest_point(&free)).max(0.0);
@@ -372,7 +379,11 @@ impl Ground {
             own.drift = Vec3::ZERO;
             own.turn = own.last.1 * wanted.1.inverse();
         }
-        own.settle(input.dt_secs);
+        let settles_secs = match input.contacts[index] {
+            Some(told) if own.landed => told.for_secs.min(input.dt_secs),
+            _ => input.dt_secs,
+        };
+        own.settle(settles_secs);
         own.last = (wanted.0 + own.ankle, own.turn * wanted.1);
         let mut target = FootTarget {
             ankle: ankle + own.last.0,

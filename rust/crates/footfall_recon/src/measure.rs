@@ -3,7 +3,7 @@
 use crate::body::BodyFrame;
 use crate::tracker::Measurement;
 use footfall_core::rotation::heading;
-use footfall_imu::{FeatureFrame, SENSOR_FEATURES};
+use footfall_imu::{FeatureFrame, SENSOR_FEATURES, ToldContact};
 use footfall_model::ImuModel;
 use footfall_model::imu_model::{MAX_SENSORS, MAX_WIDTH, SENSOR_COUNT, SENSOR_HEADING};
 use glam::Vec3;
@@ -16,11 +16,11 @@ const LEAST_UPRIGHT: f32 = 0.6;
 /// A vertical that is less certain tells no heading, radians.
 const TILT_KNOWN: f32 = 0.12;
 
-/// A sensor's frame, and whether the foot that wears it stands when the frame ends; `None` where nobody knows.
+/// A sensor's frame, and the contact of the foot that wears it when the frame ends; `None` where nobody knows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensorFrame {
     pub(crate) frame: FeatureFrame,
-    pub(crate) stands: Option<bool>,
+    pub(crate) contact: Option<ToldContact>,
 }
 
 /// Frames of all sensors.

@@ -204,7 +204,7 @@ impl Finder<'_> {
         let mut frames = [None; MAX_SENSORS];
         frames[self.sensor] = Some(SensorFrame {
             frame: turned,
-            stands: None,
+            contact: None,
         });
         measure(&self.prepared.model, &frames)
     }

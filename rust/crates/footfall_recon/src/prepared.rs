@@ -5,6 +5,7 @@ use crate::confidence::standing_body;
 use crate::kernels::BLOCK;
 use crate::published::PhaseDeviations;
 use footfall_core::Side;
+use footfall_imu::ToldContact;
 use footfall_model::ImuModel;
 use footfall_model::ModelError;
 use footfall_model::imu_model::BODY_COUNT;
@@ -106,12 +107,15 @@ impl Prepared {
     }
 
     /// Contacts of the left and the right foot, as the sensors on them report them by number; `None` where none is worn or nobody knows.
-    pub(crate) fn told_stands(&self, told: impl Fn(usize) -> Option<bool>) -> [Option<bool>; 2] {
-        let mut stands = [None; 2];
+    pub(crate) fn told_contacts(
+        &self,
+        told: impl Fn(usize) -> Option<ToldContact>,
+    ) -> [Option<ToldContact>; 2] {
+        let mut contacts = [None; 2];
         for WornFoot { sensor, side } in &self.worn_feet {
-            stands[side.index()] = told(*sensor);
+            contacts[side.index()] = told(*sensor);
         }
-        stands
+        contacts
     }
 
     /// The model.

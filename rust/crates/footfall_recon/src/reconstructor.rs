@@ -11,7 +11,7 @@ use crate::tracker::{Tracker, TrackerConfig};
 use crate::travel::Travel;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Behaviour, Pose, Skeleton, SkeletonError};
-use footfall_imu::ImuSample;
+use footfall_imu::{ImuSample, ToldContact};
 use footfall_model::imu_model::MAX_SENSORS;
 use glam::{Quat, Vec3};
 use std::sync::Arc;
@@ -296,7 +296,7 @@ impl Reconstructor {
             frames: dt_secs * rate,
             dt_secs,
             stride: self.travel.step(dt_secs),
-            stands: self.told_stands(),
+            contacts: self.told_contacts(),
         };
         self.ground.step(&body, &input, pose);
         if let Some(side) = self.travel.side() {
@@ -306,10 +306,16 @@ impl Reconstructor {
     }
 
     /// Contacts of the feet, as far as sensors on them report them.
-    fn told_stands(&self) -> [Option<bool>; 2] {
+    fn told_contacts(&self) -> [Option<ToldContact>; 2] {
         let heard = self.silent_secs < TOLD_FOR_SECS && self.confidence.is_trusted();
-        let told = |sensor: usize| self.sensors[sensor].stands().filter(|_| heard);
-        self.prepared.told_stands(told)
+        let told = |sensor: usize| {
+            let contact = self.sensors[sensor].contact().filter(|_| heard)?;
+            Some(ToldContact {
+                for_secs: contact.for_secs + self.silent_secs,
+                ..contact
+            })
+        };
+        self.prepared.told_contacts(told)
     }
 
     /// Splits a pose that [`step`](Self::step) wrote into the place and heading of the body on the ground, and the pose above it, which faces +Z.

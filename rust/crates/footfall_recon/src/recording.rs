@@ -13,7 +13,7 @@ use crate::tracker::{Measurement, Tracker};
 use crate::travel::Travel;
 use footfall_core::{Behaviour, Clip, Pose, Skeleton, SkeletonError};
 use footfall_imu::events::{Swing, detect_swings};
-use footfall_imu::{ImuRecording, ImuSample};
+use footfall_imu::{ImuRecording, ImuSample, ToldContact};
 use footfall_model::imu_model::MAX_SENSORS;
 use std::sync::Arc;
 
@@ -183,9 +183,21 @@ fn tell_swings(prepared: &Prepared, recordings: &[ImuRecording], frames: &mut [S
         let heard = frames.iter_mut().filter_map(|f| f[*sensor].as_mut());
         for heard in heard {
             let time_secs = heard.frame.time_secs;
-            let swung = |s: &Swing| (s.terminal_secs..s.initial_secs).contains(&time_secs);
-            heard.stands = Some(!swings.iter().any(swung));
+            heard.contact = Some(contact_at(&swings, time_secs));
         }
+    }
+}
+
+/// Contact of a foot with these swings, in order.
+fn contact_at(swings: &[Swing], time_secs: f64) -> ToldContact {
+    let begun = swings.partition_point(|swing| swing.terminal_secs <= time_secs);
+    let last = begun.checked_sub(1).map(|n| swings[n]);
+    let swings = last.filter(|swing| time_secs < swing.initial_secs);
+    let since = swings.map(|swing| swing.terminal_secs);
+    let since = since.or(last.map(|swing| swing.initial_secs));
+    ToldContact {
+        stands: swings.is_none(),
+        for_secs: since.map_or(f32::INFINITY, |since| (time_secs - since) as f32),
     }
 }
 
@@ -242,7 +254,7 @@ impl Shown<'_> {
             frames,
             dt_secs: self.frame_secs,
             stride: self.travel.step(self.frame_secs),
-            stands: self.told_stands(&sensors),
+            contacts: self.told_contacts(&sensors),
         };
         let mut pose = Pose::default();
         self.ground.step(body, &input, &mut pose);
@@ -264,10 +276,10 @@ impl Shown<'_> {
     }
 
     /// Contacts of the feet, as far as sensors on them report them.
-    fn told_stands(&self, sensors: &SensorFrames) -> [Option<bool>; 2] {
+    fn told_contacts(&self, sensors: &SensorFrames) -> [Option<ToldContact>; 2] {
         let heard = self.confidence.is_trusted();
-        let told = |sensor: usize| sensors[sensor]?.stands.filter(|_| heard);
-        self.prepared.told_stands(told)
+        let told = |sensor: usize| sensors[sensor]?.contact.filter(|_| heard);
+        self.prepared.told_contacts(told)
     }
 
     /// Measures strides up to the end of a frame.

@@ -1,7 +1,7 @@
 //! One sensor: its samples on their way to frames.
 
 use crate::measure::SensorFrame;
-use footfall_imu::{ContactMeter, FeatureStream, ImuRecording, ImuSample};
+use footfall_imu::{ContactMeter, FeatureStream, ImuRecording, ImuSample, ToldContact};
 use glam::Quat;
 
 /// Frames of one sensor that wait for the other's; more mean that the other has stopped.
@@ -42,14 +42,16 @@ impl Frames {
         if let Some(contact) = &mut self.contact {
             contact.push(sample);
         }
-        let stands = self.stands();
-        self.stream
-            .push(sample, |frame| give(SensorFrame { frame, stands }));
+        let contact = &self.contact;
+        self.stream.push(sample, |frame| {
+            let contact = contact.as_ref().and_then(|c| c.told(frame.time_secs));
+            give(SensorFrame { frame, contact });
+        });
     }
 
-    /// Returns true while the foot that wears the sensor stands.
-    pub(crate) fn stands(&self) -> Option<bool> {
-        self.contact.as_ref().and_then(ContactMeter::stands)
+    /// Returns the contact of the foot that wears the sensor.
+    pub(crate) fn contact(&self) -> Option<ToldContact> {
+        self.contact.as_ref().and_then(ContactMeter::contact)
     }
 }
 
@@ -126,9 +128,9 @@ impl Sensor {
         first
     }
 
-    /// Returns true while the foot that wears it stands.
-    pub(crate) fn stands(&self) -> Option<bool> {
-        self.frames.stands()
+    /// Returns the contact of the foot that wears it, as of the last sample.
+    pub(crate) fn contact(&self) -> Option<ToldContact> {
+        self.frames.contact()
     }
 
     /// Samples that were not finite, repeated or late.

@@ -29,6 +29,7 @@
 //! Changes of behaviour are recognised live within 0.33 s in the median (other recordings, foot), 0.4 s on other subjects.
 
 mod body;
+mod correlation;
 mod device;
 mod transitions;
 mod trivial;
@@ -40,8 +41,9 @@ pub use trivial::TrivialErrors;
 use super::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
 use crate::error::TrainError;
 use body::{Body, accelerations, body, distance_cm, pose_of_row};
+use correlation::correlation;
 use footfall_core::{Behaviour, Pose, Side};
-use footfall_model::Provenance;
+use footfall_model::{ImuModel, Provenance};
 use footfall_recon::{Prepared, Published, ReconConfig, Reconstructed, reconstruct_recording};
 use glam::Quat;
 use rayon::prelude::*;
@@ -100,6 +102,9 @@ pub struct ImuTrial {
     pub live: JointError,
     /// With what comes later.
     pub whole: JointError,
+    /// Correlation of the courses of the joints, live, over the frames in which the body moves: the mean over all coordinates that vary by more than a
+    /// centimetre; `None` where none does.
+    pub correlation: Option<f64>,
     /// Trivial answers over the frames in which the body moves.
     pub trivial: TrivialErrors,
     /// Frames of each behaviour (row) that are recognised live as each (column), in the order of [`Behaviour::ALL`].
@@ -147,7 +152,7 @@ pub fn evaluate_imu(
             let model = Arc::new(model);
             let prepared = Prepared::new(Arc::clone(&model))?;
             let prepared = Arc::new(Published::prepare(&conditions.published, prepared));
-            let trivial = Trivial::of(&training, &model);
+            let trivial = Trivial::of_chains(&training, &model);
             let trials = (0..clips.len()).into_par_iter();
             let trials = trials.filter(|clip| is_held(clip) && judged(*clip));
             let trials = trials.filter_map(|clip| {
@@ -167,6 +172,43 @@ pub fn evaluate_imu(
     let mut trials: Vec<ImuTrial> = trials.into_iter().flatten().collect();
     trials.sort_by_key(|trial| trial.clip);
     Ok(trials)
+}
+
+/// Reconstructs every clip that is `judged` by a model that is there already: what it has seen is the caller's to know.
+///
+/// # Errors
+/// [`TrainError`] for a model that cannot be used.
+pub fn evaluate_imu_model(
+    clips: &[ImuClip<'_>],
+    model: &Arc<ImuModel>,
+    conditions: &Conditions,
+    judged: &(dyn Fn(usize) -> bool + Sync),
+) -> Result<Vec<ImuTrial>, TrainError> {
+    let config = ImuTrainConfig {
+        frame_rate_hz: model.frame_rate_hz,
+        mirror: false,
+        ..ImuTrainConfig::new(&model.sites)
+    };
+    config.check()?;
+    let prepared = Prepared::new(Arc::clone(model))?;
+    let prepared = Arc::new(Published::prepare(&conditions.published, prepared));
+    let trivial = Trivial::of_model(model);
+    let own = (0..clips.len())
+        .into_par_iter()
+        .filter(|clip| judged(*clip));
+    own.filter_map(|clip| {
+        let chains = observe(&clips[clip], &config);
+        let truth = chains.first()?;
+        Some(try_clip(
+            clip,
+            &clips[clip],
+            truth,
+            &prepared,
+            &trivial,
+            conditions,
+        ))
+    })
+    .collect()
 }
 
 fn try_clip(
@@ -221,6 +263,7 @@ fn try_clip(
         moving: (0..bodies.len()).filter(|frame| moving(*frame)).count(),
         live: live_error,
         whole: whole_error,
+        correlation: correlation(&bodies, &shown_bodies, moving),
         trivial: trivial.errors(truth, &bodies, moving),
         confusion,
         standing_knees_deg: standing_knees_deg.collect(),

@@ -7,15 +7,18 @@ use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_core::{Behaviour, Site};
+use footfall_model::ImuModel;
 use footfall_motion::corpus::Where;
 use footfall_recon::Published;
 use footfall_train::imu::evaluate::{
-    Conditions, Device, HeldOut, ImuTrial, evaluate_imu, evaluate_transitions,
+    Conditions, Device, HeldOut, ImuTrial, evaluate_imu, evaluate_imu_model, evaluate_transitions,
 };
 use footfall_train::imu::{ImuClip, ImuTrainConfig};
+use footfall_train::read_model_file;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Sites of figure 10 of the paper, each alone, and the pair of table 3.
 const SENSORS: [&[Site]; 6] = [
@@ -32,11 +35,13 @@ const SENSORS: [&[Site]; 6] = [
 /// Every recording is reconstructed by models that have not seen it: one trained on all other recordings, one on those of other
 /// subjects. Mean distance of the joints, hips and heading brought together, over the frames in which the body moves: live, as a game
 /// shows it, and whole, with what comes later in the recording. Beside them are trivial answers: one pose for all (constant), the average course of the phase
-/// that the body truly is in (average), and the nearest of the model's poses (nearest), which a perfect tracker would show. Categories are the index's.
+/// that the body truly is in (average), and the nearest of the model's poses (nearest), which a perfect tracker would show; and r, the mean
+/// correlation, live, of the joints' coordinates that vary by more than a centimetre. Categories are the index's.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall evaluate imu --corpus index.csv --where 'path=cmu/*'\n  \
-    footfall evaluate imu --corpus index.csv --where 'path=cmu/*' --site right_thigh --json")]
+    footfall evaluate imu --corpus index.csv --where 'path=cmu/*' --site right_thigh --json\n  \
+    footfall evaluate imu --corpus index.csv --where 'path=bandai/*' --model right_foot.footimu")]
 pub(crate) struct ImuArgs {
     /// Table of the recordings
     #[arg(long, value_name = "INDEX.csv")]
@@ -51,6 +56,9 @@ pub(crate) struct ImuArgs {
     sites: Vec<Site>,
     #[command(flatten)]
     kept: KeptArgs,
+    /// Judge this model on the recordings instead of training any; choose recordings of people that it has not seen
+    #[arg(long, value_name = "BODY.footimu", conflicts_with_all = ["sites", "strangers", "transitions", "no_mirror", "frames", "learn_strapped"])]
+    model: Option<PathBuf>,
     /// Condition on the recordings that are judged; models are trained on the others, too; may repeat
     #[arg(long = "judge", value_name = "COLUMN=VALUE")]
     judged: Vec<Where>,
@@ -125,6 +133,8 @@ struct SensorReport {
     sites: Vec<&'static str>,
     /// Changes from one motion to another; empty without --transitions, and then the only figures.
     transitions: Vec<transitions::Figures>,
+    /// The model of --model; otherwise empty.
+    given_model: BTreeMap<String, Figures>,
     /// Models that have seen all other recordings; empty with --strangers.
     other_recordings: BTreeMap<String, Figures>,
     /// Models that have seen other subjects only; empty when there is but one.
@@ -150,6 +160,8 @@ struct Figures {
     average_cm: f64,
     /// The nearest of the model's poses.
     nearest_cm: f64,
+    /// Mean correlation of the joints' coordinates that vary by more than a centimetre, live.
+    correlation: f64,
     /// Share of the frames whose behaviour is recognised live.
     recognised: f64,
     /// Acceleration of the joints that one frame in twenty exceeds, m/s²: recorded, and live.
@@ -165,9 +177,13 @@ struct Figures {
 
 /// Evaluates, and returns the report that is printed as JSON.
 pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
-    let asked = match &args.sites[..] {
-        [] => SENSORS.to_vec(),
-        sites => vec![sites],
+    let read = |path: &Path| read_model_file(path, ImuModel::from_bytes);
+    let model = args.model.as_deref().map(read).transpose()?;
+    let model = model.map(Arc::new);
+    let asked = match (&model, &args.sites[..]) {
+        (Some(model), _) => vec![&model.sites[..]],
+        (None, []) => SENSORS.to_vec(),
+        (None, sites) => vec![sites],
     };
     let asked: Vec<ImuTrainConfig> = asked
         .into_iter()
@@ -198,21 +214,27 @@ pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
     let published: Vec<Published> = parts.copied().collect();
     let mut sensors = Vec::new();
     for config in &asked {
-        let names: Vec<&str> = config.sites.iter().map(|site| site.name()).collect();
+        let names: Vec<&'static str> = config.sites.iter().map(|site| site.name()).collect();
         output::note(&format!("reconstructing from {}", names.join(" and ")));
         let conditions = |held_out: HeldOut| Conditions {
             held_out,
             device,
             published: published.clone(),
         };
+        if let Some(model) = &model {
+            let trials = evaluate_imu_model(&clips, model, &conditions(HeldOut::Subject), &judged)?;
+            sensors.push(SensorReport {
+                given_model: summarise(&trials, &categories),
+                ..SensorReport::of(names)
+            });
+            continue;
+        }
         if args.transitions {
             let conditions = conditions(HeldOut::Subject);
             let trials = evaluate_transitions(&clips, config, &conditions, &judged)?;
             sensors.push(SensorReport {
-                sites: names,
                 transitions: transitions::figures(&trials),
-                other_recordings: BTreeMap::new(),
-                other_subjects: BTreeMap::new(),
+                ..SensorReport::of(names)
             });
             continue;
         }
@@ -223,8 +245,6 @@ pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
             Ok(summarise(&trials, &categories))
         };
         sensors.push(SensorReport {
-            sites: names,
-            transitions: Vec::new(),
             other_recordings: if args.strangers {
                 BTreeMap::new()
             } else {
@@ -235,6 +255,7 @@ pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
             } else {
                 BTreeMap::new()
             },
+            ..SensorReport::of(names)
         });
     }
     Ok(Report {
@@ -255,24 +276,26 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
             &sensor.transitions,
         ));
         for (seen, figures) in [
-            ("other recordings", &sensor.other_recordings),
-            ("other subjects", &sensor.other_subjects),
+            ("given model", &sensor.given_model),
+            ("trained on other recordings", &sensor.other_recordings),
+            ("trained on other subjects", &sensor.other_subjects),
         ] {
             if figures.is_empty() {
                 continue;
             }
             lines.push(format!(
-                "{}, trained on {seen}; cm over moving frames",
+                "{}, {seen}; cm over moving frames",
                 sensor.sites.join(" and ")
             ));
             lines.push(format!(
-                "{:28} {:>10} {:>7} {:>6} {:>7} {:>6} {:>9} {:>8} {:>8} {:>11} {:>6} {:>16} {:>12}",
+                "{:28} {:>10} {:>7} {:>6} {:>7} {:>6} {:>5} {:>9} {:>8} {:>8} {:>11} {:>6} {:>16} {:>12}",
                 "",
                 "recordings",
                 "frames",
                 "live",
                 "spread",
                 "whole",
+                "r",
                 "constant",
                 "average",
                 "nearest",
@@ -293,6 +316,19 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
         }
     }
     output::print_text(lines.join("\n").trim_end())
+}
+
+impl SensorReport {
+    /// Nothing yet of sensors at these sites.
+    const fn of(sites: Vec<&'static str>) -> Self {
+        Self {
+            sites,
+            transitions: Vec::new(),
+            given_model: BTreeMap::new(),
+            other_recordings: BTreeMap::new(),
+            other_subjects: BTreeMap::new(),
+        }
+    }
 }
 
 impl Figures {
@@ -321,12 +357,13 @@ impl Figures {
                 format!("{live:.0}° of {truth:.0}°")
             });
         format!(
-            "{category:28} {:10} {:7} {:6.2} {:7.2} {:6.2} {:9.2} {:8.2} {:8.2} {:9.0} % {delay:>6} {knee:>16} {:>12}",
+            "{category:28} {:10} {:7} {:6.2} {:7.2} {:6.2} {:5.2} {:9.2} {:8.2} {:8.2} {:9.0} % {delay:>6} {knee:>16} {:>12}",
             self.recordings,
             self.moving_frames,
             self.live_cm,
             self.live_spread_cm,
             self.whole_cm,
+            self.correlation,
             self.constant_cm,
             self.average_cm,
             self.nearest_cm,
@@ -384,6 +421,7 @@ fn figures_of(trials: &[&ImuTrial]) -> Figures {
         live_all_cm: all(|t| t.live.all_cm),
         whole_all_cm: all(|t| t.whole.all_cm),
         live_spread_cm: (squares / moved.len().max(1) as f64).sqrt(),
+        correlation: correlation(trials),
         constant_cm: moving(|t| t.trivial.constant),
         average_cm: moving(|t| t.trivial.average),
         nearest_cm: moving(|t| t.trivial.nearest),
@@ -394,6 +432,17 @@ fn figures_of(trials: &[&ImuTrial]) -> Figures {
         standing_knee_deg: standing_knee_deg(trials),
         confusion: confusion(trials),
     }
+}
+
+/// Mean over the recordings in which something moves, by their frames.
+fn correlation(trials: &[&ImuTrial]) -> f64 {
+    let own = trials
+        .iter()
+        .filter_map(|t| Some((t.moving as f64, t.correlation?)));
+    let (sum, weights) = own.fold((0.0, 0.0), |(sum, weights), (weight, value)| {
+        (sum + weight * value, weights + weight)
+    });
+    sum / f64::max(weights, 1.0)
 }
 
 fn standing_knee_deg(trials: &[&ImuTrial]) -> Option<[f32; 2]> {

@@ -29,8 +29,29 @@ pub(super) struct Trivial<'a> {
 }
 
 impl<'a> Trivial<'a> {
-    pub(super) fn of(training: &[&Chain], model: &'a ImuModel) -> Self {
-        let rows = training.iter().flat_map(|chain| frames_of(chain));
+    /// From all recordings that a model was trained on.
+    pub(super) fn of_chains(training: &[&Chain], model: &'a ImuModel) -> Self {
+        Self::of(training.iter().flat_map(|chain| frames_of(chain)), model)
+    }
+
+    /// From what a model holds.
+    pub(super) fn of_model(model: &'a ImuModel) -> Self {
+        let mut rows = model.body.chunks_exact(BODY_COUNT);
+        let rows = model.segments.iter().flat_map(|segment| {
+            let frames = usize::from(segment.frames);
+            let kind = model.phases[usize::from(segment.phase)];
+            let own: Vec<&[f32]> = rows.by_ref().take(frames).collect();
+            own.into_iter()
+                .enumerate()
+                .map(move |(n, row)| (kind, n * TIMES / frames, row))
+        });
+        Self::of(rows, model)
+    }
+
+    fn of<'b>(
+        rows: impl Iterator<Item = (PhaseKind, usize, &'b [f32])>,
+        model: &'a ImuModel,
+    ) -> Self {
         let mut all = Sum::default();
         let mut phases: BTreeMap<PhaseKind, Vec<Sum>> = BTreeMap::new();
         for (kind, time, row) in rows {
