@@ -318,8 +318,8 @@ fn bodies_from_the_cmu_recordings_are_as_close_as_promised() {
             .as_f64()
             .unwrap_or_else(|| panic!("{seen} {category} {name} in {report}"))
     };
-    // Measured 2.6, 2.0, 3.6, 2.8 cm.
-    assert!(figure("other_recordings", "neutral_walk", "live_cm") < 2.7);
+    // Measured 2.7, 2.0, 3.7, 3.0 cm. Live bodies go over from course to course as on springs, which jolts them a third less and costs 0.1 cm.
+    assert!(figure("other_recordings", "neutral_walk", "live_cm") < 2.8);
     assert!(figure("other_recordings", "neutral_walk", "whole_cm") < 2.2);
     assert!(figure("other_subjects", "neutral_walk", "live_cm") < 4.0);
     assert!(figure("other_recordings", "running", "whole_cm") < 3.1);
