@@ -141,32 +141,18 @@ pub fn evaluate_imu(
     let trials: Vec<Vec<ImuTrial>> = held
         .par_iter()
         .map(|(subject, only)| {
-            let is_held = |clip: &usize| {
-                clips[*clip].subject == *subject && (*only == clips.len() || only == clip)
+            let is_held = |clip: usize| {
+                clips[clip].subject == *subject && (*only == clips.len() || *only == clip)
             };
             let training: Vec<&Chain> = (0..clips.len())
-                .filter(|clip| !is_held(clip))
+                .filter(|clip| !is_held(*clip))
                 .flat_map(|clip| &chains[clip])
                 .collect();
             let model = train_imu(&training, config, Provenance::default())?;
             let model = Arc::new(model);
-            let prepared = Prepared::new(Arc::clone(&model))?;
-            let prepared = Arc::new(Published::prepare(&conditions.published, prepared));
             let trivial = Trivial::of_chains(&training, &model);
-            let trials = (0..clips.len()).into_par_iter();
-            let trials = trials.filter(|clip| is_held(clip) && judged(*clip));
-            let trials = trials.filter_map(|clip| {
-                let truth = chains[clip].first()?;
-                Some(try_clip(
-                    clip,
-                    &clips[clip],
-                    truth,
-                    &prepared,
-                    &trivial,
-                    conditions,
-                ))
-            });
-            trials.collect()
+            let own = |clip: usize| is_held(clip) && judged(clip);
+            try_clips(clips, &chains, &model, &trivial, conditions, &own)
         })
         .collect::<Result<_, TrainError>>()?;
     let mut trials: Vec<ImuTrial> = trials.into_iter().flatten().collect();
@@ -190,22 +176,38 @@ pub fn evaluate_imu_model(
         ..ImuTrainConfig::new(&model.sites)
     };
     config.check()?;
+    let chains: Vec<Vec<Chain>> = (0..clips.len())
+        .into_par_iter()
+        .map(|clip| {
+            if judged(clip) {
+                observe(&clips[clip], &config)
+            } else {
+                Vec::new()
+            }
+        })
+        .collect();
+    let trivial = Trivial::of_model(model);
+    try_clips(clips, &chains, model, &trivial, conditions, judged)
+}
+
+/// Reconstructs the clips that are `judged` by one model; the first chain of each is its truth.
+fn try_clips(
+    clips: &[ImuClip<'_>],
+    chains: &[Vec<Chain>],
+    model: &Arc<ImuModel>,
+    trivial: &Trivial<'_>,
+    conditions: &Conditions,
+    judged: &(dyn Fn(usize) -> bool + Sync),
+) -> Result<Vec<ImuTrial>, TrainError> {
     let prepared = Prepared::new(Arc::clone(model))?;
     let prepared = Arc::new(Published::prepare(&conditions.published, prepared));
-    let trivial = Trivial::of_model(model);
-    let own = (0..clips.len())
-        .into_par_iter()
-        .filter(|clip| judged(*clip));
+    let own = (0..clips.len()).into_par_iter();
+    let own = own.filter(|clip| judged(*clip));
     own.filter_map(|clip| {
-        let chains = observe(&clips[clip], &config);
-        let truth = chains.first()?;
+        let truth = chains[clip].first()?;
+        let recording = &clips[clip];
         Some(try_clip(
-            clip,
-            &clips[clip],
-            truth,
-            &prepared,
-            &trivial,
-            conditions,
+            clip, recording, truth, &prepared, trivial, conditions,
         ))
     })
     .collect()
