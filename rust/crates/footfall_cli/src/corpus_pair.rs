@@ -140,8 +140,7 @@ impl ReadPair {
         [Some(&self.real), self.synthesised.as_ref()]
             .into_iter()
             .flatten()
-            .flat_map(|corpus| &corpus.report.skipped)
-            .map(|skipped| skipped.reason.clone())
+            .flat_map(|corpus| corpus.report.reasons())
             .collect()
     }
 }

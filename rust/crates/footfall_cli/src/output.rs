@@ -41,6 +41,25 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
     print_text(&text)
 }
 
+/// Prints a report on stdout: as JSON, or as the text that people read.
+pub(crate) fn print_report<R: Serialize>(
+    json: bool,
+    report: &R,
+    text: impl FnOnce(&R) -> String,
+) -> Result<()> {
+    if json {
+        return print_json(report);
+    }
+    print_text(&text(report))
+}
+
+/// Warns of recordings that were left out.
+pub(crate) fn note_left_out(reasons: impl IntoIterator<Item = impl AsRef<str>>) {
+    for reason in reasons {
+        note(&format!("warning: left out {}", reason.as_ref()));
+    }
+}
+
 /// Prints text and a line end on stdout; a reader that went away is no error.
 pub(crate) fn print_text(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();

@@ -35,6 +35,14 @@ pub struct CorpusReport {
     pub people: Vec<Person>,
 }
 
+impl CorpusReport {
+    /// Reasons why recordings were left out, in the order of the index; each names its file.
+    pub fn reasons(&self) -> Vec<String> {
+        let skipped = self.skipped.iter();
+        skipped.map(|clip| clip.reason.clone()).collect()
+    }
+}
+
 /// Recordings chosen from an index.
 #[derive(Clone, Debug)]
 pub struct Corpus {

@@ -93,7 +93,6 @@ impl Studio {
             longest_frame_secs: 0.0,
             frame_secs: VecDeque::new(),
         };
-        studio.views.evaluate.evaluator = options.evaluator;
         for path in options.paths {
             studio.open(context, &path);
         }

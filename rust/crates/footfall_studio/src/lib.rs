@@ -6,7 +6,7 @@
 
 mod app;
 mod curves;
-mod evaluator;
+mod evaluation;
 mod job;
 mod labels;
 mod library;
@@ -21,19 +21,16 @@ mod table;
 mod views;
 
 pub use app::{Studio, Tab};
-pub use evaluator::{EvaluateKind, EvaluateRequest, Evaluator};
 
 use std::path::PathBuf;
 
 /// Settings of the studio at its start.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct StudioOptions {
     /// Files and folders to open.
     pub paths: Vec<PathBuf>,
     /// Folder of what must outlive a crash; the user's data folder when absent.
     pub data_folder: Option<PathBuf>,
-    /// Evaluator of recordings; without it the view says so.
-    pub evaluator: Option<Evaluator>,
 }
 
 /// Opens the window and returns when it is closed.

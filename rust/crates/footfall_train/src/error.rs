@@ -4,6 +4,7 @@ use footfall_core::{Side, Site, SkeletonError};
 use footfall_model::ModelError;
 use footfall_motion::recording::RecordingError;
 use footfall_prob::ProbError;
+use std::path::PathBuf;
 
 /// Why training cannot go on.
 #[derive(Debug, thiserror::Error)]
@@ -17,6 +18,14 @@ pub enum TrainError {
     /// A recording cannot be used.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// A model cannot be fitted to one of several recordings.
+    #[error("{}: {error}", path.display())]
+    Fit {
+        /// The recording.
+        path: PathBuf,
+        /// Fault.
+        error: Box<Self>,
+    },
     /// Fewer steps in a row than show both feet.
     #[error(
         "{found} steps are too few for a style, which needs two in a row and is better with six to twelve; choose longer walks"

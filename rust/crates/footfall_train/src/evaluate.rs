@@ -6,9 +6,15 @@
 //! smoothness are judged by themselves ([`naturalness`]).
 //!
 //! Modules in suggested reading order: [`stride_features`], [`lda`], [`confusion`], [`resemblance`], [`naturalness`]; [`told_apart`]; [`standing`]; [`response`].
+//!
+//! Reports that the command line prints and the studio draws are typed, and serialise to the JSON of `footfall evaluate`: [`style_report`], [`contacts`],
+//! [`dynamics`], [`imu`], [`training`]. Evaluations that generate walks belong to the command line, which has a generator.
 
 pub mod confusion;
+pub mod contacts;
+pub mod dynamics;
 mod error;
+pub mod imu;
 pub mod lda;
 pub mod naturalness;
 mod recognition;
@@ -16,8 +22,10 @@ pub mod resemblance;
 pub mod response;
 pub mod standing;
 pub mod stride_features;
+pub mod style_report;
 mod take;
 pub mod told_apart;
+pub mod training;
 
 pub use confusion::Confusion;
 pub use error::EvaluateError;
@@ -29,11 +37,13 @@ use footfall_motion::recording::Recording;
 use lda::{ClassMoments, Labelled};
 use rayon::prelude::*;
 use recognition::recognise;
+use serde::Serialize;
 use stride_features::{LEAST_SPREAD, Stride};
 use take::{Moving, Take};
 
 /// Division of real strides into seen and unseen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Split {
     /// Every take in turn is unseen; each style needs two takes.
     Take,

@@ -9,6 +9,7 @@ use crate::train::TrainConfig;
 use crate::walker_adaptive::{self, WalkerTransform};
 use footfall_motion::recording::Recording;
 use footfall_prob::gaussian::DiagonalGaussian;
+use serde::Serialize;
 
 /// Plain against walker-adaptive training of the same corpus.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +21,7 @@ pub struct TrainingComparison {
 }
 
 /// An unseen walker: mean log density of its frames, as recorded.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HeldOutWalker {
     /// The person.
     pub subject: String,

@@ -7,7 +7,7 @@ mod simulate;
 mod synchronous;
 mod train;
 
-pub(in crate::commands) use train::{KeptArgs, imu_clip};
+pub(in crate::commands) use train::KeptArgs;
 
 use anyhow::{Context as _, Result};
 use clap::Subcommand;

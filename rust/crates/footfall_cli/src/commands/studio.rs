@@ -1,10 +1,8 @@
 //! `footfall studio`: the desktop tool.
 
-use crate::commands::evaluate;
 use anyhow::{Result, bail};
 use footfall_studio::StudioOptions;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// See the motion, make the style: the desktop tool
 ///
@@ -28,9 +26,6 @@ pub(crate) fn run(args: &StudioArgs) -> Result<()> {
     let options = StudioOptions {
         paths: args.paths.clone(),
         data_folder: None,
-        evaluator: Some(Arc::new(|request| {
-            evaluate::report(request).map_err(|error| format!("{error:#}"))
-        })),
     };
     footfall_studio::run(options).map_err(anyhow::Error::msg)
 }

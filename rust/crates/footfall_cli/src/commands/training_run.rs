@@ -162,9 +162,7 @@ pub(super) fn conclude<R: Serialize>(
     warnings: &[String],
     words: impl FnOnce(&R) -> Vec<String>,
 ) -> Result<()> {
-    for reason in left_out {
-        output::note(&format!("warning: left out {}", reason.as_ref()));
-    }
+    output::note_left_out(left_out);
     for warning in warnings {
         output::note(&format!("warning: {warning}"));
     }

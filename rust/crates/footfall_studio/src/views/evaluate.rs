@@ -1,20 +1,17 @@
 //! The papers' tables as tables and charts.
 
+use crate::evaluation::{EvaluateKind, EvaluateRequest, evaluate};
 use crate::job::{self, Job, finished};
 use crate::shell::{Purpose, Shell};
-use crate::table::{Table, tables};
-use crate::{EvaluateKind, EvaluateRequest, Evaluator};
+use crate::table::Table;
 use eframe::egui::{ComboBox, ScrollArea, TextEdit, Ui};
-use serde_json::Value;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 #[derive(Default)]
 pub(crate) struct EvaluateView {
-    pub(crate) evaluator: Option<Evaluator>,
     request: EvaluateRequest,
     conditions: String,
-    job: Option<Job<Result<Value, String>>>,
+    job: Option<Job<Result<Vec<Table>, String>>>,
     tables: Vec<Table>,
     chosen: usize,
     columns: Vec<usize>,
@@ -58,15 +55,15 @@ impl EvaluateView {
             }
         }
         match finished(&mut self.job).map(Result::flatten) {
-            Some(Ok(report)) => self.take(&report),
+            Some(Ok(tables)) => self.take(tables),
             Some(Err(error)) => shell.complain(error),
             None => {}
         }
     }
 
-    /// Shows a report.
-    pub(crate) fn take(&mut self, report: &Value) {
-        self.tables = tables(report);
+    /// Shows the tables of a report.
+    fn take(&mut self, tables: Vec<Table>) {
+        self.tables = tables;
         // What is judged stands before the summary of it.
         let best = self
             .tables
@@ -171,12 +168,6 @@ impl EvaluateView {
     }
 
     fn start(&mut self, ui: &Ui, shell: &mut Shell) {
-        let Some(evaluator) = &self.evaluator else {
-            shell.complain(
-                "this studio was opened without what evaluates; run `footfall studio`".to_owned(),
-            );
-            return;
-        };
         if self.request.index.as_os_str().is_empty() {
             shell.complain("choose the table of the recordings first".to_owned());
             return;
@@ -186,9 +177,9 @@ impl EvaluateView {
             .split_whitespace()
             .map(ToOwned::to_owned)
             .collect();
-        let (evaluator, request) = (Arc::clone(evaluator), self.request.clone());
-        self.job = Some(job::start(ui.ctx(), "evaluating", move |_| {
-            evaluator(&request)
+        let request = self.request.clone();
+        self.job = Some(job::start(ui.ctx(), "evaluating", move |reporter| {
+            evaluate(&request, reporter)
         }));
     }
 }

@@ -4,9 +4,6 @@ use crate::world::{Window, World, click, settle, shipped};
 use eframe::egui::accesskit::Role;
 use egui_kittest::SnapshotOptions;
 use egui_kittest::kittest::Queryable as _;
-use footfall_studio::EvaluateRequest;
-use serde_json::json;
-use std::sync::Arc;
 
 /// Compares with the picture of this name. Poses may differ by roundings from machine to machine, which moves edges.
 fn look(window: &mut Window, name: &str) {
@@ -111,23 +108,10 @@ fn styles_on_the_mixing_pad() {
 #[test]
 fn tables_and_charts_of_an_evaluation() {
     let world = World::new();
-    let evaluator = |request: &EvaluateRequest| {
-        assert_eq!(request.conditions, ["category=styled_walk"]);
-        Ok(json!({
-            "styles": ["old", "proud", "sad"],
-            "ratio": 0.98,
-            "real": {"rate": 0.95, "confusion": [[18, 1, 1], [0, 20, 0], [2, 0, 18]]},
-            "measures": {
-                "old": {"slip_mps": 0.003, "rate": 0.9},
-                "proud": {"slip_mps": 0.002, "rate": 1.0},
-                "sad": {"slip_mps": 0.001, "rate": 0.9}
-            }
-        }))
-    };
-    let mut window = world.window_with(&[], Some(Arc::new(evaluator)));
+    let index = world.styled_walks();
+    let mut window = world.window(&[]);
     click(&mut window, "Evaluate");
     click(&mut window, "Index…");
-    let index = world.folder.path().join("index.csv");
     assert!(window.state_mut().answer_dialog(index));
     window.run_steps(2);
     let conditions = window.get_by_role(Role::TextInput);
@@ -137,11 +121,11 @@ fn tables_and_charts_of_an_evaluation() {
     click(&mut window, "Run the evaluation");
     settle(&mut window);
     look(&mut window, "evaluate_chart");
-    click(&mut window, "real, confusion");
+    click(&mut window, "Confusion, real");
     look(&mut window, "evaluate_confusion");
-    click(&mut window, "measures");
+    click(&mut window, "Recognition");
     for (label, name, said) in [
-        ("Export CSV…", "table.csv", "proud,1,0.002"),
+        ("Export CSV…", "table.csv", "real,"),
         ("Export SVG…", "chart.svg", "<svg"),
     ] {
         click(&mut window, label);

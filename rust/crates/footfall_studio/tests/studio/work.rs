@@ -8,9 +8,6 @@ use footfall_motion::bvh;
 use footfall_motion::contact_file::ContactFile;
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::RetargetOptions;
-use footfall_studio::EvaluateRequest;
-use serde_json::json;
-use std::sync::{Arc, Mutex, mpsc};
 
 #[test]
 fn a_broken_file_is_listed_with_its_error_and_does_not_stop_the_rest() {
@@ -181,21 +178,14 @@ fn a_style_is_made_from_recordings_and_saved() {
 #[test]
 fn work_that_is_cancelled_says_so_and_shows_nothing() {
     let world = World::new();
-    let (release, wait) = mpsc::channel::<()>();
-    let wait = Mutex::new(wait);
-    let evaluator = move |_: &EvaluateRequest| {
-        // Goes on until the test has cancelled it.
-        wait.lock().unwrap().recv().unwrap_err();
-        Ok(json!({"categories": {"walk": {"f1": 1.0}, "run": {"f1": 1.0}}}))
-    };
-    let mut window = world.window_with(&[], Some(Arc::new(evaluator)));
+    let index = world.styled_walks();
+    let mut window = world.window(&[]);
     click(&mut window, "Evaluate");
     click(&mut window, "Index…");
-    assert!(window.state_mut().answer_dialog(world.clip("index.csv")));
+    assert!(window.state_mut().answer_dialog(index));
     window.run_steps(2);
     click(&mut window, "Run the evaluation");
     click(&mut window, "Cancel");
-    drop(release);
     settle(&mut window);
     let message = window.state().message().unwrap();
     assert!(message.contains("stopped"), "{message}");

@@ -9,7 +9,7 @@ use footfall_model::{GaitModel, GaitStyle};
 use footfall_motion::bvh::{self, clip_to_bvh};
 use footfall_motion::retarget::{RetargetOptions, retarget};
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
-use footfall_studio::{Evaluator, Studio, StudioOptions};
+use footfall_studio::{Studio, StudioOptions};
 use footfall_synth::{WalkConfig, synthesize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,20 +45,9 @@ impl World {
             let inner = folder.path().join("clips").join(walker);
             std::fs::create_dir_all(&inner).unwrap();
             for take in 1..=2_u64 {
-                let config = WalkConfig {
-                    steps: 12,
-                    seed: take + walker.len() as u64,
-                    variation: 1.0,
-                    speed_mps: Some(speed),
-                    turn_rate_radps: 0.0,
-                    direction_rad: 0.0,
-                    frame_rate_hz: Some(60.0),
-                    from_standing: take == 1,
-                    gait: footfall_synth::GaitChoice::Auto,
-                };
-                let walk = synthesize(&model, &model.skeleton, &config).unwrap();
-                let text = bvh::write(&clip_to_bvh(&walk.clip));
-                std::fs::write(inner.join(format!("{walker}_{take}.bvh")), text).unwrap();
+                let path = inner.join(format!("{walker}_{take}.bvh"));
+                let seed = take + walker.len() as u64;
+                write_walk(&model, &path, 12, seed, Some(speed), take == 1);
             }
         }
         std::fs::write(folder.path().join("clips/broken.bvh"), "HIERARCHY\nROOT").unwrap();
@@ -88,17 +77,37 @@ impl World {
         path
     }
 
-    /// A window that shows these files; waits until all of them are read.
-    pub(crate) fn window(&self, paths: &[PathBuf]) -> Window {
-        self.window_with(paths, None)
+    /// Walks in three styles, two each, and the index of them.
+    pub(crate) fn styled_walks(&self) -> PathBuf {
+        let base = base();
+        let mut index = "path,category,style,subject\n".to_owned();
+        for name in ["proud", "sad", "drunk"] {
+            let bytes = std::fs::read(shipped(&format!("{name}.footstyle"))).unwrap();
+            let style = GaitStyle::from_bytes(&bytes).unwrap();
+            let styled = Arc::new(base.styled(&[(&style, 1.0)]).unwrap());
+            for take in 1..=2 {
+                let file = format!("{name}_{take}.bvh");
+                write_walk(
+                    &styled,
+                    &self.folder.path().join(&file),
+                    14,
+                    take,
+                    None,
+                    false,
+                );
+                index.push_str(&format!("{file},styled_walk,{name},carla\n"));
+            }
+        }
+        let path = self.folder.path().join("index.csv");
+        std::fs::write(&path, index).unwrap();
+        path
     }
 
-    /// The same with something that evaluates.
-    pub(crate) fn window_with(&self, paths: &[PathBuf], evaluator: Option<Evaluator>) -> Window {
+    /// A window that shows these files; waits until all of them are read.
+    pub(crate) fn window(&self, paths: &[PathBuf]) -> Window {
         let options = StudioOptions {
             paths: paths.to_vec(),
             data_folder: Some(self.folder.path().join("data")),
-            evaluator,
         };
         let blank = Studio::new(&Context::default(), StudioOptions::default());
         let mut window = Harness::builder()
@@ -113,6 +122,29 @@ impl World {
         settle(&mut window);
         window
     }
+}
+
+fn write_walk(
+    model: &Arc<GaitModel>,
+    path: &Path,
+    steps: usize,
+    seed: u64,
+    speed_mps: Option<f32>,
+    from_standing: bool,
+) {
+    let config = WalkConfig {
+        steps,
+        seed,
+        variation: 1.0,
+        speed_mps,
+        turn_rate_radps: 0.0,
+        direction_rad: 0.0,
+        frame_rate_hz: Some(60.0),
+        from_standing,
+        gait: footfall_synth::GaitChoice::Auto,
+    };
+    let walk = synthesize(model, &model.skeleton, &config).unwrap();
+    std::fs::write(path, bvh::write(&clip_to_bvh(&walk.clip))).unwrap();
 }
 
 /// Frames until no work goes on.

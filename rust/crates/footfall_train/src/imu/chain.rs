@@ -13,6 +13,7 @@ use footfall_model::imu_model::{
 use footfall_model::{FEATURE_COUNT, layout};
 use footfall_motion::contacts::{ContactConfig, Contacts, detect_contacts};
 use footfall_motion::phases::segment_phases;
+use footfall_motion::recording::Recording;
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
 
 /// Samples a second of the virtual sensors that a model is trained on.
@@ -29,6 +30,18 @@ pub struct ImuClip<'a> {
     pub first_frame: usize,
     /// Recordings of the sensors, `aligned` and on the clip's time, one for each site; virtual ones take their place when empty.
     pub recordings: &'a [ImuRecording],
+}
+
+impl<'a> ImuClip<'a> {
+    /// A recording whose sensors are virtual.
+    pub fn simulated(recording: &'a Recording) -> Self {
+        Self {
+            subject: recording.subject(),
+            clip: recording.clip(),
+            first_frame: recording.first_frame(),
+            recordings: &[],
+        }
+    }
 }
 
 /// A run of frames of one phase.

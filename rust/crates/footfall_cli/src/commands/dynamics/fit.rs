@@ -1,6 +1,6 @@
 //! `footfall dynamics fit`: a corpus becomes two systems that switch.
 
-use crate::commands::training_run::{TrainingRun, conclude, skipped};
+use crate::commands::training_run::{TrainingRun, conclude};
 use crate::motion_input::CorpusArgs;
 use anyhow::{Context as _, Result, ensure};
 use footfall_train::dynamics::{DynamicsConfig, FittedDynamics, fit_dynamics};
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<()> {
         explained,
         one_step_error,
         bytes: bytes.len(),
-        skipped: skipped(&corpus).into_iter().map(|s| s.reason).collect(),
+        skipped: corpus.report.reasons(),
         seconds: run.seconds(),
     };
     conclude(args.json, &report, &report.skipped, &[], |report| {

@@ -4,11 +4,9 @@ use crate::commands::dynamics::SizeArgs;
 use crate::motion_input::CorpusArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
-use footfall_train::dynamics::{DynamicsComparison, compare_dynamics};
+use footfall_train::dynamics::DynamicsComparison;
+use footfall_train::evaluate::dynamics::{DynamicsReport, evaluate_dynamics};
 use plotters::prelude::*;
-use rayon::prelude::*;
-use serde::Serialize;
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Two switching systems against one linear system of the same order
@@ -31,71 +29,27 @@ pub(crate) struct DynamicsArgs {
     json: bool,
 }
 
-/// Errors of one category: means over its recordings.
-#[derive(Default, Serialize)]
-struct Errors {
-    recordings: usize,
-    switching_one_step: f64,
-    single_one_step: f64,
-    one_step_ratio: f64,
-    switching_simulated: f64,
-    single_simulated: f64,
-    simulated_ratio: f64,
-}
-
-#[derive(Serialize)]
-pub(super) struct Report {
-    categories: BTreeMap<String, Errors>,
-    /// Recordings with too few steps.
-    too_short: Vec<String>,
-}
-
 /// Evaluates, and returns the report that is printed as JSON. Draws the errors of the first recording if that was asked for.
-pub(super) fn evaluate(args: &DynamicsArgs) -> Result<Report> {
+fn evaluate(args: &DynamicsArgs) -> Result<DynamicsReport> {
     let config = args.size.config()?;
     let corpus = args.corpus.read()?;
-    let compared: Vec<Option<DynamicsComparison>> = corpus
-        .clips
-        .par_iter()
-        .map(|clip| {
-            compare_dynamics(clip, &config).with_context(|| clip.row.path.display().to_string())
-        })
-        .collect::<Result<_>>()?;
-    let mut report = Report {
-        categories: BTreeMap::new(),
-        too_short: Vec::new(),
-    };
-    for (clip, comparison) in corpus.clips.iter().zip(&compared) {
-        let Some(comparison) = comparison else {
-            report.too_short.push(clip.row.path.display().to_string());
-            continue;
-        };
-        let category = clip.row.category().to_owned();
-        report
-            .categories
-            .entry(category)
-            .or_default()
-            .add(comparison);
-    }
-    for errors in report.categories.values_mut() {
-        errors.finish();
-    }
+    let evaluation = evaluate_dynamics(&corpus.clips, &config)?;
     if let Some(path) = &args.plot {
-        let first = compared
-            .iter()
-            .flatten()
-            .next()
+        let first = evaluation
+            .comparisons
+            .first()
             .context("no recording has enough steps to be drawn")?;
         output::write_atomic(path, plot(first)?.as_bytes())?;
     }
-    Ok(report)
+    Ok(evaluation.report)
 }
 
 pub(crate) fn run(args: &DynamicsArgs) -> Result<()> {
-    let report = evaluate(args)?;
-    if args.json {
-        return output::print_json(&report);
-    }
+    output::print_report(args.json, &evaluate(args)?, table)
+}
+
+/// Categories in a line each.
+fn table(report: &DynamicsReport) -> String {
     let mut lines = vec![
         "Error over spread: one frame ahead, and left to itself".to_owned(),
         format!(
@@ -128,33 +82,7 @@ pub(crate) fn run(args: &DynamicsArgs) -> Result<()> {
             report.too_short.len()
         ));
     }
-    output::print_text(&lines.join("\n"))
-}
-
-impl Errors {
-    fn add(&mut self, comparison: &DynamicsComparison) {
-        self.recordings += 1;
-        let [one_step, simulated] = comparison.switching.means();
-        self.switching_one_step += one_step;
-        self.switching_simulated += simulated;
-        let [one_step, simulated] = comparison.single.means();
-        self.single_one_step += one_step;
-        self.single_simulated += simulated;
-    }
-
-    fn finish(&mut self) {
-        let count = self.recordings as f64;
-        for sum in [
-            &mut self.switching_one_step,
-            &mut self.single_one_step,
-            &mut self.switching_simulated,
-            &mut self.single_simulated,
-        ] {
-            *sum /= count;
-        }
-        self.one_step_ratio = self.switching_one_step / self.single_one_step;
-        self.simulated_ratio = self.switching_simulated / self.single_simulated;
-    }
+    lines.join("\n")
 }
 
 /// Both errors over time as an SVG, one frame ahead above, left to themselves below; switches as grey lines.

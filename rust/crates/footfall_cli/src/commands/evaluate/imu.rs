@@ -1,36 +1,23 @@
 //! `footfall evaluate imu`: bodies from sensors against the recorded ones.
 
-mod figures;
-mod transitions;
+mod table;
 
-use crate::commands::imu::{KeptArgs, imu_clip, parse_site};
+use crate::commands::imu::{KeptArgs, parse_site};
+use crate::commands::train::TrainingProgress;
 use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
-use figures::{Figures, summarise};
 use footfall_core::Site;
 use footfall_model::ImuModel;
 use footfall_motion::corpus::Where;
 use footfall_recon::Published;
-use footfall_train::imu::evaluate::{
-    Conditions, Device, HeldOut, evaluate_imu, evaluate_imu_model, evaluate_transitions,
+use footfall_train::evaluate::imu::{
+    ImuModels, ImuReport, ImuRequest, PAPER_SENSORS, evaluate_sensors,
 };
-use footfall_train::imu::{ImuClip, ImuTrainConfig};
+use footfall_train::imu::evaluate::Device;
 use footfall_train::read_model_file;
-use serde::Serialize;
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-
-/// Sites of figure 10 of the paper, each alone, and the pair of table 3.
-const SENSORS: [&[Site]; 6] = [
-    &[Site::RightFoot],
-    &[Site::RightFoot, Site::RightHand],
-    &[Site::RightKnee],
-    &[Site::RightHand],
-    &[Site::RightForearm],
-    &[Site::Root],
-];
 
 /// Bodies from one or two sensors against the recorded ones
 ///
@@ -93,6 +80,16 @@ enum DeviceArg {
     Strapped,
 }
 
+impl DeviceArg {
+    const fn device(self) -> Device {
+        match self {
+            Self::Board => Device::Board,
+            Self::Phone => Device::Phone,
+            Self::Strapped => Device::Strapped,
+        }
+    }
+}
+
 /// Parts of the published method (Mousas 2017).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum PartArg {
@@ -123,162 +120,45 @@ impl PartArg {
     }
 }
 
-#[derive(Serialize)]
-pub(super) struct Report {
-    /// Parts of the method that are as published.
-    as_published: Vec<&'static str>,
-    sensors: Vec<SensorReport>,
-}
-
-#[derive(Serialize)]
-struct SensorReport {
-    sites: Vec<&'static str>,
-    /// Changes from one motion to another; empty without --transitions, and then the only figures.
-    transitions: Vec<transitions::Figures>,
-    /// The model of --model; otherwise empty.
-    given_model: BTreeMap<String, Figures>,
-    /// Models that have seen all other recordings; empty with --strangers.
-    other_recordings: BTreeMap<String, Figures>,
-    /// Models that have seen other subjects only; empty when there is but one.
-    other_subjects: BTreeMap<String, Figures>,
-}
-
 /// Evaluates, and returns the report that is printed as JSON.
-pub(super) fn evaluate(args: &ImuArgs) -> Result<Report> {
-    let read = |path: &Path| read_model_file(path, ImuModel::from_bytes);
-    let model = args.model.as_deref().map(read).transpose()?;
-    let model = model.map(Arc::new);
-    let asked = match (&model, &args.sites[..]) {
-        (Some(model), _) => vec![&model.sites[..]],
-        (None, []) => SENSORS.to_vec(),
-        (None, sites) => vec![sites],
-    };
-    let asked: Vec<ImuTrainConfig> = asked
-        .into_iter()
-        .map(|sites| args.kept.config(sites))
-        .collect();
-    for config in &asked {
-        config.check()?;
-    }
+fn evaluate(args: &ImuArgs) -> Result<ImuReport> {
+    let request = args.request()?;
+    request.check()?;
     let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
-    let clips: Vec<ImuClip<'_>> = corpus.clips.iter().map(imu_clip).collect();
-    let categories: Vec<&str> = corpus
-        .clips
-        .iter()
-        .map(|clip| clip.row.category())
-        .collect();
-    let judged = |clip: usize| {
-        let row = &corpus.clips[clip].row;
-        let holds = |c: &Where| row.column(&c.column).is_some_and(|v| c.matches(v));
-        args.judged.iter().all(holds)
-    };
-    let several = clips.iter().any(|clip| clip.subject != clips[0].subject);
-    let device = match args.device {
-        DeviceArg::Board => Device::Board,
-        DeviceArg::Phone => Device::Phone,
-        DeviceArg::Strapped => Device::Strapped,
-    };
-    let parts = args.as_published.iter().flat_map(|part| part.parts());
-    let published: Vec<Published> = parts.copied().collect();
-    let mut sensors = Vec::new();
-    for config in &asked {
-        let names: Vec<&'static str> = config.sites.iter().map(|site| site.name()).collect();
-        output::note(&format!("reconstructing from {}", names.join(" and ")));
-        let conditions = |held_out: HeldOut| Conditions {
-            held_out,
-            device,
-            published: published.clone(),
+    let mut progress = TrainingProgress(output::Progress::new());
+    let report = evaluate_sensors(&corpus.clips, &request, &mut progress)
+        .with_context(|| args.corpus.display().to_string())?;
+    progress.0.finish();
+    Ok(report)
+}
+
+impl ImuArgs {
+    /// The request that the arguments make; reads the model if there is one.
+    fn request(&self) -> Result<ImuRequest> {
+        let asked = match &self.sites[..] {
+            [] => PAPER_SENSORS.to_vec(),
+            sites => vec![sites],
         };
-        if let Some(model) = &model {
-            let trials = evaluate_imu_model(&clips, model, &conditions(HeldOut::Subject), &judged)?;
-            sensors.push(SensorReport {
-                given_model: summarise(&trials, &categories),
-                ..SensorReport::of(names)
-            });
-            continue;
-        }
-        if args.transitions {
-            let conditions = conditions(HeldOut::Subject);
-            let trials = evaluate_transitions(&clips, config, &conditions, &judged)?;
-            sensors.push(SensorReport {
-                transitions: transitions::figures(&trials),
-                ..SensorReport::of(names)
-            });
-            continue;
-        }
-        let figures = |held_out: HeldOut| -> Result<BTreeMap<String, Figures>> {
-            let conditions = conditions(held_out);
-            let trials = evaluate_imu(&clips, config, &conditions, &judged)
-                .with_context(|| args.corpus.display().to_string())?;
-            Ok(summarise(&trials, &categories))
+        let asked = asked.into_iter().map(|sites| self.kept.config(sites));
+        let models = match &self.model {
+            Some(path) => {
+                let model = read_model_file(path, ImuModel::from_bytes)?;
+                ImuModels::Given(Arc::new(model))
+            }
+            None if self.transitions => ImuModels::Transitions(asked.collect()),
+            None if self.strangers => ImuModels::TrainedOnStrangers(asked.collect()),
+            None => ImuModels::Trained(asked.collect()),
         };
-        sensors.push(SensorReport {
-            other_recordings: if args.strangers {
-                BTreeMap::new()
-            } else {
-                figures(HeldOut::Recording)?
-            },
-            other_subjects: if several {
-                figures(HeldOut::Subject)?
-            } else {
-                BTreeMap::new()
-            },
-            ..SensorReport::of(names)
-        });
+        let parts = self.as_published.iter().flat_map(|part| part.parts());
+        Ok(ImuRequest {
+            models,
+            judged: self.judged.clone(),
+            device: self.device.device(),
+            published: parts.copied().collect(),
+        })
     }
-    Ok(Report {
-        as_published: published.iter().map(|part| part.name()).collect(),
-        sensors,
-    })
 }
 
 pub(crate) fn run(args: &ImuArgs) -> Result<()> {
-    let report = evaluate(args)?;
-    if args.json {
-        return output::print_json(&report);
-    }
-    let mut lines = Vec::new();
-    for sensor in &report.sensors {
-        lines.extend(transitions::lines(
-            &sensor.sites.join(" and "),
-            &sensor.transitions,
-        ));
-        for (seen, figures) in [
-            ("given model", &sensor.given_model),
-            ("trained on other recordings", &sensor.other_recordings),
-            ("trained on other subjects", &sensor.other_subjects),
-        ] {
-            if figures.is_empty() {
-                continue;
-            }
-            lines.push(format!(
-                "{}, {seen}; cm over moving frames",
-                sensor.sites.join(" and ")
-            ));
-            lines.push(Figures::title());
-            lines.extend(
-                figures
-                    .iter()
-                    .map(|(category, figures)| figures.line(category)),
-            );
-            if let Some(total) = figures.get("total") {
-                lines.extend(total.confusion_lines());
-            }
-            lines.push(String::new());
-        }
-    }
-    output::print_text(lines.join("\n").trim_end())
-}
-
-impl SensorReport {
-    /// Nothing yet of sensors at these sites.
-    const fn of(sites: Vec<&'static str>) -> Self {
-        Self {
-            sites,
-            transitions: Vec::new(),
-            given_model: BTreeMap::new(),
-            other_recordings: BTreeMap::new(),
-            other_subjects: BTreeMap::new(),
-        }
-    }
+    output::print_report(args.json, &evaluate(args)?, table::table)
 }

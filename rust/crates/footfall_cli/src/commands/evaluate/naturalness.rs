@@ -89,15 +89,12 @@ impl GaitArg {
 
 pub(crate) fn run(args: &NaturalnessArgs) -> Result<()> {
     let report = evaluate(args)?;
-    report.note_skipped();
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::print_text(&report.table())
+    output::note_left_out(&report.skipped);
+    output::print_report(args.json, &report, Report::table)
 }
 
 /// The report, as JSON has it.
-pub(super) fn evaluate(args: &NaturalnessArgs) -> Result<Report> {
+fn evaluate(args: &NaturalnessArgs) -> Result<Report> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
     let (model, corpus) = args.judged.read()?;
@@ -124,11 +121,10 @@ pub(super) fn evaluate(args: &NaturalnessArgs) -> Result<Report> {
     let comparison = compare(&captured, &generated, args.gait.gait())
         .with_context(|| args.judged.corpus.display().to_string())?;
     progress.finish();
-    let skipped = corpus.report.skipped.into_iter();
     Ok(Report::new(
         args.gait.gait(),
         &comparison,
-        skipped.map(|clip| clip.reason).collect(),
+        corpus.report.reasons(),
     ))
 }
 

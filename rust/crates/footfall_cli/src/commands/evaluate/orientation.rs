@@ -59,15 +59,11 @@ pub(crate) struct OrientationArgs {
 }
 
 pub(crate) fn run(args: &OrientationArgs) -> Result<()> {
-    let report = evaluate(args)?;
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::print_text(&report.table())
+    output::print_report(args.json, &evaluate(args)?, Report::table)
 }
 
 /// The report, as JSON has it.
-pub(super) fn evaluate(args: &OrientationArgs) -> Result<Report> {
+fn evaluate(args: &OrientationArgs) -> Result<Report> {
     let mut report = Report::default();
     if let Some(index) = &args.corpus {
         let corpus = args.knees.read_corpus(index, &args.conditions)?;

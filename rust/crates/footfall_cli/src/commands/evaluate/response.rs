@@ -41,15 +41,11 @@ pub(crate) struct ResponseArgs {
 }
 
 pub(crate) fn run(args: &ResponseArgs) -> Result<()> {
-    let report = evaluate(args)?;
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::print_text(&report.table())
+    output::print_report(args.json, &evaluate(args)?, Report::table)
 }
 
 /// The report, as JSON has it.
-pub(super) fn evaluate(args: &ResponseArgs) -> Result<Report> {
+fn evaluate(args: &ResponseArgs) -> Result<Report> {
     let model = Arc::new(read_model_file(&args.model, GaitModel::from_bytes)?);
     let options = args.map.read(None)?;
     let takes: Vec<Take> = args

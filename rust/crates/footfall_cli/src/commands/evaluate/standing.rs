@@ -46,15 +46,11 @@ pub(super) struct Person {
 }
 
 pub(crate) fn run(args: &StandingArgs) -> Result<()> {
-    let report = evaluate(args)?;
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::print_text(&report.table())
+    output::print_report(args.json, &evaluate(args)?, Report::table)
 }
 
 /// The report, as JSON has it.
-pub(super) fn evaluate(args: &StandingArgs) -> Result<Report> {
+fn evaluate(args: &StandingArgs) -> Result<Report> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
     let (model, corpus) = args.judged.read()?;

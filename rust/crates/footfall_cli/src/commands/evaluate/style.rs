@@ -1,12 +1,15 @@
 //! `footfall evaluate style`: are styles told apart, do they resemble their model, do they move like people?
 
-use super::style_report::{Report, tables};
+mod table;
+
 use crate::corpus_pair::CorpusPair;
 use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
-use footfall_train::evaluate::{Split, StyleEvaluation, evaluate_styles};
+use footfall_train::evaluate::style_report::StyleReport;
+use footfall_train::evaluate::{Split, evaluate_styles};
+use table::tables;
 
 /// Recognition, resemblance and naturalness of styles
 ///
@@ -39,24 +42,13 @@ enum SplitArg {
 }
 
 pub(crate) fn run(args: &StyleArgs) -> Result<()> {
-    let (evaluation, skipped) = judge(args)?;
-    for reason in &skipped {
-        output::note(&format!("warning: left out {reason}"));
-    }
-    if args.json {
-        return output::print_json(&Report::new(&evaluation, skipped));
-    }
-    output::print_text(&tables(&evaluation))
+    let report = evaluate(args)?;
+    output::note_left_out(&report.skipped);
+    output::print_report(args.json, &report, tables)
 }
 
 /// Evaluates, and returns the report that is printed as JSON.
-pub(super) fn evaluate(args: &StyleArgs) -> Result<Report> {
-    let (evaluation, skipped) = judge(args)?;
-    Ok(Report::new(&evaluation, skipped))
-}
-
-/// The evaluation, and what was left out of it.
-fn judge(args: &StyleArgs) -> Result<(StyleEvaluation, Vec<String>)> {
+fn evaluate(args: &StyleArgs) -> Result<StyleReport> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
     let corpora = args.corpora.read(args.knees)?;
@@ -70,6 +62,5 @@ fn judge(args: &StyleArgs) -> Result<(StyleEvaluation, Vec<String>)> {
     let evaluation = evaluate_styles(&corpora.real.clips, synthesised, split)
         .with_context(|| args.corpora.real.index.display().to_string())?;
     progress.finish();
-    let skipped = corpora.skipped();
-    Ok((evaluation, skipped))
+    Ok(StyleReport::new(&evaluation, corpora.skipped()))
 }

@@ -1,12 +1,11 @@
 //! `footfall imu train`: a corpus becomes a model of what sensors on a body mean.
 
 use super::{parse_site, synchronous};
-use crate::commands::training_run::{TrainingRun, conclude, skipped};
+use crate::commands::training_run::{TrainingRun, conclude};
 use crate::motion_input::CorpusArgs;
 use anyhow::{Context as _, Result};
 use footfall_core::Site;
 use footfall_imu::ImuRecording;
-use footfall_motion::recording::Recording;
 use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -101,16 +100,6 @@ struct Report<'a> {
     seconds: f64,
 }
 
-/// A recording as the trainer takes it, with simulated sensors.
-pub(in crate::commands) fn imu_clip(clip: &Recording) -> ImuClip<'_> {
-    ImuClip {
-        subject: clip.row.subject(),
-        clip: &clip.retargeted.clip,
-        first_frame: clip.retargeted.first_frame,
-        recordings: &[],
-    }
-}
-
 pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
     let run = TrainingRun::begin(&args.corpus, args.describe.as_deref(), &args.output)?;
     let config = args.model.config()?;
@@ -126,7 +115,7 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
         .zip(&real)
         .map(|(clip, recordings)| ImuClip {
             recordings,
-            ..imu_clip(clip)
+            ..ImuClip::simulated(clip)
         })
         .collect();
     let provenance = run.provenance(&corpus, "footfall imu train", &[], &options(&args.model));
@@ -147,7 +136,7 @@ pub(crate) fn run(args: &ImuTrainArgs) -> Result<()> {
         segments: model.segments.len(),
         phases: model.phases.len(),
         bytes: bytes.len(),
-        skipped: skipped(&corpus).into_iter().map(|s| s.reason).collect(),
+        skipped: corpus.report.reasons(),
         seconds: run.seconds(),
     };
     conclude(args.json, &report, &report.skipped, &[], |report| {

@@ -1,7 +1,6 @@
 //! The comparison as JSON and as a table.
 
 use super::pace::Pace;
-use crate::output;
 use footfall_train::evaluate::told_apart::bouts::Gait;
 use footfall_train::evaluate::told_apart::detail::PartDetail;
 use footfall_train::evaluate::told_apart::folds::{Accuracy, Verdict};
@@ -25,7 +24,7 @@ pub(crate) struct Report {
     detail: Vec<Detail>,
     captured: Measures,
     generated: Measures,
-    skipped: Vec<String>,
+    pub(super) skipped: Vec<String>,
 }
 
 /// Balanced accuracies with one set of features; chance is 0.5.
@@ -127,13 +126,6 @@ impl Report {
             captured,
             generated,
             skipped,
-        }
-    }
-
-    /// Warns of recordings that were left out.
-    pub(super) fn note_skipped(&self) {
-        for reason in &self.skipped {
-            output::note(&format!("warning: left out {reason}"));
         }
     }
 

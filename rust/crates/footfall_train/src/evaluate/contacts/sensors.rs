@@ -1,8 +1,7 @@
 //! Switches and swings of foot sensors against the events of a reference.
 
-use super::Agreement;
 use super::bodies::Bodies;
-use anyhow::{Context as _, Result, bail, ensure};
+use super::{Agreement, ContactsError};
 use footfall_core::{EventKind, Side};
 use footfall_imu::csv;
 use footfall_imu::events::{detect_swings, events_of};
@@ -44,21 +43,21 @@ pub(super) fn compare(
     index: &Path,
     bodies: Option<&Bodies>,
     tolerance_ms: f64,
-) -> Result<BTreeMap<String, Agreement>> {
+) -> Result<BTreeMap<String, Agreement>, ContactsError> {
     let mut agreements: BTreeMap<String, Agreement> = BTreeMap::new();
     for row in read_index(index)? {
         let events = row.column(EVENTS_COLUMN).unwrap_or_default();
-        ensure!(
-            !events.is_empty(),
-            "{}, line {}: column \"{EVENTS_COLUMN}\" is missing or empty; name the file with the known events there",
-            index.display(),
-            row.line
-        );
+        if events.is_empty() {
+            let reason = format!(
+                "column \"{EVENTS_COLUMN}\" is missing or empty; name the file with the known events there"
+            );
+            return Err(lack(index, &row, reason));
+        }
         let events = read_events(&index.parent().unwrap_or(Path::new("")).join(events))?;
         let recording = csv::read(&row.path)?;
         let switches =
             detect_sensor_switches(&recording.evenly_spaced().channels(), recording.rate_hz())
-                .with_context(|| row.path.display().to_string())?;
+                .map_err(|error| ContactsError::file(&row.path, error))?;
         let switches = switches
             .iter()
             .map(|switch| (recording.start_secs() + switch.time_secs, switch.kind));
@@ -70,9 +69,7 @@ pub(super) fn compare(
             ("swings", worn, swings.collect()),
         ];
         if let Some(bodies) = bodies {
-            let told = bodies
-                .events(&recording, worn)
-                .with_context(|| row.path.display().to_string())?;
+            let told = bodies.events(&row.path, &recording, worn)?;
             let swings = events_of(&told.swings).into_iter();
             let swings = swings.map(|event| (event.time_secs, event.kind));
             detectors.push(("swings as they come", worn, swings.collect()));
@@ -108,7 +105,17 @@ pub(super) fn compare(
             }
         }
     }
+    agreements.values_mut().for_each(Agreement::summarise);
     Ok(agreements)
+}
+
+/// An error about a row of the index.
+fn lack(index: &Path, row: &IndexRow, reason: String) -> ContactsError {
+    ContactsError::Row {
+        index: index.to_owned(),
+        line: row.line,
+        reason,
+    }
 }
 
 impl Event {
@@ -120,35 +127,33 @@ impl Event {
 }
 
 /// The foot that wears the sensor: the index says it, or all events are of one.
-fn worn_foot(row: &IndexRow, index: &Path, events: &[Event]) -> Result<Side> {
+fn worn_foot(row: &IndexRow, index: &Path, events: &[Event]) -> Result<Side, ContactsError> {
     let named = row.column(FOOT_COLUMN).unwrap_or_default();
     let side = Side::BOTH.into_iter().find(|side| {
         let all_own = events.iter().all(|event| event.is_of(*side, *side));
         named == side.name() || (named.is_empty() && all_own)
     });
-    let Some(side) = side else {
-        bail!(
-            "{}, line {}: it is not told which foot wears the sensor; write left or right into a column \"{FOOT_COLUMN}\"",
-            index.display(),
-            row.line
+    side.ok_or_else(|| {
+        let reason = format!(
+            "it is not told which foot wears the sensor; write left or right into a column \"{FOOT_COLUMN}\""
         );
-    };
-    Ok(side)
+        lack(index, row, reason)
+    })
 }
 
-fn read_events(path: &Path) -> Result<Vec<Event>> {
+fn read_events(path: &Path) -> Result<Vec<Event>, ContactsError> {
+    let fault = |reason: String| ContactsError::file(path, reason);
     let text = fs::read_to_string(path)
-        .with_context(|| format!("{}: cannot read the events", path.display()))?;
-    let events: Events = serde_json::from_str(&text).with_context(|| {
-        format!(
-            "{}: not what `footfall imu events --json` writes",
-            path.display()
-        )
+        .map_err(|error| fault(format!("cannot read the events: {error}")))?;
+    let events: Events = serde_json::from_str(&text).map_err(|error| {
+        fault(format!(
+            "not what `footfall imu events --json` writes: {error}"
+        ))
     })?;
-    ensure!(
-        !events.events.is_empty() && events.events.iter().all(|event| event.time_s.is_finite()),
-        "{}: there are no events; give those of the reference",
-        path.display()
-    );
+    if events.events.is_empty() || !events.events.iter().all(|event| event.time_s.is_finite()) {
+        return Err(fault(
+            "there are no events; give those of the reference".to_owned(),
+        ));
+    }
     Ok(events.events)
 }

@@ -1,110 +1,57 @@
-//! Figures of reconstructed bodies by category, and their lines in a table.
+//! Figures of reconstructed bodies by category.
 
+use crate::imu::evaluate::ImuTrial;
 use footfall_core::Behaviour;
-use footfall_train::imu::evaluate::ImuTrial;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Means over the frames of a category's recordings.
-#[derive(Default, Serialize)]
-pub(super) struct Figures {
-    recordings: usize,
-    frames: usize,
-    moving_frames: usize,
-    live_cm: f64,
-    whole_cm: f64,
-    /// Standing included.
-    live_all_cm: f64,
-    whole_all_cm: f64,
+/// Means over the frames of a category's recordings, over those in which the body moves unless something else is said. Distances are those of the
+/// joints, hips and heading brought together.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ImuFigures {
+    /// Number of recordings.
+    pub recordings: usize,
+    /// Number of their frames.
+    pub frames: usize,
+    /// Those in which the body moves.
+    pub moving_frames: usize,
+    /// Distance as a game shows it.
+    pub live_cm: f64,
+    /// Distance with what comes later in the recording.
+    pub whole_cm: f64,
+    /// The first over all frames.
+    pub live_all_cm: f64,
+    /// The second over all frames.
+    pub whole_all_cm: f64,
     /// Standard deviation of `live_cm` between recordings.
-    live_spread_cm: f64,
-    /// One pose for all: the mean of the training data.
-    constant_cm: f64,
-    /// The average course of the true phase at its true time.
-    average_cm: f64,
-    /// The nearest of the model's poses.
-    nearest_cm: f64,
+    pub live_spread_cm: f64,
+    /// Distance of one pose for all: the mean of the training data.
+    pub constant_cm: f64,
+    /// Distance of the average course of the true phase at its true time.
+    pub average_cm: f64,
+    /// Distance of the nearest of the model's poses.
+    pub nearest_cm: f64,
     /// Mean correlation of the joints' coordinates that vary by more than a centimetre, live.
-    correlation: f64,
-    /// Share of the frames whose behaviour is recognised live.
-    recognised: f64,
+    pub correlation: f64,
+    /// Share of all frames whose behaviour is recognised live.
+    pub recognised: f64,
     /// Acceleration of the joints that one frame in twenty exceeds, m/s²: recorded, and live.
-    sudden_m_s2: [f64; 2],
-    /// Changes of behaviour, and the median delay with which they are recognised live.
-    changes: usize,
-    median_delay_s: Option<f64>,
+    pub sudden_m_s2: [f64; 2],
+    /// Number of changes of behaviour.
+    pub changes: usize,
+    /// Median delay with which these are recognised live, seconds.
+    pub median_delay_s: Option<f64>,
     /// Median bend of the knees while the body stands, degrees: recorded, and live.
-    standing_knee_deg: Option<[f32; 2]>,
+    pub standing_knee_deg: Option<[f32; 2]>,
     /// Of the frames of each behaviour, the share that is recognised live as each.
-    confusion: BTreeMap<&'static str, BTreeMap<&'static str, f64>>,
-}
-
-impl Figures {
-    /// Titles of the columns of a [`line`](Self::line).
-    pub(super) fn title() -> String {
-        format!(
-            "{:28} {:>10} {:>7} {:>6} {:>7} {:>6} {:>5} {:>9} {:>8} {:>8} {:>11} {:>6} {:>16} {:>12}",
-            "",
-            "recordings",
-            "frames",
-            "live",
-            "spread",
-            "whole",
-            "r",
-            "constant",
-            "average",
-            "nearest",
-            "recognised",
-            "delay",
-            "standing knee",
-            "sudden, m/s²"
-        )
-    }
-
-    /// Behaviours that each behaviour is taken for, in shares of its frames.
-    pub(super) fn confusion_lines(&self) -> Vec<String> {
-        let mut lines = vec![format!(
-            "{:28} {}",
-            "taken live for",
-            Behaviour::ALL.map(|b| format!("{:>9}", b.name())).join(" ")
-        )];
-        lines.extend(self.confusion.iter().map(|(truth, shares)| {
-            let share = |b: Behaviour| 100.0 * shares.get(b.name()).copied().unwrap_or(0.0);
-            let cells = Behaviour::ALL.map(|b| format!("{:7.0} %", share(b)));
-            format!("{truth:28} {}", cells.join(" "))
-        }));
-        lines
-    }
-
-    /// One line of the table.
-    pub(super) fn line(&self, category: &str) -> String {
-        let delay = self
-            .median_delay_s
-            .map_or("-".to_owned(), |d| format!("{d:.2} s"));
-        let knee = self
-            .standing_knee_deg
-            .map_or("-".to_owned(), |[truth, live]| {
-                format!("{live:.0}° of {truth:.0}°")
-            });
-        format!(
-            "{category:28} {:10} {:7} {:6.2} {:7.2} {:6.2} {:5.2} {:9.2} {:8.2} {:8.2} {:9.0} % {delay:>6} {knee:>16} {:>12}",
-            self.recordings,
-            self.moving_frames,
-            self.live_cm,
-            self.live_spread_cm,
-            self.whole_cm,
-            self.correlation,
-            self.constant_cm,
-            self.average_cm,
-            self.nearest_cm,
-            100.0 * self.recognised,
-            format!("{:.0} of {:.0}", self.sudden_m_s2[1], self.sudden_m_s2[0]),
-        )
-    }
+    pub confusion: BTreeMap<&'static str, BTreeMap<&'static str, f64>>,
 }
 
 /// Figures by category, and of all where there are several.
-pub(super) fn summarise(trials: &[ImuTrial], categories: &[&str]) -> BTreeMap<String, Figures> {
+pub(super) fn by_category(
+    trials: &[ImuTrial],
+    categories: &[&str],
+) -> BTreeMap<String, ImuFigures> {
     let mut names: Vec<&str> = trials.iter().map(|trial| categories[trial.clip]).collect();
     names.sort_unstable();
     names.dedup();
@@ -114,7 +61,7 @@ pub(super) fn summarise(trials: &[ImuTrial], categories: &[&str]) -> BTreeMap<St
             .filter(|trial| categories[trial.clip] == *name);
         ((*name).to_owned(), figures_of(&own.collect::<Vec<_>>()))
     });
-    let mut all: BTreeMap<String, Figures> = all.collect();
+    let mut all: BTreeMap<String, ImuFigures> = all.collect();
     if all.len() > 1 {
         all.insert(
             "total".to_owned(),
@@ -124,7 +71,7 @@ pub(super) fn summarise(trials: &[ImuTrial], categories: &[&str]) -> BTreeMap<St
     all
 }
 
-fn figures_of(trials: &[&ImuTrial]) -> Figures {
+fn figures_of(trials: &[&ImuTrial]) -> ImuFigures {
     let weighed = |weight: fn(&ImuTrial) -> usize, value: fn(&ImuTrial) -> f64| {
         let sum: f64 = trials.iter().map(|t| weight(t) as f64 * value(t)).sum();
         sum / trials.iter().map(|t| weight(t)).sum::<usize>().max(1) as f64
@@ -143,7 +90,7 @@ fn figures_of(trials: &[&ImuTrial]) -> Figures {
         .flat_map(|t| t.delays_secs.iter().copied())
         .collect();
     delays.sort_by(f64::total_cmp);
-    Figures {
+    ImuFigures {
         recordings: trials.len(),
         frames: trials.iter().map(|t| t.frames).sum(),
         moving_frames: trials.iter().map(|t| t.moving).sum(),

@@ -1,13 +1,13 @@
 //! Contacts of the bodies that a sensor on a foot drives, against the events of a reference.
 
-use anyhow::{Context as _, Result, ensure};
+use super::ContactsError;
+use crate::read_model_file;
 use footfall_core::{EventKind, Side};
 use footfall_imu::events::Swing;
 use footfall_imu::{ContactMeter, ImuRecording, ImuSample};
 use footfall_model::ImuModel;
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
 use footfall_recon::{Prepared, ReconConfig, find_mounting, reconstruct_recording};
-use footfall_train::read_model_file;
 use glam::Vec3;
 use std::path::Path;
 use std::sync::Arc;
@@ -40,20 +40,23 @@ pub(super) struct Bodies {
 
 impl Bodies {
     /// Reads the model.
-    pub(super) fn read(path: &Path) -> Result<Self> {
+    ///
+    /// # Errors
+    /// [`ContactsError`] for a file that is no model of one sensor on a foot.
+    pub(super) fn read(path: &Path) -> Result<Self, ContactsError> {
         let model = read_model_file(path, ImuModel::from_bytes)?;
         let side = match model.sites[..] {
             [site] if site.is_foot() => site.side(),
             _ => None,
         };
         let Some(worn) = side else {
-            anyhow::bail!(
-                "{}: the model is not for one sensor on a foot; give one that `footfall imu train --site right_foot` wrote",
-                path.display()
-            );
+            return Err(ContactsError::file(
+                path,
+                "the model is not for one sensor on a foot; give one that `footfall imu train --site right_foot` wrote",
+            ));
         };
         let prepared =
-            Prepared::new(Arc::new(model)).with_context(|| path.display().to_string())?;
+            Prepared::new(Arc::new(model)).map_err(|error| ContactsError::file(path, error))?;
         Ok(Self {
             prepared: Arc::new(prepared),
             worn,
@@ -61,8 +64,13 @@ impl Bodies {
     }
 
     /// Swings and bodies that a recording of the sensor on a foot gives, whose mounting is found. Recordings of the model's other foot are mirrored,
-    /// and so are their bodies.
-    pub(super) fn events(&self, recording: &ImuRecording, foot: Side) -> Result<Told> {
+    /// and so are their bodies. Errors name `path`, the recording's file.
+    pub(super) fn events(
+        &self,
+        path: &Path,
+        recording: &ImuRecording,
+        foot: Side,
+    ) -> Result<Told, ContactsError> {
         let mirrored = foot != self.worn;
         let recording = if mirrored {
             mirrored_recording(recording)
@@ -70,15 +78,19 @@ impl Bodies {
             recording.clone()
         };
         let config = ReconConfig::default();
-        let mounting = find_mounting(&self.prepared, 0, &recording, &config.tracker)?;
+        let mounting = find_mounting(&self.prepared, 0, &recording, &config.tracker)
+            .map_err(|error| ContactsError::file(path, error))?;
         let turned = [recording.turned(mounting.site_from_sensor)];
         let skeleton = &self.prepared.model().skeleton;
-        let body = |live: bool| -> Result<Vec<BodyEvent>> {
-            let made = reconstruct_recording(&self.prepared, &turned, skeleton, &config, live)?;
-            ensure!(
-                made.clip.poses.len() >= 2,
-                "the recording is too short for a motion"
-            );
+        let body = |live: bool| -> Result<Vec<BodyEvent>, ContactsError> {
+            let made = reconstruct_recording(&self.prepared, &turned, skeleton, &config, live)
+                .map_err(|error| ContactsError::file(path, error))?;
+            if made.clip.poses.len() < 2 {
+                return Err(ContactsError::file(
+                    path,
+                    "the recording is too short for a motion; record some steps",
+                ));
+            }
             let clip = made.clip.resampled(LOOK_RATE_HZ);
             let contacts = detect_contacts(&clip, &ContactConfig::from_frame(0));
             let events = contacts.events().into_iter().map(|event| BodyEvent {
