@@ -201,9 +201,9 @@ fn captured_styles_are_recognised_as_the_calibration_says() {
     assert_eq!(within["styles"].as_array().unwrap().len(), 14);
     assert!(rate(&second) >= 0.99, "{}", second["real"]);
     assert!(rate(&within) >= 0.97, "{}", within["real"]);
-    assert!((0.4..0.9).contains(&rate(&across)), "{}", across["real"]);
+    assert!((0.48..0.61).contains(&rate(&across)), "{}", across["real"]);
     let variability = second["step_variability_ratio"].as_f64().unwrap();
-    assert!((0.8..1.25).contains(&variability), "{variability}");
+    assert!((0.95..1.15).contains(&variability), "{variability}");
 }
 
 fn compare_training(index: &Path, conditions: &[&str]) -> serde_json::Value {
@@ -223,10 +223,10 @@ fn number(report: &serde_json::Value, key: &str) -> f64 {
 fn assert_adaptive_is_better(report: &serde_json::Value) {
     let number = |key| number(report, key);
     assert!(
-        number("adaptive_log_variance") < number("plain_log_variance"),
+        number("adaptive_log_variance") < number("plain_log_variance") - 0.1,
         "{report}"
     );
-    assert!(number("adaptive") > number("plain"), "{report}");
+    assert!(number("adaptive") > number("plain") + 30.0, "{report}");
 }
 
 #[test]
@@ -246,7 +246,7 @@ fn unseen_cmu_walkers_are_explained_better_by_walker_adaptive_training() {
     // Also when the plainly trained walk gets the unseen walker's transform.
     let number = |key| number(&report, key);
     assert!(
-        number("adaptive") > number("plain_adapted") + 5.0,
+        number("adaptive") > number("plain_adapted") + 8.0,
         "{report}"
     );
     assert!(report["walkers"].as_array().unwrap().len() >= 4, "{report}");

@@ -98,11 +98,8 @@ fn the_cmu_walks_train_in_a_minute_and_walk_with_planted_feet() {
             within(cadence, range.cadence_per_minute),
             "seed {seed}: {cadence} steps a minute"
         );
-        // 20 steps have 20 or 21 initial contacts, but for those in the first and last frame.
-        assert!(
-            (18..=21).contains(&quality.initial_contacts),
-            "seed {seed}: {quality:?}"
-        );
+        // 20 steps show 19 initial contacts: both feet stand already in the first frame.
+        assert_eq!(quality.initial_contacts, 19, "seed {seed}: {quality:?}");
     }
 }
 
@@ -149,8 +146,8 @@ fn captured_feet_slip_as_much_as_the_calibration_says() {
     };
     let folder = tempfile::tempdir().unwrap();
     for (walks, range) in [
-        ("cmu/neutral_walk", 0.03..0.12),
-        ("bandai/neutral_walk", 0.005..0.04),
+        ("cmu/neutral_walk", 0.05..0.07),
+        ("bandai/neutral_walk", 0.018..0.03),
     ] {
         let mut slips: Vec<f64> = std::fs::read_dir(data.join(walks))
             .unwrap()
@@ -175,10 +172,10 @@ fn captured_feet_slip_as_much_as_the_calibration_says() {
     }
 }
 
-/// Δ² over neighbouring frames is the default because the paper's, which couples frames of equal parity alone, is no
-/// smoother from frame to frame.
+/// Δ² over neighbouring frames is the default because the paper's, which couples frames of equal parity alone, lets frames of either
+/// parity go ways of their own: 0.129 of a trajectory's energy is such ripple, and 0.012 here.
 #[test]
-fn the_default_windows_ripple_no_more_than_the_paper_s() {
+fn the_default_windows_ripple_a_tenth_as_much_as_the_paper_s() {
     let Some(data) = recordings("ripple") else {
         return;
     };
@@ -216,5 +213,8 @@ fn the_default_windows_ripple_no_more_than_the_paper_s() {
         ripples.sum::<f64>() / 8.0
     });
     eprintln!("ripple: paper {paper:.2e}, compact {compact:.2e}");
-    assert!(compact <= 1.05 * paper, "compact {compact}, paper {paper}");
+    assert!(
+        compact < 0.15 * paper && compact < 0.02,
+        "compact {compact}, paper {paper}"
+    );
 }

@@ -95,7 +95,7 @@ impl World {
                     None,
                     false,
                 );
-                index.push_str(&format!("{file},styled_walk,{name},carla\n"));
+                index.extend([file.as_str(), ",styled_walk,", name, ",carla\n"]);
             }
         }
         let path = self.folder.path().join("index.csv");
