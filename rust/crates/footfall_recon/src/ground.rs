@@ -3,37 +3,16 @@
 //! The body travels as the recordings do, and is then moved so that a standing foot keeps its place: the way comes from the legs. What is left
 //! when both stand is the legs' to take up. A standing foot is a rocker ([`footfall_ik::rocker`]): it cannot slide or sink.
 
+mod foot;
+
 use crate::body::{BodyFrame, pose_of};
-use footfall_core::ease::smooth_step;
+use foot::StandingFoot;
 use footfall_core::rotation::{from_heading, wrap_angle};
-use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
-use footfall_ik::{FootTarget, Leg, Plant, RockerFoot, foot_heading, foot_pitch, settled_pitch};
+use footfall_core::{ModelPose, Pose, Side, Skeleton, forward_kinematics};
+use footfall_ik::{FootTarget, Leg, RockerFoot};
 use footfall_imu::ToldContact;
 use footfall_model::imu_model::{CONTACT, TURN, WAY};
 use glam::{Quat, Vec3};
-
-/// A foot comes to stand above the first of these probabilities and leaves the ground below the second.
-const STANDS: [f32; 2] = [0.55, 0.4];
-
-/// A foot whose leg would have to stretch so far to where it stands is put anew, metres.
-const MAX_DRIFT_M: f32 = 0.15;
-
-/// A foot whose own sensor says that it is in the air is held so far off the ground, as a share of the leg's length, where the body moves it as slowly
-/// as a foot that stands: less than the first of these speeds, leg lengths a second, and not at all above the second.
-const CLEARANCE: f32 = 0.08;
-const CLEARED_SPEEDS: [f32; 2] = [1.5, 3.5];
-
-/// It is raised so far within this time from when it left the ground, seconds.
-const CLEARED_AFTER_SECS: f32 = 0.05;
-
-/// A foot whose own sensor says that it stands may drift so much further.
-const TOLD_DRIFT: f32 = 2.0;
-
-/// Half-life of what remains of a correction when a foot lands, seconds.
-const SETTLE_HALF_LIFE_SECS: f32 = 0.01;
-
-/// Rate of the critically damped spring by which the correction of a foot that leaves the ground dies away, 1/s.
-const RELEASE_RATE: f32 = 60.0;
 
 /// The height of the pelvis follows the standing feet with this half-life, seconds.
 const HEIGHT_HALF_LIFE_SECS: f32 = 0.05;
@@ -68,52 +47,6 @@ pub struct Ground {
     feet: [StandingFoot; 2],
     stride: f32,
     model: ModelPose,
-}
-
-/// One foot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct StandingFoot {
-    plant: Option<Plant>,
-    /// Remainder that settles: how far the ankle is from where it should be, how fast that changes (m/s), and how the foot is turned against it.
-    ankle: Vec3,
-    drift: Vec3,
-    turn: Quat,
-    /// Offset of the ankle and turn of the foot against the recordings, in the last frame.
-    last: (Vec3, Quat),
-    landed: bool,
-    /// Time since it left the ground, seconds.
-    free_secs: f32,
-    /// Position that the recordings gave the ankle in the last frame.
-    free: Vec3,
-}
-
-impl StandingFoot {
-    const FREE: Self = Self {
-        plant: None,
-        ankle: Vec3::ZERO,
-        drift: Vec3::ZERO,
-        turn: Quat::IDENTITY,
-        last: (Vec3::ZERO, Quat::IDENTITY),
-        landed: false,
-        free_secs: CLEARED_AFTER_SECS,
-        free: Vec3::ZERO,
-    };
-
-    /// Lets what remains of a correction die away for some time.
-    fn settle(&mut self, dt_secs: f32) {
-        let left = if self.plant.is_some() {
-            let left = 1.0 - follow_share(SETTLE_HALF_LIFE_SECS, dt_secs);
-            self.ankle *= left;
-            left
-        } else {
-            let left = (-RELEASE_RATE * dt_secs).exp();
-            let toward = self.drift + RELEASE_RATE * self.ankle;
-            self.ankle = left * (self.ankle + dt_secs * toward);
-            self.drift = left * (self.drift - RELEASE_RATE * dt_secs * toward);
-            left
-        };
-        self.turn = Quat::IDENTITY.slerp(self.turn, left);
-    }
 }
 
 /// Input of a step.
@@ -311,94 +244,6 @@ impl Ground {
         let share = follow_share(HEIGHT_HALF_LIFE_SECS, dt_secs);
         self.height_m += share * (wanted - self.height_m);
         pose.root_position.y += self.height_m;
-    }
-
-    /// A planted foot as the recordings pitch it.
-    fn standing(&self, side: Side, plant: &Plant) -> FootTarget {
-        let pitch = settled_pitch(foot_pitch(self.model.rotation(side.foot())));
-        self.rockers[side.index()].stand(plant, pitch)
-    }
-
-    /// Height at which a foot that is known to be in the air is held, when the body moves its ankle so far in a step, metres.
-    fn clearance_m(&self, moved: Vec3, dt_secs: f32) -> f32 {
-        let [least, most] = CLEARED_SPEEDS.map(|speed| speed * self.leg_length_m * dt_secs);
-        let slow = (most - moved.with_y(0.0).length()) / (most - least).max(f32::MIN_POSITIVE);
-        CLEARANCE * self.leg_length_m * slow.clamp(0.0, 1.0)
-    }
-
-    /// Puts one foot where it belongs.
-    fn solve(&mut self, side: Side, body: &BodyFrame, input: &GroundInput, pose: &mut Pose) {
-        let index = side.index();
-        let ankle = self.ankle(side);
-        let (foot, toes) = (
-            self.model.rotation(side.foot()),
-            self.model.rotation(side.toes()),
-        );
-        let mut own = self.feet[index];
-        own.landed = false;
-        let stood = own.plant.is_some();
-        if let Some(plant) = own.plant {
-            let drift = self.standing(side, &plant).ankle.distance(ankle);
-            let leaves = match input.contacts[index] {
-                Some(told) => !told.stands || drift > TOLD_DRIFT * MAX_DRIFT_M,
-                None => body[CONTACT + index] < STANDS[1] || drift > MAX_DRIFT_M,
-            };
-            if leaves {
-                own.plant = None;
-                // The frame in which it left counts from when it did.
-                own.free_secs = match input.contacts[index] {
-                    Some(told) if !told.stands => told.for_secs.min(input.dt_secs) - input.dt_secs,
-                    _ => 0.0,
-                };
-            }
-        } else if input.contacts[index]
-            .map_or(body[CONTACT + index] > STANDS[0], |told| told.stands)
-        {
-            let pitch = settled_pitch(foot_pitch(foot));
-            let settled = own.last.0.with_y(0.0);
-            let heading = foot_heading(foot);
-            own.plant = Some(self.rockers[index].plant_under(ankle + settled, heading, pitch));
-            own.landed = true;
-        }
-        let target = if let Some(plant) = own.plant {
-            self.standing(side, &plant)
-        } else {
-            let mut free = FootTarget { ankle, foot, toes };
-            own.free_secs += input.dt_secs;
-            if input.contacts[index].is_some_and(|told| !told.stands) {
-                let clearance = self.clearance_m(ankle - own.free, input.dt_secs)
-                    * smooth_step(own.free_secs / CLEARED_AFTER_SECS);
-                free.ankle.y += (clearance - self.rockers[index].lowest_point(&free)).max(0.0);
-            }
-            free
-        };
-        own.free = ankle;
-        let wanted = (target.ankle - ankle, target.foot * foot.inverse());
-        if stood != own.plant.is_some() {
-            own.ankle = own.last.0 - wanted.0;
-            own.drift = Vec3::ZERO;
-            own.turn = own.last.1 * wanted.1.inverse();
-        }
-        let settles_secs = match input.contacts[index] {
-            Some(told) if own.landed => told.for_secs.min(input.dt_secs),
-            _ => input.dt_secs,
-        };
-        own.settle(settles_secs);
-        own.last = (wanted.0 + own.ankle, own.turn * wanted.1);
-        let mut target = FootTarget {
-            ankle: ankle + own.last.0,
-            foot: own.last.1 * foot,
-            toes: own.turn * target.toes,
-        };
-        // Whatever settles, no sole goes below the floor.
-        let lowest = self.rockers[index].lowest_point(&target);
-        target.ankle.y += (-lowest).max(0.0);
-        let hips = (
-            self.model.position(Joint::Hips),
-            self.model.rotation(Joint::Hips),
-        );
-        self.legs[index].solve(hips.0, hips.1, &target, pose);
-        self.feet[index] = own;
     }
 }
 
