@@ -32,6 +32,19 @@ pub struct Step {
 }
 
 impl Step {
+    /// A step in the midst of a walk, of which it is not known when feet leave the ground.
+    pub const fn inside(side: Side, first: usize, end: usize) -> Self {
+        Self {
+            side,
+            first,
+            end,
+            position: StepPosition::Inside,
+            other_terminal: None,
+            heel_rise: None,
+            take_off: None,
+        }
+    }
+
     /// Length in frames.
     pub const fn frames(&self) -> usize {
         self.end - self.first

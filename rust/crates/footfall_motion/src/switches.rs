@@ -28,7 +28,7 @@ mod residual;
 
 use crate::steps::{LONGEST_STEP_SECS, SHORTEST_STEP_SECS, Step, Walk};
 use angles::LegAngles;
-use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Side, StepPosition};
+use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Side};
 use footfall_prob::ProbError;
 use residual::Residual;
 
@@ -248,15 +248,7 @@ pub fn walks(switches: &[Switch], frame_rate_hz: f64) -> Vec<Walk> {
         if side == pair[1].side || !(SHORTEST_STEP_SECS..=LONGEST_STEP_SECS).contains(&secs) {
             continue;
         }
-        let step = Step {
-            side,
-            first,
-            end,
-            position: StepPosition::Inside,
-            other_terminal: None,
-            heel_rise: None,
-            take_off: None,
-        };
+        let step = Step::inside(side, first, end);
         match walks.last_mut() {
             Some(walk) if last_end == Some(first) => walk.steps.push(step),
             _ => walks.push(Walk { steps: vec![step] }),

@@ -5,7 +5,7 @@
 
 use crate::error::TrainError;
 use crate::progress::{Progress, advance};
-use crate::sequence::{LabelledStep, Sequence};
+use crate::sequence::{LabelledStep, Sequence, step_lengths};
 use crate::step_hsmm::{DURATION_VARIANCE_FLOOR, STATES, StepHsmm, chain, cut_steps, state_index};
 use footfall_core::Side;
 use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP, StateModel};
@@ -47,12 +47,7 @@ impl AverageWalk {
         progress: &mut dyn Progress,
     ) -> Result<Self, TrainError> {
         let floor = variance_floor(corpus);
-        let longest = corpus
-            .iter()
-            .flat_map(|sequence| &sequence.steps)
-            .map(|step| step.end - step.first)
-            .max()
-            .ok_or(TrainError::NoSteps)?;
+        let longest = step_lengths(corpus).max().ok_or(TrainError::NoSteps)?;
         let walk = Self {
             hsmm: StepHsmm::estimate(&even_split(corpus)?, longest, &floor)?,
             log_likelihoods: Vec::new(),
@@ -163,13 +158,13 @@ fn even_split(corpus: &[Sequence]) -> Result<HsmmStats, TrainError> {
             .chunks_exact(OBSERVATION_COUNT)
             .collect();
         for step in &sequence.steps {
-            let cut = |state: usize| step.first + (step.end - step.first) * state / STATES_PER_STEP;
+            let cut = |state: usize| step.first + step.frames() * state / STATES_PER_STEP;
             for state in 0..STATES_PER_STEP {
                 let index = state_index(step.side, state);
                 let frames = cut(state)..cut(state + 1);
                 if frames.is_empty() {
                     return Err(TrainError::StepTooShort {
-                        frames: step.end - step.first,
+                        frames: step.frames(),
                     });
                 }
                 stats.durations[index].add(frames.len(), 1.0);

@@ -83,7 +83,7 @@ impl<'a> EncodedRecording<'a> {
     /// A step, in frames of a sequence that begins at `first`.
     fn labelled(&self, step: &Step, first: usize) -> LabelledStep {
         let (from, to) = (self.frame_at(step.first), self.frame_at(step.end));
-        let length = (step.end - step.first) as f64;
+        let length = step.frames() as f64;
         LabelledStep {
             side: step.side,
             first: from - first,

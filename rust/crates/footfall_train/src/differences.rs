@@ -1,5 +1,6 @@
 //! Differences of steps from the mean step: with speed, between walkers, and from step to step.
 
+use crate::averages::upper_median;
 use crate::sequence::Sequence;
 use footfall_core::Side;
 use footfall_model::{
@@ -121,9 +122,7 @@ fn sequence_differences(
 /// Leaves out steps of another length than the walk's others: half a step, or two, that the contacts were taken for. One of them would teach
 /// more variation than a hundred good ones.
 fn keep_whole_steps(walk: &mut Vec<Difference>) {
-    let mut tempos: Vec<f64> = walk.iter().map(Difference::tempo).collect();
-    tempos.sort_by(f64::total_cmp);
-    if let Some(median) = tempos.get(tempos.len() / 2) {
+    if let Some(median) = upper_median(walk.iter().map(Difference::tempo)) {
         walk.retain(|step| (step.tempo() - median).abs() < MAX_TEMPO);
     }
 }

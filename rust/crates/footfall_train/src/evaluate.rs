@@ -80,7 +80,7 @@ pub struct StyleMeasures {
 }
 
 /// Measures of recordings by themselves.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Naturalness {
     /// Number of recordings.
     pub clips: usize,
@@ -91,19 +91,23 @@ pub struct Naturalness {
     /// Share of frames in which a foot skates.
     pub skating_ratio: Option<f64>,
     /// Root mean square jerk, m/s³.
+    #[serde(rename = "jerk_mps3")]
     pub jerk: Option<f64>,
     /// Median over the joints of the deviation between steps, radians.
+    #[serde(rename = "step_variability_rad")]
     pub step_variability: Option<f64>,
 }
 
 /// Measures of recordings against others of the same style.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Resemblance {
     /// Distance of the mean features in units of the spread within styles.
     pub distance: Option<f64>,
     /// Variance of the joints' motion over the reference's.
+    #[serde(rename = "variance_ratio")]
     pub variance: JointRatios,
     /// Variability between steps over the reference's.
+    #[serde(rename = "step_variability_ratio")]
     pub variability: JointRatios,
 }
 

@@ -7,6 +7,7 @@
 pub mod adapt;
 pub mod average;
 mod average_body;
+mod averages;
 mod beside;
 pub mod contexts;
 pub mod crouching;

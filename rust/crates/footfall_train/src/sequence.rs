@@ -31,6 +31,19 @@ pub struct LabelledStep {
     pub speed_mps: f64,
 }
 
+impl LabelledStep {
+    /// Number of frames.
+    pub const fn frames(&self) -> usize {
+        self.end - self.first
+    }
+}
+
+/// Lengths of all steps of a corpus, frames.
+pub(crate) fn step_lengths(corpus: &[Sequence]) -> impl Iterator<Item = usize> {
+    let steps = corpus.iter().flat_map(|sequence| &sequence.steps);
+    steps.map(LabelledStep::frames)
+}
+
 impl Sequence {
     /// Number of frames.
     pub fn frames(&self) -> usize {
@@ -47,7 +60,7 @@ impl Sequence {
         let travel: f64 = self
             .steps
             .iter()
-            .map(|step| step.speed_mps * (step.end - step.first) as f64)
+            .map(|step| step.speed_mps * step.frames() as f64)
             .sum();
         travel / self.frames() as f64
     }

@@ -192,10 +192,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         imu_sample_to_pose_p99_ms: live.1,
         repetitions: args.repetitions,
     };
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::print_text(&report.lines().join("\n"))
+    output::print_report(args.json, &report, |report| report.lines().join("\n"))
 }
 
 impl Report {

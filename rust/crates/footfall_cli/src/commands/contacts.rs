@@ -9,7 +9,7 @@ use footfall_motion::contact_file::ContactFile;
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::Retargeted;
 use footfall_motion::switches::{detect_switches, stances, walks};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Find ground contacts, gait events and steps
 ///
@@ -53,12 +53,14 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
             switching(&motion).with_context(|| args.input.display().to_string())?
         }
     };
-    if args.json {
-        return output::print_json(&report);
-    }
+    output::print_report(args.json, &report, |report| text(&args.input, report))
+}
+
+/// An event or a step a line.
+fn text(input: &Path, report: &ContactFile) -> String {
     let mut lines = vec![format!(
         "{}: {} frames at {} fps, {} steps",
-        args.input.display(),
+        input.display(),
         report.frames,
         report.fps,
         report.steps.len()
@@ -79,7 +81,7 @@ pub(crate) fn run(args: &ContactsArgs) -> Result<()> {
             step.position.replace('_', " ")
         )
     }));
-    output::print_text(&lines.join("\n"))
+    lines.join("\n")
 }
 
 fn switching(motion: &Retargeted) -> Result<ContactFile> {

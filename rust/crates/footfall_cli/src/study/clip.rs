@@ -126,7 +126,7 @@ fn points(clip: &Clip, model: &ModelPose) -> Vec<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use footfall_core::{Pose, Skeleton, StepPosition};
+    use footfall_core::{Pose, Skeleton};
     use footfall_motion::retarget::Retargeted;
 
     fn recording(steps: usize) -> Recording {
@@ -140,15 +140,8 @@ mod tests {
                 pose
             })
             .collect();
-        let steps = (0..steps).map(|index| Step {
-            side: Side::BOTH[(index + 1) % 2],
-            first: 20 * index,
-            end: 20 * (index + 1),
-            position: StepPosition::Inside,
-            other_terminal: None,
-            heel_rise: None,
-            take_off: None,
-        });
+        let steps = (0..steps)
+            .map(|index| Step::inside(Side::BOTH[(index + 1) % 2], 20 * index, 20 * (index + 1)));
         let clip = Clip {
             skeleton,
             frame_rate_hz: 60.0,

@@ -1,23 +1,10 @@
 //! Designed styles, from the outside: every shipped sheet on real walks, and mistakes in sheets.
 
 use crate::common::footfall;
+use footfall_design::shipped::SHEETS;
 use footfall_motion::bvh;
 use footfall_tests::data::recordings;
 use footfall_tests::evaluator::evaluate;
-
-const STYLES: [&str; 11] = [
-    "proud",
-    "decided",
-    "sad",
-    "topmodel",
-    "drunk",
-    "cool",
-    "afraid",
-    "tiptoeing",
-    "heavy",
-    "in_a_hurry",
-    "manly",
-];
 
 /// Hips of the canonical body stay between these heights, metres.
 const HIPS_M: [f32; 2] = [0.72, 1.0];
@@ -31,7 +18,8 @@ fn every_style_walks_the_cmu_walks_with_planted_feet() {
     let index = data.join("index.csv");
     let index = index.to_str().unwrap();
     let mut speeds = Vec::new();
-    for style in STYLES {
+    let styles = SHEETS.into_iter().map(|(name, _)| name);
+    for style in styles.filter(|name| *name != "template") {
         let arguments = [
             "design",
             "--sheet",

@@ -1,6 +1,6 @@
 //! The main views as pictures. After a change that is wanted, `UPDATE_SNAPSHOTS=1` writes them anew: look at them then.
 
-use crate::world::{Window, World, click, settle, shipped};
+use crate::world::{Window, World, begin_with, click, settle, shipped};
 use eframe::egui::accesskit::Role;
 use egui_kittest::SnapshotOptions;
 use egui_kittest::kittest::Queryable as _;
@@ -70,13 +70,7 @@ fn a_tree_of_contexts() {
 #[test]
 fn a_sensor_and_the_body_that_it_moves() {
     let world = World::new();
-    let path = world.sensor();
-    let mut window = world.window(&[]);
-    let context = window.ctx.clone();
-    window.state_mut().open(&context, &path);
-    window.run_steps(2);
-    click(&mut window, "Aligned");
-    click(&mut window, "Again");
+    let mut window = world.sensor_window();
     window.run_steps(200);
     look(&mut window, "sensor");
 }
@@ -89,10 +83,7 @@ fn a_sheet_on_a_walk() {
     settle(&mut window);
     click(&mut window, "⏸");
     click(&mut window, "⏮");
-    window.get_by_value("Begin with…").click();
-    window.run_steps(3);
-    click(&mut window, "sad");
-    settle(&mut window);
+    begin_with(&mut window, "sad");
     look(&mut window, "design_sheet");
 }
 
@@ -108,12 +99,7 @@ fn styles_on_the_mixing_pad() {
 #[test]
 fn tables_and_charts_of_an_evaluation() {
     let world = World::new();
-    let index = world.styled_walks();
-    let mut window = world.window(&[]);
-    click(&mut window, "Evaluate");
-    click(&mut window, "Index…");
-    assert!(window.state_mut().answer_dialog(index));
-    window.run_steps(2);
+    let mut window = world.evaluation_window();
     let conditions = window.get_by_role(Role::TextInput);
     conditions.focus();
     conditions.type_text("category=styled_walk");

@@ -1,6 +1,6 @@
 //! Work in the studio: from recordings to files that the other tools read.
 
-use crate::world::{Window, World, base, click, saved_style, settle, shipped};
+use crate::world::{Window, World, base, begin_with, click, saved_style, settle, shipped};
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportEvent};
 use egui_kittest::kittest::Queryable as _;
@@ -178,12 +178,7 @@ fn a_style_is_made_from_recordings_and_saved() {
 #[test]
 fn work_that_is_cancelled_says_so_and_shows_nothing() {
     let world = World::new();
-    let index = world.styled_walks();
-    let mut window = world.window(&[]);
-    click(&mut window, "Evaluate");
-    click(&mut window, "Index…");
-    assert!(window.state_mut().answer_dialog(index));
-    window.run_steps(2);
+    let mut window = world.evaluation_window();
     click(&mut window, "Run the evaluation");
     click(&mut window, "Cancel");
     settle(&mut window);
@@ -197,10 +192,7 @@ fn a_style_is_designed_without_a_recording_of_it() {
     let world = World::new();
     let mut window = world.window(&[world.clips(), world.clip("ben/ben_2.bvh")]);
     click(&mut window, "Design");
-    window.get_by_value("Begin with…").click();
-    window.run_steps(3);
-    click(&mut window, "proud");
-    settle(&mut window);
+    begin_with(&mut window, "proud");
     click(&mut window, "Make the style");
     settle(&mut window);
     let style = saved_style(&mut window, "Save style…", world.clip("proud.footstyle"));
@@ -219,13 +211,7 @@ fn a_style_is_designed_without_a_recording_of_it() {
 #[test]
 fn a_recorded_sensor_moves_a_body() {
     let world = World::new();
-    let path = world.sensor();
-    let mut window = world.window(&[]);
-    let context = window.ctx.clone();
-    window.state_mut().open(&context, &path);
-    window.run_steps(5);
-    click(&mut window, "Aligned");
-    click(&mut window, "Again");
+    let mut window = world.sensor_window();
     window.run_steps(300);
     let walk = window.get_by_label_contains("Worn at").rect();
     assert!(walk.is_positive());

@@ -78,7 +78,7 @@ impl World {
     }
 
     /// Walks in three styles, two each, and the index of them.
-    pub(crate) fn styled_walks(&self) -> PathBuf {
+    fn styled_walks(&self) -> PathBuf {
         let base = base();
         let mut index = "path,category,style,subject\n".to_owned();
         for name in ["proud", "sad", "drunk"] {
@@ -101,6 +101,28 @@ impl World {
         let path = self.folder.path().join("index.csv");
         std::fs::write(&path, index).unwrap();
         path
+    }
+
+    /// A window that is ready to evaluate walks in three styles.
+    pub(crate) fn evaluation_window(&self) -> Window {
+        let index = self.styled_walks();
+        let mut window = self.window(&[]);
+        click(&mut window, "Evaluate");
+        click(&mut window, "Index…");
+        assert!(window.state_mut().answer_dialog(index));
+        window.run_steps(2);
+        window
+    }
+
+    /// A window in which a recorded sensor, worn aligned, moves a body from the beginning on.
+    pub(crate) fn sensor_window(&self) -> Window {
+        let mut window = self.window(&[]);
+        let context = window.ctx.clone();
+        window.state_mut().open(&context, &self.sensor());
+        window.run_steps(2);
+        click(&mut window, "Aligned");
+        click(&mut window, "Again");
+        window
     }
 
     /// A window that shows these files; waits until all of them are read.
@@ -145,6 +167,14 @@ fn write_walk(
     };
     let walk = synthesize(model, &model.skeleton, &config).unwrap();
     std::fs::write(path, bvh::write(&clip_to_bvh(&walk.clip))).unwrap();
+}
+
+/// Begins a design with a shipped sheet.
+pub(crate) fn begin_with(window: &mut Window, sheet: &str) {
+    window.get_by_value("Begin with…").click();
+    window.run_steps(3);
+    click(window, sheet);
+    settle(window);
 }
 
 /// Frames until no work goes on.

@@ -84,7 +84,7 @@ struct Step {
 
 fn observed(sequence: &Sequence) -> impl Iterator<Item = Step> {
     sequence.steps.iter().map(|step| {
-        let frames = step.end - step.first;
+        let frames = step.frames();
         // Fifths of the step, not its states: where a joint is at a moment of the step also varies by when it moves.
         let cut = |part: usize| step.first + frames * part / STATES_PER_STEP;
         let mut features = vec![0.0; STATES_PER_STEP * FEATURE_COUNT];

@@ -6,7 +6,7 @@ mod estimate;
 use super::AdaptMethod;
 use crate::error::TrainError;
 use crate::progress::{Progress, advance};
-use crate::sequence::Sequence;
+use crate::sequence::{Sequence, step_lengths};
 use crate::step_hsmm::{DURATION_VARIANCE_FLOOR, STATES};
 use footfall_model::{FEATURE_COUNT, GaitModel, OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::ProbError;
@@ -139,18 +139,8 @@ impl Adapting {
             AdaptMethod::Csmaplr => TREE_DEPTH,
         };
         let tree = RegressionTree::by_distance(&points, depth, LEAST_STATES)?;
-        let longest = corpus
-            .iter()
-            .flat_map(|sequence| &sequence.steps)
-            .map(|step| step.end - step.first)
-            .max()
-            .ok_or(TrainError::NoSteps)?;
-        let shortest = corpus
-            .iter()
-            .flat_map(|sequence| &sequence.steps)
-            .map(|step| step.end - step.first)
-            .min()
-            .unwrap_or(longest);
+        let longest = step_lengths(corpus).max().ok_or(TrainError::NoSteps)?;
+        let shortest = step_lengths(corpus).min().unwrap_or(longest);
         if shortest < STATES_PER_STEP {
             return Err(TrainError::StepTooShort { frames: shortest });
         }

@@ -101,8 +101,3 @@ pub fn evaluate_contacts(request: &ContactsRequest<'_>) -> Result<ContactsReport
         },
     })
 }
-
-/// Mean of values; 0 without any.
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
-}

@@ -5,12 +5,29 @@ use footfall_core::Joint;
 
 /// Joints whose reference spread is below this, radians, are left out of ratios: noise over noise says nothing.
 const LEAST_RATIO_SPREAD: f64 = 0.005;
+use serde::ser::SerializeStruct as _;
+use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
 
 /// A ratio for each joint that moves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointRatios {
     /// In the order of the joints.
     pub joints: Vec<(Joint, f64)>,
+}
+
+/// As the median, and the ratios by the joints' names.
+impl Serialize for JointRatios {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let joints = self.joints.iter();
+        let joints: BTreeMap<&str, f64> = joints
+            .map(|(joint, ratio)| (joint.name(), *ratio))
+            .collect();
+        let mut ratios = serializer.serialize_struct("JointRatios", 2)?;
+        ratios.serialize_field("median", &self.median())?;
+        ratios.serialize_field("joints", &joints)?;
+        ratios.end()
+    }
 }
 
 impl JointRatios {

@@ -199,7 +199,7 @@ impl Motion {
 
     /// A step's angles at [`PHASES`] equally spaced moments.
     fn normalised(&self, step: &Step) -> Vec<f64> {
-        let length = (step.end - step.first) as f64;
+        let length = step.frames() as f64;
         let mut samples = Vec::with_capacity(PHASES * ANGLES);
         for phase in 0..PHASES {
             let position = step.first as f64 + length * phase as f64 / PHASES as f64;
@@ -278,14 +278,12 @@ mod tests {
             poses,
         };
         let steps = (0..steps)
-            .map(|index| Step {
-                side: Side::BOTH[index % 2],
-                first: index * STEP_FRAMES,
-                end: (index + 1) * STEP_FRAMES,
-                position: StepPosition::Inside,
-                other_terminal: None,
-                heel_rise: None,
-                take_off: None,
+            .map(|index| {
+                Step::inside(
+                    Side::BOTH[index % 2],
+                    index * STEP_FRAMES,
+                    (index + 1) * STEP_FRAMES,
+                )
             })
             .collect();
         (clip, vec![Walk { steps }])

@@ -1,8 +1,7 @@
 //! An evaluation of styles as a report that can be printed, drawn and written as JSON.
 
-use super::{
-    Confusion, JointRatios, Naturalness, Resemblance, Split, StyleEvaluation, StyleMeasures,
-};
+use super::{Confusion, Naturalness, Resemblance, Split, StyleEvaluation, StyleMeasures};
+use crate::averages::upper_median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -50,66 +49,25 @@ pub struct Recognition {
 #[derive(Clone, Debug, Serialize)]
 pub struct StyleFigures {
     /// The real recordings.
-    pub real: NaturalnessFigures,
+    pub real: Naturalness,
     /// One part of the real recordings against the other.
-    pub real_against_real: ResemblanceFigures,
+    pub real_against_real: Resemblance,
     /// The synthesised recordings.
-    pub synthesised: Option<NaturalnessFigures>,
+    pub synthesised: Option<Naturalness>,
     /// These against the real ones.
-    pub synthesised_against_real: Option<ResemblanceFigures>,
-}
-
-/// Figures of recordings by themselves.
-#[derive(Clone, Debug, Serialize)]
-pub struct NaturalnessFigures {
-    /// Number of recordings.
-    pub clips: usize,
-    /// Number of their strides.
-    pub strides: usize,
-    /// Median speed of standing feet, m/s.
-    pub slip_mps: Option<f64>,
-    /// Share of frames in which a foot skates.
-    pub skating_ratio: Option<f64>,
-    /// Root mean square jerk, m/s³.
-    pub jerk_mps3: Option<f64>,
-    /// Median over the joints of the deviation between steps, radians.
-    pub step_variability_rad: Option<f64>,
-}
-
-/// Figures of recordings against others of the same style.
-#[derive(Clone, Debug, Serialize)]
-pub struct ResemblanceFigures {
-    /// Root mean square over the features, in units of the spread within styles.
-    pub distance: Option<f64>,
-    /// Variance of the joints' motion over the others'.
-    pub variance_ratio: Ratios,
-    /// Variability between steps over the others'.
-    pub step_variability_ratio: Ratios,
-}
-
-/// Ratios of all joints.
-#[derive(Clone, Debug, Serialize)]
-pub struct Ratios {
-    /// Median over the joints.
-    pub median: Option<f64>,
-    /// By joint.
-    pub joints: BTreeMap<&'static str, f64>,
+    pub synthesised_against_real: Option<Resemblance>,
 }
 
 impl StyleReport {
     /// Figures of an evaluation; `skipped` are reasons why recordings were left out of it.
     pub fn new(evaluation: &StyleEvaluation, skipped: Vec<String>) -> Self {
         let entry = |measures: &StyleMeasures| {
-            let (synthesised, against) = measures
-                .synthesised
-                .as_ref()
-                .map(|(own, against)| (own, against))
-                .unzip();
+            let (synthesised, against) = measures.synthesised.clone().unzip();
             let entry = StyleFigures {
-                real: (&measures.real).into(),
-                real_against_real: (&measures.real_against_real).into(),
-                synthesised: synthesised.map(Into::into),
-                synthesised_against_real: against.map(Into::into),
+                real: measures.real,
+                real_against_real: measures.real_against_real.clone(),
+                synthesised,
+                synthesised_against_real: against,
             };
             (measures.style.clone(), entry)
         };
@@ -143,55 +101,15 @@ impl From<&Confusion> for Recognition {
     }
 }
 
-impl From<&Naturalness> for NaturalnessFigures {
-    fn from(measured: &Naturalness) -> Self {
-        Self {
-            clips: measured.clips,
-            strides: measured.strides,
-            slip_mps: measured.slip_mps,
-            skating_ratio: measured.skating_ratio,
-            jerk_mps3: measured.jerk,
-            step_variability_rad: measured.step_variability,
-        }
-    }
-}
-
-impl From<&Resemblance> for ResemblanceFigures {
-    fn from(measured: &Resemblance) -> Self {
-        Self {
-            distance: measured.distance,
-            variance_ratio: (&measured.variance).into(),
-            step_variability_ratio: (&measured.variability).into(),
-        }
-    }
-}
-
-impl From<&JointRatios> for Ratios {
-    fn from(ratios: &JointRatios) -> Self {
-        let joints = ratios.joints.iter();
-        Self {
-            median: ratios.median(),
-            joints: joints
-                .map(|(joint, ratio)| (joint.name(), *ratio))
-                .collect(),
-        }
-    }
-}
-
 /// Median over the styles of what is judged: synthesised against real if there is any, else real against real.
 fn overall_variability(evaluation: &StyleEvaluation) -> Option<f64> {
-    let mut medians: Vec<f64> = evaluation
-        .styles
-        .iter()
-        .filter_map(|style| {
-            let judged = match (&style.synthesised, &evaluation.synthesised) {
-                (Some((_, against)), _) => against,
-                (None, Some(_)) => return None,
-                (None, None) => &style.real_against_real,
-            };
-            judged.variability.median()
-        })
-        .collect();
-    medians.sort_by(f64::total_cmp);
-    medians.get(medians.len() / 2).copied()
+    let medians = evaluation.styles.iter().filter_map(|style| {
+        let judged = match (&style.synthesised, &evaluation.synthesised) {
+            (Some((_, against)), _) => against,
+            (None, Some(_)) => return None,
+            (None, None) => &style.real_against_real,
+        };
+        judged.variability.median()
+    });
+    upper_median(medians)
 }

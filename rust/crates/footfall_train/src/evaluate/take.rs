@@ -65,7 +65,7 @@ impl Moving {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use footfall_core::{Pose, Side, Skeleton, StepPosition};
+    use footfall_core::{Pose, Side, Skeleton};
     use footfall_motion::retarget::Retargeted;
     use footfall_motion::steps::Step;
 
@@ -83,13 +83,8 @@ mod tests {
             skeleton,
         }));
         let step = |first, end| Step {
-            side: Side::Left,
-            first,
-            end,
-            position: StepPosition::Inside,
             other_terminal: Some(first + 3),
-            heel_rise: None,
-            take_off: None,
+            ..Step::inside(Side::Left, first, end)
         };
         whole.walks = vec![Walk {
             steps: vec![step(48, 72)],

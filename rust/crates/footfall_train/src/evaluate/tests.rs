@@ -2,7 +2,7 @@
 
 use super::*;
 use footfall_core::rotation::exp_map;
-use footfall_core::{Joint, Side, Skeleton, StepPosition};
+use footfall_core::{Joint, Side, Skeleton};
 use footfall_motion::retarget::Retargeted;
 use footfall_motion::steps::{Step, Walk};
 use glam::Vec3;
@@ -28,14 +28,12 @@ fn walk(style: &str, stoop: f32, seed: u32, steps: usize) -> Recording {
         })
         .collect();
     let steps = (0..steps)
-        .map(|index| Step {
-            side: Side::BOTH[index % 2],
-            first: index * STEP_FRAMES,
-            end: (index + 1) * STEP_FRAMES,
-            position: StepPosition::Inside,
-            other_terminal: None,
-            heel_rise: None,
-            take_off: None,
+        .map(|index| {
+            Step::inside(
+                Side::BOTH[index % 2],
+                index * STEP_FRAMES,
+                (index + 1) * STEP_FRAMES,
+            )
         })
         .collect();
     let clip = Clip {

@@ -39,6 +39,7 @@ pub use transitions::{TRANSITIONS, TransitionTrial, evaluate_transitions};
 pub use trivial::TrivialErrors;
 
 use super::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
+use crate::averages::mean;
 use crate::error::TrainError;
 use body::{Body, accelerations, body, distance_cm, pose_of_row};
 use correlation::correlation;
@@ -334,8 +335,4 @@ fn delays(behaviours: &[Behaviour], found: &[Behaviour], rate_hz: f64) -> Vec<f6
             delay as f64 / rate_hz
         })
         .collect()
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
 }

@@ -1,6 +1,7 @@
 //! Looks about: when the gaze jumps, how far, and what the body does with it.
 
 use super::{Offsets, Person, RATE_HZ, Stretch, mirrored};
+use crate::averages::upper_median;
 use footfall_imu::filter::low_pass;
 use footfall_model::{LOOK_DIRECTIONS, Looks, SWAY_COUNT};
 use glam::Vec3;
@@ -201,9 +202,10 @@ fn rhythm(people: &[Person]) -> (f64, f64) {
                 .map(|jump| (jump.to - jump.from) as f64 / RATE_HZ),
         );
     }
-    lengths.sort_by(f64::total_cmp);
-    let middle = lengths.get(lengths.len() / 2).copied();
-    (rate / total, middle.unwrap_or(USUAL_SHIFT_SECS))
+    (
+        rate / total,
+        upper_median(lengths).unwrap_or(USUAL_SHIFT_SECS),
+    )
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_motion::switches::detect_switches;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Find when the legs change roles, from hip and knee angles alone
 ///
@@ -58,12 +58,14 @@ pub(crate) fn run(args: &SwitchesArgs) -> Result<()> {
             })
             .collect(),
     };
-    if args.json {
-        return output::print_json(&report);
-    }
+    output::print_report(args.json, &report, |report| text(&args.input, report))
+}
+
+/// A switch a line.
+fn text(input: &Path, report: &Report) -> String {
     let mut lines = vec![format!(
         "{}: {} frames at {} fps, {} switches",
-        args.input.display(),
+        input.display(),
         report.frames,
         report.fps,
         report.switches.len()
@@ -74,5 +76,5 @@ pub(crate) fn run(args: &SwitchesArgs) -> Result<()> {
             switch.time_s, switch.frame, switch.foot
         )
     }));
-    output::print_text(&lines.join("\n"))
+    lines.join("\n")
 }

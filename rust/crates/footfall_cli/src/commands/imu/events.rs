@@ -74,9 +74,11 @@ pub(crate) fn run(args: &EventsArgs) -> Result<()> {
             })
             .collect(),
     };
-    if args.json {
-        return output::print_json(&report);
-    }
+    output::print_report(args.json, &report, |report| text(report, foot))
+}
+
+/// An event or a stride a line, and their numbers.
+fn text(report: &Report, foot: &str) -> String {
     let events = report.events.iter();
     let mut lines: Vec<String> = events
         .map(|event| format!("{:8.3} s  {}", event.time_s, event.kind.replace('_', " ")))
@@ -92,5 +94,5 @@ pub(crate) fn run(args: &EventsArgs) -> Result<()> {
         report.events.len(),
         report.strides.len()
     ));
-    output::print_text(&lines.join("\n"))
+    lines.join("\n")
 }

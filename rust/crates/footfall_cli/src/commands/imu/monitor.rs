@@ -81,10 +81,7 @@ pub(crate) fn run(args: &MonitorArgs) -> Result<()> {
             .with_context(|| path.display().to_string())?;
         output::note(&format!("{}: {samples} samples", path.display()));
     }
-    if args.json {
-        return output::print_json(&report);
-    }
-    output::print_text(&verdict(&report))
+    output::print_report(args.json, &report, verdict)
 }
 
 /// The last line: what to do, when nothing came.

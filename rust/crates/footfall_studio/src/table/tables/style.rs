@@ -2,10 +2,8 @@
 
 use super::filled;
 use crate::table::{Cell, Column, Table};
-use footfall_train::evaluate::Split;
-use footfall_train::evaluate::style_report::{
-    NaturalnessFigures, Recognition, ResemblanceFigures, StyleFigures, StyleReport,
-};
+use footfall_train::evaluate::style_report::{Recognition, StyleFigures, StyleReport};
+use footfall_train::evaluate::{Naturalness, Resemblance, Split};
 
 /// Figures of each style, recognition of all, confusions.
 pub(crate) fn style(report: &StyleReport) -> Vec<Table> {
@@ -57,16 +55,16 @@ const FIGURES: [Column<StyleFigures>; 16] = [
         compared(own, |it| it.distance.into())
     }),
     ("variance ratio", |own| {
-        own.real_against_real.variance_ratio.median.into()
+        own.real_against_real.variance.median().into()
     }),
     ("variance ratio, synthesised", |own| {
-        compared(own, |it| it.variance_ratio.median.into())
+        compared(own, |it| it.variance.median().into())
     }),
     ("variability ratio", |own| {
-        own.real_against_real.step_variability_ratio.median.into()
+        own.real_against_real.variability.median().into()
     }),
     ("variability ratio, synthesised", |own| {
-        compared(own, |it| it.step_variability_ratio.median.into())
+        compared(own, |it| it.variability.median().into())
     }),
     ("slip, cm/s", |own| slip_cmps(&own.real)),
     ("slip, synthesised, cm/s", |own| made(own, slip_cmps)),
@@ -74,9 +72,9 @@ const FIGURES: [Column<StyleFigures>; 16] = [
     ("skating, synthesised", |own| {
         made(own, |it| it.skating_ratio.into())
     }),
-    ("jerk, m/s³", |own| own.real.jerk_mps3.into()),
+    ("jerk, m/s³", |own| own.real.jerk.into()),
     ("jerk, synthesised, m/s³", |own| {
-        made(own, |it| it.jerk_mps3.into())
+        made(own, |it| it.jerk.into())
     }),
     ("recordings", |own| own.real.clips.into()),
     ("recordings, synthesised", |own| {
@@ -88,15 +86,15 @@ const FIGURES: [Column<StyleFigures>; 16] = [
     }),
 ];
 
-fn slip_cmps(figures: &NaturalnessFigures) -> Cell {
+fn slip_cmps(figures: &Naturalness) -> Cell {
     figures.slip_mps.map(|slip| 100.0 * slip).into()
 }
 
-fn made(style: &StyleFigures, value: fn(&NaturalnessFigures) -> Cell) -> Cell {
+fn made(style: &StyleFigures, value: fn(&Naturalness) -> Cell) -> Cell {
     style.synthesised.as_ref().map_or(Cell::Nothing, value)
 }
 
-fn compared(style: &StyleFigures, value: fn(&ResemblanceFigures) -> Cell) -> Cell {
+fn compared(style: &StyleFigures, value: fn(&Resemblance) -> Cell) -> Cell {
     let against = style.synthesised_against_real.as_ref();
     against.map_or(Cell::Nothing, value)
 }

@@ -64,7 +64,7 @@ impl Adapting {
             for step in &sequence.steps {
                 let first_state = step.side.index() * STATES_PER_STEP;
                 let states = first_state..first_state + STATES_PER_STEP;
-                let length = step.end - step.first;
+                let length = step.frames();
                 let total: f64 = states.clone().map(lasts).sum();
                 let (mut elapsed, mut from) = (0.0, 0);
                 for (index, state) in states.enumerate() {

@@ -1,7 +1,8 @@
 //! Switches without the parts that place them.
 
 use super::people::LEAST_EVENTS;
-use super::{Agreement, ContactsError, mean};
+use super::{Agreement, ContactsError};
+use crate::averages::mean;
 use footfall_motion::recording::Recording;
 use footfall_motion::switches::Landing;
 use serde::Serialize;

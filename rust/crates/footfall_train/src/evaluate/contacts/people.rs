@@ -1,6 +1,7 @@
 //! Contacts and switches person by person.
 
-use super::{Agreement, ContactsError, mean};
+use super::{Agreement, ContactsError};
+use crate::averages::mean;
 use footfall_core::{EventKind, GaitEvent, Side};
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
 use footfall_motion::published_events::PublishedEvents;

@@ -1,5 +1,6 @@
 //! Figures of reconstructed bodies by category.
 
+use crate::averages::upper_median;
 use crate::imu::evaluate::ImuTrial;
 use footfall_core::Behaviour;
 use serde::Serialize;
@@ -85,11 +86,7 @@ fn figures_of(trials: &[&ImuTrial]) -> ImuFigures {
         .collect();
     let mean = moved.iter().sum::<f64>() / moved.len().max(1) as f64;
     let squares: f64 = moved.iter().map(|error| (error - mean).powi(2)).sum();
-    let mut delays: Vec<f64> = trials
-        .iter()
-        .flat_map(|t| t.delays_secs.iter().copied())
-        .collect();
-    delays.sort_by(f64::total_cmp);
+    let delays = || trials.iter().flat_map(|t| t.delays_secs.iter().copied());
     ImuFigures {
         recordings: trials.len(),
         frames: trials.iter().map(|t| t.frames).sum(),
@@ -105,8 +102,8 @@ fn figures_of(trials: &[&ImuTrial]) -> ImuFigures {
         nearest_cm: moving(|t| t.trivial.nearest),
         sudden_m_s2: [all(|t| t.sudden_m_s2[0]), all(|t| t.sudden_m_s2[1])],
         recognised: all(|t| t.live.recognised),
-        changes: delays.len(),
-        median_delay_s: delays.get(delays.len() / 2).copied(),
+        changes: delays().count(),
+        median_delay_s: upper_median(delays()),
         standing_knee_deg: standing_knee_deg(trials),
         confusion: confusion(trials),
     }

@@ -1,5 +1,6 @@
 //! Figures of how suddenly bodies move where one motion gives way to another.
 
+use crate::averages::upper_median;
 use crate::imu::evaluate::{TRANSITIONS, TransitionTrial};
 use serde::Serialize;
 
@@ -26,11 +27,8 @@ pub struct TransitionFigures {
 pub(super) fn figures(trials: &[TransitionTrial]) -> Vec<TransitionFigures> {
     let kinds = TRANSITIONS.into_iter().filter_map(|kind| {
         let own: Vec<&TransitionTrial> = trials.iter().filter(|t| t.kind == kind).collect();
-        let median = |value: fn(&TransitionTrial) -> f64| {
-            let mut values: Vec<f64> = own.iter().map(|trial| value(trial)).collect();
-            values.sort_by(f64::total_cmp);
-            values.get(values.len() / 2).copied()
-        };
+        let median =
+            |value: fn(&TransitionTrial) -> f64| upper_median(own.iter().map(|trial| value(trial)));
         Some(TransitionFigures {
             from: kind[0].name(),
             to: kind[1].name(),

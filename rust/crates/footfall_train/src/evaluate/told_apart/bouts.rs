@@ -126,17 +126,12 @@ impl WithinRange {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use footfall_core::{Pose, Side, Skeleton, StepPosition};
+    use footfall_core::{Pose, Side, Skeleton};
 
     fn step(first: usize, end: usize, take_off: Option<usize>) -> Step {
         Step {
-            side: Side::Left,
-            first,
-            end,
-            position: StepPosition::Inside,
-            other_terminal: None,
-            heel_rise: None,
             take_off,
+            ..Step::inside(Side::Left, first, end)
         }
     }
 

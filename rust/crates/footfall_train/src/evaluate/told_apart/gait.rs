@@ -2,6 +2,7 @@
 
 use super::Walker;
 use super::bouts::Bout;
+use crate::averages::upper_median;
 use crate::evaluate::naturalness::{Slips, slips};
 use footfall_core::Clip;
 use footfall_motion::steps::Walk;
@@ -40,8 +41,8 @@ impl GaitMeasures {
             all_slips.standing.extend(slips.standing);
             all_slips.landing.extend(slips.landing);
         }
-        all.slip_mps = median(all_slips.standing);
-        all.landing_slip_mps = median(all_slips.landing);
+        all.slip_mps = upper_median(all_slips.standing);
+        all.landing_slip_mps = upper_median(all_slips.landing);
         all
     }
 }
@@ -85,9 +86,4 @@ fn mean(bouts: &[Bout]) -> Option<Bout> {
         cadence_hz: over_time(|bout| bout.cadence_hz),
         flight_share: over_time(|bout| bout.flight_share),
     })
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }

@@ -90,10 +90,10 @@ fn measure_lines(report: &StyleReport) -> Vec<String> {
                 own.strides,
                 number(own.slip_mps.map(|slip| 100.0 * slip), 2),
                 number(own.skating_ratio, 3),
-                number(own.jerk_mps3, 1),
+                number(own.jerk, 1),
                 number(against.distance, 2),
-                number(against.variance_ratio.median, 2),
-                number(against.step_variability_ratio.median, 2),
+                number(against.variance.median(), 2),
+                number(against.variability.median(), 2),
             ));
         }
     }
