@@ -145,7 +145,7 @@ fn damped_and_repeated_steps_are_found_out() {
         .variability
         .median()
         .unwrap();
-    assert!((0.5..2.0).contains(&natural), "{natural}");
+    assert!((0.85..1.15).contains(&natural), "{natural}");
 }
 
 #[test]
