@@ -14,7 +14,7 @@ const MOST_ACCELERATION: f32 = 105.0;
 /// The same for the hips of somebody who gets up.
 const MOST_OF_HIPS: f32 = 60.0;
 /// A foot that rolls onto its toes and is about to leave is the fastest that stands.
-const MOST_SLIP: f32 = 0.2;
+const MOST_SLIP: f32 = 0.12;
 
 fn walker(seed: u64) -> GaitGenerator {
     walkers::generator(&Skeleton::standard(), seed)

@@ -17,8 +17,8 @@ use footfall_core::rotation::{exp_map, log_map};
 use footfall_core::{JOINT_COUNT, Joint, Pose, Side, Skeleton};
 use glam::Vec3;
 
-/// A leg is stretched to this share of its length at most while its foot is held, unless the new motion stretches it more: the knee of a
-/// straight leg snaps when its foot leaves.
+/// A leg is stretched to this share of its length at most while its foot is held, unless the new motion stretches it more, or the old one did
+/// just now: the knee of a straight leg snaps when its foot leaves, and when it is bent at once.
 const EASY_EXTENSION: f32 = 0.985;
 /// It is never stretched more than to this share.
 const MAX_EXTENSION: f32 = 0.999;
@@ -56,6 +56,8 @@ pub struct Handover {
     hips: Fading,
     turns: [Fading; JOINT_COUNT],
     feet: [HeldFoot; 2],
+    /// Stretch of the legs as the motion that ended left them, shares of their lengths.
+    stretched: [f32; 2],
     /// Lowering of the pelvis towards the feet, metres.
     yielded_m: f32,
     yielding_mps: f32,
@@ -107,7 +109,10 @@ impl Handover {
             let rocker = frame.rockers[side.index()];
             HeldFoot::new(rocker, &foot(from, side), &foot(to, side), dt_secs, secs)
         });
+        let stretched =
+            Side::BOTH.map(|side| frame.extension(side, from.now, &frame.foot(side, from.now)));
         Self {
+            stretched,
             hips: Fading::new(hips, per_sec(hips - hips_before, MAX_SPEED_MPS), secs),
             turns,
             feet,
@@ -128,7 +133,9 @@ impl Handover {
         let targets = Side::BOTH.map(|side| {
             let to = self.frame.foot(side, pose);
             let own = self.frame.extension(side, pose, &to);
-            extensions[side.index()] = own.clamp(EASY_EXTENSION, MAX_EXTENSION);
+            let own = own.clamp(EASY_EXTENSION, MAX_EXTENSION);
+            let begun = self.stretched[side.index()].clamp(own, MAX_EXTENSION);
+            extensions[side.index()] = begun + smooth_step(self.hips.share()) * (own - begun);
             self.feet[side.index()].step(dt_secs, &to, stands[side.index()])
         });
         for (turn, rotation) in self.turns.iter_mut().zip(&mut pose.rotations) {

@@ -5,7 +5,7 @@
 //! supports a foot may move: its foothold moves along.
 //!
 //! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `lie`, `foothold`, `profile`, `aim`, `told`,
-//! `contact`, `foot`, `guard`, `swing`, `pelvis`, `carry`.
+//! `contact`, `foot`, `wall`, `guard`, `swing`, `pelvis`, `carry`.
 
 mod aim;
 mod carry;
@@ -23,6 +23,7 @@ mod profile;
 mod swing;
 mod terrain;
 mod told;
+mod wall;
 
 use crate::leg::{FootTarget, Leg};
 use crate::rocker::{RockerFoot, foot_heading, foot_pitch, settled_pitch};

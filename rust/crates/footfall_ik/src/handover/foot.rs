@@ -34,7 +34,7 @@ pub(super) struct MovingFoot {
 /// Way of a foot from where it was to where the motion that goes on has it.
 ///
 /// Two things part them. Over the ground and about the vertical it is held where it stands, so that a rolling foot rolls about the place
-/// where it was put, until the new motion lifts it. The rest, its height, tilt and speed, dies away.
+/// where it was put, until the new motion lifts it. Its pitch dies away as a roll about that place, and so does the rest: height, tilt and speed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeldFoot {
     rocker: RockerFoot,
@@ -44,6 +44,8 @@ pub(super) struct HeldFoot {
     /// Offset over the ground from the motion that goes on: x and z; y is the turn. And its rate.
     parted: Vec3,
     parting: Vec3,
+    /// Pitch of a foot that stands in both motions beyond that of the motion that goes on, radians in x.
+    roll: Fading,
     place: Fading,
     tilt: Fading,
     toes: Fading,
@@ -72,12 +74,14 @@ impl HeldFoot {
             going: None,
             parted: Vec3::ZERO,
             parting: Vec3::ZERO,
+            roll: Fading::default(),
             place: Fading::default(),
             tilt: Fading::default(),
             toes: Fading::default(),
         };
         let mut parted_before = Vec3::ZERO;
         let mut from_before = from.before;
+        let mut rolls = [0.0; 2];
         let mut secs = secs;
         let stood = foot.footprint(&from.now);
         let apart = parted(stood, foot.footprint(&to.now));
@@ -90,12 +94,14 @@ impl HeldFoot {
                 from_before = foot.moved(&from.before, parted(stood, foot.footprint(&from.before)));
                 from_before.ankle.y +=
                     rocker.lowest_point(&from.now) - rocker.lowest_point(&from_before);
+                rolls = [(&from.now, &to.now), (&from_before, &to.before)]
+                    .map(|(from, to)| foot_pitch(from.foot) - foot_pitch(to.foot));
             } else {
                 secs = secs.min(LANDING_SECS);
             }
         }
-        let rest = |from: &FootTarget, to: &FootTarget, parted: Vec3| {
-            let to = foot.moved(to, parted);
+        let rest = |from: &FootTarget, to: &FootTarget, parted: Vec3, roll: f32| {
+            let to = foot.rolled(&foot.moved(to, parted), roll);
             let parted = |from: Quat, to: Quat| log_map(from * to.conjugate());
             [
                 from.ankle - to.ankle,
@@ -103,8 +109,10 @@ impl HeldFoot {
                 parted(from.toes, to.toes),
             ]
         };
-        let now = rest(&from.now, &to.now, foot.parted);
-        let before = rest(&from_before, &to.before, parted_before);
+        let now = rest(&from.now, &to.now, foot.parted, rolls[0]);
+        let before = rest(&from_before, &to.before, parted_before, rolls[1]);
+        let [roll, rolled] = rolls.map(|roll| Vec3::X * roll);
+        foot.roll = Fading::new(roll, speed(roll - rolled, dt_secs), secs);
         [foot.place, foot.tilt, foot.toes] = core::array::from_fn(|part| {
             let velocity = speed(now[part] - before[part], dt_secs);
             Fading::new(now[part], velocity, secs)
@@ -115,6 +123,7 @@ impl HeldFoot {
 
     /// Lets time pass. Takes where the motion that goes on has the foot, and whether it stands there; returns where it is.
     pub(super) fn step(&mut self, dt_secs: f32, to: &FootTarget, stands: bool) -> FootTarget {
+        self.roll.advance(dt_secs);
         self.place.advance(dt_secs);
         self.tilt.advance(dt_secs);
         self.toes.advance(dt_secs);
@@ -146,7 +155,7 @@ impl HeldFoot {
         if dt_secs > 0.0 {
             self.parting = speed(self.parted - before, dt_secs);
         }
-        let mut target = self.moved(to, self.parted);
+        let mut target = self.rolled(&self.moved(to, self.parted), self.roll.left().x);
         target.ankle += self.place.left() + Vec3::Y * lift;
         target.foot = (exp_map(self.tilt.left()) * target.foot).normalize();
         target.toes = (exp_map(self.toes.left()) * target.toes).normalize();
@@ -212,6 +221,24 @@ impl HeldFoot {
             ankle: about + level(parted) + turn * (foot.ankle - about),
             foot: (turn * foot.foot).normalize(),
             toes: (turn * foot.toes).normalize(),
+        }
+    }
+
+    /// A foot rolled on its sole to a pitch that differs by so much, radians.
+    fn rolled(&self, foot: &FootTarget, roll: f32) -> FootTarget {
+        if roll == 0.0 {
+            return *foot;
+        }
+        let pitch = foot_pitch(foot.foot);
+        let plant = self
+            .rocker
+            .plant_under(foot.ankle, foot_heading(foot.foot), pitch);
+        let [from, to] = [pitch, pitch + roll].map(|pitch| self.rocker.stand(&plant, pitch));
+        let turned = |from: Quat, to: Quat, part: Quat| (to * from.conjugate() * part).normalize();
+        FootTarget {
+            ankle: foot.ankle + to.ankle - from.ankle,
+            foot: turned(from.foot, to.foot, foot.foot),
+            toes: turned(from.toes, to.toes, foot.toes),
         }
     }
 

@@ -83,7 +83,7 @@ impl FootPlacer {
                 self.pelvis.jump(target);
             }
         }
-        let limit = self.hard_limit(animated, hips, hips_rotation);
+        let limit = self.hard_limit(animated, hips, hips_rotation, firm);
         self.pelvis.hold_below(floor_height + limit.max(-bound));
         let hips = hips + Vec3::Y * (self.pelvis.value - floor_height);
         for (index, target) in targets.iter_mut().enumerate() {
@@ -120,7 +120,8 @@ impl FootPlacer {
             let short = stand == [true; 2]
                 && foot
                     .highest_ankle(scene, &self.rockers[index], animated.pitch)
-                    .is_some_and(|ankle| ankle.distance(hip) > reach);
+                    .map(|ankle| ankle - hip)
+                    .is_some_and(|leg| leg.length() > reach && leg.dot(foot.sole.forward()) < 0.0);
             let foot = &mut self.feet[index];
             foot.let_go_early = animated.contact && (foot.let_go_early || short);
             animated.contact &= !foot.let_go_early;
@@ -244,15 +245,23 @@ impl FootPlacer {
     }
 
     /// The highest above the animation's floor that the pelvis can be for every standing foot to stay where it is.
-    fn hard_limit(&self, animated: &[Animated; 2], hips: Vec3, hips_rotation: Quat) -> f32 {
+    fn hard_limit(
+        &self,
+        animated: &[Animated; 2],
+        hips: Vec3,
+        hips_rotation: Quat,
+        firm: f32,
+    ) -> f32 {
         let mut lowest = f32::MAX;
         for (index, foot) in self.feet.iter().enumerate() {
             if foot.mode == Mode::Locked {
                 let hip = hips_rotation * self.hips_from_hip[index];
+                let stretch = self.stretch(index, animated, hips, hips_rotation);
+                let extension = stretch.clamp(firm, MAX_EXTENSION);
                 let limit = |pitch: f32| {
                     let ankle = foot.ankle_at(&self.rockers[index], pitch);
                     let length = self.leg_lengths[index];
-                    reach_height(hips, hip, ankle, length, MAX_EXTENSION)
+                    reach_height(hips, hip, ankle, length, extension)
                 };
                 // The heel of a foot behind the body can rise; one ahead would only go farther away.
                 let pitch = animated[index].pitch;

@@ -89,6 +89,8 @@ pub(super) struct Foot {
     pub(super) swing_secs: f32,
     pub(super) replant_secs: f32,
     pub(super) guard: Follower,
+    /// Way by which it is pushed out of a wall, metres.
+    pub(super) pushed: Vec3,
     pub(super) residual: Residual,
     /// Residual between the locked foot and the animated one, beyond its correction.
     pub(super) at_lock: Residual,
@@ -164,6 +166,7 @@ impl Default for Foot {
             swing_secs: 0.0,
             replant_secs: 0.0,
             guard: Follower::default(),
+            pushed: Vec3::ZERO,
             residual: Residual::NONE,
             at_lock: Residual::NONE,
             begun: false,
@@ -257,6 +260,7 @@ impl Foot {
         self.lifted_with = self.correction;
         self.swing_secs = 0.0;
         self.guard.jump(0.0);
+        self.pushed = Vec3::ZERO;
     }
 
     /// Locks the foot to the ground where it is put, if there is any.

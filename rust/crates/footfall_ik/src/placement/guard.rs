@@ -18,8 +18,10 @@ const TOUCH_M: f32 = 0.015;
 const GRAZE_M: f32 = 0.01;
 /// So long before it lands it is no longer held up, seconds: it comes down where it was meant to.
 const COMING_DOWN_SECS: f32 = 0.05;
+/// Points of a sole's rim.
+pub(super) const RIM: usize = 6;
 /// So far ahead on its way the ground is looked at, seconds.
-const LOOK_AHEAD_SECS: f32 = 0.06;
+const LOOK_AHEAD_SECS: f32 = 0.07;
 
 impl Foot {
     /// Lifts a foot that would pass through the ground now or a moment later.
@@ -47,14 +49,26 @@ impl Foot {
             let rise = lands.y - self.lifted(scene).shift.y;
             back = animated.flat.forward() * (GRAZE_M * smooth_step(rise / LATE_RISE_M));
         }
-        let soles = [target, &animated.foot].map(|foot| rocker.rim(foot));
-        let [points, free] = soles.each_ref().map(|rim| rim.as_flattened());
+        let share = secs_left.map_or(1.0, |secs| smooth_step(secs / COMING_DOWN_SECS));
+        let rim = |foot: &FootTarget| -> [Vec3; RIM] {
+            let rim = rocker.rim(foot);
+            core::array::from_fn(|index| rim.as_flattened()[index])
+        };
+        let mut points = rim(target);
+        let mut under = points.map(|point| scene.ground(point));
+        self.push_out(scene, &points, &under, TOUCH_M);
+        let aside = share * self.pushed;
+        if aside != Vec3::ZERO {
+            target.ankle += aside;
+            points = points.map(|point| point + aside);
+            under = points.map(|point| scene.ground(point));
+        }
         let mut short = 0.0_f32;
         let mut inside = 0.0_f32;
-        for (point, free) in points.iter().zip(free) {
+        for ((point, under), free) in points.iter().zip(under).zip(rim(&animated.foot)) {
             // No more room than the animation leaves over its own floor.
             let room = free.y.clamp(0.0, GUARD_M);
-            let Some((height, normal)) = scene.ground(*point) else {
+            let Some((height, normal)) = under else {
                 continue;
             };
             if height - point.y > inside && !scene.beside(*point, TOUCH_M) {
@@ -79,19 +93,7 @@ impl Foot {
             .min(scene.config.max_step_m);
         self.guard
             .follow(short, GUARD_HALF_LIFE_SECS, scene.dt_secs);
-        let share = secs_left.map_or(1.0, |secs| smooth_step(secs / COMING_DOWN_SECS));
         let touched = inside.min(scene.config.max_step_m) - TOUCH_M;
         target.ankle.y += (share * self.guard.value).max(touched).max(0.0);
-    }
-}
-
-impl<T: Terrain> Scene<'_, T> {
-    /// Returns true when a point that is below the ground is no farther than this from a wall that it could leave it through.
-    fn beside(&mut self, point: Vec3, distance_m: f32) -> bool {
-        let ways = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
-        ways.into_iter().any(|way| {
-            let ground = self.ground(point + way * distance_m);
-            ground.is_none_or(|(height, _)| height <= point.y)
-        })
     }
 }
