@@ -23,12 +23,13 @@ fn walkers(
     let model = Arc::new(GaitModel::from_bytes(&bytes).expect("the shipped model"));
     seeds
         .map(|seed| {
-            let (choice, asked_mps) = match gait {
-                Gait::Walk => (GaitChoice::Walk, 1.3),
-                Gait::Run => (GaitChoice::Run, 3.2),
+            // Of runs, straight parts count alone.
+            let (choice, asked_mps, steps) = match gait {
+                Gait::Walk => (GaitChoice::Walk, 1.3, 13),
+                Gait::Run => (GaitChoice::Run, 3.2, 26),
             };
             let config = WalkConfig {
-                steps: 13,
+                steps,
                 seed,
                 variation: 1.0,
                 speed_mps: Some(asked_mps as f32),

@@ -69,7 +69,12 @@ impl Joint {
 
     /// Returns true when the joint is one of the hips and legs.
     pub fn is_of_lower_body(self) -> bool {
-        self == Self::Hips || self >= Self::LeftUpperLeg
+        self == Self::Hips || self.is_of_leg()
+    }
+
+    /// Returns true when the joint is one of the legs, without the hips.
+    pub fn is_of_leg(self) -> bool {
+        self >= Self::LeftUpperLeg
     }
 
     /// Position in [`Joint::ALL`] and in every array of per-joint values.

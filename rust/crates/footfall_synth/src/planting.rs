@@ -11,6 +11,7 @@ mod carried;
 mod cut;
 mod flight;
 mod heel;
+mod height;
 mod lean;
 mod lift;
 mod reach;
@@ -43,6 +44,9 @@ pub(crate) use urge::SpeedChange;
 const LANDING_EXTENSION: f32 = 0.985;
 const LANDING_FORWARDS: f32 = 0.011;
 const LANDING_BACKWARDS: f32 = 0.005;
+/// Hips that fall faster than this, m/s, land on a leg that is less straight by this share of it, by m/s: it has to bend at once.
+const EASY_FALL_MPS: f32 = 0.2;
+const LANDING_BY_FALL: f32 = 0.03;
 
 /// Share of the straight leg to which a swinging leg can be stretched.
 const SWING_EXTENSION: f32 = 0.9993;
@@ -93,6 +97,8 @@ pub(crate) struct Course {
     pub(crate) turn_rate: f32,
     /// Headings of the features from where the walker faces, before the step and after it, radians.
     pub(crate) facing: [f32; 2],
+    /// True where standing legs are to be as long as generated.
+    pub(crate) keeps_lengths: bool,
     /// Change of speed within it.
     pub(crate) change: SpeedChange,
     /// Duration of the whole step, seconds.
@@ -223,18 +229,23 @@ impl Planter {
             airborne: airborne.is_some(),
             ..*timing
         };
-        self.balance(raw, timing);
+        self.balance(raw, timing, course);
         self.fill_stances(raw, timing);
         self.travel(raw, timing, course, out);
         let timing = &StepTiming {
             terminal: self.release(raw, timing, out),
             ..*timing
         };
+        if course.keeps_lengths {
+            // What a heel can give, the hips need not.
+            self.raise_heels(raw, timing, out);
+        }
         self.bear(raw, timing, out);
+        if timing.take_off.is_none() || !timing.airborne {
+            self.even_height(raw, timing, out);
+        }
         if timing.take_off.is_some() {
             self.fly(raw, timing, out);
-        } else {
-            self.even_height(raw, timing, out);
         }
         self.raise_heels(raw, timing, out);
         let [before, last] = [timing.frames - 1, timing.frames].map(|f| out[f].pose.root_position);
@@ -356,7 +367,11 @@ impl Planter {
     fn landing_extension(&self) -> f32 {
         let strafe = &self.state.strafe;
         let backwards = (-strafe.forwardness).max(0.0);
-        LANDING_EXTENSION + LANDING_FORWARDS * strafe.uprightness() - LANDING_BACKWARDS * backwards
+        let fall = self.state.hips_velocity.map_or(0.0, |velocity| -velocity.y);
+        let bent = LANDING_BY_FALL * (fall - EASY_FALL_MPS).clamp(0.0, EASY_FALL_MPS);
+        LANDING_EXTENSION + LANDING_FORWARDS * strafe.uprightness()
+            - LANDING_BACKWARDS * backwards
+            - bent
     }
 
     /// Planted and free places of the trailing foot, at the ends of its swing.

@@ -41,6 +41,8 @@ pub(crate) struct RawLeg {
     pub(crate) pitch: f32,
     /// Target of the foot, on its plant or in the air; the planter fills it.
     pub(crate) target: FootTarget,
+    /// Rise of the target's heel beyond the pitch, radians, for the leg to reach it; the planter fills it.
+    pub(crate) rise: f32,
 }
 
 impl RawLeg {
@@ -79,6 +81,7 @@ impl Default for RawLeg {
                 foot: Quat::IDENTITY,
                 toes: Quat::IDENTITY,
             },
+            rise: 0.0,
         }
     }
 }
@@ -119,6 +122,7 @@ impl RawFrame {
                     leg.hip = hip.lane(lane);
                     leg.ankle = ankle.lane(lane);
                     leg.foot = foot.lane(lane);
+                    leg.rise = 0.0;
                     leg.free_pitch = free_pitch.as_array()[lane];
                     leg.pitch = pitch.as_array()[lane];
                 }

@@ -32,6 +32,8 @@ pub(crate) struct Placing<'a> {
     pub(crate) velocity_before_mps: Vec2,
     /// The share of it that had passed when it was planned anew.
     pub(crate) passed: f32,
+    /// True where legs are to be as long as generated: those of two systems are not true enough for that.
+    pub(crate) keeps_lengths: bool,
 }
 
 /// A body whose foot lands.
@@ -171,6 +173,9 @@ impl Stage {
         let course = Course {
             turn_rate: placing.turn_rate,
             facing: placing.facing,
+            keeps_lengths: placing.keeps_lengths
+                && timing.take_off.is_none()
+                && [before, strafe] == [Strafe::NONE; 2],
             change: placing.change(),
             step_secs: step_secs / (1.0 - placing.passed),
         };

@@ -176,6 +176,7 @@ pub(crate) fn put_on_ground(
         step_secs: 0.0,
         turn_rate: config.turn_rate_radps,
         facing: [facing; 2],
+        keeps_lengths: true,
         change: SpeedChange::default(),
     };
     let mut poses: Vec<Pose> = Vec::new();
@@ -213,11 +214,11 @@ pub(crate) fn put_on_ground(
         });
         begin += timing.frames;
         course.step_secs = (timing.frames as f64 * frame_secs) as f32;
-        let timing = planter
-            .get_or_insert_with(|| {
-                Planter::new(skeleton, frame_secs as f32, &raw[0], timing, facing)
-            })
-            .plant_step(&mut raw, timing, course, &mut frames);
+        let planter = planter.get_or_insert_with(|| {
+            Planter::new(skeleton, frame_secs as f32, &raw[0], timing, facing)
+        });
+        course.keeps_lengths = timing.take_off.is_none();
+        let timing = planter.plant_step(&mut raw, timing, course, &mut frames);
         if index < shown.start {
             continue;
         }

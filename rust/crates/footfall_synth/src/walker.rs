@@ -384,5 +384,6 @@ fn placing<'a>(
         velocity_mps: origin.request.velocity_mps,
         velocity_before_mps: origin.velocity_before_mps,
         passed: rest.map_or(0.0, |rest| rest.passed),
+        keeps_lengths: true,
     }
 }

@@ -5,22 +5,26 @@
 //! goes with the components in which walkers differ, and noise.
 
 mod chance;
+mod liveliness;
+mod orientation;
 
 use crate::error::TrainError;
 use crate::sequence::Sequence;
-use footfall_core::ease::catmull_rom;
+use footfall_core::ease::{catmull_rom, smooth_step};
 use footfall_imu::filter::low_pass;
 use footfall_model::{
     FEATURE_COUNT, FINE_POINTS, FineMotion, FineTable, GaitModel, OBSERVATION_COUNT,
-    STATES_PER_STEP, StepModel,
+    STATES_PER_STEP, StepModel, StepOffset,
 };
 use footfall_prob::global_variance::{GlobalVarianceTarget, global_variance, hts_weight};
 use footfall_prob::mlpg::MlpgProblem;
 use glam::Vec3;
+use liveliness::planned_liveliness;
+use orientation::Orientations;
 use rayon::prelude::*;
 
 /// Upper limit of fine motion, hertz: above it is marker noise. A filter's edge is soft, and the band that counts ends at 6 Hz.
-const CUT_OFF_HZ: f64 = 8.0;
+const CUT_OFF_HZ: f64 = 10.0;
 
 /// Steps that a walker's mean must outweigh: with few steps it is drawn towards the mean of all.
 const WALKER_PRIOR_STEPS: f64 = 3.0;
@@ -36,6 +40,8 @@ pub(crate) struct MissingStep {
     /// True when the step before it is the one before in the list.
     follows: bool,
     rows: StepRows,
+    /// The step itself at the same points.
+    captured: StepRows,
 }
 
 /// Estimates the fine motion of a corpus; `None` when no walk has a step that others surround.
@@ -59,12 +65,20 @@ pub(crate) fn estimate(
     }
     let walkers = steps.iter().map(|step| step.walker + 1).max().unwrap_or(0);
     let mut means: Vec<Option<FineTable>> = (0..walkers)
-        .map(|walker| walker_mean(&steps, walker))
+        .map(|walker| walker_mean(&steps, walker, |step| &step.rows))
         .collect();
     let shared = mean_of(means.iter().flatten());
     for step in &mut steps {
         if let Some(mean) = &means[step.walker] {
             subtract(&mut step.rows, &mean[step.side]);
+        }
+    }
+    let own: Vec<Option<FineTable>> = (0..walkers)
+        .map(|walker| walker_mean(&steps, walker, |step| &step.captured))
+        .collect();
+    for step in &mut steps {
+        if let Some(mean) = &own[step.walker] {
+            subtract(&mut step.captured, &mean[step.side]);
         }
     }
     for (walker, mean) in means.iter_mut().enumerate() {
@@ -79,7 +93,16 @@ pub(crate) fn estimate(
         }
     }
     let components = model.variation.walker.len();
-    let chance = chance::estimate(&steps, walkers, walker_weights, components);
+    let orientations = Orientations::about(&model.mean_features());
+    let planned = planned_liveliness(model, &orientations);
+    let chance = chance::estimate(
+        &steps,
+        walkers,
+        walker_weights,
+        components,
+        &orientations,
+        &planned,
+    );
     Ok(Some(FineMotion {
         shared,
         walker: along_components(&means, walker_weights, components),
@@ -95,33 +118,42 @@ fn missing(
     boundaries: &[usize],
 ) -> Result<Vec<MissingStep>, TrainError> {
     let generated = regenerate(model, sequence, boundaries)?;
-    let frames = sequence.frames();
-    let mut rest = vec![0.0; frames * FEATURE_COUNT];
-    for joint in (0..FEATURE_COUNT).step_by(3) {
-        let of = |frame: usize| {
-            let captured = &sequence.observations[frame * OBSERVATION_COUNT + joint..];
-            let made = &generated[frame * FEATURE_COUNT + joint..];
-            Vec3::from([0, 1, 2].map(|axis| (captured[axis] - made[axis]) as f32))
-        };
-        let values: Vec<Vec3> = (0..frames).map(of).collect();
-        for (frame, value) in low_pass(&values, model.frame_rate_hz, CUT_OFF_HZ)
-            .into_iter()
-            .enumerate()
-        {
-            let row = &mut rest[frame * FEATURE_COUNT + joint..][..3];
-            row.copy_from_slice(&value.as_dvec3().to_array());
-        }
-    }
+    let captured: Vec<f64> = sequence
+        .observations
+        .chunks_exact(OBSERVATION_COUNT)
+        .flat_map(|observation| &observation[..FEATURE_COUNT])
+        .copied()
+        .collect();
+    let [captured, made] = [captured, generated].map(|rows| low_passed(&rows, model.frame_rate_hz));
     let inner = 1..sequence.steps.len().saturating_sub(1).max(1);
     let steps = sequence.steps[inner].iter().enumerate();
     Ok(steps
-        .map(|(index, step)| MissingStep {
-            walker: sequence.walker,
-            side: step.side.index(),
-            follows: index > 0,
-            rows: at_points(&rest, step.first, step.end),
+        .map(|(index, step)| {
+            let [captured, made] =
+                [&captured, &made].map(|rows| at_points(rows, step.first, step.end));
+            MissingStep {
+                walker: sequence.walker,
+                side: step.side.index(),
+                follows: index > 0,
+                rows: captured.iter().zip(&made).map(|(a, b)| a - b).collect(),
+                captured,
+            }
         })
         .collect())
+}
+
+/// Features of frames in a row without what is faster than [`CUT_OFF_HZ`].
+fn low_passed(rows: &[f64], frame_rate_hz: f64) -> Vec<f64> {
+    let mut slow = vec![0.0; rows.len()];
+    for joint in (0..FEATURE_COUNT).step_by(3) {
+        let of = |row: &[f64]| Vec3::from([0, 1, 2].map(|axis| row[joint + axis] as f32));
+        let values: Vec<Vec3> = rows.chunks_exact(FEATURE_COUNT).map(of).collect();
+        let values = low_pass(&values, frame_rate_hz, CUT_OFF_HZ);
+        for (row, value) in slow.chunks_exact_mut(FEATURE_COUNT).zip(values) {
+            row[joint..joint + 3].copy_from_slice(&value.as_dvec3().to_array());
+        }
+    }
+    slow
 }
 
 /// The walk as a generator makes it of the means in its states, with its own variance.
@@ -188,6 +220,34 @@ fn durations(step: &StepModel, frames: usize) -> [usize; STATES_PER_STEP] {
     lengths
 }
 
+/// Rows at the points of a stride, a left step and a right one, of what a component of variation adds to it.
+fn component_at_points(model: &GaitModel, component: &[StepOffset; 2]) -> StepRows {
+    let mut rows = Vec::with_capacity(2 * FINE_POINTS * FEATURE_COUNT);
+    // Times of the middles of states over the stride, in steps, and what they add.
+    let mut knots: Vec<(f64, &[f64])> = Vec::with_capacity(2 * STATES_PER_STEP);
+    for (side, offset) in component.iter().enumerate() {
+        let step = &model.steps[side];
+        let mut elapsed = 0.0;
+        for (state, parameters) in step.states.iter().enumerate() {
+            let middle = (elapsed + 0.5 * parameters.duration_mean) / step.mean_frames();
+            elapsed += parameters.duration_mean;
+            let means = &offset.means[state * OBSERVATION_COUNT..][..FEATURE_COUNT];
+            knots.push((side as f64 + middle, means));
+        }
+    }
+    for point in 0..2 * FINE_POINTS {
+        let at = point as f64 / FINE_POINTS as f64;
+        let next = knots.iter().position(|(time, _)| *time > at).unwrap_or(0);
+        let before = (next + knots.len() - 1) % knots.len();
+        let apart = (knots[next].0 - knots[before].0).rem_euclid(2.0);
+        let share = (at - knots[before].0).rem_euclid(2.0) / apart;
+        let smooth = f64::from(smooth_step(share as f32));
+        let pairs = knots[before].1.iter().zip(knots[next].1);
+        rows.extend(pairs.map(|(from, to)| from + smooth * (to - from)));
+    }
+    rows
+}
+
 /// Rows at the points of a step between two frames.
 fn at_points(rows: &[f64], first: usize, end: usize) -> StepRows {
     let last = rows.len() / FEATURE_COUNT - 1;
@@ -206,12 +266,16 @@ fn at_points(rows: &[f64], first: usize, end: usize) -> StepRows {
 }
 
 /// The mean of a walker's steps on each side; `None` unless both were seen.
-fn walker_mean(steps: &[MissingStep], walker: usize) -> Option<FineTable> {
+fn walker_mean(
+    steps: &[MissingStep],
+    walker: usize,
+    rows: impl Fn(&MissingStep) -> &StepRows,
+) -> Option<FineTable> {
     let mut table = [(); 2].map(|()| vec![0.0; FINE_POINTS * FEATURE_COUNT]);
     let mut counts = [0.0; 2];
     for step in steps.iter().filter(|step| step.walker == walker) {
         counts[step.side] += 1.0;
-        for (sum, value) in table[step.side].iter_mut().zip(&step.rows) {
+        for (sum, value) in table[step.side].iter_mut().zip(rows(step)) {
             *sum += value;
         }
     }

@@ -120,6 +120,25 @@ impl Body {
         limits[0].min(limits[1])
     }
 
+    /// Stretch of the legs to feet, as fractions of the straight leg.
+    pub(super) fn stretched(&self, pose: &Pose, targets: &[FootTarget; 2]) -> [f32; 2] {
+        core::array::from_fn(|side| {
+            let hip = pose.root_position + pose.rotation(Joint::Hips) * self.hip_from_hips[side];
+            hip.distance(targets[side].ankle) / self.leg_lengths[side]
+        })
+    }
+
+    /// Lowers the hips of a pose to where no leg is stretched farther than this.
+    pub(super) fn lower_to(&self, pose: &mut Pose, targets: &[FootTarget; 2], stretched: [f32; 2]) {
+        for side in 0..2 {
+            let hip = pose.rotation(Joint::Hips) * self.hip_from_hips[side];
+            let (ankle, length) = (targets[side].ankle, self.leg_lengths[side]);
+            let limit = reach_height(pose.root_position, hip, ankle, length, stretched[side]);
+            let height = &mut pose.root_position.y;
+            *height = limit.map_or(*height, |limit| height.min(limit));
+        }
+    }
+
     /// Draws feet in the air nearer to the hips of a pose where its legs would be straight.
     pub(super) fn within_reach(&self, pose: &Pose, targets: &mut [FootTarget; 2]) {
         for (side, target) in targets.iter_mut().enumerate() {

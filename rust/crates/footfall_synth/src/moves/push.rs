@@ -21,6 +21,9 @@ const GIVEN_WAY: f32 = 0.45;
 /// Farther the body does not give way, leg lengths.
 const FARTHEST: f32 = 0.12;
 
+/// Fraction of the straight leg to which a push stretches legs at most that were shorter.
+const STRETCHED: f32 = 0.9985;
+
 /// Lag of the trunk behind hips that are pushed away, radians by leg length.
 const TRUNK_LAG: f32 = 0.9;
 
@@ -67,11 +70,13 @@ impl PushMoment {
             return;
         }
         let feet = body.feet(pose);
+        let stretched = body.stretched(pose, &feet);
         let most = FARTHEST * body.leg_length;
         let away = self.away * (most / (most + self.away.length()));
         // Hips over legs that lean go down as a pendulum does.
         let down = -0.5 * away.length_squared() / body.leg_length;
         pose.root_position += Vec3::new(away.x, down, away.y);
+        body.lower_to(pose, &feet, stretched.map(|leg| leg.max(STRETCHED)));
         let lag = away * (TRUNK_LAG / body.leg_length);
         let turn = Quat::from_rotation_x(-lag.y) * Quat::from_rotation_z(lag.x);
         pose.rotations[Joint::Spine.index()] *= turn;

@@ -1,9 +1,9 @@
 //! Balance: legs turned under the hips so that, as a foot lands, both feet are on the ground and no knee gives way for it.
 //!
 //! Angles that were generated one by one leave one foot a centimetre or two above the other when it lands. Both are put on the ground by turning
-//! the legs about the hips, which moves the body over its feet, and not by bending a knee.
+//! the legs about the hips, which moves the body over its feet, and not by bending a knee. Where legs keep their lengths, the leg behind raises its heel instead (`height.rs`).
 
-use super::{Planter, StepTiming};
+use super::{Course, Planter, StepTiming};
 use crate::raw::RawFrame;
 use footfall_core::ease::smooth_step;
 use glam::{Vec2, Vec3Swizzles as _};
@@ -19,10 +19,12 @@ const TAKEN_UP: f32 = 0.5;
 
 impl Planter {
     /// Turns the legs over a step, from the balance that the one before ended with to that of the landing.
-    pub(super) fn balance(&mut self, raw: &mut [RawFrame], timing: &StepTiming) {
+    pub(super) fn balance(&mut self, raw: &mut [RawFrame], timing: &StepTiming, course: Course) {
         let from = self.state.balance;
         let to = match timing.take_off {
             Some(_) => Vec2::ZERO,
+            // The leg behind raises its heel instead, and no foot lands too far ahead.
+            None if course.keeps_lengths => Vec2::ZERO,
             None => from.lerp(self.balancing(&raw[timing.frames], timing), TAKEN_UP),
         };
         self.state.balance = to;

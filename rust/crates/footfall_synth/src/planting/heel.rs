@@ -1,6 +1,7 @@
 //! Heels that rise: a standing leg that comes to its end rolls its foot onto the ball, as people's do, before its knee snaps straight or
 //! its pelvis drops.
 
+use super::support::MAX_STANCE_EXTENSION;
 use super::{PlantedFrame, Planter, StepTiming};
 use crate::raw::RawFrame;
 use footfall_core::Side;
@@ -8,7 +9,7 @@ use footfall_core::ease::smooth_step;
 use footfall_core::rotation::from_heading;
 
 /// Fraction of the straight leg beyond which the heel rises instead, and over how much more it comes to do so.
-const RISING_EXTENSION: f32 = 0.996;
+const RISING_EXTENSION: f32 = 0.9965;
 const RISING_SOFTNESS: f32 = 0.0014;
 
 /// No leg counts as stretched farther, as a multiple of that: its exponential stays a number.
@@ -23,44 +24,108 @@ const MOST_RISE: f32 = 0.4;
 /// A heel rises for this where the foot is not ahead of the hip by this share of the leg's length: there it has just landed.
 const AHEAD: f32 = 0.1;
 
+/// Weights by which the rise of a frame counts, and those of its neighbours: a leg that comes off its end does so smoothly.
+const SMOOTHED: [f32; 3] = [3.0, 2.0, 1.0];
+
 impl Planter {
-    /// Raises the heels of feet that bear, where their legs are at their end.
+    /// Raises the heels of feet that bear, where their legs are at their end, and puts those down again that need not be raised any more.
     pub(super) fn raise_heels(
         &self,
         raw: &mut [RawFrame],
         timing: &StepTiming,
         frames: &[PlantedFrame],
     ) {
-        for (index, (raw, frame)) in raw.iter_mut().zip(frames).enumerate() {
-            if timing.leading_bears(index) {
-                self.raise_heel(timing.leading, raw, frame);
+        let leading = timing.take_off.unwrap_or(timing.frames);
+        let trailing = (!timing.airborne).then_some(timing.terminal);
+        let stances = [
+            (timing.leading, Some(leading)),
+            (timing.leading.other(), trailing),
+        ];
+        for (side, last) in stances {
+            let Some(last) = last else { continue };
+            let raw = &mut raw[..=last];
+            for (raw, frame) in raw.iter_mut().zip(frames) {
+                let rise = self.heel_rise(side, raw, frame);
+                let before = core::mem::replace(&mut raw.legs[side.index()].rise, rise);
+                if rise == 0.0 && before > 0.0 {
+                    self.stand_risen(side, raw);
+                }
             }
-            if timing.trailing_bears(index) {
-                self.raise_heel(timing.leading.other(), raw, frame);
+            smooth(raw, side);
+            for raw in raw
+                .iter_mut()
+                .filter(|raw| raw.legs[side.index()].rise > 0.0)
+            {
+                self.stand_risen(side, raw);
             }
         }
     }
 
-    fn raise_heel(&self, side: Side, raw: &mut RawFrame, frame: &PlantedFrame) {
-        let leg = &mut raw.legs[side.index()];
+    /// Returns by how much a heel has to be higher than generated for its leg not to be at its end, radians.
+    fn heel_rise(&self, side: Side, raw: &RawFrame, frame: &PlantedFrame) -> f32 {
+        let leg = &raw.legs[side.index()];
+        let foot = &self.feet[side.index()];
+        let plant = self.plant(side);
+        let level = from_heading(plant.heading);
+        let risen = leg.rise > 0.0;
+        let ankle = if risen {
+            foot.stand_level(plant, level, leg.pitch).ankle
+        } else {
+            leg.target.ankle
+        };
         let length = self.leg_lengths[side.index()];
         let hip = frame.pose.root_position + frame.level * leg.hip;
-        let extension = hip.distance(leg.target.ankle) / length;
+        let extension = hip.distance(ankle) / length;
         let beyond = ((extension - RISING_EXTENSION) / RISING_SOFTNESS).min(MOST_BEYOND);
         if beyond < -MOST_SHORT || leg.pitch < 0.0 {
-            return;
+            return 0.0;
         }
-        let ahead = (frame.level.inverse() * (leg.target.ankle - hip)).z / (AHEAD * length);
+        let ahead = (frame.level.inverse() * (ankle - hip)).z / (AHEAD * length);
         let share = smooth_step(1.0 - ahead);
         if share <= 0.0 {
-            return;
+            return 0.0;
         }
-        let wanted = extension - share * RISING_SOFTNESS * beyond.exp().ln_1p();
-        let (plant, foot) = (self.plant(side), &self.feet[side.index()]);
-        let level = from_heading(plant.heading);
+        let mut wanted = extension - share * RISING_SOFTNESS * beyond.exp().ln_1p();
+        if risen {
+            // The hips have come down to what a leg with its heel up reaches, and no lower.
+            wanted = wanted.min(MAX_STANCE_EXTENSION);
+        }
         let from_plant = level.inverse() * (hip - plant.flat_ankle);
         let pitch = foot.pitch_within_reach(from_plant, wanted * length, leg.pitch);
-        leg.pitch = pitch.min(leg.pitch + MOST_RISE);
-        leg.target = foot.stand_level(plant, level, leg.pitch);
+        (pitch - leg.pitch).clamp(0.0, MOST_RISE)
+    }
+
+    /// Stands a foot on its plant with its heel as high as it is to be.
+    fn stand_risen(&self, side: Side, raw: &mut RawFrame) {
+        let leg = &mut raw.legs[side.index()];
+        let plant = self.plant(side);
+        let level = from_heading(plant.heading);
+        leg.target = self.feet[side.index()].stand_level(plant, level, leg.pitch + leg.rise);
+    }
+}
+
+/// Smooths the rise of a heel in time, less and less towards the ends of its stance.
+fn smooth(raw: &mut [RawFrame], side: Side) {
+    let side = side.index();
+    let last = raw.len() - 1;
+    // Rises of the frames before, as they were.
+    let mut before = [0.0; SMOOTHED.len() - 1];
+    for index in 0..raw.len() {
+        let own = raw[index].legs[side].rise;
+        let reach = index.min(last - index).min(before.len());
+        let (mut sum, mut weights) = (SMOOTHED[0] * own, SMOOTHED[0]);
+        for away in 1..=reach {
+            sum += SMOOTHED[away] * (before[away - 1] + raw[index + away].legs[side].rise);
+            weights += 2.0 * SMOOTHED[away];
+        }
+        // No less than its leg lacks, and none for a foot that stands on its heel.
+        let leg = &mut raw[index].legs[side];
+        leg.rise = if leg.pitch < 0.0 {
+            own
+        } else {
+            own.max(sum / weights)
+        };
+        before.rotate_right(1);
+        before[0] = own;
     }
 }

@@ -9,8 +9,9 @@ const SMOOTHED_SECS: f32 = 0.035;
 const TURN_SECS: f32 = 0.05;
 /// The height is looked at beyond that for so long, seconds.
 const SEEN_SECS: f32 = 0.1;
-/// Weight of a height that a leg's reach allows, against one that was generated.
-const REACH_WEIGHT: f64 = 16.0;
+/// Weights of a height that a leg's reach allows, against one that was generated, until none is beyond it by more than the distance, metres.
+const REACH_WEIGHTS: [f64; 3] = [16.0, 256.0, 4096.0];
+const REACHED_M: f64 = 2e-4;
 /// Steps of more frames, those to come included, stay as they are: models at 60 frames a second have none.
 const MOST_FRAMES: usize = 256;
 /// Coefficients of a third difference: jerk.
@@ -35,17 +36,22 @@ impl Planter {
         }
         let begin = f64::from(self.state.hips.y);
         let rise = self.state.hips_velocity;
-        let rise = rise.map(|velocity| f64::from(velocity.y * self.frame_secs));
+        // A leg that has just been planned anew may be at its end already.
+        let most = self.bearing_limit(&raw[1], timing, 1, &frames[1]) - begin;
+        let rise = rise.map(|velocity| f64::from(velocity.y * self.frame_secs).min(most.max(0.0)));
         let mut heights = asked.smoothed(begin, rise);
-        let mut beyond = false;
-        for (index, frame) in frames.iter().enumerate() {
-            let limit = self.bearing_limit(&raw[index], timing, index, frame);
-            if heights[index] > limit {
-                beyond = true;
-                asked.set(index, asked.heights[index].min(limit), REACH_WEIGHT);
+        for weight in REACH_WEIGHTS {
+            let mut beyond = false;
+            for (index, frame) in frames.iter().enumerate() {
+                let limit = self.bearing_limit(&raw[index], timing, index, frame);
+                if heights[index] > limit + REACHED_M {
+                    beyond = true;
+                    asked.set(index, asked.heights[index].min(limit), weight);
+                }
             }
-        }
-        if beyond {
+            if !beyond {
+                break;
+            }
             heights = asked.smoothed(begin, rise);
         }
         for (height, frame) in heights.iter().zip(frames) {
@@ -70,7 +76,13 @@ impl Planter {
             let hips = frame.pose.root_position;
             bears.then(|| self.reach_limit(side, hips, raw, frame))?
         });
-        f64::from(limits.fold(f32::MAX, f32::min))
+        // The rest of a step that was planned anew is too short to come down by itself.
+        let landing = if index == timing.frames && timing.airborne {
+            self.landing_limit(raw, leading.other())
+        } else {
+            f32::MAX
+        };
+        f64::from(limits.fold(landing, f32::min))
     }
 }
 

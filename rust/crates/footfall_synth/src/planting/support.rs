@@ -7,7 +7,7 @@ use footfall_ik::reach_height;
 use glam::Vec3;
 
 /// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
-const MAX_STANCE_EXTENSION: f32 = 0.998;
+pub(super) const MAX_STANCE_EXTENSION: f32 = 0.998;
 
 /// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
 pub(super) const LET_GO_EXTENSION: f32 = 0.998;
@@ -102,6 +102,17 @@ impl Planter {
         let length = self.leg_lengths[side.index()];
         let hip = frame.level * leg.hip;
         reach_height(hips, hip, leg.target.ankle, length, MAX_STANCE_EXTENSION)
+    }
+
+    /// Greatest height of the hips at which a leg reaches the foot that it lands where it was generated.
+    pub(super) fn landing_limit(&self, raw: &RawFrame, side: Side) -> f32 {
+        let leg = &raw.legs[side.index()];
+        let foot = &self.feet[side.index()];
+        let reach = leg.ankle - leg.hip;
+        let length = MAX_STANCE_EXTENSION * self.leg_lengths[side.index()];
+        let height =
+            (length * length - reach.x * reach.x - reach.z * reach.z).max(reach.y * reach.y);
+        foot.ankle_height() + foot.roll(leg.pitch).y + height.sqrt() - leg.hip.y
     }
 
     /// Lowers the hips to where the landing leg will have them once it bears with the other.

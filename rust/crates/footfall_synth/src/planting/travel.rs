@@ -10,7 +10,7 @@ use footfall_core::{Joint, Side};
 use glam::{Quat, Vec3};
 
 /// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
-const SETTLE_SECS: f32 = 0.07;
+const SETTLE_SECS: f32 = 0.05;
 
 /// Steps that are made shorter, as on stairs, still lift and lower the hips as long ones do: in a step of no length they would take so
 /// much longer to settle, as a share.
@@ -23,10 +23,10 @@ const SETTLE_BY_FALL: f32 = 0.04;
 /// Part of a step over which a new turn rate sets in.
 pub(super) const TURN_ONSET: f32 = 0.6;
 
-/// Generated legs disagree by a few centimetres about the hips' height when a foot lands. This share of the gap is closed
+/// Generated legs disagree by a few centimetres about the hips' height when a foot lands beside the other or behind it. This share of the gap is closed
 /// before the landing, from this part of the step on, and the rest after it.
 const MEETING_SHARE: f32 = 0.5;
-const MEETING_FROM: f32 = 0.4;
+pub(super) const MEETING_FROM: f32 = 0.4;
 
 impl Planter {
     /// Fills hips, headings and ground position of every frame, and carries the latter two to the next step.
@@ -67,6 +67,9 @@ impl Planter {
         }
         self.drift(timing, out);
         self.even(timing, course.change, out);
+        if course.keeps_lengths {
+            self.keep_lengths(raw, timing, out);
+        }
         self.glide(timing, out);
     }
 
@@ -91,7 +94,7 @@ impl Planter {
     }
 
     /// Time constant of the settling in a step with this reach of the legs, seconds.
-    fn settle_secs(&self) -> f32 {
+    pub(super) fn settle_secs(&self) -> f32 {
         let forwards = self.state.strafe == Strafe::NONE;
         let stride = self.state.stride.clamp(0.0, 1.0);
         let short = if forwards { 1.0 - stride } else { 0.0 };

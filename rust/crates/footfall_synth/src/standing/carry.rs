@@ -10,6 +10,13 @@ use glam::{Quat, Vec3};
 /// Beyond this no leg goes: its foot would leave its place.
 const MOST_STRETCHED: f32 = 0.9993;
 
+/// The hips of a body that walks give way, over some metres, before a leg is stretched to more than this: it would snap straight.
+const STRETCHED: f32 = 0.998;
+const YIELDING_M: f32 = 0.003;
+
+/// No leg counts as lacking more, as a multiple of that: its exponential stays a number.
+const MOST_LACKING: f32 = 60.0;
+
 /// The pelvis tilts to the side by so much at most where one leg has farther to its foot, radians.
 const MOST_TILT: f32 = 0.06;
 
@@ -61,6 +68,7 @@ impl Carrier {
         let way = leg * Vec3::new(sway[FEATURE_COUNT], 0.0, sway[FEATURE_COUNT + 1]);
         let mut hips = pose.root_position + level * way;
         let mut feet = feet;
+        let lacked = self.lacks(pose.root_position, &feet);
         self.hang(pose.rotation(Joint::Hips), &mut feet);
         let tilt = Quat::from_rotation_z(upright * self.tilt(hips, &feet));
         pose.rotations[Joint::Hips.index()] *= tilt;
@@ -71,6 +79,7 @@ impl Carrier {
         if let Some(height) = self.reach(hips, &feet) {
             hips.y += upright * (height - hips.y);
         }
+        hips.y -= (1.0 - upright) * (self.lacks(hips, &feet) - lacked).max(0.0);
         for side in Side::BOTH {
             if let Some(limit) = self.height(hips, side, &feet[side.index()], MOST_STRETCHED) {
                 hips.y = hips.y.min(limit);
@@ -81,6 +90,21 @@ impl Carrier {
             let target = &feet[side.index()].target;
             self.legs[side.index()].solve(hips, hips_rotation, target, pose);
         }
+    }
+
+    /// Distance by which the hips of a body on these feet give way, metres.
+    fn lacks(&self, hips: Vec3, feet: &[Foot; 2]) -> f32 {
+        Side::BOTH
+            .into_iter()
+            .filter_map(|side| self.height(hips, side, &feet[side.index()], STRETCHED))
+            .map(|limit| {
+                YIELDING_M
+                    * ((hips.y - limit) / YIELDING_M)
+                        .min(MOST_LACKING)
+                        .exp()
+                        .ln_1p()
+            })
+            .fold(0.0, f32::max)
     }
 
     /// Puts the hip joints where the hips have them.

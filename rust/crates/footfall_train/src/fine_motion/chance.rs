@@ -1,31 +1,18 @@
 //! Noise with the covariance and the spectrum of what steps do not have in common.
+//!
+//! It is fitted to how parts of the body point, not to angles of joints: eyes see where a forearm points, whose joint angle has to make up for what the
+//! shoulder and the trunk do. So rows of features become rotations of the parts in the walker's space, and directions of them become features again.
 
 use super::MissingStep;
+use super::liveliness::strengths;
+use super::orientation::Orientations;
 use footfall_core::Joint;
-use footfall_model::layout::feature_offset;
 use footfall_model::{FEATURE_COUNT, FINE_REACH, FINE_TAPS, FineChance, MAX_FINE_DIRECTIONS};
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// By how much what the trunk and the head do counts for more than what arms do, in the choice of directions: arms move farther, but all
-/// that hangs from the trunk moves with it.
+/// By how much what the trunk and the head do counts for more than what arms do, in the choice of directions: arms move farther, but the eye
+/// rests on the trunk and the head.
 const TRUNK_WEIGHT: f64 = 3.0;
-
-/// Joints that chance leaves alone. Hips are where the standing leg carries them, so that an error of an angle would become a surge of
-/// the body, and in legs nearly all detail repeats.
-const LEGS: [[Joint; 4]; 2] = [
-    [
-        Joint::LeftUpperLeg,
-        Joint::LeftLowerLeg,
-        Joint::LeftFoot,
-        Joint::LeftToes,
-    ],
-    [
-        Joint::RightUpperLeg,
-        Joint::RightLowerLeg,
-        Joint::RightFoot,
-        Joint::RightToes,
-    ],
-];
 
 /// Lags of the correlation that the spectrum is taken from, points.
 const LAGS: usize = 2 * FINE_REACH;
@@ -40,17 +27,21 @@ const LEAST_SHARE: f64 = 1e-6;
 const PRIOR_STEPS: f64 = 6.0;
 
 /// Rows of consecutive points of one walk, of one walker.
-struct Run {
-    walker: usize,
+pub(super) struct Run {
+    pub(super) walker: usize,
     rows: Vec<f64>,
+    /// All in which steps differ.
+    pub(super) captured: Vec<f64>,
 }
 
-/// Fits the noise to what is left of steps without the mean of their walker.
+/// Fits the noise to what is left of steps without the mean of their walker. `planned` is the liveliness that steps have without it.
 pub(super) fn estimate(
     steps: &[MissingStep],
     walkers: usize,
     walker_weights: &[Vec<f64>],
     components: usize,
+    orientations: &Orientations,
+    planned: &[f64],
 ) -> FineChance {
     let mut runs: Vec<Run> = Vec::new();
     let mut freed = 0.0;
@@ -60,10 +51,13 @@ pub(super) fn estimate(
             runs.push(Run {
                 walker: step.walker,
                 rows: Vec::new(),
+                captured: Vec::new(),
             });
         }
         if let Some(run) = runs.last_mut() {
-            run.rows.extend_from_slice(&step.rows);
+            run.rows.extend(orientations.of_upper_body(&step.rows));
+            run.captured
+                .extend(orientations.of_upper_body(&step.captured));
         }
         counts[step.walker] += 1.0;
     }
@@ -72,22 +66,20 @@ pub(super) fn estimate(
         freed += if *count > 2.0 { 2.0 } else { *count };
     }
     let correction = (steps.len() as f64 / (steps.len() as f64 - freed).max(1.0)).sqrt();
-    for row in runs
-        .iter_mut()
-        .flat_map(|run| run.rows.chunks_exact_mut(FEATURE_COUNT))
-    {
-        for joint in LEGS.into_iter().flatten() {
-            row[feature_offset(joint)..][..3].fill(0.0);
-        }
-    }
     let mut kernels = Vec::new();
-    let mut directions = Vec::new();
-    for axis in principal_axes(&runs) {
-        kernels.push(kernel(&correlation(&runs, &axis)));
-        let mut direction: Vec<f64> = axis.iter().map(|value| correction * value).collect();
-        hold_legs(&mut direction);
-        directions.push(direction);
+    let axes = principal_axes(&runs);
+    for axis in &axes {
+        kernels.push(kernel(&correlation(&runs, axis)));
     }
+    let strengths = strengths(&runs, &axes, &kernels, planned);
+    let directions = axes.iter().map(|axis| {
+        let pairs = axis.iter().zip(&strengths);
+        let strong: Vec<f64> = pairs
+            .map(|(a, strength)| correction * strength * a)
+            .collect();
+        orientations.features(&strong)
+    });
+    let directions = directions.collect();
     FineChance {
         kernels,
         directions,
@@ -95,26 +87,16 @@ pub(super) fn estimate(
     }
 }
 
-/// Turns the thighs against the hips, so that they point where they did.
-fn hold_legs(direction: &mut [f64]) {
-    let hips = feature_offset(Joint::Hips);
-    for [thigh, ..] in LEGS {
-        for axis in 0..3 {
-            direction[feature_offset(thigh) + axis] = -direction[hips + axis];
-        }
-    }
-}
-
-/// Weight of a feature in the choice of directions.
-fn weight(feature: usize) -> f64 {
-    if feature < feature_offset(Joint::LeftShoulder) {
+/// Weight of a number of a row in the choice of directions.
+fn weight(number: usize) -> f64 {
+    if number < 3 * Joint::LeftShoulder.index() {
         TRUNK_WEIGHT
     } else {
         1.0
     }
 }
 
-/// The strongest axes, each as long as the deviation along it. The axes that are kept stand for all: together they have the energy of all.
+/// The strongest axes, each as long as the deviation along it.
 fn principal_axes(runs: &[Run]) -> Vec<Vec<f64>> {
     let mut covariance = DMatrix::<f64>::zeros(FEATURE_COUNT, FEATURE_COUNT);
     let mut count = 0.0;
@@ -136,11 +118,10 @@ fn principal_axes(runs: &[Run]) -> Vec<Vec<f64>> {
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
     order.truncate(MAX_FINE_DIRECTIONS);
     order.retain(|index| eigen.eigenvalues[*index] > LEAST_SHARE * whole);
-    let kept: f64 = order.iter().map(|index| eigen.eigenvalues[*index]).sum();
     order
         .into_iter()
         .map(|index| {
-            let length = (eigen.eigenvalues[index] * whole / kept).sqrt();
+            let length = eigen.eigenvalues[index].sqrt();
             let axis = eigen.eigenvectors.column(index);
             axis.iter()
                 .enumerate()
@@ -242,6 +223,7 @@ fn walker_strength(
 
 #[cfg(test)]
 mod tests {
+    use super::super::liveliness::liveliness;
     use super::*;
 
     /// Numbers of a second-order process that swings with a period of five points.
@@ -262,9 +244,9 @@ mod tests {
     }
 
     #[test]
-    fn thighs_point_where_they_did_and_legs_take_no_chance() {
+    fn legs_point_where_they_did_and_every_joint_has_its_energy() {
         let rows: Vec<f64> = (0..600)
-            .map(|index| f64::from((index * 7919 + 13) % 101) / 101.0 - 0.5)
+            .map(|index| 0.02 * (f64::from((index * 7919 + 13) % 101) / 101.0 - 0.5))
             .cycle()
             .take(60 * FEATURE_COUNT)
             .collect();
@@ -275,18 +257,49 @@ mod tests {
                 side: 0,
                 follows: true,
                 rows: rows.to_vec(),
+                captured: rows.to_vec(),
             })
             .collect();
-        let chance = estimate(&steps, 1, &[vec![1.0]], 1);
+        let mean: Vec<f64> = (0..FEATURE_COUNT)
+            .map(|number| 0.4 * f64::from(number as u32).sin())
+            .collect();
+        let orientations = Orientations::about(&mean);
+        let planned = vec![0.0; FEATURE_COUNT];
+        let chance = estimate(&steps, 1, &[vec![1.0]], 1, &orientations, &planned);
         assert!(!chance.directions.is_empty());
-        for direction in &chance.directions {
-            let hips = &direction[feature_offset(Joint::Hips)..][..3];
-            let thigh = &direction[feature_offset(Joint::LeftUpperLeg)..][..3];
-            let knee = &direction[feature_offset(Joint::LeftLowerLeg)..][..3];
-            for axis in 0..3 {
-                assert!((hips[axis] + thigh[axis]).abs() < 1e-12);
-                assert!(knee[axis].abs() < 1e-2);
+        let second = |row: &[f64], joint: Joint| -> f64 {
+            let turns = orientations.of(row);
+            turns[3 * joint.index()..][..3].iter().map(|v| v * v).sum()
+        };
+        let generated = |joint: Joint| -> f64 {
+            let pairs = chance.directions.iter().zip(&chance.kernels);
+            let energies =
+                pairs.map(|(direction, kernel)| second(direction, joint) * liveliness(kernel));
+            energies.sum()
+        };
+        let rows: Vec<&[f64]> = rows.chunks_exact(FEATURE_COUNT).collect();
+        let captured = |joint: Joint| -> f64 {
+            let seconds = rows.windows(3).map(|three| {
+                let row: Vec<f64> = (0..FEATURE_COUNT)
+                    .map(|n| three[0][n] - 2.0 * three[1][n] + three[2][n])
+                    .collect();
+                second(&row, joint)
+            });
+            seconds.sum::<f64>() / (rows.len() - 2) as f64
+        };
+        for joint in Joint::ALL {
+            // Left and right have their energy as one.
+            let [generated, captured] = [
+                generated(joint) + generated(joint.mirrored()),
+                captured(joint) + captured(joint.mirrored()),
+            ];
+            if joint.is_of_leg() {
+                assert!(generated < 1e-12, "{generated} of {joint:?}");
+                continue;
             }
+            // Two means of the one walker took their share of five steps.
+            let ratio = generated / (captured * 5.0 / 3.0);
+            assert!((ratio - 1.0).abs() < 0.02, "{ratio} of {joint:?}");
         }
     }
 }
