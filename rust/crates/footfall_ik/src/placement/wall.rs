@@ -12,7 +12,7 @@ const STEP_M: f32 = 0.01;
 const HALVINGS: usize = 4;
 /// Time constant with which the foot goes it, seconds.
 const PUSH_SECS: f32 = 0.02;
-/// What is left of it that is shorter is nothing, metres.
+/// Shorter remainders of it count as none, metres.
 const NOTHING_M: f32 = 1e-4;
 /// Ways out, in the axes of the floor.
 const WAYS: [Vec3; 4] = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
