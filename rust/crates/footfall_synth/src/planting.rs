@@ -12,6 +12,7 @@ mod cut;
 mod flight;
 mod heel;
 mod height;
+mod landing;
 mod lean;
 mod lift;
 mod reach;
@@ -34,19 +35,10 @@ use footfall_core::{Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
 use glam::{Quat, Vec2, Vec3};
 pub(crate) use lean::{Lean, Pull};
-use reach::{within_reach, yielding};
+use reach::yielding;
 use swing::Swing;
 pub(crate) use timing::StepTiming;
 pub(crate) use urge::SpeedChange;
-
-/// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once. A step forwards lands straighter than
-/// one to the side, and one backwards, which lands on its toes, over a bent knee.
-const LANDING_EXTENSION: f32 = 0.985;
-const LANDING_FORWARDS: f32 = 0.011;
-const LANDING_BACKWARDS: f32 = 0.005;
-/// Hips that fall faster than this, m/s, land on a leg that is less straight by this share of it, by m/s: it has to bend at once.
-const EASY_FALL_MPS: f32 = 0.2;
-const LANDING_BY_FALL: f32 = 0.03;
 
 /// Share of the straight leg to which a swinging leg can be stretched.
 const SWING_EXTENSION: f32 = 0.9993;
@@ -339,39 +331,6 @@ impl Planter {
                 raw[index + lane].legs[side].target = target.lane(lane);
             }
         }
-    }
-
-    /// Plant of the trailing foot at the end of the step.
-    fn next_plant(
-        &self,
-        raw: &[RawFrame],
-        timing: &StepTiming,
-        hips: Vec3,
-        heading: f32,
-        course: Course,
-    ) -> Plant {
-        let side = timing.leading.other();
-        let leg = &raw[timing.frames].legs[side.index()];
-        let ankle = hips + from_heading(heading) * leg.ankle;
-        // The foot points to where the body will have turned by the middle of its stance.
-        let lead = 0.5 * course.turn_rate * course.step_secs;
-        let foot = &self.feet[side.index()];
-        let mut plant = foot.plant_under(ankle, heading + lead + leg.heading(), leg.pitch);
-        let hip = hips + from_heading(heading) * leg.hip;
-        let reach = self.landing_extension() * self.leg_lengths[side.index()];
-        plant.flat_ankle += within_reach(foot.stand(&plant, leg.pitch).ankle - hip, reach);
-        plant
-    }
-
-    /// Fraction of the straight leg with which a foot lands at most.
-    fn landing_extension(&self) -> f32 {
-        let strafe = &self.state.strafe;
-        let backwards = (-strafe.forwardness).max(0.0);
-        let fall = self.state.hips_velocity.map_or(0.0, |velocity| -velocity.y);
-        let bent = LANDING_BY_FALL * (fall - EASY_FALL_MPS).clamp(0.0, EASY_FALL_MPS);
-        LANDING_EXTENSION + LANDING_FORWARDS * strafe.uprightness()
-            - LANDING_BACKWARDS * backwards
-            - bent
     }
 
     /// Planted and free places of the trailing foot, at the ends of its swing.

@@ -104,17 +104,6 @@ impl Planter {
         reach_height(hips, hip, leg.target.ankle, length, MAX_STANCE_EXTENSION)
     }
 
-    /// Greatest height of the hips at which a leg reaches the foot that it lands where it was generated.
-    pub(super) fn landing_limit(&self, raw: &RawFrame, side: Side) -> f32 {
-        let leg = &raw.legs[side.index()];
-        let foot = &self.feet[side.index()];
-        let reach = leg.ankle - leg.hip;
-        let length = MAX_STANCE_EXTENSION * self.leg_lengths[side.index()];
-        let height =
-            (length * length - reach.x * reach.x - reach.z * reach.z).max(reach.y * reach.y);
-        foot.ankle_height() + foot.roll(leg.pitch).y + height.sqrt() - leg.hip.y
-    }
-
     /// Lowers the hips to where the landing leg will have them once it bears with the other.
     fn settle(
         &self,

@@ -1,0 +1,65 @@
+//! Landing: the place at which a foot comes down, and how straight its leg is.
+
+use super::reach::within_reach;
+use super::support::MAX_STANCE_EXTENSION;
+use super::{Course, Planter, StepTiming};
+use crate::raw::RawFrame;
+use footfall_core::Side;
+use footfall_core::rotation::from_heading;
+use footfall_ik::Plant;
+use glam::Vec3;
+
+/// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once. A step forwards lands straighter than
+/// one to the side, and one backwards, which lands on its toes, over a bent knee.
+const LANDING_EXTENSION: f32 = 0.985;
+const LANDING_FORWARDS: f32 = 0.011;
+const LANDING_BACKWARDS: f32 = 0.005;
+/// Hips that fall faster than this, m/s, land on a leg that is less straight by this share of it, by m/s: it has to bend at once.
+const EASY_FALL_MPS: f32 = 0.2;
+const LANDING_BY_FALL: f32 = 0.03;
+
+impl Planter {
+    /// Plant of the trailing foot at the end of the step.
+    pub(super) fn next_plant(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        hips: Vec3,
+        heading: f32,
+        course: Course,
+    ) -> Plant {
+        let side = timing.leading.other();
+        let leg = &raw[timing.frames].legs[side.index()];
+        let ankle = hips + from_heading(heading) * leg.ankle;
+        // The foot points to where the body will have turned by the middle of its stance.
+        let lead = 0.5 * course.turn_rate * course.step_secs;
+        let foot = &self.feet[side.index()];
+        let mut plant = foot.plant_under(ankle, heading + lead + leg.heading(), leg.pitch);
+        let hip = hips + from_heading(heading) * leg.hip;
+        let reach = self.landing_extension() * self.leg_lengths[side.index()];
+        plant.flat_ankle += within_reach(foot.stand(&plant, leg.pitch).ankle - hip, reach);
+        plant
+    }
+
+    /// Fraction of the straight leg with which a foot lands at most.
+    pub(super) fn landing_extension(&self) -> f32 {
+        let strafe = &self.state.strafe;
+        let backwards = (-strafe.forwardness).max(0.0);
+        let fall = self.state.hips_velocity.map_or(0.0, |velocity| -velocity.y);
+        let bent = LANDING_BY_FALL * (fall - EASY_FALL_MPS).clamp(0.0, EASY_FALL_MPS);
+        LANDING_EXTENSION + LANDING_FORWARDS * strafe.uprightness()
+            - LANDING_BACKWARDS * backwards
+            - bent
+    }
+
+    /// Greatest height of the hips at which a leg reaches the foot that it lands where it was generated.
+    pub(super) fn landing_limit(&self, raw: &RawFrame, side: Side) -> f32 {
+        let leg = &raw.legs[side.index()];
+        let foot = &self.feet[side.index()];
+        let reach = leg.ankle - leg.hip;
+        let length = MAX_STANCE_EXTENSION * self.leg_lengths[side.index()];
+        let height =
+            (length * length - reach.x * reach.x - reach.z * reach.z).max(reach.y * reach.y);
+        foot.ankle_height() + foot.roll(leg.pitch).y + height.sqrt() - leg.hip.y
+    }
+}
