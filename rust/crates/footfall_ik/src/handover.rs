@@ -23,7 +23,7 @@ const EASY_EXTENSION: f32 = 0.985;
 /// It is never stretched more than to this share.
 const MAX_EXTENSION: f32 = 0.999;
 /// The pelvis begins to give way so far before that, metres, for a foot that is held farther away than it; else sooner than not at all.
-const YIELD_M: f32 = 0.04;
+const YIELD_M: f32 = 0.03;
 /// It does so from the first part of the way on: by one through this.
 const YIELD_RATE: f32 = 3.0;
 /// A foot that would pull it down by more makes a step of its own to its new place, metres.

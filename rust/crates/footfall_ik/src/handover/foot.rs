@@ -17,6 +17,13 @@ const RISE: f32 = 0.35;
 const RISES_M: [f32; 2] = [0.02, 0.1];
 /// A foot that has so little left to go has landed, metres.
 const LANDED_M: f32 = 0.02;
+/// A sole that has so much left to roll counts as so many metres a radian away.
+const ROLL_LEVER_M: f32 = 0.1;
+/// A foot that comes out of the air has landed after this share of its way, however near it was.
+const LANDED_SHARE: f32 = 0.7;
+/// A sole that comes down does so no faster than by so many times its pitch within the time of the hand-over: it stops at the ground and does not roll on to the other
+/// side.
+const SLAP: f32 = 2.8;
 /// A foot in the air that stands in the new motion lands within this time where it is, seconds, if that is no farther away than this, metres.
 const LANDING_SECS: f32 = 0.15;
 const REACH_M: f32 = 0.35;
@@ -46,6 +53,8 @@ pub(super) struct HeldFoot {
     parting: Vec3,
     /// Pitch of a foot that stands in both motions beyond that of the motion that goes on, radians in x.
     roll: Fading,
+    /// True for a foot that came out of the air.
+    lands: bool,
     place: Fading,
     tilt: Fading,
     toes: Fading,
@@ -75,6 +84,7 @@ impl HeldFoot {
             parted: Vec3::ZERO,
             parting: Vec3::ZERO,
             roll: Fading::default(),
+            lands: false,
             place: Fading::default(),
             tilt: Fading::default(),
             toes: Fading::default(),
@@ -97,6 +107,7 @@ impl HeldFoot {
                 rolls = [(&from.now, &to.now), (&from_before, &to.before)]
                     .map(|(from, to)| foot_pitch(from.foot) - foot_pitch(to.foot));
             } else {
+                foot.lands = true;
                 secs = secs.min(LANDING_SECS);
             }
         }
@@ -112,7 +123,12 @@ impl HeldFoot {
         let now = rest(&from.now, &to.now, foot.parted, rolls[0]);
         let before = rest(&from_before, &to.before, parted_before, rolls[1]);
         let [roll, rolled] = rolls.map(|roll| Vec3::X * roll);
-        foot.roll = Fading::new(roll, speed(roll - rolled, dt_secs), secs);
+        let mut rolling = speed(roll - rolled, dt_secs);
+        if rolling.x * roll.x < 0.0 {
+            let most = SLAP * roll.x.abs() / secs.max(f32::MIN_POSITIVE);
+            rolling = rolling.clamp_length_max(most);
+        }
+        foot.roll = Fading::new(roll, rolling, secs);
         [foot.place, foot.tilt, foot.toes] = core::array::from_fn(|part| {
             let velocity = speed(now[part] - before[part], dt_secs);
             Fading::new(now[part], velocity, secs)
@@ -182,7 +198,9 @@ impl HeldFoot {
 
     /// Returns true when it stands, or is as good as there.
     pub(super) fn has_landed(&self) -> bool {
-        self.going.is_none() && self.place.left().length() < LANDED_M
+        let rolling = ROLL_LEVER_M * self.roll.left().x.abs();
+        let settled = !self.lands || self.place.share() >= LANDED_SHARE;
+        self.going.is_none() && settled && self.place.left().length() + rolling < LANDED_M
     }
 
     /// Returns true when it is where the motion that goes on has it.
