@@ -8,6 +8,22 @@ pub fn smooth_step(s: f32) -> f32 {
     s * s * (3.0 - 2.0 * s)
 }
 
+/// The smaller of two numbers, rounded off where they are nearer than a few times `softness`.
+#[expect(
+    clippy::imprecise_flops,
+    reason = "a nanometre is exact enough, and ln_1p takes three times as long"
+)]
+pub fn soft_min(value: f32, limit: f32, softness: f32) -> f32 {
+    let excess = (value - limit) / softness;
+    if excess > 10.0 {
+        return limit;
+    }
+    if excess < -10.0 {
+        return value;
+    }
+    value - softness * (1.0 + excess.exp()).ln()
+}
+
 /// Cubic Hermite curve at `s` in 0..1; the tangents `departure` and `arrival` are per unit of `s`.
 pub fn hermite<T>(from: T, departure: T, to: T, arrival: T, s: f32) -> T
 where

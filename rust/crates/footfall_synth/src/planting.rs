@@ -89,7 +89,7 @@ pub(crate) struct Course {
     pub(crate) turn_rate: f32,
     /// Headings of the features from where the walker faces, before the step and after it, radians.
     pub(crate) facing: [f32; 2],
-    /// True where standing legs are to be as long as generated.
+    /// True where standing legs are to be as long as generated; those of a step that ends in flight are not.
     pub(crate) keeps_lengths: bool,
     /// Change of speed within it.
     pub(crate) change: SpeedChange,
@@ -220,6 +220,10 @@ impl Planter {
             },
             airborne: airborne.is_some(),
             ..*timing
+        };
+        let course = Course {
+            keeps_lengths: course.keeps_lengths && timing.take_off.is_none(),
+            ..course
         };
         self.balance(raw, timing, course);
         self.fill_stances(raw, timing);

@@ -173,9 +173,7 @@ impl Stage {
         let course = Course {
             turn_rate: placing.turn_rate,
             facing: placing.facing,
-            keeps_lengths: placing.keeps_lengths
-                && timing.take_off.is_none()
-                && [before, strafe] == [Strafe::NONE; 2],
+            keeps_lengths: placing.keeps_lengths && [before, strafe] == [Strafe::NONE; 2],
             change: placing.change(),
             step_secs: step_secs / (1.0 - placing.passed),
         };

@@ -214,11 +214,11 @@ pub(crate) fn put_on_ground(
         });
         begin += timing.frames;
         course.step_secs = (timing.frames as f64 * frame_secs) as f32;
-        let planter = planter.get_or_insert_with(|| {
-            Planter::new(skeleton, frame_secs as f32, &raw[0], timing, facing)
-        });
-        course.keeps_lengths = timing.take_off.is_none();
-        let timing = planter.plant_step(&mut raw, timing, course, &mut frames);
+        let timing = planter
+            .get_or_insert_with(|| {
+                Planter::new(skeleton, frame_secs as f32, &raw[0], timing, facing)
+            })
+            .plant_step(&mut raw, timing, course, &mut frames);
         if index < shown.start {
             continue;
         }

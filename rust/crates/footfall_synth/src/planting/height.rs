@@ -7,7 +7,7 @@
 use super::travel::MEETING_FROM;
 use super::{PlantedFrame, Planter, StepTiming};
 use crate::raw::RawFrame;
-use footfall_core::ease::smooth_step;
+use footfall_core::ease::{settled, smooth_step};
 use glam::Vec3Swizzles as _;
 
 /// Least share of a leg's squared length that is left of it from the side.
@@ -21,10 +21,6 @@ impl Planter {
         timing: &StepTiming,
         out: &mut [PlantedFrame],
     ) {
-        let share = self.state.strafe.uprightness();
-        if share <= 0.0 {
-            return;
-        }
         let height = |index: usize| height_by_length(&raw[index], timing, &out[index]);
         let [start, follow, last] = [0, 1, timing.frames].map(height);
         let offset = self.state.hips.y - start;
@@ -36,11 +32,9 @@ impl Planter {
         for (index, (raw, frame)) in raw.iter().zip(out).take(timing.frames + 1).enumerate() {
             let time = index as f32;
             let part = (time / timing.frames as f32 - MEETING_FROM) / (1.0 - MEETING_FROM);
-            // A critically damped return from the height that the hips had.
-            let settling = (offset + (velocity + offset * decay) * time) * (-decay * time).exp();
-            let height = height_by_length(raw, timing, frame);
-            let hips = &mut frame.pose.root_position.y;
-            *hips += share * (height + smooth_step(part) * rise + settling - *hips);
+            let (settling, _) = settled(offset, velocity, decay, time);
+            frame.pose.root_position.y =
+                height_by_length(raw, timing, frame) + smooth_step(part) * rise + settling;
         }
     }
 }

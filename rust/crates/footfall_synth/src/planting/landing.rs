@@ -6,7 +6,7 @@ use super::{Course, Planter, StepTiming};
 use crate::raw::RawFrame;
 use footfall_core::Side;
 use footfall_core::rotation::from_heading;
-use footfall_ik::Plant;
+use footfall_ik::{Plant, reach_height};
 use glam::Vec3;
 
 /// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once. A step forwards lands straighter than
@@ -55,11 +55,11 @@ impl Planter {
     /// Greatest height of the hips at which a leg reaches the foot that it lands where it was generated.
     pub(super) fn landing_limit(&self, raw: &RawFrame, side: Side) -> f32 {
         let leg = &raw.legs[side.index()];
-        let foot = &self.feet[side.index()];
-        let reach = leg.ankle - leg.hip;
-        let length = MAX_STANCE_EXTENSION * self.leg_lengths[side.index()];
-        let height =
-            (length * length - reach.x * reach.x - reach.z * reach.z).max(reach.y * reach.y);
-        foot.ankle_height() + foot.roll(leg.pitch).y + height.sqrt() - leg.hip.y
+        let generated = self.landing_height(raw, side);
+        // As seen from hips at no height.
+        let ankle = leg.ankle + Vec3::Y * generated;
+        let length = self.leg_lengths[side.index()];
+        let reached = reach_height(Vec3::ZERO, leg.hip, ankle, length, MAX_STANCE_EXTENSION);
+        reached.map_or(generated, |reached| reached.max(generated))
     }
 }

@@ -3,6 +3,7 @@
 use super::{PlantedFrame, Planter, StepTiming, free_foot};
 use crate::raw::RawFrame;
 use footfall_core::Side;
+use footfall_core::ease::soft_min;
 use footfall_ik::reach_height;
 use glam::Vec3;
 
@@ -73,7 +74,8 @@ impl Planter {
                     onset * (1.0 - remaining / fade_frames).max(0.0)
                 };
                 let length = self.leg_lengths[trailing.index()];
-                let yielding = soft_min(hips.y, limit + 0.1 * length * fade * fade);
+                let yielding =
+                    soft_min(hips.y, limit + 0.1 * length * fade * fade, REACH_SOFTNESS_M);
                 drop = drop.max(hips.y - yielding);
             }
             frame.pose.root_position.y -= drop;
@@ -81,7 +83,7 @@ impl Planter {
                 && let Some(limit) = self.reach_limit(timing.leading, hips, raw, frame)
             {
                 let height = &mut frame.pose.root_position.y;
-                *height = soft_min(*height, limit);
+                *height = soft_min(*height, limit, REACH_SOFTNESS_M);
             }
             if !bears && timing.rests {
                 self.settle(landing, index, timing, frame);
@@ -120,7 +122,11 @@ impl Planter {
         let swing = (timing.frames - timing.terminal) as f32;
         let remaining = (timing.frames - index) as f32 / swing;
         let height = &mut frame.pose.root_position.y;
-        *height = soft_min(*height, limit + 0.1 * length * remaining * remaining);
+        *height = soft_min(
+            *height,
+            limit + 0.1 * length * remaining * remaining,
+            REACH_SOFTNESS_M,
+        );
     }
 
     /// Ends the trailing foot's contact where its leg, stretched, does not reach any more; returns its last frame.
@@ -169,20 +175,4 @@ impl Landing {
             ankle: free_foot(raw, side, hips, frame.level).ankle,
         }
     }
-}
-
-/// The smaller of two numbers, rounded off where they meet.
-#[expect(
-    clippy::imprecise_flops,
-    reason = "a nanometre is exact enough, and ln_1p takes three times as long"
-)]
-fn soft_min(value: f32, limit: f32) -> f32 {
-    let excess = (value - limit) / REACH_SOFTNESS_M;
-    if excess > 10.0 {
-        return limit;
-    }
-    if excess < -10.0 {
-        return value;
-    }
-    value - REACH_SOFTNESS_M * (1.0 + excess.exp()).ln()
 }

@@ -1,6 +1,7 @@
 //! A standing body goes where its sway takes it, on feet that stay.
 
 use super::sway::Sway;
+use footfall_core::ease::soft_min;
 use footfall_core::rotation::exp_maps;
 use footfall_core::{JOINT_COUNT, Joint, Pose, Side, Skeleton};
 use footfall_ik::{FootTarget, Leg, reach_height};
@@ -13,9 +14,6 @@ const MOST_STRETCHED: f32 = 0.9993;
 /// The hips of a body that walks give way, over some metres, before a leg is stretched to more than this: it would snap straight.
 const STRETCHED: f32 = 0.998;
 const YIELDING_M: f32 = 0.003;
-
-/// No leg counts as lacking more, as a multiple of that: its exponential stays a number.
-const MOST_LACKING: f32 = 60.0;
 
 /// The pelvis tilts to the side by so much at most where one leg has farther to its foot, radians.
 const MOST_TILT: f32 = 0.06;
@@ -97,13 +95,7 @@ impl Carrier {
         Side::BOTH
             .into_iter()
             .filter_map(|side| self.height(hips, side, &feet[side.index()], STRETCHED))
-            .map(|limit| {
-                YIELDING_M
-                    * ((hips.y - limit) / YIELDING_M)
-                        .min(MOST_LACKING)
-                        .exp()
-                        .ln_1p()
-            })
+            .map(|limit| hips.y - soft_min(hips.y, limit, YIELDING_M))
             .fold(0.0, f32::max)
     }
 
