@@ -84,6 +84,14 @@ impl Gait {
             Self::Run => FASTEST_RUN_MPS,
         }
     }
+
+    /// A velocity to the left and forwards as seen from where the steps face: a runner's body turns to where it runs.
+    pub(crate) fn seen_from_steps(self, velocity_mps: Vec2) -> Vec2 {
+        match self {
+            Self::Walk => velocity_mps,
+            Self::Run => velocity_mps.length() * Vec2::Y,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ mod reach;
 mod support;
 mod surge;
 mod swing;
+mod thrust;
 mod timing;
 mod travel;
 mod urge;
@@ -91,6 +92,8 @@ pub(crate) struct Course {
     pub(crate) facing: [f32; 2],
     /// True where standing legs are to be as long as generated; those of a step that ends in flight are not.
     pub(crate) keeps_lengths: bool,
+    /// Direction of a run from where the walker faces, radians, positive to the left; none where the generated legs choose it.
+    pub(crate) direction: Option<f32>,
     /// Change of speed within it.
     pub(crate) change: SpeedChange,
     /// Duration of the whole step, seconds.

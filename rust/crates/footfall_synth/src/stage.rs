@@ -26,10 +26,12 @@ pub(crate) struct Placing<'a> {
     pub(crate) turn_rate: f32,
     /// Headings under which the walk goes along +Z, before the step and after it, radians.
     pub(crate) facing: [f32; 2],
-    /// Travel to the left and forwards from where the walker faces, m/s.
+    /// Travel to the left and forwards from where the steps face, m/s: those of a run face where it goes.
     pub(crate) velocity_mps: Vec2,
     /// That of the step before.
     pub(crate) velocity_before_mps: Vec2,
+    /// Direction of a run from where the walker faces, radians, positive to the left; none in a walk, and where the generated legs choose it.
+    pub(crate) direction: Option<f32>,
     /// The share of it that had passed when it was planned anew.
     pub(crate) passed: f32,
     /// True where legs are to be as long as generated: those of two systems are not true enough for that.
@@ -174,6 +176,7 @@ impl Stage {
             turn_rate: placing.turn_rate,
             facing: placing.facing,
             keeps_lengths: placing.keeps_lengths && [before, strafe] == [Strafe::NONE; 2],
+            direction: placing.direction,
             change: placing.change(),
             step_secs: step_secs / (1.0 - placing.passed),
         };

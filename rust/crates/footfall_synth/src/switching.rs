@@ -281,6 +281,7 @@ impl SwitchingSteps {
                 velocity_mps: self.velocity_mps,
                 velocity_before_mps: self.velocity_mps,
                 passed: 0.0,
+                direction: None,
                 keeps_lengths: false,
             },
             &mut self.raw,

@@ -177,6 +177,7 @@ pub(crate) fn put_on_ground(
         turn_rate: config.turn_rate_radps,
         facing: [facing; 2],
         keeps_lengths: true,
+        direction: Some(0.0),
         change: SpeedChange::default(),
     };
     let mut poses: Vec<Pose> = Vec::new();

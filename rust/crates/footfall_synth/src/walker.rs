@@ -7,6 +7,7 @@ pub(crate) use origin::{Origin, Request, TIE_LEN};
 
 use crate::error::SynthError;
 use crate::fine_motion::{Scale, neighbours};
+use crate::gait::Gait;
 use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan, StepShape};
 use crate::rest::Rest;
 use crate::space::Blend;
@@ -376,13 +377,16 @@ fn placing<'a>(
     step: usize,
 ) -> Placing<'a> {
     let rest = origin.rest.filter(|_| step == 1);
+    let velocity = origin.request.velocity_mps;
+    let runs = now.gait == Gait::Run && velocity != Vec2::ZERO;
     Placing {
         shape: &plans[step].shape,
         standing: [&before.standing, &now.standing],
         turn_rate: origin.request.turn_rate,
         facing: [origin.facing_before, origin.request.facing],
-        velocity_mps: origin.request.velocity_mps,
-        velocity_before_mps: origin.velocity_before_mps,
+        velocity_mps: now.gait.seen_from_steps(velocity),
+        velocity_before_mps: before.gait.seen_from_steps(origin.velocity_before_mps),
+        direction: runs.then(|| velocity.x.atan2(velocity.y)),
         passed: rest.map_or(0.0, |rest| rest.passed),
         keeps_lengths: true,
     }

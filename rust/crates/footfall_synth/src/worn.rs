@@ -108,18 +108,17 @@ impl Worn {
         }
         let gait = self.gait(ask, gait_before, amplitude, *velocity_mps);
         *velocity_mps = velocity_mps.clamp_length_max(gait.fastest_mps());
-        let (mut pace, facing, stepped) = match (gait, &self.run) {
+        let (mut pace, facing) = match (gait, &self.run) {
             (Gait::Run, Some(run)) => {
                 let speed = velocity_mps.length();
                 // The body turns to where it runs.
                 let direction = velocity_mps.x.atan2(velocity_mps.y);
                 let facing = run.facing + direction;
-                (run.pace(f64::from(speed)), facing, speed * Vec2::Y)
+                (run.pace(f64::from(speed)), facing)
             }
             _ => (
                 self.walk.pace_towards(*velocity_mps),
                 self.walk.facing + pelvis_turn(*velocity_mps),
-                *velocity_mps,
             ),
         };
         if gait == Gait::Walk && (sets_out || amplitude.to < 1.0) {
@@ -134,7 +133,7 @@ impl Worn {
             },
             amplitude,
             turn_rate: ask.turn_rate,
-            velocity_mps: stepped,
+            velocity_mps: *velocity_mps,
             facing,
             leap_m: ask.leap_m,
         };

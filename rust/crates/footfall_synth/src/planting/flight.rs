@@ -20,7 +20,7 @@ const MOST_LIFT_MPS: f32 = 0.3;
 
 /// The foot that lands and the one that takes off each have the hips at a height of their own. This share of the way from the first to the second they
 /// are as a run lands.
-const LEAVING_SHARE: f32 = 0.35;
+const LEAVING_SHARE: f32 = 0.15;
 
 /// Longer flights are leaps, seconds; they keep this share of the speed over the ground that they begin with.
 const LEAP_SECS: f32 = 0.22;
@@ -82,7 +82,7 @@ impl Planter {
         let headings = out[..=take_off].iter().map(|frame| frame.heading);
         let ahead = out[take_off].heading - headings.sum::<f32>() / (take_off + 1) as f32;
         let mut pace = from_heading(ahead) * (leaves - begin) / take_off as f32;
-        if self.flight_secs(timing) > LEAP_SECS {
+        if self.leaps(timing) {
             let along = pace.with_y(0.0).normalize_or_zero();
             let entry = self.state.hips_velocity.unwrap_or_default().dot(along);
             let missing = (LEAP_SPEED_SHARE * entry * self.frame_secs - pace.dot(along)).max(0.0);
@@ -105,6 +105,11 @@ impl Planter {
         frames as f32 * self.frame_secs
     }
 
+    /// Returns true when the flight that ends the step is that of a leap.
+    pub(super) fn leaps(&self, timing: &StepTiming) -> bool {
+        self.flight_secs(timing) > LEAP_SECS
+    }
+
     /// Puts the hips on their parabola, and lets the standing leg push them off at its speed. From flight to flight it does so as a spring; in the first
     /// step of a run and before a leap it goes on as generated, and pushes harder.
     pub(super) fn fly(&self, raw: &[RawFrame], timing: &StepTiming, out: &mut [PlantedFrame]) {
@@ -117,7 +122,7 @@ impl Planter {
         let stance_secs = take_off as f32 * self.frame_secs;
         let limited = |lift: f32| even + lift.clamp(-MOST_LIFT_MPS, MOST_LIFT_MPS);
         let rise = match self.state.hips_velocity {
-            Some(velocity) if timing.airborne && flight_secs <= LEAP_SECS => {
+            Some(velocity) if timing.airborne && !self.leaps(timing) => {
                 // A frame's velocity is that of half a frame earlier.
                 let fall = velocity.y - 0.5 * GRAVITY_MPS2 * self.frame_secs;
                 let begin = self.state.hips.y;
@@ -162,7 +167,7 @@ impl Planter {
     ) -> Option<usize> {
         let take_off = timing.take_off?;
         let side = timing.leading.index();
-        let extension = if self.flight_secs(timing) > LEAP_SECS {
+        let extension = if self.leaps(timing) {
             LEAP_EXTENSION
         } else {
             LET_GO_EXTENSION
@@ -196,7 +201,7 @@ impl Planter {
                 let free = free_foot(&raw[index], side, hips, frame.level);
                 (raw[index].legs[side.index()].target, free)
             });
-            let leaps = self.flight_secs(timing) > LEAP_SECS;
+            let leaps = self.leaps(timing);
             let swing = Swing::departing(&ends, timing, take_off, leaps, self.frame_secs);
             self.fill_swing(raw, side, take_off + 1..timing.frames + 1, &swing, frames);
             let at = |frame: usize| raw[frame].legs[side.index()].target;

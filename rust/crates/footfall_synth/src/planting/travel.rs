@@ -67,6 +67,7 @@ impl Planter {
         }
         self.drift(timing, out);
         self.even(timing, course.change, out);
+        self.thrust(timing, course, out);
         if course.keeps_lengths {
             self.keep_lengths(raw, timing, out);
         }

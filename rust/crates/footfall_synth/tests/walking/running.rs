@@ -1,10 +1,11 @@
 //! Runs: planted feet, ballistic flights, and the way into them and out of them.
 
 use crate::world::{
-    DT, Kind, assert_planted_within, config, generator, model, run, space, walking,
+    DT, Frame, Kind, assert_planted_within, config, generator, model, run, space, walking,
 };
 use footfall_core::{Joint, Pose, Skeleton};
 use footfall_synth::{Controls, Gait, GaitChoice, GaitGenerator, StyleSpace};
+use glam::Vec3;
 use std::sync::Arc;
 
 const GRAVITY_MPS2: f32 = 9.81;
@@ -108,6 +109,64 @@ fn hips_do_not_fall_over_a_foot_that_bears() {
             "falls for {share} of the stance at {speed} m/s"
         );
     }
+}
+
+/// Hips that followed the generated legs flew off up to 0.14 rad to the side, another way with every step.
+#[test]
+fn runs_go_where_they_are_sent() {
+    let skeleton = Skeleton::standard();
+    for (seed, speed) in [(1, 2.4), (2, 3.2), (3, 3.8)] {
+        for direction_rad in [0.0, 0.4] {
+            let controls = Controls {
+                direction_rad,
+                ..walking(speed)
+            };
+            let mut generator = generator(Kind::Styled, seed);
+            let (frames, _) = run(&mut generator, &skeleton, &controls, 900);
+            let way = frames[frames.len() - 1].place - frames[240].place;
+            let off = way.x.atan2(way.z) - direction_rad;
+            assert!(off.abs() < 0.03, "{off} rad off at {speed} m/s");
+            let across = Vec3::new(way.z, 0.0, -way.x).normalize();
+            let hips = frames[240..]
+                .iter()
+                .map(|frame| frame.model.position(Joint::Hips));
+            let sway: Vec<f32> = hips.map(|hips| across.dot(hips) / DT).collect();
+            let speeds = sway.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            let most = speeds.fold(0.0, f32::max);
+            // Captured hips sway by 0.1 to 0.2 m/s in a run of 3.2 m/s (CMU 9 and 35).
+            assert!(most < 0.2, "sways by {most} m/s at {speed} m/s");
+        }
+    }
+}
+
+/// The foot that lands brakes the hips, and pushes them on before it leaves.
+#[test]
+fn hips_are_slowest_in_the_first_half_of_a_stance() {
+    let skeleton = Skeleton::standard();
+    let mut generator = generator(Kind::Styled, 4);
+    let (frames, _) = run(&mut generator, &skeleton, &walking(3.2), 900);
+    let bears = |frame: &Frame| frame.contact != [false; 2];
+    let speeds = frames.windows(2).map(|pair| {
+        let [before, now] = [0, 1].map(|index: usize| pair[index].model.position(Joint::Hips));
+        (bears(&pair[1]), (now.z - before.z) / DT)
+    });
+    let speeds: Vec<(bool, f32)> = speeds.skip(240).collect();
+    let stances: Vec<&[(bool, f32)]> = speeds
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter(|part| part[0].0 && part.len() >= 6)
+        .collect();
+    assert!(stances.len() > 20, "{} stances", stances.len());
+    let gains = stances.iter().map(|stance| {
+        let mean =
+            |part: &[(bool, f32)]| part.iter().map(|(_, mps)| mps).sum::<f32>() / part.len() as f32;
+        let (first, second) = stance.split_at(stance.len() / 2);
+        mean(second) - mean(first)
+    });
+    let gain = gains.sum::<f32>() / stances.len() as f32;
+    assert!(
+        gain > 0.05,
+        "{gain} m/s are gained from the first half to the second"
+    );
 }
 
 #[test]
