@@ -10,11 +10,10 @@ use footfall_core::Side;
 use footfall_core::rotation::from_heading;
 use glam::Vec3;
 
-/// Speed of the hips towards the foot that lands, and away from it as it takes off, m/s; 0.05 to 0.15 in the same runs.
+/// Speed of the hips towards the foot that lands, and away from it as it takes off, m/s: 0.05 to 0.15 in the runs of O3DE's actor and of CMU 9 and 35.
 const SWAY_MPS: f32 = 0.07;
 
-/// Loss of speed at a quarter of the step, and gain at three quarters, as a share of the mean: 0.03 in the runs of O3DE's actor, 0.09 in those of CMU 9
-/// and 35.
+/// Loss of speed at a quarter of the step, and gain at three quarters, as a share of the mean: 0.03 in the actor's runs, 0.09 in the others'.
 const BRAKING: f32 = 0.06;
 
 impl Planter {
