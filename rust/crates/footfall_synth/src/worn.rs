@@ -33,7 +33,7 @@ const HARDEST_BRAKING_MPS2: f64 = 6.0;
 const STRAIGHT: f32 = 0.2;
 
 /// A mixture of styles, and how fast each of its gaits goes on this body.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Worn {
     /// The walk; the run is in it.
     pub(crate) blend: Arc<Blend>,

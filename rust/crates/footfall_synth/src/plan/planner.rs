@@ -57,6 +57,12 @@ impl Planner {
         &self.walker
     }
 
+    /// Returns true when both are the same walker, wherever they are in their walks.
+    pub(crate) fn is_same_walker(&self, other: &Self) -> bool {
+        let numbers = |planner: &Self| [planner.variation].into_iter().chain(planner.walker);
+        numbers(self).eq(numbers(other))
+    }
+
     /// Is the walker that [`new`](Self::new) made of these, in another place of its walk: see [`resume`](Self::resume).
     pub(crate) fn become_walker(
         &mut self,

@@ -28,7 +28,7 @@ impl Planter {
         if !timing.airborne || self.leaps(timing) {
             return;
         }
-        let flight = &out[(take_off + timing.frames) / 2];
+        let flight = &out[usize::midpoint(take_off, timing.frames)];
         let along = from_heading(flight.ground_heading + direction) * Vec3::Z;
         let left = Vec3::new(along.z, 0.0, -along.x);
         let begin = out[0].pose.root_position;

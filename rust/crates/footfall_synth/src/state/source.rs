@@ -12,6 +12,7 @@ use crate::worn::Worn;
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::GaitModel;
 use glam::Vec2;
+use std::sync::Arc;
 
 impl Source {
     pub(super) fn of_styled(steps: &StyledSteps) -> Self {
@@ -136,8 +137,15 @@ impl State {
         let [gait_before, gait] = running.gaits();
         planner.resume(self.chance_position, &draws);
         let mut walker = Walker::new(skeleton, &now);
+        // A walker that goes back a little, as in games that predict, is measured already.
+        let known =
+            planner.is_same_walker(&current.planner) && Arc::ptr_eq(&next, &current.worn.blend);
         let worn = space.at_bench(|bench| {
-            let worn = Worn::measure(&planner, skeleton, next, bench)?;
+            let worn = if known {
+                current.worn.clone()
+            } else {
+                Worn::measure(&planner, skeleton, next, bench)?
+            };
             let blends = [before.of_gait(gait_before), now.of_gait(gait)];
             walker.restore(&mut planner, blends, draws, origin, bench)?;
             Ok::<_, SynthError>(worn)
