@@ -1,8 +1,9 @@
 extends Control
-## Start of the demo: its scenes by topic.
+## The demo's scenes by topic.
 
 ## Scene → title and what it shows.
 const SCENES: Array[Array] = [
+	["res://scenes/town/town.tscn", "Town", "A square in the evening, and people in all styles to walk among"],
 	["res://scenes/walk/walk.tscn", "Walk", "Seven walks from one model, none in step"],
 	["res://scenes/styles/styles.tscn", "Styles", "Eleven styles, and one walker in any mixture of them"],
 	["res://scenes/layers/layers.tscn", "Layers", "Clips wave, carry, aim and strike while the legs walk"],
@@ -38,10 +39,10 @@ func _set_quality(level: int) -> void:
 	RenderingServer.directional_soft_shadow_filter_set_quality(level as RenderingServer.ShadowQuality)
 
 
-## `--frames N` after `--` on the command line looks into every scene for so many frames and quits.
+## `--every-scene N` after `--` on the command line looks into every scene for so many frames and quits.
 func _run_without_a_user() -> void:
 	var arguments := OS.get_cmdline_user_args()
-	if arguments.size() < 2 or arguments[0] != "--frames":
+	if arguments.size() < 2 or arguments[0] != "--every-scene":
 		return
 	var missing := 0
 	for entry: Array in SCENES:

@@ -4,9 +4,11 @@ extends Node
 ## `--pictures FOLDER` saves what the scene shows, a picture every quarter of a second, then three close-ups, and quits.
 ## `--film FOLDER` saves twelve pictures a second of the scene's tour, and quits.
 ## `--frames N` runs N frames, checks what the scene promises, prints `DEMO OK` and quits; the exit code is 1 when it did not keep it.
+## `--every-scene N` goes to the menu, which looks into all of them.
 ##
 ## The scene tells what is to be seen and checked: `close_ups()`, name → [place, heading and height in degrees, distance in metres] of
-## the camera; `FRAMES_BEFORE_PICTURES`, when half a second is too early; `begin_check()`; and `problems(frames)`, what is wrong after so many of them.
+## the camera; `FRAMES_BEFORE_PICTURES`, when half a second is too early; `begin_check()`; and `problems(frames)`, what is wrong after so many of them;
+## `FRAMES_OF_CHECK`, when what is checked takes longer than it is asked to run.
 ## A scene with `is_getting_ready()` is waited for. One with a tour has `TOUR_SECS` and `tour(seconds)`, which does what is due by then.
 ##
 ## Start Godot with `--fixed-fps 60` for both, so that time runs by frames.
@@ -26,6 +28,8 @@ func _ready() -> void:
 			_film(arguments[index + 1])
 		elif arguments[index] == "--frames":
 			_run_frames(arguments[index + 1].to_int())
+		elif arguments[index] == "--every-scene":
+			get_tree().change_scene_to_file.call_deferred("res://scenes/menu/menu.tscn")
 
 
 func _take_pictures(folder: String) -> void:
@@ -76,8 +80,9 @@ func _save(path: String) -> void:
 		get_tree().quit(1)
 
 
-func _run_frames(count: int) -> void:
+func _run_frames(asked: int) -> void:
 	await _until_ready()
+	var count := maxi(asked, _scene.FRAMES_OF_CHECK if &"FRAMES_OF_CHECK" in _scene else 0)
 	_scene.begin_check()
 	await _frames(count)
 	var problems: PackedStringArray = _scene.problems(count)

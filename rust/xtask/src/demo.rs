@@ -5,7 +5,8 @@ use anyhow::{Context as _, Result, bail};
 use std::fs;
 
 /// The demo's scenes by topic.
-pub(crate) const SCENES: [(&str, &str); 10] = [
+pub(crate) const SCENES: [(&str, &str); 11] = [
+    ("town", "res://scenes/town/town.tscn"),
     ("walk", "res://scenes/walk/walk.tscn"),
     ("styles", "res://scenes/styles/styles.tscn"),
     ("layers", "res://scenes/layers/layers.tscn"),

@@ -89,7 +89,7 @@ pub(crate) fn start(engine: &Engine, game: &Path) -> Result<()> {
     let said = engine_run::judged(
         godot::exported_game(engine, game)?
             .args(["--headless", "--audio-driver", "Dummy", "--fixed-fps", "60"])
-            .args(["--", "--frames", FRAMES]),
+            .args(["--", "--every-scene", FRAMES]),
         &log,
     )?;
     if !said.contains("DEMO OK") {

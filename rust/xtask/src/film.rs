@@ -9,7 +9,7 @@ use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::PathBuf;
 
-const SCENE: &str = "res://scenes/third_person/third_person.tscn";
+const SCENE: &str = "res://scenes/town/town.tscn";
 const PICTURE: &str = "demo_project/pictures/tour.gif";
 /// Size of the film, pixels, and pictures a second as the scene saves them.
 const SIZE: (u16, u16) = (416, 234);
@@ -19,7 +19,7 @@ const COLOUR_BITS: u32 = 5;
 /// Speed of the choice of colours, from 1, best, to 30.
 const QUANTISED_AT: i32 = 10;
 
-/// Films the tour of the third-person scene.
+/// Films the tour of the town.
 ///
 /// # Errors
 /// When a part cannot be built or had, the scene fails, or the film cannot be written.
