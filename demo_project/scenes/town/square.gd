@@ -7,7 +7,7 @@ const STONE := Color("d1c6b0")
 const COPING := Color("dfd6c2")
 const HILL := Color("a4a093")
 
-## What everything in the town is painted with.
+## Material of everything in the town.
 var material: Material
 
 

@@ -29,14 +29,14 @@ const THINKS_EVERY := 8
 const WAY_M := 2.2
 const ASIDE_M := 1.3
 const IN_FRONT := 0.9
-## Who was led aside by others farther than this from where one can walk comes back first, metres.
+## Distance from where one can walk beyond which somebody whom others led aside comes back first, metres.
 const ASTRAY_M := 0.15
 ## Somebody is there from this near on, metres; it faces what it looks at, or where it sets out to, from these angles on, radians.
 const THERE_M := 0.8
 const FACING := 0.2
 const SETTING_OUT := 1.0
 const TURNING := 1.2
-## Who comes no nearer for so long goes elsewhere, seconds.
+## Time without coming nearer after which somebody goes elsewhere, seconds.
 const PATIENCE := 5.0
 ## Runners look so far ahead on their round, metres.
 const AHEAD_M := 3.5
