@@ -1,18 +1,6 @@
 extends Node3D
 ## The player walks the add-on's `GaitCharacter3D` over the course.
 
-const TOUR_FROM_Z := -19.0
-const TOUR_SECS := 10.0
-## Orders to the player from a time on, seconds: speed in m/s, and true for a jump then and for a crouch from then on.
-const TOUR: Array[Array] = [
-	[0.0, 1.3, false, false],
-	[1.2, 3.4, false, false],
-	[2.6, 3.4, true, false],
-	[4.2, 1.2, false, true],
-	[5.8, 1.2, false, false],
-]
-
-var _toured := -1
 var _start := Vector3.ZERO
 var _planted := 0
 
@@ -30,25 +18,6 @@ func _ready() -> void:
 func _process(_delta: float) -> void:
 	var speed := Vector2(_player.velocity.x, _player.velocity.z).length()
 	%Figures.text = "%.1f m/s, grade %.0f %%" % [speed, 100.0 * _player.placement.get_grade()]
-
-
-## The player shows what it can do, seen from the side.
-func tour(seconds: float) -> void:
-	if _toured < 0:
-		_player.teleport(Transform3D(Basis.IDENTITY, Vector3(_player.position.x, 0.0, TOUR_FROM_Z)))
-		_player.autopilot = Vector3.BACK
-	while _toured + 1 < TOUR.size() and seconds >= TOUR[_toured + 1][0]:
-		_toured += 1
-		_player.walk_speed = TOUR[_toured][1]
-		_player.crouches = TOUR[_toured][3]
-		if TOUR[_toured][2]:
-			_player.jump()
-	var camera: Camera3D = $Stage/Camera
-	camera.make_current()
-	camera.heading = deg_to_rad(-62.0)
-	camera.height = deg_to_rad(9.0)
-	camera.distance_m = 3.9
-	camera.target_position = _player.global_position * Vector3(1.0, 0.6, 1.0) + Vector3.UP * 0.9
 
 
 func close_ups() -> Dictionary[String, Array]:

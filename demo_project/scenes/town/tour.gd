@@ -2,21 +2,20 @@ class_name TownTour
 extends RefCounted
 ## The film of the town: what the player does when, and from where it is seen. Views stand still, so that a film of them stays small.
 
-## Seconds at which a view begins → the camera's place, and what it looks at.
+## Seconds at which a view begins → the camera's place, what it looks at, and where the player is then, with its heading in degrees, if it is elsewhere.
 const VIEWS: Array[Array] = [
-	[0.0, Vector3(-4.6, 1.9, 15.0), Vector3(2.2, 1.0, 3.0)],
-	[5.0, Vector3(8.6, 1.4, 2.6), Vector3(2.0, 1.1, -3.4)],
-	[8.0, Vector3(7.0, 3.6, -4.4), Vector3(-0.6, 1.4, -11.0)],
+	[0.0, Vector3(1.2, 1.8, 15.3), Vector3(6.6, 1.5, 5.0), Vector3(5.4, 0, 12.2), 155.0],
+	[3.7, Vector3(5.7, 1.3, -2.4), Vector3(9.5, 1.05, 0.4)],
+	[6.3, Vector3(-2.8, 2.2, -4.6), Vector3(0.8, 1.5, -11.0), Vector3(2.3, 0, -6.3), 195.0],
 ]
 ## Seconds → what the player does then: where it goes, at which speed, and true for a leap.
 const ORDERS: Array[Array] = [
-	[0.0, Vector3(3.9, 0, 4.0), 1.4, false],
-	[2.4, Vector3(3.9, 0, 2.0), 3.2, false],
-	[5.0, Vector3(0.8, 0, -6.0), 3.2, false],
-	[5.9, Vector3(0.8, 0, -6.0), 3.2, true],
-	[7.4, Vector3(0.4, 1.5, -14.0), 1.3, false],
+	[0.0, Vector3(9.0, 0, 3.0), 1.4, false],
+	[1.6, Vector3(9.4, 0, -3.2), 3.4, false],
+	[4.7, Vector3(9.4, 0, -3.2), 3.4, true],
+	[6.3, Vector3(0.6, TownPlan.RISE, -13.4), 1.4, false],
 ]
-const SECS := 12.0
+const SECS := 12.5
 
 var _begun := -1
 var _seen := -1
@@ -26,9 +25,12 @@ var _seen := -1
 func play(seconds: float, town: Node3D, player: GaitCharacter3D, camera: Camera3D) -> void:
 	while _seen + 1 < VIEWS.size() and seconds >= VIEWS[_seen + 1][0]:
 		_seen += 1
+		var view := VIEWS[_seen]
 		camera.set_process(false)
 		camera.make_current()
-		camera.look_at_from_position(VIEWS[_seen][1], VIEWS[_seen][2])
+		camera.look_at_from_position(view[1], view[2])
+		if view.size() > 3:
+			player.teleport(Transform3D(Basis(Vector3.UP, deg_to_rad(view[4])), view[3]))
 	while _begun + 1 < ORDERS.size() and seconds >= ORDERS[_begun + 1][0]:
 		_begun += 1
 		town.send_player(ORDERS[_begun][1])

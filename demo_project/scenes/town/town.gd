@@ -40,7 +40,11 @@ func _ready() -> void:
 	%Menu.pressed.connect(_open_menu)
 	_player.teleport(Transform3D(Basis(Vector3.UP, PI), START))
 	($Player/Camera as SpringArm3D).rotation = Vector3(deg_to_rad(-9.0), 0.0, 0.0)
-	# The server takes the region over with the next frames of physics.
+	_bring_people()
+
+
+## The server takes the map over with the next frames of physics.
+func _bring_people() -> void:
 	for frame: int in 2:
 		await get_tree().physics_frame
 	_people.player = _player
