@@ -16,7 +16,7 @@ const SCENES: Array[Array] = [
 	["res://scenes/switching/switching.tscn", "Two linear systems", "Walkers of a model of ten kilobytes"],
 ]
 
-@onready var _list: VBoxContainer = %List
+@onready var _list: GridContainer = %List
 
 
 func _ready() -> void:

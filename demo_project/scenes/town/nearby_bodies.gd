@@ -35,9 +35,12 @@ func _ready() -> void:
 
 
 func _physics_process(_delta: float) -> void:
+	# Nobody pushes the player: who comes so near by itself that bodies touch has none.
+	var touching := RADIUS_M + (_player.get_node(^"Shape").shape as CapsuleShape3D).radius
 	var used := 0
 	for place: Vector3 in _crowd.get_positions():
-		if used < MOST and place.distance_squared_to(_player.global_position) < REACH_M * REACH_M:
+		var far := place.distance_to(_player.global_position)
+		if used < MOST and far < REACH_M and far > touching:
 			_bodies[used].position = place + Vector3.UP * 0.5 * HEIGHT_M
 			used += 1
 	for index: int in range(used, MOST):

@@ -96,7 +96,8 @@ func is_getting_ready() -> bool:
 
 func begin_check() -> void:
 	_player.teleport(Transform3D(Basis(Vector3.UP, PI), FOOT_OF_STAIR))
-	send_player(TERRACE)
+	# Straight on, whoever comes down: an agent goes back for places of its way that others kept it from.
+	_player.autopilot = Vector3.FORWARD
 	_starts = _crowd.get_positions()
 	_checks = true
 
