@@ -31,6 +31,9 @@ const ASIDE_M := 1.3
 const IN_FRONT := 0.9
 ## Distance from where one can walk beyond which somebody whom others led aside comes back first, metres.
 const ASTRAY_M := 0.15
+## The same for where somebody will be with the next step, and when that is, seconds.
+const GOES_ASTRAY_M := 0.4
+const NEXT_STEP := 0.5
 ## Somebody is there from this near on, metres; it faces what it looks at, or where it sets out to, from these angles on, radians.
 const THERE_M := 0.8
 const FACING := 0.2
@@ -136,9 +139,16 @@ func _begin(person: Person, places: PackedVector3Array, headings: PackedFloat32A
 func _comes_back(person: Person, place: Vector3, heading: float) -> bool:
 	if person.doing != Doing.GOES and person.doing != Doing.RUNS:
 		return false
-	var on_way := NavigationServer3D.map_get_closest_point(_crowd.get_world_3d().navigation_map, place)
+	var map := _crowd.get_world_3d().navigation_map
+	var on_way := NavigationServer3D.map_get_closest_point(map, place)
 	var back := (on_way - place) * Vector3(1, 0, 1)
-	if back.length() > ASTRAY_M:
+	if back.length() <= ASTRAY_M:
+		var soon := place + Vector3.BACK.rotated(Vector3.UP, heading) * person.speed * NEXT_STEP
+		on_way = NavigationServer3D.map_get_closest_point(map, soon)
+		back = (on_way - soon) * Vector3(1, 0, 1)
+		if back.length() <= GOES_ASTRAY_M:
+			back = Vector3.ZERO
+	if back != Vector3.ZERO:
 		person.is_astray = true
 		# As far again, so that it does not come to rest there.
 		_crowd.set_targets([on_way + 1.5 * back.normalized()], [person.id])
