@@ -133,12 +133,7 @@ func _stall() -> void:
 	for x: float in [-1.5, 1.42]:
 		for z: float in [-0.6, 0.52]:
 			mason.slab(Vector3(x, 0, z), Vector3(x + 0.08, 2.3 - 0.3 * signf(z), z + 0.08), WOOD.darkened(0.1))
-	for stripe: int in 8:
-		var x := -1.7 + 0.425 * stripe
-		var cloth := CLOTH[stripe % 2]
-		mason.face([Vector3(x, 2.05, 0.95), Vector3(x + 0.425, 2.05, 0.95), Vector3(x + 0.425, 2.62, -0.7), Vector3(x, 2.62, -0.7)], cloth)
-		mason.face([Vector3(x, 1.83, 0.95), Vector3(x + 0.425, 1.83, 0.95), Vector3(x + 0.425, 2.05, 0.95), Vector3(x, 2.05, 0.95)], cloth.darkened(0.1))
-		mason.face([Vector3(x, 2.6, -0.7), Vector3(x + 0.425, 2.6, -0.7), Vector3(x + 0.425, 1.83, 0.94), Vector3(x, 1.83, 0.94)], cloth.darkened(0.35))
+	mason.awning(8, 0.425, Vector2(0.95, 2.05), Vector2(-0.7, 2.62), 0.22, CLOTH)
 	for crate: int in 4:
 		var x := -1.35 + 0.7 * crate
 		mason.slab(Vector3(x, 0.9, -0.3), Vector3(x + 0.58, 1.0, 0.4), WOOD.lightened(0.15))

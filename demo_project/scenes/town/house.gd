@@ -123,13 +123,7 @@ func _door(x: float) -> void:
 ## Striped cloth over a shop's windows.
 func _awning(span: float) -> void:
 	var stripes := int(span / 0.5)
-	var from := -0.25 * stripes
-	for stripe: int in stripes:
-		var x := from + 0.5 * stripe
-		var cloth := shutters if stripe % 2 == 0 else TRIM
-		_mason.face([Vector3(x, 2.45, 1.3), Vector3(x + 0.5, 2.45, 1.3), Vector3(x + 0.5, 2.95, 0.09), Vector3(x, 2.95, 0.09)], cloth)
-		_mason.face([Vector3(x, 2.2, 1.3), Vector3(x + 0.5, 2.2, 1.3), Vector3(x + 0.5, 2.45, 1.3), Vector3(x, 2.45, 1.3)], cloth.darkened(0.08))
-		_mason.face([Vector3(x, 2.94, 0.09), Vector3(x + 0.5, 2.94, 0.09), Vector3(x + 0.5, 2.2, 1.29), Vector3(x, 2.2, 1.29)], cloth.darkened(0.3))
+	_mason.awning(stripes, 0.5, Vector2(1.3, 2.45), Vector2(0.09, 2.95), 0.25, [shutters, TRIM])
 
 
 func _cover(half: float, top: float) -> void:

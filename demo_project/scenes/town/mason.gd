@@ -78,6 +78,23 @@ func ring(foot: Vector3, inner_radius: float, outer_radius: float, height: float
 		face([foot + next * inner_radius, foot + here * inner_radius, up + here * inner_radius, up + next * inner_radius], colour)
 
 
+## Cloth in stripes of two colours in turn, centred in x: from its front edge (z, y), over which a hem hangs, to its back edge.
+func awning(stripes: int, breadth: float, front: Vector2, back: Vector2, hem: float, colours: PackedColorArray) -> void:
+	for stripe: int in stripes:
+		var left := Vector3((stripe - 0.5 * stripes) * breadth, 0, 0)
+		var right := left + Vector3.RIGHT * breadth
+		var cloth := colours[stripe % 2]
+		var edge := Vector3(0, front.y, front.x)
+		var far := Vector3(0, back.y, back.x)
+		var low := edge + Vector3.DOWN * hem
+		# The underside lies just below.
+		var under := Vector3(0, -0.01, 0)
+		var behind := Vector3(0, 0, -0.01)
+		face([left + edge, right + edge, right + far, left + far], cloth)
+		face([left + low, right + low, right + edge, left + edge], cloth.darkened(0.1))
+		face([left + far + under, right + far + under, right + low + behind, left + low + behind], cloth.darkened(0.3))
+
+
 ## A ball of flat sides.
 func ball(middle: Vector3, radius: float, colour: Color) -> void:
 	const ROUND := 9

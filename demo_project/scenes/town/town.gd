@@ -10,8 +10,9 @@ const PEOPLE := 84
 const RUNNERS := 5
 ## Frames of a check: time to walk from the square onto the terrace.
 const FRAMES_OF_CHECK := 900
-## The player stands there at first, and is sent there when nobody plays.
+## The player stands there at first.
 const START := Vector3(0, 0, 14.5)
+## Where a check begins, and where the player goes when nobody plays.
 const FOOT_OF_STAIR := Vector3(0.8, 0, -7.0)
 const TERRACE := Vector3(1.5, TownPlan.RISE, -15.5)
 ## Nobody may be deeper in a wall, metres: half a body's breadth.

@@ -1,4 +1,4 @@
-//! Bounce: the height of a runner's hips over a stance.
+//! Bounce: the height of a runner's hips over a stance, and the push of a leg.
 //!
 //! The leg is a spring under a mass: the force on it rises and falls as half a sine wave over the stance, and is nothing as the foot lands and as it takes
 //! off (Alexander and Jayes, Vertical movements in walking and running, 1978). So the hips are lowest in the middle of the stance, and nothing jolts where
@@ -11,29 +11,33 @@ use core::f32::consts::PI;
 pub(super) struct Bounce {
     begin: f32,
     fall_mps: f32,
-    /// Greatest force on the leg for each kilogram, m/s².
-    force: f32,
-    /// Rate of the wave, rad/s.
-    rate: f32,
+    /// Speed that the leg's force gives, m/s.
+    push_mps: f32,
+    secs: f32,
 }
 
 impl Bounce {
     /// From a height, with speeds upwards at its begin and at its end, for so long.
     pub(super) fn new(begin: f32, [fall_mps, rise_mps]: [f32; 2], secs: f32) -> Self {
-        let turned = rise_mps - fall_mps + GRAVITY_MPS2 * secs;
         Self {
             begin,
             fall_mps,
-            force: PI * turned / (2.0 * secs),
-            rate: PI / secs,
+            push_mps: rise_mps - fall_mps + GRAVITY_MPS2 * secs,
+            secs,
         }
     }
 
     /// Height so long after the landing, metres.
     pub(super) fn height(&self, t: f32) -> f32 {
-        let pushed = self.force * (t - (self.rate * t).sin() / self.rate) / self.rate;
+        let pushed = self.push_mps * pushed(t, self.secs);
         self.begin + self.fall_mps * t - 0.5 * GRAVITY_MPS2 * t * t + pushed
     }
+}
+
+/// Way that the force on the leg has moved a body by the time `t` of a stance, for each unit of the speed that it gives by the end of it. Both times are in
+/// the same unit.
+pub(super) fn pushed(t: f32, stance: f32) -> f32 {
+    0.5 * (t - stance * (PI * t / stance).sin() / PI)
 }
 
 #[cfg(test)]

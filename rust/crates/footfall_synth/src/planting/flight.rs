@@ -105,8 +105,13 @@ impl Planter {
         frames as f32 * self.frame_secs
     }
 
+    /// Returns true when the step goes from flight to flight, as those of a steady run do.
+    pub(super) fn runs_on(&self, timing: &StepTiming) -> bool {
+        timing.airborne && timing.take_off.is_some() && !self.leaps(timing)
+    }
+
     /// Returns true when the flight that ends the step is that of a leap.
-    pub(super) fn leaps(&self, timing: &StepTiming) -> bool {
+    fn leaps(&self, timing: &StepTiming) -> bool {
         self.flight_secs(timing) > LEAP_SECS
     }
 
@@ -122,7 +127,7 @@ impl Planter {
         let stance_secs = take_off as f32 * self.frame_secs;
         let limited = |lift: f32| even + lift.clamp(-MOST_LIFT_MPS, MOST_LIFT_MPS);
         let rise = match self.state.hips_velocity {
-            Some(velocity) if timing.airborne && !self.leaps(timing) => {
+            Some(velocity) if self.runs_on(timing) => {
                 // A frame's velocity is that of half a frame earlier.
                 let fall = velocity.y - 0.5 * GRAVITY_MPS2 * self.frame_secs;
                 let begin = self.state.hips.y;

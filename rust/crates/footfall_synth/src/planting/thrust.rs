@@ -4,8 +4,9 @@
 //! it into the flight, so that every step flies off in another direction. A runner's hips go where the run goes: they sway a little towards the foot
 //! that bears, are braked as it lands and pushed on as it leaves (Cavagna et al., The sources of external work in level walking and running, 1976).
 
+use super::bounce::pushed;
 use super::{Course, PlantedFrame, Planter, StepTiming};
-use core::f32::consts::{PI, TAU};
+use core::f32::consts::TAU;
 use footfall_core::Side;
 use footfall_core::rotation::from_heading;
 use glam::Vec3;
@@ -25,7 +26,7 @@ impl Planter {
         let Some(velocity) = self.state.hips_velocity else {
             return;
         };
-        if !timing.airborne || self.leaps(timing) {
+        if !self.runs_on(timing) {
             return;
         }
         let flight = &out[usize::midpoint(take_off, timing.frames)];
@@ -46,7 +47,7 @@ impl Planter {
             after,
             frames: take_off as f32,
         };
-        let kept = course.change.weight_over(1.0);
+        let kept = course.change.weight;
         for (index, frame) in out.iter_mut().enumerate() {
             let time = index as f32;
             let braked = BRAKING * way / TAU * ((TAU * time / frames).cos() - 1.0);
@@ -68,8 +69,8 @@ struct Stance {
 impl Stance {
     fn way(&self, time: f32) -> Vec3 {
         let bears = time.min(self.frames);
-        let angle = PI * bears / self.frames;
-        let pushed = 0.5 * (bears - self.frames * angle.sin() / PI);
-        self.before * bears + (self.after - self.before) * pushed + self.after * (time - bears)
+        self.before * bears
+            + (self.after - self.before) * pushed(bears, self.frames)
+            + self.after * (time - bears)
     }
 }
