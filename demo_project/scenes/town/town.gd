@@ -12,7 +12,7 @@ const RUNNERS := 5
 const FRAMES_OF_CHECK := 900
 ## The player stands there at first.
 const START := Vector3(0, 0, 14.5)
-## Where a check begins, and where the player goes when nobody plays.
+## Begin of a check, and the place to which the player goes when nobody plays.
 const FOOT_OF_STAIR := Vector3(0.8, 0, -7.0)
 const TERRACE := Vector3(1.5, TownPlan.RISE, -15.5)
 ## Nobody may be deeper in a wall, metres: half a body's breadth.
