@@ -9,9 +9,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// People whose hip joints are misplaced in CMU's recordings are put right first: models would crouch as they do.
-const CORRECTION: &str = "--correct-hips";
-
 /// Models that the add-on ships.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Which {
@@ -139,7 +136,6 @@ fn train_locomotion(data: &Data) -> Result<()> {
         .arg("--corpus")
         .arg(&data.index)
         .args(WALKS_WITH_ENDS)
-        .arg(CORRECTION)
         .args(STANDING)
         .args(RUNNING)
         .args(MOVES)
@@ -174,7 +170,6 @@ fn train_sensor(data: &Data, site: &str) -> Result<()> {
         .args(["train", "--corpus"])
         .arg(&data.index)
         .args(SENSOR_RECORDINGS)
-        .arg(CORRECTION)
         .args(["--site", site, "--no-mirror", "--frames", SENSOR_FRAMES])
         .args([
             "--describe",

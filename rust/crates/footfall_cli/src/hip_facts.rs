@@ -1,7 +1,6 @@
-//! The finding about a recording's hip joints, in words and as JSON.
+//! The finding about a recording's hip joints, as JSON, and notes about a corpus's people.
 
 use crate::output;
-use footfall_core::Skeleton;
 use footfall_motion::corpus::Person;
 use footfall_motion::hip_centres::{HipFinding, HipVerdict};
 use serde::Serialize;
@@ -22,18 +21,18 @@ pub(crate) struct HipFacts {
     /// Flexion of the knee at heel strike, at its peak in loading and before push-off, degrees.
     recorded_knee_degrees: Option<[f32; 3]>,
     knee_degrees: Option<[f32; 3]>,
+    /// The finding in one line.
+    #[serde(skip)]
+    pub(crate) line: String,
 }
 
 impl HipFacts {
     /// The finding, where one was asked for.
     pub(crate) fn of(finding: &HipFinding) -> Option<Self> {
         let verdict = name(&finding.verdict)?;
-        let leg_cm = 100.0 * Skeleton::standard().mean_leg_length();
         let correction = finding.verdict.correction();
         let moved = |along: fn(glam::Vec2) -> f32| {
-            correction.map_or([0.0; 2], |correction| {
-                correction.offsets.map(|offset| along(offset) * leg_cm)
-            })
+            correction.map_or([0.0; 2], |correction| correction.moved_cm().map(along))
         };
         Some(Self {
             verdict,
@@ -44,49 +43,8 @@ impl HipFacts {
             leg_factor: correction.map_or(1.0, |correction| correction.leg_factor),
             recorded_knee_degrees: finding.recorded_knee,
             knee_degrees: finding.knee,
+            line: finding.to_string(),
         })
-    }
-
-    /// One line.
-    pub(crate) fn line(&self) -> String {
-        let knee = |angles: Option<[f32; 3]>| {
-            angles.map_or_else(String::new, |[strike, peak, end]| {
-                format!("{strike:.0}/{peak:.0}/{end:.0}°")
-            })
-        };
-        let recorded = knee(self.recorded_knee_degrees);
-        match self.verdict {
-            "corrected" => {
-                let [up, forward] =
-                    [self.moved_up_cm, self.moved_forward_cm].map(|[left, right]| {
-                        if (left - right).abs() < 0.05 {
-                            format!("{left:+.1}")
-                        } else {
-                            format!("{left:+.1} (left) {right:+.1} (right)")
-                        }
-                    });
-                format!(
-                    "moved {up} cm up and {forward} cm forwards, legs {:.3} of their length: knees {recorded} to {} at heel \
-                     strike, in loading and before push-off over {} strides",
-                    self.leg_factor,
-                    knee(self.knee_degrees),
-                    self.strides
-                )
-            }
-            "own_body" => "left: the body is the canonical one".to_owned(),
-            "natural" => format!(
-                "left: knees bend {recorded} over {} strides, which no misplaced joint has to explain",
-                self.strides
-            ),
-            "own_manner" => format!(
-                "left: knees bend {recorded} over {} strides, which a manner of walking explains better than a misplaced joint",
-                self.strides
-            ),
-            _ => format!(
-                "left: {} strides of plain walking are too few to tell",
-                self.strides
-            ),
-        }
     }
 }
 
@@ -105,14 +63,11 @@ const fn name(verdict: &HipVerdict) -> Option<&'static str> {
 pub(crate) fn note_people(people: &[Person]) {
     let mut left = 0_usize;
     for person in people {
-        if person.hip_centres.verdict.correction().is_none() {
+        let finding = &person.hip_centres;
+        if finding.verdict.correction().is_none() {
             left += 1;
-        } else if let Some(facts) = HipFacts::of(&person.hip_centres) {
-            output::note(&format!(
-                "hip joints of {} {}",
-                person.subject,
-                facts.line()
-            ));
+        } else {
+            output::note(&format!("hip joints of {} {finding}", person.subject));
         }
     }
     if left > 0 && left < people.len() {

@@ -26,21 +26,24 @@ pub(crate) struct MapArgs {
 /// Treatment of hip joints that a recording misplaces.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub(crate) struct KneesArgs {
-    /// Move hip joints that the recording misplaces
+    /// Leave hip joints where the recording has them
     ///
-    /// Skeletons fitted to markers misplace hip joints by centimetres, so that people crouch who did not. With this the joints
-    /// are moved, where a person's walking shows it, and the legs are solved anew.
+    /// Skeletons fitted to markers misplace hip joints by centimetres, so that people crouch who did not. Where a person's
+    /// walking shows it, the joints are moved and the legs solved anew, unless this option is given.
     #[arg(long)]
-    pub(crate) correct_hips: bool,
+    pub(crate) as_recorded: bool,
+    /// Accepted for command lines of older versions, which moved hip joints on request only.
+    #[arg(long, hide = true, conflicts_with = "as_recorded")]
+    correct_hips: bool,
 }
 
 impl KneesArgs {
     /// Source of the hip joints' places.
     pub(crate) const fn hip_centres(self) -> HipCentres {
-        if self.correct_hips {
-            HipCentres::FromRecording
-        } else {
+        if self.as_recorded {
             HipCentres::AsRecorded
+        } else {
+            HipCentres::FromRecording
         }
     }
 
@@ -61,7 +64,7 @@ impl KneesArgs {
 
     /// The option as it was given, for the command that a model's file states.
     pub(crate) fn words(self) -> Option<String> {
-        self.correct_hips.then(|| "--correct-hips".to_owned())
+        self.as_recorded.then(|| "--as-recorded".to_owned())
     }
 }
 

@@ -14,6 +14,7 @@ mod fit;
 mod leg;
 pub mod reference;
 mod stances;
+mod summary;
 
 pub use reference::{FARTHEST, PHASES, STRIDE_SHARES};
 

@@ -42,9 +42,9 @@ pub struct RetargetOptions {
 pub enum HipCentres {
     /// The walking of the recording itself, where it shows that the file misplaces them; the file where it does not. See
     /// [`hip_centres`](crate::hip_centres).
+    #[default]
     FromRecording,
     /// The file.
-    #[default]
     AsRecorded,
     /// A finding from several recordings of the person.
     Known(HipFinding),

@@ -2,6 +2,7 @@
 
 use footfall_core::rotation::log_map;
 use footfall_core::{Clip, JOINT_COUNT, Joint};
+use footfall_motion::hip_centres::HipFinding;
 use footfall_motion::phases::{Phase, segment_phases};
 use footfall_motion::recording::{Recording, RecordingError};
 use footfall_motion::retarget::RetargetOptions;
@@ -54,6 +55,11 @@ impl Motion {
             phases,
             residual,
         }
+    }
+
+    /// Finding about the recording's hip joints.
+    pub(crate) const fn hip_centres(&self) -> &HipFinding {
+        &self.recording.retargeted.report.hip_centres
     }
 
     /// The motion on the canonical body.

@@ -1,6 +1,6 @@
 //! The shipped styles: designed ones, free like the recordings that they are made of, and acted ones, which are not.
 
-use super::{CORRECTION, Data, NEUTRAL_WALKS, WALK};
+use super::{Data, NEUTRAL_WALKS, WALK};
 use crate::{paths, process};
 use anyhow::{Context as _, Result};
 use std::fs;
@@ -82,7 +82,6 @@ fn design(data: &Data, name: &str) -> Result<()> {
         .args(["--sheet", name, "--corpus"])
         .arg(&data.index)
         .args(NEUTRAL_WALKS)
-        .arg(CORRECTION)
         .arg("-o")
         .arg(&folder);
     process::run(&mut design)?;

@@ -48,7 +48,7 @@ struct Report {
     metres_per_unit: f32,
     /// Canonical joints that the file does not have.
     absent_joints: Vec<&'static str>,
-    /// The finding about the hip joints; absent without --correct-hips.
+    /// The finding about the hip joints; absent with --as-recorded.
     #[serde(skip_serializing_if = "Option::is_none")]
     hip_joints: Option<HipFacts>,
 }
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &RetargetArgs) -> Result<()> {
         report.metres_per_unit
     ));
     if let Some(hip_joints) = &report.hip_joints {
-        output::note(&format!("hip joints {}", hip_joints.line()));
+        output::note(&format!("hip joints {}", hip_joints.line));
     }
     Ok(())
 }

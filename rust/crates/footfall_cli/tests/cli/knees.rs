@@ -1,4 +1,4 @@
-//! Hip joints of recordings: moved where a person's walking shows that they are misplaced, when `--correct-hips` is given.
+//! Hip joints of recordings: moved where a person's walking shows that they are misplaced, unless `--as-recorded` is given.
 
 use crate::common::footfall;
 use footfall_motion::bvh::{self, clip_to_bvh};
@@ -42,21 +42,21 @@ fn facts(path: &Path, flags: &[&str]) -> Value {
 }
 
 #[test]
-fn misplaced_hip_joints_move_when_they_are_to() {
+fn misplaced_hip_joints_move_unless_they_are_to_stay() {
     let Some(data) = recordings("recordings") else {
         return;
     };
     let walk = data.join("cmu/neutral_walk/cmu_05_walking_train_02.bvh");
-    let (plain, said) = written(&walk, &[]);
+    let (plain, said) = written(&walk, &["--as-recorded"]);
     assert_eq!(plain, expected(&walk, HipCentres::AsRecorded));
     assert!(!said.contains("hip joints"), "{said}");
-    assert_eq!(facts(&walk, &[])["hip_joints"], Value::Null);
+    assert_eq!(facts(&walk, &["--as-recorded"])["hip_joints"], Value::Null);
 
-    let (natural, said) = written(&walk, &["--correct-hips"]);
+    let (natural, said) = written(&walk, &[]);
     assert_eq!(natural, expected(&walk, HipCentres::FromRecording));
     assert_ne!(natural, plain);
     assert!(said.contains("hip joints moved"), "{said}");
-    let found = &facts(&walk, &["--correct-hips"])["hip_joints"];
+    let found = &facts(&walk, &[])["hip_joints"];
     assert_eq!(found["verdict"], "corrected", "{found}");
     assert!(found["probability"].as_f64().unwrap() > 0.9, "{found}");
     let strike = |key: &str| found[key][0].as_f64().unwrap();
@@ -72,15 +72,15 @@ fn an_acted_walk_and_our_own_walkers_are_left_and_said_to_be() {
     let acted =
         recordings("recordings").map(|data| data.join("bandai/styled_walk/bn1_walk_old_001.bvh"));
     for walk in [own, acted].into_iter().flatten() {
-        let (plain, _) = written(&walk, &[]);
-        let (natural, said) = written(&walk, &["--correct-hips"]);
+        let (plain, _) = written(&walk, &["--as-recorded"]);
+        let (natural, said) = written(&walk, &[]);
         assert_eq!(natural, plain);
         assert!(said.contains("hip joints left"), "{said}");
     }
 }
 
 #[test]
-fn a_model_says_whether_hip_joints_were_corrected() {
+fn a_model_says_that_hip_joints_stayed_as_recorded() {
     let Some(data) = recordings("recordings") else {
         return;
     };
@@ -103,10 +103,10 @@ fn a_model_says_whether_hip_joints_were_corrected() {
         let model = footfall(folder.path(), &["inspect", "gait.footdyn", "--json"]);
         (run.stderr, model.json().to_string())
     };
-    let (said, model) = fit(&["--correct-hips"]);
-    assert!(said.contains("hip joints of cmu16 moved"), "{said}");
-    assert!(model.contains("--correct-hips"), "{model}");
     let (said, model) = fit(&[]);
+    assert!(said.contains("hip joints of cmu16 moved"), "{said}");
+    assert!(!model.contains("--as-recorded"), "{model}");
+    let (said, model) = fit(&["--as-recorded"]);
     assert!(!said.contains("hip joints"), "{said}");
-    assert!(!model.contains("--correct-hips"), "{model}");
+    assert!(model.contains("--as-recorded"), "{model}");
 }

@@ -54,7 +54,8 @@ impl ClipsView {
                 clip.frame_rate_hz,
                 motion.recording.step_count(),
                 motion.recording.retargeted.report.map
-            ));
+            ))
+            .on_hover_text(format!("Hip joints {}", motion.hip_centres()));
             if ui
                 .small_button("Export BVH…")
                 .on_hover_text("On the canonical body")

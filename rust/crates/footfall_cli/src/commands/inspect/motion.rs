@@ -153,7 +153,7 @@ impl MotionFacts {
             ),
         ];
         if let Some(hip_joints) = &self.hip_joints {
-            lines.push(fact("hip joints", hip_joints.line()));
+            lines.push(fact("hip joints", &hip_joints.line));
         }
         if self.first_motion_frame > 0 {
             lines.push(fact(
