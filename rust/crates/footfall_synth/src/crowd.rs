@@ -4,6 +4,7 @@
 //! [`CrowdWalker`] borrows them from a [`Workshop`], one a thread, for a moment about twice a second, and keeps the result: where every
 //! joint is in each frame of its step. In between it costs an interpolation.
 
+mod feet;
 mod frames;
 mod repeat;
 mod rest;
@@ -12,7 +13,6 @@ mod workshop;
 use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::footing;
 use crate::footstep::Footstep;
 use crate::generator::{GeneratorConfig, MAX_DT_SECS, check};
 use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape};
@@ -22,7 +22,7 @@ use crate::standing::{Amplitude, Life};
 use crate::steps::Ask;
 use crate::walker::{Origin, WINDOW};
 use footfall_core::GroundTransform;
-use footfall_ik::placement::Landing;
+use footfall_ik::Plant;
 use frames::CrowdFrames;
 pub use frames::CrowdPose;
 use glam::Vec2;
@@ -56,6 +56,8 @@ pub struct CrowdWalker {
     frames: CrowdFrames,
     /// Place of the frames' plan in the walker's.
     base: Base,
+    /// Plant of the foot whose landing began the step, in the frames' plan.
+    landing: Option<Plant>,
     /// The step before, to be walked again.
     before: Option<Before>,
     /// True when steps are repeated instead of worked out.
@@ -116,6 +118,7 @@ impl CrowdWalker {
             frame_rate_hz: styled.0.space.model().frame_rate_hz as f32,
             frames: CrowdFrames::default(),
             base: Base::default(),
+            landing: None,
             before: None,
             repeating: false,
             odd: false,
@@ -136,6 +139,7 @@ impl CrowdWalker {
         } else {
             (2.0 * config.phase.rem_euclid(1.0)).fract() * frames
         };
+        made.landing = made.landing_of_step();
         made.plan_from_start = made.plan_from_character();
         made.live(0.0, workshop);
         Ok(made)
@@ -190,36 +194,6 @@ impl CrowdWalker {
     /// Place and heading of the character, from where it began.
     pub fn start_from_character(&self) -> GroundTransform {
         self.start_from_character
-    }
-
-    /// The initial contact of the last [`step`](Self::step), from where the walk began.
-    pub fn footstep(&self) -> Option<&Footstep> {
-        self.footstep.as_ref()
-    }
-
-    /// Next landing of the foot on its way, in the character's space as it is now, and the seconds until then. `None` for someone
-    /// who rests or repeats steps.
-    pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
-        if self.is_standing() || self.odd || self.repeating {
-            return None;
-        }
-        let timing = &self.shape.timing;
-        let side = timing.leading.other();
-        let plant = self.next.planter.as_ref()?.plants[side.index()];
-        let footstep = Footstep::seen_from(&self.plan_from_character(), side, &plant);
-        Some((footstep, self.secs_to_next_step()))
-    }
-
-    /// Next landing of each foot and the body's place then, for callers that put feet on real ground.
-    pub fn landings(&self) -> [Option<Landing>; 2] {
-        let from = self.plan_from_character();
-        footing::landings(self.next_footstep(), &from, &self.arrival)
-    }
-
-    /// Returns whether the left and the right foot bear on the ground.
-    pub fn feet_in_contact(&self) -> [bool; 2] {
-        let (frame, weight) = self.frame_at(self.position);
-        self.frames.places[frame + usize::from(weight >= 0.5)].contact
     }
 
     /// Seconds until the next step begins, 0 for someone who rests.
@@ -322,6 +296,7 @@ impl CrowdWalker {
         self.before = Some(Before {
             frames: done,
             shape: self.shape,
+            landing: self.landing,
         });
         self.base = Base::default();
         self.blend = Arc::clone(blend);
@@ -329,10 +304,8 @@ impl CrowdWalker {
         *self.next = walker.next_origin(request);
         self.shape = *walker.step();
         self.take_over(workshop);
-        let side = self.shape.timing.leading;
-        self.footstep = self.next.planter.as_ref().map(|feet| {
-            Footstep::seen_from(&self.plan_from_start, side, &feet.plants[side.index()])
-        });
+        self.landing = self.landing_of_step();
+        self.footstep = self.footstep_at(self.landing);
     }
 
     /// Keeps the step that was just worked out.

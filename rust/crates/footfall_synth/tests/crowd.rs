@@ -167,6 +167,7 @@ fn repeated_steps_go_on_where_the_last_one_ended_and_so_do_new_ones() {
     let mut walker = CrowdWalker::new(&styled, &config, false, &mut workshop).unwrap();
     let mut joints = CrowdPose::default();
     let mut before: Option<(Vec3, f32, [Vec3; 2])> = None;
+    let mut landings = 0;
     for frame in 0..1800 {
         // Far for a while, near for a while.
         walker.set_repeating(frame / 200 % 2 == 1);
@@ -181,6 +182,15 @@ fn repeated_steps_go_on_where_the_last_one_ended_and_so_do_new_ones() {
         let turn = footfall_core::rotation::from_heading(place.heading);
         let feet = [Joint::LeftFoot, Joint::RightFoot]
             .map(|joint| place.position + turn * joints.position(joint));
+        if let Some(footstep) = walker.footstep() {
+            landings += 1;
+            let ankle = feet[footstep.side.index()];
+            let apart = (ankle - footstep.position).with_y(0.0).length();
+            assert!(
+                apart < 0.1,
+                "frame {frame}: a foot lands {apart} m from where it is said to"
+            );
+        }
         if let Some((position, heading, feet_before)) = before {
             let speed = place.position.distance(position) / DT;
             assert!((0.6..2.2).contains(&speed), "frame {frame}: {speed} m/s");
@@ -197,4 +207,6 @@ fn repeated_steps_go_on_where_the_last_one_ended_and_so_do_new_ones() {
         before = Some((place.position, place.heading, feet));
     }
     assert!(walker.start_from_character().position.length() > 10.0);
+    // About two steps a second, near or far.
+    assert!((45..70).contains(&landings), "{landings} landings");
 }

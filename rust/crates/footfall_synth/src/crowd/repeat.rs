@@ -7,6 +7,7 @@ use crate::plan::StepShape;
 use crate::standing::Amplitude;
 use footfall_core::GroundTransform;
 use footfall_core::rotation::from_heading;
+use footfall_ik::Plant;
 
 /// Place and turn of a step that is walked again.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,6 +22,8 @@ pub(super) struct Base {
 pub(super) struct Before {
     pub(super) frames: CrowdFrames,
     pub(super) shape: StepShape,
+    /// Plant of the foot whose landing began it.
+    pub(super) landing: Option<Plant>,
 }
 
 impl Base {
@@ -44,6 +47,19 @@ impl Base {
             heading: self.place.heading + place.heading + self.turn * (share - 0.5),
         }
     }
+
+    /// Place of the plant with whose landing the step began.
+    fn landing(&self, plant: &Plant) -> Plant {
+        let place = GroundTransform {
+            position: plant.flat_ankle,
+            heading: plant.heading,
+        };
+        let place = self.at(&place, 0.0);
+        Plant {
+            flat_ankle: place.position,
+            heading: place.heading,
+        }
+    }
 }
 
 impl CrowdWalker {
@@ -61,12 +77,15 @@ impl CrowdWalker {
         };
         core::mem::swap(&mut before.frames, &mut self.frames);
         core::mem::swap(&mut before.shape, &mut self.shape);
+        core::mem::swap(&mut before.landing, &mut self.landing);
         self.odd = !self.odd;
         let secs = self.shape.timing.frames as f32 / self.frame_rate_hz;
         let turn = controls.turn_rate() * secs;
         let first = self.frames.places.first();
         let first = first.map(|first| first.place).unwrap_or_default();
         self.base = Base::starting(&end, &first, turn);
+        let landing = self.landing.map(|plant| self.base.landing(&plant));
+        self.footstep = self.footstep_at(landing);
         true
     }
 }

@@ -1,0 +1,51 @@
+//! Feet of a crowd's walker: landings as they come, and those to come.
+
+use super::CrowdWalker;
+use crate::footing;
+use crate::footstep::Footstep;
+use footfall_ik::Plant;
+use footfall_ik::placement::Landing;
+
+impl CrowdWalker {
+    /// The initial contact of the last [`step`](Self::step), from where the walk began.
+    pub fn footstep(&self) -> Option<&Footstep> {
+        self.footstep.as_ref()
+    }
+
+    /// Next landing of the foot on its way, in the character's space as it is now, and the seconds until then. `None` for someone
+    /// who rests or repeats steps.
+    pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
+        if self.is_standing() || self.odd || self.repeating {
+            return None;
+        }
+        let timing = &self.shape.timing;
+        let side = timing.leading.other();
+        let plant = self.next.planter.as_ref()?.plants[side.index()];
+        let footstep = Footstep::seen_from(&self.plan_from_character(), side, &plant);
+        Some((footstep, self.secs_to_next_step()))
+    }
+
+    /// Next landing of each foot and the body's place then, for callers that put feet on real ground.
+    pub fn landings(&self) -> [Option<Landing>; 2] {
+        let from = self.plan_from_character();
+        footing::landings(self.next_footstep(), &from, &self.arrival)
+    }
+
+    /// Returns whether the left and the right foot bear on the ground.
+    pub fn feet_in_contact(&self) -> [bool; 2] {
+        let (frame, weight) = self.frame_at(self.position);
+        self.frames.places[frame + usize::from(weight >= 0.5)].contact
+    }
+
+    /// Plant of the leading foot of the step that was just worked out.
+    pub(super) fn landing_of_step(&self) -> Option<Plant> {
+        let feet = self.next.planter.as_ref()?;
+        Some(feet.plants[self.shape.timing.leading.index()])
+    }
+
+    /// The leading foot's landing on this plant, as it is reported.
+    pub(super) fn footstep_at(&self, landing: Option<Plant>) -> Option<Footstep> {
+        let side = self.shape.timing.leading;
+        landing.map(|plant| Footstep::seen_from(&self.plan_from_start, side, &plant))
+    }
+}
