@@ -27,7 +27,7 @@ pub(crate) struct HipFacts {
 }
 
 impl HipFacts {
-    /// The finding, where one was asked for.
+    /// The finding; none where the joints were to stay as recorded.
     pub(crate) fn of(finding: &HipFinding) -> Option<Self> {
         let verdict = name(&finding.verdict)?;
         let correction = finding.verdict.correction();

@@ -8,6 +8,7 @@
 use crate::leg::{FootTarget, FootTargetx8};
 use core::f32::consts::FRAC_PI_3;
 use core::ops::{Add, Div, Mul};
+use footfall_core::GroundTransform;
 use footfall_core::lanes::{Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;
 use footfall_core::{FootShape, Side, Skeleton};
@@ -30,6 +31,18 @@ pub struct Plant {
     pub flat_ankle: Vec3,
     /// Heading of the foot, radians.
     pub heading: f32,
+}
+
+impl Plant {
+    /// The same foot of a walker who is at `to` instead of at `from`.
+    #[must_use]
+    pub fn moved(&self, from: &GroundTransform, to: &GroundTransform) -> Self {
+        let turn = to.heading - from.heading;
+        Self {
+            flat_ankle: to.position + from_heading(turn) * (self.flat_ankle - from.position),
+            heading: self.heading + turn,
+        }
+    }
 }
 
 /// The parts of a foot that the rocker needs, in the axes of the foot.

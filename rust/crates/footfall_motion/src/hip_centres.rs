@@ -138,7 +138,7 @@ impl WalkingEvidence {
 pub enum HipVerdict {
     /// They move.
     Corrected(HipCorrection),
-    /// They stay as recorded, since no correction was asked for.
+    /// They stay as recorded, as was asked for.
     AsRecorded,
     /// The body is the canonical one; there is nothing to fit.
     OwnBody,

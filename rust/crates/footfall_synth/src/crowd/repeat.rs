@@ -47,19 +47,6 @@ impl Base {
             heading: self.place.heading + place.heading + self.turn * (share - 0.5),
         }
     }
-
-    /// Place of the plant with whose landing the step began.
-    fn landing(&self, plant: &Plant) -> Plant {
-        let place = GroundTransform {
-            position: plant.flat_ankle,
-            heading: plant.heading,
-        };
-        let place = self.at(&place, 0.0);
-        Plant {
-            flat_ankle: place.position,
-            heading: place.heading,
-        }
-    }
 }
 
 impl CrowdWalker {
@@ -84,7 +71,7 @@ impl CrowdWalker {
         let first = self.frames.places.first();
         let first = first.map(|first| first.place).unwrap_or_default();
         self.base = Base::starting(&end, &first, turn);
-        let landing = self.landing.map(|plant| self.base.landing(&plant));
+        let landing = self.landing.map(|plant| plant.moved(&first, &end));
         self.footstep = self.footstep_at(landing);
         true
     }

@@ -37,10 +37,7 @@ impl PlanterState {
         let rotation = from_heading(turn);
         let point = |point: Vec3| to.position + rotation * (point - from.position);
         Self {
-            plants: self.plants.map(|plant| Plant {
-                flat_ankle: point(plant.flat_ankle),
-                heading: plant.heading + turn,
-            }),
+            plants: self.plants.map(|plant| plant.moved(from, to)),
             hips: point(self.hips),
             hips_velocity: self.hips_velocity.map(|velocity| rotation * velocity),
             heading: self.heading + turn,
