@@ -1,6 +1,6 @@
 //! Packages of the machine's own archive, unpacked side by side in a folder. Nothing is installed on the system and no rights are needed.
 
-use crate::{process, progress};
+use crate::{paths, process, progress};
 use anyhow::{Context as _, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -179,6 +179,42 @@ impl Apt {
     fn archives(&self) -> PathBuf {
         self.folder.join("cache/archives")
     }
+}
+
+/// The folder that packages of the machine's own archive are unpacked into, in the cache: as an earlier call left it, if that works, or fetched now.
+///
+/// # Errors
+/// When apt is not there or cannot have them, or when what it has does not work.
+pub(crate) fn in_cache(
+    name: &str,
+    packages: &[&str],
+    works: impl Fn(&Path) -> bool,
+) -> Result<PathBuf> {
+    let cache = paths::cache(name)?;
+    fs::create_dir_all(&cache).with_context(|| format!("cannot create {}", cache.display()))?;
+    let lock = fs::File::create(cache.join("lock"))
+        .with_context(|| format!("cannot write into {}", cache.display()))?;
+    lock.lock()
+        .with_context(|| format!("cannot lock {}", cache.display()))?;
+    let root = cache.join("root");
+    if works(&root) {
+        return Ok(root);
+    }
+    for tool in ["apt-get", "dpkg"] {
+        paths::on_path(&[tool]).with_context(|| format!("there is no `{tool}` on this system"))?;
+    }
+    let apt = Apt::on_system(&cache.join("apt"))?;
+    process::read(apt.get().arg("update")).context("apt cannot reach its package archives")?;
+    let found = apt.packages(packages)?;
+    apt.download(packages, &found)?;
+    apt.unpack(&found, &root, &format!("unpacking {}", packages.join(", ")))?;
+    if !works(&root) {
+        bail!(
+            "what was just fetched ({}) does not work",
+            packages.join(", ")
+        );
+    }
+    Ok(root)
 }
 
 /// Lines such as `'<address>' name_1.0_amd64.deb 1234 SHA256:…`.

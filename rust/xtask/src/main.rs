@@ -12,6 +12,7 @@ mod addon;
 mod apt;
 mod bench;
 mod bench_crowd;
+mod bevy;
 mod contact_sheet;
 mod csharp;
 mod demo;
@@ -36,6 +37,7 @@ mod progress;
 mod skipped;
 mod tidy;
 mod verify;
+mod vulkan;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -97,6 +99,8 @@ enum Command {
     Demo,
     /// Film the tour of the third-person scene for the README.
     Film,
+    /// Build and test the example in Bevy, and leave pictures of it.
+    Bevy,
     /// Export the demo as a game for this machine into `rust/target/export`, and start it once without a window.
     Export {
         /// Build the game's library as it is released.
@@ -155,6 +159,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Verify { steps } => verify::command(steps),
         Command::Demo => demo::command(),
         Command::Film => film::command(),
+        Command::Bevy => bevy::command(),
         Command::Export { shipped } => export::command(*shipped),
         Command::Bench { keep } => bench::command(*keep),
         Command::BenchCrowd {

@@ -2,10 +2,8 @@
 //!
 //! Looked for on the PATH, then in the cache; on Debian it is fetched into the cache from the machine's own archive (7 MB), as Godot is.
 
-use crate::apt::Apt;
-use crate::{paths, process};
-use anyhow::{Context as _, Result};
-use std::fs::{self, File};
+use crate::{apt, paths, process};
+use anyhow::Result;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -31,22 +29,8 @@ impl Mono {
         if paths::on_path(&["mcs"]).is_some() && paths::on_path(&["mono"]).is_some() {
             return Ok(Self::Installed);
         }
-        let cache = paths::cache("mono")?;
-        fs::create_dir_all(&cache).with_context(|| format!("cannot create {}", cache.display()))?;
-        let lock = File::create(cache.join("lock"))
-            .with_context(|| format!("cannot write into {}", cache.display()))?;
-        lock.lock()
-            .with_context(|| format!("cannot lock {}", cache.display()))?;
-        let unpacked = Self::Unpacked(cache.join("root"));
-        if unpacked.runs() {
-            return Ok(unpacked);
-        }
-        fetch(&cache)?;
-        anyhow::ensure!(
-            unpacked.runs(),
-            "the Mono that was just fetched does not run"
-        );
-        Ok(unpacked)
+        let runs = |root: &Path| Self::Unpacked(root.to_path_buf()).runs();
+        apt::in_cache("mono", &PACKAGES, runs).map(Self::Unpacked)
     }
 
     /// The C# compiler.
@@ -75,15 +59,4 @@ impl Mono {
     fn runs(&self) -> bool {
         process::read(self.compiler().arg("--version")).is_ok()
     }
-}
-
-fn fetch(cache: &Path) -> Result<()> {
-    for tool in ["apt-get", "dpkg"] {
-        paths::on_path(&[tool]).with_context(|| format!("there is no `{tool}` on this system"))?;
-    }
-    let apt = Apt::on_system(&cache.join("apt"))?;
-    process::read(apt.get().arg("update")).context("apt cannot reach its package archives")?;
-    let packages = apt.packages(&PACKAGES)?;
-    apt.download(&PACKAGES, &packages)?;
-    apt.unpack(&packages, &cache.join("root"), "unpacking Mono")
 }

@@ -1,7 +1,7 @@
 //! Walks in a game loop of 60 frames a second, up a kerb, and stops on it: `cargo run --example game_loop`.
 #![expect(clippy::print_stdout, reason = "examples print")]
 
-use footfall::body::{Pose, from_heading};
+use footfall::body::Pose;
 use footfall::gait::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
 use footfall::glam::Vec3;
 use footfall::ground::{FootPlacer, Frame, Ground, PlacementConfig, PlacementInput};
@@ -44,12 +44,10 @@ pub(crate) fn play(
         walker.step(DT_SECS, &controls, &mut pose);
         // The character rises with the ground below its feet.
         height += (1.0 - (-DT_SECS / 0.12).exp()) * placer.ground_offset_m();
-        let place = walker.start_from_character();
+        let mut place = Frame::from(walker.start_from_character());
+        place.position.y = height;
         let mut input = PlacementInput {
-            world_from_floor: Frame {
-                position: place.position.with_y(height),
-                rotation: from_heading(place.heading),
-            },
+            world_from_floor: place,
             contacts: Some(walker.feet_in_contact()),
             landings: walker.landings(),
             airborne: false,
@@ -63,7 +61,7 @@ pub(crate) fn play(
             input.landings = walker.landings();
         }
         placer.step(DT_SECS, &input, &mut street, &mut pose);
-        show(frame, input.world_from_floor, &placer, &pose);
+        show(frame, place, &placer, &pose);
     }
     Ok(())
 }

@@ -39,7 +39,7 @@
 //! character up and down. A frame goes like this.
 //!
 //! ```
-//! use footfall::body::{Pose, from_heading};
+//! use footfall::body::Pose;
 //! use footfall::gait::{Controls, GaitGenerator};
 //! use footfall::glam::Vec3;
 //! use footfall::ground::{FootPlacer, Frame, Ground, PlacementInput, Terrain};
@@ -67,11 +67,8 @@
 //!         self.walker.step(dt_secs, &controls, &mut self.pose);
 //!         // The character rises and falls with the ground below its feet; a physics body may do this instead.
 //!         self.height += (1.0 - (-dt_secs / 0.12).exp()) * self.placer.ground_offset_m();
-//!         let place = self.walker.start_from_character();
-//!         let world_from_floor = Frame {
-//!             position: place.position.with_y(self.height),
-//!             rotation: from_heading(place.heading),
-//!         };
+//!         let mut world_from_floor = Frame::from(self.walker.start_from_character());
+//!         world_from_floor.position.y = self.height;
 //!         let mut input = PlacementInput {
 //!             world_from_floor,
 //!             contacts: Some(self.walker.feet_in_contact()),

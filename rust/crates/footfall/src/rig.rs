@@ -1,23 +1,22 @@
 //! A game's own character as a body, and poses on its bones.
 //!
 //! A [`RestRig`] has the bones as they rest: names, parents and transforms, in any units and axes. [`joint_bones`] finds the joints among them. A [`RigBinding`] is both
-//! measured: the [`Skeleton`](crate::body::Skeleton) for the walker, and the way from a pose to rotations of bones. Rest poses may be A-poses, and bones may be missing.
+//! measured: the [`Skeleton`](crate::body::Skeleton) for the walker, the way from a pose to rotations of bones, and that from the ground under the body to the object that carries
+//! the rig. Rest poses may be A-poses, and bones may be missing.
 //!
 //! ```
 //! use footfall::body::{JOINT_COUNT, Joint, Pose, Skeleton};
+//! use footfall::gait::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
 //! use footfall::glam::{Affine3A, Quat, Vec3};
+//! use footfall::ground::Frame;
+//! use footfall::model::GaitModel;
 //! use footfall::rig::{Bones, RestRig, RigBinding, joint_bones};
+//! use std::sync::Arc;
 //!
 //! /// Bones of a character in a game: a transform each, relative to the bone above.
 //! struct Character(Vec<Affine3A>);
 //!
 //! impl Bones for Character {
-//!     fn rotation(&self, bone: usize) -> Quat {
-//!         self.0[bone].to_scale_rotation_translation().1
-//!     }
-//!     fn position(&self, bone: usize) -> Vec3 {
-//!         self.0[bone].translation.into()
-//!     }
 //!     fn transform(&self, bone: usize) -> Affine3A {
 //!         self.0[bone]
 //!     }
@@ -44,10 +43,24 @@
 //! let mut binding = RigBinding::new(&rig, &bones, &metres)?;
 //! assert!((binding.body.offset(Joint::Hips).y - standard.offset(Joint::Hips).y).abs() < 1e-3);
 //!
-//! // A walker on `binding.body` gives such poses in every frame.
+//! // A walker with the character's proportions, and the frames of a game.
+//! # std::env::set_current_dir("../../..")?;
+//! let bytes = std::fs::read("addons/footfall/models/locomotion.footfall")?;
+//! let styles = Arc::new(StyleSpace::new(&Arc::new(GaitModel::from_bytes(&bytes)?), &[])?);
+//! let config = GeneratorConfig { seed: 1, phase: 0.0, variation: 1.0 };
+//! let mut walker = GaitGenerator::new(&styles, &[], &binding.body, &config)?;
+//! let controls = Controls { speed_mps: 1.3, ..Controls::STAND };
 //! let mut pose = Pose::rest(&binding.body);
-//! pose.rotations[Joint::LeftUpperLeg.index()] = Quat::from_rotation_x(-0.5);
-//! binding.write(&mut character, &pose);
+//! let mut place = Frame::IDENTITY;
+//! for _ in 0..120 {
+//!     walker.step(1.0 / 60.0, &controls, &mut pose);
+//!     // The object that carries the rig goes here, wherever the rig stands in it and faces.
+//!     place = binding.world_from_character(&Frame::from(walker.start_from_character()));
+//!     binding.write(&mut character, &pose);
+//! }
+//! assert!((1.5..3.0).contains(&place.position.z), "{place:?}");
+//!
+//! // The other way: the pose that the bones have, from whatever animation.
 //! let mut seen = Pose::default();
 //! binding.read(&character, &mut seen);
 //! let leg = Joint::LeftUpperLeg;

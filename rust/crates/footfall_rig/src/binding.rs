@@ -12,6 +12,7 @@ pub use bones::{Bones, relative_size};
 use bones::{BoundBone, bind};
 use footfall_core::rotation::of_transform;
 use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton};
+use footfall_ik::placement::Frame;
 use glam::{Affine3A, Quat, Vec3};
 pub use layers::LayerWeights;
 
@@ -115,6 +116,24 @@ impl RigBinding {
             turned_by[bound.joint.index()] = bound.turned_by;
         }
         turned_by
+    }
+
+    /// Ground under the body of a character that is in this place, facing where the body does.
+    pub fn world_from_ground(&self, world_from_character: &Frame) -> Frame {
+        world_from_character.child(&self.ground())
+    }
+
+    /// Place of a character whose body stands on this ground: for the object of an engine that carries the rig. Undoes
+    /// [`world_from_ground`](Self::world_from_ground).
+    pub fn world_from_character(&self, world_from_ground: &Frame) -> Frame {
+        world_from_ground.child(&self.ground().local(&Frame::IDENTITY))
+    }
+
+    fn ground(&self) -> Frame {
+        Frame {
+            position: self.character_from_ground.translation.into(),
+            rotation: of_transform(&self.character_from_ground),
+        }
     }
 
     /// The bones that are posed, parents first; the hips' is the first.

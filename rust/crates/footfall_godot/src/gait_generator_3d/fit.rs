@@ -5,7 +5,7 @@ use crate::walk_source::WalkSource;
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
 use footfall_ik::handover::Moving;
 use footfall_ik::placement::Frame;
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, GroundTransform, SynthError};
+use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, SynthError};
 use glam::Vec3;
 
 /// The stride is looked at so often, and for so long at most.
@@ -52,7 +52,7 @@ impl Maker<'_> {
             let mut seen = walked(&mut walk, &self.controls, dt_secs);
             let mut footsteps = 0;
             for look in 1..=MOST_LOOKS {
-                let place = frame(&walk.start_from_character());
+                let place = Frame::from(walk.start_from_character());
                 let now = seen.seen_from(&place, 1.0);
                 let distance = wanted.distance(&Look::of(self.body, &now.moving(), seen.dt_secs));
                 if distance < least {
@@ -194,14 +194,6 @@ fn walked(generator: &mut GaitGenerator, controls: &Controls, dt_secs: f32) -> S
 fn one_step(generator: &mut GaitGenerator, controls: &Controls, dt_secs: f32, seen: &mut Seen) {
     let mut pose = Pose::default();
     generator.step(dt_secs, controls, &mut pose);
-    super::seen::raise(&frame(&generator.start_from_character()), &mut pose);
+    super::seen::raise(&Frame::from(generator.start_from_character()), &mut pose);
     seen.see(&pose, generator.feet_in_contact(), dt_secs);
-}
-
-/// A place on the ground with its axes.
-pub(super) fn frame(place: &GroundTransform) -> Frame {
-    Frame {
-        position: place.position,
-        rotation: footfall_core::rotation::from_heading(place.heading),
-    }
 }

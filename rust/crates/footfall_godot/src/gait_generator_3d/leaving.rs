@@ -1,11 +1,11 @@
 //! The walk's end: another animation takes the body over, and the character comes to rest.
 
-use super::fit;
 use super::seen::{lower, raise};
 use super::session::Session;
 use crate::travel::Travel;
 use footfall_core::rotation::from_heading;
 use footfall_ik::handover::Handover;
+use footfall_ik::placement::Frame;
 use footfall_synth::GroundTransform;
 use glam::Vec3;
 use godot::classes::Skeleton3D;
@@ -27,7 +27,7 @@ pub(super) struct Leaving {
 impl Session {
     /// Begins to leave the body to the animation that was watched.
     pub(super) fn leave(&mut self, secs: f64, velocity_mps: Vec3, turn_rate: f32) {
-        let place = fit::frame(&self.traveller.ground_place());
+        let place = Frame::from(self.traveller.ground_place());
         let stands = self.stands_in_place();
         let to = self.watched_here().with_standing(stands).raised(&place);
         let from = self.shown.moving();
@@ -52,7 +52,7 @@ impl Session {
         }
         let travel = self.traveller.go_to(place);
         let (mut pose, stands) = self.watch(skeleton, dt_secs);
-        let ground = fit::frame(&place);
+        let ground = Frame::from(place);
         raise(&ground, &mut pose);
         if let Some(handover) = &mut self.handover {
             handover.step(dt_secs, stands, stands == [true; 2], &mut pose);

@@ -1,6 +1,6 @@
 //! A walk under way: one generator on one skeleton.
 
-use super::fit::{self, Fitting, Maker};
+use super::fit::{Fitting, Maker};
 use super::leaving::Leaving;
 use super::seen::{Seen, lower, raise};
 use crate::convert;
@@ -9,6 +9,7 @@ use crate::travel::{Travel, Traveller};
 use crate::walk_source::WalkSource;
 use footfall_core::{Pose, Side};
 use footfall_ik::handover::Handover;
+use footfall_ik::placement::Frame;
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig};
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
@@ -132,7 +133,7 @@ impl Session {
             .fitting(from)
             .map_err(|error| format!("The walk cannot start: {error}"))?;
         let place = generator.start_from_character();
-        let from = from.clone().raised(&fit::frame(&place));
+        let from = from.clone().raised(&Frame::from(place));
         let handover = Handover::new(
             body,
             &from.moving(),
@@ -149,7 +150,7 @@ impl Session {
 
     /// Motion that the skeleton showed last, on the ground under the character, in metres of the world.
     pub(super) fn shown_here(&self) -> Seen {
-        let place = fit::frame(&self.traveller.ground_place());
+        let place = Frame::from(self.traveller.ground_place());
         self.shown.seen_from(&place, self.traveller.scale())
     }
 
@@ -167,7 +168,7 @@ impl Session {
         self.generator.step(dt_secs, &controls, &mut self.pose);
         let place = self.generator.start_from_character();
         let travel = self.traveller.go_to(place);
-        let ground = fit::frame(&place);
+        let ground = Frame::from(place);
         let stands = self.generator.feet_in_contact();
         raise(&ground, &mut self.pose);
         if let Some(handover) = &mut self.handover {

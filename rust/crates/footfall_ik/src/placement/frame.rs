@@ -1,5 +1,7 @@
 //! A place with axes.
 
+use footfall_core::GroundTransform;
+use footfall_core::rotation::from_heading;
 use glam::{Quat, Vec3};
 
 /// A place with axes, without scale: `parent_from_frame`.
@@ -58,6 +60,16 @@ impl Frame {
     }
 }
 
+/// A place on level ground: upright axes that point where the heading does.
+impl From<GroundTransform> for Frame {
+    fn from(place: GroundTransform) -> Self {
+        Self {
+            position: place.position,
+            rotation: from_heading(place.heading),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -77,5 +89,19 @@ mod tests {
         assert!(back.rotation.angle_between(child.rotation) < 1e-3);
         let point = frame.local_point(frame.point(child.position));
         assert!(point.distance(child.position) < 1e-6);
+    }
+
+    #[test]
+    fn a_place_on_the_ground_stands_upright_and_points_where_it_heads() {
+        let place = GroundTransform {
+            position: Vec3::new(1.0, 0.2, -3.0),
+            heading: 0.4,
+        };
+        let frame = Frame::from(place);
+        assert_eq!(frame.position, place.position);
+        // Positive headings are to the left, which is +X of somebody who faces +Z.
+        let forward = Vec3::new(0.4_f32.sin(), 0.0, 0.4_f32.cos());
+        assert!(frame.forward().distance(forward) < 1e-6);
+        assert!(frame.up().distance(Vec3::Y) < 1e-6);
     }
 }

@@ -8,15 +8,21 @@ use footfall_core::{JOINT_COUNT, Joint};
 use glam::{Affine3A, Quat, Vec3};
 
 /// Poses of a rig's bones as an engine holds them: each relative to the bone above it, by its index in the [`RestRig`].
+///
+/// An engine that keeps rotation and position of a bone apart answers for them by itself, and saves taking a matrix to pieces.
 pub trait Bones {
-    /// Rotation of a bone, of length 1.
-    fn rotation(&self, bone: usize) -> Quat;
-
-    /// Position of a bone.
-    fn position(&self, bone: usize) -> Vec3;
-
     /// Position, rotation and scale of a bone.
     fn transform(&self, bone: usize) -> Affine3A;
+
+    /// Rotation of a bone, of length 1.
+    fn rotation(&self, bone: usize) -> Quat {
+        of_transform(&self.transform(bone))
+    }
+
+    /// Position of a bone.
+    fn position(&self, bone: usize) -> Vec3 {
+        self.transform(bone).translation.into()
+    }
 
     /// Turns a bone.
     fn set_rotation(&mut self, bone: usize, rotation: Quat);

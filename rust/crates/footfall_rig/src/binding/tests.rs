@@ -11,14 +11,6 @@ struct Character {
 }
 
 impl Bones for Character {
-    fn rotation(&self, bone: usize) -> Quat {
-        of_transform(&self.poses[bone])
-    }
-
-    fn position(&self, bone: usize) -> Vec3 {
-        self.poses[bone].translation.into()
-    }
-
     fn transform(&self, bone: usize) -> Affine3A {
         self.poses[bone]
     }
@@ -136,6 +128,31 @@ fn a_crooked_rig_is_measured_as_the_body_that_it_is() {
     assert!(forward.distance(Vec3::NEG_X) < 1e-3, "{forward}");
     let floor = Vec3::from(binding.character_from_ground.translation);
     assert!(floor.distance(Vec3::new(0.3, 0.0, -0.2)) < 1e-3, "{floor}");
+}
+
+#[test]
+fn a_character_goes_where_its_body_walks_however_its_rig_stands_in_it() {
+    let mut character = crooked();
+    let (mut binding, bones) = bound(&character);
+    let world_from_ground = Frame {
+        position: Vec3::new(4.0, 0.5, -7.0),
+        rotation: from_heading(0.8),
+    };
+    let world_from_character = binding.world_from_character(&world_from_ground);
+    let pose = stride(&binding.body);
+    binding.write(&mut character, &pose);
+    let model = ModelPose::of(&binding.body, &pose);
+    for joint in Joint::ALL {
+        let seen = world_from_character.point(0.01 * character.place(bones[joint.index()]));
+        let wanted = world_from_ground.point(model.position(joint));
+        assert!(
+            seen.distance(wanted) < 1e-3,
+            "{joint:?}: {seen} for {wanted}"
+        );
+    }
+    let again = binding.world_from_ground(&world_from_character);
+    assert!(again.position.distance(world_from_ground.position) < 1e-5);
+    assert!(again.rotation.angle_between(world_from_ground.rotation) < 1e-3);
 }
 
 #[test]
