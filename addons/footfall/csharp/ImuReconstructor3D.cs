@@ -33,13 +33,24 @@ namespace Footfall
         {
             public static readonly StringName ForgetMounting = "forget_mounting";
             public static readonly StringName GetBehaviour = "get_behaviour";
+            public static readonly StringName GetCalibrationMessage = "get_calibration_message";
+            public static readonly StringName GetCalibrationProgress = "get_calibration_progress";
+            public static readonly StringName GetCalibrationStep = "get_calibration_step";
             public static readonly StringName GetConfidence = "get_confidence";
             public static readonly StringName GetLatency = "get_latency";
             public static readonly StringName GetMountingCertainty = "get_mounting_certainty";
             public static readonly StringName GetProblems = "get_problems";
             public static readonly StringName GetRootMotionDelta = "get_root_motion_delta";
+            public static readonly StringName GetSensorMessage = "get_sensor_message";
+            public static readonly StringName GetSensorProblem = "get_sensor_problem";
+            public static readonly StringName GetStepScale = "get_step_scale";
+            public static readonly StringName LoadCalibration = "load_calibration";
+            public static readonly StringName PromiseRate = "promise_rate";
             public static readonly StringName PushSample = "push_sample";
             public static readonly StringName ResetHeading = "reset_heading";
+            public static readonly StringName SaveCalibration = "save_calibration";
+            public static readonly StringName SetStepScale = "set_step_scale";
+            public static readonly StringName StartCalibration = "start_calibration";
             public static readonly StringName StartRecording = "start_recording";
             public static readonly StringName StopRecording = "stop_recording";
             public static readonly StringName Turn = "turn";
@@ -49,9 +60,11 @@ namespace Footfall
         public static class SignalName
         {
             public static readonly StringName BehaviourChanged = "behaviour_changed";
+            public static readonly StringName CalibrationChanged = "calibration_changed";
             public static readonly StringName Footstep = "footstep";
             public static readonly StringName SensorFound = "sensor_found";
             public static readonly StringName SensorLost = "sensor_lost";
+            public static readonly StringName SensorProblemChanged = "sensor_problem_changed";
         }
 
         /// <summary>Makes a new <c>ImuReconstructor3D</c> in the engine.</summary>
@@ -134,6 +147,14 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.BehaviourChanged, Callable.From(value));
         }
 
+        /// <summary>The calibration asks something else of the player: a step, as of <see cref="GetCalibrationStep"/>, and a message.</summary>
+        /// <value>Handlers take <c>step</c>, <c>message</c>.</value>
+        public event Action<StringName, string> CalibrationChanged
+        {
+            add => Native.Connect(SignalName.CalibrationChanged, Callable.From(value));
+            remove => Native.Disconnect(SignalName.CalibrationChanged, Callable.From(value));
+        }
+
         /// <summary>A foot came down: <c>left</c> or <c>right</c>, and where in global space.</summary>
         /// <value>Handlers take <c>foot</c>, <c>position</c>.</value>
         public event Action<StringName, Vector3> Footstep
@@ -156,11 +177,28 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.SensorLost, Callable.From(value));
         }
 
+        /// <summary>Something else is wrong with a sensor now, or with how it is worn: a name, as of <see cref="GetSensorProblem"/>, and a message that says what to do. Both are empty when all is well again.</summary>
+        /// <value>Handlers take <c>sensor</c>, <c>problem</c>, <c>message</c>.</value>
+        public event Action<long, StringName, string> SensorProblemChanged
+        {
+            add => Native.Connect(SignalName.SensorProblemChanged, Callable.From(value));
+            remove => Native.Disconnect(SignalName.SensorProblemChanged, Callable.From(value));
+        }
+
         /// <summary>Forgets how the sensors are worn, and finds it out anew: when they have moved. The character stands until samples come.</summary>
         public void ForgetMounting() => Native.Call(MethodName.ForgetMounting);
 
         /// <summary>The body's behaviour: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
         public StringName GetBehaviour() => Native.Call(MethodName.GetBehaviour).AsStringName();
+
+        /// <summary>Message for the player about the step of the calibration.</summary>
+        public string GetCalibrationMessage() => Native.Call(MethodName.GetCalibrationMessage).AsString();
+
+        /// <summary>Progress of the step of the calibration, 0 to 1.</summary>
+        public double GetCalibrationProgress() => Native.Call(MethodName.GetCalibrationProgress).AsDouble();
+
+        /// <summary>Step of the calibration: <c>connect</c>, <c>stand</c>, <c>walk</c>, <c>walk_on</c> or <c>done</c>; empty where none was begun.</summary>
+        public StringName GetCalibrationStep() => Native.Call(MethodName.GetCalibrationStep).AsStringName();
 
         /// <summary>Returns the model's confidence, 0 to 1: the probability that the wearer's motion is among those the model learned. 0 where nothing is heard.</summary>
         /// <remarks>Walking is about 0.85. Below 0.1, with a sensor that is shaken, worn elsewhere or mounted otherwise than is thought, the body stands.</remarks>
@@ -172,12 +210,28 @@ namespace Footfall
         /// <summary>Certainty of a sensor's mounting, 0 to 1; 0 before it was found.</summary>
         public double GetMountingCertainty(long sensor) => Native.Call(MethodName.GetMountingCertainty, sensor).AsDouble();
 
-        /// <summary>Problems that keep the character from being driven, each with what to do next; empty without any.</summary>
-        /// <remarks>The editor shows the same as configuration warnings.</remarks>
+        /// <summary>Problems that keep the character from being driven, each with what to do next, and those of the sensors that are heard; empty without any.</summary>
+        /// <remarks>The editor shows the first as configuration warnings.</remarks>
         public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
 
         /// <summary>The body's motion in the character's own space since the frame before by the clock of who asks, as of <see cref="GaitGenerator3D"/>.</summary>
         public Transform3D GetRootMotionDelta() => Native.Call(MethodName.GetRootMotionDelta).AsTransform3D();
+
+        /// <summary>Message for the player about the problem with a sensor, with the next thing to do; empty while all is well.</summary>
+        public string GetSensorMessage(long sensor = 0) => Native.Call(MethodName.GetSensorMessage, sensor).AsString();
+
+        /// <summary>Problem with a sensor or with how it is worn; empty while all is well. The body stands or goes on as is probable meanwhile.</summary>
+        /// <remarks><c>silent</c>: nothing is heard. <c>force_in_g</c>, <c>gravity</c>, <c>rate_in_degrees</c>: units or scale are wrong. <c>stuck_axis</c>, <c>saturated</c>: an axis keeps one value, or reaches the end of the sensor's range. <c>slow</c>, <c>pace</c>: too few samples come for a gait, or far fewer or more than at first. <c>lies</c>, <c>rides</c>: the sensor lies still, or is moved without steps. <c>unexplained</c>: the model does not know the motion. <c>other_side</c>: it is worn on the other side of the body. <c>turned</c>: it is worn otherwise than it was calibrated or said to be.</remarks>
+        public StringName GetSensorProblem(long sensor = 0) => Native.Call(MethodName.GetSensorProblem, sensor).AsStringName();
+
+        /// <summary>Length of the player's steps beside those of the people in the model: a sensor on a foot measures it as they walk.</summary>
+        public double GetStepScale() => Native.Call(MethodName.GetStepScale).AsDouble();
+
+        /// <summary>Takes over a calibration that was saved, in place of finding it out: call it once the sensors are heard. Tells what is wrong, or nothing: a file of a later version, for other sites than the model's or of another sensor than the one that is heard is not taken.</summary>
+        public string LoadCalibration(string path) => Native.Call(MethodName.LoadCalibration, path).AsString();
+
+        /// <summary>Says how many samples a second a sensor was promised to give, so that fewer or more are a problem. Without a promise, fewer than in the beginning are.</summary>
+        public void PromiseRate(double rate, long sensor = 0) => Native.Call(MethodName.PromiseRate, rate, sensor);
 
         /// <summary>Takes a sample of a sensor: 0, or 1 for the second site of the model. <c>time</c> is the sensor's clock in seconds, <c>force</c> its specific force in m/s² (gravity included), <c>rate</c> its angular rate in rad/s, both in its own axes.</summary>
         /// <remarks>Samples that are late, repeated or not finite are left out.</remarks>
@@ -185,6 +239,16 @@ namespace Footfall
 
         /// <summary>The direction in which the character faces now is straight ahead of the person from now on.</summary>
         public void ResetHeading() => Native.Call(MethodName.ResetHeading);
+
+        /// <summary>Keeps how the sensors are worn, what they measure at rest and how long the player's steps are, in a small file for the next session. Tells what is wrong, or nothing.</summary>
+        public string SaveCalibration(string path) => Native.Call(MethodName.SaveCalibration, path).AsString();
+
+        /// <summary>Sets the length of the player's steps beside those of the people in the model, 0.7 to 1.4: for a phone in the pocket, which cannot measure it.</summary>
+        public void SetStepScale(double scale) => Native.Call(MethodName.SetStepScale, scale);
+
+        /// <summary>Begins a calibration of about five seconds: the player stands for two seconds and takes four steps. Forgets how the sensors are worn.</summary>
+        /// <remarks><see cref="CalibrationChanged"/> tells what to do next. Where <see cref="Mounting"/> is <c>ALIGNED</c> there is nothing to find out.</remarks>
+        public void StartCalibration() => Native.Call(MethodName.StartCalibration);
 
         /// <summary>Records what a sensor gives from now on, into a file that a <see cref="ReplayImuSource"/> plays; tells whether the file can be made.</summary>
         public bool StartRecording(string path, long sensor = 0) => Native.Call(MethodName.StartRecording, path, sensor).AsBool();

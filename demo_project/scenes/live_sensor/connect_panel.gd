@@ -97,11 +97,15 @@ func sensor() -> Dictionary:
 func told() -> String:
 	if _source is DeviceImuSource:
 		return "" if DeviceImuSource.is_available() else "This device gives no motion: it has no sensors, or the project settings leave them off."
-	var message: String = _source.get_message()
+	return _sentence(_source.get_message())
+
+
+func _sentence(message: String) -> String:
 	return message.left(1).to_upper() + message.substr(1)
 
 
-func show_state(calibration: Calibration, driven: ImuReconstructor3D) -> void:
+## Shows what arrives, what is wrong with it, and what the player is to do next.
+func show_state(driven: ImuReconstructor3D) -> void:
 	var known := sensor()
 	var heard: bool = not known.is_empty() and known.samples > 0
 	if heard:
@@ -109,11 +113,13 @@ func show_state(calibration: Calibration, driven: ImuReconstructor3D) -> void:
 		%Figures.text = "%s: %.0f samples a second, %d lost" % [known.name, known.rate, known.lost]
 	else:
 		%Figures.text = "nothing is heard yet"
-	%Message.text = told()
+	var connection := told()
+	%Message.text = connection if connection != "" or not heard else _sentence(driven.get_sensor_message())
 	%Message.visible = %Message.text != ""
-	%Step.text = Calibration.TOLD[calibration.now]
-	%Progress.value = calibration.progress
-	%Behaviour.text = _doing(driven) if calibration.now == Calibration.Step.DONE else ""
+	var step := driven.get_calibration_step()
+	%Step.text = driven.get_calibration_message()
+	%Progress.value = driven.get_calibration_progress()
+	%Behaviour.text = _doing(driven) if step == &"done" else ""
 	if _kind == Kind.PHONE and not heard:
 		_show_code()
 	elif heard:

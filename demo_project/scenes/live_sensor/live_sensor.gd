@@ -17,7 +17,6 @@ const FRAMES_BEFORE_PICTURES := 480
 
 var _character: Node3D
 var _driven: ImuReconstructor3D
-var _calibration := Calibration.new()
 var _stand_in: StandIn
 var _without_user := not OS.get_cmdline_user_args().is_empty()
 var _start := Vector3.ZERO
@@ -53,8 +52,7 @@ func _process(delta: float) -> void:
 		_driven.turn(steering * TURN_SPEED * delta)
 	_camera.heading -= GaitInput.look().x * 2.5 * delta
 	_camera.target_position = _character.global_position + Vector3.UP * 0.9
-	_calibration.step(_panel.sensor(), _driven, delta)
-	_panel.show_state(_calibration, _driven)
+	_panel.show_state(_driven)
 
 
 func _add_character() -> void:
@@ -86,8 +84,7 @@ func _take_source(source: Resource, kind: ConnectPanel.Kind) -> void:
 
 ## Finds out anew how the sensor is worn.
 func _calibrate() -> void:
-	_driven.forget_mounting()
-	_calibration.begin()
+	_driven.start_calibration()
 
 
 ## The player looks at the screen: that is where the character goes, away from the camera.

@@ -71,7 +71,9 @@
 //! ```
 
 pub use footfall_core::Behaviour;
+pub use footfall_model::{CalibratedSensor, CalibrationError, SensorCalibration};
 pub use footfall_recon::{
-    Blending, Mounting, MountingError, Prepared, ReconConfig, Reconstructed, Reconstructor,
-    SensorState, TrackerConfig, find_mounting, reconstruct_recording,
+    Blending, CalibrationGuide, Examination, GuideStep, Mounting, MountingError, Prepared,
+    ProblemSpan, ReconConfig, Reconstructed, Reconstructor, SensorProblem, SensorState,
+    TrackerConfig, WornRecording, examine, find_exchange, find_mounting, reconstruct_recording,
 };

@@ -109,6 +109,6 @@ pub use footfall_imu::events::{SensorEvent, Swing, detect_swings, events_of};
 pub use footfall_imu::live;
 pub use footfall_imu::strides::{SensorStride, measure_strides};
 pub use footfall_imu::{
-    GRAVITY_MPS2, ImuCsvError, ImuRecording, ImuSample, OrientationFilter, RecordingFault,
-    check_recording, csv,
+    FaultSpan, GRAVITY_MPS2, ImuCsvError, ImuRecording, ImuSample, OrientationFilter,
+    RecordingFault, Rest, StreamFault, StreamMonitor, check_recording, csv, find_rest,
 };

@@ -93,6 +93,23 @@ impl Site {
         }
     }
 
+    /// The same place on the other side of the body; `None` for the lower back and the head.
+    pub const fn opposite(self) -> Option<Self> {
+        Some(match self {
+            Self::RightFoot => Self::LeftFoot,
+            Self::LeftFoot => Self::RightFoot,
+            Self::RightKnee => Self::LeftKnee,
+            Self::LeftKnee => Self::RightKnee,
+            Self::RightThigh => Self::LeftThigh,
+            Self::LeftThigh => Self::RightThigh,
+            Self::RightHand => Self::LeftHand,
+            Self::LeftHand => Self::RightHand,
+            Self::RightForearm => Self::LeftForearm,
+            Self::LeftForearm => Self::RightForearm,
+            Self::Root | Self::Head => return None,
+        })
+    }
+
     /// The joint with which the sensor turns.
     pub const fn joint(self) -> Joint {
         match self {
@@ -141,6 +158,12 @@ mod tests {
             assert_eq!(Site::from_name(site.name()), Some(site));
             let outwards = site.side().map_or(0.0, Side::sign) * site.position().x;
             assert!(outwards >= 0.0, "{}", site.name());
+            let other = site.opposite();
+            assert_eq!(
+                other.map(Site::side),
+                site.side().map(|own| Some(own.other()))
+            );
+            assert_eq!(other.and_then(Site::opposite).unwrap_or(site), site);
         }
         assert_eq!(Site::from_name("left_ear"), None);
     }

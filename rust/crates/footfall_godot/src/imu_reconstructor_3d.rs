@@ -1,5 +1,6 @@
 //! `ImuReconstructor3D`: a character that sensors drive.
 
+mod calibration;
 mod methods;
 mod session;
 mod worn;
@@ -15,7 +16,8 @@ use crate::shipped::{self, Fallback};
 use crate::skeleton_binding::SkeletonBinding;
 use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose, Side};
-use footfall_recon::{Prepared, ReconConfig, Reconstructor, SensorState};
+use footfall_model::imu_model::MAX_SENSORS;
+use footfall_recon::{CalibrationGuide, Prepared, ReconConfig, Reconstructor, SensorState};
 use footfall_synth::GroundTransform;
 use glam::Vec3;
 use godot::classes::{
@@ -75,6 +77,8 @@ pub(crate) struct ImuReconstructor3D {
 
     /// The body under way; `None` until the next frame that can start it.
     session: Option<Session>,
+    /// True when a calibration is to begin with the next session.
+    calibrates: bool,
     /// The add-on's own sensor model, where `model` is empty.
     fallback: Fallback<ImuModel>,
     /// Problem that was last reported, so that it is reported once.
@@ -144,6 +148,15 @@ impl ImuReconstructor3D {
     /// Samples come, for the first time or again.
     #[signal]
     fn sensor_found();
+
+    /// Something else is wrong with a sensor now, or with how it is worn: a name, as of `get_sensor_problem()`, and a message that says what to do. Both are empty when
+    /// all is well again.
+    #[signal]
+    fn sensor_problem_changed(sensor: i64, problem: StringName, message: GString);
+
+    /// The calibration asks something else of the player: a step, as of `get_calibration_step()`, and a message.
+    #[signal]
+    fn calibration_changed(step: StringName, message: GString);
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<ImuModel>>) {
@@ -245,8 +258,14 @@ impl ImuReconstructor3D {
         for problem in self.source_problems() {
             report::tell(&self.base_mut(), &problem);
         }
-        let reconstructor = Reconstructor::new(&prepared, &binding.body, &ReconConfig::default())
-            .map_err(|error| error.to_string())?;
+        let mut reconstructor =
+            Reconstructor::new(&prepared, &binding.body, &ReconConfig::default())
+                .map_err(|error| error.to_string())?;
+        let standing = standing(&reconstructor);
+        let finds_mountings = self.mounting == ImuMounting::Auto;
+        if finds_mountings {
+            (0..MAX_SENSORS).for_each(|sensor| reconstructor.forget_mounting(sensor));
+        }
         let origin = GroundTransform {
             position: Vec3::ZERO,
             heading: 0.0,
@@ -254,12 +273,16 @@ impl ImuReconstructor3D {
         Ok(Session {
             pose: Pose::rest(&binding.body),
             traveller: Traveller::new(character, binding, origin),
-            standing: standing(&reconstructor),
+            standing,
             reconstructor,
             prepared,
             sensors: Default::default(),
-            finds_mountings: self.mounting == ImuMounting::Auto,
+            finds_mountings,
             behaviour: Behaviour::Stand,
+            guide: (finds_mountings && core::mem::take(&mut self.calibrates))
+                .then(CalibrationGuide::default),
+            asked: None,
+            problems: [None; MAX_SENSORS],
             state: SensorState::Waiting,
         })
     }
@@ -276,9 +299,7 @@ impl ImuReconstructor3D {
                 session.hear(sensor, imu_source::hear(source, &listener), delta);
             }
         }
-        if session.finds_mountings {
-            session.find_mountings();
-        }
+        session.look();
         session.reconstructor.step(delta as f32, &mut session.pose);
         let landings = session.reconstructor.landings();
         let (position, heading) = session.reconstructor.split(&mut session.pose);
@@ -307,6 +328,7 @@ impl ImuReconstructor3D {
         let behaviour = session.reconstructor.behaviour();
         let told = (session.state, session.behaviour);
         (session.state, session.behaviour) = (state, behaviour);
+        let news = session.news();
         self.session = Some(session);
         for (side, landing) in Side::BOTH.into_iter().zip(landings) {
             if let Some(landing) = landing {
@@ -327,5 +349,6 @@ impl ImuReconstructor3D {
             let name = StringName::from(behaviour.name());
             self.signals().behaviour_changed().emit(&name);
         }
+        self.tell(&news);
     }
 }

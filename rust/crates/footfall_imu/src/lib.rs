@@ -1,6 +1,6 @@
 //! Runtime: samples, orientation, features and gait events of inertial sensors.
 //!
-//! Modules in the order in which data flows: [`sample`]s, read from [`csv`] recordings or taken of tracked poses by a [`pose_meter`]; recordings and their [`checks`], [`orientation`] of the sensor, the
+//! Modules in the order in which data flows: [`sample`]s, read from [`csv`] recordings or taken of tracked poses by a [`pose_meter`]; recordings and their [`checks`], a [`stream_monitor`] that tells what is wrong with samples as they come, what a sensor measures at [`rest`], [`orientation`] of the sensor, the
 //! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`], which a [`contact_meter`] and a
 //! [`stride_meter`] tell as they are made. With the feature `live`, [`live`] hears sensors over serial ports and networks; without, nothing here opens a port.
 //!
@@ -17,7 +17,9 @@ pub mod filter;
 pub mod live;
 pub mod orientation;
 pub mod pose_meter;
+pub mod rest;
 pub mod sample;
+pub mod stream_monitor;
 pub mod stride_meter;
 pub mod strides;
 mod zero_velocity;
@@ -28,5 +30,7 @@ pub use csv::ImuCsvError;
 pub use features::{FeatureFrame, FeatureStream, SENSOR_FEATURES};
 pub use orientation::OrientationFilter;
 pub use pose_meter::PoseMeter;
+pub use rest::{Rest, find_rest};
 pub use sample::{GRAVITY_MPS2, ImuRecording, ImuSample};
+pub use stream_monitor::{FaultSpan, StreamFault, StreamMonitor};
 pub use stride_meter::StrideMeter;

@@ -1,4 +1,4 @@
-//! The container that every model file shares, and the `.footfall`, `.footstyle`, `.footdyn` and `.footimu` files.
+//! The container that every model file shares, and the `.footfall`, `.footstyle`, `.footdyn`, `.footimu` and `.footcal` files.
 //!
 //! | bytes | content |
 //! | --- | --- |
@@ -10,6 +10,8 @@
 //! | … | payload: postcard encoding of the version's own types (`v1` to `v6`) |
 //! | 4 | CRC-32 of all that precedes |
 
+mod calibration;
+mod calibration_v1;
 mod container;
 mod dynamics_v1;
 mod imu_v1;
@@ -57,11 +59,12 @@ const GAIT_KIND: &str = "gait";
 const STYLE_KIND: &str = "style";
 const DYNAMICS_KIND: &str = "dynamics";
 const IMU_KIND: &str = "imu";
+const CALIBRATION_KIND: &str = "calibration";
 
 /// The part of a file that every version can read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
-    /// Kind of payload: `gait`, `style`, `dynamics` or `imu`.
+    /// Kind of payload: `gait`, `style`, `dynamics`, `imu` or `calibration`.
     pub kind: String,
     /// The version of Footfall that wrote the file.
     pub written_by: String,

@@ -3,7 +3,7 @@
 //! Probability is in f64 and poses are in f32; the two meet in [`layout`]. The crate works on bytes: it reads and
 //! writes no file.
 //!
-//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`imu_model`], [`standing`], [`jumping`], [`crouching`], [`provenance`], [`mod@file`].
+//! Modules in suggested reading order: [`layout`], [`gait_model`], [`style`], [`dynamics`], [`imu_model`], [`standing`], [`jumping`], [`crouching`], [`sensor_calibration`], [`provenance`], [`mod@file`].
 
 mod check;
 pub mod crouching;
@@ -15,6 +15,7 @@ pub mod imu_model;
 pub mod jumping;
 pub mod layout;
 pub mod provenance;
+pub mod sensor_calibration;
 pub mod standing;
 pub mod style;
 
@@ -35,6 +36,7 @@ pub use jumping::{
 };
 pub use layout::{FEATURE_COUNT, OBSERVATION_COUNT};
 pub use provenance::Provenance;
+pub use sensor_calibration::{CalibratedSensor, CalibrationError, SensorCalibration};
 pub use standing::{
     Breath, LOOK_DIRECTIONS, Looks, MAX_SWAY_DIRECTIONS, MAX_SWAY_OCTAVES, SWAY_COUNT,
     StandingModel, SwayOctave,

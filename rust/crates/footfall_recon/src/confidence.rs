@@ -97,15 +97,10 @@ impl Confidence {
 /// The mean body of the frames in which a model's people stand, at rest on both feet; `None` where nobody stands.
 pub(crate) fn standing_body(model: &ImuModel) -> Option<BodyFrame> {
     let (mut sum, mut count) = ([0.0_f64; BODY_COUNT], 0.0);
-    let mut rows = model.body.chunks_exact(BODY_COUNT);
-    for segment in &model.segments {
-        let own = rows.by_ref().take(usize::from(segment.frames));
-        let stands = model.phases[usize::from(segment.phase)].behaviour == Behaviour::Stand;
-        for row in own.filter(|_| stands) {
-            count += 1.0;
-            for (sum, value) in sum.iter_mut().zip(row) {
-                *sum += f64::from(*value);
-            }
+    for row in standing_rows(model, &model.body, BODY_COUNT) {
+        count += 1.0;
+        for (sum, value) in sum.iter_mut().zip(row) {
+            *sum += f64::from(*value);
         }
     }
     let mut body = sum.map(|sum| (sum / count) as f32);
@@ -113,6 +108,20 @@ pub(crate) fn standing_body(model: &ImuModel) -> Option<BodyFrame> {
     body[TURN] = 0.0;
     body[CONTACT..CONTACT + 2].fill(1.0);
     (count > 0.0).then_some(body)
+}
+
+/// The rows, of so many numbers, of the frames in which a model's people stand.
+pub(crate) fn standing_rows<'a>(
+    model: &'a ImuModel,
+    rows: &'a [f32],
+    width: usize,
+) -> impl Iterator<Item = &'a [f32]> {
+    let stands = model.segments.iter().flat_map(|segment| {
+        let behaviour = model.phases[usize::from(segment.phase)].behaviour;
+        core::iter::repeat_n(behaviour == Behaviour::Stand, usize::from(segment.frames))
+    });
+    let rows = rows.chunks_exact(width).zip(stands);
+    rows.filter_map(|(row, stands)| stands.then_some(row))
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Travel of the body over feet that stay where they were put.
 //!
 //! The body travels as the recordings do, and is then moved so that a standing foot keeps its place: the way comes from the legs. What is left
-//! when both stand is the legs' to take up. A standing foot is a rocker ([`footfall_ik::rocker`]): it cannot slide or sink.
+//! when both stand is the legs' to take up, and no leg is thrown. A standing foot is a rocker ([`footfall_ik::rocker`]): it cannot slide or sink.
 
 mod foot;
+mod limit;
 
 use crate::body::{BodyFrame, pose_of};
 use foot::StandingFoot;
@@ -13,9 +14,13 @@ use footfall_ik::{FootTarget, Leg, RockerFoot};
 use footfall_imu::ToldContact;
 use footfall_model::imu_model::{CONTACT, TURN, WAY};
 use glam::{Quat, Vec3};
+use limit::Limit;
 
 /// The height of the pelvis follows the standing feet with this half-life, seconds.
 const HEIGHT_HALF_LIFE_SECS: f32 = 0.05;
+
+/// Standing feet move the body so fast at most, m/s: what they want beyond, their legs take up.
+const MOST_SHIFT_MPS: f32 = 4.0;
 
 /// A leg that steps are lengthened for reaches at most so far from below the hip, as a share of its length.
 const MOST_SPREAD: f32 = 0.6;
@@ -46,6 +51,7 @@ pub struct Ground {
     height_m: f32,
     feet: [StandingFoot; 2],
     stride: f32,
+    limit: Limit,
     model: ModelPose,
 }
 
@@ -79,6 +85,7 @@ impl Ground {
             height_m: 0.0,
             feet: [StandingFoot::FREE; 2],
             stride: 1.0,
+            limit: Limit::NEW,
             model: ModelPose::default(),
             skeleton: skeleton.clone(),
         }
@@ -89,6 +96,7 @@ impl Ground {
         (self.place, self.heading, self.height_m) = (Vec3::ZERO, 0.0, 0.0);
         self.forget_sensor_heading();
         self.feet = [StandingFoot::FREE; 2];
+        self.limit = Limit::NEW;
     }
 
     /// The body's proportions.
@@ -150,12 +158,13 @@ impl Ground {
         self.place += level * way;
         pose.root_position += self.place;
         forward_kinematics(&self.skeleton, pose, &mut self.model);
-        self.bear(body, input.contacts, pose);
+        self.bear(body, input, pose);
         self.follow_height(input.dt_secs, pose);
         forward_kinematics(&self.skeleton, pose, &mut self.model);
         for side in Side::BOTH {
             self.solve(side, body, input, pose);
         }
+        self.limit.hold(self.heading, input.dt_secs, pose);
     }
 
     /// Position of an ankle, its leg swung from the hip as much further as steps are longer: knees keep their bend, and the pelvis comes down over
@@ -193,7 +202,8 @@ impl Ground {
     }
 
     /// Moves the body along the ground so that standing feet keep their places.
-    fn bear(&mut self, body: &BodyFrame, told: [Option<ToldContact>; 2], pose: &mut Pose) {
+    fn bear(&mut self, body: &BodyFrame, input: &GroundInput, pose: &mut Pose) {
+        let told = input.contacts;
         let (mut shift, mut weights) = (Vec3::ZERO, 0.0);
         for side in Side::BOTH {
             if let Some(plant) = self.feet[side.index()].plant {
@@ -207,7 +217,7 @@ impl Ground {
             }
         }
         if weights > 0.0 {
-            let shift = shift / weights;
+            let shift = (shift / weights).clamp_length_max(MOST_SHIFT_MPS * input.dt_secs);
             self.place += shift;
             pose.root_position += shift;
         }

@@ -69,62 +69,35 @@ pub fn find_mounting(
     recording: &ImuRecording,
     config: &TrackerConfig,
 ) -> Result<Mounting, MountingError> {
-    let rate = prepared.model.frame_rate_hz;
-    let frames = moving_frames(recording, rate);
-    let moving = frames.iter().filter(|frame| turns(frame)).count();
-    let moving_secs = moving as f64 / rate;
-    if moving_secs < LEAST_SECS {
-        return Err(MountingError::TooLittleMotion { moving_secs });
-    }
-    let finder = Finder {
-        prepared,
-        sensor,
-        frames: &frames,
-    };
-    // How far off a wrong rotation is tells as much as what the right one explains.
-    let config = TrackerConfig {
-        farthest: f32::INFINITY,
-        ..*config
-    };
-    let mut tracker = Tracker::new(prepared, config);
-    let level = finder.level();
-    let mut found: Vec<(f64, Quat)> = (0..CANDIDATES)
-        .map(|n| {
-            let turn = Quat::from_axis_angle(level.1, TAU * n as f32 / CANDIDATES as f32);
-            let candidate = turn * level.0;
-            (finder.explain(candidate, &mut tracker, None), candidate)
-        })
-        .collect();
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found.truncate(REFINED);
-    for (likelihood, rotation) in &mut found {
-        for _ in 0..ROUNDS {
-            let mut attitude = Matrix3::zeros();
-            finder.explain(*rotation, &mut tracker, Some(&mut attitude));
-            *rotation = closest_rotation(&attitude).unwrap_or(*rotation);
-        }
-        *likelihood = finder.explain(*rotation, &mut tracker, None);
-    }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let (best, site_from_sensor) = found[0];
-    let rival = found
-        .iter()
-        .find(|(_, rotation)| rotation.angle_between(site_from_sensor) > SAME)
-        .map_or(f64::NEG_INFINITY, |(likelihood, _)| *likelihood);
-    Ok(Mounting {
-        site_from_sensor,
-        certainty: (1.0 / (1.0 + (rival - best).exp())) as f32,
-    })
+    let frames = moving_frames(recording, prepared.model.frame_rate_hz)?;
+    Ok(Finder::new(prepared, sensor, &frames, config)
+        .best()
+        .mounting)
+}
+
+/// The best mounting, and how well the model explains the frames with it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    pub(crate) mounting: Mounting,
+    pub(crate) log_likelihood: f64,
 }
 
 /// Frames in the sensor's axes, from shortly before it begins to move.
-fn moving_frames(recording: &ImuRecording, rate_hz: f64) -> Vec<FeatureFrame> {
+pub(crate) fn moving_frames(
+    recording: &ImuRecording,
+    rate_hz: f64,
+) -> Result<Vec<FeatureFrame>, MountingError> {
     let mut frames = FeatureStream::frames_of(recording, rate_hz);
     let begin = frames.iter().position(turns).unwrap_or(0);
     let lead = (0.5 * rate_hz) as usize;
     frames.drain(..begin.saturating_sub(lead));
     frames.truncate(MOST_FRAMES);
-    frames
+    let moving = frames.iter().filter(|frame| turns(frame)).count();
+    let moving_secs = moving as f64 / rate_hz;
+    if moving_secs < LEAST_SECS {
+        return Err(MountingError::TooLittleMotion { moving_secs });
+    }
+    Ok(frames)
 }
 
 fn turns(frame: &FeatureFrame) -> bool {
@@ -133,13 +106,70 @@ fn turns(frame: &FeatureFrame) -> bool {
         .is_some_and(|values| Vec3::from_slice(&values[..3]).length() > REST_RADPS)
 }
 
-struct Finder<'a> {
+/// Tries mountings on frames of a sensor.
+pub(crate) struct Finder<'a> {
     prepared: &'a Prepared,
     sensor: usize,
     frames: &'a [FeatureFrame],
+    tracker: Tracker,
 }
 
-impl Finder<'_> {
+impl<'a> Finder<'a> {
+    /// For the frames of a sensor, by its number in the model.
+    pub(crate) fn new(
+        prepared: &'a Arc<Prepared>,
+        sensor: usize,
+        frames: &'a [FeatureFrame],
+        config: &TrackerConfig,
+    ) -> Self {
+        // How far off a wrong rotation is tells as much as what the right one explains.
+        let config = TrackerConfig {
+            farthest: f32::INFINITY,
+            ..*config
+        };
+        Self {
+            prepared,
+            sensor,
+            frames,
+            tracker: Tracker::new(prepared, config),
+        }
+    }
+
+    /// The mounting under which the model explains the frames best.
+    pub(crate) fn best(&mut self) -> Found {
+        let level = self.level();
+        let mut found: Vec<(f64, Quat)> = (0..CANDIDATES)
+            .map(|n| {
+                let turn = Quat::from_axis_angle(level.1, TAU * n as f32 / CANDIDATES as f32);
+                let candidate = turn * level.0;
+                (self.explain(candidate, None), candidate)
+            })
+            .collect();
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.truncate(REFINED);
+        for (likelihood, rotation) in &mut found {
+            for _ in 0..ROUNDS {
+                let mut attitude = Matrix3::zeros();
+                self.explain(*rotation, Some(&mut attitude));
+                *rotation = closest_rotation(&attitude).unwrap_or(*rotation);
+            }
+            *likelihood = self.explain(*rotation, None);
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let (best, site_from_sensor) = found[0];
+        let rival = found
+            .iter()
+            .find(|(_, rotation)| rotation.angle_between(site_from_sensor) > SAME)
+            .map_or(f64::NEG_INFINITY, |(likelihood, _)| *likelihood);
+        Found {
+            mounting: Mounting {
+                site_from_sensor,
+                certainty: (1.0 / (1.0 + (rival - best).exp())) as f32,
+            },
+            log_likelihood: best,
+        }
+    }
+
     /// A rotation that brings the mean of up to the model's, and that direction.
     fn level(&self) -> (Quat, Vec3) {
         let measured: Vec3 = self
@@ -161,22 +191,22 @@ impl Finder<'_> {
     }
 
     /// Returns how well the model explains the frames when they are turned so. Adds up what was expected by what was measured, if asked to.
-    fn explain(
-        &self,
+    pub(crate) fn explain(
+        &mut self,
         site_from_sensor: Quat,
-        tracker: &mut Tracker,
         mut attitude: Option<&mut Matrix3<f64>>,
     ) -> f64 {
-        tracker.reset();
+        self.tracker.reset();
         let at = self.sensor * SENSOR_COUNT;
         for frame in self.frames {
             let measured = self.measured(frame, site_from_sensor);
-            tracker.step(measured.as_ref());
+            self.tracker.step(measured.as_ref());
             let (Some(attitude), Some(values)) = (attitude.as_deref_mut(), frame.values) else {
                 continue;
             };
             let mut expected = [0.0; MAX_WIDTH];
-            tracker.expected_sensor(&mut expected[..self.prepared.model.sensor_width()]);
+            self.tracker
+                .expected_sensor(&mut expected[..self.prepared.model.sensor_width()]);
             let deviations = &self.prepared.model.deviations[at..];
             // Specific force is left out: impacts make it the worst of the three.
             for part in [0, 6] {
@@ -189,7 +219,7 @@ impl Finder<'_> {
                 *attitude += Matrix3::from_column_slice(&columns);
             }
         }
-        tracker.log_likelihood()
+        self.tracker.log_likelihood()
     }
 
     /// A frame as the tracker takes it, with this sensor alone.

@@ -1,14 +1,16 @@
 //! A model laid out for the loop that reads it.
 
 use crate::body::BodyFrame;
-use crate::confidence::standing_body;
+use crate::confidence::{standing_body, standing_rows};
 use crate::kernels::BLOCK;
 use crate::published::PhaseDeviations;
+use crate::watch::{Watch, WornRecording};
 use footfall_core::Side;
-use footfall_imu::ToldContact;
-use footfall_model::ImuModel;
+use footfall_imu::{ImuRecording, ToldContact};
 use footfall_model::ModelError;
-use footfall_model::imu_model::BODY_COUNT;
+use footfall_model::imu_model::{BODY_COUNT, MAX_SENSORS, SENSOR_COUNT};
+use footfall_model::{CalibratedSensor, ImuModel};
+use glam::Vec3;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -33,6 +35,8 @@ pub struct Prepared {
     pub(crate) phase_deviations: Option<PhaseDeviations>,
     /// The body of the people who stand, to show where the model explains little.
     pub(crate) standing: Option<BodyFrame>,
+    /// Up in the axes of each site on the people who stand.
+    pub(crate) standing_up: [Vec3; MAX_SENSORS],
     /// Feet that wear sensors.
     pub(crate) worn_feet: Vec<WornFoot>,
     /// First frame of each segment, and the end of the last.
@@ -91,6 +95,7 @@ impl Prepared {
             phase_deviations: None,
             worn_feet,
             standing: standing_body(&model),
+            standing_up: core::array::from_fn(|n| standing_up(&model, n)),
             model,
             starts,
             segment_of,
@@ -116,6 +121,22 @@ impl Prepared {
             contacts[side.index()] = told(*sensor);
         }
         contacts
+    }
+
+    /// Watches the recording of a sensor, by its number in the model, in the sensor's axes, and turns it into the site's as it was calibrated. `promised_hz` is the number of
+    /// samples a second that the sensor was said to give.
+    pub fn wear(
+        &self,
+        sensor: usize,
+        recording: &ImuRecording,
+        calibrated: &CalibratedSensor,
+        promised_hz: Option<f64>,
+    ) -> WornRecording {
+        let standing_up = self.standing_up.get(sensor).copied().unwrap_or(Vec3::Y);
+        let mut watch = Watch::new(standing_up, promised_hz);
+        watch.set_gravity(calibrated.gravity_mps2);
+        let alone = self.model.sites.len() < 2;
+        WornRecording::watched(watch, recording, calibrated, alone)
     }
 
     /// The model.
@@ -149,4 +170,15 @@ impl Prepared {
         let segment = self.segment_of[frame] as usize;
         self.starts[segment] == frame && !self.model.segments[segment].follows
     }
+}
+
+/// Mean direction of up in the axes of a site of people who stand; the site's own where nobody stands or the model has no such site.
+fn standing_up(model: &ImuModel, sensor: usize) -> Vec3 {
+    if sensor >= model.sites.len() {
+        return Vec3::Y;
+    }
+    let at = sensor * SENSOR_COUNT + 6;
+    let rows = standing_rows(model, &model.sensor, model.sensor_width());
+    let sum: Vec3 = rows.map(|row| Vec3::from_slice(&row[at..at + 3])).sum();
+    sum.normalize_or(Vec3::Y)
 }

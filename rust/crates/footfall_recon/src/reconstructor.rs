@@ -5,7 +5,8 @@ use crate::confidence::Confidence;
 use crate::ground::{Ground, GroundInput};
 use crate::measure::{SensorFrames, measure, sensor_heading};
 use crate::prepared::Prepared;
-use crate::sensor::Sensor;
+use crate::problem::SensorProblem;
+use crate::sensor::{Sensor, Sight};
 use crate::shown_behaviour::ShownBehaviour;
 use crate::tracker::{Tracker, TrackerConfig};
 use crate::travel::Travel;
@@ -18,6 +19,13 @@ use std::sync::Arc;
 
 /// Sensors whose times are further apart are on clocks of their own, seconds.
 const ONE_CLOCK_SECS: f64 = 2.0;
+
+/// Silence that is told, seconds.
+const SILENT_SECS: f32 = 1.0;
+
+/// Confidence below which the body stands, and for how long before it is told, seconds.
+const UNEXPLAINED: f32 = 0.1;
+const UNEXPLAINED_SECS: f32 = 1.0;
 
 /// Time for which a contact that a sensor has reported holds, seconds.
 const TOLD_FOR_SECS: f32 = 0.1;
@@ -35,6 +43,8 @@ pub struct ReconConfig {
     pub stands_unexplained: bool,
     /// A new behaviour shows when it is more probable than this.
     pub behaviour_probability: f32,
+    /// Length of the wearer's steps beside those of the people in the model, before any is measured.
+    pub stride: f32,
 }
 
 impl Default for ReconConfig {
@@ -47,6 +57,7 @@ impl Default for ReconConfig {
             lost_after_secs: 0.5,
             stands_unexplained: true,
             behaviour_probability: 0.6,
+            stride: 1.0,
         }
     }
 }
@@ -72,6 +83,10 @@ pub struct Reconstructor {
     blend: Blend,
     ground: Ground,
     sensors: [Sensor; MAX_SENSORS],
+    /// Finding of a look at a stretch of each sensor's samples.
+    findings: [Option<SensorProblem>; MAX_SENSORS],
+    /// Time in which the model explained little, seconds.
+    unexplained_secs: f32,
     travel: Travel,
     confidence: Confidence,
     behaviour: ShownBehaviour,
@@ -99,11 +114,15 @@ impl Reconstructor {
             tracker: Tracker::new(prepared, config.tracker),
             blend: Blend::new(config.blending, rate as f32),
             ground: Ground::new(skeleton, &prepared.model.skeleton),
-            sensors: core::array::from_fn(|n| Sensor::new(rate, on_foot(n))),
-            travel: Travel::new(&prepared.model.sites),
+            sensors: core::array::from_fn(|n| {
+                Sensor::new(rate, on_foot(n), prepared.standing_up[n])
+            }),
+            findings: [None; MAX_SENSORS],
+            travel: Travel::new(&prepared.model.sites, config.stride),
             confidence: Confidence::new(config.stands_unexplained),
             behaviour: ShownBehaviour::new(),
             silent_secs: 0.0,
+            unexplained_secs: 0.0,
             ahead: 0.0,
             heading: None,
             config: *config,
@@ -111,13 +130,80 @@ impl Reconstructor {
         })
     }
 
-    /// Sets the mounting of a sensor: `site_from_sensor`. The identity for `aligned` mounting.
+    /// Sets the mounting of a sensor: `site_from_sensor`. The identity for `aligned` mounting, which is what a new reconstructor takes it for.
     pub fn set_mounting(&mut self, sensor: usize, site_from_sensor: Quat) {
-        if let Some(sensor) = self.sensors.get_mut(sensor) {
-            sensor.set_mounting(site_from_sensor);
-            self.ground.forget_sensor_heading();
-            self.travel.forget_samples();
+        self.wear(sensor, Some(site_from_sensor));
+    }
+
+    /// Forgets the mounting of a sensor: until it is set, its wearer is taken to stand.
+    pub fn forget_mounting(&mut self, sensor: usize) {
+        self.wear(sensor, None);
+    }
+
+    fn wear(&mut self, sensor: usize, mounting: Option<Quat>) {
+        if let Some(own) = self.sensors.get_mut(sensor) {
+            own.set_mounting(mounting);
+            self.findings[sensor] = None;
+            self.forget_samples();
         }
+    }
+
+    /// Begins anew with everything that follows from a row of samples.
+    fn forget_samples(&mut self) {
+        self.ground.forget_sensor_heading();
+        self.travel.forget_samples();
+    }
+
+    /// Sets what a sensor measures at rest: its angular rate, in its own axes, and the strength of gravity.
+    pub fn set_rest(&mut self, sensor: usize, rate_bias: Vec3, gravity_mps2: f32) {
+        if let Some(sensor) = self.sensors.get_mut(sensor) {
+            sensor.set_rest(rate_bias, gravity_mps2);
+        }
+    }
+
+    /// Length of the wearer's steps beside those of the people in the model: a sensor on a foot measures it as they walk, others leave it as it was set.
+    pub const fn stride(&self) -> f32 {
+        self.travel.stride()
+    }
+
+    /// Sets the length of the wearer's steps beside those of the people in the model, 0.7 to 1.4.
+    pub const fn set_stride(&mut self, factor: f32) {
+        self.travel.set_stride(factor);
+    }
+
+    pub(crate) const fn prepared(&self) -> &Arc<Prepared> {
+        &self.prepared
+    }
+
+    pub(crate) fn sensor(&self, sensor: usize) -> Option<&Sensor> {
+        self.sensors.get(sensor)
+    }
+
+    /// Says how many samples a second a sensor was promised to give, so that fewer or more are [told](Self::problem).
+    pub fn promise_rate(&mut self, sensor: usize, rate_hz: f64) {
+        if let Some(sensor) = self.sensors.get_mut(sensor).filter(|_| rate_hz > 0.0) {
+            sensor.promise_rate(rate_hz);
+        }
+    }
+
+    /// Sets what [`examine`](fn@crate::examine) found about how a sensor is worn, to be [told](Self::problem) until its mounting is set anew.
+    pub fn set_finding(&mut self, sensor: usize, finding: Option<SensorProblem>) {
+        if let Some(own) = self.findings.get_mut(sensor) {
+            *own = finding;
+        }
+    }
+
+    /// Problem of a sensor, with what to do about it; `None` while all is well and for a sensor that the model has not.
+    pub fn problem(&self, sensor: usize) -> Option<SensorProblem> {
+        let site = *self.prepared.model.sites.get(sensor)?;
+        let own = &self.sensors[sensor];
+        if self.silent_secs > SILENT_SECS.max(self.config.lost_after_secs) {
+            return Some(SensorProblem::Silent);
+        }
+        let unexplained = self.unexplained_secs > UNEXPLAINED_SECS;
+        own.problem()
+            .or(self.findings[sensor])
+            .or(unexplained.then_some(SensorProblem::Unexplained { site }))
     }
 
     /// Forgets everything measured; the body stands at the origin.
@@ -128,10 +214,11 @@ impl Reconstructor {
         self.tracker.reset();
         self.blend.reset();
         self.ground.reset();
-        self.travel = Travel::new(&self.prepared.model.sites);
+        self.travel = Travel::new(&self.prepared.model.sites, self.config.stride);
         self.confidence = Confidence::new(self.config.stands_unexplained);
         self.behaviour = ShownBehaviour::new();
-        (self.silent_secs, self.ahead) = (0.0, 0.0);
+        (self.silent_secs, self.ahead, self.unexplained_secs) = (0.0, 0.0, 0.0);
+        self.findings = [None; MAX_SENSORS];
         self.heading = None;
     }
 
@@ -206,11 +293,18 @@ impl Reconstructor {
     /// Takes a sample of a sensor (0, or 1 for the second site of the model); others are ignored.
     pub fn push(&mut self, sensor: usize, sample: ImuSample) {
         let used = self.prepared.model.sites.len();
-        let Some(own) = self.sensors[..used].get_mut(sensor) else {
+        if sensor >= used {
             return;
-        };
-        self.travel.push(sensor, sample);
-        own.push(sample);
+        }
+        let sees = |n: usize| n != sensor && self.sensors[n].sight() == Sight::Sees;
+        let other_sees = (0..used).any(sees);
+        let own = &mut self.sensors[sensor];
+        if own.push(sample, other_sees) {
+            self.forget_samples();
+        }
+        if self.sensors[sensor].sight() == Sight::Sees {
+            self.travel.push(sensor, sample);
+        }
         self.catch_up();
     }
 
@@ -251,6 +345,11 @@ impl Reconstructor {
         if measured.is_some() {
             let log_density = self.tracker.log_density() as f32;
             self.confidence.step(log_density, frame_secs);
+            self.unexplained_secs = if self.confidence.value() < UNEXPLAINED {
+                self.unexplained_secs + frame_secs
+            } else {
+                0.0
+            };
         }
         let mut course = self.tracker.body(measured.as_ref());
         let standing = self.prepared.standing.as_ref();

@@ -31,6 +31,8 @@ pub struct Reconstructed {
     pub behaviours: Vec<Behaviour>,
     /// Confidence in the model at each frame and those shortly before it, 0 to 1.
     pub confidences: Vec<f32>,
+    /// Length of the wearer's steps beside those of the people in the model, as it was known at the end.
+    pub stride: f32,
 }
 
 /// Reconstructs the body of recordings, one for each site of the model, already in the sites' axes.
@@ -53,7 +55,7 @@ pub fn reconstruct_recording(
         tell_swings(prepared, recordings, &mut frames);
     }
     let rate = prepared.model.frame_rate_hz;
-    let travel = Travel::new(&prepared.model.sites);
+    let travel = Travel::new(&prepared.model.sites, config.stride);
     let strides = travel.sensor().and_then(|n| recordings.get(n));
     let mut shown = Shown {
         samples: strides.map_or(&[][..], |recording| &recording.samples),
@@ -71,6 +73,7 @@ pub fn reconstruct_recording(
                 .unwrap_or_else(|| recordings.first().map_or(0.0, ImuRecording::start_secs)),
             behaviours: Vec::with_capacity(frames.len()),
             confidences: Vec::with_capacity(frames.len()),
+            stride: config.stride,
         },
         // What later frames tell is smooth already.
         blend: Blend::new(
@@ -88,7 +91,7 @@ pub fn reconstruct_recording(
             tracker.step(measured.as_ref());
             shown.add(&tracker, measured.as_ref(), frame, tracker.log_density());
         }
-        return Ok(shown.out);
+        return Ok(shown.done());
     }
     let mut back = Tracker::new(prepared, config.tracker);
     let mut filtered: Vec<Vec<f32>> = Vec::new();
@@ -120,7 +123,7 @@ pub fn reconstruct_recording(
     }
     let least = (f64::from(LEAST_SHOWN_SECS) * rate).ceil() as usize;
     drop_short_runs(&mut shown.out.behaviours, least);
-    Ok(shown.out)
+    Ok(shown.done())
 }
 
 /// Multiplies probabilities with what came later, and brings their sum to one.
@@ -217,6 +220,11 @@ struct Shown<'a> {
 }
 
 impl Shown<'_> {
+    fn done(mut self) -> Reconstructed {
+        self.out.stride = self.travel.stride();
+        self.out
+    }
+
     fn add(
         &mut self,
         tracker: &Tracker,

@@ -1,8 +1,10 @@
 //! One sensor: its samples on their way to frames.
 
 use crate::measure::SensorFrame;
+use crate::problem::SensorProblem;
+use crate::watch::{Watch, standing_sample};
 use footfall_imu::{ContactMeter, FeatureStream, ImuRecording, ImuSample, ToldContact};
-use glam::Quat;
+use glam::{Quat, Vec3};
 
 /// Frames of one sensor that wait for the other's; more mean that the other has stopped.
 const MOST_WAITING: usize = 6;
@@ -55,11 +57,24 @@ impl Frames {
     }
 }
 
+/// Use of a sensor's samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sight {
+    /// It is what the body does.
+    Sees,
+    /// Nothing can be made of it: the body stands.
+    Blind,
+}
+
 /// A sensor as it is worn, and its frames that nobody has taken yet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sensor {
-    /// `site_from_sensor` rotation.
-    mounting: Quat,
+    /// `site_from_sensor` rotation; `None` while nobody knows.
+    mounting: Option<Quat>,
+    /// Angular rate at rest, in the sensor's axes, as it was calibrated.
+    rate_bias: Vec3,
+    watch: Watch,
+    sight: Sight,
     frame_rate_hz: f64,
     frames: Frames,
     waiting: [Option<SensorFrame>; MOST_WAITING],
@@ -67,9 +82,13 @@ pub(crate) struct Sensor {
 }
 
 impl Sensor {
-    pub(crate) fn new(frame_rate_hz: f64, on_foot: bool) -> Self {
+    /// An aligned sensor whose up is this on somebody who stands.
+    pub(crate) fn new(frame_rate_hz: f64, on_foot: bool, standing_up: Vec3) -> Self {
         Self {
-            mounting: Quat::IDENTITY,
+            mounting: Some(Quat::IDENTITY),
+            rate_bias: Vec3::ZERO,
+            watch: Watch::new(standing_up, None),
+            sight: Sight::Sees,
             frame_rate_hz,
             frames: Frames::new(frame_rate_hz, on_foot),
             waiting: [None; MOST_WAITING],
@@ -77,30 +96,97 @@ impl Sensor {
         }
     }
 
-    /// Is worn otherwise from now on: what it measured in other axes means nothing any more.
-    pub(crate) fn set_mounting(&mut self, site_from_sensor: Quat) {
+    /// Is worn otherwise from now on, or nobody knows how: what it measured in other axes means nothing any more.
+    pub(crate) fn set_mounting(&mut self, site_from_sensor: Option<Quat>) {
         self.mounting = site_from_sensor;
+        self.watch.forget_mounting();
+        self.forget_samples();
+    }
+
+    /// Measures this at rest: the angular rate in the sensor's axes, and the strength of gravity.
+    pub(crate) const fn set_rest(&mut self, rate_bias: Vec3, gravity_mps2: f32) {
+        self.rate_bias = rate_bias;
+        self.watch.set_gravity(gravity_mps2);
+    }
+
+    /// The mounting, where it is known.
+    pub(crate) const fn mounting(&self) -> Option<Quat> {
+        self.mounting
+    }
+
+    /// Angular rate at rest, in the sensor's axes: what was calibrated and what was learned since.
+    pub(crate) fn rate_bias(&self) -> Vec3 {
+        let learned = self.frames.stream.filter().bias();
+        self.mounting.map_or(self.rate_bias, |site_from_sensor| {
+            self.rate_bias + site_from_sensor.inverse() * learned
+        })
+    }
+
+    /// Strength of gravity by this sensor's scale, where it was still, m/s².
+    pub(crate) fn gravity_mps2(&self) -> Option<f32> {
+        self.watch.gravity_mps2()
+    }
+
+    /// Was promised to give so many samples a second.
+    pub(crate) const fn promise_rate(&mut self, rate_hz: f64) {
+        self.watch.promise_rate(rate_hz);
+    }
+
+    fn forget_samples(&mut self) {
         self.frames = Frames::new(self.frame_rate_hz, self.frames.contact.is_some());
     }
 
     /// Forgets everything but how it is worn.
     pub(crate) fn reset(&mut self) {
-        *self = Self {
-            mounting: self.mounting,
-            ..Self::new(self.frame_rate_hz, self.frames.contact.is_some())
-        };
+        self.forget_samples();
+        self.watch.reset();
+        self.sight = Sight::Sees;
+        (self.waiting, self.count) = ([None; MOST_WAITING], 0);
     }
 
-    /// Takes a sample in the sensor's axes; the oldest frame goes when too many wait.
-    pub(crate) fn push(&mut self, sample: ImuSample) {
+    /// Problem with the samples or with how the sensor lies.
+    pub(crate) fn problem(&self) -> Option<SensorProblem> {
+        self.watch.problem()
+    }
+
+    /// Use of its samples now.
+    pub(crate) const fn sight(&self) -> Sight {
+        self.sight
+    }
+
+    /// Takes a sample in the sensor's axes; the oldest frame goes when too many wait. While nothing can be made of the samples, the person is taken to stand, or,
+    /// where another sensor sees (`other_sees`), frames are empty. Returns true when that changes.
+    pub(crate) fn push(&mut self, mut sample: ImuSample, other_sees: bool) -> bool {
+        let raw = sample;
+        sample.rate -= self.rate_bias;
+        let worn = self.mounting.map(|mounting| sample.turned(mounting));
+        self.watch.push(&raw, worn.as_ref());
+        let sight = if worn.is_none() || self.watch.is_blind() {
+            Sight::Blind
+        } else {
+            Sight::Sees
+        };
+        let changed = sight != self.sight;
+        if changed {
+            self.sight = sight;
+            self.forget_samples();
+        }
+        let understood = match (sight, worn) {
+            (Sight::Sees, Some(worn)) => worn,
+            _ if sample.is_finite() => standing_sample(sample.time_secs),
+            _ => sample,
+        };
+        let empty = sight == Sight::Blind && other_sees;
         let Self {
-            mounting,
             frames,
             waiting,
             count,
             ..
         } = self;
-        frames.push(sample.turned(*mounting), |frame| {
+        frames.push(understood, |mut frame| {
+            if empty {
+                (frame.frame.values, frame.contact) = (None, None);
+            }
             if *count == MOST_WAITING {
                 waiting.rotate_left(1);
                 *count -= 1;
@@ -108,6 +194,7 @@ impl Sensor {
             waiting[*count] = Some(frame);
             *count += 1;
         });
+        changed
     }
 
     /// When the oldest frame that waits ends.

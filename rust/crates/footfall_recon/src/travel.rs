@@ -38,23 +38,36 @@ pub(crate) struct Travel {
 }
 
 impl Travel {
-    /// For sensors at these sites.
-    pub(crate) fn new(sites: &[Site]) -> Self {
+    /// For sensors at these sites, on a wearer whose steps are thought to be so long beside those of the recordings.
+    pub(crate) fn new(sites: &[Site], stride: f32) -> Self {
         let mut feet = sites.iter().enumerate();
-        Self {
+        let mut travel = Self {
             foot: feet.find_map(|(n, site)| Some((n, site.side().filter(|_| site.is_foot())?))),
             meter: StrideMeter::default(),
             rested: None,
             anchor: None,
             factor: 1.0,
             shown: 1.0,
-        }
+        };
+        travel.set_stride(stride);
+        travel
     }
 
     /// Forgets the samples, and keeps how long the wearer's steps are.
     pub(crate) fn forget_samples(&mut self) {
         self.meter = StrideMeter::default();
         (self.rested, self.anchor) = (None, None);
+    }
+
+    /// Length of the wearer's steps beside those of the recordings, as far as it is known.
+    pub(crate) const fn stride(&self) -> f32 {
+        self.factor
+    }
+
+    /// Sets it: from an earlier session, or where no foot measures strides.
+    pub(crate) const fn set_stride(&mut self, factor: f32) {
+        self.factor = factor.clamp(FACTORS[0], FACTORS[1]);
+        self.shown = self.factor;
     }
 
     /// The foot that wears a sensor.

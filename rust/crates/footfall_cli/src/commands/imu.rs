@@ -7,6 +7,7 @@ mod simulate;
 mod synchronous;
 mod train;
 
+pub(in crate::commands) use reconstruct::read_calibration;
 pub(in crate::commands) use train::KeptArgs;
 
 use anyhow::{Context as _, Result};

@@ -1,5 +1,6 @@
 //! `footfall inspect`: what is in a file.
 
+mod calibration;
 mod corpus_index;
 mod dynamics;
 mod imu;
@@ -24,7 +25,7 @@ use std::path::{Path, PathBuf};
 ///
 /// A recording (.bvh) or a game's clip (.glb, .gltf, with `#Name` where there are several): skeleton, frames, rate, speed, contacts and steps. A model (.footfall): where it comes from, states,
 /// durations, speeds. A style (.footstyle): which base it fits, where it comes from. A
-/// switching model (.footdyn): its two systems. A sensor model (.footimu): sites, frames, behaviours. An index (.csv): clips by
+/// switching model (.footdyn): its two systems. A sensor model (.footimu): sites, frames, behaviours. A calibration (.footcal): how sensors are worn. An index (.csv): clips by
 /// category, style and subject. A recording of a sensor (.csv): samples, rate, what is wrong with it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -33,7 +34,7 @@ use std::path::{Path, PathBuf};
     footfall inspect walk.footfall --json\n  \
     footfall inspect index.csv")]
 pub(crate) struct InspectArgs {
-    /// A .bvh, .glb, .gltf, .footfall, .footstyle, .footdyn or .footimu, an index.csv or a sensor's .csv
+    /// A .bvh, .glb, .gltf, .footfall, .footstyle, .footdyn, .footimu or .footcal, an index.csv or a sensor's .csv
     #[arg(value_name = "FILE")]
     input: PathBuf,
     #[command(flatten)]
@@ -53,6 +54,7 @@ enum Finding {
     DynamicsModel(dynamics::DynamicsFacts),
     ImuModel(imu::ImuModelFacts),
     ImuRecording(imu::ImuRecordingFacts),
+    SensorCalibration(calibration::CalibrationFacts),
     CorpusIndex(corpus_index::IndexFacts),
 }
 
@@ -63,6 +65,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
         Kind::Dynamics => Finding::DynamicsModel(dynamics::inspect(&args.input)?),
         Kind::Imu => Finding::ImuModel(imu::inspect_model(&args.input)?),
         Kind::ImuRecording => Finding::ImuRecording(imu::inspect_recording(&args.input)?),
+        Kind::Calibration => Finding::SensorCalibration(calibration::inspect(&args.input)?),
         Kind::Index => Finding::CorpusIndex(corpus_index::inspect(&args.input)?),
         Kind::Motion => Finding::Motion(motion::inspect(&args.input, &args.map.read(None)?)?),
     };
@@ -76,6 +79,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<()> {
         Finding::DynamicsModel(facts) => facts.lines(),
         Finding::ImuModel(facts) => facts.lines(),
         Finding::ImuRecording(facts) => facts.lines(),
+        Finding::SensorCalibration(facts) => facts.lines(),
         Finding::CorpusIndex(facts) => facts.lines(),
     };
     output::print_text(&lines.join("\n"))
@@ -88,6 +92,7 @@ enum Kind {
     Dynamics,
     Imu,
     ImuRecording,
+    Calibration,
     Index,
 }
 
@@ -112,6 +117,8 @@ fn kind_of(path: &Path) -> Result<Kind> {
         Kind::Dynamics
     } else if has("footimu") {
         Kind::Imu
+    } else if has("footcal") {
+        Kind::Calibration
     } else if has("csv") && start[..read].starts_with(b"time_s,") {
         Kind::ImuRecording
     } else if start[..read] == *b"FOOTFALL" || has("footfall") {

@@ -1,5 +1,6 @@
 //! `footfall imu` and `footfall evaluate imu` from the outside.
 
+mod calibrated;
 mod on_the_spot;
 mod unusable;
 

@@ -117,11 +117,16 @@ impl ImuReconstructor3D {
         self.travelled.tell(Moves::of(&skeleton), now)
     }
 
-    /// Problems that keep the character from being driven, each with what to do next; empty without any.
+    /// Problems that keep the character from being driven, each with what to do next, and those of the sensors that are heard; empty without any.
     ///
-    /// The editor shows the same as configuration warnings.
+    /// The editor shows the first as configuration warnings.
     #[func]
     fn get_problems(&self) -> PackedStringArray {
-        self.problems()
+        let mut problems = self.problems();
+        let sensors = self.session.iter().flat_map(|session| session.problems);
+        for problem in sensors.flatten() {
+            problems.push(&GString::from(&problem.to_string()));
+        }
+        problems
     }
 }

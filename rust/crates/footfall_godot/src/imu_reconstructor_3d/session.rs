@@ -6,7 +6,10 @@ use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose};
 use footfall_imu::{GRAVITY_MPS2, ImuSample};
 use footfall_model::imu_model::MAX_SENSORS;
-use footfall_recon::{Prepared, Reconstructor, SensorState};
+use footfall_model::{CalibrationError, SensorCalibration};
+use footfall_recon::{
+    CalibrationGuide, GuideStep, Prepared, Reconstructor, SensorProblem, SensorState,
+};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -26,6 +29,11 @@ pub(super) struct Session {
     pub(super) standing: Pose,
     pub(super) pose: Pose,
     pub(super) behaviour: Behaviour,
+    /// The calibration under way, and what was asked of the player last.
+    pub(super) guide: Option<CalibrationGuide>,
+    pub(super) asked: Option<GuideStep>,
+    /// Problems of the sensors that were told last.
+    pub(super) problems: [Option<SensorProblem>; MAX_SENSORS],
     pub(super) state: SensorState,
 }
 
@@ -52,15 +60,8 @@ pub(super) fn standing(reconstructor: &Reconstructor) -> Pose {
     pose
 }
 
-/// A sample as the reconstructor takes it: as long as nobody knows how the sensor is worn, the person is taken to stand.
-fn understood(sample: ImuSample, unknown_mounting: bool) -> ImuSample {
-    if !unknown_mounting || !sample.is_finite() {
-        return sample;
-    }
-    standing_sample(sample.time_secs)
-}
-
 impl Session {
+    /// Takes a sample that a script gives.
     pub(super) fn push(&mut self, sensor: usize, sample: ImuSample) {
         let Some(worn) = self.sensors.get_mut(sensor) else {
             return;
@@ -68,34 +69,80 @@ impl Session {
         if sample.is_finite() {
             worn.keep(sample);
         }
-        let understood = understood(sample, self.finds_mountings && worn.mounting.is_none());
-        self.reconstructor.push(sensor, understood);
+        self.take(sensor, sample);
     }
 
     /// Takes what a source gives in a frame.
     pub(super) fn hear(&mut self, sensor: usize, heard: Heard, delta: f64) {
-        let reconstructor = &mut self.reconstructor;
-        let worn = &mut self.sensors[sensor];
-        let unknown = self.finds_mountings && worn.mounting.is_none();
-        worn.hear(heard, delta, |sample| {
-            reconstructor.push(sensor, understood(sample, unknown));
-        });
+        let mut worn = core::mem::take(&mut self.sensors[sensor]);
+        worn.hear(heard, delta, |sample| self.take(sensor, sample));
+        self.sensors[sensor] = worn;
+    }
+
+    fn take(&mut self, sensor: usize, sample: ImuSample) {
+        if let Some(guide) = self.guide.as_mut().filter(|_| sensor == 0) {
+            guide.push(&sample);
+        }
+        self.reconstructor.push(sensor, sample);
     }
 
     pub(super) fn forget_mountings(&mut self) {
         for (sensor, worn) in self.sensors.iter_mut().enumerate() {
             worn.forget_mounting();
-            self.reconstructor.set_mounting(sensor, Quat::IDENTITY);
+            if self.finds_mountings {
+                self.reconstructor.forget_mounting(sensor);
+            }
         }
         self.reconstructor.reset();
     }
 
-    pub(super) fn find_mountings(&mut self) {
+    /// Looks now and then for how sensors are worn, and what is wrong with that.
+    pub(super) fn look(&mut self) {
         let used = self.prepared.model().sites.len();
+        let asked = self.guide.is_some_and(|guide| guide.wants_mounting());
         for (sensor, worn) in self.sensors.iter_mut().enumerate().take(used) {
-            if let Some(mounting) = worn.find_mounting(&self.prepared, sensor) {
-                self.reconstructor.set_mounting(sensor, mounting);
+            let aligned = (!self.finds_mountings).then_some(Quat::IDENTITY);
+            let Some(seen) = worn.look(&self.prepared, sensor, aligned, asked) else {
+                continue;
+            };
+            if let Some(mounting) = seen.mounting {
+                self.reconstructor
+                    .set_mounting(sensor, mounting.site_from_sensor);
+                if let Some(rest) = seen.rest {
+                    let gravity = rest.force.length();
+                    self.reconstructor.set_rest(sensor, rest.rate_bias, gravity);
+                }
+            }
+            self.reconstructor.set_finding(sensor, seen.finding);
+            if let Some(guide) = &mut self.guide {
+                guide.found(worn.mounting.map_or(0.0, |found| found.certainty));
             }
         }
+    }
+
+    /// Calibration of wearer and sensors so far; `None` while it is not known how one is worn.
+    pub(super) fn calibration(&self) -> Option<SensorCalibration> {
+        let mut calibration = self.reconstructor.calibration()?;
+        for (sensor, worn) in calibration.sensors.iter_mut().zip(&self.sensors) {
+            sensor.device = worn.device_name();
+            sensor.certainty = worn.mounting.map_or(1.0, |found| found.certainty);
+        }
+        Some(calibration)
+    }
+
+    /// Takes over a calibration.
+    pub(super) fn calibrate(
+        &mut self,
+        calibration: &SensorCalibration,
+    ) -> Result<(), CalibrationError> {
+        for (sensor, worn) in self.sensors.iter().enumerate() {
+            calibration.check_device(sensor, &worn.device_name())?;
+        }
+        self.reconstructor.calibrate(calibration)?;
+        for (worn, calibrated) in self.sensors.iter_mut().zip(&calibration.sensors) {
+            worn.calibrate(calibrated);
+        }
+        self.guide = None;
+        Ok(())
     }
 }

@@ -4,8 +4,9 @@ use crate::imu_source::Heard;
 use footfall_imu::live::Device;
 use footfall_imu::live::device::now_secs;
 use footfall_imu::live::recorder::Recorder;
-use footfall_imu::{ImuRecording, ImuSample, PoseMeter};
-use footfall_recon::{Mounting, Prepared, TrackerConfig, find_mounting};
+use footfall_imu::{ImuRecording, ImuSample, PoseMeter, Rest, find_rest};
+use footfall_model::CalibratedSensor;
+use footfall_recon::{Examination, Mounting, Prepared, SensorProblem, TrackerConfig, examine};
 use glam::Quat;
 use std::path::Path;
 use std::sync::Arc;
@@ -32,9 +33,25 @@ pub(super) struct Worn {
     recorder: Option<Recorder>,
     kept: Kept,
     looked_at_secs: Option<f64>,
-    worker: Option<JoinHandle<Option<Mounting>>>,
-    /// The best that was found.
+    worker: Option<JoinHandle<Look>>,
+    /// The best that was found, or the one that was calibrated.
     pub(super) mounting: Option<Mounting>,
+    /// True when the mounting is a calibration's, which nothing replaces.
+    calibrated: bool,
+}
+
+/// Result of a thread's look at the last samples: nothing when there was too little motion.
+type Look = Option<(Examination, Option<Rest>)>;
+
+/// News about how a sensor is worn.
+#[derive(Debug, Default)]
+pub(super) struct Seen {
+    /// A mounting to take over.
+    pub(super) mounting: Option<Mounting>,
+    /// Measurement at rest.
+    pub(super) rest: Option<Rest>,
+    /// Problem with how it is worn.
+    pub(super) finding: Option<SensorProblem>,
 }
 
 /// An object of the game that stands for a sensor.
@@ -163,6 +180,7 @@ impl Worn {
 
     pub(super) fn forget_mounting(&mut self) {
         (self.mounting, self.worker, self.looked_at_secs) = (None, None, None);
+        self.calibrated = false;
         self.kept = Kept::default();
     }
 
@@ -202,22 +220,43 @@ impl Worn {
         }
     }
 
-    /// Looks for the mounting on another thread, now and then; gives what was found, once.
-    pub(super) fn find_mounting(
+    /// Name of the live sensor that is heard, without the port of an address; empty for others.
+    pub(super) fn device_name(&self) -> String {
+        let Some(device) = &self.device else {
+            return String::new();
+        };
+        let name = device.status().name;
+        let (address, rest) = name.split_at(name.find(',').unwrap_or(name.len()));
+        match address.parse::<std::net::SocketAddr>() {
+            Ok(address) => format!("{}{rest}", address.ip()),
+            Err(_) => name,
+        }
+    }
+
+    /// Is worn as it was calibrated.
+    pub(super) fn calibrate(&mut self, calibrated: &CalibratedSensor) {
+        self.forget_mounting();
+        self.mounting = Some(Mounting {
+            site_from_sensor: calibrated.site_from_sensor,
+            certainty: calibrated.certainty,
+        });
+        self.calibrated = true;
+    }
+
+    /// Looks for the mounting on another thread, now and then or at once if `asked` to; gives what was found, once. A mounting that was calibrated, or is said to be
+    /// `aligned`, is examined only.
+    pub(super) fn look(
         &mut self,
         prepared: &Arc<Prepared>,
         sensor: usize,
-    ) -> Option<Quat> {
+        aligned: Option<Quat>,
+        asked: bool,
+    ) -> Option<Seen> {
+        let calibrated = self.mounting.filter(|_| self.calibrated);
+        let believed = aligned.or(calibrated.map(|known| known.site_from_sensor));
         if let Some(worker) = self.worker.take_if(|worker| worker.is_finished()) {
-            let found = worker.join().ok().flatten()?;
-            // A later look replaces what is less certain.
-            if self
-                .mounting
-                .is_none_or(|known| found.certainty >= 0.9 * known.certainty)
-            {
-                self.mounting = Some(found);
-                return Some(found.site_from_sensor);
-            }
+            let found: Look = worker.join().ok().flatten();
+            return Some(self.weigh(found, believed.is_some()));
         }
         let (first, last) = (
             self.kept.0.first()?.time_secs,
@@ -226,19 +265,43 @@ impl Worn {
         let due = self
             .looked_at_secs
             .map_or(first + FIRST_SECS, |at| at + AGAIN_SECS);
-        if self.worker.is_none() && last >= due {
+        if self.worker.is_none() && (last >= due || asked) {
             self.looked_at_secs = Some(last);
             let recording = ImuRecording {
                 samples: self.kept.0.clone(),
             };
             let prepared = Arc::clone(prepared);
+            let config = TrackerConfig::default();
             let look = move || {
-                find_mounting(&prepared, sensor, &recording, &TrackerConfig::default()).ok()
+                let found = examine(&prepared, sensor, &recording, believed, &config).ok()?;
+                Some((found, find_rest(&recording)))
             };
             // Without a thread the axes stay as they are; the next look may have one.
             let thread = std::thread::Builder::new().name("footfall mounting".to_owned());
             self.worker = thread.spawn(look).ok();
         }
         None
+    }
+
+    /// Takes over what was found where it is better than what is known.
+    fn weigh(&mut self, found: Look, believed: bool) -> Seen {
+        let Some((found, rest)) = found else {
+            return Seen::default();
+        };
+        let finding = found.finding;
+        // A later look replaces what is less certain.
+        let better = |known: Mounting| found.mounting.certainty >= 0.9 * known.certainty;
+        if believed || !self.mounting.is_none_or(better) {
+            return Seen {
+                finding,
+                ..Seen::default()
+            };
+        }
+        self.mounting = Some(found.mounting);
+        Seen {
+            mounting: self.mounting,
+            rest,
+            finding,
+        }
     }
 }

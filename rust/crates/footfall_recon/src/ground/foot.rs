@@ -31,16 +31,20 @@ const SETTLE_HALF_LIFE_SECS: f32 = 0.01;
 /// Rate of the critically damped spring by which the correction of a foot that leaves the ground dies away, 1/s.
 const RELEASE_RATE: f32 = 60.0;
 
+/// Half-life of what the ground bent toes by when their foot leaves it, seconds: toes do not snap.
+const TOES_HALF_LIFE_SECS: f32 = 0.04;
+
 /// One foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct StandingFoot {
     pub(super) plant: Option<Plant>,
-    /// Remainder that settles: how far the ankle is from where it should be, how fast that changes (m/s), and how the foot is turned against it.
+    /// Remainder that settles: how far the ankle is from where it should be, how fast that changes (m/s), and how foot and toes are turned against it.
     ankle: Vec3,
     drift: Vec3,
     turn: Quat,
-    /// Offset of the ankle and turn of the foot against the recordings, in the last frame.
-    pub(super) last: (Vec3, Quat),
+    toes: Quat,
+    /// Offset of the ankle and turns of the foot and of the toes against the recordings, in the last frame.
+    pub(super) last: (Vec3, Quat, Quat),
     pub(super) landed: bool,
     /// Time since it left the ground, seconds.
     free_secs: f32,
@@ -54,7 +58,8 @@ impl StandingFoot {
         ankle: Vec3::ZERO,
         drift: Vec3::ZERO,
         turn: Quat::IDENTITY,
-        last: (Vec3::ZERO, Quat::IDENTITY),
+        toes: Quat::IDENTITY,
+        last: (Vec3::ZERO, Quat::IDENTITY, Quat::IDENTITY),
         landed: false,
         free_secs: CLEARED_AFTER_SECS,
         free: Vec3::ZERO,
@@ -62,18 +67,19 @@ impl StandingFoot {
 
     /// Lets what remains of a correction die away for some time.
     fn settle(&mut self, dt_secs: f32) {
-        let left = if self.plant.is_some() {
+        let (left, of_toes) = if self.plant.is_some() {
             let left = 1.0 - follow_share(SETTLE_HALF_LIFE_SECS, dt_secs);
             self.ankle *= left;
-            left
+            (left, left)
         } else {
             let left = (-RELEASE_RATE * dt_secs).exp();
             let toward = self.drift + RELEASE_RATE * self.ankle;
             self.ankle = left * (self.ankle + dt_secs * toward);
             self.drift = left * (self.drift - RELEASE_RATE * dt_secs * toward);
-            left
+            (left, 1.0 - follow_share(TOES_HALF_LIFE_SECS, dt_secs))
         };
         self.turn = Quat::IDENTITY.slerp(self.turn, left);
+        self.toes = Quat::IDENTITY.slerp(self.toes, of_toes);
     }
 }
 
@@ -144,22 +150,31 @@ impl Ground {
             free
         };
         own.free = ankle;
-        let wanted = (target.ankle - ankle, target.foot * foot.inverse());
+        let wanted = (
+            target.ankle - ankle,
+            target.foot * foot.inverse(),
+            target.toes * toes.inverse(),
+        );
         if stood != own.plant.is_some() {
             own.ankle = own.last.0 - wanted.0;
             own.drift = Vec3::ZERO;
             own.turn = own.last.1 * wanted.1.inverse();
+            own.toes = own.last.2 * wanted.2.inverse();
         }
         let settles_secs = match input.contacts[index] {
             Some(told) if own.landed => told.for_secs.min(input.dt_secs),
             _ => input.dt_secs,
         };
         own.settle(settles_secs);
-        own.last = (wanted.0 + own.ankle, own.turn * wanted.1);
+        own.last = (
+            wanted.0 + own.ankle,
+            own.turn * wanted.1,
+            own.toes * wanted.2,
+        );
         let mut target = FootTarget {
             ankle: ankle + own.last.0,
             foot: own.last.1 * foot,
-            toes: own.turn * target.toes,
+            toes: own.last.2 * toes,
         };
         // Whatever settles, no sole goes below the floor.
         let lowest = self.rockers[index].lowest_point(&target);

@@ -1,20 +1,20 @@
 //! `footfall imu reconstruct`: recordings of sensors become the motion of a body.
 
+mod worn;
+
 use super::read_recording;
 use crate::output;
 use anyhow::{Context as _, Result, ensure};
 use footfall_core::Behaviour;
 use footfall_imu::ImuRecording;
-use footfall_model::ImuModel;
+use footfall_model::{ImuModel, SensorCalibration};
 use footfall_motion::bvh::{self, clip_to_bvh};
-use footfall_recon::{Mounting, Prepared, ReconConfig, find_mounting, reconstruct_recording};
+use footfall_recon::{Prepared, ReconConfig, reconstruct_recording};
 use footfall_train::read_model_file;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// A mounting that is less certain is warned of.
-const CERTAIN: f32 = 0.9;
+use worn::{ProblemReport, WornSensors};
 
 /// Below this confidence a frame is unexplained; more than this share of a recording is warned of.
 const UNEXPLAINED: f32 = 0.1;
@@ -27,7 +27,9 @@ const MOST_UNEXPLAINED: f64 = 0.1;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall imu reconstruct --model body.footimu --imu imu.csv -o out.bvh\n  \
-    footfall imu reconstruct --model two.footimu --imu foot.csv --imu hand.csv --mounting aligned -o out.bvh")]
+    footfall imu reconstruct --model two.footimu --imu foot.csv --imu hand.csv --mounting aligned -o out.bvh\n  \
+    footfall imu reconstruct --model body.footimu --imu first.csv --save-calibration me.footcal -o first.bvh\n  \
+    footfall imu reconstruct --model body.footimu --imu next.csv --calibration me.footcal -o next.bvh")]
 pub(crate) struct ReconstructArgs {
     /// The model
     #[arg(long, value_name = "BODY.footimu")]
@@ -38,6 +40,15 @@ pub(crate) struct ReconstructArgs {
     /// Mounting of the sensors
     #[arg(long, value_enum, default_value_t = MountingArg::Auto)]
     mounting: MountingArg,
+    /// Calibration of wearer and sensors that an earlier run saved, in place of finding it out
+    #[arg(long, value_name = "ME.footcal", conflicts_with = "mounting")]
+    calibration: Option<PathBuf>,
+    /// Keep how the sensors are worn, what they measure at rest and how long the wearer's steps are
+    #[arg(long, value_name = "ME.footcal")]
+    save_calibration: Option<PathBuf>,
+    /// Samples a second that the sensors were to give, to be warned of others
+    #[arg(long, value_name = "HZ")]
+    rate: Option<f64>,
     /// Use nothing of the future: what a game shows at each moment
     #[arg(long)]
     live: bool,
@@ -67,6 +78,10 @@ struct Report<'a> {
     fps: f64,
     frames: usize,
     mountings: Vec<MountingReport>,
+    /// Problems of the sensors and of how they were worn, with their times.
+    problems: Vec<ProblemReport>,
+    /// Length of the wearer's steps beside those of the people in the model.
+    stride: f32,
     /// Seconds of each behaviour.
     behaviours: Vec<(&'static str, f64)>,
     /// Mean of how well the model explains the frames, 0 to 1, and seconds in which it explains them so little that the body stands instead.
@@ -85,7 +100,12 @@ struct MountingReport {
 pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
     let mut inputs: Vec<&std::path::Path> = vec![&args.model];
     inputs.extend(args.recordings.iter().map(PathBuf::as_path));
+    inputs.extend(args.calibration.as_deref());
     output::refuse_overwrite(&inputs, &args.output)?;
+    if let Some(path) = &args.save_calibration {
+        output::refuse_overwrite(&inputs, path)?;
+        output::refuse_overwrite(&[&args.output], path)?;
+    }
     if let Some(fps) = args.fps {
         ensure!(
             (1.0..=1000.0).contains(&fps),
@@ -109,27 +129,26 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
     let skeleton = model.skeleton.clone();
     let prepared =
         Arc::new(Prepared::new(Arc::new(model)).with_context(|| args.model.display().to_string())?);
-    let config = ReconConfig::default();
-    let (mut recordings, mut mountings) = (Vec::new(), Vec::new());
-    for (sensor, path) in args.recordings.iter().enumerate() {
-        let recording = read_recording(path)?;
-        let mounting = mounting(args, &prepared, sensor, &recording, &config)
-            .with_context(|| path.display().to_string())?;
-        if mounting.certainty < CERTAIN {
-            output::note(&format!(
-                "warning: {}: the mounting is only {:.0} % certain; record more steps, or give --mounting aligned",
-                path.display(),
-                100.0 * mounting.certainty
-            ));
-        }
-        recordings.push(recording.turned(mounting.site_from_sensor));
-        mountings.push(MountingReport {
-            site: prepared.model().sites[sensor].name(),
-            site_from_sensor: mounting.site_from_sensor.to_array(),
-            certainty: mounting.certainty,
+    let mut config = ReconConfig::default();
+    let recordings: Result<Vec<ImuRecording>> = args
+        .recordings
+        .iter()
+        .map(|path| read_recording(path))
+        .collect();
+    let recordings = recordings?;
+    let mut worn = WornSensors::find(args, &prepared, &recordings, &config)?;
+    config.stride = worn.calibration.stride;
+    let mountings = worn
+        .calibration
+        .sensors
+        .iter()
+        .map(|sensor| MountingReport {
+            site: sensor.site.name(),
+            site_from_sensor: sensor.site_from_sensor.to_array(),
+            certainty: sensor.certainty,
         });
-    }
-    let made = reconstruct_recording(&prepared, &recordings, &skeleton, &config, args.live)?;
+    let mountings = mountings.collect();
+    let made = reconstruct_recording(&prepared, &worn.recordings, &skeleton, &config, args.live)?;
     ensure!(
         made.clip.poses.len() >= 2,
         "{}: {:.2} s are too short for a motion; give a longer recording",
@@ -141,6 +160,11 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
         None => made.clip,
     };
     output::write_atomic(&args.output, bvh::write(&clip_to_bvh(&clip)).as_bytes())?;
+    if let Some(path) = &args.save_calibration {
+        worn.calibration.stride = made.stride;
+        let bytes = worn.calibration.to_bytes();
+        output::write_atomic(path, &bytes.with_context(|| path.display().to_string())?)?;
+    }
     let seconds_of = |behaviour: Behaviour| {
         let frames = made.behaviours.iter().filter(|b| **b == behaviour).count();
         frames as f64 / prepared.model().frame_rate_hz
@@ -161,6 +185,8 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
         fps: clip.frame_rate_hz,
         frames: clip.poses.len(),
         mountings,
+        problems: worn.problems,
+        stride: made.stride,
         behaviours: behaviours
             .into_iter()
             .filter(|(_, secs)| *secs > 0.0)
@@ -184,18 +210,8 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
     Ok(())
 }
 
-fn mounting(
-    args: &ReconstructArgs,
-    prepared: &Arc<Prepared>,
-    sensor: usize,
-    recording: &ImuRecording,
-    config: &ReconConfig,
-) -> Result<Mounting> {
-    if args.mounting == MountingArg::Aligned {
-        return Ok(Mounting {
-            site_from_sensor: glam::Quat::IDENTITY,
-            certainty: 1.0,
-        });
-    }
-    Ok(find_mounting(prepared, sensor, recording, &config.tracker)?)
+/// Reads a calibration; errors name the file.
+pub(in crate::commands) fn read_calibration(path: &std::path::Path) -> Result<SensorCalibration> {
+    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    SensorCalibration::from_bytes(&bytes).with_context(|| path.display().to_string())
 }

@@ -1,0 +1,191 @@
+//! Calibration and problems of the sensors, for scripts and players.
+
+use super::ImuReconstructor3D;
+use super::session::Session;
+use footfall_model::SensorCalibration;
+use footfall_model::imu_model::MAX_SENSORS;
+use footfall_recon::{CalibrationGuide, GuideStep, SensorProblem};
+use godot::classes::FileAccess;
+use godot::classes::file_access::ModeFlags;
+use godot::prelude::*;
+
+/// Changes since the last frame.
+pub(super) struct News {
+    /// Problems of the sensors now, and whether each is another than before.
+    problems: [(Option<SensorProblem>, bool); MAX_SENSORS],
+    step: Option<GuideStep>,
+}
+
+impl Session {
+    /// Changes to be told now.
+    pub(super) fn news(&mut self) -> News {
+        let mut news = News {
+            problems: [(None, false); MAX_SENSORS],
+            step: None,
+        };
+        for (n, told) in self.problems.iter_mut().enumerate() {
+            let problem = self.reconstructor.problem(n);
+            let alike = match (&problem, &*told) {
+                (Some(now), Some(told)) => now.is_alike(told),
+                (now, told) => now.is_none() && told.is_none(),
+            };
+            news.problems[n] = (problem, !alike);
+            *told = problem;
+        }
+        let step = self.guide.map(|guide| guide.step());
+        news.step = step.filter(|_| step != self.asked);
+        self.asked = step;
+        news
+    }
+}
+
+impl ImuReconstructor3D {
+    /// Emits the signals of what has changed.
+    pub(super) fn tell(&mut self, news: &News) {
+        for (sensor, (problem, is_news)) in (0_i64..).zip(&news.problems) {
+            if *is_news {
+                let name = problem.map_or("", |problem| problem.name());
+                let message = problem.map_or_else(String::new, |problem| problem.to_string());
+                self.signals().sensor_problem_changed().emit(
+                    sensor,
+                    &StringName::from(name),
+                    &GString::from(&message),
+                );
+            }
+        }
+        if let Some(step) = news.step {
+            self.signals().calibration_changed().emit(
+                &StringName::from(step.name()),
+                &GString::from(step.message()),
+            );
+        }
+    }
+
+    fn sensor_problem(&self, sensor: i64) -> Option<SensorProblem> {
+        let sensor = usize::try_from(sensor).ok()?;
+        self.session.as_ref()?.reconstructor.problem(sensor)
+    }
+
+    fn guide(&self) -> Option<CalibrationGuide> {
+        self.session.as_ref()?.guide
+    }
+}
+
+#[godot_api(secondary)]
+impl ImuReconstructor3D {
+    /// Problem with a sensor or with how it is worn; empty while all is well. The body stands or goes on as is probable meanwhile.
+    ///
+    /// `silent`: nothing is heard. `force_in_g`, `gravity`, `rate_in_degrees`: units or scale are wrong. `stuck_axis`, `saturated`: an axis keeps one value, or reaches the end of the sensor's range. `slow`, `pace`: too few samples come
+    /// for a gait, or far fewer or more than at first. `lies`, `rides`: the sensor lies still, or is moved without steps. `unexplained`: the model does not know the motion. `other_side`: it is worn on the other side
+    /// of the body. `turned`: it is worn otherwise than it was calibrated or said to be.
+    #[func]
+    fn get_sensor_problem(&self, #[opt(default = 0)] sensor: i64) -> StringName {
+        let problem = self.sensor_problem(sensor);
+        StringName::from(problem.map_or("", |problem| problem.name()))
+    }
+
+    /// Message for the player about the problem with a sensor, with the next thing to do; empty while all is well.
+    #[func]
+    fn get_sensor_message(&self, #[opt(default = 0)] sensor: i64) -> GString {
+        let problem = self.sensor_problem(sensor);
+        problem.map_or_else(GString::new, |problem| GString::from(&problem.to_string()))
+    }
+
+    /// Says how many samples a second a sensor was promised to give, so that fewer or more are a problem. Without a promise, fewer than in the beginning are.
+    #[func]
+    fn promise_rate(&mut self, rate: f64, #[opt(default = 0)] sensor: i64) {
+        if let (Some(session), Ok(sensor)) = (&mut self.session, usize::try_from(sensor)) {
+            session.reconstructor.promise_rate(sensor, rate);
+        }
+    }
+
+    /// Begins a calibration of about five seconds: the player stands for two seconds and takes four steps. Forgets how the sensors are worn.
+    ///
+    /// `calibration_changed` tells what to do next. Where `mounting` is `ALIGNED` there is nothing to find out.
+    #[func]
+    fn start_calibration(&mut self) {
+        let Some(session) = &mut self.session else {
+            self.calibrates = true;
+            return;
+        };
+        session.forget_mountings();
+        session.guide = session.finds_mountings.then(CalibrationGuide::default);
+        session.asked = None;
+    }
+
+    /// Step of the calibration: `connect`, `stand`, `walk`, `walk_on` or `done`; empty where none was begun.
+    #[func]
+    fn get_calibration_step(&self) -> StringName {
+        StringName::from(self.guide().map_or("", |guide| guide.step().name()))
+    }
+
+    /// Message for the player about the step of the calibration.
+    #[func]
+    fn get_calibration_message(&self) -> GString {
+        GString::from(self.guide().map_or("", |guide| guide.step().message()))
+    }
+
+    /// Progress of the step of the calibration, 0 to 1.
+    #[func]
+    fn get_calibration_progress(&self) -> f64 {
+        self.guide()
+            .map_or(0.0, |guide| f64::from(guide.progress()))
+    }
+
+    /// Keeps how the sensors are worn, what they measure at rest and how long the player's steps are, in a small file for the next session. Tells what is wrong, or nothing.
+    #[func]
+    fn save_calibration(&self, path: GString) -> GString {
+        let path = String::from(path);
+        let Some(calibration) = self.session.as_ref().and_then(Session::calibration) else {
+            return "It is not known yet how the sensors are worn: calibrate first.".into();
+        };
+        let bytes = match calibration.to_bytes() {
+            Ok(bytes) => PackedByteArray::from(bytes),
+            Err(error) => return GString::from(&error.to_string()),
+        };
+        let file = FileAccess::open(path.as_str(), ModeFlags::WRITE);
+        let written = file.is_some_and(|mut file| file.store_buffer(&bytes));
+        if written {
+            return GString::new();
+        }
+        GString::from(&format!("{path}: cannot be written; save to user://"))
+    }
+
+    /// Takes over a calibration that was saved, in place of finding it out: call it once the sensors are heard. Tells what is wrong, or nothing: a file of a later version, for other sites
+    /// than the model's or of another sensor than the one that is heard is not taken.
+    #[func]
+    fn load_calibration(&mut self, path: GString) -> GString {
+        let path = String::from(path);
+        let Some(session) = &mut self.session else {
+            return "The character is not driven yet: load the calibration after the first frame."
+                .into();
+        };
+        if !FileAccess::file_exists(path.as_str()) {
+            return GString::from(&format!(
+                "{path}: there is no such file; calibrate, and save that"
+            ));
+        }
+        let bytes = FileAccess::get_file_as_bytes(path.as_str());
+        let read = SensorCalibration::from_bytes(bytes.as_slice());
+        let taken = read.and_then(|calibration| session.calibrate(&calibration));
+        taken.map_or_else(
+            |error| GString::from(&format!("{path}: {error}")),
+            |()| GString::new(),
+        )
+    }
+
+    /// Length of the player's steps beside those of the people in the model: a sensor on a foot measures it as they walk.
+    #[func]
+    fn get_step_scale(&self) -> f64 {
+        let session = self.session.as_ref();
+        session.map_or(1.0, |session| f64::from(session.reconstructor.stride()))
+    }
+
+    /// Sets the length of the player's steps beside those of the people in the model, 0.7 to 1.4: for a phone in the pocket, which cannot measure it.
+    #[func]
+    fn set_step_scale(&mut self, scale: f64) {
+        if let Some(session) = &mut self.session {
+            session.reconstructor.set_stride(scale as f32);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Watch over a sensor's raw samples: what is wrong with them, while they come.
+//!
+//! Each part looks for one kind of fault; a part that has seen one holds it for a while, so that a message can be read. [`check_recording`](crate::check_recording)
+//! judges a recording as a whole; this needs no future and allocates nothing.
+
+mod axes;
+mod fault;
+mod pace;
+mod rails;
+mod units;
+
+pub use fault::StreamFault;
+
+use crate::sample::{ImuRecording, ImuSample};
+use axes::StuckAxes;
+use pace::Pace;
+use rails::Rails;
+use units::Units;
+
+/// A longer step in time is a pause of the stream and no step, seconds.
+const PAUSE_SECS: f64 = 0.5;
+
+/// Specific force x, y, z and angular rate x, y, z.
+const CHANNELS: usize = 6;
+
+/// Watches the samples of one sensor, in the sensor's own axes.
+#[derive(Clone, Copy, Debug)]
+pub struct StreamMonitor {
+    last: Option<ImuSample>,
+    axes: StuckAxes,
+    rails: Rails,
+    units: Units,
+    pace: Pace,
+}
+
+impl StreamMonitor {
+    /// Watches a sensor that was promised to give so many samples a second; without a promise, one that keeps the rate at which it began.
+    pub const fn new(promised_hz: Option<f64>) -> Self {
+        Self {
+            last: None,
+            axes: StuckAxes::NONE,
+            rails: Rails::NONE,
+            units: Units::NONE,
+            pace: Pace::new(promised_hz),
+        }
+    }
+
+    /// Forgets the samples, and keeps the promise.
+    pub const fn reset(&mut self) {
+        *self = Self::new(self.pace.promised_hz());
+    }
+
+    /// Takes a sample. Those that are late, repeated or not finite are left out.
+    pub fn push(&mut self, sample: ImuSample) {
+        if !sample.is_finite() {
+            return;
+        }
+        let Some(last) = self.last else {
+            self.last = Some(sample);
+            return;
+        };
+        let step_secs = sample.time_secs - last.time_secs;
+        if step_secs <= 0.0 {
+            return;
+        }
+        self.last = Some(sample);
+        if step_secs > PAUSE_SECS {
+            self.pace.pause();
+            self.rails.pause();
+            return;
+        }
+        let dt_secs = step_secs as f32;
+        let row = channels(&sample);
+        self.axes.step(&row, dt_secs);
+        self.rails.step(&row, dt_secs);
+        self.units.step(&sample, dt_secs);
+        self.pace.step(step_secs);
+    }
+
+    /// The gravest fault of the last seconds.
+    pub fn fault(&self) -> Option<StreamFault> {
+        // An axis that is stuck at rest also makes gravity wrong.
+        let axes = self.axes.fault();
+        axes.or_else(|| self.units.fault())
+            .or_else(|| self.pace.fault())
+            .or_else(|| self.rails.fault())
+    }
+
+    /// The faults of a whole recording, each with the times between which it was told, in the order of their begin.
+    pub fn faults_of(recording: &ImuRecording, promised_hz: Option<f64>) -> Vec<FaultSpan> {
+        let mut monitor = Self::new(promised_hz);
+        let mut spans: Vec<FaultSpan> = Vec::new();
+        for sample in &recording.samples {
+            monitor.push(*sample);
+            let Some(fault) = monitor.fault() else {
+                continue;
+            };
+            // A fault whose figures change goes on.
+            let same = |span: &&mut FaultSpan| {
+                span.fault.is_alike(&fault) && sample.time_secs - span.end_secs <= PAUSE_SECS
+            };
+            if let Some(span) = spans.last_mut().filter(same) {
+                span.end_secs = sample.time_secs;
+            } else {
+                spans.push(FaultSpan {
+                    start_secs: sample.time_secs,
+                    end_secs: sample.time_secs,
+                    fault,
+                });
+            }
+        }
+        spans
+    }
+}
+
+/// A fault, and when a monitor told it, on the recording's clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaultSpan {
+    /// The first sample at which it was told, seconds.
+    pub start_secs: f64,
+    /// The last, seconds.
+    pub end_secs: f64,
+    /// The fault, as it was first told.
+    pub fault: StreamFault,
+}
+
+fn channels(sample: &ImuSample) -> [f32; CHANNELS] {
+    let (force, rate) = (sample.force, sample.rate);
+    [force.x, force.y, force.z, rate.x, rate.y, rate.z]
+}
+
+#[cfg(test)]
+mod tests;

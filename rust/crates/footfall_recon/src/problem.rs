@@ -1,0 +1,114 @@
+//! Problems with a sensor and with how it is worn, each with the next thing to do.
+
+use footfall_core::Site;
+use footfall_imu::StreamFault;
+
+/// Problem with a sensor. The body stands or goes on as is probable while it lasts.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SensorProblem {
+    /// No samples come.
+    #[error(
+        "nothing is heard of the sensor; check that it is on, charged, in reach and sends here"
+    )]
+    Silent,
+    /// The samples themselves are at fault.
+    #[error(transparent)]
+    Stream(#[from] StreamFault),
+    /// It is still, and turned otherwise than on somebody who stands.
+    #[error(
+        "the sensor lies, or its wearer sits or lies down: the body stands; stand up, or put the sensor back on as it was"
+    )]
+    Lies,
+    /// It is moved as a whole, without steps.
+    #[error(
+        "the sensor is moved without steps, as in a lift or a vehicle: the body stands; wait until it stops"
+    )]
+    Rides,
+    /// The model explains little of what is measured.
+    #[error(
+        "the model does not know this motion: the body stands; wear the sensor tied to the {}, walk a few steps, and calibrate again", place(*site)
+    )]
+    Unexplained {
+        /// The site that the model is for.
+        site: Site,
+    },
+    /// It is worn on the other side of the body than the model's.
+    #[error(
+        "the sensor moves like one on the {}, where the model is for the {}; change it over, or load the model of that side", place(*worn), place(*site)
+    )]
+    OtherSide {
+        /// The site that the model is for.
+        site: Site,
+        /// The site that wears it.
+        worn: Site,
+    },
+    /// It is turned against the mounting that is believed.
+    #[error(
+        "the sensor is turned by {degrees:.0}° against its mounting: it has slipped, or is another's; put it back, or calibrate again"
+    )]
+    Turned {
+        /// Angle between both mountings.
+        degrees: f32,
+    },
+    /// Two sensors of one body are exchanged.
+    #[error(
+        "the sensors of {} and {} are exchanged; change them over, or give them in the other order", place(*first), place(*second)
+    )]
+    Exchanged {
+        /// The model's first site.
+        first: Site,
+        /// The second.
+        second: Site,
+    },
+}
+
+impl SensorProblem {
+    /// The name for scripts and reports, for example `stuck_axis` or `lies`.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Silent => "silent",
+            Self::Stream(fault) => fault.name(),
+            Self::Lies => "lies",
+            Self::Rides => "rides",
+            Self::Unexplained { .. } => "unexplained",
+            Self::OtherSide { .. } => "other_side",
+            Self::Turned { .. } => "turned",
+            Self::Exchanged { .. } => "exchanged",
+        }
+    }
+
+    /// Returns true when both are the same problem, whatever their figures.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Stream(own), Self::Stream(other)) => own.is_alike(other),
+            _ => self.name() == other.name(),
+        }
+    }
+}
+
+/// A site in a sentence: `right foot`.
+fn place(site: Site) -> String {
+    site.name().replace('_', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_name_the_site_and_the_next_thing_to_do() {
+        let other = SensorProblem::OtherSide {
+            site: Site::RightFoot,
+            worn: Site::LeftFoot,
+        };
+        let text = other.to_string();
+        assert!(
+            text.contains("one on the left foot") && text.contains("for the right foot"),
+            "{text}"
+        );
+        assert!(text.contains("change it over"), "{text}");
+        let fault = SensorProblem::from(StreamFault::Slow { rate_hz: 12.0 });
+        assert_eq!(fault.name(), "slow");
+        assert!(fault.to_string().contains("12 samples"), "{fault}");
+    }
+}

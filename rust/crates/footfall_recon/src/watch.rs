@@ -1,0 +1,159 @@
+//! Watch over one sensor: its samples, and how it lies.
+
+use crate::problem::SensorProblem;
+use crate::wear::{Posture, WearMonitor};
+use footfall_imu::{GRAVITY_MPS2, ImuRecording, ImuSample, StreamFault, StreamMonitor};
+use footfall_model::CalibratedSensor;
+use glam::Vec3;
+
+/// Monitors of one sensor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Watch {
+    stream: StreamMonitor,
+    wear: WearMonitor,
+}
+
+impl Watch {
+    /// For a sensor whose up is this on somebody who stands, and that may have been promised to give so many samples a second.
+    pub(crate) const fn new(standing_up: Vec3, promised_hz: Option<f64>) -> Self {
+        Self {
+            stream: StreamMonitor::new(promised_hz),
+            wear: WearMonitor::new(standing_up),
+        }
+    }
+
+    /// Has another mounting from now on.
+    pub(crate) const fn forget_mounting(&mut self) {
+        self.wear.reset();
+    }
+
+    /// Forgets the samples.
+    pub(crate) const fn reset(&mut self) {
+        self.stream.reset();
+        self.wear.reset();
+    }
+
+    /// Measures gravity of this strength at rest.
+    pub(crate) const fn set_gravity(&mut self, gravity_mps2: f32) {
+        self.wear.set_gravity(gravity_mps2);
+    }
+
+    /// Strength of gravity by the sensor's scale, where it was still.
+    pub(crate) fn gravity_mps2(&self) -> Option<f32> {
+        self.wear.gravity_mps2()
+    }
+
+    /// Was promised to give so many samples a second.
+    pub(crate) const fn promise_rate(&mut self, rate_hz: f64) {
+        self.stream = StreamMonitor::new(Some(rate_hz));
+    }
+
+    /// Takes a sample in the sensor's axes and, where the mounting is known, in the site's.
+    pub(crate) fn push(&mut self, sample: &ImuSample, worn: Option<&ImuSample>) {
+        self.stream.push(*sample);
+        if let Some(worn) = worn.filter(|worn| worn.is_finite()) {
+            self.wear.push(worn);
+        }
+    }
+
+    /// Returns true when nothing can be made of the samples, so that the wearer is taken to stand.
+    pub(crate) fn is_blind(&self) -> bool {
+        self.wear.posture() != Posture::Worn
+            || self.stream.fault().is_some_and(|fault| fault.is_blinding())
+    }
+
+    /// The gravest problem.
+    pub(crate) fn problem(&self) -> Option<SensorProblem> {
+        let fault = self.stream.fault();
+        let posture = match self.wear.posture() {
+            Posture::Worn => None,
+            Posture::Lies => Some(SensorProblem::Lies),
+            Posture::Rides => Some(SensorProblem::Rides),
+        };
+        let grave = fault.filter(StreamFault::is_blinding);
+        let grave = grave.map(SensorProblem::Stream);
+        grave.or(posture).or(fault.map(SensorProblem::Stream))
+    }
+}
+
+/// Measurement of a sensor on somebody who stands, in the site's axes.
+pub(crate) fn standing_sample(time_secs: f64) -> ImuSample {
+    ImuSample {
+        time_secs,
+        force: Vec3::Y * GRAVITY_MPS2,
+        rate: Vec3::ZERO,
+    }
+}
+
+/// A recording of a sensor as a reconstructor takes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WornRecording {
+    /// Samples in the site's axes; those of which nothing can be made are left out, or are of somebody who stands.
+    pub recording: ImuRecording,
+    /// Problems, with their times.
+    pub problems: Vec<ProblemSpan>,
+}
+
+/// A problem with a sensor, and the times between which it was told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProblemSpan {
+    /// The first sample at which it was told, on the recording's clock, seconds.
+    pub start_secs: f64,
+    /// The last, seconds.
+    pub end_secs: f64,
+    /// The problem, as it was first told.
+    pub problem: SensorProblem,
+}
+
+/// Problems that pause for less are one, seconds.
+const ONE_SECS: f64 = 1.0;
+
+impl WornRecording {
+    /// Watches a recording in the sensor's axes, of a sensor that is calibrated so. Samples of which nothing can be made are left out where another sensor goes on, and are of somebody who
+    /// stands where this one is `alone`.
+    pub(crate) fn watched(
+        mut watch: Watch,
+        recording: &ImuRecording,
+        calibrated: &CalibratedSensor,
+        alone: bool,
+    ) -> Self {
+        let mut problems: Vec<ProblemSpan> = Vec::new();
+        let mut samples = Vec::with_capacity(recording.samples.len());
+        for sample in &recording.samples {
+            let worn = ImuSample {
+                rate: sample.rate - calibrated.rate_bias,
+                ..*sample
+            };
+            let worn = worn.turned(calibrated.site_from_sensor);
+            watch.push(sample, Some(&worn));
+            if !watch.is_blind() {
+                samples.push(worn);
+            } else if alone {
+                samples.push(standing_sample(sample.time_secs));
+            }
+            if let Some(problem) = watch.problem() {
+                note(&mut problems, sample.time_secs, problem);
+            }
+        }
+        Self {
+            recording: ImuRecording { samples },
+            problems,
+        }
+    }
+}
+
+/// Notes a problem that is told at a time.
+fn note(problems: &mut Vec<ProblemSpan>, time_secs: f64, problem: SensorProblem) {
+    let goes_on = |span: &&mut ProblemSpan| {
+        span.problem.is_alike(&problem) && time_secs - span.end_secs <= ONE_SECS
+    };
+    if let Some(span) = problems.last_mut().filter(goes_on) {
+        span.end_secs = time_secs;
+    } else {
+        problems.push(ProblemSpan {
+            start_secs: time_secs,
+            end_secs: time_secs,
+            problem,
+        });
+    }
+}
