@@ -90,6 +90,22 @@ var placement: FootPlacement3D:
 	get:
 		return _figure.placement if _figure else null
 
+## Identity of the walk, for the other peers of a multiplayer game; see [member GaitGenerator3D.replica_identity].
+## Put [code]gait_synchronizer.tscn[/code] below the character.
+var replica_identity: PackedByteArray:
+	get:
+		return gait.replica_identity if gait else PackedByteArray()
+	set(identity):
+		if gait:
+			gait.replica_identity = identity
+## Progress of the walk, for the other peers; see [member GaitGenerator3D.replica_state].
+var replica_state: PackedByteArray:
+	get:
+		return gait.replica_state if gait else PackedByteArray()
+	set(state):
+		if gait:
+			gait.replica_state = state
+
 var _standing_height := 0.0
 ## True while the body still has to move in this frame, and the steps that it moves by.
 var _due := false
@@ -107,6 +123,13 @@ var _air_secs := 0.0
 
 
 func _ready() -> void:
+	if not Engine.is_editor_hint() and not is_multiplayer_authority():
+		# Another peer's character: nobody looks with its eyes here, or steers it.
+		player_controlled = false
+		for path: NodePath in [^"Camera", ^"TouchStick"]:
+			if has_node(path):
+				get_node(path).free()
+		_camera = null
 	_wear()
 
 
@@ -126,7 +149,7 @@ func _physics_process(delta: float) -> void:
 		_travel()
 	_due = true
 	_wish = _wished()
-	if gait:
+	if gait and not gait.is_replica():
 		_steer()
 		_crouch(delta)
 	if player_controlled and GaitInput.is_just_pressed(&"jump"):

@@ -41,6 +41,8 @@ namespace Footfall
             public static readonly StringName RootMotion = "root_motion";
             public static readonly StringName Character = "character";
             public static readonly StringName BoneMap = "bone_map";
+            public static readonly StringName ReplicaIdentity = "replica_identity";
+            public static readonly StringName ReplicaState = "replica_state";
         }
 
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
@@ -56,6 +58,7 @@ namespace Footfall
             public static readonly StringName HandOver = "hand_over";
             public static readonly StringName IsFootOnGround = "is_foot_on_ground";
             public static readonly StringName IsHandedOver = "is_handed_over";
+            public static readonly StringName IsReplica = "is_replica";
             public static readonly StringName Jump = "jump";
             public static readonly StringName JumpTo = "jump_to";
             public static readonly StringName Push = "push";
@@ -73,6 +76,7 @@ namespace Footfall
             public static readonly StringName GaitChanged = "gait_changed";
             public static readonly StringName HandedOver = "handed_over";
             public static readonly StringName Landed = "landed";
+            public static readonly StringName ReplicaRefused = "replica_refused";
             public static readonly StringName TakenOver = "taken_over";
             public static readonly StringName TookOff = "took_off";
         }
@@ -261,6 +265,20 @@ namespace Footfall
             set => Native.Set(PropertyName.BoneMap, value);
         }
 
+        /// <summary>Identity of the walk for other peers of a multiplayer game, for a <c>MultiplayerSynchronizer</c> such as <c>controller/gait_synchronizer.tscn</c> of the add-on: to be replicated On Change, and with Spawn. Peers without the multiplayer authority of the node that travels get it, and make that walker's steps. Empty until the walk begins.</summary>
+        public byte[] ReplicaIdentity
+        {
+            get => Native.Get(PropertyName.ReplicaIdentity).AsByteArray();
+            set => Native.Set(PropertyName.ReplicaIdentity, value);
+        }
+
+        /// <summary>Progress of the walk for other peers: 24 bytes, to be replicated Always, every 0.03 to 0.07 s. Any may get lost. On peers that get it nothing else steers the character; what parts it from its place is walked off, beyond 0.75 m it is set there. Places are those of the parent of the node that travels, or of the <c>CharacterBody3D</c> that it is in: do not replicate its <c>position</c> and <c>rotation</c> as well.</summary>
+        public byte[] ReplicaState
+        {
+            get => Native.Get(PropertyName.ReplicaState).AsByteArray();
+            set => Native.Set(PropertyName.ReplicaState, value);
+        }
+
         /// <summary>A step begins: <c>foot</c>, <c>left</c> or <c>right</c>, will land at <c>position</c> in <c>seconds</c>, as long as the walk goes on as it does.</summary>
         /// <remarks><c>position</c> is in global space, on the flat floor of the walk. Emitted once for every step, not in the editor.</remarks>
         /// <value>Handlers take <c>foot</c>, <c>position</c>, <c>seconds</c>.</value>
@@ -300,6 +318,14 @@ namespace Footfall
         {
             add => Native.Connect(SignalName.Landed, Callable.From(value));
             remove => Native.Disconnect(SignalName.Landed, Callable.From(value));
+        }
+
+        /// <summary>A peer's message about this walk is refused: <c>reason</c> says why and what to do. Emitted every five seconds at most; the walk goes on as before.</summary>
+        /// <value>Handlers take <c>reason</c>.</value>
+        public event Action<string> ReplicaRefused
+        {
+            add => Native.Connect(SignalName.ReplicaRefused, Callable.From(value));
+            remove => Native.Disconnect(SignalName.ReplicaRefused, Callable.From(value));
         }
 
         /// <summary>Emitted when the pose from before <see cref="TakeOver"/> has faded: the pose is the walk's.</summary>
@@ -357,6 +383,9 @@ namespace Footfall
 
         /// <summary>Returns whether the skeleton is left to other animation: after <see cref="HandOver"/>, until <see cref="TakeOver"/>.</summary>
         public bool IsHandedOver() => Native.Call(MethodName.IsHandedOver).AsBool();
+
+        /// <summary>Returns whether the character makes the steps of another peer's: an identity has come for it, and this peer has not the multiplayer authority of the node that travels.</summary>
+        public bool IsReplica() => Native.Call(MethodName.IsReplica).AsBool();
 
         /// <summary>Asks for one jump in which the hips rise <c>height</c> metres above where they were: 0.1 to 0.5 is what adults do.</summary>
         /// <remarks>

@@ -10,6 +10,7 @@ const SCENES: Array[Array] = [
 	["res://scenes/uneven/uneven.tscn", "Uneven ground", "Slopes, stairs, rubble and a platform that moves"],
 	["res://scenes/crowd/crowd.tscn", "Crowd", "Thousands on a plaza, each in its own way"],
 	["res://scenes/third_person/third_person.tscn", "Third person", "Walk the course with keyboard, gamepad or touch"],
+	["res://scenes/network/network.tscn", "Multiplayer", "Host a game or join one: the same steps on every machine"],
 	["res://scenes/own_character/own_character.tscn", "Your own character", "Any humanoid from a .glb file walks"],
 	["res://scenes/sensor/sensor.tscn", "One sensor", "A whole body from a sensor on one foot"],
 	["res://scenes/live_sensor/live_sensor.tscn", "You", "A phone or a sensor that you wear drives the character"],

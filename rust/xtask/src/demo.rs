@@ -5,7 +5,7 @@ use anyhow::{Context as _, Result, bail};
 use std::fs;
 
 /// The demo's scenes by topic.
-pub(crate) const SCENES: [(&str, &str); 11] = [
+pub(crate) const SCENES: [(&str, &str); 12] = [
     ("town", "res://scenes/town/town.tscn"),
     ("walk", "res://scenes/walk/walk.tscn"),
     ("styles", "res://scenes/styles/styles.tscn"),
@@ -16,6 +16,7 @@ pub(crate) const SCENES: [(&str, &str); 11] = [
         "third_person",
         "res://scenes/third_person/third_person.tscn",
     ),
+    ("network", "res://scenes/network/network.tscn"),
     (
         "own_character",
         "res://scenes/own_character/own_character.tscn",

@@ -28,6 +28,7 @@ mod link;
 mod mannequin;
 mod models;
 mod mono;
+mod network;
 mod newcomer;
 mod open;
 mod package;

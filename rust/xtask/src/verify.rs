@@ -1,8 +1,8 @@
 //! `cargo verify`: everything that must hold before a change goes in, in the order in which it fails soonest.
 
 use crate::{
-    csharp, demo, engine_run, examples, export, godot, library, link, newcomer, open, package,
-    paths, process, skipped, tidy,
+    csharp, demo, engine_run, examples, export, godot, library, link, network, newcomer, open,
+    package, paths, process, skipped, tidy,
 };
 use anyhow::{Context as _, Result, bail};
 use std::path::Path;
@@ -17,7 +17,7 @@ struct Step {
     check: fn() -> Result<()>,
 }
 
-const STEPS: [Step; 15] = [
+const STEPS: [Step; 16] = [
     Step {
         name: "format",
         check: format,
@@ -61,6 +61,10 @@ const STEPS: [Step; 15] = [
     Step {
         name: "godot-play",
         check: play_in_godot,
+    },
+    Step {
+        name: "godot-network",
+        check: network::check,
     },
     Step {
         name: "godot-editor",

@@ -45,6 +45,8 @@ func _run(place: String, source: String, scene: Node) -> void:
 	OS.remove_logger(complaints)
 	check_equal(complaints.texts, PackedStringArray(), "%s complains of nothing" % place)
 	scene.queue_free()
+	# A snippet may have opened a port.
+	multiplayer.multiplayer_peer = OfflineMultiplayerPeer.new()
 	await get_tree().process_frame
 
 
@@ -75,6 +77,17 @@ func _level() -> Node3D:
 
 
 ## A `CharacterBody3D` on a floor with a capsule and, as `Character`, an imported character with its generator.
+## A level with a `MultiplayerSpawner` that spawns into it.
+func _spawner() -> Node3D:
+	var level := Node3D.new()
+	var spawner := MultiplayerSpawner.new()
+	spawner.name = "MultiplayerSpawner"
+	spawner.spawn_path = ^".."
+	level.add_child(spawner)
+	level.add_child(_floor())
+	return level
+
+
 func _body() -> CharacterBody3D:
 	var body := CharacterBody3D.new()
 	var shape := CollisionShape3D.new()

@@ -7,8 +7,10 @@ use footfall_ik::placement::PlacementConfig;
 use footfall_imu::ImuSample;
 use footfall_model::{DynamicsModel, GaitModel, ImuModel};
 use footfall_recon::{Prepared, ReconConfig, Reconstructor};
+use footfall_synth::replica::{Followed, WalkFollower, WalkSender};
 use footfall_synth::{
-    Controls, CrowdWalker, Detail, GaitGenerator, GeneratorConfig, StyleSpace, StyledBody, Workshop,
+    Controls, CrowdWalker, Detail, GaitGenerator, GeneratorConfig, GroundTransform, StyleSpace,
+    StyledBody, Workshop,
 };
 use footfall_tests::data::repository;
 use footfall_tests::terrain::{PlacedWalker, Relief};
@@ -172,6 +174,45 @@ fn assert_going_over_allocates_nothing(mut generator: GaitGenerator, skeleton: &
     }
 }
 
+/// A walker that makes another's steps: joined late, led back to its place, set anew, and told nonsense.
+#[expect(clippy::unwrap_used, reason = "tests may fail")]
+fn assert_following_allocates_nothing(mut walker: GaitGenerator, mut other: GaitGenerator) {
+    const DT_SECS: f32 = 1.0 / 60.0;
+    let mut sender = WalkSender::new();
+    let identity = sender.identity(&walker).unwrap();
+    let mut follower = WalkFollower::new(&identity);
+    let (mut pose, mut shown) = (Pose::default(), Pose::default());
+    let (mut start, mut other_start) = (GroundTransform::default(), GroundTransform::default());
+    for frame in 0..3000_u16 {
+        let wave = (f32::from(frame) * 0.02).sin();
+        let controls = Controls {
+            speed_mps: (1.2 + 1.9 * wave).max(0.0),
+            turn_rate_radps: wave,
+            ..Controls::STAND
+        };
+        if frame % 400 == 399 {
+            start.position.x += 0.4;
+        }
+        if frame == 2000 {
+            start.position.x += 2.0;
+        }
+        let before = allocations();
+        walker.step(DT_SECS, &controls, &mut pose);
+        sender.step(DT_SECS);
+        if frame % 3 == 0 && frame > 300 {
+            let update = sender.update(&walker, &start).unwrap();
+            follower.hear(&update, &other).ok();
+            follower.hear(&update[..9], &other).unwrap_err();
+        }
+        let followed = follower.step(DT_SECS, &mut other, &other_start, &mut shown);
+        if let Followed::Anew(anew) = followed {
+            other_start = anew;
+        }
+        assert_eq!(allocations() - before, 0, "following, frame {frame}");
+    }
+    assert!(shown.root_position.is_finite() && !other.is_standing());
+}
+
 /// A walker of a crowd allocates only for a step that is longer than any before and for its first rest: slow ones in full detail come first.
 fn assert_crowds_allocate_nothing(mut walker: CrowdWalker, workshop: &mut Workshop) {
     for frame in 0..3000 {
@@ -226,6 +267,10 @@ fn a_step_of_the_generator_allocates_nothing() {
         assert_going_over_allocates_nothing(
             GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap(),
             &skeleton,
+        );
+        assert_following_allocates_nothing(
+            GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap(),
+            GaitGenerator::new(&space, &[], &skeleton, &CONFIG).unwrap(),
         );
         let styled = StyledBody::new(&space, &[], &skeleton).unwrap();
         let mut workshop = Workshop::new(&styled);

@@ -171,7 +171,7 @@
 //!
 //! `live` opens serial ports and sockets for sensors; it brings an HTTP server, TLS and their dependencies. Nothing is on by default.
 //!
-//! Modules in suggested reading order: [`body`], [`model`], [`gait`], [`rig`], [`ground`], [`handover`], [`crowd`], [`sensor`], [`reconstruction`].
+//! Modules in suggested reading order: [`body`], [`model`], [`gait`], [`rig`], [`ground`], [`handover`], [`crowd`], [`network`], [`sensor`], [`reconstruction`].
 
 pub mod body;
 pub mod crowd;
@@ -179,6 +179,7 @@ pub mod gait;
 pub mod ground;
 pub mod handover;
 pub mod model;
+pub mod network;
 pub mod reconstruction;
 pub mod rig;
 pub mod sensor;

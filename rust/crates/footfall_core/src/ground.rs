@@ -13,6 +13,15 @@ pub struct GroundTransform {
 }
 
 impl GroundTransform {
+    /// Returns the place that is seen from here as `place`, in the space that this one is in.
+    #[must_use]
+    pub fn global(&self, place: &Self) -> Self {
+        Self {
+            position: self.position + from_heading(self.heading) * place.position,
+            heading: wrap_angle(self.heading + place.heading),
+        }
+    }
+
     /// Returns a place of the space that this one is in, as it is seen from here.
     #[must_use]
     pub fn local(&self, place: &Self) -> Self {

@@ -45,6 +45,18 @@ pub(crate) fn find(
         })
 }
 
+/// Finds the body of the physics that a character is in: itself or the nearest `CharacterBody3D` above it; the character itself without one.
+pub(crate) fn carrier(character: &Gd<Node3D>) -> Gd<Node3D> {
+    let mut node = Some(character.clone());
+    while let Some(candidate) = node {
+        if candidate.is_class("CharacterBody3D") {
+            return candidate;
+        }
+        node = candidate.get_parent_node_3d();
+    }
+    character.clone()
+}
+
 fn named(
     node: &Gd<Node>,
     skeleton: &Gd<Skeleton3D>,

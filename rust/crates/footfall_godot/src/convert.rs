@@ -94,3 +94,8 @@ pub(crate) fn frame_transform(frame: &Frame) -> Transform3D {
 pub(crate) fn count(count: usize) -> i32 {
     i32::try_from(count).unwrap_or(i32::MAX)
 }
+
+/// A number, or another where it is none.
+pub(crate) const fn finite_or(value: f64, otherwise: f64) -> f64 {
+    if value.is_finite() { value } else { otherwise }
+}

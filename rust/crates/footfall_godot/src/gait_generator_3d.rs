@@ -5,6 +5,7 @@ mod bake;
 mod beside;
 mod detail;
 mod fit;
+mod following;
 #[cfg(feature = "editor")]
 mod foresight;
 mod gait_choice;
@@ -13,6 +14,7 @@ mod methods;
 mod moves;
 mod problems;
 mod reign;
+mod replica;
 mod rival;
 mod seed;
 mod seen;
@@ -22,21 +24,21 @@ mod walk;
 mod watch;
 
 use crate::bones;
-use crate::convert;
+use crate::convert::finite_or;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use crate::root_motion::RootMotion;
 use crate::shipped::{self, Fallback};
 use crate::walk_source::WalkSource;
-use absence::Absent;
+use absence::{Absent, Pending};
 use detail::GaitDetail;
-use footfall_core::Side;
-use footfall_synth::Gait;
 use gait_choice::GaitMode;
 use glam::Vec3;
 use godot::classes::{BoneMap, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
+use problems::Told;
 use reign::{Reign, Wish};
+use replica::Replica;
 use rival::Rivals;
 use session::Session;
 
@@ -205,37 +207,39 @@ pub(crate) struct GaitGenerator3D {
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
 
+    /// Identity of the walk for other peers of a multiplayer game, for a `MultiplayerSynchronizer` such as `controller/gait_synchronizer.tscn` of the add-on: to be replicated
+    /// On Change, and with Spawn. Peers without the multiplayer authority of the node that travels get it, and make that walker's steps. Empty until the walk begins.
+    #[var(get = get_replica_identity, set = set_replica_identity)]
+    replica_identity: PhantomVar<PackedByteArray>,
+
+    /// Progress of the walk for other peers: 24 bytes, to be replicated Always, every 0.03 to 0.07 s. Any may get lost.
+    /// On peers that get it nothing else steers the character; what parts it from its place is walked off, beyond 0.75 m it is set there. Places are those of the parent of the
+    /// node that travels, or of the `CharacterBody3D` that it is in: do not replicate its `position` and `rotation` as well.
+    #[var(get = get_replica_state, set = set_replica_state)]
+    replica_state: PhantomVar<PackedByteArray>,
+
     /// The add-on's own walk, where `model` is empty.
     fallback: Fallback<GaitModel>,
     /// The model and its styles; `None` until they are needed.
     source: Option<WalkSource>,
-    /// The time of the walk to go to in the next frame, seconds.
-    pending_seek: Option<f64>,
     /// True while the editor holds the walk; `None` while `playing` decides.
     preview_paused: Option<bool>,
-    /// The gait that was told last.
-    told_gait: Gait,
-    /// A state that the next walk goes on from.
-    pending_state: Option<PackedByteArray>,
+    pending: Pending,
     /// The walk under way; `None` until the next frame that can start it.
     session: Option<Session>,
     /// The walk that went on before the node left the tree or its skeleton.
     absent: Option<Absent>,
-    /// Problem that was last reported, so that it is reported once.
-    reported: Option<String>,
+    told: Told,
     travelled: RootMotion,
     /// Velocity of the character on the ground in the last frame: metres and radians a second.
     velocity: (Vec3, f32),
     reign: Reign,
     wish: Option<Wish>,
-    /// True when other animation has got the body at once.
-    left: bool,
     rivals: Rivals,
     /// Share of the speed that is left on the ground at hand: 1 on level ground.
     #[init(val = 1.0)]
     slowed: f32,
-    /// The foot whose next landing was announced last.
-    announced: Option<Side>,
+    replica: Replica,
     base: Base<SkeletonModifier3D>,
 }
 
@@ -249,24 +253,8 @@ impl ISkeletonModifier3D for GaitGenerator3D {
         self.put_aside();
     }
 
-    // May come before `ready`, outside a frame, and more than once a frame; then `delta` is 0.
     fn process_modification_with_delta(&mut self, delta: f64) {
-        let Some(skeleton) = self.base().get_skeleton() else {
-            return;
-        };
-        if !skeleton.is_inside_tree() || convert::is_flat(skeleton.get_global_transform()) {
-            return;
-        }
-        if let Some(problem) = self.rivalry(&skeleton) {
-            self.report(problem);
-            return;
-        }
-        match self.take_session(&skeleton) {
-            Ok(session) => self.walk(session, skeleton, delta),
-            // Without time passing the node may still be about to get what it lacks.
-            Err(problem) if delta > 0.0 => self.report(problem),
-            Err(_) => {}
-        }
+        self.pass_frame(delta);
     }
 
     fn get_configuration_warnings(&self) -> PackedStringArray {
@@ -304,6 +292,10 @@ impl GaitGenerator3D {
     #[signal]
     fn taken_over();
 
+    /// A peer's message about this walk is refused: `reason` says why and what to do. Emitted every five seconds at most; the walk goes on as before.
+    #[signal]
+    fn replica_refused(reason: GString);
+
     /// After `hand_over()`: the pose is that of what else animates the skeleton.
     #[signal]
     fn handed_over();
@@ -311,56 +303,63 @@ impl GaitGenerator3D {
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
         self.model = shipped::instead_of_new(model, shipped::WALK, |model| model.bind().is_new());
-        self.source = None;
-        self.restart();
+        self.renew();
     }
 
     #[func]
     fn set_styles(&mut self, styles: Array<Option<Gd<GaitStyle>>>) {
         self.styles = styles;
-        self.source = None;
-        self.restart();
+        self.renew();
     }
 
     #[func]
     fn set_style_weights(&mut self, style_weights: PackedFloat32Array) {
-        let sizes_differ = style_weights.len() != self.style_weights.len();
-        self.style_weights = style_weights;
-        if sizes_differ {
-            self.base_mut().update_configuration_warnings();
-        }
-        self.redraw_way();
+        self.weigh_styles(style_weights);
     }
 
     #[func]
     fn set_speed(&mut self, speed: f64) {
-        if speed.is_finite() {
-            self.speed = speed.max(0.0);
-            self.redraw_way();
-        }
+        self.speed = finite_or(speed, self.speed).max(0.0);
+        self.redraw_way();
     }
 
     #[func]
     fn set_turn_rate(&mut self, turn_rate: f64) {
-        if turn_rate.is_finite() {
-            self.turn_rate = turn_rate;
-            self.redraw_way();
-        }
+        self.turn_rate = finite_or(turn_rate, self.turn_rate);
+        self.redraw_way();
     }
 
     #[func]
     fn set_direction(&mut self, direction: f64) {
-        if direction.is_finite() {
-            self.direction = direction;
-            self.redraw_way();
-        }
+        self.direction = finite_or(direction, self.direction);
+        self.redraw_way();
     }
 
     #[func]
     fn set_crouch(&mut self, crouch: f64) {
-        if crouch.is_finite() {
-            self.crouch = crouch.clamp(0.0, 1.0);
-        }
+        self.crouch = finite_or(crouch, self.crouch).clamp(0.0, 1.0);
+    }
+
+    #[func]
+    fn get_replica_identity(&self) -> PackedByteArray {
+        self.tell_identity()
+    }
+
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_replica_identity(&mut self, identity: PackedByteArray) {
+        self.hear_identity(&identity);
+    }
+
+    #[func]
+    fn get_replica_state(&self) -> PackedByteArray {
+        self.tell_state()
+    }
+
+    #[func]
+    #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
+    fn set_replica_state(&mut self, state: PackedByteArray) {
+        self.hear_state(&state);
     }
 
     #[func]

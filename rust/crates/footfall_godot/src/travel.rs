@@ -1,7 +1,7 @@
 //! The node that travels, and how it does.
 
-use crate::convert;
 use crate::skeleton_binding::SkeletonBinding;
+use crate::{character, convert};
 use footfall_core::rotation;
 use footfall_ik::placement::Frame;
 use footfall_synth::GroundTransform;
@@ -12,9 +12,14 @@ use godot::prelude::*;
 /// Change of size that is rounding, not growth.
 const LEAST_GROWTH: f32 = 1e-3;
 
+/// A character that is put elsewhere by less than this up or down stays on its floor, metres.
+const SAME_FLOOR_M: f32 = 0.3;
+
 /// A body on a skeleton, and the character that it carries along.
 pub(crate) struct Traveller {
     character: Gd<Node3D>,
+    /// The body of the physics that the character is in, or the character itself: who is put elsewhere.
+    carrier: Gd<Node3D>,
     pub(crate) binding: SkeletonBinding,
     start_from_ground: GroundTransform,
     /// Size of the character relative to its size when it was measured.
@@ -61,12 +66,13 @@ impl Travel {
 
 impl Traveller {
     /// A character that is where `start_from_ground` says.
-    pub(crate) const fn new(
+    pub(crate) fn new(
         character: Gd<Node3D>,
         binding: SkeletonBinding,
         start_from_ground: GroundTransform,
     ) -> Self {
         Self {
+            carrier: character::carrier(&character),
             character,
             binding,
             start_from_ground,
@@ -76,7 +82,11 @@ impl Traveller {
 
     /// Returns whether this still is the character and its skeleton as they were, but for the size.
     pub(crate) fn is_for(&mut self, skeleton: &Gd<Skeleton3D>) -> bool {
-        if !self.character.is_instance_valid() || !self.character.is_inside_tree() {
+        let nodes = [&self.character, &self.carrier];
+        if !nodes
+            .into_iter()
+            .all(|node| node.is_instance_valid() && node.is_inside_tree())
+        {
             return false;
         }
         let Some(scale) = self.binding.scale_to(skeleton, &self.character) else {
@@ -136,6 +146,44 @@ impl Traveller {
         let way = self.world_from_ground().rotation * away;
         let place = self.character.get_global_position() + convert::vector3(way);
         self.character.set_global_position(place);
+    }
+
+    /// The ground under the body in the space of the carrier's parent.
+    pub(crate) fn parent_from_ground(&self) -> GroundTransform {
+        let ground = self.parent().local(&self.world_from_ground());
+        let ahead = ground.rotation * Vec3::Z;
+        GroundTransform {
+            position: ground.position,
+            heading: ahead.x.atan2(ahead.z),
+        }
+    }
+
+    /// Puts the carrier elsewhere: the ground under the body to a place of the space of its parent. Somebody who is hardly higher or lower stays on the floor.
+    pub(crate) fn put(&mut self, parent_from_ground: &GroundTransform) {
+        let parent = self.parent();
+        let before = self.parent_from_ground();
+        let mut after = *parent_from_ground;
+        if (after.position.y - before.position.y).abs() < SAME_FLOOR_M {
+            after.position.y = before.position.y;
+        }
+        let turn = rotation::from_heading(after.heading - before.heading);
+        let shift = after.position - turn * before.position;
+        let after_from_before = Affine3A::from_rotation_translation(turn, shift);
+        let world_from_parent =
+            Affine3A::from_rotation_translation(parent.rotation, parent.position);
+        let moved = world_from_parent * after_from_before * world_from_parent.inverse();
+        let moved = convert::transform(convert::rotation(&moved), moved.translation.into());
+        let place = moved * self.carrier.get_global_transform();
+        self.carrier.set_global_transform(place);
+        self.carrier.reset_physics_interpolation();
+    }
+
+    /// The axes that the carrier's place is given in, without any scale.
+    fn parent(&self) -> Frame {
+        let parent = self.carrier.get_parent_node_3d();
+        let parent = parent.filter(|_| !self.carrier.is_set_as_top_level());
+        let transform = parent.map_or(Transform3D::IDENTITY, |node| node.get_global_transform());
+        convert::frame(convert::unscaled(transform))
     }
 
     /// The body has gone to a place.

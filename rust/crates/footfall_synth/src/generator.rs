@@ -60,7 +60,7 @@ pub struct GaitGenerator {
     pub(crate) moves: Option<Moves>,
     /// The jump that is waited for.
     pub(crate) asked_jump: Option<Leap>,
-    footsteps: Vec<Footstep>,
+    pub(crate) footsteps: Vec<Footstep>,
     /// The speed forwards that was asked for last, m/s.
     pub(crate) asked_mps: f32,
     start_from_character: GroundTransform,
@@ -201,9 +201,7 @@ impl GaitGenerator {
     ///
     /// A `dt_secs` of 0 gives the same pose again.
     pub fn step(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
-        self.footsteps.clear();
-        let controls = &self.steered(controls);
-        self.asked_mps = controls.velocity().y.max(0.0);
+        let controls = &self.begin_frame(controls);
         if dt_secs > 0.0 {
             self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
         }
@@ -217,6 +215,19 @@ impl GaitGenerator {
             self.next_step(controls);
         }
         self.replan(controls);
+        self.show(dt_secs, controls, out);
+    }
+
+    /// Takes up what is asked for in a frame.
+    pub(crate) fn begin_frame(&mut self, controls: &Controls) -> Controls {
+        self.footsteps.clear();
+        let controls = self.steered(controls);
+        self.asked_mps = controls.velocity().y.max(0.0);
+        controls
+    }
+
+    /// Writes the pose of this moment, with all that moves on top of the steps; `dt_secs` have passed.
+    pub(crate) fn show(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
         let plan_from_character = self.plan_from_character();
         let (frame, next, weight) = self.frames();
         let (facing, _) = blend_near(frame.plan_from_ground, next.plan_from_ground, weight);
@@ -309,7 +320,7 @@ impl GaitGenerator {
         self.steps.source().shape()
     }
 
-    fn next_step(&mut self, controls: &Controls) {
+    pub(crate) fn next_step(&mut self, controls: &Controls) {
         let fastest = self.steps.source().fastest_mps();
         let ask = Ask {
             leap_m: self.next_leap(controls),

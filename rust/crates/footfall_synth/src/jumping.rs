@@ -50,7 +50,8 @@ impl GaitGenerator {
         })
     }
 
-    fn ask_jump(&mut self, leap: Leap) -> bool {
+    /// Asks for this jump, as [`jump`](Self::jump) does for one.
+    pub(crate) fn ask_jump(&mut self, leap: Leap) -> bool {
         let possible = self.moves.as_ref().is_some_and(Moves::can_jump);
         let sensible = leap.way.is_finite() && leap.rise_m.is_finite();
         if !possible || !sensible || leap.rise_m < LEAST_RISE_M {

@@ -23,6 +23,7 @@ mod plan;
 mod planting;
 mod raw;
 mod recording;
+pub mod replica;
 mod rest;
 mod space;
 mod stage;

@@ -5,6 +5,7 @@
 //! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
 //! generated rotations and planted feet disagree about is spread over the swing.
 
+mod aside;
 mod balance;
 mod bounce;
 mod carried;
@@ -26,6 +27,7 @@ mod urge;
 
 use crate::raw::RawFrame;
 use crate::strafe::{Strafe, Turner};
+pub(crate) use aside::Aside;
 pub(crate) use carried::PlanterState;
 use core::ops::Range;
 pub(crate) use cut::Cut;
@@ -96,6 +98,8 @@ pub(crate) struct Course {
     pub(crate) direction: Option<f32>,
     /// Change of speed within it.
     pub(crate) change: SpeedChange,
+    /// Displacement of its end.
+    pub(crate) aside: Aside,
     /// Duration of the whole step, seconds.
     pub(crate) step_secs: f32,
 }

@@ -2,7 +2,7 @@
 
 use crate::detail::Detail;
 use crate::plan::StepShape;
-use crate::planting::{Course, Cut, PlantedFrame, Planter, PlanterState, Pull, SpeedChange};
+use crate::planting::{Aside, Course, Cut, PlantedFrame, Planter, PlanterState, Pull, SpeedChange};
 use crate::raw::{RawFrame, Stride};
 use crate::standing::Amplitude;
 use crate::strafe::{Strafe, sway};
@@ -34,6 +34,8 @@ pub(crate) struct Placing<'a> {
     pub(crate) direction: Option<f32>,
     /// The share of it that had passed when it was planned anew.
     pub(crate) passed: f32,
+    /// Displacement of its end.
+    pub(crate) aside: Aside,
     /// True where legs are to be as long as generated: those of two systems are not true enough for that.
     pub(crate) keeps_lengths: bool,
 }
@@ -178,6 +180,7 @@ impl Stage {
             keeps_lengths: placing.keeps_lengths && [before, strafe] == [Strafe::NONE; 2],
             direction: placing.direction,
             change: placing.change(),
+            aside: placing.aside,
             step_secs: step_secs / (1.0 - placing.passed),
         };
         planter.set_frame_secs(frame_secs);

@@ -4,6 +4,7 @@
 //! and what it took over from the step before (where the feet stood and the last frames of the trajectory). The rest is
 //! made again from the model.
 
+mod aside;
 mod climbing;
 mod feet;
 mod moving;
@@ -16,6 +17,7 @@ use crate::error::SynthError;
 use crate::generator::{GaitGenerator, GeneratorConfig};
 use crate::standing::{Amplitude, Moment};
 use crate::steps::Steps;
+use aside::Led;
 use climbing::Climbing;
 use feet::Feet;
 use footfall_core::{GroundTransform, StepPosition};
@@ -25,9 +27,10 @@ use quick::Quick;
 use running::Running;
 use serde::{Deserialize, Serialize};
 
-/// The version of the layout that this build writes; it reads those before, too, which knew no climbs, no balance, no jumps and no steps that change in their middle,
+/// The version of the layout that this build writes; it reads those before, too, which knew no corrections of the way, no climbs, no balance, no jumps and no steps that change in their middle,
 /// no running and no life in standing.
-const VERSION: u8 = 9;
+const VERSION: u8 = 10;
+const UNLED_VERSION: u8 = 9;
 const LEVEL_VERSION: u8 = 8;
 const UNBALANCED_VERSION: u8 = 7;
 const RUNNING_VERSION: u8 = 6;
@@ -118,9 +121,9 @@ enum Source {
     },
 }
 
-/// State of a walker beyond that: a run, a step that obeys in its middle, a crouch or a jump, how its last landing was balanced, and how it leans into a
-/// climb.
-type More = (Running, Quick, Moving, [f32; 2], Climbing);
+/// State of a walker beyond that: a run, a step that obeys in its middle, a crouch or a jump, how its last landing was balanced, how it leans into a
+/// climb, and how it is led back to its place.
+type More = (Running, Quick, Moving, [f32; 2], Climbing, Led);
 
 /// Progress of a walker's life, behind a [`State`].
 #[derive(Default, Serialize, Deserialize)]
@@ -205,6 +208,7 @@ impl GaitGenerator {
             Moving::of(self),
             balance,
             Climbing::of(self),
+            Led::of(self),
         );
         postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
@@ -217,31 +221,40 @@ impl GaitGenerator {
         let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
         let slow = Quick::of_slow(&state);
         let (still, level) = (Moving::default(), Climbing::default());
+        let free = Led::default();
         let (alive, more): (Alive, More) = match state.version {
             VERSION => postcard::from_bytes(rest)?,
+            UNLED_VERSION => {
+                let (alive, (running, quick, moving, balance, climbing)) =
+                    postcard::from_bytes(rest)?;
+                (alive, (running, quick, moving, balance, climbing, free))
+            }
             LEVEL_VERSION => {
                 let (alive, (running, quick, moving, balance)) = postcard::from_bytes(rest)?;
-                (alive, (running, quick, moving, balance, level))
+                (alive, (running, quick, moving, balance, level, free))
             }
             UNBALANCED_VERSION => {
                 let (alive, (running, quick, moving)) = postcard::from_bytes(rest)?;
-                (alive, (running, quick, moving, [0.0; 2], level))
+                (alive, (running, quick, moving, [0.0; 2], level, free))
             }
             RUNNING_VERSION => {
                 let (alive, running) = postcard::from_bytes(rest)?;
-                (alive, (running, slow, still, [0.0; 2], level))
+                (alive, (running, slow, still, [0.0; 2], level, free))
             }
             WALKING_VERSION => {
                 let alive = postcard::from_bytes(rest)?;
-                (alive, (Running::default(), slow, still, [0.0; 2], level))
+                (
+                    alive,
+                    (Running::default(), slow, still, [0.0; 2], level, free),
+                )
             }
             STILL_VERSION => {
-                let still = (Running::default(), slow, still, [0.0; 2], level);
+                let still = (Running::default(), slow, still, [0.0; 2], level, free);
                 (Alive::default(), still)
             }
             other => return Err(StateError::Version(other)),
         };
-        let (running, quick, moving, balance, climbing) = more;
+        let (running, quick, moving, balance, climbing, led) = more;
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
@@ -249,6 +262,7 @@ impl GaitGenerator {
             quick.is_sensible(),
             moving.is_sensible(),
             climbing.is_sensible(),
+            led.is_sensible(),
             balance.map(f64::from).into_iter().all(is_reasonable),
         ];
         if sensible.contains(&false) {
@@ -261,7 +275,7 @@ impl GaitGenerator {
         };
         match &mut self.steps {
             Steps::Styled(steps) => {
-                let more = (&running, &quick, moving.leap_m, balance);
+                let more = (&running, &quick, moving.leap_m, balance, &led);
                 **steps = state.styled(steps, more, &self.skeleton, &config)?;
             }
             Steps::Switching(steps) => {

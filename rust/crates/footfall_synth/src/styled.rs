@@ -9,7 +9,7 @@ use crate::plan::{Planner, StepShape};
 use crate::space::{Blend, StyleSpace};
 use crate::stage::Stage;
 use crate::steps::{Ask, StepSource, Stretches};
-use crate::walker::{Request, Walker};
+use crate::walker::{Request, WINDOW, Walker};
 use crate::worn::Worn;
 use footfall_core::{Side, Skeleton};
 use glam::Vec2;
@@ -105,6 +105,23 @@ impl StyledSteps {
             self.worn = worn;
         }
     }
+    /// Has the rest of the current step, from a frame of it on, be what is asked for; whether it does.
+    pub(crate) fn go_over(&mut self, ask: &Ask, frame: usize) -> bool {
+        // Styles may have changed since the step began.
+        self.planner.wear(&self.walker.blends()[1].model);
+        let (worn, velocity) = (&self.worn, &mut self.velocity_mps);
+        let request = |before: &Request, frames: f64, passed: f64| {
+            worn.rest_request(ask, before, frames, passed, velocity)
+        };
+        let (planner, walker) = (&mut self.planner, &mut self.walker);
+        let replanned = self
+            .space
+            .at_bench(|bench| walker.replan(planner, frame, request, bench));
+        if replanned {
+            self.obeyed = Obeyed::of(ask);
+        }
+        replanned
+    }
 }
 
 impl StepSource for StyledSteps {
@@ -151,7 +168,8 @@ impl StepSource for StyledSteps {
         self.obeyed = Obeyed::of(ask);
         let gait = self.gait();
         let (request, gait) = self.worn.request(ask, gait, &mut self.velocity_mps);
-        let draw = self.planner.draw(self.walker.step().timing.leading);
+        let next = self.walker.draws()[WINDOW - 1].side;
+        let draw = self.planner.draw(next.other());
         let blend = self.worn.dress(gait);
         self.planner.wear(&blend.model);
         let (planner, walker) = (&mut self.planner, &mut self.walker);
@@ -183,20 +201,7 @@ impl StepSource for StyledSteps {
         if !self.is_news(ask) {
             return false;
         }
-        // Styles may have changed since the step began.
-        self.planner.wear(&self.walker.blends()[1].model);
-        let (worn, velocity) = (&self.worn, &mut self.velocity_mps);
-        let request = |before: &Request, frames: f64, passed: f64| {
-            worn.rest_request(ask, before, frames, passed, velocity)
-        };
-        let (planner, walker) = (&mut self.planner, &mut self.walker);
-        let replanned = self
-            .space
-            .at_bench(|bench| walker.replan(planner, frame, request, bench));
-        if replanned {
-            self.obeyed = Obeyed::of(ask);
-        }
-        replanned
+        self.go_over(ask, frame)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::gait::GaitChoice;
 use crate::generator::GeneratorConfig;
 use crate::pace::tempo_and_stride;
 use crate::plan::{MAX_STEP_SECS, StepShape};
-use crate::planting::PlanterState;
+use crate::planting::{Aside, PlanterState};
 use crate::raw::RawFrame;
 use crate::stage::{Placing, Posture, Stage};
 use crate::standing::{Amplitude, standing_posture};
@@ -281,6 +281,7 @@ impl SwitchingSteps {
                 velocity_mps: self.velocity_mps,
                 velocity_before_mps: self.velocity_mps,
                 passed: 0.0,
+                aside: Aside::NONE,
                 direction: None,
                 keeps_lengths: false,
             },

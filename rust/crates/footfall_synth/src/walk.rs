@@ -5,7 +5,7 @@ use crate::fine_motion::{FineBench, FineTables, neighbours};
 use crate::gait::{Gait, GaitChoice};
 use crate::pace::PaceTable;
 use crate::plan::{Manner, Planner, StepDraw, StepPlan};
-use crate::planting::{Course, PlantedFrame, Planter, SpeedChange};
+use crate::planting::{Aside, Course, PlantedFrame, Planter, SpeedChange};
 use crate::raw::{RawFrame, Stride};
 use crate::recording;
 use crate::space::StyleSpace;
@@ -179,6 +179,7 @@ pub(crate) fn put_on_ground(
         keeps_lengths: true,
         direction: Some(0.0),
         change: SpeedChange::default(),
+        aside: Aside::NONE,
     };
     let mut poses: Vec<Pose> = Vec::new();
     let mut stances: [Vec<[f64; 2]>; 2] = [vec![], vec![]];

@@ -1,5 +1,6 @@
 //! One walker, step after step: planning, trajectory and planting in a row.
 
+mod aside;
 mod origin;
 mod replan;
 
@@ -9,6 +10,7 @@ use crate::error::SynthError;
 use crate::fine_motion::{Scale, neighbours};
 use crate::gait::Gait;
 use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan, StepShape};
+use crate::planting::Aside;
 use crate::rest::Rest;
 use crate::space::Blend;
 use crate::stage::{Placing, Stage};
@@ -79,6 +81,7 @@ impl Walker {
                 planter: None,
                 tie: [0.0; TIE_LEN],
                 rest: None,
+                aside: Aside::NONE,
             },
             stage: Stage::new(skeleton, blend.model.frame_rate_hz, longest),
         }
@@ -106,6 +109,7 @@ impl Walker {
         self.origin.velocity_before_mps = request.velocity_mps;
         self.origin.planter = None;
         self.origin.rest = None;
+        self.origin.aside = Aside::NONE;
         for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
             planner.realise(draw, request.manner, &blend.statistics, plan);
             plan.shape.set_amplitude(request.amplitude);
@@ -192,6 +196,7 @@ impl Walker {
             planter: self.stage.planter_state(),
             tie: self.end,
             rest: None,
+            aside: Aside::NONE,
         }
     }
 
@@ -388,6 +393,7 @@ fn placing<'a>(
         velocity_before_mps: before.gait.seen_from_steps(origin.velocity_before_mps),
         direction: runs.then(|| velocity.x.atan2(velocity.y)),
         passed: rest.map_or(0.0, |rest| rest.passed),
+        aside: if step == 1 { origin.aside } else { Aside::NONE },
         keeps_lengths: true,
     }
 }

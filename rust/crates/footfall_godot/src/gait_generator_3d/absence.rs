@@ -12,10 +12,25 @@ pub(super) struct Absent {
     pub(super) state: Vec<u8>,
 }
 
+/// Requests that wait for the next frame.
+#[derive(Default)]
+pub(super) struct Pending {
+    /// The time of the walk to go to, seconds.
+    pub(super) seek: Option<f64>,
+    /// A state that the next walk goes on from.
+    pub(super) state: Option<PackedByteArray>,
+}
+
 impl GaitGenerator3D {
+    /// Begins a walk by another model or in other styles.
+    pub(super) fn renew(&mut self) {
+        self.source = None;
+        self.restart();
+    }
+
     /// Puts the walk aside: nodes around it change, and who travels is asked anew.
     pub(super) fn put_aside(&mut self) {
-        self.reported = None;
+        self.told.problem = None;
         if let Some(session) = self.session.take() {
             self.absent = Some(Absent {
                 skeleton: session.traveller.skeleton(),

@@ -46,14 +46,19 @@ impl GaitGenerator3D {
 
     /// Has the step that has just begun land at this share of its way.
     pub(crate) fn stretch_step(&mut self, share: f32) {
-        if let Some(session) = &mut self.session {
+        // A replica's foothold was chosen by the walker that it is one of.
+        if let Some(session) = &mut self.session
+            && !self.replica.is_led()
+        {
             session.generator.stretch_step(share);
         }
     }
 
     /// Leaves the current step as it is, whatever else is asked for.
     pub(crate) fn keep_step(&mut self) {
-        if let Some(session) = &mut self.session {
+        if let Some(session) = &mut self.session
+            && !self.replica.is_led()
+        {
             session.generator.keep_step();
         }
     }
@@ -68,6 +73,16 @@ impl GaitGenerator3D {
         if let Some(session) = &mut self.session {
             session.generator.set_grade(grade);
         }
+    }
+
+    /// Takes weights of the styles.
+    pub(super) fn weigh_styles(&mut self, style_weights: PackedFloat32Array) {
+        let sizes_differ = style_weights.len() != self.style_weights.len();
+        self.style_weights = style_weights;
+        if sizes_differ {
+            self.base_mut().update_configuration_warnings();
+        }
+        self.redraw_way();
     }
 
     /// Shares of the body's parts that are the walk's. A weight that is not a number counts as 1.

@@ -61,7 +61,7 @@ impl GaitGenerator3D {
     pub(super) fn restart(&mut self) {
         self.session = None;
         self.absent = None;
-        self.reported = None;
+        self.told.problem = None;
         self.base_mut().update_configuration_warnings();
     }
 
@@ -72,7 +72,7 @@ impl GaitGenerator3D {
         if seconds.is_finite() {
             self.session = None;
             self.absent = None;
-            self.pending_seek = Some(seconds.clamp(0.0, 3600.0));
+            self.pending.seek = Some(seconds.clamp(0.0, 3600.0));
         }
     }
 
@@ -98,7 +98,7 @@ impl GaitGenerator3D {
     /// It holds the walk and not the place of the character: save that beside it.
     #[func]
     fn get_state(&self) -> PackedByteArray {
-        match (&self.session, &self.pending_state) {
+        match (&self.session, &self.pending.state) {
             (Some(session), None) => PackedByteArray::from(session.generator.state()),
             (_, Some(pending)) => pending.clone(),
             (None, None) => {
@@ -116,6 +116,6 @@ impl GaitGenerator3D {
     /// `seed`, `phase` and `variation` keep their values, for the next walk that starts anew.
     #[func]
     fn set_state(&mut self, state: PackedByteArray) {
-        self.pending_state = Some(state);
+        self.pending.state = Some(state);
     }
 }

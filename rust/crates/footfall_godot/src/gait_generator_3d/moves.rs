@@ -70,7 +70,9 @@ impl GaitGenerator3D {
     /// nothing happens.
     #[func]
     fn push(&mut self, impulse: Vector3) {
-        if let Some(session) = &mut self.session {
+        if let Some(session) = &mut self.session
+            && !self.replica.is_led()
+        {
             let ground = session.traveller.world_from_ground();
             let way = ground.rotation.inverse() * convert::vec3(impulse);
             let velocity = Vec2::new(way.x, way.z) / (BODY_KG * session.traveller.scale());
@@ -79,7 +81,8 @@ impl GaitGenerator3D {
     }
 
     fn with_session(&mut self, ask: impl FnOnce(&mut Session) -> bool) -> bool {
-        self.session.as_mut().is_some_and(ask)
+        let session = self.session.as_mut();
+        session.filter(|_| !self.replica.is_led()).is_some_and(ask)
     }
 
     /// Emits what became of a jump.

@@ -4,7 +4,20 @@ use super::GaitGenerator3D;
 use crate::bones;
 use crate::gait_model::NO_STYLES;
 use crate::report;
+use footfall_core::Side;
+use footfall_synth::Gait;
 use godot::prelude::*;
+
+/// Facts that were told last, so that each is told once.
+#[derive(Default)]
+pub(super) struct Told {
+    pub(super) gait: Gait,
+    /// The foot whose next landing was announced.
+    pub(super) landing: Option<Side>,
+    pub(super) problem: Option<String>,
+    /// True when other animation has got the body at once, and nobody was told.
+    pub(super) left: bool,
+}
 
 impl GaitGenerator3D {
     pub(super) fn problems(&self) -> PackedStringArray {
@@ -39,10 +52,10 @@ impl GaitGenerator3D {
 
     /// Logs what keeps the character from walking, once.
     pub(super) fn report(&mut self, problem: String) {
-        if self.reported.as_ref() == Some(&problem) {
+        if self.told.problem.as_ref() == Some(&problem) {
             return;
         }
         report::tell(&self.base_mut(), &problem);
-        self.reported = Some(problem);
+        self.told.problem = Some(problem);
     }
 }

@@ -103,7 +103,7 @@ impl GaitGenerator3D {
                     session.handover = None;
                     self.reign = Reign::Away;
                     self.wish = None;
-                    self.left = true;
+                    self.told.left = true;
                 } else if session.watched.in_world.is_known() {
                     session.leave(secs, self.velocity.0, self.velocity.1);
                     self.reign = Reign::Leaving;
@@ -129,7 +129,7 @@ impl GaitGenerator3D {
         let now = Now::of(&Engine::singleton());
         self.travelled.add(Transform3D::IDENTITY, now);
         self.velocity = (Vec3::ZERO, 0.0);
-        if core::mem::take(&mut self.left) {
+        if core::mem::take(&mut self.told.left) {
             self.signals().handed_over().emit();
         }
     }
@@ -173,6 +173,10 @@ impl GaitGenerator3D {
 
     /// The controls that a walk follows now.
     pub(super) fn controls(&self) -> Controls {
+        if self.replica.is_led() {
+            // Until its walker is heard of.
+            return Controls::STAND;
+        }
         Controls {
             speed_mps: self.speed as f32 * self.slowed,
             turn_rate_radps: self.turn_rate as f32,

@@ -166,6 +166,11 @@ impl Session {
         let dt_secs = dt_secs as f32;
         let controls = self.in_own_metres(controls);
         self.generator.step(dt_secs, &controls, &mut self.pose);
+        self.go_to_place(dt_secs)
+    }
+
+    /// Travels to where the generator is, and hands over from the motion before.
+    pub(super) fn go_to_place(&mut self, dt_secs: f32) -> Travel {
         let place = self.generator.start_from_character();
         let travel = self.traveller.go_to(place);
         let ground = Frame::from(place);

@@ -5,6 +5,7 @@ use super::gait_choice::name_of;
 use super::moves::Flight;
 use super::reign::Reign;
 use super::session::Session;
+use crate::convert;
 use crate::gait_model::NO_STYLES;
 use crate::report;
 use crate::root_motion::Now;
@@ -14,6 +15,26 @@ use godot::classes::{Engine, Skeleton3D};
 use godot::prelude::*;
 
 impl GaitGenerator3D {
+    /// Lets a frame pass. It may come before `ready`, outside a frame, and more than once a frame; then `delta` is 0.
+    pub(super) fn pass_frame(&mut self, delta: f64) {
+        let Some(skeleton) = self.base().get_skeleton() else {
+            return;
+        };
+        if !skeleton.is_inside_tree() || convert::is_flat(skeleton.get_global_transform()) {
+            return;
+        }
+        if let Some(problem) = self.rivalry(&skeleton) {
+            self.report(problem);
+            return;
+        }
+        match self.take_session(&skeleton) {
+            Ok(session) => self.walk(session, skeleton, delta),
+            // Without time passing the node may still be about to get what it lacks.
+            Err(problem) if delta > 0.0 => self.report(problem),
+            Err(_) => {}
+        }
+    }
+
     /// The walk under way, or a new one where there is none, the model was replaced or the body changed.
     pub(super) fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
         let source = self.take_source()?;
@@ -52,6 +73,9 @@ impl GaitGenerator3D {
 
     /// Configuration of the walk: its seed, its phase and its place.
     pub(super) fn config(&self) -> GeneratorConfig {
+        if let Some(config) = self.replica_config() {
+            return config;
+        }
         let (seed, begin) = if self.seed == 0 {
             (self.own_seed(), self.own_phase())
         } else {
@@ -76,7 +100,7 @@ impl GaitGenerator3D {
 
     /// One frame: time passes, the character travels, bones are posed, footsteps are emitted.
     pub(super) fn walk(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
-        self.reported = None;
+        self.told.problem = None;
         let in_editor = Engine::singleton().is_editor_hint();
         let holds = if in_editor {
             self.is_preview_paused()
@@ -87,20 +111,18 @@ impl GaitGenerator3D {
         let dt_secs = if holds { 0.0 } else { delta.max(0.0) };
         let travels = self.root_motion && !in_editor;
         let weights = self.layer_weights();
-        session
-            .generator
-            .set_style_weights(self.style_weights.as_slice());
+        self.pass_replica(&mut session, dt_secs);
         session.generator.set_detail(self.detail.into());
         session
             .generator
             .set_standing_motion(self.standing_motion as f32);
-        if let Some(state) = self.pending_state.take()
+        if let Some(state) = self.pending.state.take()
             && let Err(problem) = session.restore(state.as_slice())
         {
             let node = self.base().get_path();
             godot_warn!("{node}: the state is refused: {problem}");
         }
-        if let Some(secs) = self.pending_seek.take() {
+        if let Some(secs) = self.pending.seek.take() {
             session.skip(secs, self.controls());
         }
         if let Err(problem) = self.fulfil(&mut session, &skeleton, delta.max(0.0)) {
@@ -115,7 +137,11 @@ impl GaitGenerator3D {
             let (travel, out) = session.go_out(&skeleton, delta.max(0.0));
             (travel, false, out)
         } else {
-            let travel = session.advance(dt_secs, self.controls());
+            let controls = self.controls();
+            let travel = match self.replica.follower() {
+                Some(follower) => session.follow(dt_secs, follower),
+                None => session.advance(dt_secs, controls),
+            };
             self.remember_velocity(&travel, dt_secs);
             (travel, session.has_arrived(), false)
         };
@@ -141,6 +167,7 @@ impl GaitGenerator3D {
         let gait = session.generator.gait();
         let flight = Flight::between(jumped, session.generator.jump_phase());
         self.session = Some(session);
+        self.tell_refusal();
         if arrived {
             self.signals().taken_over().emit();
         }
@@ -155,13 +182,13 @@ impl GaitGenerator3D {
         if !silent {
             self.tell_flight(flight, &footsteps);
         }
-        if gait != self.told_gait && !silent {
-            self.told_gait = gait;
+        if gait != self.told.gait && !silent {
+            self.told.gait = gait;
             self.signals().gait_changed().emit(&name_of(gait));
         }
         let side = foothold.map(|(side, ..)| side);
-        if side != self.announced {
-            self.announced = side;
+        if side != self.told.landing {
+            self.told.landing = side;
             if let Some((side, position, secs)) = foothold {
                 let foot = StringName::from(side.name());
                 self.signals()

@@ -31,6 +31,8 @@ pub(crate) struct Planner {
     walker: [f64; MAX_COMPONENTS],
     /// The last stride's weights.
     weights: [f64; MAX_COMPONENTS],
+    /// Strides that were drawn.
+    strides: u32,
 }
 
 impl Planner {
@@ -42,6 +44,7 @@ impl Planner {
             variation,
             walker: [0.0; MAX_COMPONENTS],
             weights: [0.0; MAX_COMPONENTS],
+            strides: 0,
         };
         for component in 0..model.variation.walker.len().min(MAX_COMPONENTS) {
             planner.walker[component] = planner.normal(MAX_WALKER_WEIGHT);
@@ -88,6 +91,16 @@ impl Planner {
         self.rng.get_word_pos() as u64
     }
 
+    /// Strides that were drawn since chance began.
+    pub(crate) const fn strides(&self) -> u32 {
+        self.strides
+    }
+
+    /// Takes the number of strides that were drawn for this.
+    pub(crate) const fn count_strides(&mut self, strides: u32) {
+        self.strides = strides;
+    }
+
     /// Takes chance up where [`chance_position`](Self::chance_position) was, after these steps.
     pub(crate) fn resume(&mut self, chance_position: u64, last: &[StepDraw]) {
         self.rng.set_word_pos(u128::from(chance_position));
@@ -100,6 +113,7 @@ impl Planner {
     /// the same weights: drawn one by one, a slow step would be followed by a fast one as often as not, and the walker limp.
     pub(crate) fn draw(&mut self, side: Side) -> StepDraw {
         if side == Side::Left {
+            self.strides = self.strides.wrapping_add(1);
             let memory = self.model.variation.step_correlation.clamp(0.0, 0.99);
             let news = (1.0 - memory * memory).sqrt();
             for component in 0..MAX_COMPONENTS {

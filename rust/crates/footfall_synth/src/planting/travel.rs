@@ -68,6 +68,7 @@ impl Planter {
         self.drift(timing, out);
         self.even(timing, course.change, out);
         self.thrust(timing, course, out);
+        course.aside.lead(timing, out);
         if course.keeps_lengths {
             self.keep_lengths(raw, timing, out);
         }
@@ -117,7 +118,8 @@ impl Planter {
                 let onset = smooth_step(time / (TURN_ONSET * timing.frames as f32));
                 self.state.turn_rate = from_rate + onset * (course.turn_rate - from_rate);
                 self.state.heading += self.state.turn_rate * self.frame_secs
-                    + (facing - facing_before) * (share(time + 1.0) - share(time));
+                    + (facing - facing_before + course.aside.turn)
+                        * (share(time + 1.0) - share(time));
             }
         }
         from

@@ -1,6 +1,6 @@
 //! Parts of a state that each kind of steps adds, and their restoration.
 
-use super::{Quick, Running, Source, State, StateError, detail_of};
+use super::{Led, Quick, Running, Source, State, StateError, detail_of};
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
 use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
@@ -58,7 +58,7 @@ impl State {
     pub(super) fn styled(
         &self,
         current: &StyledSteps,
-        (running, quick, leap_m, balance): (&Running, &Quick, Option<f32>, [f32; 2]),
+        (running, quick, leap_m, balance, led): (&Running, &Quick, Option<f32>, [f32; 2], &Led),
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<StyledSteps, StateError> {
@@ -128,6 +128,7 @@ impl State {
             }),
             tie: [0.0; TIE_LEN],
             rest: quick.rest(),
+            aside: led.aside(),
         };
         if tie.len() == TIE_LEN {
             origin.tie.copy_from_slice(tie);
@@ -136,6 +137,7 @@ impl State {
         let [before, now, next] = weights.each_ref().map(|w| space.blend(w));
         let [gait_before, gait] = running.gaits();
         planner.resume(self.chance_position, &draws);
+        planner.count_strides(led.strides);
         let mut walker = Walker::new(skeleton, &now);
         // A walker that goes back a little, as in games that predict, is measured already.
         let known =

@@ -2,7 +2,7 @@
 
 use super::TIE;
 use crate::plan::Manner;
-use crate::planting::PlanterState;
+use crate::planting::{Aside, PlanterState};
 use crate::rest::Rest;
 use crate::standing::Amplitude;
 use footfall_model::FEATURE_COUNT;
@@ -40,4 +40,6 @@ pub(crate) struct Origin {
     pub(crate) tie: [f32; TIE_LEN],
     /// Rest of a step that was planned anew, where the current one is that.
     pub(crate) rest: Option<Rest>,
+    /// Displacement of the step's end.
+    pub(crate) aside: Aside,
 }

@@ -3,6 +3,7 @@
 use super::{Origin, Request, Walker, placing};
 use crate::detail::Detail;
 use crate::plan::Planner;
+use crate::planting::Aside;
 use crate::rest::Rest;
 use crate::standing::Amplitude;
 use crate::workbench::Workbench;
@@ -48,6 +49,7 @@ impl Walker {
             planter: Some(feet),
             tie,
             rest: Some(rest),
+            aside: Aside::NONE,
         };
         self.stage.resume(&feet);
         self.stale = false;

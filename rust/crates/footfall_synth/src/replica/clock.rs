@@ -1,0 +1,130 @@
+//! The time at which what a sender did is done here: a little later than it is heard of, by as much as updates are late or get lost.
+
+use super::update::TICK_SECS;
+
+/// Sender's clocks that run slower than ours are followed by so many seconds a second.
+const DRIFT: f64 = 0.01;
+
+/// Steps are made later than the quickest update comes by so many intervals between updates, so that two may be lost; and so many times what updates are late.
+const INTERVALS: f64 = 2.2;
+const LATENESSES: f64 = 1.5;
+const MARGIN_SECS: [f64; 2] = [0.03, 0.5];
+
+/// Interval between updates before any is known, and the longest that counts, seconds.
+const INTERVAL_SECS: f64 = 0.05;
+const LONGEST_SECS: f64 = 0.25;
+
+/// Weight of news.
+const NEWS: f64 = 0.05;
+
+/// Sender's time and ours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    heard: Option<Heard>,
+    interval_secs: f64,
+    lateness_secs: f64,
+}
+
+/// Time of the last update.
+#[derive(Clone, Copy, Debug)]
+struct Heard {
+    ticks: u16,
+    sent_secs: f64,
+    at_secs: f64,
+    /// Our time less the sender's, for the quickest updates.
+    offset_secs: f64,
+}
+
+impl Clock {
+    pub(super) const fn new() -> Self {
+        Self {
+            heard: None,
+            interval_secs: INTERVAL_SECS,
+            lateness_secs: 0.0,
+        }
+    }
+
+    /// An update comes at `now_secs` of our time; returns when it was sent, seconds of the sender's time.
+    pub(super) fn hear(&mut self, now_secs: f64, ticks: u16) -> f64 {
+        let Some(last) = self.heard else {
+            self.heard = Some(Heard {
+                ticks,
+                sent_secs: 0.0,
+                at_secs: now_secs,
+                offset_secs: now_secs,
+            });
+            return 0.0;
+        };
+        let passed = f64::from(ticks.wrapping_sub(last.ticks)) * TICK_SECS;
+        let sent_secs = last.sent_secs + passed;
+        let sample = now_secs - sent_secs;
+        let drifted = last.offset_secs + DRIFT * (now_secs - last.at_secs).max(0.0);
+        let offset_secs = sample.min(drifted);
+        let late = sample - offset_secs;
+        if late > LONGEST_SECS {
+            // The sender stood still or its clock did: what it says from here on is another time.
+            self.heard = Some(Heard {
+                ticks,
+                sent_secs,
+                at_secs: now_secs,
+                offset_secs: sample,
+            });
+            return sent_secs;
+        }
+        self.lateness_secs += NEWS * (late - self.lateness_secs);
+        self.interval_secs += NEWS * (passed.min(LONGEST_SECS) - self.interval_secs);
+        self.heard = Some(Heard {
+            ticks,
+            sent_secs,
+            at_secs: now_secs,
+            offset_secs,
+        });
+        sent_secs
+    }
+
+    /// Our time at which something is done that the sender did at a time of its own.
+    pub(super) fn due_secs(&self, sent_secs: f64) -> f64 {
+        let margin = INTERVALS * self.interval_secs + LATENESSES * self.lateness_secs;
+        let [least, most] = MARGIN_SECS;
+        let offset = self.heard.map_or(0.0, |heard| heard.offset_secs);
+        sent_secs + offset + margin.clamp(least, most)
+    }
+
+    /// Our time at which the quickest update tells what the sender does at a time of its own.
+    pub(super) fn quickest_secs(&self, sent_secs: f64) -> f64 {
+        sent_secs + self.heard.map_or(0.0, |heard| heard.offset_secs)
+    }
+
+    /// Seconds of ours since the last update.
+    pub(super) fn silent_secs(&self, now_secs: f64) -> f64 {
+        self.heard.map_or(0.0, |heard| now_secs - heard.at_secs)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn delay_is_that_of_the_quickest_update_and_a_margin() {
+        let mut clock = Clock::new();
+        let mut sent = 0.0;
+        for n in 0..600_u32 {
+            let late = f64::from(n % 5) * 0.01;
+            let ticks = (50_000 + n * 12) as u16;
+            sent = clock.hear(f64::from(n) * 12.0 * TICK_SECS + 0.2 + late, ticks);
+        }
+        // The first update set zero.
+        let first = 0.2;
+        let delay = clock.due_secs(sent) - (sent + first);
+        assert!((0.1..0.2).contains(&delay), "{delay} s");
+    }
+
+    #[test]
+    fn a_time_that_wraps_goes_on() {
+        let mut clock = Clock::new();
+        clock.hear(0.0, 65_530);
+        let sent = clock.hear(0.05, 6);
+        assert!((sent - 12.0 * TICK_SECS).abs() < 1e-9, "{sent}");
+    }
+}

@@ -1,0 +1,416 @@
+//! A walker that makes another's steps.
+
+use super::clock::Clock;
+use super::gate::Gate;
+use super::led::{Aim, Beginning};
+use super::queue::{Planning, Queue};
+use super::update::{Planned, WalkUpdate};
+use super::{ReplicaError, WalkIdentity};
+use crate::controls::Controls;
+use crate::generator::{GaitGenerator, MAX_DT_SECS};
+use crate::moves::Leap;
+use footfall_core::{GroundTransform, Pose};
+
+/// Walks go faster or slower by this share at most to keep their time, and by as much of it as makes good what they are late within this time, seconds.
+const MOST_HASTE: f64 = 0.12;
+const IN_TIME_SECS: f64 = 0.4;
+
+/// A walk that is farther from its place or later than this is set anew, metres, radians and seconds.
+const LOST_M: f32 = 0.75;
+const LOST_HEIGHT_M: f32 = 1.5;
+const LOST_RAD: f32 = 1.6;
+const LOST_SECS: f64 = 1.5;
+
+/// Whoever rests so far from the place steps over to it, metres and radians, after resting for so long, seconds.
+const OFF_M: f32 = 0.04;
+const OFF_RAD: f32 = 0.17;
+const OFF_SECS: f32 = 0.4;
+
+/// A step that was heard of late is planned anew when it ends so far from where it should, metres.
+const LATE_OFF_M: f32 = 0.03;
+
+/// Turning that is hardly any: asked of whoever is to step on the spot, rad/s.
+const ON_THE_SPOT_RADPS: f32 = 0.06;
+
+/// Without news for so long a walker stands, seconds.
+const SILENCE_SECS: f64 = 3.0;
+
+/// Outcome of a frame of following.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Followed {
+    /// Nothing was heard yet; the walker stands where it is.
+    Waiting,
+    /// The walk went on.
+    Walking,
+    /// The walk began anew, with its start at this place of the shared space. Whoever shows it lets the pose before fade.
+    Anew(GroundTransform),
+}
+
+/// Leads a [`GaitGenerator`] through the steps of a walker on another machine.
+///
+/// The generator has to be made with the identity's [`config`](WalkIdentity::config), the same model and a body of the same proportions. The follower takes the
+/// place of [`GaitGenerator::step`]: nothing else has to let time pass. It allocates nothing in [`step`](Self::step) and [`hear`](Self::hear).
+#[derive(Clone, Debug)]
+pub struct WalkFollower {
+    gate: Gate,
+    clock: Clock,
+    queue: Queue,
+    now_secs: f64,
+    /// The last update.
+    heard: Option<WalkUpdate>,
+    /// The step that is made, as the sender planned it.
+    made: Option<Planning>,
+    /// True once the walker stands and waits for its first update.
+    waits: bool,
+    begun: bool,
+    /// The step that was planned anew to lead where it should.
+    amended: Option<Planned>,
+    /// Since the walker came to rest, seconds.
+    rested_secs: f32,
+    /// True while a jump that was heard of is made.
+    jumped: bool,
+}
+
+impl WalkFollower {
+    /// One that follows the walker of this identity.
+    pub fn new(identity: &WalkIdentity) -> Self {
+        Self {
+            gate: Gate::new(identity.tag()),
+            clock: Clock::new(),
+            queue: Queue::default(),
+            now_secs: 0.0,
+            heard: None,
+            made: None,
+            waits: false,
+            begun: false,
+            amended: None,
+            rested_secs: 0.0,
+            jumped: false,
+        }
+    }
+
+    /// Takes a new identity of the same walker, as after it was put elsewhere; the generator has to be made anew where
+    /// [`is_same_walker`](WalkIdentity::is_same_walker) says so.
+    ///
+    /// # Errors
+    /// [`ReplicaError::Flood`] when identities come too often.
+    pub fn become_walker(&mut self, identity: &WalkIdentity) -> Result<(), ReplicaError> {
+        if self.gate.become_walker(identity.tag())? {
+            self.queue.pass_all();
+            (self.heard, self.made, self.amended) = (None, None, None);
+            self.begun = false;
+        }
+        Ok(())
+    }
+
+    /// Hears an update.
+    ///
+    /// # Errors
+    /// [`ReplicaError`] when it is refused; then nothing changes.
+    pub fn hear(&mut self, bytes: &[u8], generator: &GaitGenerator) -> Result<(), ReplicaError> {
+        let update = WalkUpdate::unpack(bytes)?;
+        self.gate.check(&update)?;
+        let sent_secs = self.clock.hear(self.now_secs, update.time);
+        let planning = Planning::of(&update, sent_secs, generator.frame_rate_hz);
+        if self.queue.hear(planning)
+            && let Some(made) = &mut self.made
+        {
+            made.correct(&planning);
+        }
+        self.heard = Some(update);
+        Ok(())
+    }
+
+    /// Time between what the sender did and what is shown of it here, beyond the time that messages take, seconds.
+    pub fn delay_secs(&self) -> f64 {
+        self.clock.due_secs(0.0) - self.clock.quickest_secs(0.0)
+    }
+
+    /// Lets time pass and writes the pose, as [`GaitGenerator::step`] does. `shared_from_start` is where the walk began in the space that all machines share.
+    pub fn step(
+        &mut self,
+        dt_secs: f32,
+        generator: &mut GaitGenerator,
+        shared_from_start: &GroundTransform,
+        out: &mut Pose,
+    ) -> Followed {
+        let dt_secs = if dt_secs.is_finite() {
+            dt_secs.clamp(0.0, MAX_DT_SECS)
+        } else {
+            0.0
+        };
+        self.now_secs += f64::from(dt_secs);
+        self.gate.pass(dt_secs);
+        let Some(heard) = self.heard else {
+            if !self.waits {
+                generator.stand();
+                self.waits = true;
+            }
+            generator.step(dt_secs, &Controls::STAND, out);
+            return Followed::Waiting;
+        };
+        if !self.begun || self.is_lost(generator, shared_from_start) {
+            return self.begin(&heard, generator, out);
+        }
+        let controls = self.controls();
+        generator.begin_frame(&controls);
+        let mut before = generator.position;
+        let pace = 1.0 + self.haste(generator);
+        generator.pass_led(dt_secs * generator.frame_rate_hz * pace as f32);
+        while generator.has_ended() {
+            if !self.next_step(dt_secs, generator, shared_from_start) {
+                generator.rest_led();
+                break;
+            }
+            before = 0.0;
+        }
+        self.obey(generator, shared_from_start, before);
+        self.jump(&heard, generator, shared_from_start);
+        let controls = Controls {
+            crouch: heard.controls.crouch,
+            ..self.controls()
+        };
+        generator.show(dt_secs, &controls, out);
+        Followed::Walking
+    }
+
+    /// Controls of the step that is made.
+    fn controls(&self) -> Controls {
+        self.made.map_or(Controls::STAND, |made| made.controls)
+    }
+
+    /// Returns true when the walk is too far from where it should be to walk there.
+    fn is_lost(&self, generator: &GaitGenerator, shared_from_start: &GroundTransform) -> bool {
+        let late = self
+            .queue
+            .next()
+            .is_some_and(|next| self.now_secs - self.clock.due_secs(next.at_secs) > LOST_SECS);
+        let (number, _) = generator.progress();
+        let aim = if generator.is_standing() {
+            self.resting(shared_from_start)
+        } else {
+            let made = self.made.filter(|made| made.planned.number == number);
+            made.map(|made| made.aim(shared_from_start))
+        };
+        let Some(aim) = aim.filter(|_| generator.jump_phase().is_none()) else {
+            return late;
+        };
+        let off = generator.off(&aim);
+        late || aim.place.position.y.abs() > LOST_HEIGHT_M
+            || off.way.length() > LOST_M
+            || off.turn.abs() > LOST_RAD
+    }
+
+    /// Begins anew with what was heard last.
+    fn begin(
+        &mut self,
+        heard: &WalkUpdate,
+        generator: &mut GaitGenerator,
+        out: &mut Pose,
+    ) -> Followed {
+        let newest = self.queue.newest().copied().or(self.made);
+        let Some(mut newest) = newest else {
+            return Followed::Waiting;
+        };
+        if heard.rests {
+            newest.rest(heard.aim);
+        }
+        let since = self.now_secs - self.clock.due_secs(newest.at_secs);
+        let frames = generator.shape().timing.frames as f32;
+        let passed = since.max(0.0) as f32 * generator.frame_rate_hz / frames;
+        let at = Beginning {
+            number: newest.planned.number,
+            share: newest.planned.share() + passed,
+            controls: newest.controls,
+            rests: heard.rests || newest.controls.is_standing(),
+        };
+        if !generator.begin_led(&at) {
+            return Followed::Waiting;
+        }
+        self.queue.pass_all();
+        self.made = Some(newest);
+        self.begun = true;
+        self.rested_secs = 0.0;
+        generator.begin_frame(&newest.controls);
+        generator.show(0.0, &newest.controls, out);
+        Followed::Anew(newest.start(generator))
+    }
+
+    /// Share by which the walk has to go faster to be in time.
+    fn haste(&self, generator: &GaitGenerator) -> f64 {
+        if generator.is_standing() {
+            return 0.0;
+        }
+        let rate = f64::from(generator.frame_rate_hz);
+        let (number, _) = generator.progress();
+        let late = match (self.queue.next(), &self.made) {
+            (Some(next), _) if next.planned.steps_from(number) == 1 => {
+                let ends = self.now_secs + f64::from(generator.frames_left()) / rate;
+                ends - self.clock.due_secs(next.at_secs)
+            }
+            (_, Some(made)) if made.planned.number == number => {
+                let since = self.now_secs - self.clock.due_secs(made.at_secs);
+                let frames = generator.frames_since(made.planned.share());
+                since - f64::from(frames) / rate
+            }
+            _ => 0.0,
+        };
+        (late / IN_TIME_SECS).clamp(-MOST_HASTE, MOST_HASTE)
+    }
+
+    /// Goes on to the next step, where there is one.
+    fn next_step(
+        &mut self,
+        dt_secs: f32,
+        generator: &mut GaitGenerator,
+        shared_from_start: &GroundTransform,
+    ) -> bool {
+        let (number, _) = generator.progress();
+        let rests = generator.comes_to_rest();
+        let natural = number.wrapping_add(1);
+        let due = |next: &&Planning| self.clock.due_secs(next.at_secs) <= self.now_secs;
+        let next = self.queue.next().copied();
+        if rests {
+            if generator.jump_phase().is_some() {
+                return false;
+            }
+            self.rested_secs += dt_secs;
+            let Some(next) = self.queue.next().filter(due).copied() else {
+                return self.step_over(natural, generator, shared_from_start);
+            };
+            if next.controls.is_standing() {
+                self.made = self.queue.take();
+                return false;
+            }
+        }
+        self.rested_secs = 0.0;
+        let out_of_step = next.map(|next| next.planned.steps_from(number));
+        let number = match (next, out_of_step) {
+            // Whoever stands can go off with either foot.
+            (Some(next), _) if rests => next.planned.number,
+            (Some(next), Some(..=0)) if next.planned.steps_from(natural) % 2 == 0 => {
+                next.planned.number
+            }
+            (Some(next), Some(..=0)) => next.planned.number.wrapping_add(1),
+            _ => natural,
+        };
+        if next.is_some_and(|next| next.planned.number == number) {
+            self.made = self.queue.take();
+        }
+        let made = self.made.filter(|made| made.planned.number == number);
+        let silent = self.clock.silent_secs(self.now_secs) > SILENCE_SECS;
+        let stands = silent || (next.is_none() && self.heard.is_some_and(|heard| heard.rests));
+        let controls = if stands && made.is_none() {
+            Controls::STAND
+        } else {
+            self.controls()
+        };
+        generator.leave_step();
+        generator.next_led(number, &controls, made.map_or(0.0, |made| made.rise_m));
+        if let Some(made) = made {
+            generator.aim_at(&made.aim(shared_from_start));
+        } else if stands && let Some(resting) = self.resting(shared_from_start) {
+            generator.aim_at(&resting);
+        }
+        true
+    }
+
+    /// Steps over to the place of whoever rests, where the walk has come to rest beside it.
+    fn step_over(
+        &mut self,
+        number: u16,
+        generator: &mut GaitGenerator,
+        shared_from_start: &GroundTransform,
+    ) -> bool {
+        let Some(resting) = self.resting(shared_from_start) else {
+            return false;
+        };
+        let off = generator.off(&resting);
+        let far = off.way.length() > OFF_M || off.turn.abs() > OFF_RAD;
+        if !far || self.queue.next().is_some() || self.rested_secs < OFF_SECS {
+            return false;
+        }
+        let controls = Controls {
+            turn_rate_radps: ON_THE_SPOT_RADPS.copysign(off.turn),
+            ..Controls::STAND
+        };
+        self.rested_secs = 0.0;
+        generator.leave_step();
+        generator.next_led(number, &controls, 0.0);
+        generator.aim_at(&resting);
+        true
+    }
+
+    /// Place of a sender who rests, and does not jump to another.
+    fn resting(&self, shared_from_start: &GroundTransform) -> Option<Aim> {
+        let heard = self
+            .heard
+            .filter(|heard| heard.rests && heard.rise_m == 0.0)?;
+        Some(Aim {
+            place: shared_from_start.local(&heard.aim),
+            rests: true,
+        })
+    }
+
+    /// Takes up what the sender was asked for in the middle of the step that is made.
+    fn obey(
+        &mut self,
+        generator: &mut GaitGenerator,
+        shared_from_start: &GroundTransform,
+        before: f32,
+    ) {
+        while let Some(next) = self.queue.next().copied() {
+            let (number, share) = generator.progress();
+            let steps = next.planned.steps_from(number);
+            let walks = !generator.is_standing();
+            if steps > 0 || !walks || (steps == 0 && share < next.planned.share()) {
+                break;
+            }
+            self.made = self.queue.take();
+            let replanned = generator.replan_led(next.planned, &next.controls, (before, false));
+            if replanned && steps == 0 {
+                generator.aim_at(&next.aim(shared_from_start));
+            }
+        }
+        self.amend(generator, shared_from_start);
+    }
+
+    /// Plans the step that is made anew where it leads elsewhere than it should: it was heard of late, or what came between was lost.
+    fn amend(&mut self, generator: &mut GaitGenerator, shared_from_start: &GroundTransform) {
+        let (number, _) = generator.progress();
+        let made = self.made.filter(|made| made.planned.number == number);
+        let Some(made) = made.filter(|made| self.amended != Some(made.planned)) else {
+            return;
+        };
+        let aim = made.aim(shared_from_start);
+        let off = generator.off(&aim).way.length() > LATE_OFF_M;
+        if off && generator.replan_led(made.planned, &made.controls, (f32::INFINITY, true)) {
+            generator.aim_at(&aim);
+            self.amended = Some(made.planned);
+        }
+    }
+
+    /// Jumps when the sender does, who stands.
+    fn jump(
+        &mut self,
+        heard: &WalkUpdate,
+        generator: &mut GaitGenerator,
+        shared_from_start: &GroundTransform,
+    ) {
+        let jumps = heard.rests && heard.rise_m > 0.0;
+        if jumps && !self.jumped && generator.is_standing() {
+            let lands = shared_from_start.local(&heard.aim).position;
+            generator.ask_jump(Leap {
+                rise_m: heard.rise_m,
+                way: generator
+                    .start_from_character()
+                    .local(&GroundTransform {
+                        position: lands,
+                        heading: 0.0,
+                    })
+                    .position,
+            });
+        }
+        self.jumped = jumps && (self.jumped || generator.is_standing());
+    }
+}

@@ -1,0 +1,129 @@
+//! Identity of a walker: told once, and whenever it changes.
+
+use super::ReplicaError;
+use super::update::FORMAT;
+use crate::generator::{GaitGenerator, GeneratorConfig};
+use crate::steps::Steps;
+use serde::{Deserialize, Serialize};
+
+/// Styles that an identity can name, and the greatest weight of one.
+const MOST_STYLES: usize = 64;
+const MOST_WEIGHT: f32 = 16.0;
+const MOST_VARIATION: f32 = 16.0;
+/// Room for all but the styles.
+const UNSTYLED_BYTES: usize = 40;
+
+/// Seed, settings and styles of a walker, and the model that it walks by.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WalkIdentity {
+    format: u8,
+    model: u32,
+    seed: u64,
+    phase: f32,
+    variation: f32,
+    epoch: u8,
+    /// Weights of the styles, as of [`GaitGenerator::set_style_weights`].
+    pub style_weights: Vec<f32>,
+}
+
+impl WalkIdentity {
+    /// That of a walker who was put elsewhere so many times.
+    ///
+    /// # Errors
+    /// [`ReplicaError::Switching`].
+    pub(super) fn of(generator: &GaitGenerator, epoch: u8) -> Result<Self, ReplicaError> {
+        let Steps::Styled(steps) = &generator.steps else {
+            return Err(ReplicaError::Switching);
+        };
+        Ok(Self {
+            format: FORMAT,
+            model: steps.space.fingerprint(),
+            seed: generator.config.seed,
+            phase: generator.config.phase,
+            variation: generator.config.variation,
+            epoch,
+            style_weights: steps.worn().weights.clone(),
+        })
+    }
+
+    /// Settings to make the walker with.
+    pub fn config(&self) -> GeneratorConfig {
+        GeneratorConfig {
+            seed: self.seed,
+            phase: self.phase,
+            variation: self.variation,
+        }
+    }
+
+    /// Returns whether both are one walker, whatever styles it wears and wherever it is.
+    pub fn is_same_walker(&self, other: &Self) -> bool {
+        (self.model, self.config()) == (other.model, other.config())
+    }
+
+    /// Checks that a walker goes by this identity's model.
+    ///
+    /// # Errors
+    /// [`ReplicaError::OtherModel`] or [`ReplicaError::Switching`].
+    pub fn check(&self, generator: &GaitGenerator) -> Result<(), ReplicaError> {
+        match &generator.steps {
+            Steps::Switching(_) => Err(ReplicaError::Switching),
+            Steps::Styled(steps) if steps.space.fingerprint() != self.model => {
+                Err(ReplicaError::OtherModel)
+            }
+            Steps::Styled(_) => Ok(()),
+        }
+    }
+
+    /// Packs it: some 25 bytes, and four for every style.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        // Writing to memory does not fail; nothing is refused like anything else that is no identity.
+        postcard::to_stdvec(self).unwrap_or_default()
+    }
+
+    /// Unpacks it.
+    ///
+    /// # Errors
+    /// [`ReplicaError::Format`] or [`ReplicaError::Identity`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ReplicaError> {
+        if let Some(format) = bytes.first()
+            && *format != FORMAT
+        {
+            return Err(ReplicaError::Format(*format));
+        }
+        let longest = UNSTYLED_BYTES + 4 * MOST_STYLES;
+        let identity: Self = (bytes.len() <= longest)
+            .then(|| postcard::from_bytes(bytes).ok())
+            .flatten()
+            .ok_or(ReplicaError::Identity)?;
+        let weights = &identity.style_weights;
+        let sensible = identity.phase.is_finite()
+            && (0.0..=MOST_VARIATION).contains(&identity.variation)
+            && weights.len() <= MOST_STYLES
+            && weights.iter().all(|weight| weight.abs() <= MOST_WEIGHT);
+        sensible.then_some(identity).ok_or(ReplicaError::Identity)
+    }
+
+    /// A number that updates of this walker carry.
+    pub(super) fn tag(&self) -> u16 {
+        tag(self.model, &self.config(), self.epoch)
+    }
+}
+
+/// A number that updates of a walker carry: another where the model, the seed, a setting or the place that it was put to is another.
+pub(super) fn tag(model: u32, config: &GeneratorConfig, epoch: u8) -> u16 {
+    let numbers = [
+        u64::from(model),
+        config.seed,
+        u64::from(config.phase.to_bits()),
+        u64::from(config.variation.to_bits()),
+        u64::from(epoch),
+    ];
+    // Fowler, Noll and Vo's hash, folded.
+    let hash = numbers
+        .into_iter()
+        .flat_map(u64::to_le_bytes)
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
+    (hash ^ hash >> 16 ^ hash >> 32 ^ hash >> 48) as u16
+}

@@ -1,0 +1,308 @@
+//! Walks whose steps are another walker's: which step comes next, what it obeys and where it ends.
+
+use super::update::Planned;
+use crate::controls::Controls;
+use crate::footstep::Footstep;
+use crate::gait::{Gait, GaitChoice};
+use crate::generator::{GaitGenerator, GeneratorConfig};
+use crate::obeyed::Obeyed;
+use crate::plan::StepDraw;
+use crate::planting::Aside;
+use crate::standing::Amplitude;
+use crate::steps::{Ask, StepSource as _, Steps};
+use crate::styled::{StyledSteps, walker_of};
+use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_core::{GroundTransform, Side};
+use std::sync::Arc;
+
+/// Strides are counted so far; then the count begins anew.
+const STRIDES: u32 = 0x7fff;
+
+/// Strides of chance that are drawn one by one to get to a later one; for more, and for earlier ones, chance begins anew.
+const STRIDES_AHEAD: u32 = 64;
+
+/// A step ends as planned when it ends so near, metres and radians.
+const SAME_PLACE_M: f32 = 0.002;
+const SAME_HEADING_RAD: f32 = 0.004;
+
+/// Way and turn that one step corrects at most, metres and radians.
+const MOST_ASIDE_M: f32 = 0.2;
+const MOST_TURN_RAD: f32 = 0.35;
+
+/// Trials in which a step is made to end where it should: a turn moves its end, too.
+const TRIALS: usize = 2;
+
+/// Aim of a step, seen from where the walk began.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Aim {
+    /// Place of the foot that lands, or of the walker who rests, under the walker's heading.
+    pub(super) place: GroundTransform,
+    pub(super) rests: bool,
+}
+
+/// A walk in the middle of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beginning {
+    pub(super) number: u16,
+    /// Share of the step that has passed.
+    pub(super) share: f32,
+    pub(super) controls: Controls,
+    pub(super) rests: bool,
+}
+
+impl StyledSteps {
+    /// Number of the current step: even ones begin with the left foot's contact. It wraps.
+    pub(super) fn number(&self) -> u16 {
+        let strides = self.planner.strides() as u16;
+        let right = self.walker.step().timing.leading == Side::Right;
+        strides.wrapping_mul(2).wrapping_sub(u16::from(right))
+    }
+
+    /// Share of the current step that had passed when it was planned last.
+    pub(super) fn passed(&self) -> f32 {
+        self.walker.origin().rest.map_or(0.0, |rest| rest.passed)
+    }
+
+    /// Takes chance to where it draws the step of this number; returns that.
+    fn draw_of(&mut self, config: &GeneratorConfig, number: u16) -> StepDraw {
+        let stride = u32::from(number / 2);
+        let mut ahead = stride.wrapping_sub(self.planner.strides()) & STRIDES;
+        if ahead > STRIDES_AHEAD {
+            self.planner = walker_of(&self.space, config);
+            self.planner.wear(&self.worn.blend.model);
+            ahead = stride;
+        }
+        // Every stride begins with the left foot; the right one draws nothing new.
+        for _ in 0..ahead {
+            self.planner.draw(Side::Left);
+        }
+        let side = if number.is_multiple_of(2) {
+            Side::Left
+        } else {
+            Side::Right
+        };
+        StepDraw {
+            side,
+            ..self.planner.draw(Side::Right)
+        }
+    }
+
+    /// Starts over in the step of this number; whether it could.
+    fn begin(&mut self, config: &GeneratorConfig, at: &Beginning, ask: &Ask) -> bool {
+        let before = self.draw_of(config, at.number.wrapping_sub(1));
+        let (first, next) = (before.side.other(), before.side);
+        let draws = [before, self.planner.draw(first), self.planner.draw(next)];
+        self.velocity_mps = ask.velocity_mps;
+        let gait = match ask.gait {
+            GaitChoice::Run => Gait::Run,
+            GaitChoice::Auto | GaitChoice::Walk => Gait::Walk,
+        };
+        let (request, gait) = if at.rests {
+            (self.worn.standing_request(ask.detail), Gait::Walk)
+        } else {
+            self.worn.request(ask, gait, &mut self.velocity_mps)
+        };
+        self.obeyed = if at.rests {
+            Obeyed::default()
+        } else {
+            Obeyed::of(ask)
+        };
+        let blend = self.worn.dress(gait);
+        self.planner.wear(&blend.model);
+        let (planner, walker) = (&mut self.planner, &mut self.walker);
+        self.space
+            .at_bench(|bench| walker.start(planner, blend, draws, request, bench))
+            .is_ok()
+    }
+}
+
+impl GaitGenerator {
+    fn styled_mut(&mut self) -> Option<&mut StyledSteps> {
+        match &mut self.steps {
+            Steps::Styled(steps) => Some(steps),
+            Steps::Switching(_) => None,
+        }
+    }
+
+    /// The current step, and the share of it that has passed.
+    pub(super) fn progress(&self) -> (u16, f32) {
+        let Steps::Styled(steps) = &self.steps else {
+            return (0, 0.0);
+        };
+        let passed = steps.passed();
+        (
+            steps.number(),
+            passed + (1.0 - passed) * self.share_of_step(),
+        )
+    }
+
+    /// Place where the current step leads, from where the walk began: that of the foot that lands, under the walker's heading. That of a walker who rests is
+    /// where it stands.
+    pub(super) fn start_from_aim(&self, rests: bool) -> GroundTransform {
+        let end = self.start_from_end();
+        let landing = self.shape().timing.leading.other();
+        let plant = self.steps.source().stage().plant(landing);
+        match plant.filter(|_| !rests) {
+            Some(plant) => GroundTransform {
+                position: Footstep::seen_from(&self.plan_from_start, landing, plant).position,
+                ..end
+            },
+            None => end,
+        }
+    }
+
+    /// Place where the walker is at the end of the current step, from where the walk began.
+    fn start_from_end(&self) -> GroundTransform {
+        let last = self.shape().ground_timing().frames;
+        let frame = &self.steps.source().stage().frames[last];
+        self.plan_from_start.local(&GroundTransform {
+            position: frame.ground_position,
+            heading: frame.ground_heading,
+        })
+    }
+
+    /// Starts over at the origin, in the middle of a step; whether it could.
+    pub(super) fn begin_led(&mut self, at: &Beginning) -> bool {
+        let (config, detail) = (self.config, self.detail);
+        let fastest = self.steps.source().fastest_mps();
+        let ask = Ask {
+            amplitude: Amplitude::WALK,
+            ..Ask::after(self.shape(), at.controls, fastest, detail)
+        };
+        let begun = self
+            .styled_mut()
+            .is_some_and(|steps| steps.begin(&config, at, &ask));
+        if begun {
+            let frames = self.shape().timing.frames as f32;
+            let share = if at.rests {
+                1.0
+            } else {
+                at.share.clamp(0.0, 0.95)
+            };
+            self.position = share * frames;
+            self.plan_from_start = self.plan_from_character();
+            self.heard = None;
+            if let (true, Some(life)) = (at.rests, &mut self.life) {
+                life.stand();
+            }
+        }
+        begun
+    }
+
+    /// Goes on to the step of this number.
+    pub(super) fn next_led(&mut self, number: u16, controls: &Controls, rise_m: f32) {
+        let config = self.config;
+        if let Some(steps) = self.styled_mut()
+            && steps.number().wrapping_add(1) != number
+        {
+            let draw = steps.draw_of(&config, number);
+            steps.walker.redraw_next(draw);
+        }
+        if rise_m > 0.0 {
+            self.jump(rise_m);
+        }
+        self.next_step(controls);
+        // A leap that this step is not is none at all.
+        self.asked_jump = None;
+    }
+
+    /// Plans the current step anew where its sender did, or later if it must be; whether it did. `before` is where the walk was in the frame before.
+    pub(super) fn replan_led(
+        &mut self,
+        planned: Planned,
+        controls: &Controls,
+        (before, must): (f32, bool),
+    ) -> bool {
+        let frames = self.shape().timing.frames as f32;
+        let (position, detail) = (self.position, self.detail);
+        let fastest = self.steps.source().fastest_mps();
+        let ask = Ask::after(self.shape(), *controls, fastest, detail);
+        let Some(steps) = self.styled_mut() else {
+            return false;
+        };
+        let passed = steps.passed();
+        let wanted = ((planned.share() - passed) / (1.0 - passed) * frames).round();
+        // What was shown stays as it was.
+        let in_time = wanted > before && wanted <= position;
+        let frame = if in_time { wanted } else { position.floor() };
+        let needed = in_time || must || steps.is_news(&ask);
+        let possible = steps.gait() == Gait::Walk && frame > 0.0;
+        let replanned = needed && possible && steps.go_over(&ask, frame as usize);
+        if replanned {
+            self.position -= frame;
+        }
+        replanned
+    }
+
+    /// Way and turn from where the current step leads to where it should, seen from the start of the walk.
+    pub(super) fn off(&self, aim: &Aim) -> Aside {
+        let own = self.start_from_aim(aim.rests);
+        Aside {
+            way: (aim.place.position - own.position).with_y(0.0),
+            turn: wrap_angle(aim.place.heading - own.heading),
+        }
+    }
+
+    /// Has the current step, which has just been planned, lead where it should, as far as one step can.
+    pub(super) fn aim_at(&mut self, aim: &Aim) {
+        let first = self.off(aim).within(MOST_ASIDE_M, MOST_TURN_RAD);
+        let mut turn = first.turn;
+        let rotation = from_heading(self.plan_from_start.heading);
+        for _ in 0..TRIALS {
+            let off = self.off(aim).within(MOST_ASIDE_M, MOST_TURN_RAD);
+            let near = off.way.length() < SAME_PLACE_M && turn.abs() < SAME_HEADING_RAD;
+            let Some(steps) = self.styled_mut() else {
+                return;
+            };
+            let more = Aside {
+                way: rotation * off.way,
+                turn,
+            };
+            let (space, walker) = (Arc::clone(&steps.space), &mut steps.walker);
+            if near || !space.at_bench(|bench| walker.step_aside(more, bench)) {
+                return;
+            }
+            // Where the body turns to, it is after the first trial.
+            turn = 0.0;
+        }
+    }
+
+    /// Frames of the current step since it was at this share.
+    pub(super) fn frames_since(&self, share: f32) -> f32 {
+        let Steps::Styled(steps) = &self.steps else {
+            return self.position;
+        };
+        let whole = self.shape().timing.frames as f32 / (1.0 - steps.passed());
+        self.position + (steps.passed() - share) * whole
+    }
+
+    /// Shows the walk after time has passed at another pace.
+    pub(super) fn pass_led(&mut self, frames: f32) {
+        self.position += frames;
+    }
+
+    /// Returns true when the current step is over.
+    pub(super) fn has_ended(&self) -> bool {
+        self.position >= self.shape().timing.frames as f32
+    }
+
+    /// Leaves a step that is over; what is beyond it belongs to the next one.
+    pub(super) fn leave_step(&mut self) {
+        self.position -= self.shape().timing.frames as f32;
+    }
+
+    /// Rests at the end of the step.
+    pub(super) fn rest_led(&mut self) {
+        self.position = self.shape().timing.frames as f32;
+    }
+
+    /// Returns true when the current step ends standing.
+    pub(super) fn comes_to_rest(&self) -> bool {
+        self.shape().amplitude.to < 1.0
+    }
+
+    /// Frames until the current step is over.
+    pub(super) fn frames_left(&self) -> f32 {
+        self.shape().timing.frames as f32 - self.position
+    }
+}

@@ -1,0 +1,177 @@
+//! Judgement of what the peers of a game have seen of each other.
+
+use anyhow::{Context as _, Result, bail};
+
+/// Footsteps of a character agree on all machines within this, metres.
+const SAME_PLACE_M: f32 = 0.05;
+/// Of so many steps one may be elsewhere: a machine that is busy with other things stands still at times, and steps that it has told nothing of are corrected
+/// by the next ones.
+const CORRECTED_OF: usize = 20;
+/// So long after a character has come to a machine its steps agree, seconds.
+const JOINED_SECS: f32 = 2.0;
+/// Steps by which a character is judged at least.
+const LEAST_STEPS: usize = 8;
+/// Hips go no faster than this, m/s: those of a run, and a correction.
+const FASTEST_MPS: f32 = 7.0;
+/// Nobody believes a liar who is farther away than he can have run, metres.
+const FARTHEST_M: f32 = 120.0;
+
+/// A footstep as a peer has printed it.
+struct Step<'a> {
+    foot: &'a str,
+    x: f32,
+    z: f32,
+    secs: f32,
+}
+
+/// Judges what every peer has said; returns a line about it.
+///
+/// # Errors
+/// The first thing that is not as it should be.
+pub(super) fn judge(said: &[(&str, String)]) -> Result<String> {
+    let of = |name: &str| {
+        let found = said.iter().find(|(peer, _)| *peer == name);
+        found
+            .map(|(_, said)| said.as_str())
+            .context("a peer is missing")
+    };
+    let mut most: f32 = 0.0;
+    let (mut count, mut others) = (0, 0);
+    for (walker, viewer) in [
+        ("host", "early"),
+        ("host", "late"),
+        ("early", "host"),
+        ("early", "late"),
+        ("late", "host"),
+        ("late", "early"),
+    ] {
+        let made = steps(of(walker)?, "MADE", walker);
+        let shown: Vec<_> = steps(of(viewer)?, "SHOWN", walker)
+            .into_iter()
+            .filter(|step| step.secs > JOINED_SECS)
+            .collect();
+        if shown.len() < LEAST_STEPS {
+            bail!(
+                "`{viewer}` has seen only {} steps of `{walker}`",
+                shown.len()
+            );
+        }
+        let mut corrected = Vec::new();
+        for step in &shown {
+            let same = made.iter().filter(|other| other.foot == step.foot);
+            let near = same.map(|other| (other.x - step.x).hypot(other.z - step.z));
+            let off = near.fold(f32::INFINITY, f32::min);
+            if off > SAME_PLACE_M {
+                corrected.push(off);
+                continue;
+            }
+            most = most.max(off);
+        }
+        if corrected.len() * CORRECTED_OF > shown.len() {
+            bail!(
+                "`{viewer}` shows {} of {} steps of `{walker}` elsewhere than they were made, at {corrected:.2?} m",
+                corrected.len(),
+                shown.len()
+            );
+        }
+        others += corrected.len();
+        count += shown.len();
+    }
+    for (viewer, words) in said {
+        judge_end(viewer, words)?;
+    }
+    if !of("host")?.contains("REFUSED liar") {
+        bail!("the host has believed the liar in everything");
+    }
+    Ok(format!(
+        "{count} footsteps on other machines, {:.0} mm from where they were made at most, but for {others}",
+        1e3 * most
+    ))
+}
+
+/// Judges how the characters went on one machine.
+fn judge_end(viewer: &str, said: &str) -> Result<()> {
+    let mut ends = 0;
+    for line in said.lines().filter(|line| line.starts_with("END ")) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [_, walker, _, hips, _, far, ..] = words[..] else {
+            bail!("`{viewer}` says `{line}`");
+        };
+        let (hips, far): (f32, f32) = (hips.parse()?, far.parse()?);
+        if walker != "liar" && hips > FASTEST_MPS {
+            bail!("`{viewer}` has seen the hips of `{walker}` at {hips} m/s");
+        }
+        // Whoever comes while he lies has no earlier place of his to go by.
+        if far > FARTHEST_M && viewer != "late" {
+            bail!("`{viewer}` has seen `{walker}` {far} m away");
+        }
+        ends += 1;
+    }
+    if ends == 0 {
+        bail!("`{viewer}` has seen nobody");
+    }
+    Ok(())
+}
+
+/// The footsteps of a character in what a peer has said.
+fn steps<'a>(said: &'a str, kind: &str, walker: &str) -> Vec<Step<'a>> {
+    said.lines()
+        .filter_map(|line| {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            let [of_kind, of, foot, x, z, secs] = words[..] else {
+                return None;
+            };
+            (of_kind == kind && of == walker).then_some(())?;
+            Some(Step {
+                foot,
+                x: x.parse().ok()?,
+                z: z.parse().ok()?,
+                secs: secs.parse().ok()?,
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A peer who has made steps ahead, and seen those of others this far off.
+    fn peer(name: &str, others: [&str; 2], off: f32, refused: bool) -> String {
+        let steps = (0..40).flat_map(|step| {
+            let (x, secs) = (0.7 * step as f32, 0.5 * step as f32);
+            let seen = others.map(|other| format!("SHOWN {other} left {} 0.0 {secs}", x + off));
+            [format!("MADE {name} left {x} 0.0 {secs}")]
+                .into_iter()
+                .chain(seen)
+        });
+        let end = format!("END {name} hips 2.0 far 30.0 secs 20.0\n");
+        let mut said = steps.chain([end]).collect::<Vec<_>>().join("\n");
+        if refused {
+            said += "REFUSED liar too far\n";
+        }
+        said
+    }
+
+    fn game(off: f32, refused: bool) -> Vec<(&'static str, String)> {
+        vec![
+            ("host", peer("host", ["early", "late"], off, refused)),
+            ("early", peer("early", ["host", "late"], off, false)),
+            ("late", peer("late", ["host", "early"], off, false)),
+        ]
+    }
+
+    #[test]
+    fn a_game_whose_steps_agree_passes_and_others_do_not() {
+        assert!(judge(&game(0.01, true)).unwrap().contains("10 mm"));
+        assert!(judge(&game(0.2, true)).is_err(), "steps apart");
+        assert!(judge(&game(0.01, false)).is_err(), "a liar who is believed");
+        let mut far = game(0.01, true);
+        far[1].1 += "END liar hips 2.0 far 4000.0 secs 9.0\n";
+        assert!(judge(&far).is_err(), "a liar far away");
+        let mut fast = game(0.01, true);
+        fast[2].1 += "END host hips 30.0 far 10.0 secs 9.0\n";
+        assert!(judge(&fast).is_err(), "a jump");
+        assert!(judge(&game(0.01, true)[..2]).is_err(), "a peer is missing");
+    }
+}
