@@ -72,7 +72,10 @@ pub(crate) fn archive(archive: &Path) -> Result<usize> {
 }
 
 /// Text about the crates that the library is built from besides this project, and their terms.
-fn third_party() -> Result<String> {
+///
+/// # Errors
+/// When cargo fails.
+pub(crate) fn third_party() -> Result<String> {
     let tree = process::read(process::cargo().args([
         "tree",
         "--locked",
@@ -121,7 +124,7 @@ fn notices(tree: &str) -> String {
 }
 
 /// A checksum as `sha256sum` prints it.
-fn sha256(bytes: &[u8]) -> String {
+pub(crate) fn sha256(bytes: &[u8]) -> String {
     format!("{:x}", Sha256::digest(bytes))
 }
 

@@ -176,6 +176,24 @@ impl Apt {
             .with_context(|| format!("cannot clear {}", archives.display()))
     }
 
+    /// Fetches packages of the machine's own suites, with what they need that it has not, and unpacks them into `root` of the folder.
+    ///
+    /// # Errors
+    /// When there is no apt, or it cannot have them.
+    pub(crate) fn fetch(folder: &Path, names: &[&str], what: &str) -> Result<PathBuf> {
+        for tool in ["apt-get", "dpkg"] {
+            paths::on_path(&[tool])
+                .with_context(|| format!("there is no `{tool}` on this system"))?;
+        }
+        let apt = Self::on_system(&folder.join("apt"))?;
+        process::read(apt.get().arg("update")).context("apt cannot reach its package archives")?;
+        let packages = apt.packages(names)?;
+        apt.download(names, &packages)?;
+        let root = folder.join("root");
+        apt.unpack(&packages, &root, what)?;
+        Ok(root)
+    }
+
     fn archives(&self) -> PathBuf {
         self.folder.join("cache/archives")
     }
@@ -200,14 +218,7 @@ pub(crate) fn in_cache(
     if works(&root) {
         return Ok(root);
     }
-    for tool in ["apt-get", "dpkg"] {
-        paths::on_path(&[tool]).with_context(|| format!("there is no `{tool}` on this system"))?;
-    }
-    let apt = Apt::on_system(&cache.join("apt"))?;
-    process::read(apt.get().arg("update")).context("apt cannot reach its package archives")?;
-    let found = apt.packages(packages)?;
-    apt.download(packages, &found)?;
-    apt.unpack(&found, &root, &format!("unpacking {}", packages.join(", ")))?;
+    Apt::fetch(&cache, packages, &format!("unpacking {}", packages.join(", ")))?;
     if !works(&root) {
         bail!(
             "what was just fetched ({}) does not work",

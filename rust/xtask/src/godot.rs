@@ -6,7 +6,7 @@
 mod apt;
 mod official;
 
-use crate::{paths, process};
+use crate::{fetch, paths, process};
 use anyhow::{Context as _, Result, bail};
 use std::env;
 use std::fs::{self, File};
@@ -109,12 +109,29 @@ fn program_in_marker(marker: &str) -> Option<PathBuf> {
 /// # Errors
 /// When a game that was exported with Debian's template cannot be made to start here.
 pub(crate) fn exported_game(engine: &Engine, game: &Path) -> Result<Command> {
-    let cache = paths::godot_cache()?;
-    if engine.release_template.is_some() && engine.release_template == template_of(&cache) {
-        apt::game(&cache, game)
+    if is_debians(engine)? {
+        apt::game(&paths::godot_cache()?, game)
     } else {
         Ok(Command::new(game))
     }
+}
+
+/// Returns whether games that are exported with this engine's template need Debian's libraries, as the official ones do not.
+///
+/// # Errors
+/// When there is no cache.
+pub(crate) fn is_debians(engine: &Engine) -> Result<bool> {
+    let template = template_of(&paths::godot_cache()?);
+    Ok(template.is_some() && engine.release_template == template)
+}
+
+/// Files of a Godot for arm64, for an emulator; fetched into the cache. Godot itself is `usr/bin/godot` below the folder that is returned.
+///
+/// # Errors
+/// When Debian's archive, or one for arm64 in it, cannot be had.
+pub(crate) fn arm64() -> Result<PathBuf> {
+    let folder = fetch::once("godot-arm64", LAYOUT, |folder| apt::arm64(folder).map(drop))?;
+    Ok(folder.join("root"))
 }
 
 fn template_of(cache: &Path) -> Option<PathBuf> {

@@ -3,20 +3,27 @@
 //! There are two flavours. The editor's (`libfootfall_godot.editor.so` and its like) holds the class docs and the dock;
 //! exported games load the plain one. Both share every compiled crate but `godot` and `footfall_godot`.
 
-use crate::{paths, process};
-use anyhow::{Context as _, Result, bail};
+mod platform;
+
+use crate::{cross, paths, process};
+use anyhow::{Context as _, Result};
 use clap::Args;
+use platform::Platform;
 use std::env;
-use std::env::consts::{ARCH, OS};
+use std::env::consts::ARCH;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The target that stands for both of macOS's architectures in one file.
-const MACOS_UNIVERSAL: &str = "universal-apple-darwin";
+pub(crate) const MACOS_UNIVERSAL: &str = "universal-apple-darwin";
 
 /// Settings of a build of the library.
 #[derive(Args, Debug, Clone, Default)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a switch of the command line"
+)]
 pub(crate) struct Options {
     /// Build without optimisation, quickly.
     #[arg(long)]
@@ -30,11 +37,15 @@ pub(crate) struct Options {
     /// Build for another platform: a target triple, or `universal-apple-darwin`.
     #[arg(long)]
     pub(crate) target: Option<String>,
+    /// Compile C and link with zig, which is fetched: for every platform from this one. A Linux target may end in the oldest
+    /// glibc that it has to run with, as `x86_64-unknown-linux-gnu.2.31` does.
+    #[arg(long, requires = "target")]
+    pub(crate) cross: bool,
 }
 
 /// One way to build the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Flavour {
+pub(crate) enum Flavour {
     Editor,
     Game,
 }
@@ -48,71 +59,11 @@ impl Flavour {
     }
 }
 
-/// Name of a library on a platform, and its place in the add-on.
-#[derive(Debug, PartialEq, Eq)]
-struct Platform {
-    folder: &'static str,
-    prefix: &'static str,
-    suffix: &'static str,
-}
-
-impl Platform {
-    /// The platform of a target triple; of this machine without one.
-    fn of(target: Option<&str>) -> Result<Self> {
-        let host = format!("{ARCH}-{OS}");
-        let target = target.unwrap_or(&host);
-        let arm = target.starts_with("aarch64");
-        let (folder, prefix, suffix) = match target {
-            _ if target.contains("android") && arm => ("android-arm64", "lib", "so"),
-            _ if target.contains("linux") && !target.contains("android") => (
-                if arm { "linux-arm64" } else { "linux-x86_64" },
-                "lib",
-                "so",
-            ),
-            _ if target.contains("windows") => (
-                if arm {
-                    "windows-arm64"
-                } else {
-                    "windows-x86_64"
-                },
-                "",
-                "dll",
-            ),
-            _ if target.contains("darwin") || target.contains("macos") => {
-                ("macos-universal", "lib", "dylib")
-            }
-            _ => bail!(
-                "the add-on is not built for {target}: Linux, Windows, macOS or Android on arm64"
-            ),
-        };
-        Ok(Self {
-            folder,
-            prefix,
-            suffix,
-        })
-    }
-
-    /// Cargo's name of the library.
-    fn built(&self) -> String {
-        format!("{}footfall_godot.{}", self.prefix, self.suffix)
-    }
-
-    /// Its path in the add-on, from `addons/footfall`.
-    fn shipped(&self, flavour: Flavour) -> PathBuf {
-        let name = match flavour {
-            Flavour::Editor => format!("{}footfall_godot.editor.{}", self.prefix, self.suffix),
-            Flavour::Game => self.built(),
-        };
-        Path::new("bin").join(self.folder).join(name)
-    }
-}
-
 /// Builds the library and puts it into `addons/footfall/bin`.
 ///
 /// # Errors
 /// When the platform is unknown, the build fails or the file cannot be put in place.
 pub(crate) fn build(options: &Options) -> Result<()> {
-    let platform = Platform::of(options.target.as_deref())?;
     // The editor's flavour comes last: it is what the next build most likely wants again.
     let flavours: &[Flavour] = if options.all {
         &[Flavour::Game, Flavour::Editor]
@@ -120,16 +71,38 @@ pub(crate) fn build(options: &Options) -> Result<()> {
         &[Flavour::Editor]
     };
     for &flavour in flavours {
-        let built = if options.target.as_deref() == Some(MACOS_UNIVERSAL) {
-            build_universal(flavour, options, &platform)?
-        } else {
-            build_one(flavour, options, options.target.as_deref(), &platform)?
-        };
-        let shipped = paths::addon().join(platform.shipped(flavour));
-        replace(&built, &shipped)?;
+        let shipped = build_flavour(flavour, options)?;
         eprintln!("{} flavour: {}", flavour.name(), shipped.display());
     }
     Ok(())
+}
+
+/// Builds one flavour and puts it into `addons/footfall/bin`; returns the file there.
+///
+/// # Errors
+/// As [`build`].
+pub(crate) fn build_flavour(flavour: Flavour, options: &Options) -> Result<PathBuf> {
+    let platform = Platform::of(options.target.as_deref())?;
+    let built = match options.target.as_deref() {
+        Some(target) if options.cross => {
+            let (cargo, folder) = cross::cargo(target)?;
+            run(cargo, &folder, flavour, options, &platform)?
+        }
+        Some(MACOS_UNIVERSAL) => build_universal(flavour, options, &platform)?,
+        target => build_one(flavour, options, target, &platform)?,
+    };
+    let shipped = paths::addon().join(platform.shipped(flavour));
+    replace(&built, &shipped)?;
+    Ok(shipped)
+}
+
+/// Place in `addons/footfall/bin` of a target's library, whether it is there or not.
+///
+/// # Errors
+/// When the add-on is not built for the target.
+pub(crate) fn place(flavour: Flavour, target: &str) -> Result<PathBuf> {
+    let platform = Platform::of(Some(target))?;
+    Ok(paths::addon().join(platform.shipped(flavour)))
 }
 
 fn build_one(
@@ -138,12 +111,10 @@ fn build_one(
     target: Option<&str>,
     platform: &Platform,
 ) -> Result<PathBuf> {
-    let mut folder = paths::target_folder();
     let mut cargo = process::cargo();
-    cargo.args(["build", "--locked", "--package", "footfall_godot"]);
+    cargo.arg("build");
     if let Some(target) = target {
         cargo.args(["--target", target]);
-        folder.push(target);
         if let Some((variable, linker)) = debian_linker(target)
             && env::var_os(variable).is_none()
             && paths::on_path(&[linker]).is_some()
@@ -151,6 +122,18 @@ fn build_one(
             cargo.env(variable, linker);
         }
     }
+    run(cargo, target.unwrap_or(""), flavour, options, platform)
+}
+
+/// Runs a build that knows its target and leaves the library in a folder of the target folder.
+fn run(
+    mut cargo: Command,
+    folder: &str,
+    flavour: Flavour,
+    options: &Options,
+    platform: &Platform,
+) -> Result<PathBuf> {
+    cargo.args(["--locked", "--package", "footfall_godot"]);
     if flavour == Flavour::Editor {
         cargo.args(["--features", "editor"]);
     }
@@ -160,9 +143,11 @@ fn build_one(
         _ => "release",
     };
     cargo.args(["--profile", profile]);
-    folder.push(if options.debug { "debug" } else { profile });
     process::run(&mut cargo)?;
-    Ok(folder.join(platform.built()))
+    let folder = paths::target_folder().join(folder);
+    Ok(folder
+        .join(if options.debug { "debug" } else { profile })
+        .join(platform.built()))
 }
 
 /// The linker for another architecture as Debian names it, and the variable in which cargo looks for it.
@@ -203,47 +188,4 @@ fn replace(source: &Path, destination: &Path) -> Result<()> {
             destination.display()
         )
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn libraries_are_named_as_the_gdextension_file_names_them() {
-        let shipped = |target, flavour| {
-            Platform::of(Some(target))
-                .unwrap()
-                .shipped(flavour)
-                .display()
-                .to_string()
-        };
-        let editor = Flavour::Editor;
-        assert_eq!(
-            shipped("x86_64-unknown-linux-gnu", editor),
-            "bin/linux-x86_64/libfootfall_godot.editor.so"
-        );
-        assert_eq!(
-            shipped("x86_64-unknown-linux-gnu", Flavour::Game),
-            "bin/linux-x86_64/libfootfall_godot.so"
-        );
-        assert_eq!(
-            shipped("aarch64-unknown-linux-gnu", Flavour::Game),
-            "bin/linux-arm64/libfootfall_godot.so"
-        );
-        assert_eq!(
-            shipped("x86_64-pc-windows-gnu", editor),
-            "bin/windows-x86_64/footfall_godot.editor.dll"
-        );
-        assert_eq!(
-            shipped(MACOS_UNIVERSAL, Flavour::Game),
-            "bin/macos-universal/libfootfall_godot.dylib"
-        );
-        assert_eq!(
-            shipped("aarch64-linux-android", Flavour::Game),
-            "bin/android-arm64/libfootfall_godot.so"
-        );
-        assert!(Platform::of(Some("wasm32-unknown-unknown")).is_err());
-        assert!(Platform::of(None).is_ok());
-    }
 }

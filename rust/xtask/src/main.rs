@@ -10,16 +10,20 @@
 
 mod addon;
 mod apt;
+mod audit;
 mod bench;
 mod bench_crowd;
 mod bevy;
+mod binary;
 mod contact_sheet;
+mod cross;
 mod csharp;
 mod demo;
 mod display;
 mod engine_run;
 mod examples;
 mod export;
+mod fetch;
 mod film;
 mod godot;
 mod golden;
@@ -33,10 +37,13 @@ mod newcomer;
 mod open;
 mod package;
 mod paths;
+mod platforms;
 mod process;
 mod progress;
+mod release;
 mod skipped;
 mod tidy;
+mod tools;
 mod verify;
 mod vulkan;
 
@@ -62,6 +69,8 @@ enum Command {
     },
     /// Build the add-on's library and put it into `addons/footfall/bin`.
     Library(library::Options),
+    /// Build the library for exported games for each platform, check it as far as this machine can, and print a table.
+    Platforms(platforms::Settings),
     /// Make the add-on visible inside `demo_project` and `tests/godot`, without a second copy.
     Link,
     /// Make the demo's character, `demo_project/characters/mannequin.glb`.
@@ -72,6 +81,10 @@ enum Command {
         #[arg(long)]
         packed: bool,
     },
+    /// Make all of a release that this machine can, the add-on for every platform first, in a folder below `rust/target`.
+    Release(release::Settings),
+    /// Check the workflows with actionlint, and the dependencies with cargo-deny; both are fetched.
+    Audit,
     /// Train the models that the add-on ships; `FOOTFALL_DATA` names the motion data.
     Models {
         /// The ones to train; all when absent. Styles are trained on the walk that is there
@@ -150,9 +163,12 @@ fn run(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Godot { template } => godot::command(*template),
         Command::Library(options) => library::build(options),
+        Command::Platforms(settings) => platforms::command(settings),
         Command::Link => link::command(),
         Command::Mannequin => mannequin::command(),
         Command::Addon { packed } => addon::command(*packed),
+        Command::Release(settings) => release::command(settings),
+        Command::Audit => audit::command(),
         Command::Models { which } => models::command(which),
         Command::Golden { update } => golden::command(*update),
         Command::Csharp { check } => csharp::command(*check),

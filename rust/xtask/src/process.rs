@@ -1,6 +1,7 @@
 //! Running other programs, with errors that say what was run and what it said.
 
 use anyhow::{Context as _, Result, bail};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 /// A command as a user would type it.
@@ -14,7 +15,14 @@ pub(crate) fn shown(command: &Command) -> String {
 
 /// Cargo in the workspace: the one that runs this program, where it does.
 pub(crate) fn cargo() -> Command {
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo_by(Path::new(
+        &std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()),
+    ))
+}
+
+/// Another program in cargo's place, which calls cargo itself.
+pub(crate) fn cargo_by(program: &Path) -> Command {
+    let mut cargo = Command::new(program);
     cargo.current_dir(crate::paths::workspace());
     // What the cargo that runs this program says of it: build scripts that look at it would run anew, and with them half of all crates be
     // built anew, whenever somebody calls cargo now by way of this program and now directly.

@@ -10,7 +10,7 @@ mod patched;
 pub(super) use archive::Archive;
 
 use crate::apt::Apt;
-use crate::process;
+use crate::{fetch, process};
 use anyhow::{Context as _, Result, bail};
 use archive::Architecture;
 use patched::Patcher;
@@ -39,6 +39,42 @@ const STARTER: &str = "godot";
 
 /// Downloads and unpacks; what an interrupted run had finished is kept. Returns the script that starts Godot.
 pub(super) fn fetch(archive: &Archive, cache: &Path) -> Result<PathBuf> {
+    unpack(archive, archive.architecture, &PACKAGES, cache).context("about 750 MB are needed")?;
+    write_starter(archive.architecture, cache)
+}
+
+/// Godot for arm64 in a folder with all that it needs besides a kernel, as an emulator takes it; returns the root of its files.
+///
+/// # Errors
+/// When it is not to be had.
+pub(super) fn arm64(cache: &Path) -> Result<PathBuf> {
+    let architecture = &archive::ARM64;
+    let root = unpack(&Archive::find(cache)?, architecture, &["godot"], cache)?;
+    // Programs name the loader in a folder that packages leave to the system.
+    let link = root.join("lib");
+    if !link.exists() {
+        link_folder("usr/lib", &link).with_context(|| format!("cannot make {}", link.display()))?;
+    }
+    Ok(root)
+}
+
+#[cfg(unix)]
+fn link_folder(to: &str, link: &Path) -> Result<()> {
+    Ok(std::os::unix::fs::symlink(to, link)?)
+}
+
+#[cfg(not(unix))]
+fn link_folder(_to: &str, _link: &Path) -> Result<()> {
+    bail!("Debian's programs run on Linux only")
+}
+
+/// Downloads packages of the suite with all that they need, and unpacks them into the folder that is returned.
+fn unpack(
+    archive: &Archive,
+    architecture: &Architecture,
+    names: &[&str],
+    cache: &Path,
+) -> Result<PathBuf> {
     let state = cache.join("apt");
     let mut apt = Apt::bare(&state)?;
     let source = state.join("footfall.sources");
@@ -46,10 +82,9 @@ pub(super) fn fetch(archive: &Archive, cache: &Path) -> Result<PathBuf> {
         .with_context(|| format!("cannot write {}", source.display()))?;
     apt.option(&format!("Dir::Etc::SourceList={}", source.display()));
     apt.option("Dir::Etc::SourceParts=/dev/null");
-    apt.option(&format!(
-        "APT::Architecture={}",
-        archive.architecture.debian
-    ));
+    apt.option(&format!("APT::Architecture={}", architecture.debian));
+    // Else the machine's own is among them.
+    apt.option(&format!("APT::Architectures={}", architecture.debian));
 
     eprintln!("asking {} for Debian's suite {SUITE} …", archive.site);
     process::read(apt.get().arg("update")).with_context(|| {
@@ -58,11 +93,11 @@ pub(super) fn fetch(archive: &Archive, cache: &Path) -> Result<PathBuf> {
             archive.site
         )
     })?;
-    let packages = apt.packages(&PACKAGES)?;
-    apt.download(&PACKAGES, &packages)?;
-    apt.unpack(&packages, &cache.join("root"), "unpacking Godot")
-        .context("about 750 MB are needed")?;
-    write_starter(archive.architecture, cache)
+    let packages = apt.packages(names)?;
+    apt.download(names, &packages)?;
+    let root = cache.join("root");
+    apt.unpack(&packages, &root, "unpacking Godot")?;
+    Ok(root)
 }
 
 /// Brings what an earlier version of this program unpacked to how it is unpacked now; nothing is fetched.
@@ -94,7 +129,7 @@ fn write_starter(architecture: &'static Architecture, cache: &Path) -> Result<Pa
     let partial = cache.join("godot.partial");
     fs::write(&partial, starter_script(architecture))
         .with_context(|| format!("cannot write {}", partial.display()))?;
-    make_executable(&partial)?;
+    fetch::make_executable(&partial)?;
     fs::rename(&partial, &starter)
         .with_context(|| format!("cannot write {}", starter.display()))?;
     Ok(starter)
@@ -137,18 +172,6 @@ pub(super) fn game(cache: &Path, game: &Path) -> Result<Command> {
         root.join(architecture.libraries).join("dri"),
     );
     Ok(command)
-}
-
-#[cfg(unix)]
-fn make_executable(file: &Path) -> Result<()> {
-    use std::os::unix::fs::PermissionsExt as _;
-    fs::set_permissions(file, fs::Permissions::from_mode(0o755))
-        .with_context(|| format!("cannot make {} executable", file.display()))
-}
-
-#[cfg(not(unix))]
-fn make_executable(_file: &Path) -> Result<()> {
-    Ok(())
 }
 
 #[cfg(test)]

@@ -25,17 +25,19 @@ pub(super) struct Architecture {
     pub(super) loader: &'static str,
 }
 
+pub(super) const ARM64: Architecture = Architecture {
+    debian: "arm64",
+    libraries: "usr/lib/aarch64-linux-gnu",
+    loader: "usr/lib/ld-linux-aarch64.so.1",
+};
+
 pub(super) const ARCHITECTURES: [Architecture; 2] = [
     Architecture {
         debian: "amd64",
         libraries: "usr/lib/x86_64-linux-gnu",
         loader: "usr/lib64/ld-linux-x86-64.so.2",
     },
-    Architecture {
-        debian: "arm64",
-        libraries: "usr/lib/aarch64-linux-gnu",
-        loader: "usr/lib/ld-linux-aarch64.so.1",
-    },
+    ARM64,
 ];
 
 impl Architecture {

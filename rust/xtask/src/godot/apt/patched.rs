@@ -3,8 +3,7 @@
 //! Started by way of that loader instead, Godot would take the loader for itself, and *Play* in the editor would start the loader.
 
 use super::archive::Architecture;
-use super::make_executable;
-use crate::process;
+use crate::{fetch, process};
 use anyhow::{Context as _, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -58,7 +57,7 @@ impl<'a> Patcher<'a> {
                 .arg(copy);
             process::read(&mut patchelf).map(drop)
         })?;
-        make_executable(file)
+        fetch::make_executable(file)
     }
 
     /// Has libraries that look for others in a folder of the system look where the program does.
