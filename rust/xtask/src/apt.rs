@@ -218,7 +218,11 @@ pub(crate) fn in_cache(
     if works(&root) {
         return Ok(root);
     }
-    Apt::fetch(&cache, packages, &format!("unpacking {}", packages.join(", ")))?;
+    Apt::fetch(
+        &cache,
+        packages,
+        &format!("unpacking {}", packages.join(", ")),
+    )?;
     if !works(&root) {
         bail!(
             "what was just fetched ({}) does not work",

@@ -3,11 +3,12 @@
 use footfall_core::{Pose, Site};
 use footfall_model::file::read_header;
 use footfall_model::{
-    DynamicsModel, FORMAT_VERSION, GaitModel, GaitStyle, ImuModel, ModelFileError, StepSpread,
-    WalkModel,
+    CalibratedSensor, DynamicsModel, FORMAT_VERSION, GaitModel, GaitStyle, ImuModel,
+    ModelFileError, SensorCalibration, StepSpread, WalkModel,
 };
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
 use footfall_tests::data::repository;
+use glam::{Quat, Vec3};
 use std::fs;
 use std::sync::Arc;
 
@@ -171,4 +172,23 @@ fn no_damage_goes_unnoticed_and_none_panics() {
             "byte {at} changed"
         );
     }
+}
+
+#[test]
+fn the_version_of_a_calibration_loads() {
+    let path = repository().join("tests/model_versions/v1.footcal");
+    let bytes = fs::read(&path).unwrap();
+    assert_eq!(read_header(&bytes).unwrap().0, 1);
+    let foot = CalibratedSensor {
+        certainty: 1.0,
+        rate_bias: Vec3::new(0.01, -0.02, 0.005),
+        gravity_mps2: 9.71,
+        device: "/dev/ttyUSB0".to_owned(),
+        ..CalibratedSensor::mounted(Site::RightFoot, Quat::from_xyzw(0.5, -0.5, 0.5, 0.5))
+    };
+    let kept = SensorCalibration {
+        sensors: vec![foot],
+        stride: 1.125,
+    };
+    assert_eq!(SensorCalibration::from_bytes(&bytes), Ok(kept));
 }

@@ -6,7 +6,10 @@ use footfall_core::{Clip, ModelPose, Pose, Site};
 use footfall_imu::{ImuRecording, ImuSample};
 use footfall_model::GaitModel;
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
-use footfall_recon::{Prepared, ReconConfig, Reconstructor, reconstruct_recording};
+use footfall_recon::{
+    Prepared, ReconConfig, Reconstructor, SensorProblem, TrackerConfig, find_exchange,
+    reconstruct_recording,
+};
 use footfall_tests::walkers;
 use std::sync::Arc;
 
@@ -116,4 +119,17 @@ fn recordings_on_one_clock_are_laid_side_by_side() {
     let from = 547 * 30 / 100;
     let (mean, worst) = apart_m(&together[from..], &apart[from..]);
     assert!(mean < 0.01, "{mean} m apart on average, {worst} m at worst");
+}
+
+#[test]
+fn exchanged_sensors_are_told_and_ordered_ones_are_not() {
+    let (prepared, [foot, hand]) = prepare();
+    let told =
+        |recordings| find_exchange(&prepared, recordings, &TrackerConfig::default()).unwrap();
+    assert_eq!(told([&foot, &hand]), None);
+    let [first, second] = SITES;
+    assert_eq!(
+        told([&hand, &foot]),
+        Some(SensorProblem::Exchanged { first, second })
+    );
 }

@@ -1,10 +1,10 @@
 //! A walk that another peer leads.
 
-use super::fit;
 use super::seen::{Seen, raise};
 use super::session::Session;
 use crate::travel::Travel;
 use footfall_ik::handover::Handover;
+use footfall_ik::placement::Frame;
 use footfall_synth::GroundTransform;
 use footfall_synth::replica::{Followed, WalkFollower};
 
@@ -40,7 +40,7 @@ impl Session {
 
     /// Handover from a motion on the ground under the character to the pose of now.
     fn fade_from(&self, before: Seen) -> Handover {
-        let place = fit::frame(&self.traveller.ground_place());
+        let place = Frame::from(self.traveller.ground_place());
         let (mut pose, mut seen) = (self.pose.clone(), Seen::default());
         raise(&place, &mut pose);
         for _ in 0..2 {

@@ -37,9 +37,7 @@ impl Aside {
             turn: self.turn.clamp(-most_rad, most_rad),
         }
     }
-}
 
-impl Aside {
     /// Leads the hips aside in the course of a step.
     pub(super) fn lead(&self, timing: &StepTiming, out: &mut [PlantedFrame]) {
         if self.way == Vec3::ZERO {
