@@ -6,9 +6,11 @@ use std::net::UdpSocket;
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-/// Sends lines of a sensor that lies with its z up, at 100 Hz, until it is dropped.
+const PERIOD: Duration = Duration::from_millis(10);
+
+/// Sends lines of a sensor that lies with its z up, at 100 Hz, until it is dropped. What a busy machine has kept it from sending in time, it sends as soon as it can.
 struct Sensor {
     stop: Arc<AtomicBool>,
 }
@@ -18,7 +20,10 @@ impl Sensor {
         let stop = Arc::new(AtomicBool::new(false));
         let own = Arc::clone(&stop);
         let run = move || {
+            let begin = Instant::now();
             for n in 0.. {
+                let due = begin + PERIOD * n;
+                std::thread::sleep(due.saturating_duration_since(Instant::now()));
                 if own.load(Ordering::Relaxed) {
                     break;
                 }
@@ -31,7 +36,6 @@ impl Sensor {
                     0.5 * wave,
                     0.4 * wave
                 ));
-                std::thread::sleep(Duration::from_millis(10));
             }
         };
         std::thread::Builder::new()
