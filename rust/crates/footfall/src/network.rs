@@ -1,6 +1,6 @@
 //! Walkers on several machines: the same steps from 24 bytes now and then.
 //!
-//! One machine walks a character and tells the others; they make the same steps with the character's model, an eighth of a second after they hear of them.
+//! One machine walks a character and sends [`UPDATE_BYTES`] fifteen to thirty times a second; the others make the same steps with the character's model, an eighth of a second after they hear of them.
 //!
 //! ```
 //! use footfall::body::Pose;

@@ -69,8 +69,76 @@
 //! assert!(error < 0.35, "{error}");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! [`examine`] finds the mounting and what is wrong with it: an [`Examination`] with a [`SensorProblem`] where the sensor is on the other side of the body, or turned against the mounting that is
+//! believed. [`find_exchange`] does so for two sensors that may be exchanged. Each problem says what the wearer is to do; [`Reconstructor::problem`] has that of the moment.
+//!
+//! ```
+//! use footfall::glam::Quat;
+//! use footfall::model::ImuModel;
+//! use footfall::reconstruction::{
+//!     Examination, Prepared, SensorProblem, TrackerConfig, examine, find_exchange,
+//! };
+//! use footfall::sensor::csv;
+//! use std::path::Path;
+//! use std::sync::Arc;
+//!
+//! # std::env::set_current_dir("../../..")?;
+//! let bytes = std::fs::read("addons/footfall/models/right_foot.footimu")?;
+//! let prepared = Arc::new(Prepared::new(Arc::new(ImuModel::from_bytes(&bytes)?))?);
+//! let recording = csv::read(Path::new("tests/data/walker_1_slow.right_foot.csv"))?;
+//! let config = TrackerConfig::default();
+//! let believed = Quat::from_rotation_z(3.0); // Upside down.
+//! let examined: Examination = examine(&prepared, 0, &recording, Some(believed), &config)?;
+//! let problem: Option<SensorProblem> = examined.finding;
+//! assert!(problem.is_some_and(|problem| problem.name() == "turned"));
+//! // A model of one sensor has none to exchange.
+//! assert_eq!(find_exchange(&prepared, [&recording, &recording], &config)?, None);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A [`SensorCalibration`] keeps what a session has learned of wearer and sensors, a [`CalibratedSensor`] for each [`Site`], as the bytes of a `.footcal` file; a [`CalibrationError`] says why one is refused. A
+//! [`CalibrationGuide`] leads the wearer to it through the [`GuideStep`]s. [`Prepared::wear`] makes a [`WornRecording`] of samples in the sensor's axes, ready for
+//! [`reconstruct_recording`], with a [`ProblemSpan`] for each problem on the way.
+//!
+//! ```
+//! use footfall::glam::Quat;
+//! use footfall::model::ImuModel;
+//! use footfall::reconstruction::{
+//!     CalibratedSensor, CalibrationError, CalibrationGuide, GuideStep, Prepared, ProblemSpan, ReconConfig, Reconstructor,
+//!     SensorCalibration, Site, WornRecording,
+//! };
+//! use footfall::sensor::csv;
+//! use std::path::Path;
+//! use std::sync::Arc;
+//!
+//! # std::env::set_current_dir("../../..")?;
+//! let bytes = std::fs::read("addons/footfall/models/right_foot.footimu")?;
+//! let prepared = Arc::new(Prepared::new(Arc::new(ImuModel::from_bytes(&bytes)?))?);
+//! let body = prepared.model().skeleton.clone();
+//! let recording = csv::read(Path::new("tests/data/walker_1_slow.right_foot.csv"))?;
+//!
+//! let mut guide = CalibrationGuide::default();
+//! guide.push(&recording.samples[0]);
+//! guide.push(&recording.samples[1]);
+//! assert_eq!(guide.step(), GuideStep::Stand); // Show `guide.step().message()` to the wearer.
+//!
+//! let mut live = Reconstructor::new(&prepared, &body, &ReconConfig::default())?;
+//! live.set_mounting(0, Quat::IDENTITY);
+//! let kept: SensorCalibration = live.calibration().expect("the mounting is known");
+//! let bytes = kept.to_bytes()?;
+//! live.calibrate(&SensorCalibration::from_bytes(&bytes)?)?; // In the next session.
+//! let refused = SensorCalibration::from_bytes(b"anything else");
+//! assert!(refused.is_err_and(|error: CalibrationError| error == CalibrationError::NotACalibration));
+//!
+//! let aligned = CalibratedSensor::mounted(Site::RightFoot, Quat::IDENTITY);
+//! let worn: WornRecording = prepared.wear(0, &recording, &aligned, None);
+//! let problems: Vec<ProblemSpan> = worn.problems;
+//! assert!(problems.is_empty(), "{problems:?}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-pub use footfall_core::Behaviour;
+pub use footfall_core::{Behaviour, Site};
 pub use footfall_model::{CalibratedSensor, CalibrationError, SensorCalibration};
 pub use footfall_recon::{
     Blending, CalibrationGuide, Examination, GuideStep, Mounting, MountingError, Prepared,

@@ -31,6 +31,34 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A [`StreamMonitor`] judges samples as they come. Its [`StreamFault`] says what is wrong, with what to do; a [`FaultSpan`] also says when. [`find_rest`] finds where a sensor was still: its
+//! [`Rest`] is the sensor's bias and gravity.
+//!
+//! ```
+//! use footfall::glam::Vec3;
+//! use footfall::sensor::{
+//!     FaultSpan, GRAVITY_MPS2, ImuRecording, ImuSample, Rest, StreamFault, StreamMonitor, find_rest,
+//! };
+//!
+//! let bias = Vec3::new(0.01, 0.0, -0.02);
+//! let still = |gravity: f32| ImuRecording {
+//!     samples: (0..300)
+//!         .map(|n| ImuSample { time_secs: f64::from(n) / 100.0, force: gravity * Vec3::Y, rate: bias })
+//!         .collect(),
+//! };
+//! let mut monitor = StreamMonitor::new(Some(100.0));
+//! for sample in still(GRAVITY_MPS2).samples {
+//!     monitor.push(sample); // A game does this as samples come.
+//! }
+//! assert_eq!(monitor.fault(), None);
+//! // A recording as a whole, in g instead of m/s².
+//! let spans: Vec<FaultSpan> = StreamMonitor::faults_of(&still(1.0), None);
+//! assert!(matches!(spans[0].fault, StreamFault::ForceInG { .. }));
+//!
+//! let rest: Rest = find_rest(&still(9.7)).expect("it never moves");
+//! assert!(rest.rate_bias.distance(bias) < 1e-4 && (rest.force.length() - 9.7).abs() < 1e-3);
+//! ```
+//!
 //! [`detect_swings`] finds each [`Swing`] of a foot that wears a sensor, [`events_of`] its [`SensorEvent`]s, [`measure_strides`] the [`SensorStride`]s.
 //!
 //! ```
