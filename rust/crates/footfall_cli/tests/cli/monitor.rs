@@ -16,6 +16,7 @@ struct Sensor {
 }
 
 impl Sensor {
+    #[expect(clippy::disallowed_methods, reason = "a sensor has a clock")]
     fn start(mut send: impl FnMut(&str) + Send + 'static) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
         let own = Arc::clone(&stop);
