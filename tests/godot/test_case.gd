@@ -56,3 +56,13 @@ func _fail(what: String) -> void:
 		line = "line %d: " % frame.line
 		break
 	failures.append(line + what)
+
+
+## Lets physics frames pass until something holds, for three seconds at most: what other threads make takes its own time, however fast frames go. Returns whether it does.
+func until(holds: Callable) -> bool:
+	for frame: int in 600:
+		await get_tree().physics_frame
+		if holds.call():
+			return true
+		OS.delay_msec(5)
+	return false

@@ -70,7 +70,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`examine`] finds the mounting and what is wrong with it: an [`Examination`] with a [`SensorProblem`] where the sensor is on the other side of the body, or turned against the mounting that is
+//! [`examine()`] finds the mounting and what is wrong with it: an [`Examination`] with a [`SensorProblem`] where the sensor is on the other side of the body, or turned against the mounting that is
 //! believed. [`find_exchange`] does so for two sensors that may be exchanged. Each problem says what the wearer is to do; [`Reconstructor::problem`] has that of the moment.
 //!
 //! ```
