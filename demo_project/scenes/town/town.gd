@@ -48,7 +48,6 @@ func _ready() -> void:
 func _bring_people() -> void:
 	for frame: int in 2:
 		await get_tree().physics_frame
-	_people.player = _player
 	_people.come(PEOPLE, RUNNERS)
 	if not OS.get_cmdline_user_args().is_empty():
 		send_player(TERRACE)

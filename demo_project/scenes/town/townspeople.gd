@@ -25,15 +25,6 @@ const RUN_MPS := Vector2(2.5, 3.1)
 const STAYING := 0.4
 ## In each frame every so-manyth person thinks.
 const THINKS_EVERY := 8
-## Somebody this near in front of whom the player is goes round, at such a distance, metres; in front are angles up to so many radians.
-const WAY_M := 2.2
-const ASIDE_M := 1.3
-const IN_FRONT := 0.9
-## Distance from where one can walk beyond which somebody whom others led aside comes back first, metres.
-const ASTRAY_M := 0.15
-## The same for where somebody will be with the next step, and when that is, seconds.
-const GOES_ASTRAY_M := 0.4
-const NEXT_STEP := 0.5
 ## Somebody is there from this near on, metres; it faces what it looks at, or where it sets out to, from these angles on, radians.
 const THERE_M := 0.8
 const FACING := 0.2
@@ -55,12 +46,9 @@ class Person:
 	var faces := NAN
 	var left_secs := 0.0
 	var nearest := INF
-	var is_astray := false
 
 
 var people: Array[Person] = []
-## The player, whom people go round.
-var player: Node3D
 
 var _spots := TownSpots.new()
 var _chance := RandomNumberGenerator.new()
@@ -113,8 +101,7 @@ func _process(delta: float) -> void:
 	var places := _crowd.get_positions()
 	var headings := _crowd.get_headings()
 	for index: int in range(_frame % THINKS_EVERY, people.size(), THINKS_EVERY):
-		if not _comes_back(people[index], places[index], headings[index]):
-			_think(people[index], places[index], headings[index], THINKS_EVERY * delta)
+		_think(people[index], places[index], headings[index], THINKS_EVERY * delta)
 
 
 ## Puts somebody where it stays, or on the way there.
@@ -135,49 +122,11 @@ func _begin(person: Person, places: PackedVector3Array, headings: PackedFloat32A
 	headings.append(atan2(way.x, way.z))
 
 
-## Leads somebody round the player, or back who is off the ways: others are avoided without a look at walls. Returns whether it is led.
-func _comes_back(person: Person, place: Vector3, heading: float) -> bool:
-	if person.doing != Doing.GOES and person.doing != Doing.RUNS:
-		return false
-	var map := _crowd.get_world_3d().navigation_map
-	var on_way := NavigationServer3D.map_get_closest_point(map, place)
-	var back := (on_way - place) * Vector3(1, 0, 1)
-	if back.length() <= ASTRAY_M:
-		var soon := place + Vector3.BACK.rotated(Vector3.UP, heading) * person.speed * NEXT_STEP
-		on_way = NavigationServer3D.map_get_closest_point(map, soon)
-		back = (on_way - soon) * Vector3(1, 0, 1)
-		if back.length() <= GOES_ASTRAY_M:
-			back = Vector3.ZERO
-	if back != Vector3.ZERO:
-		person.is_astray = true
-		# As far again, so that it does not come to rest there.
-		_crowd.set_targets([on_way + 1.5 * back.normalized()], [person.id])
-	elif _is_in_front(place, heading):
-		person.is_astray = true
-		_crowd.set_targets([_beside_player(place)], [person.id])
-	elif person.is_astray:
-		person.is_astray = false
-		if person.doing == Doing.GOES:
-			_crowd.set_destinations([person.spot.place], [person.id])
-	return person.is_astray
-
-
-func _is_in_front(place: Vector3, heading: float) -> bool:
-	var way := player.global_position - place
-	return way.length() < WAY_M and absf(wrapf(atan2(way.x, way.z) - heading, -PI, PI)) < IN_FRONT
-
-
-## The place to the right of the player for who comes from there.
-func _beside_player(place: Vector3) -> Vector3:
-	var way := ((player.global_position - place) * Vector3(1, 0, 1)).normalized()
-	return player.global_position + way.rotated(Vector3.UP, -0.5 * PI) * ASIDE_M + way * 0.5
-
-
 func _think(person: Person, place: Vector3, heading: float, secs: float) -> void:
 	match person.doing:
 		Doing.RUNS:
 			var ahead := fposmod(_round.get_closest_offset(place) + AHEAD_M, _round.get_baked_length())
-			_crowd.set_targets([_round.sample_baked(ahead)], [person.id])
+			_crowd.set_destinations([_round.sample_baked(ahead)], [person.id])
 		Doing.GOES:
 			_go(person, place, secs)
 		Doing.ARRIVES:

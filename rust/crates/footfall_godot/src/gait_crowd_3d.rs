@@ -10,6 +10,7 @@ mod ground;
 mod making;
 mod members;
 mod navigation;
+mod others;
 mod scene;
 
 use crate::gait_model::GaitModel;
@@ -19,6 +20,7 @@ use crowd_mesh::CrowdMesh;
 use footfall_rig::crowd::Crowd;
 use godot::classes::{Engine, INode3D, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
+use others::Others;
 use scene::CrowdScene;
 
 /// Warning where there is no character.
@@ -148,6 +150,11 @@ pub(crate) struct GaitCrowd3D {
     #[init(val = true)]
     avoidance: bool,
 
+    /// Group of nodes that walkers with a goal keep clear of as of each other, such as players; a `GaitCrowd3D` in it counts with everybody in it.
+    /// None: walkers see only each other.
+    #[export]
+    avoided_group: StringName,
+
     /// If `true`, time passes.
     #[export]
     #[init(val = true)]
@@ -201,6 +208,11 @@ pub(crate) struct GaitCrowd3D {
     /// Mesh of the character, until the scene has it.
     mesh: Option<CrowdMesh>,
     scene: Option<CrowdScene>,
+    others: Others,
+    /// True when walkers were sent over the navigation map.
+    sends: bool,
+    /// Row of the walker who is looked at next, lest it leaves the map.
+    kept: usize,
     /// Why the crowd could not be made, as long as nothing has changed since.
     problem: Option<String>,
     base: Base<Node3D>,

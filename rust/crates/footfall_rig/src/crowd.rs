@@ -6,6 +6,7 @@
 mod agent;
 mod avoidance;
 mod begin;
+mod goal;
 mod kit;
 mod maker;
 mod members;
@@ -17,9 +18,10 @@ mod save;
 mod tiers;
 mod way;
 
-pub use agent::{Agent, Drawn, Goal};
+pub use agent::{Agent, Drawn, Passerby};
 use footfall_core::{ModelPose, Pose, Skeleton};
 use glam::{Vec2, Vec3};
+pub use goal::Goal;
 pub use kit::CrowdRecipe;
 use kit::Kit;
 use maker::Maker;
@@ -84,6 +86,7 @@ pub struct Crowd {
     height_m: f32,
     kit: Option<Arc<Kit>>,
     neighbours: Neighbours,
+    others: Vec<Passerby>,
     way: Way,
     chooser: Chooser,
     /// True when walkers far away repeat their last two steps instead of taking new ones.
@@ -114,6 +117,7 @@ impl Crowd {
             height_m: height_m(&recipe.body),
             kit: None,
             neighbours: Neighbours::default(),
+            others: Vec::new(),
             way,
             chooser: Chooser::default(),
             repeats: true,
@@ -154,6 +158,13 @@ impl Crowd {
     /// Walkers that began in the last frame, by name.
     pub fn began(&self) -> &[i32] {
         &self.began
+    }
+
+    /// Sets who else is about, such as players: walkers who go somewhere keep clear of them as of each other. Places that are not finite are left out.
+    pub fn set_others(&mut self, others: impl Iterator<Item = Passerby>) {
+        self.others.clear();
+        self.others
+            .extend(others.filter(|other| other.place.is_finite() && other.velocity.is_finite()));
     }
 
     /// Number of frames so far.

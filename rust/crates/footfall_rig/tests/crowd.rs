@@ -4,7 +4,9 @@
 
 use footfall_core::Side;
 use footfall_model::GaitModel;
-use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdSettings, Limits, SavedCrowd, Tier, Way};
+use footfall_rig::crowd::{
+    Crowd, CrowdRecipe, CrowdSettings, Limits, Passerby, SavedCrowd, Tier, Way,
+};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 use std::path::Path;
@@ -155,6 +157,35 @@ fn rows_that_meet_pass_through_each_other_without_bumping() {
     let [avoiding, straight] = [true, false].map(touching_secs);
     assert!(straight > 0.3, "the rows meet: {straight} s");
     assert!(avoiding < 0.2 * straight, "{avoiding} of {straight} s");
+}
+
+/// Least distance of a walker from somebody who stands in its way and is not of the crowd.
+fn nearest_to_other(tells: bool) -> f32 {
+    let mut crowd = crowd(Way::Told);
+    crowd.add([(Vec3::ZERO, 0.0)].into_iter());
+    walk(&mut crowd, 0.1, |_| {});
+    crowd.agents_mut()[0].go_to(Vec2::new(0.0, 9.0));
+    let other = Vec2::new(0.05, 5.0);
+    if tells {
+        crowd.set_others([other, Vec2::NAN].into_iter().map(|place| Passerby {
+            place,
+            velocity: Vec2::ZERO,
+        }));
+    }
+    let mut nearest = f32::INFINITY;
+    walk(&mut crowd, 10.0, |crowd| {
+        let place = crowd.agents()[0].place;
+        nearest = nearest.min(Vec2::new(place.x, place.z).distance(other));
+    });
+    assert!(crowd.agents()[0].place.z > 8.0, "it arrives");
+    nearest
+}
+
+#[test]
+fn whoever_else_is_about_is_walked_around() {
+    let [told, untold] = [true, false].map(nearest_to_other);
+    assert!(untold < 0.2, "it would walk through: {untold} m");
+    assert!(told > 0.45, "{told} m");
 }
 
 #[test]

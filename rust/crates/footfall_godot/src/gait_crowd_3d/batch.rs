@@ -134,6 +134,7 @@ impl GaitCrowd3D {
         let Some(mut navigation) = Navigation::of(&host, self.navigation_layers) else {
             return false;
         };
+        self.sends = true;
         let mut all = true;
         self.set_each(destinations.as_slice(), &agents, |agent, place| {
             if place.is_finite() {

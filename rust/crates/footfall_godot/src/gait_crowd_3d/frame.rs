@@ -29,10 +29,18 @@ impl GaitCrowd3D {
         };
         walkers.repeats = repeat_far;
         walkers.standing_motion = standing_motion;
-        if walkers.way().is_navigated()
+        let is_navigated = walkers.way().is_navigated();
+        if (is_navigated || self.sends)
             && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)
         {
-            navigation.wander(&mut walkers);
+            if is_navigated {
+                navigation.wander(&mut walkers);
+            }
+            self.kept = navigation.keep(&mut walkers, self.kept);
+        }
+        if avoidance {
+            self.others
+                .watch(&mut walkers, &host, &self.avoided_group, dt_secs);
         }
         walkers.advance(dt_secs, avoidance);
         ground::find(&mut walkers, &host, mask);

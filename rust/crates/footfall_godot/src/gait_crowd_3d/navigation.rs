@@ -8,6 +8,18 @@ use godot::prelude::*;
 
 /// Ways that are looked for in one frame at most: each costs tens of microseconds.
 const MOST_A_FRAME: usize = 32;
+/// Walkers who meet somebody and are looked at in one frame at most, lest they walk into walls.
+const MOST_KEPT: usize = 16;
+/// Room beside them is looked for so far ahead and as far as this aside, metres.
+const AHEAD_M: f32 = 0.8;
+const ASIDE_M: f32 = 1.5;
+/// Distance from the map beyond which a walker is led back, now and where it will be in so many seconds, metres. A map keeps clear of walls by the radius of
+/// its agents.
+const ASTRAY_M: f32 = 0.15;
+const SOON_ASTRAY_M: f32 = 0.4;
+const SOON_SECS: f32 = 0.5;
+/// It is led so far into the map, metres: arrived is who is near.
+const INTO_M: f32 = 1.5;
 
 /// The navigation map, as the crowd sees it.
 pub(super) struct Navigation {
@@ -56,6 +68,64 @@ impl Navigation {
         true
     }
 
+    /// Looks how much room those have who meet somebody, beginning at this row, and leads those back who left the map; the row to begin at next time.
+    pub(super) fn keep(&mut self, walkers: &mut Crowd, from: usize) -> usize {
+        let mut left = MOST_KEPT;
+        let rows = walkers.agents().len();
+        for row in (from.min(rows)..rows).chain(0..from.min(rows)) {
+            let agent = &mut walkers.agents_mut()[row];
+            if !agent.may_stray() {
+                continue;
+            }
+            if let Some(back) = self.way_back(agent) {
+                agent.lead_back(back);
+            }
+            if let Some(way) = agent.way() {
+                let ahead = agent.place + AHEAD_M * Vec3::new(way.x, 0.0, way.y);
+                let to_right = ASIDE_M * Vec3::new(-way.y, 0.0, way.x);
+                let room = [to_right, -to_right].map(|side| ASIDE_M - self.off_map(ahead + side));
+                agent.set_room(AHEAD_M, room);
+            }
+            left -= 1;
+            if left == 0 {
+                return row + 1;
+            }
+        }
+        0
+    }
+
+    /// A place on the map on the way back to it, for a walker who is off it or soon will be.
+    fn way_back(&mut self, agent: &Agent) -> Option<Vec2> {
+        let velocity = agent.velocity();
+        let soon = agent.place + SOON_SECS * Vec3::new(velocity.x, 0.0, velocity.y);
+        let places = [(agent.place, ASTRAY_M), (soon, SOON_ASTRAY_M)];
+        places.into_iter().find_map(|(place, most_m)| {
+            let on_map = self.on_map(place)?;
+            let way = on_map - level(place);
+            (way.length() > most_m).then(|| on_map + INTO_M * way.normalize())
+        })
+    }
+
+    /// Distance of a place from the map, metres; 0 where nothing is known.
+    fn off_map(&mut self, place: Vec3) -> f32 {
+        let on_map = self.on_map(place);
+        on_map.map_or(0.0, |on_map| on_map.distance(level(place)))
+    }
+
+    /// The map's place nearest to one of the crowd's space.
+    fn on_map(&mut self, place: Vec3) -> Option<Vec2> {
+        let found = self.closest(self.world_from_crowd * convert::vector3(place))?;
+        Some(level(convert::vec3(found)))
+    }
+
+    /// The map's place nearest to one of the world, in the crowd's space.
+    fn closest(&mut self, place: Vector3) -> Option<Vector3> {
+        let asked = [self.map.clone(), place.to_variant()];
+        let found = self.server.call("map_get_closest_point", &asked);
+        let found: Vector3 = found.try_to().ok()?;
+        Some(self.world_from_crowd.affine_inverse() * found)
+    }
+
     /// Sends those who have arrived somewhere else on the map, a few in every frame.
     pub(super) fn wander(&mut self, walkers: &mut Crowd) {
         let mut left = MOST_A_FRAME;
@@ -78,9 +148,8 @@ impl Navigation {
     /// Some place of the map. The server's own choice would not be the same for equal seeds.
     fn place_at(&mut self, bounds: Aabb, shares: Vec3) -> Vector3 {
         let wanted = bounds.position + bounds.size * convert::vector3(shares);
-        let asked = [self.map.clone(), wanted.to_variant()];
-        let found = self.server.call("map_get_closest_point", &asked);
-        self.world_from_crowd.affine_inverse() * found.try_to().unwrap_or(wanted)
+        let here = self.world_from_crowd.affine_inverse() * wanted;
+        self.closest(wanted).unwrap_or(here)
     }
 
     /// A box around all regions of the map.
@@ -97,4 +166,8 @@ impl Navigation {
         });
         boxes.reduce(Aabb::merge).unwrap_or_default()
     }
+}
+
+fn level(place: Vec3) -> Vec2 {
+    Vec2::new(place.x, place.z)
 }

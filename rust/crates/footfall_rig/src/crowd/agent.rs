@@ -1,6 +1,7 @@
 //! One walker of a crowd: where it is, where it wants to go, and how it gets there.
 
 use super::avoidance::Wayfarer;
+use super::goal::{ARRIVED_M, Goal, Guidance, WIDE};
 use super::kit::Outfit;
 use footfall_core::Side;
 use footfall_core::rotation::{from_heading, wrap_angle};
@@ -8,8 +9,6 @@ use footfall_ik::placement::{Frame, Landing};
 use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop};
 use glam::{Vec2, Vec3};
 
-/// Distance at which a walker has arrived at a place, metres.
-const ARRIVED_M: f32 = 1.0;
 /// Rate of turning towards the wanted direction: rad/s for each radian that is missing, and at most.
 const TURN_GAIN: f32 = 1.6;
 const MAX_TURN_RADPS: f32 = 1.3;
@@ -21,20 +20,13 @@ const RISE_SECS: f32 = 0.15;
 /// A tint that changes nothing: red, green, blue and opacity.
 pub(super) const WHITE: [f32; 4] = [1.0; 4];
 
-/// Goals of a walker.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Goal {
-    /// A turn rate, rad/s.
-    Turn(f32),
-    /// A place, in the plane of the crowd: x and z of its space.
-    Place(Vec2),
-}
-
-/// Somebody as others see it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Seen {
-    pub(super) place: Vec2,
-    pub(super) velocity: Vec2,
+/// Somebody whom walkers keep clear of: another walker, or whoever else is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Passerby {
+    /// Place in the plane of the crowd, metres: x and z of its space.
+    pub place: Vec2,
+    /// Velocity there, m/s.
+    pub velocity: Vec2,
 }
 
 /// Places of a walker for drawing: where it was when it moved last but one, and where it is.
@@ -91,6 +83,11 @@ pub struct Agent {
     pub(super) outfit: Outfit,
     /// Places to go to after its goal, the next one last.
     pub(super) route: Vec<Vec2>,
+    pub(super) guidance: Guidance,
+    /// Most that it can step aside to the right and to the left, radians.
+    pub(super) room_rad: [f32; 2],
+    /// True when somebody is near whom it may have to go round.
+    pub(super) meets: bool,
     /// Place along a path and beside its middle, metres.
     pub(super) progress_m: f32,
     pub(super) aside_m: f32,
@@ -123,6 +120,9 @@ impl Agent {
             velocity: Vec2::ZERO,
             outfit: Outfit::default(),
             route: Vec::new(),
+            guidance: Guidance::None,
+            room_rad: WIDE,
+            meets: false,
             progress_m: 0.0,
             aside_m: 0.0,
             landed: None,
@@ -153,27 +153,6 @@ impl Agent {
     /// Returns whether it walks: it was made, and has begun.
     pub fn is_made(&self) -> bool {
         self.walker.is_some()
-    }
-
-    /// Gives up its goal and turns at this rate, rad/s.
-    pub fn turn(&mut self, rate_radps: f32) {
-        self.goal = Goal::Turn(rate_radps);
-        self.route.clear();
-    }
-
-    /// Goes to a place and stops there: x and z of the crowd's space.
-    pub fn go_to(&mut self, place: Vec2) {
-        self.goal = Goal::Place(place);
-        self.route.clear();
-    }
-
-    /// Goes from place to place and stops at the last; without places it keeps the goal that it has.
-    pub fn go_along(&mut self, places: impl DoubleEndedIterator<Item = Vec2>) {
-        self.route.clear();
-        self.route.extend(places.rev());
-        if let Some(first) = self.route.pop() {
-            self.goal = Goal::Place(first);
-        }
     }
 
     /// Velocity over the ground, m/s, x and z of the crowd's space.
@@ -213,7 +192,7 @@ impl Agent {
     }
 
     /// Decides what to do next; what it decides is taken up with the next step.
-    pub(super) fn decide<'a>(&mut self, others: impl Iterator<Item = &'a Seen>) {
+    pub(super) fn decide<'a>(&mut self, others: impl Iterator<Item = &'a Passerby>) {
         let mut speed = self.speed_mps;
         let turn = match self.goal {
             Goal::Turn(rate) => rate,
@@ -229,11 +208,16 @@ impl Agent {
                     heading: self.heading,
                     off,
                     speed_mps: self.speed_mps,
+                    room_rad: self.room_rad,
                 };
                 let detour = wayfarer.detour(others);
-                off += detour.aside;
+                self.meets = detour.is_some();
+                if let Some(detour) = detour {
+                    off += detour.aside;
+                    speed *= detour.speed;
+                }
                 // Who has to turn far does so first.
-                speed *= detour.speed * (1.2 - off.abs()).clamp(0.25, 1.0);
+                speed *= (1.2 - off.abs()).clamp(0.25, 1.0);
                 if speed <= 0.0 {
                     0.0
                 } else {
@@ -309,33 +293,11 @@ impl Agent {
         Vec2::new(self.place.x, self.place.z)
     }
 
-    pub(super) fn seen(&self) -> Seen {
-        Seen {
+    pub(super) fn seen(&self) -> Passerby {
+        Passerby {
             place: self.level(),
             velocity: self.velocity,
         }
-    }
-
-    /// Returns whether it goes somewhere and has not arrived.
-    pub fn is_on_its_way(&self) -> bool {
-        match self.goal {
-            Goal::Place(place) => !self.route.is_empty() || !self.is_at(place),
-            Goal::Turn(_) => false,
-        }
-    }
-
-    /// Goes on to the next place of its route once it has come to its goal.
-    pub(super) fn follow_route(&mut self) {
-        if let Goal::Place(place) = self.goal
-            && self.is_at(place)
-            && let Some(next) = self.route.pop()
-        {
-            self.goal = Goal::Place(next);
-        }
-    }
-
-    fn is_at(&self, place: Vec2) -> bool {
-        place.distance(self.level()) < ARRIVED_M
     }
 
     /// Has memory bring what [`advance`](Self::advance) reads.

@@ -3,7 +3,7 @@
 //! Each is judged by the detour that it is and by whom it would meet when, as in Moussaïd, Helbing and Theraulaz, "How simple rules determine
 //! pedestrian behavior and crowd disasters", PNAS 2011, with others going on as they do.
 
-use super::agent::{SIGHT_M, Seen};
+use super::agent::{Passerby, SIGHT_M};
 use glam::Vec2;
 
 /// Others are avoided when they would come this close within this time: metres and seconds.
@@ -34,6 +34,8 @@ pub(super) struct Wayfarer {
     pub(super) off: f32,
     /// Speed that it would like, m/s.
     pub(super) speed_mps: f32,
+    /// Most that it can step aside to the right and to the left, radians.
+    pub(super) room_rad: [f32; 2],
 }
 
 /// A way round others.
@@ -45,17 +47,9 @@ pub(super) struct Detour {
     pub(super) speed: f32,
 }
 
-impl Detour {
-    /// Straight on.
-    const NONE: Self = Self {
-        aside: 0.0,
-        speed: 1.0,
-    };
-}
-
 impl Wayfarer {
-    /// The detour that costs least.
-    pub(super) fn detour<'a>(&self, others: impl Iterator<Item = &'a Seen>) -> Detour {
+    /// The detour that costs least; `None` where nobody is near.
+    pub(super) fn detour<'a>(&self, others: impl Iterator<Item = &'a Passerby>) -> Option<Detour> {
         let facing = direction(self.heading);
         let velocity = direction(self.heading + self.off) * self.speed_mps;
         let mut near = Near::default();
@@ -69,16 +63,20 @@ impl Wayfarer {
             }
         }
         if near.len == 0 {
-            return Detour::NONE;
+            return None;
         }
-        let mut best = (f32::INFINITY, Detour::NONE);
-        for aside in ASIDES {
+        let [right, left] = self.room_rad;
+        let mut best = (f32::INFINITY, None);
+        for aside in ASIDES
+            .into_iter()
+            .filter(|aside| (-right..=left).contains(aside))
+        {
             let direction = direction(self.heading + self.off + aside);
             for speed in SPEEDS {
                 let velocity = direction * (speed * self.speed_mps);
                 let cost = detour_cost(aside, speed) + near.cost(velocity);
                 if cost < best.0 {
-                    best = (cost, Detour { aside, speed });
+                    best = (cost, Some(Detour { aside, speed }));
                 }
             }
         }
@@ -144,23 +142,29 @@ fn meeting_cost(way: Vec2, approach: Vec2) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f32::consts::PI;
 
     const AHEAD: Wayfarer = Wayfarer {
         place: Vec2::ZERO,
         heading: 0.0,
         off: 0.0,
         speed_mps: 1.3,
+        room_rad: [PI; 2],
+    };
+    const STRAIGHT_ON: Detour = Detour {
+        aside: 0.0,
+        speed: 1.0,
     };
 
-    fn somebody(x: f32, z: f32, velocity: Vec2) -> Seen {
-        Seen {
+    fn somebody(x: f32, z: f32, velocity: Vec2) -> Passerby {
+        Passerby {
             place: Vec2::new(x, z),
             velocity,
         }
     }
 
     /// Least distance of the two when one takes a detour and the other goes on.
-    fn nearest(detour: Detour, other: &Seen) -> f32 {
+    fn nearest(detour: Detour, other: &Passerby) -> f32 {
         let velocity = direction(detour.aside) * (1.3 * detour.speed);
         (0..80)
             .map(|tenth| 0.1 * tenth as f32)
@@ -170,19 +174,19 @@ mod tests {
 
     #[test]
     fn nobody_in_the_way_means_straight_on() {
-        assert_eq!(AHEAD.detour([].iter()), Detour::NONE);
+        assert_eq!(AHEAD.detour([].iter()), None);
         let away = [
             somebody(0.0, -1.5, Vec2::ZERO),
             somebody(3.0, 4.0, Vec2::ZERO),
             somebody(0.2, 3.0, 1.3 * Vec2::Y),
         ];
-        assert_eq!(AHEAD.detour(away.iter()), Detour::NONE);
+        assert_eq!(AHEAD.detour(away.iter()), Some(STRAIGHT_ON));
     }
 
     #[test]
     fn two_who_meet_face_to_face_both_go_to_their_right() {
         let other = somebody(0.0, 5.0, -1.3 * Vec2::Y);
-        let detour = AHEAD.detour([other].iter());
+        let detour = AHEAD.detour([other].iter()).unwrap();
         assert!(detour.aside < 0.0, "{detour:?}");
         assert!(nearest(detour, &other) > BODIES_M);
     }
@@ -196,8 +200,8 @@ mod tests {
             somebody(-3.0, 3.2, Vec2::new(1.2, 0.0)),
         ];
         for other in crowd {
-            assert!(nearest(Detour::NONE, &other) < BODIES_M);
-            let detour = AHEAD.detour([other].iter());
+            assert!(nearest(STRAIGHT_ON, &other) < BODIES_M);
+            let detour = AHEAD.detour([other].iter()).unwrap();
             assert!(nearest(detour, &other) > BODIES_M, "{other:?}: {detour:?}");
         }
     }
@@ -206,7 +210,27 @@ mod tests {
     fn of_too_many_the_urgent_count() {
         let aside = (0..40).map(|index| somebody(4.0, 0.1 * index as f32, Vec2::ZERO));
         let urgent = somebody(0.0, 1.5, Vec2::ZERO);
-        let everybody: Vec<Seen> = aside.chain([urgent]).collect();
-        assert!(nearest(AHEAD.detour(everybody.iter()), &urgent) > BODIES_M);
+        let everybody: Vec<Passerby> = aside.chain([urgent]).collect();
+        let detour = AHEAD.detour(everybody.iter()).unwrap();
+        assert!(nearest(detour, &urgent) > BODIES_M);
+    }
+
+    #[test]
+    fn whoever_has_no_room_on_one_side_goes_round_on_the_other_or_waits() {
+        let other = somebody(0.0, 5.0, -1.3 * Vec2::Y);
+        let in_room = |right: f32, left: f32| {
+            let wayfarer = Wayfarer {
+                room_rad: [right, left],
+                ..AHEAD
+            };
+            wayfarer.detour([other].iter()).unwrap()
+        };
+        assert!(in_room(0.0, PI).aside > 0.0);
+        assert!((-0.2..0.0).contains(&in_room(0.2, 0.0).aside));
+        let between_walls = in_room(0.0, 0.0);
+        assert!(
+            between_walls.aside == 0.0 && between_walls.speed < 1.0,
+            "{between_walls:?}"
+        );
     }
 }

@@ -1,7 +1,8 @@
 //! Walkers who come and go, and the row of each.
 
 use super::Crowd;
-use super::agent::{Agent, Drawn, Goal, WHITE};
+use super::agent::{Agent, Drawn, WHITE};
+use super::goal::Goal;
 use super::kit::Outfit;
 use super::maker::Order;
 use super::save::{self, SavedAgent, SavedCrowd};

@@ -35,7 +35,9 @@ impl Crowd {
         };
         if avoidance && frame.is_multiple_of(NEIGHBOURS_EVERY) {
             let there = self.agents.iter().filter(|agent| agent.walker.is_some());
-            self.neighbours.rebuild(there.map(Agent::seen));
+            let others = self.others.iter().copied();
+            self.neighbours
+                .rebuild(there.map(Agent::seen).chain(others));
         }
         let Self {
             agents,

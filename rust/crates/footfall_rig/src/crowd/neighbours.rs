@@ -1,12 +1,12 @@
 //! Neighbours: a grid over the plane, made anew as people move.
 
-use super::agent::{SIGHT_M, Seen};
+use super::agent::{Passerby, SIGHT_M};
 use glam::{IVec2, Vec2};
 
 /// Walkers by the cell that they are in; a cell is as wide as one sees.
 #[derive(Debug, Default)]
 pub(super) struct Neighbours {
-    seen: Vec<Seen>,
+    seen: Vec<Passerby>,
     /// Walkers in the order of their buckets.
     order: Vec<u32>,
     /// Index in `order` at which each bucket begins; one more than buckets.
@@ -15,7 +15,7 @@ pub(super) struct Neighbours {
 
 impl Neighbours {
     /// Takes everybody in. Allocates only when there are more than ever.
-    pub(super) fn rebuild(&mut self, everybody: impl Iterator<Item = Seen>) {
+    pub(super) fn rebuild(&mut self, everybody: impl Iterator<Item = Passerby>) {
         self.seen.clear();
         self.seen.extend(everybody);
         let buckets = self.seen.len().next_power_of_two().max(16);
@@ -40,7 +40,7 @@ impl Neighbours {
     }
 
     /// Everybody in the cells around a place, and by chance a few from elsewhere.
-    pub(super) fn around(&self, place: Vec2) -> impl Iterator<Item = &Seen> {
+    pub(super) fn around(&self, place: Vec2) -> impl Iterator<Item = &Passerby> {
         let buckets = self.starts.len().saturating_sub(1).max(1);
         let middle = cell(place);
         (-1..=1)
@@ -78,7 +78,7 @@ mod tests {
             .collect();
         let mut neighbours = Neighbours::default();
         for _ in 0..2 {
-            neighbours.rebuild(places.iter().map(|place| Seen {
+            neighbours.rebuild(places.iter().map(|place| Passerby {
                 place: *place,
                 velocity: Vec2::ZERO,
             }));

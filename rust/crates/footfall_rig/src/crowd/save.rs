@@ -1,7 +1,8 @@
 //! A crowd as bytes.
 
 use super::MOST_AGENTS;
-use super::agent::{Agent, Goal};
+use super::agent::Agent;
+use super::goal::Goal;
 use super::roster::{Roster, SavedRoster};
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,7 @@
 //! Ways that walkers of a crowd take by themselves.
 
-use super::agent::{Agent, Goal};
+use super::agent::Agent;
+use super::goal::Goal;
 use glam::Vec2;
 
 /// Distance that a walker looks ahead on its path, metres.
