@@ -36,6 +36,7 @@ namespace Footfall
             public static readonly StringName Seed = "seed";
             public static readonly StringName StandingMotion = "standing_motion";
             public static readonly StringName Avoidance = "avoidance";
+            public static readonly StringName AvoidedGroup = "avoided_group";
             public static readonly StringName Playing = "playing";
             public static readonly StringName GroundMask = "ground_mask";
             public static readonly StringName FullCount = "full_count";
@@ -218,6 +219,13 @@ namespace Footfall
         {
             get => Native.Get(PropertyName.Avoidance).AsBool();
             set => Native.Set(PropertyName.Avoidance, value);
+        }
+
+        /// <summary>Group of nodes that walkers with a goal keep clear of as of each other, such as players; a <see cref="GaitCrowd3D"/> in it counts with everybody in it. None: walkers see only each other.</summary>
+        public StringName AvoidedGroup
+        {
+            get => Native.Get(PropertyName.AvoidedGroup).AsStringName();
+            set => Native.Set(PropertyName.AvoidedGroup, value);
         }
 
         /// <summary>If <c>true</c>, time passes.</summary>
