@@ -189,6 +189,51 @@ fn whoever_else_is_about_is_walked_around() {
 }
 
 #[test]
+fn whoever_arrives_slows_down_and_stops_at_the_goal() {
+    let mut crowd = crowd(Way::Told);
+    crowd.add((0..6).map(|n| (Vec3::new(3.0 * n as f32, 0.0, 0.0), 0.0)));
+    walk(&mut crowd, 0.1, |_| {});
+    for (n, agent) in crowd.agents_mut().iter_mut().enumerate() {
+        agent.go_to(Vec2::new(3.0 * n as f32, 8.0));
+    }
+    walk(&mut crowd, 20.0, |_| {});
+    for agent in crowd.agents() {
+        let past = agent.place.z - 8.0;
+        assert!(past.abs() < 0.35, "{past} m past the goal");
+    }
+}
+
+#[test]
+fn ground_that_ends_leads_along_itself() {
+    let mut crowd = crowd(Way::Told);
+    crowd.repeats = false;
+    crowd.add([(Vec3::ZERO, 0.0)].into_iter());
+    walk(&mut crowd, 0.1, |_| {});
+    crowd.agents_mut()[0].go_along([Vec2::new(6.0, 6.0)].into_iter());
+    let mut farthest = 0.0_f32;
+    for _ in 0..(15.0 / DT_SECS) as usize {
+        walk(&mut crowd, DT_SECS, |_| {});
+        // The ground ends at z = 3 until x is 5.
+        let agent = &mut crowd.agents_mut()[0];
+        let ends = agent.place.x < 5.0;
+        if let Some(straight) = agent.straight_way() {
+            let blocked = ends && agent.place.z + straight.y > 3.0;
+            agent.guide(blocked.then_some(Vec2::X), 1.0, [1.0; 2]);
+        }
+        if ends {
+            farthest = farthest.max(agent.place.z);
+        }
+    }
+    assert!(farthest < 3.6, "{farthest} m");
+    let place = crowd.agents()[0].place;
+    assert!(
+        Vec2::new(place.x, place.z).distance(Vec2::new(6.0, 6.0)) < 1.5,
+        "{place}"
+    );
+    assert_eq!(crowd.agents()[0].straight_way(), None, "it has arrived");
+}
+
+#[test]
 fn the_nearest_are_drawn_best_and_all_have_poses() {
     let mut crowd = crowd(Way::Told);
     let starts = (0..12_u8).map(|index| (Vec3::Z * f32::from(index), 0.0));

@@ -8,18 +8,14 @@ use godot::prelude::*;
 
 /// Ways that are looked for in one frame at most: each costs tens of microseconds.
 const MOST_A_FRAME: usize = 32;
-/// Walkers who meet somebody and are looked at in one frame at most, lest they walk into walls.
-const MOST_KEPT: usize = 16;
-/// Room beside them is looked for so far ahead and as far as this aside, metres.
-const AHEAD_M: f32 = 0.8;
+/// Walkers who are looked at in one frame, lest they walk into walls: so many, or as many as it takes to look at everybody within so many frames.
+const MOST_KEPT: usize = 32;
+const MOST_FRAMES: usize = 60;
+/// The ground is looked at so far ahead of them and as far as this beside that, metres.
+const AHEAD_M: f32 = 1.0;
 const ASIDE_M: f32 = 1.5;
-/// Distance from the map beyond which a walker is led back, now and where it will be in so many seconds, metres. A map keeps clear of walls by the radius of
-/// its agents.
-const ASTRAY_M: f32 = 0.15;
-const SOON_ASTRAY_M: f32 = 0.4;
-const SOON_SECS: f32 = 0.5;
-/// It is led so far into the map, metres: arrived is who is near.
-const INTO_M: f32 = 1.5;
+/// A place counts as on the map when it is no farther off, metres. A map keeps clear of walls by the radius of its agents.
+const ON_MAP_M: f32 = 0.05;
 
 /// The navigation map, as the crowd sees it.
 pub(super) struct Navigation {
@@ -68,24 +64,21 @@ impl Navigation {
         true
     }
 
-    /// Looks how much room those have who meet somebody, beginning at this row, and leads those back who left the map; the row to begin at next time.
+    /// Looks at the ground ahead of those who are on their way, beginning at this row; the row to begin at next time.
     pub(super) fn keep(&mut self, walkers: &mut Crowd, from: usize) -> usize {
-        let mut left = MOST_KEPT;
         let rows = walkers.agents().len();
+        let mut left = MOST_KEPT.max(rows / MOST_FRAMES);
         for row in (from.min(rows)..rows).chain(0..from.min(rows)) {
             let agent = &mut walkers.agents_mut()[row];
-            if !agent.may_stray() {
+            let Some(straight) = agent.straight_way() else {
                 continue;
-            }
-            if let Some(back) = self.way_back(agent) {
-                agent.lead_back(back);
-            }
-            if let Some(way) = agent.way() {
-                let ahead = agent.place + AHEAD_M * Vec3::new(way.x, 0.0, way.y);
-                let to_right = ASIDE_M * Vec3::new(-way.y, 0.0, way.x);
-                let room = [to_right, -to_right].map(|side| ASIDE_M - self.off_map(ahead + side));
-                agent.set_room(AHEAD_M, room);
-            }
+            };
+            let bent = self.bent(agent.place, straight);
+            let way = bent.unwrap_or(straight);
+            let ahead = agent.place + AHEAD_M * Vec3::new(way.x, 0.0, way.y);
+            let to_right = ASIDE_M * Vec3::new(-way.y, 0.0, way.x);
+            let room = [to_right, -to_right].map(|side| ASIDE_M - self.off_map(ahead + side));
+            agent.guide(bent, AHEAD_M, room);
             left -= 1;
             if left == 0 {
                 return row + 1;
@@ -94,16 +87,13 @@ impl Navigation {
         0
     }
 
-    /// A place on the map on the way back to it, for a walker who is off it or soon will be.
-    fn way_back(&mut self, agent: &Agent) -> Option<Vec2> {
-        let velocity = agent.velocity();
-        let soon = agent.place + SOON_SECS * Vec3::new(velocity.x, 0.0, velocity.y);
-        let places = [(agent.place, ASTRAY_M), (soon, SOON_ASTRAY_M)];
-        places.into_iter().find_map(|(place, most_m)| {
-            let on_map = self.on_map(place)?;
-            let way = on_map - level(place);
-            (way.length() > most_m).then(|| on_map + INTO_M * way.normalize())
-        })
+    /// Direction that stays on the map, or leads back to it, for a walker whose way does not.
+    fn bent(&mut self, place: Vec3, way: Vec2) -> Option<Vec2> {
+        let ahead = level(place) + AHEAD_M * way;
+        let on_map = self.on_map(Vec3::new(ahead.x, place.y, ahead.y))?;
+        let off = on_map.distance(ahead) > ON_MAP_M;
+        off.then(|| (on_map - level(place)).try_normalize())
+            .flatten()
     }
 
     /// Distance of a place from the map, metres; 0 where nothing is known.

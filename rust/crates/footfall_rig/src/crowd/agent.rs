@@ -1,7 +1,7 @@
 //! One walker of a crowd: where it is, where it wants to go, and how it gets there.
 
 use super::avoidance::Wayfarer;
-use super::goal::{ARRIVED_M, Goal, Guidance, WIDE};
+use super::goal::{Goal, Guidance};
 use super::kit::Outfit;
 use footfall_core::Side;
 use footfall_core::rotation::{from_heading, wrap_angle};
@@ -9,6 +9,15 @@ use footfall_ik::placement::{Frame, Landing};
 use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop};
 use glam::{Vec2, Vec3};
 
+/// Whoever comes to a goal slows down to this speed, m/s, by so much for each metre that is left.
+const ARRIVING_MPS: f32 = 0.5;
+const ARRIVING_RATE: f32 = 0.8;
+/// A decision shows after so many seconds, for the next step is planned already and the last one takes its time.
+const AHEAD_SECS: f32 = 1.0;
+/// Room that a walker needs to turn round in an arc, metres.
+const ARC_M: f32 = 2.0;
+/// Whoever is so near to a goal makes no step towards it, metres.
+const THERE_M: f32 = 0.5;
 /// Rate of turning towards the wanted direction: rad/s for each radian that is missing, and at most.
 const TURN_GAIN: f32 = 1.6;
 const MAX_TURN_RADPS: f32 = 1.3;
@@ -84,10 +93,6 @@ pub struct Agent {
     /// Places to go to after its goal, the next one last.
     pub(super) route: Vec<Vec2>,
     pub(super) guidance: Guidance,
-    /// Most that it can step aside to the right and to the left, radians.
-    pub(super) room_rad: [f32; 2],
-    /// True when somebody is near whom it may have to go round.
-    pub(super) meets: bool,
     /// Place along a path and beside its middle, metres.
     pub(super) progress_m: f32,
     pub(super) aside_m: f32,
@@ -121,8 +126,6 @@ impl Agent {
             outfit: Outfit::default(),
             route: Vec::new(),
             guidance: Guidance::None,
-            room_rad: WIDE,
-            meets: false,
             progress_m: 0.0,
             aside_m: 0.0,
             landed: None,
@@ -191,34 +194,39 @@ impl Agent {
         })
     }
 
-    /// Decides what to do next; what it decides is taken up with the next step.
-    pub(super) fn decide<'a>(&mut self, others: impl Iterator<Item = &'a Passerby>) {
+    /// Decides what to do next; what it decides is taken up with the next step. It slows down for its last goal if it `stops` there.
+    pub(super) fn decide<'a>(&mut self, others: impl Iterator<Item = &'a Passerby>, stops: bool) {
         let mut speed = self.speed_mps;
         let turn = match self.goal {
             Goal::Turn(rate) => rate,
             Goal::Place(place) => {
-                let way = place - self.level();
-                let far = way.length();
-                if far < 0.5 * ARRIVED_M {
+                let far = place.distance(self.level());
+                let left = match self.route.is_empty() {
+                    true if far < THERE_M => 0.0,
+                    true if stops => (far - AHEAD_SECS * self.velocity.length()).max(0.0),
+                    _ => f32::INFINITY,
+                };
+                if left <= 0.0 {
                     speed = 0.0;
                 }
+                speed = speed.min(ARRIVING_MPS + ARRIVING_RATE * left);
+                let (way, room_rad) = self.way_to(place);
                 let mut off = wrap_angle(way.x.atan2(way.y) - self.heading);
                 let wayfarer = Wayfarer {
                     place: self.level(),
                     heading: self.heading,
                     off,
                     speed_mps: self.speed_mps,
-                    room_rad: self.room_rad,
+                    room_rad,
                 };
-                let detour = wayfarer.detour(others);
-                self.meets = detour.is_some();
-                if let Some(detour) = detour {
+                if let Some(detour) = wayfarer.detour(others) {
                     off += detour.aside;
                     speed *= detour.speed;
                 }
-                // Who has to turn far does so first.
-                speed *= (1.2 - off.abs()).clamp(0.25, 1.0);
-                if speed <= 0.0 {
+                // Who has to turn far does so first, and on the spot where there is no room left for an arc.
+                let least = if left < ARC_M { 0.0 } else { 0.25 };
+                speed *= (1.2 - off.abs()).clamp(least, 1.0);
+                if left <= 0.0 {
                     0.0
                 } else {
                     (TURN_GAIN * off).clamp(-MAX_TURN_RADPS, MAX_TURN_RADPS)

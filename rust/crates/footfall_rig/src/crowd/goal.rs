@@ -7,11 +7,14 @@ use std::f32::consts::PI;
 /// Distance at which a walker has arrived at a place, metres.
 pub(super) const ARRIVED_M: f32 = 1.0;
 
-/// Room of a walker on ground of which nobody knows where it ends: it may turn aside to the right and to the left as far as this, radians.
-pub(super) const WIDE: [f32; 2] = [PI; 2];
+/// A walker may turn aside to the right and to the left as far as this where nobody knows the ground, radians.
+const WIDE: [f32; 2] = [PI; 2];
 
 /// A walker steps aside no nearer to where the ground of its route ends, for it goes on for a step before it turns back, metres.
 const MARGIN_M: f32 = 0.2;
+
+/// Knowledge of the ground holds so far from where it was looked at, metres.
+const KNOWN_M: f32 = 1.5;
 
 /// Goals of a walker.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,14 +26,26 @@ pub enum Goal {
 }
 
 /// Knowledge of the ground on which a walker's route lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Guidance {
     /// Nobody knows where it may go.
+    #[default]
     None,
-    /// The game found the route around what is in the way.
-    Map,
-    /// The same, and its goal is a place on the way back to the route.
-    BackToMap,
+    /// The game found the route around what is in the way, and has not looked at the ground here.
+    Route,
+    /// It has.
+    Ground(Ground),
+}
+
+/// Ground around a walker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ground {
+    /// Place where it was looked at.
+    at: Vec2,
+    /// Direction that stays on the ground, where the one to the goal does not.
+    way: Option<Vec2>,
+    /// Most that it can step aside to the right and to the left, radians.
+    room_rad: [f32; 2],
 }
 
 impl Agent {
@@ -49,47 +64,48 @@ impl Agent {
     /// Goes from place to place, a route that the game found around what is in the way, and stops at the last; without places it keeps the goal
     /// that it has.
     pub fn go_along(&mut self, places: impl DoubleEndedIterator<Item = Vec2>) {
-        self.route.clear();
+        self.give_up();
         self.route.extend(places.rev());
         if let Some(first) = self.route.pop() {
             self.goal = Goal::Place(first);
-            self.guidance = Guidance::Map;
+            self.guidance = Guidance::Route;
         }
     }
 
     fn give_up(&mut self) {
         self.route.clear();
         self.guidance = Guidance::None;
-        self.room_rad = WIDE;
     }
 
-    /// Returns whether it may leave the ground on which its route lies: somebody is near whom it may go round, perhaps beside a wall.
-    pub fn may_stray(&self) -> bool {
-        self.guidance != Guidance::None && self.meets && self.is_on_its_way()
-    }
-
-    /// The direction of its goal as a unit vector, and so the way that it takes when nobody is near; `None` without a goal or at it.
-    pub fn way(&self) -> Option<Vec2> {
+    /// The direction of its goal as a unit vector, where the game found its route and it has not arrived: whoever goes round others, or turns in an arc, may leave that ground.
+    pub fn straight_way(&self) -> Option<Vec2> {
         match self.goal {
-            Goal::Place(place) => (place - self.level()).try_normalize(),
-            Goal::Turn(_) => None,
+            Goal::Place(place) if self.guidance != Guidance::None && self.is_on_its_way() => {
+                (place - self.level()).try_normalize()
+            }
+            Goal::Place(_) | Goal::Turn(_) => None,
         }
     }
 
-    /// Sets the room to the right and to the left of its [`way`](Self::way), metres, some way ahead: it steps aside no farther.
-    pub fn set_room(&mut self, ahead_m: f32, sides_m: [f32; 2]) {
-        self.room_rad = sides_m.map(|side| (side - MARGIN_M).max(0.0).atan2(ahead_m));
+    /// Tells it about the ground: a direction that stays on it, where the [straight way](Self::straight_way) does not, and the room to the right and to the left so far ahead, metres. It steps
+    /// aside no farther.
+    pub fn guide(&mut self, way: Option<Vec2>, ahead_m: f32, sides_m: [f32; 2]) {
+        self.guidance = Guidance::Ground(Ground {
+            at: self.level(),
+            way,
+            room_rad: sides_m.map(|side| (side - MARGIN_M).max(0.0).atan2(ahead_m)),
+        });
     }
 
-    /// Goes by way of a place, back to where its route lies, before it goes on.
-    pub fn lead_back(&mut self, by_way_of: Vec2) {
-        if let Goal::Place(place) = self.goal
-            && self.guidance != Guidance::BackToMap
-        {
-            self.route.push(place);
-            self.guidance = Guidance::BackToMap;
+    /// Direction of its goal, or the one that stays on the ground, and how far it may turn aside from it to the right and to the left, radians.
+    pub(super) fn way_to(&self, place: Vec2) -> (Vec2, [f32; 2]) {
+        let straight = place - self.level();
+        match self.guidance {
+            Guidance::Ground(ground) if ground.at.distance(self.level()) < KNOWN_M => {
+                (ground.way.unwrap_or(straight), ground.room_rad)
+            }
+            Guidance::None | Guidance::Route | Guidance::Ground(_) => (straight, WIDE),
         }
-        self.goal = Goal::Place(by_way_of);
     }
 
     /// Returns whether it goes somewhere and has not arrived.
@@ -107,9 +123,7 @@ impl Agent {
             && let Some(next) = self.route.pop()
         {
             self.goal = Goal::Place(next);
-            if self.guidance == Guidance::BackToMap {
-                self.guidance = Guidance::Map;
-            }
+            self.guidance = Guidance::Route;
         }
     }
 

@@ -3,6 +3,7 @@
 use super::Crowd;
 use super::agent::Agent;
 use super::tiers::Tier;
+use super::way::Way;
 use footfall_core::Side;
 use footfall_synth::Detail;
 use glam::Vec3;
@@ -88,10 +89,11 @@ impl Crowd {
                 agent.clock_secs = now_secs;
                 if agent.is_about_to_step(secs) {
                     way.lead(agent);
+                    let stops = matches!(way, Way::Told);
                     if avoidance {
-                        agent.decide(neighbours.around(agent.level()));
+                        agent.decide(neighbours.around(agent.level()), stops);
                     } else {
-                        agent.decide(core::iter::empty());
+                        agent.decide(core::iter::empty(), stops);
                     }
                 }
                 let (from, heading) = (agent.place, agent.heading);
