@@ -87,7 +87,7 @@ impl Agent {
         }
     }
 
-    /// Tells it about the ground: a direction that stays on it, where the [straight way](Self::straight_way) does not, and the room to the right and to the left so far ahead, metres. It steps
+    /// Sets the ground around it: a direction that stays on it, where the [straight way](Self::straight_way) does not, and the room to the right and to the left so far ahead, metres. It steps
     /// aside no farther.
     pub fn guide(&mut self, way: Option<Vec2>, ahead_m: f32, sides_m: [f32; 2]) {
         self.guidance = Guidance::Ground(Ground {
