@@ -24,7 +24,7 @@ const MAX_RESIDUAL: f64 = 1.6;
 const MIN_TEMPO: f64 = 0.8;
 
 /// Factor on the tempo of the briskest walk at which steps to the side and backwards are taken at most.
-const MOST_QUICKER: f64 = 1.6;
+const MOST_QUICKER: f64 = 1.9;
 
 /// Tolerance of the search for a walk whose steps are quick enough, m/s.
 const BRISKER_MPS: f64 = 0.05;

@@ -173,18 +173,19 @@ impl Planter {
         self.state
     }
 
-    /// Turns a step that goes forwards to where it is to go; forwards it goes along +Z under the heading `own_facing`.
+    /// Turns a step that goes forwards to where it is to go; forwards it goes along +Z under the heading `own_facing`. A step in full walk leads `wanted_m` far, metres.
     pub(crate) fn turn_step(
         &mut self,
         raw: &mut [RawFrame],
         timing: &StepTiming,
-        strafe: Strafe,
+        (strafe, wanted_m): (Strafe, Option<f32>),
         own_facing: f32,
         out: &mut [PlantedFrame],
     ) {
         let before = self.state.strafe;
         if [before, strafe] != [Strafe::NONE; 2] {
             let leg_length = self.leg_lengths[timing.leading.index()];
+            let strafe = strafe.lengthened(self.flat_way(timing, raw, own_facing), wanted_m);
             // A step that ends a walk brings the feet together.
             let strafe = if timing.rests {
                 strafe
@@ -199,6 +200,17 @@ impl Planter {
             };
             turner.turn_step(raw, out, timing, [&before, &strafe]);
         }
+    }
+
+    /// Way of the hips over the standing foot in a step forwards, were that foot flat throughout, metres.
+    fn flat_way(&self, timing: &StepTiming, raw: &[RawFrame], own_facing: f32) -> f32 {
+        let side = timing.leading.index();
+        let level = from_heading(own_facing);
+        let ahead = |frame: usize| {
+            let leg = &raw[frame].legs[side];
+            (level * (leg.ankle - self.feet[side].roll(leg.pitch))).z
+        };
+        ahead(0) - ahead(timing.frames)
     }
 
     /// Last plant of this foot.

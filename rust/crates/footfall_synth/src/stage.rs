@@ -185,7 +185,15 @@ impl Stage {
         };
         planter.set_frame_secs(frame_secs);
         planter.set_stride(stride);
-        planter.turn_step(raw, &timing, strafe, facing - strafe.turn, frames);
+        let walks = shape.amplitude == Amplitude::WALK;
+        let wanted_m = walks.then_some(placing.velocity_mps.length() * step_secs);
+        planter.turn_step(
+            raw,
+            &timing,
+            (strafe, wanted_m),
+            facing - strafe.turn,
+            frames,
+        );
         planter.plant_step(raw, &timing, course, frames);
         planter.lean(&placing.pull(step_secs), frames);
         self.arrival = Arrival {

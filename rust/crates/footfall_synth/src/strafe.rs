@@ -27,8 +27,8 @@ const FULL_TURN_SPEED_MPS: f32 = 0.4;
 const MAX_SIDE_STEP: f32 = 0.38;
 const MAX_BACK_STEP: f32 = 0.6;
 
-/// Factor on the legs' reach in a step to the side: some of it is lost where they do not reach that far.
-const SIDE_GAIN: f32 = 1.05;
+/// Greatest factor that makes steps as long as they should be.
+const MOST_LENGTHENED: f32 = 1.8;
 
 /// Feet that pass each other sideways keep this far from the middle, as a share of the leg, so that legs do not cross.
 const PASSING_SHARE: f32 = 0.085;
@@ -67,7 +67,7 @@ impl Strafe {
         let direction = seen_from_pelvis(velocity_mps).normalize_or(Vec2::Y);
         let over = overstep(velocity_mps, step_secs, skeleton.mean_leg_length());
         Self {
-            reach: (Vec2::new(SIDE_GAIN, 1.0) * direction / over.max(1.0)).to_array(),
+            reach: (direction / over.max(1.0)).to_array(),
             forwardness: direction.y,
             turn,
             ..Self::NONE
@@ -87,6 +87,18 @@ impl Strafe {
         let side_step = 0.5 * step * self.reach[0].abs();
         if side_step > 0.0 {
             self.widening = (side_step + PASSING_SHARE * leg_length - stance).max(0.0);
+        }
+        self
+    }
+
+    /// Lengthens the legs' reach so that a step leads as far as it should: one of a quick walk that was made shorter leads less far forwards than its share of a whole one. `flat_m` is how far
+    /// it leads forwards, `wanted_m` how far it should, metres.
+    pub(crate) fn lengthened(mut self, flat_m: f32, wanted_m: Option<f32>) -> Self {
+        if let Some(wanted_m) = wanted_m
+            && flat_m > 0.0
+        {
+            let factor = (wanted_m / flat_m).clamp(1.0, MOST_LENGTHENED);
+            self.reach = self.reach.map(|axis| axis * factor);
         }
         self
     }

@@ -12,6 +12,11 @@ use glam::{Vec2, Vec3};
 /// Greatest stretch of the standing leg in steps to the side, as a share of its length.
 const STANDING_EXTENSION: f32 = 0.97;
 
+/// Greatest stretch of a leg that lands to the side, from hips that are low enough for it, as a share of its length; and how much nearer its hip is to the foot than twice the widening, as a share of
+/// it as well.
+const LANDING_EXTENSION: f32 = 0.97;
+const HIP_SHARE: f32 = 0.06;
+
 /// Least share of a leg's squared length that is left of it from the side.
 const LEAST_HEIGHT: f32 = 0.5;
 
@@ -88,10 +93,19 @@ impl Turner<'_> {
         let mut turned = self.turn_place(strafe, side, flat);
         let level = Vec2::new(turned.x - leg.hip.x, turned.z - leg.hip.z).length();
         let down = length * length - level * level;
-        let kept = leg.hip.y - down.max(LEAST_HEIGHT * length * length).sqrt();
+        let down = down.max(LEAST_HEIGHT * length * length).sqrt();
+        let kept = leg.hip.y - down.min(self.landing_height(strafe));
         turned.y += strafe.reach[0].abs().min(1.0) * (kept - turned.y);
         leg.put(turned + foot.roll(pitch), pitch, pitch);
         flat.y - turned.y
+    }
+
+    /// Height of a hip above the ankle from which a leg reaches as far to the side as it is to land.
+    fn landing_height(&self, strafe: &Strafe) -> f32 {
+        let leg = self.leg_length;
+        let aside = (2.0 * strafe.widening - HIP_SHARE * leg).max(0.0);
+        let height = (LANDING_EXTENSION * leg).powi(2) - aside * aside;
+        height.max(LEAST_HEIGHT * leg * leg).sqrt()
     }
 
     /// Turns the other leg, of hips that have risen; `swing` while its foot is in the air.
