@@ -57,13 +57,13 @@ pub(crate) fn distances(
     nearest.into_iter().fold(f32::INFINITY, f32::min)
 }
 
-/// `out = values * e^(scale * (distance - nearest))`; returns the sum. `scale` must be negative. Where the distance is infinite, nothing is left.
+/// `out = values * e^(scale * (distance - nearest))`; returns the sum. `scale` must be negative. No distance counts as farther than `farthest`; where it is infinite, nothing is left.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(crate) fn weigh(
     values: &[f32],
     distance: &[f32],
     scale: f32,
-    nearest: f32,
+    [nearest, farthest]: [f32; 2],
     out: &mut [f32],
 ) -> f32 {
     let mut sums = [0.0; BLOCK];
@@ -74,27 +74,16 @@ pub(crate) fn weigh(
             continue;
         }
         for lane in 0..BLOCK {
-            out[lane] = values[lane] * exp_below(scale * (distance[lane] - nearest));
+            let distance = if distance[lane] < farthest {
+                distance[lane]
+            } else {
+                farthest
+            };
+            out[lane] = values[lane] * exp_below(scale * (distance - nearest));
             sums[lane] += out[lane];
         }
     }
     sums.into_iter().sum()
-}
-
-/// Lets no distance be farther than this; infinite ones stay.
-#[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma", "aarch64+neon"))]
-pub(crate) fn cap(distance: &mut [f32], farthest: f32) {
-    for distance in distance.chunks_exact_mut(BLOCK) {
-        if distance[0] != f32::INFINITY {
-            for distance in distance {
-                *distance = if *distance < farthest {
-                    *distance
-                } else {
-                    farthest
-                };
-            }
-        }
-    }
 }
 
 /// Multiplies all.
@@ -167,10 +156,10 @@ mod tests {
         let distance: Vec<f32> = (0..96).map(|n| n as f32 * 0.9).collect();
         let values = vec![0.5; 96];
         let mut out = vec![0.0; 96];
-        let sum = weigh(&values, &distance, -0.5, 0.0, &mut out);
+        let sum = weigh(&values, &distance, -0.5, [0.0, 70.0], &mut out);
         assert!((sum - out.iter().sum::<f32>()).abs() < 1e-4);
         for (out, distance) in out.iter().zip(&distance) {
-            let exact = 0.5 * (-0.5 * distance).exp();
+            let exact = 0.5 * (-0.5 * distance.min(70.0)).exp();
             assert!((out / exact - 1.0).abs() < 4e-5, "{out} is not {exact}");
         }
         assert!(exp_below(-1e30) > 0.0 && exp_below(-1e30) < 1e-25);

@@ -4,7 +4,7 @@
 mod backward;
 mod interpolation;
 
-use crate::kernels::{add, cap, distances, weigh};
+use crate::kernels::{add, distances, weigh};
 use crate::prepared::Prepared;
 use footfall_core::Behaviour;
 use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
@@ -310,7 +310,7 @@ impl Tracker {
             &self.predicted,
             &self.distance,
             factor,
-            nearest,
+            [nearest, self.farthest()],
             &mut self.weighed,
         );
         self.log_density = f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
@@ -323,12 +323,16 @@ impl Tracker {
         -0.5 * self.config.evidence / self.prepared.model.sites.len() as f32
     }
 
+    /// Squared distance of all sensors beyond which a frame counts as no farther.
+    fn farthest(&self) -> f32 {
+        self.config.farthest * self.prepared.model.sites.len() as f32
+    }
+
     /// Measures how far frames that are predicted with more than a limit are from what was measured. Returns the least distance.
     fn measure(&mut self, sensor: &Measurement, limit: f32) -> f32 {
-        let farthest = self.config.farthest * self.prepared.model.sites.len() as f32;
+        let farthest = self.farthest();
         if let Some(phases) = &self.prepared.phase_deviations {
             phases.distances(&self.prepared, sensor, &mut self.distance);
-            cap(&mut self.distance, farthest);
             return self.distance.iter().copied().fold(farthest, f32::min);
         }
         let (mut measured, mut weights) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
@@ -346,7 +350,6 @@ impl Tracker {
             limit,
             &mut self.distance,
         );
-        cap(&mut self.distance, farthest);
         nearest.min(farthest)
     }
 

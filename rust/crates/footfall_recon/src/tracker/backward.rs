@@ -31,7 +31,7 @@ impl Tracker {
                 &self.predicted,
                 &self.distance,
                 factor,
-                nearest,
+                [nearest, self.farthest()],
                 &mut self.weighed,
             );
             later.copy_from_slice(&self.weighed[..later.len()]);
