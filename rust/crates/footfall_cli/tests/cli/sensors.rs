@@ -186,7 +186,6 @@ fn contacts_of_real_foot_sensors_are_found() {
         write(folder.path(), category, &recorded);
         let arguments = ["evaluate", "contacts", "--sensors", "sensors.csv"];
         let report = footfall(folder.path(), &[&arguments[..], &["--json"]].concat()).json();
-        eprintln!("{}", footfall(folder.path(), &arguments).stdout);
         let driven = [
             &arguments[..],
             &["--model", &model, "--tolerance", "50", "--json"],
