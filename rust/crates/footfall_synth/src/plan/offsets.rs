@@ -79,7 +79,7 @@ pub(crate) trait Sum: Real {
 
 macro_rules! sum {
     ($real:ty, $add_rows:ident) => {
-        #[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
+        #[multiversion(targets("x86_64+avx2"))]
         fn $add_rows(sums: &mut [$real], rows: [(&[$real], $real); 4]) {
             let [(a, wa), (b, wb), (c, wc), (d, wd)] = rows;
             for (sum, (((a, b), c), d)) in sums.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
