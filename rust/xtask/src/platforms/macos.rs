@@ -45,13 +45,20 @@ pub(super) fn check(row: &mut Row, settings: &Settings, target: &str) -> Result<
     Ok(())
 }
 
+/// Places of the system's libraries; zig's libiconv, which the crate `libc` links, is two of macOS.
+const PLACES: [&str; 4] = [
+    "/usr/lib/libSystem.",
+    "/usr/lib/libcharset.",
+    "/usr/lib/libiconv.",
+    "/System/Library/Frameworks/",
+];
+
 /// Checks one architecture; returns how many names it asks for.
 fn judge(binary: &Binary, known: &BTreeSet<String>) -> Result<usize> {
     binary.has_entry_point()?;
     for library in &binary.libraries {
-        let system = ["/usr/lib/libSystem.", "/System/Library/Frameworks/"];
         ensure!(
-            system.iter().any(|place| library.starts_with(place)),
+            PLACES.iter().any(|place| library.starts_with(place)),
             "it asks for {library}, which is not the system's"
         );
     }
