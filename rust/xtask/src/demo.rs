@@ -3,6 +3,8 @@
 use crate::{contact_sheet, display, engine_run, godot, library, link, open, paths, process};
 use anyhow::{Context as _, Result, bail};
 use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// The demo's scenes by topic.
 pub(crate) const SCENES: [(&str, &str); 12] = [
@@ -74,11 +76,18 @@ pub(crate) fn command() -> Result<()> {
     Ok(())
 }
 
-/// Lets Godot import a project's files, so that it knows the add-on and the character.
+/// Projects that this run has imported: that takes three seconds each time, and nothing changes them in between.
+static IMPORTED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Lets Godot import a project's files, once in a run, so that it knows the add-on and the character.
 ///
 /// # Errors
 /// As [`engine_run::judged`].
-pub(crate) fn import(engine: &godot::Engine, project: &std::path::Path, name: &str) -> Result<()> {
+pub(crate) fn import(engine: &godot::Engine, project: &Path, name: &str) -> Result<()> {
+    let mut imported = IMPORTED.lock().unwrap_or_else(PoisonError::into_inner);
+    if imported.iter().any(|known| known == project) {
+        return Ok(());
+    }
     let log = paths::target_folder()
         .join("verify")
         .join(format!("{name}_import.log"));
@@ -88,5 +97,7 @@ pub(crate) fn import(engine: &godot::Engine, project: &std::path::Path, name: &s
         // The first import only learns of the extension; files that its classes import need a second one.
         engine_run::started(open::headless(engine, project).arg("--import"), &log)?;
     }
-    engine_run::judged(open::headless(engine, project).arg("--import"), &log).map(drop)
+    engine_run::judged(open::headless(engine, project).arg("--import"), &log)?;
+    imported.push(project.to_path_buf());
+    Ok(())
 }
