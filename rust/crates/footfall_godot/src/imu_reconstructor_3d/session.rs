@@ -114,7 +114,10 @@ impl Session {
                 }
             }
             self.reconstructor.set_finding(sensor, seen.finding);
-            if let Some(guide) = &mut self.guide {
+            // A look that began before the steps were taken says nothing about them.
+            if let Some(guide) = &mut self.guide
+                && (seen.asked || !guide.wants_mounting())
+            {
                 guide.found(worn.mounting.map_or(0.0, |found| found.certainty));
             }
         }

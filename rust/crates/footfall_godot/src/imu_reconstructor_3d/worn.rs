@@ -33,7 +33,8 @@ pub(super) struct Worn {
     recorder: Option<Recorder>,
     kept: Kept,
     looked_at_secs: Option<f64>,
-    worker: Option<JoinHandle<Look>>,
+    /// The thread that looks, and whether it was asked to.
+    worker: Option<(JoinHandle<Look>, bool)>,
     /// The best that was found, or the one that was calibrated.
     pub(super) mounting: Option<Mounting>,
     /// True when the mounting is a calibration's, which nothing replaces.
@@ -46,6 +47,8 @@ type Look = Option<(Examination, Option<Rest>)>;
 /// News about how a sensor is worn.
 #[derive(Debug, Default)]
 pub(super) struct Seen {
+    /// True for a look that was asked for, which saw all that was measured by then.
+    pub(super) asked: bool,
     /// A mounting to take over.
     pub(super) mounting: Option<Mounting>,
     /// Measurement at rest.
@@ -254,9 +257,11 @@ impl Worn {
     ) -> Option<Seen> {
         let calibrated = self.mounting.filter(|_| self.calibrated);
         let believed = aligned.or(calibrated.map(|known| known.site_from_sensor));
-        if let Some(worker) = self.worker.take_if(|worker| worker.is_finished()) {
+        let finished = |(worker, _): &mut (JoinHandle<Look>, bool)| worker.is_finished();
+        if let Some((worker, asked)) = self.worker.take_if(finished) {
             let found: Look = worker.join().ok().flatten();
-            return Some(self.weigh(found, believed.is_some()));
+            let seen = self.weigh(found, believed.is_some());
+            return Some(Seen { asked, ..seen });
         }
         let (first, last) = (
             self.kept.0.first()?.time_secs,
@@ -278,7 +283,7 @@ impl Worn {
             };
             // Without a thread the axes stay as they are; the next look may have one.
             let thread = std::thread::Builder::new().name("footfall mounting".to_owned());
-            self.worker = thread.spawn(look).ok();
+            self.worker = thread.spawn(look).ok().map(|worker| (worker, asked));
         }
         None
     }
@@ -299,6 +304,7 @@ impl Worn {
         }
         self.mounting = Some(found.mounting);
         Seen {
+            asked: false,
             mounting: self.mounting,
             rest,
             finding,
