@@ -17,6 +17,15 @@ pub struct ImuSample {
 }
 
 impl ImuSample {
+    /// Measurement of a sensor on somebody who stands, in axes whose +Y is up.
+    pub const fn standing(time_secs: f64) -> Self {
+        Self {
+            time_secs,
+            force: Vec3::new(0.0, GRAVITY_MPS2, 0.0),
+            rate: Vec3::ZERO,
+        }
+    }
+
     /// Returns true when every number is finite.
     pub fn is_finite(&self) -> bool {
         self.time_secs.is_finite() && self.force.is_finite() && self.rate.is_finite()

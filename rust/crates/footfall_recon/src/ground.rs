@@ -7,6 +7,7 @@ mod foot;
 mod limit;
 
 use crate::body::{BodyFrame, pose_of};
+use crate::half_life::follow_share;
 use foot::StandingFoot;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{ModelPose, Pose, Side, Skeleton, forward_kinematics};
@@ -255,9 +256,4 @@ impl Ground {
         self.height_m += share * (wanted - self.height_m);
         pose.root_position.y += self.height_m;
     }
-}
-
-/// The share of a way that is gone in a time, when half of it is gone in a half-life.
-fn follow_share(half_life_secs: f32, dt_secs: f32) -> f32 {
-    1.0 - (-core::f32::consts::LN_2 * dt_secs / half_life_secs).exp()
 }

@@ -13,6 +13,7 @@ mod confidence;
 pub mod examine;
 pub mod ground;
 pub mod guide;
+mod half_life;
 mod kernels;
 mod measure;
 pub mod mounting;

@@ -2,7 +2,7 @@
 
 use crate::measure::SensorFrame;
 use crate::problem::SensorProblem;
-use crate::watch::{Watch, standing_sample};
+use crate::watch::Watch;
 use footfall_imu::{ContactMeter, FeatureStream, ImuRecording, ImuSample, ToldContact};
 use glam::{Quat, Vec3};
 
@@ -173,7 +173,7 @@ impl Sensor {
         }
         let understood = match (sight, worn) {
             (Sight::Sees, Some(worn)) => worn,
-            _ if sample.is_finite() => standing_sample(sample.time_secs),
+            _ if sample.is_finite() => ImuSample::standing(sample.time_secs),
             _ => sample,
         };
         let empty = sight == Sight::Blind && other_sees;

@@ -3,6 +3,7 @@
 //! Of every stride the way of the foot that the sensor measured is compared with the way of the foot that was shown; the factor on the recordings'
 //! steps follows the quotient. Standing feet stay where they are: [`ground`](crate::ground) swings the legs further, it does not slide the body.
 
+use crate::half_life::follow_share;
 use footfall_core::{Side, Site};
 use footfall_imu::stride_meter::Rest;
 use footfall_imu::{ImuSample, StrideMeter};
@@ -97,8 +98,7 @@ impl Travel {
 
     /// Goes on in time; the factor on the recordings' steps from now on.
     pub(crate) fn step(&mut self, dt_secs: f32) -> f32 {
-        let share = 1.0 - (-core::f32::consts::LN_2 * dt_secs / HALF_LIFE_SECS).exp();
-        self.shown += share * (self.factor - self.shown);
+        self.shown += follow_share(HALF_LIFE_SECS, dt_secs) * (self.factor - self.shown);
         self.shown
     }
 

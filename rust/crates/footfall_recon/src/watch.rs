@@ -2,7 +2,7 @@
 
 use crate::problem::SensorProblem;
 use crate::wear::{Posture, WearMonitor};
-use footfall_imu::{GRAVITY_MPS2, ImuRecording, ImuSample, StreamFault, StreamMonitor};
+use footfall_imu::{ImuRecording, ImuSample, StreamFault, StreamMonitor};
 use footfall_model::CalibratedSensor;
 use glam::Vec3;
 
@@ -76,15 +76,6 @@ impl Watch {
     }
 }
 
-/// Measurement of a sensor on somebody who stands, in the site's axes.
-pub(crate) fn standing_sample(time_secs: f64) -> ImuSample {
-    ImuSample {
-        time_secs,
-        force: Vec3::Y * GRAVITY_MPS2,
-        rate: Vec3::ZERO,
-    }
-}
-
 /// A recording of a sensor as a reconstructor takes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WornRecording {
@@ -129,7 +120,7 @@ impl WornRecording {
             if !watch.is_blind() {
                 samples.push(worn);
             } else if alone {
-                samples.push(standing_sample(sample.time_secs));
+                samples.push(ImuSample::standing(sample.time_secs));
             }
             if let Some(problem) = watch.problem() {
                 note(&mut problems, sample.time_secs, problem);

@@ -3,7 +3,7 @@
 //! Neither is anybody's gait. A sensor that is still tells by gravity how it is turned: on somebody who stands, as the model's people wore it. A lift
 //! changes how strong gravity is while nothing turns.
 
-use core::f32::consts::LN_2;
+use crate::half_life::follow_share;
 use footfall_imu::{GRAVITY_MPS2, ImuSample};
 use glam::Vec3;
 
@@ -100,13 +100,13 @@ impl WearMonitor {
             return;
         }
         let strength = sample.force.length();
-        self.up += (sample.force - self.up) * share(UP_HALF_LIFE_SECS, step_secs);
+        self.up += (sample.force - self.up) * follow_share(UP_HALF_LIFE_SECS, step_secs);
         let turns = sample.rate.length();
         // What a step jolted is no part of a ride.
         let follows = if turns > RIDE_RADPS {
             1.0
         } else {
-            share(STRENGTH_HALF_LIFE_SECS, step_secs)
+            follow_share(STRENGTH_HALF_LIFE_SECS, step_secs)
         };
         self.strength += (strength - self.strength) * follows;
         let still = turns < STILL_RADPS && (strength - GRAVITY_MPS2).abs() < STILL_MPS2;
@@ -120,7 +120,7 @@ impl WearMonitor {
         }
         let off = (self.strength - self.gravity).abs();
         if still && off < RIDE_MPS2 {
-            let share = share(GRAVITY_HALF_LIFE_SECS, step_secs);
+            let share = follow_share(GRAVITY_HALF_LIFE_SECS, step_secs);
             self.gravity += (strength - self.gravity) * share;
         }
         let rides = self.gravity > 0.0 && off > RIDE_MPS2 && turns < RIDE_RADPS;
@@ -149,11 +149,6 @@ impl WearMonitor {
             Posture::Worn
         }
     }
-}
-
-/// The share of a way that is gone in a time.
-fn share(half_life_secs: f32, dt_secs: f32) -> f32 {
-    1.0 - (-LN_2 * dt_secs / half_life_secs).exp()
 }
 
 #[cfg(test)]

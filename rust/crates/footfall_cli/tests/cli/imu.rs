@@ -30,6 +30,21 @@ fn train(folder: &Path, what: &[&str], model: &str) -> Run {
     footfall(folder, &[&train[..], what, &["-o", model]].concat())
 }
 
+/// Reconstructs a body; returns its report.
+fn reconstruct(folder: &Path, model: &str, imu: &str, more: &[&str]) -> Run {
+    let arguments = [
+        "imu",
+        "reconstruct",
+        "--model",
+        model,
+        "--imu",
+        imu,
+        "-o",
+        "out.bvh",
+    ];
+    footfall(folder, &[&arguments[..], more, &["--json"]].concat())
+}
+
 fn prepare(folder: &Path, site: &str) -> String {
     write_index(folder, "index.csv", &SEEN);
     write_index(folder, "unseen.csv", &[(UNSEEN, "fast")]);
@@ -99,18 +114,8 @@ fn a_sensor_on_a_foot_becomes_the_walk_it_was_worn_in() {
     assert!(facts.stdout.contains("right_foot"), "{}", facts.stdout);
 
     let truth = canonical(Path::new(&walk));
-    let reconstruct = |model: &str, imu: &str, more: &[&str]| {
-        let arguments = [
-            "imu",
-            "reconstruct",
-            "--model",
-            model,
-            "--imu",
-            imu,
-            "-o",
-            "out.bvh",
-        ];
-        let report = footfall(folder, &[&arguments[..], more, &["--json"]].concat()).json();
+    let reconstructed = |model: &str, imu: &str, more: &[&str]| {
+        let report = reconstruct(folder, model, imu, more).json();
         assert!(
             report["behaviours"][0].to_string().contains("walk"),
             "{report}"
@@ -132,18 +137,18 @@ fn a_sensor_on_a_foot_becomes_the_walk_it_was_worn_in() {
         ("body.footimu", "anyhow.csv", &[], 2.8),
         ("small.footimu", "imu.csv", &aligned, 3.0),
     ] {
-        let made = reconstruct(model, imu, more);
+        let made = reconstructed(model, imu, more);
         let error = apart_cm(&truth, &made, start_secs);
         assert!(error < most_cm, "{model} {imu} {more:?}: {error:.2} cm");
     }
     // The same input gives the same bytes, and feet stay where they are.
-    reconstruct(
+    reconstructed(
         "body.footimu",
         "imu.csv",
         &["--mounting", "aligned", "--fps", "60"],
     );
     let bytes = fs::read(folder.join("out.bvh")).unwrap();
-    reconstruct(
+    reconstructed(
         "body.footimu",
         "imu.csv",
         &["--mounting", "aligned", "--fps", "60"],

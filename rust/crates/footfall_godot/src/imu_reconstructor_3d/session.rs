@@ -4,13 +4,13 @@ use super::worn::Worn;
 use crate::imu_source::Heard;
 use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose};
-use footfall_imu::{GRAVITY_MPS2, ImuSample};
+use footfall_imu::ImuSample;
 use footfall_model::imu_model::MAX_SENSORS;
 use footfall_model::{CalibrationError, SensorCalibration};
 use footfall_recon::{
     CalibrationGuide, GuideStep, Prepared, Reconstructor, SensorProblem, SensorState,
 };
-use glam::{Quat, Vec3};
+use glam::Quat;
 use std::sync::Arc;
 
 /// Somebody has stood for so long before anything is heard: a second.
@@ -37,22 +37,13 @@ pub(super) struct Session {
     pub(super) state: SensorState,
 }
 
-/// Measurement of every sensor of a person who stands.
-fn standing_sample(time_secs: f64) -> ImuSample {
-    ImuSample {
-        time_secs,
-        force: Vec3::Y * GRAVITY_MPS2,
-        rate: Vec3::ZERO,
-    }
-}
-
 /// The pose, above the body's place, of somebody who stands.
 pub(super) fn standing(reconstructor: &Reconstructor) -> Pose {
     let mut own = reconstructor.clone();
     let mut pose = Pose::default();
     for n in 0..STANDING_SAMPLES {
         for sensor in 0..MAX_SENSORS {
-            own.push(sensor, standing_sample(f64::from(n) / STANDING_RATE_HZ));
+            own.push(sensor, ImuSample::standing(f64::from(n) / STANDING_RATE_HZ));
         }
         own.step((1.0 / STANDING_RATE_HZ) as f32, &mut pose);
     }

@@ -1,7 +1,8 @@
 //! One foot of the body: where it stands, what settles when it lands, and how far it is held off the ground in the air.
 
-use super::{Ground, GroundInput, follow_share};
+use super::{Ground, GroundInput};
 use crate::body::BodyFrame;
+use crate::half_life::follow_share;
 use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Pose, Side};
 use footfall_ik::{FootTarget, Plant, foot_heading, foot_pitch, settled_pitch};

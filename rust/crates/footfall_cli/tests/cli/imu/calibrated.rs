@@ -1,6 +1,7 @@
 //! Calibrations that are kept and taken over, and problems of sensors that are at fault or worn wrongly.
 
-use crate::common::{Run, footfall};
+use super::reconstruct;
+use crate::common::footfall;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -40,21 +41,6 @@ fn simulate(folder: &Path, site: &str, output: &str) {
         output,
     ];
     assert_eq!(footfall(folder, &simulate).code, 0);
-}
-
-/// Reconstructs a body by the model of the right foot.
-fn reconstruct(folder: &Path, model: &str, imu: &str, more: &[&str]) -> Run {
-    let arguments = [
-        "imu",
-        "reconstruct",
-        "--model",
-        model,
-        "--imu",
-        imu,
-        "-o",
-        "out.bvh",
-    ];
-    footfall(folder, &[&arguments[..], more, &["--json"]].concat())
 }
 
 /// Names of the problems in a report.
