@@ -2,7 +2,7 @@
 
 use crate::convert;
 use footfall_rig::crowd::{Agent, Crowd};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec3Swizzles as _};
 use godot::classes::{Engine, Node3D, Object};
 use godot::prelude::*;
 
@@ -24,6 +24,7 @@ pub(super) struct Navigation {
     map: Variant,
     layers: u32,
     world_from_crowd: Transform3D,
+    crowd_from_world: Transform3D,
 }
 
 impl Navigation {
@@ -32,11 +33,13 @@ impl Navigation {
         let map = crowd.get_world_3d()?.get_navigation_map().to_variant();
         let mut server = Engine::singleton().get_singleton("NavigationServer3D")?;
         let told = server.call("map_get_iteration_id", core::slice::from_ref(&map));
+        let world_from_crowd = crowd.get_global_transform();
         (told.try_to::<i64>().unwrap_or(0) > 0).then_some(Self {
             server,
             map,
             layers,
-            world_from_crowd: crowd.get_global_transform(),
+            world_from_crowd,
+            crowd_from_world: world_from_crowd.affine_inverse(),
         })
     }
 
@@ -55,10 +58,9 @@ impl Navigation {
         if path.is_empty() {
             return false;
         }
-        let crowd_from_world = self.world_from_crowd.affine_inverse();
         // Where the walker stands is no place to go to.
         agent.go_along(path.as_slice().iter().skip(1).map(|place| {
-            let place = crowd_from_world * *place;
+            let place = self.crowd_from_world * *place;
             Vec2::new(place.x, place.z)
         }));
         true
@@ -89,23 +91,22 @@ impl Navigation {
 
     /// Direction that stays on the map, or leads back to it, for a walker whose way does not.
     fn bent(&mut self, place: Vec3, way: Vec2) -> Option<Vec2> {
-        let ahead = level(place) + AHEAD_M * way;
+        let ahead = place.xz() + AHEAD_M * way;
         let on_map = self.on_map(Vec3::new(ahead.x, place.y, ahead.y))?;
         let off = on_map.distance(ahead) > ON_MAP_M;
-        off.then(|| (on_map - level(place)).try_normalize())
-            .flatten()
+        off.then(|| (on_map - place.xz()).try_normalize()).flatten()
     }
 
     /// Distance of a place from the map, metres; 0 where nothing is known.
     fn off_map(&mut self, place: Vec3) -> f32 {
         let on_map = self.on_map(place);
-        on_map.map_or(0.0, |on_map| on_map.distance(level(place)))
+        on_map.map_or(0.0, |on_map| on_map.distance(place.xz()))
     }
 
     /// The map's place nearest to one of the crowd's space.
     fn on_map(&mut self, place: Vec3) -> Option<Vec2> {
         let found = self.closest(self.world_from_crowd * convert::vector3(place))?;
-        Some(level(convert::vec3(found)))
+        Some(convert::vec3(found).xz())
     }
 
     /// The map's place nearest to one of the world, in the crowd's space.
@@ -113,7 +114,7 @@ impl Navigation {
         let asked = [self.map.clone(), place.to_variant()];
         let found = self.server.call("map_get_closest_point", &asked);
         let found: Vector3 = found.try_to().ok()?;
-        Some(self.world_from_crowd.affine_inverse() * found)
+        Some(self.crowd_from_world * found)
     }
 
     /// Sends those who have arrived somewhere else on the map, a few in every frame.
@@ -138,8 +139,8 @@ impl Navigation {
     /// Some place of the map. The server's own choice would not be the same for equal seeds.
     fn place_at(&mut self, bounds: Aabb, shares: Vec3) -> Vector3 {
         let wanted = bounds.position + bounds.size * convert::vector3(shares);
-        let here = self.world_from_crowd.affine_inverse() * wanted;
-        self.closest(wanted).unwrap_or(here)
+        self.closest(wanted)
+            .unwrap_or(self.crowd_from_world * wanted)
     }
 
     /// A box around all regions of the map.
@@ -156,8 +157,4 @@ impl Navigation {
         });
         boxes.reduce(Aabb::merge).unwrap_or_default()
     }
-}
-
-fn level(place: Vec3) -> Vec2 {
-    Vec2::new(place.x, place.z)
 }

@@ -3,7 +3,7 @@
 use super::GaitCrowd3D;
 use crate::convert;
 use footfall_rig::crowd::{Crowd, Passerby};
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, Vec3, Vec3Swizzles as _};
 use godot::classes::Node3D;
 use godot::prelude::*;
 
@@ -24,6 +24,8 @@ struct Watched {
 #[derive(Debug, Default)]
 pub(super) struct Others {
     watched: Vec<Watched>,
+    /// The same, a frame before.
+    before: Vec<Watched>,
     passersby: Vec<Passerby>,
 }
 
@@ -37,13 +39,17 @@ impl Others {
         dt_secs: f32,
     ) {
         self.passersby.clear();
-        let nodes = if group.is_empty() {
-            Array::new()
-        } else {
-            host.get_tree().get_nodes_in_group(group)
-        };
+        core::mem::swap(&mut self.before, &mut self.watched);
+        self.watched.clear();
+        if !group.is_empty() {
+            self.watch_group(host, group, dt_secs);
+        }
+        walkers.set_others(self.passersby.iter().copied());
+    }
+
+    fn watch_group(&mut self, host: &Gd<Node3D>, group: &StringName, dt_secs: f32) {
+        let nodes = host.get_tree().get_nodes_in_group(group);
         let crowd_from_world = convert::affine(host.get_global_transform()).inverse();
-        let mut watched = Vec::with_capacity(nodes.len());
         for node in nodes.iter_shared() {
             let Ok(node) = node.try_cast::<Node3D>() else {
                 continue;
@@ -55,20 +61,18 @@ impl Others {
                 Ok(crowd) => self.add_crowd(&crowd, &crowd_from_world),
                 Err(node) => {
                     let seen = self.look(&node, dt_secs);
-                    watched.push(seen);
+                    self.watched.push(seen);
                     self.add(&crowd_from_world, seen.place, seen.velocity);
                 }
             }
         }
-        self.watched = watched;
-        walkers.set_others(self.passersby.iter().copied());
     }
 
     /// A node's place, and its velocity since it was seen last.
     fn look(&self, node: &Gd<Node3D>, dt_secs: f32) -> Watched {
         let id = node.instance_id();
         let place = convert::vec3(node.get_global_position());
-        let before = self.watched.iter().find(|seen| seen.id == id);
+        let before = self.before.iter().find(|seen| seen.id == id);
         let velocity = match before {
             Some(before) if dt_secs <= 0.0 => before.velocity,
             Some(before) if before.place.distance(place) < PUT_M => {
@@ -101,10 +105,9 @@ impl Others {
     }
 
     fn add(&mut self, to_crowd: &Affine3A, place: Vec3, velocity: Vec3) {
-        let level = |vector: Vec3| Vec2::new(vector.x, vector.z);
         self.passersby.push(Passerby {
-            place: level(to_crowd.transform_point3(place)),
-            velocity: level(to_crowd.transform_vector3(velocity)),
+            place: to_crowd.transform_point3(place).xz(),
+            velocity: to_crowd.transform_vector3(velocity).xz(),
         });
     }
 }

@@ -201,10 +201,13 @@ impl Agent {
             Goal::Turn(rate) => rate,
             Goal::Place(place) => {
                 let far = place.distance(self.level());
-                let left = match self.route.is_empty() {
-                    true if far < THERE_M => 0.0,
-                    true if stops => (far - AHEAD_SECS * self.velocity.length()).max(0.0),
-                    _ => f32::INFINITY,
+                let last = self.route.is_empty();
+                let left = if last && far < THERE_M {
+                    0.0
+                } else if last && stops {
+                    (far - AHEAD_SECS * self.velocity.length()).max(0.0)
+                } else {
+                    f32::INFINITY
                 };
                 if left <= 0.0 {
                     speed = 0.0;

@@ -26,10 +26,9 @@ pub enum Goal {
 }
 
 /// Knowledge of the ground on which a walker's route lies.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Guidance {
     /// Nobody knows where it may go.
-    #[default]
     None,
     /// The game found the route around what is in the way, and has not looked at the ground here.
     Route,
