@@ -92,6 +92,8 @@ func test_a_guided_calibration_is_kept_for_the_next_session() -> void:
 	check(done_secs > 4.0 and done_secs < 9.0, "calibrated after %.1f s" % done_secs)
 	check(node.get_mounting_certainty(0) > 0.8, "certainty %.2f" % node.get_mounting_certainty(0))
 	check_equal(node.save_calibration(FILE), "", "saved")
+	check_equal(node.save_calibration(FILE), "", "saved once more, in its place")
+	check(not FileAccess.file_exists(FILE + ".new"), "nothing is left beside it")
 	check(node.get_step_scale() > 0.69 and node.get_step_scale() < 1.41, "steps: %.2f" % node.get_step_scale())
 	body.free()
 

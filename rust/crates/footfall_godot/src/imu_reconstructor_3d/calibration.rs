@@ -5,8 +5,9 @@ use super::session::Session;
 use footfall_model::SensorCalibration;
 use footfall_model::imu_model::MAX_SENSORS;
 use footfall_recon::{CalibrationGuide, GuideStep, SensorProblem};
-use godot::classes::FileAccess;
 use godot::classes::file_access::ModeFlags;
+use godot::classes::{DirAccess, FileAccess};
+use godot::global::Error;
 use godot::prelude::*;
 
 /// Changes since the last frame.
@@ -143,9 +144,7 @@ impl ImuReconstructor3D {
             Ok(bytes) => PackedByteArray::from(bytes),
             Err(error) => return GString::from(&error.to_string()),
         };
-        let file = FileAccess::open(path.as_str(), ModeFlags::WRITE);
-        let written = file.is_some_and(|mut file| file.store_buffer(&bytes));
-        if written {
+        if written(&path, &bytes) {
             return GString::new();
         }
         GString::from(&format!("{path}: cannot be written; save to user://"))
@@ -188,4 +187,12 @@ impl ImuReconstructor3D {
             session.reconstructor.set_stride(scale as f32);
         }
     }
+}
+
+/// Writes a file of the game beside its place and then moves it there, so that one that was there is never lost; returns true when it is there.
+fn written(path: &str, bytes: &PackedByteArray) -> bool {
+    let fresh = format!("{path}.new");
+    let file = FileAccess::open(fresh.as_str(), ModeFlags::WRITE);
+    let stored = file.is_some_and(|mut file| file.store_buffer(bytes));
+    stored && DirAccess::rename_absolute(fresh.as_str(), path) == Error::OK
 }
