@@ -15,7 +15,8 @@ pub(crate) fn command(update: bool) -> Result<()> {
         "--package",
         "footfall_tests",
         "--test",
-        "golden",
+        "pipelines",
+        "golden::",
     ]);
     if update {
         cargo.env("FOOTFALL_UPDATE_GOLDEN", "1");

@@ -140,7 +140,7 @@ fn clippy() -> Result<()> {
     )
 }
 
-/// All but the nodes, which come with the library and in Godot.
+/// Runs all tests but the nodes', which need Godot.
 fn tests() -> Result<()> {
     let mut cargo = process::cargo();
     cargo.args([
@@ -176,18 +176,8 @@ fn docs() -> Result<()> {
     )
 }
 
-/// Also runs the nodes' own unit tests, which need no engine: what they are built from is there now.
 fn build_library() -> Result<()> {
-    library::build(&library::Options::default())?;
-    process::run(process::cargo().args([
-        "test",
-        "--locked",
-        "--release",
-        "--package",
-        "footfall_godot",
-        "--features",
-        "editor",
-    ]))
+    library::build(&library::Options::default())
 }
 
 fn provision() -> Result<()> {
@@ -233,7 +223,7 @@ fn demo_in_godot() -> Result<()> {
     Ok(())
 }
 
-/// The demo as players get it: with the library's other flavour, and without an editor.
+/// Exports the demo as players get it: with the game's flavour of the library, and without an editor, whose flavour is another step's.
 fn exported_demo() -> Result<()> {
     if !cfg!(target_os = "linux") {
         return skipped::note("export", "the demo is exported on Linux only");
@@ -242,10 +232,7 @@ fn exported_demo() -> Result<()> {
     if engine.release_template.is_none() {
         return skipped::note("export", "this Godot came without an export template");
     }
-    library::build(&library::Options {
-        all: true,
-        ..library::Options::default()
-    })?;
+    library::build_flavour(library::Flavour::Game, &library::Options::default())?;
     let game = export::export(&engine)?;
     export::start(&engine, &game)
 }

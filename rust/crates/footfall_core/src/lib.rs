@@ -5,13 +5,14 @@
 //! transform is named `target_from_source`. Nothing here reads a file, a clock or a random number.
 //!
 //! Modules in suggested reading order: [`joint`], [`skeleton`], [`pose`], [`rotation`], [`clip`], [`contact`],
-//! [`step_position`], [`ground`], [`rig`], [`behaviour`], [`phase`], [`site`], [`ease`], [`lanes`].
+//! [`step_position`], [`ground`], [`rig`], [`behaviour`], [`phase`], [`site`], [`ease`], [`lanes`], [`hash`].
 
 pub mod behaviour;
 pub mod clip;
 pub mod contact;
 pub mod ease;
 pub mod ground;
+pub mod hash;
 pub mod joint;
 pub mod lanes;
 pub mod phase;

@@ -146,7 +146,7 @@ fn starter_script(architecture: &Architecture) -> String {
 }
 
 /// A command that starts a game which was exported with Debian's template. It needs the loader and the libraries that the template came
-/// with, so a copy of it is made beside it that names them: started through the loader it would not find its data.
+/// with, so a copy of it is made beside it that names them (its other files are linked): started through the loader it would not find its data.
 pub(super) fn game(cache: &Path, game: &Path) -> Result<Command> {
     let root = cache.join("root");
     let architecture = Architecture::of_host()?;
@@ -160,8 +160,8 @@ pub(super) fn game(cache: &Path, game: &Path) -> Result<Command> {
     for entry in fs::read_dir(home).with_context(|| format!("cannot read {}", home.display()))? {
         let file = entry?.path();
         if let Some(name) = file.file_name().filter(|_| file.is_file()) {
-            fs::copy(&file, folder.join(name))
-                .with_context(|| format!("cannot copy {}", file.display()))?;
+            fs::hard_link(&file, folder.join(name))
+                .with_context(|| format!("cannot link {}", file.display()))?;
         }
     }
     let copy = folder.join(game.file_name().context("a game without a name")?);

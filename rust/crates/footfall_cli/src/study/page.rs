@@ -2,6 +2,7 @@
 
 use super::clip::{Excerpt, HEAD_TOP, POINTS, RATE_HZ};
 use anyhow::{Context as _, Result, ensure};
+use footfall_core::hash::fnv1a;
 use footfall_core::{Joint, Side};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -209,14 +210,10 @@ fn escaped(text: &str) -> String {
 
 /// FNV-1a of the clips, 64 bits in hexadecimal.
 fn fingerprint(clips: &[ClipData<'_>]) -> String {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    for byte in clips
+    let bytes = clips
         .iter()
-        .flat_map(|clip| clip.style.bytes().chain(clip.data.bytes()))
-    {
-        hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    }
-    format!("{hash:016x}")
+        .flat_map(|clip| clip.style.bytes().chain(clip.data.bytes()));
+    format!("{:016x}", fnv1a(bytes))
 }
 
 fn base64(bytes: &[u8]) -> String {

@@ -2,10 +2,9 @@
 
 use super::GaitGenerator3D;
 use super::gait_choice::name_of;
-use crate::root_motion::{Moves, Now};
+use crate::root_motion::{advance_of, now};
 use footfall_core::Side;
 use footfall_synth::Gait;
-use godot::classes::Engine;
 use godot::prelude::*;
 
 #[godot_api(secondary)]
@@ -25,8 +24,8 @@ impl GaitGenerator3D {
         let Some(skeleton) = self.base().get_skeleton() else {
             return Transform3D::IDENTITY;
         };
-        let now = Now::of(&Engine::singleton());
-        self.travelled.tell(Moves::of(&skeleton), now)
+        self.travelled
+            .since_last_frame(advance_of(&skeleton), now())
     }
 
     /// The seed of the walk: `seed`, or where that is 0 the node's own, or that of the state that it goes on from.

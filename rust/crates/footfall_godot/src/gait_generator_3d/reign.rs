@@ -2,11 +2,11 @@
 
 use super::GaitGenerator3D;
 use super::session::Session;
-use crate::root_motion::Now;
+use crate::root_motion::now;
 use crate::travel::Travel;
 use footfall_synth::{Controls, GaitChoice};
 use glam::Vec3;
-use godot::classes::{Engine, Skeleton3D};
+use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
 /// A character whose hips are farther from where it walks is moved to them, metres: a ragdoll lies where it fell.
@@ -126,8 +126,7 @@ impl GaitGenerator3D {
     /// Time passes while other animation poses the skeleton.
     pub(super) fn rest(&mut self, session: Session) {
         self.session = Some(session);
-        let now = Now::of(&Engine::singleton());
-        self.travelled.add(Transform3D::IDENTITY, now);
+        self.travelled.add(Transform3D::IDENTITY, now());
         self.velocity = (Vec3::ZERO, 0.0);
         if core::mem::take(&mut self.told.left) {
             self.signals().handed_over().emit();

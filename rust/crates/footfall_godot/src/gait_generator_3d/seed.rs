@@ -1,6 +1,7 @@
 //! The walk of a node that was given none: seed 0 stands for one of its own.
 
 use super::GaitGenerator3D;
+use footfall_core::hash::fnv1a;
 use godot::prelude::*;
 
 impl GaitGenerator3D {
@@ -16,7 +17,7 @@ impl GaitGenerator3D {
     /// A seed from the node's place in its scene: the same whenever the scene is run, and another for every node.
     pub(super) fn own_seed(&self) -> u64 {
         // 0 is nobody's own.
-        fnv1a(&self.place_in_scene()).max(1)
+        fnv1a(self.place_in_scene().bytes()).max(1)
     }
 
     /// Phase of the stride, 0 to 1, at which a node with a seed of its own begins.
@@ -56,24 +57,5 @@ impl GaitGenerator3D {
             node = parent;
         }
         path
-    }
-}
-
-/// The 64-bit hash of Fowler, Noll and Vo, which never changes between versions and platforms.
-fn fnv1a(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_hash_is_the_published_one() {
-        assert_eq!(fnv1a(""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(fnv1a("a"), 0xaf63_dc4c_8601_ec8c);
-        assert_eq!(fnv1a("foobar"), 0x8594_4171_f739_67e8);
     }
 }

@@ -3,10 +3,10 @@
 use super::worn::Worn;
 use super::{ImuMounting, ImuReconstructor3D};
 use crate::convert;
-use crate::root_motion::{Moves, Now};
+use crate::root_motion::{advance_of, now};
 use footfall_core::Behaviour;
 use footfall_imu::ImuSample;
-use godot::classes::{Engine, ProjectSettings};
+use godot::classes::ProjectSettings;
 use godot::prelude::*;
 
 #[godot_api(secondary)]
@@ -113,8 +113,8 @@ impl ImuReconstructor3D {
         let Some(skeleton) = self.base().get_skeleton() else {
             return Transform3D::IDENTITY;
         };
-        let now = Now::of(&Engine::singleton());
-        self.travelled.tell(Moves::of(&skeleton), now)
+        self.travelled
+            .since_last_frame(advance_of(&skeleton), now())
     }
 
     /// Problems that keep the character from being driven, each with what to do next, and those of the sensors that are heard; empty without any.

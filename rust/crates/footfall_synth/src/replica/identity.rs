@@ -4,6 +4,7 @@ use super::ReplicaError;
 use super::update::FORMAT;
 use crate::generator::{GaitGenerator, GeneratorConfig};
 use crate::steps::Steps;
+use footfall_core::hash::fnv1a;
 use serde::{Deserialize, Serialize};
 
 /// Styles that an identity can name, and the greatest weight of one.
@@ -118,12 +119,6 @@ pub(super) fn tag(model: u32, config: &GeneratorConfig, epoch: u8) -> u16 {
         u64::from(config.variation.to_bits()),
         u64::from(epoch),
     ];
-    // Fowler, Noll and Vo's hash, folded.
-    let hash = numbers
-        .into_iter()
-        .flat_map(u64::to_le_bytes)
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-        });
+    let hash = fnv1a(numbers.into_iter().flat_map(u64::to_le_bytes));
     (hash ^ hash >> 16 ^ hash >> 32 ^ hash >> 48) as u16
 }
