@@ -12,6 +12,10 @@ use footfall_core::rotation::from_heading;
 const RISING_EXTENSION: f32 = 0.9965;
 const RISING_SOFTNESS: f32 = 0.0014;
 
+/// A leg that leaves the ground begins to bend so long before, seconds, and is shorter by this share by then: its knee would snap.
+const LEAVING_BEND: f32 = 0.004;
+const LEAVING_SECS: f32 = 0.035;
+
 /// No leg counts as stretched farther, as a multiple of that: its exponential stays a number.
 const MOST_BEYOND: f32 = 50.0;
 
@@ -44,8 +48,15 @@ impl Planter {
         for (side, last) in stances {
             let Some(last) = last else { continue };
             let raw = &mut raw[..=last];
-            for (raw, frame) in raw.iter_mut().zip(frames) {
-                let rise = self.heel_rise(side, raw, frame);
+            let leaves = side != timing.leading && !timing.rests;
+            for (index, (raw, frame)) in raw.iter_mut().zip(frames).enumerate() {
+                let left_secs = (last - index) as f32 * self.frame_secs;
+                let bend = if leaves {
+                    LEAVING_BEND * smooth_step(1.0 - left_secs / LEAVING_SECS)
+                } else {
+                    0.0
+                };
+                let rise = self.heel_rise(side, RISING_EXTENSION - bend, raw, frame);
                 let before = core::mem::replace(&mut raw.legs[side.index()].rise, rise);
                 if rise == 0.0 && before > 0.0 {
                     self.stand_risen(side, raw);
@@ -61,8 +72,14 @@ impl Planter {
         }
     }
 
-    /// Returns by how much a heel has to be higher than generated for its leg not to be at its end, radians.
-    fn heel_rise(&self, side: Side, raw: &RawFrame, frame: &PlantedFrame) -> f32 {
+    /// Returns by how much a heel has to be higher than generated for its leg not to be beyond this share of its length, radians.
+    fn heel_rise(
+        &self,
+        side: Side,
+        most_extension: f32,
+        raw: &RawFrame,
+        frame: &PlantedFrame,
+    ) -> f32 {
         let leg = &raw.legs[side.index()];
         let foot = &self.feet[side.index()];
         let plant = self.plant(side);
@@ -76,7 +93,7 @@ impl Planter {
         let length = self.leg_lengths[side.index()];
         let hip = frame.pose.root_position + frame.level * leg.hip;
         let extension = hip.distance(ankle) / length;
-        let beyond = ((extension - RISING_EXTENSION) / RISING_SOFTNESS).min(MOST_BEYOND);
+        let beyond = ((extension - most_extension) / RISING_SOFTNESS).min(MOST_BEYOND);
         if beyond < -MOST_SHORT || leg.pitch < 0.0 {
             return 0.0;
         }

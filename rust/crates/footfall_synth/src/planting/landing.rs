@@ -14,6 +14,9 @@ use glam::Vec3;
 const LANDING_EXTENSION: f32 = 0.985;
 const LANDING_FORWARDS: f32 = 0.011;
 const LANDING_BACKWARDS: f32 = 0.005;
+/// Part of the turn of a foot that comes down flat by which it is turned as it lands, between how it lands and how it lies; and the most of that turn, radians.
+const TURNED_SHARE: f32 = 0.6;
+const MOST_TURN: f32 = 0.2;
 /// Hips that fall faster than this, m/s, land on a leg that is less straight by this share of it, by m/s: it has to bend at once.
 const EASY_FALL_MPS: f32 = 0.2;
 const LANDING_BY_FALL: f32 = 0.03;
@@ -30,15 +33,30 @@ impl Planter {
     ) -> Plant {
         let side = timing.leading.other();
         let leg = &raw[timing.frames].legs[side.index()];
-        let ankle = hips + from_heading(heading) * leg.ankle;
+        let level = from_heading(heading);
+        let (hip, ankle) = (hips + level * leg.hip, hips + level * leg.ankle);
         // The foot points to where the body will have turned by the middle of its stance.
         let lead = 0.5 * course.turn_rate * course.step_secs;
         let foot = &self.feet[side.index()];
-        let mut plant = foot.plant_under(ankle, heading + lead + leg.heading(), leg.pitch);
-        let hip = hips + from_heading(heading) * leg.hip;
+        let heading = heading + lead + leg.heading() + self.turn_to_flat(raw, timing);
+        let mut plant = foot.plant_under(ankle, heading, leg.pitch);
         let reach = self.landing_extension() * self.leg_lengths[side.index()];
         plant.flat_ankle += within_reach(foot.stand(&plant, leg.pitch).ankle - hip, reach);
         plant
+    }
+
+    /// Turn of the trailing foot from its landing to how it stands, radians: heels strike with the toes still pointing outwards, and a planted foot does not turn,
+    /// so it lands nearly as it would lie flat. The foot that stands shows the turn, mirrored, unless the step begins in its stance.
+    fn turn_to_flat(&self, raw: &[RawFrame], timing: &StepTiming) -> f32 {
+        if timing.airborne {
+            return 0.0;
+        }
+        let heading = |frame: usize| raw[frame].legs[timing.leading.index()].heading();
+        let flat = timing.frames / 5..=timing.frames / 2;
+        let count = flat.clone().count() as f32;
+        let turn = flat.map(heading).sum::<f32>() / count - heading(0);
+        let share = TURNED_SHARE * self.state.strafe.uprightness();
+        -share * turn.clamp(-MOST_TURN, MOST_TURN)
     }
 
     /// Fraction of the straight leg with which a foot lands at most.
