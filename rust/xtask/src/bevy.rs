@@ -2,8 +2,7 @@
 
 use crate::vulkan::Vulkan;
 use crate::{contact_sheet, paths, process};
-use anyhow::{Context as _, Result, bail};
-use std::fs;
+use anyhow::{Result, bail};
 use std::process::Command;
 
 /// Runs the example's tests, and leaves pictures of its walk in `rust/target/bevy`.
@@ -14,10 +13,7 @@ pub(crate) fn command() -> Result<()> {
     process::run(&mut cargo("test"))?;
     let vulkan = Vulkan::provision()?;
     let folder = paths::target_folder().join("bevy");
-    if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("cannot clear {}", folder.display()))?;
-    }
+    paths::make_empty(&folder)?;
     let mut example = cargo("run");
     example.args(["--", "--pictures"]).arg(&folder);
     process::run(vulkan.given_to(&mut example))?;

@@ -45,10 +45,7 @@ pub(crate) fn command() -> Result<()> {
         eprintln!("the demo runs in its window; close it to come back");
         return process::run(&mut open::on(&engine, &display, &project));
     }
-    if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("cannot clear {}", folder.display()))?;
-    }
+    paths::make_empty(&folder)?;
     eprintln!("no display: rendering pictures in software …");
     for (topic, scene) in SCENES {
         let folder = folder.join(topic);

@@ -56,10 +56,7 @@ pub(crate) fn make(engine: &Engine, project: &Path, game: &Path, log: &Path) -> 
     let presets = project.join("export_presets.cfg");
     fs::write(&presets, preset(engine.release_template.as_deref()))
         .with_context(|| format!("cannot write {}", presets.display()))?;
-    if folder.exists() {
-        fs::remove_dir_all(folder).with_context(|| format!("cannot clear {}", folder.display()))?;
-    }
-    fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    paths::make_empty(folder)?;
     let exported = engine_run::quiet(
         open::headless(engine, project)
             .args(["--export-release", PRESET])

@@ -27,11 +27,7 @@ pub(crate) fn once(
     if fs::read_to_string(&marker).is_ok_and(|finished| finished == version) {
         return Ok(folder);
     }
-    if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("cannot clear {}", folder.display()))?;
-    }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    paths::make_empty(&folder)?;
     make(&folder)?;
     fs::write(&marker, version).with_context(|| format!("cannot write {}", marker.display()))?;
     Ok(folder)

@@ -5,7 +5,7 @@ use anyhow::{Context as _, Result, bail};
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use image::imageops::{self, FilterType};
 use image::{Rgba, RgbaImage};
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::BufWriter;
 use std::path::PathBuf;
 
@@ -31,11 +31,7 @@ pub(crate) fn command() -> Result<()> {
     let project = paths::repository_root().join("demo_project");
     let folder = paths::target_folder().join("film");
     demo::import(&engine, &project, "film")?;
-    if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("cannot clear {}", folder.display()))?;
-    }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    paths::make_empty(&folder)?;
     let mut command = open::on(&engine, &display, &project);
     command
         .args([SCENE, "--fixed-fps", "60", "--resolution", "960x540"])

@@ -14,8 +14,8 @@ const DONE_IN_EDITOR: &str = "RUNNING EDITOR OK";
 /// Folder of the project's checks and of the plugin of the running editor.
 const SOURCES: &str = "tests/newcomer";
 
-/// Checks the archive of the add-on with the libraries that are in `bin/`, in both flavours. What each check makes is removed when it has passed: a game
-/// takes 200 MB, and twice as many where it has to be patched to start.
+/// Checks the archive of the add-on with the libraries that are in `bin/`, in both flavours. The projects and games of a check, up to 400 MB,
+/// are removed when it has passed.
 ///
 /// # Errors
 /// The first thing that does not go as it should.
@@ -25,26 +25,35 @@ pub(crate) fn check() -> Result<()> {
     }
     let engine = godot::provision()?;
     let folder = paths::target_folder().join("newcomer");
-    if folder.exists() {
-        remove(&folder)?;
-    }
+    paths::make_empty(&folder)?;
     let newcomer = Newcomer {
         archive: folder.join("footfall-addon.zip"),
+        work: folder.join("work"),
         engine,
         folder,
     };
     addon::archive(&newcomer.archive)?;
-    newcomer.imports_first()?;
-    newcomer.exports_first()?;
-    newcomer.brings_an_old_project()?;
-    newcomer.unzips_into_a_running_editor()
+    let checks = [
+        Newcomer::imports_first,
+        Newcomer::exports_first,
+        Newcomer::brings_an_old_project,
+        Newcomer::unzips_into_a_running_editor,
+    ];
+    for check in checks {
+        check(&newcomer)?;
+        paths::make_empty(&newcomer.work)?;
+    }
+    Ok(())
 }
 
 /// Somebody who has the archive, a Godot and a folder.
 struct Newcomer {
     engine: Engine,
+    /// Folder of the archive and of the logs.
     folder: PathBuf,
     archive: PathBuf,
+    /// Folder of the projects and games.
+    work: PathBuf,
 }
 
 impl Newcomer {
@@ -52,15 +61,13 @@ impl Newcomer {
     fn imports_first(&self) -> Result<()> {
         let project = self.project("first_import")?;
         self.quiet(self.godot(&project).arg("--import"), "first_import")?;
-        self.runs(&project, "first_run")?;
-        remove(&project)
+        self.runs(&project, "first_run")
     }
 
     /// A build server exports a project that no editor has opened.
     fn exports_first(&self) -> Result<()> {
         let project = self.project("first_export")?;
-        self.exports(&project, "first_export")?;
-        remove(&project)
+        self.exports(&project, "first_export")
     }
 
     /// A project has `.import` files of the add-on of another day, whose importers are gone, and nothing that they made.
@@ -89,26 +96,24 @@ impl Newcomer {
         for import in left_behind {
             fs::write(import, old_import(""))?;
         }
-        self.exports(&project, "old_project_export")?;
-        remove(&project)
+        self.exports(&project, "old_project_export")
     }
 
     /// The add-on works in an editor that ran when it was unzipped.
     fn unzips_into_a_running_editor(&self) -> Result<()> {
-        let project = self.folder.join("running_editor");
+        let project = self.work.join("running_editor");
         copy(
             &paths::repository_root().join(SOURCES).join("editor"),
             &project,
         )?;
         let mut editor = self.godot(&project);
         editor.arg("--editor").arg("--").arg(&self.archive);
-        self.says(&mut editor, "running_editor", DONE_IN_EDITOR)?;
-        remove(&project)
+        self.says(&mut editor, "running_editor", DONE_IN_EDITOR)
     }
 
     /// The newcomer's project with the add-on in it, as nobody has opened it yet.
     fn project(&self, name: &str) -> Result<PathBuf> {
-        let project = self.folder.join(name);
+        let project = self.work.join(name);
         copy(
             &paths::repository_root().join(SOURCES).join("project"),
             &project,
@@ -134,13 +139,11 @@ impl Newcomer {
             return skipped::note(name, "this Godot came without an export template");
         }
         eprintln!("{name} …");
-        let folder = self.folder.join(format!("{name}_game"));
-        let game = folder.join("game.x86_64");
+        let game = self.work.join(format!("{name}_game/game.x86_64"));
         export::make(&self.engine, project, &game, &self.log(name))?;
         let mut game = godot::exported_game(&self.engine, &game)?;
         game.args(["--headless", "--audio-driver", "Dummy", "--fixed-fps", "60"]);
-        self.says(&mut game, &format!("{name}_game"), DONE)?;
-        remove(&folder)
+        self.says(&mut game, &format!("{name}_game"), DONE)
     }
 
     fn says(&self, command: &mut Command, name: &str, wanted: &str) -> Result<()> {
@@ -170,10 +173,6 @@ fn old_import(uid: &str) -> String {
          path=\"res://.godot/imported/gone.res\"\n\n[deps]\n\nsource_file=\"res://gone\"\n\
          dest_files=[\"res://.godot/imported/gone.res\"]\n\n[params]\n"
     )
-}
-
-fn remove(folder: &Path) -> Result<()> {
-    fs::remove_dir_all(folder).with_context(|| format!("cannot remove {}", folder.display()))
 }
 
 /// Copies a folder with all that is in it.

@@ -5,7 +5,7 @@
 //! before a release: `cargo package --workspace` with an `--exclude` for every crate that is not published; `cargo publish --dry-run` also asks the registry.
 
 use crate::{paths, process};
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Result, bail};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -43,11 +43,7 @@ pub(crate) fn check() -> Result<()> {
     }
     process::read(&mut cargo)?;
     let folder = paths::target_folder().join("packaged");
-    if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("cannot clear {}", folder.display()))?;
-    }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    paths::make_empty(&folder)?;
     let mut folders = Vec::new();
     for package in &published {
         let version = package["version"].as_str().unwrap_or_default();

@@ -2,6 +2,7 @@
 
 use anyhow::{Context as _, Result};
 use std::env;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The repository's root, found from this crate's manifest.
@@ -59,6 +60,17 @@ pub(crate) fn cache(name: &str) -> Result<PathBuf> {
         .or_else(|| set("HOME").map(|home| home.join(".cache")))
         .map(|folder| folder.join("footfall").join(name))
         .context("no cache folder: set HOME or XDG_CACHE_HOME")
+}
+
+/// Makes a folder with nothing in it, whatever was there.
+///
+/// # Errors
+/// When what was there cannot be removed, or the folder cannot be created.
+pub(crate) fn make_empty(folder: &Path) -> Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("cannot clear {}", folder.display()))?;
+    }
+    fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))
 }
 
 /// The first executable of one of these names on the PATH.

@@ -37,11 +37,7 @@ pub(crate) fn command(settings: &Settings) -> Result<()> {
     }
     let version = version()?;
     let folder = paths::target_folder().join(format!("footfall-{version}"));
-    if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("cannot clear {}", folder.display()))?;
-    }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    paths::make_empty(&folder)?;
     let file = |name: &str| folder.join(name.replace("VERSION", &version));
     write(&file("CHANGES.md"), &changes(&version)?)?;
     write(&file("THIRD_PARTY.md"), &addon::third_party()?)?;

@@ -223,7 +223,7 @@ fn demo_in_godot() -> Result<()> {
     Ok(())
 }
 
-/// Exports the demo as players get it: with the game's flavour of the library, and without an editor, whose flavour is another step's.
+/// Exports the demo as players get it: with the library's game flavour. The step `library` builds the editor's.
 fn exported_demo() -> Result<()> {
     if !cfg!(target_os = "linux") {
         return skipped::note("export", "the demo is exported on Linux only");

@@ -1,11 +1,12 @@
 //! Walkers of the shipped walk, walks as recordings, and models of sensors on them.
 
 use crate::data::repository;
-use footfall_core::{Clip, Site, Skeleton};
+use footfall_core::rotation::from_heading;
+use footfall_core::{Clip, Pose, Site, Skeleton};
 use footfall_model::{GaitModel, Provenance};
 use footfall_recon::Prepared;
 use footfall_synth::{
-    GaitChoice, GaitGenerator, GeneratorConfig, StyleSpace, WalkConfig, synthesize,
+    Controls, GaitChoice, GaitGenerator, GeneratorConfig, StyleSpace, WalkConfig, synthesize,
 };
 use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
 use std::sync::{Arc, OnceLock};
@@ -29,6 +30,17 @@ pub fn generator(skeleton: &Skeleton, seed: u64) -> GaitGenerator {
         variation: 1.0,
     };
     GaitGenerator::new(space, &[], skeleton, &config).expect("the body walks")
+}
+
+/// Lets a walker go on by a frame; returns its pose in the space where it began.
+pub fn step_in_world(walker: &mut GaitGenerator, dt_secs: f32, controls: &Controls) -> Pose {
+    let mut pose = Pose::default();
+    walker.step(dt_secs, controls, &mut pose);
+    let place = walker.start_from_character();
+    let turn = from_heading(place.heading);
+    pose.root_position = place.position + turn * pose.root_position;
+    pose.rotations[0] = turn * pose.rotations[0];
+    pose
 }
 
 /// A walk of 24 steps, as if it had been recorded.

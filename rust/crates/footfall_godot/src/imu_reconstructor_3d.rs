@@ -11,7 +11,7 @@ use crate::convert;
 use crate::imu_model::{ImuModel, NO_MODEL};
 use crate::imu_source;
 use crate::report;
-use crate::root_motion::{RootMotion, now};
+use crate::root_motion::{RootMotion, frame_clock};
 use crate::shipped::{self, Fallback};
 use crate::skeleton_binding::SkeletonBinding;
 use crate::travel::Traveller;
@@ -312,7 +312,7 @@ impl ImuReconstructor3D {
             .go_to(GroundTransform { position, heading })
             .scaled(influence);
         let delta = session.traveller.local_delta(&travel);
-        self.travelled.add(delta, now());
+        self.travelled.add(delta, frame_clock());
         let now = session.traveller.start_from_ground();
         let world_from_start = travel.world_from_current() * now.inverse();
         let travels = self.root_motion && !in_editor;

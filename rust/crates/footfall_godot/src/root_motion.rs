@@ -9,7 +9,7 @@ use godot::prelude::*;
 pub(crate) type RootMotion = footfall_rig::root_motion::RootMotion<Transform3D>;
 
 /// Number of the current frame by both clocks.
-pub(crate) fn now() -> FrameClock {
+pub(crate) fn frame_clock() -> FrameClock {
     let engine = Engine::singleton();
     FrameClock {
         physics: engine.get_physics_frames(),

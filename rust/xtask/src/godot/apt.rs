@@ -10,7 +10,7 @@ mod patched;
 pub(super) use archive::Archive;
 
 use crate::apt::Apt;
-use crate::{fetch, process};
+use crate::{fetch, paths, process};
 use anyhow::{Context as _, Result, bail};
 use archive::Architecture;
 use patched::Patcher;
@@ -151,11 +151,7 @@ pub(super) fn game(cache: &Path, game: &Path) -> Result<Command> {
     let root = cache.join("root");
     let architecture = Architecture::of_host()?;
     let folder = game.with_extension("started");
-    if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("cannot clear {}", folder.display()))?;
-    }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    paths::make_empty(&folder)?;
     let home = game.parent().context("a game without a folder")?;
     for entry in fs::read_dir(home).with_context(|| format!("cannot read {}", home.display()))? {
         let file = entry?.path();

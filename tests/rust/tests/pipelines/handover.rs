@@ -1,6 +1,6 @@
 //! One motion gives way to another: nothing pops, and feet that stand stay where they are.
 
-use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, rotation};
+use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
 use footfall_ik::FootTarget;
 use footfall_ik::RockerFoot;
 use footfall_ik::handover::{Handover, Moving};
@@ -22,13 +22,10 @@ fn walker(seed: u64) -> GaitGenerator {
 
 /// One frame of a walk, in the space where it began.
 fn step(walker: &mut GaitGenerator, controls: &Controls) -> (Pose, [bool; 2]) {
-    let mut pose = Pose::default();
-    walker.step(DT, controls, &mut pose);
-    let place = walker.start_from_character();
-    let turn = rotation::from_heading(place.heading);
-    pose.root_position = place.position + turn * pose.root_position;
-    pose.rotations[0] = turn * pose.rotations[0];
-    (pose, walker.feet_in_contact())
+    (
+        walkers::step_in_world(walker, DT, controls),
+        walker.feet_in_contact(),
+    )
 }
 
 fn joints(pose: &Pose) -> [Vec3; 22] {

@@ -8,6 +8,7 @@ mod confidence;
 mod evaluator;
 mod golden;
 mod handover;
+mod legs;
 mod model_versions;
 mod moves;
 mod placement;

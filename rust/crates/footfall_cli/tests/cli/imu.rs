@@ -31,7 +31,7 @@ fn train(folder: &Path, what: &[&str], model: &str) -> Run {
 }
 
 /// Reconstructs a body; returns its report.
-fn reconstruct(folder: &Path, model: &str, imu: &str, more: &[&str]) -> Run {
+pub(crate) fn reconstruct(folder: &Path, model: &str, imu: &str, more: &[&str]) -> Run {
     let arguments = [
         "imu",
         "reconstruct",

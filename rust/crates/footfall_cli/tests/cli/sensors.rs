@@ -1,6 +1,7 @@
 //! `footfall evaluate contacts --sensors`, on foot sensors with reference events, and on the bodies that they drive.
 
 use crate::common::footfall;
+use crate::imu::reconstruct;
 use footfall_motion::retarget::RetargetOptions;
 use footfall_tests::data::recordings;
 use serde_json::json;
@@ -294,19 +295,7 @@ fn a_real_sensor_worn_anyhow_walks_its_loop() {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path();
         fs::write(folder.join("imu.csv"), xio(&data, name)).unwrap();
-        let arguments = [
-            "imu",
-            "reconstruct",
-            "--model",
-            model,
-            "--imu",
-            "imu.csv",
-            "--live",
-            "-o",
-            "body.bvh",
-            "--json",
-        ];
-        let report = footfall(folder, &arguments).json();
+        let report = reconstruct(folder, model, "imu.csv", &["--live"]).json();
         assert!(
             report["mountings"][0]["certainty"].as_f64().unwrap() > 0.9,
             "{report}"
@@ -320,7 +309,7 @@ fn a_real_sensor_worn_anyhow_walks_its_loop() {
             walked.expect("a walk")[1].as_f64().unwrap() > 15.0,
             "{report}"
         );
-        let file = footfall_motion::bvh::read(folder.join("body.bvh")).unwrap();
+        let file = footfall_motion::bvh::read(folder.join("out.bvh")).unwrap();
         let clip = footfall_motion::retarget::retarget(&file, &RetargetOptions::default())
             .unwrap()
             .clip;

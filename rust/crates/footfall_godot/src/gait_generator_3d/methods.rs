@@ -2,7 +2,7 @@
 
 use super::GaitGenerator3D;
 use super::gait_choice::name_of;
-use crate::root_motion::{advance_of, now};
+use crate::root_motion::{advance_of, frame_clock};
 use footfall_core::Side;
 use footfall_synth::Gait;
 use godot::prelude::*;
@@ -25,7 +25,7 @@ impl GaitGenerator3D {
             return Transform3D::IDENTITY;
         };
         self.travelled
-            .since_last_frame(advance_of(&skeleton), now())
+            .since_last_frame(advance_of(&skeleton), frame_clock())
     }
 
     /// The seed of the walk: `seed`, or where that is 0 the node's own, or that of the state that it goes on from.

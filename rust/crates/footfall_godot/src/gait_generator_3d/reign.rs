@@ -2,7 +2,7 @@
 
 use super::GaitGenerator3D;
 use super::session::Session;
-use crate::root_motion::now;
+use crate::root_motion::frame_clock;
 use crate::travel::Travel;
 use footfall_synth::{Controls, GaitChoice};
 use glam::Vec3;
@@ -126,7 +126,7 @@ impl GaitGenerator3D {
     /// Time passes while other animation poses the skeleton.
     pub(super) fn rest(&mut self, session: Session) {
         self.session = Some(session);
-        self.travelled.add(Transform3D::IDENTITY, now());
+        self.travelled.add(Transform3D::IDENTITY, frame_clock());
         self.velocity = (Vec3::ZERO, 0.0);
         if core::mem::take(&mut self.told.left) {
             self.signals().handed_over().emit();

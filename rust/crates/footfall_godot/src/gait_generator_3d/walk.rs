@@ -8,7 +8,7 @@ use super::session::Session;
 use crate::convert;
 use crate::gait_model::NO_STYLES;
 use crate::report;
-use crate::root_motion::now;
+use crate::root_motion::frame_clock;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_synth::GeneratorConfig;
 use godot::classes::{Engine, Skeleton3D};
@@ -148,7 +148,7 @@ impl GaitGenerator3D {
         let influence = self.base().get_influence().clamp(0.0, 1.0);
         let travel = travel.scaled(influence);
         let delta = session.traveller.local_delta(&travel);
-        self.travelled.add(delta, now());
+        self.travelled.add(delta, frame_clock());
         {
             // Scripts may answer to what happens here and come back to this node: no borrow may be held.
             let _released = self.base_mut();

@@ -3,7 +3,7 @@
 use super::worn::Worn;
 use super::{ImuMounting, ImuReconstructor3D};
 use crate::convert;
-use crate::root_motion::{advance_of, now};
+use crate::root_motion::{advance_of, frame_clock};
 use footfall_core::Behaviour;
 use footfall_imu::ImuSample;
 use godot::classes::ProjectSettings;
@@ -114,7 +114,7 @@ impl ImuReconstructor3D {
             return Transform3D::IDENTITY;
         };
         self.travelled
-            .since_last_frame(advance_of(&skeleton), now())
+            .since_last_frame(advance_of(&skeleton), frame_clock())
     }
 
     /// Problems that keep the character from being driven, each with what to do next, and those of the sensors that are heard; empty without any.

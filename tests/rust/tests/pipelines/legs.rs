@@ -1,0 +1,68 @@
+//! Feet and knees of the shipped walk: where standing feet point, and how gently knees let go of the ground.
+
+use footfall_core::{Joint, ModelPose, Side, Skeleton};
+use footfall_synth::{Controls, GaitChoice};
+use footfall_tests::walkers;
+use glam::Vec3;
+
+/// A frame of the body, and the feet that stand in it.
+type Shown = (ModelPose, [bool; 2]);
+
+/// Five seconds of a walk straight ahead, out of standing.
+fn walk(seed: u64, speed_mps: f32) -> Vec<Shown> {
+    let skeleton = Skeleton::standard();
+    let mut walker = walkers::generator(&skeleton, seed);
+    let controls = Controls {
+        speed_mps,
+        gait: GaitChoice::Walk,
+        ..Controls::STAND
+    };
+    (0..300)
+        .map(|_| {
+            let pose = walkers::step_in_world(&mut walker, 1.0 / 60.0, &controls);
+            (ModelPose::of(&skeleton, &pose), walker.feet_in_contact())
+        })
+        .collect()
+}
+
+/// Greatest change of a knee's velocity, m/s².
+fn fastest_knee(walk: &[Shown]) -> f32 {
+    let knee = |frame: &Shown, side: Side| frame.0.position(side.lower_leg());
+    let changes = walk.windows(3).flat_map(|frames| {
+        Side::BOTH.map(|side| {
+            let [before, now, after] = [0, 1, 2].map(|index| knee(&frames[index], side));
+            (before - 2.0 * now + after).length() * 3600.0
+        })
+    });
+    changes.fold(0.0, f32::max)
+}
+
+#[test]
+fn knees_let_go_of_the_ground_gently() {
+    let fast = (1..100)
+        .flat_map(|seed| [0.9, 1.2, 1.4].map(|speed| fastest_knee(&walk(seed, speed))))
+        .filter(|fastest| *fastest > 105.0)
+        .count();
+    // 40 where a leg stays straight until it leaves the ground.
+    assert!(fast <= 20, "{fast} walks of 297");
+}
+
+#[test]
+fn feet_stand_as_people_s_lie_and_not_as_their_heels_strike() {
+    let (mut sum, mut count) = (0.0, 0);
+    for seed in 1..25 {
+        for (body, stands) in walk(seed, 1.3).into_iter().skip(120) {
+            let forwards = body.rotation(Joint::Hips) * Vec3::Z;
+            for side in Side::BOTH {
+                if stands[side.index()] {
+                    let toes = body.rotation(side.foot()) * Vec3::Z;
+                    let turn = toes.x.atan2(toes.z) - forwards.x.atan2(forwards.z);
+                    sum += turn * if side == Side::Left { 1.0 } else { -1.0 };
+                    count += 1;
+                }
+            }
+        }
+    }
+    let outwards = (sum / count as f32).to_degrees();
+    assert!(outwards < 2.0, "toes point {outwards}° outwards");
+}
