@@ -52,7 +52,7 @@ impl Foot {
 
 impl<T: Terrain> Scene<'_, T> {
     /// Least depth below the ground of a point of a sole that goes so far to any side on which the sole's middle is; at most 0 where it comes out of it.
-    /// What it would leave on the other sides is under the sole.
+    /// Walls that it would leave on the other sides are under the sole.
     pub(super) fn depth_beside(&mut self, point: Vec3, middle: Vec3, distance_m: f32) -> f32 {
         let inwards = (middle - point).with_y(0.0).normalize_or_zero();
         let inwards = WAYS.into_iter().filter(|way| way.dot(inwards) > INWARDS);
