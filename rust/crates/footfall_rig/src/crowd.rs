@@ -26,6 +26,7 @@ pub use kit::CrowdRecipe;
 use kit::Kit;
 use maker::Maker;
 use members::Coming;
+use motion::Stir;
 pub use motion::{FETCHED, GROUPS};
 use neighbours::Neighbours;
 pub use roster::Roster;
@@ -78,6 +79,9 @@ pub struct Crowd {
     agents: Vec<Agent>,
     tiers: Vec<Tier>,
     drawn: Vec<Drawn>,
+    stirs: Vec<Stir>,
+    /// Everybody as others see them; nowhere who is not made.
+    seen: Vec<Passerby>,
     roster: Roster,
     began: Vec<i32>,
     frame: u64,
@@ -109,6 +113,8 @@ impl Crowd {
             agents: Vec::new(),
             tiers: Vec::new(),
             drawn: Vec::new(),
+            stirs: Vec::new(),
+            seen: Vec::new(),
             roster: Roster::default(),
             began: Vec::new(),
             // So that nobody's pose seems to have been written just now.

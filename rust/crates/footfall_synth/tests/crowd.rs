@@ -210,3 +210,39 @@ fn repeated_steps_go_on_where_the_last_one_ended_and_so_do_new_ones() {
     // About two steps a second, near or far.
     assert!((45..70).contains(&landings), "{landings} landings");
 }
+
+/// The way and the mean speed of a walker, after it has settled, who shares steps or takes its own.
+fn mean_speed(seed: u64, speed_mps: f32, shares: bool, workshop: &mut Workshop) -> f32 {
+    let mut walker = CrowdWalker::new(&styled(), &config(seed, 0.2, 1.0), false, workshop).unwrap();
+    walker.set_repeating(shares);
+    let controls = Controls {
+        speed_mps,
+        ..Controls::STAND
+    };
+    let mut from = Vec3::ZERO;
+    for frame in 0..1500 {
+        walker.step(DT, controls, workshop);
+        if frame == 300 {
+            from = walker.start_from_character().position;
+        }
+    }
+    let way = walker.start_from_character().position - from;
+    way.length() / 20.0
+}
+
+#[test]
+fn whoever_shares_steps_walks_and_runs_as_fast_as_asked() {
+    let mut workshop = Workshop::new(&styled());
+    for speed_mps in [0.5, 0.8, 1.0, 1.2, 1.25, 1.5, 1.8, 2.4, 2.8, 3.5] {
+        let mut mean = [0.0; 2];
+        for seed in 0..8 {
+            for (mean, shares) in mean.iter_mut().zip([false, true]) {
+                *mean += mean_speed(seed, speed_mps, shares, &mut workshop) / 8.0;
+            }
+        }
+        assert!(
+            (mean[1] / mean[0] - 1.0).abs() < 0.05,
+            "asked {speed_mps}: {mean:?}"
+        );
+    }
+}

@@ -6,14 +6,14 @@ use super::kit::Outfit;
 use footfall_core::Side;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_ik::placement::{Frame, Landing};
-use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop};
+use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, SharedPose, Workshop};
 use glam::{Vec2, Vec3};
 
 /// Whoever comes to a goal slows down to this speed, m/s, by so much for each metre that is left.
 const ARRIVING_MPS: f32 = 0.5;
 const ARRIVING_RATE: f32 = 0.8;
-/// A decision shows after so many seconds, for the next step is planned already and the last one takes its time.
-const AHEAD_SECS: f32 = 1.0;
+/// Whoever is to stop goes on for so long, seconds: half of it in the step that comes to a stand, and half a step that others would take before they decide again.
+const AHEAD_SECS: f32 = 0.7;
 /// Room that a walker needs to turn round in an arc, metres.
 const ARC_M: f32 = 2.0;
 /// Whoever is so near to a goal makes no step towards it, metres.
@@ -36,6 +36,14 @@ pub struct Passerby {
     pub place: Vec2,
     /// Velocity there, m/s.
     pub velocity: Vec2,
+}
+
+impl Passerby {
+    /// Nobody.
+    pub(super) const NOWHERE: Self = Self {
+        place: Vec2::NAN,
+        velocity: Vec2::ZERO,
+    };
 }
 
 /// Places of a walker for drawing: where it was when it moved last but one, and where it is.
@@ -65,8 +73,8 @@ impl Drawn {
 /// One walker in the space of the crowd: +Y up.
 #[derive(Debug)]
 pub struct Agent {
-    /// Its walk, in memory that the thread that made it asked for; none before it is made, and for places that nobody has.
-    pub(super) walker: Option<Box<CrowdWalker>>,
+    /// Its walk; none before it is made, and for places that nobody has.
+    pub(super) walker: Option<CrowdWalker>,
     /// Number that distinguishes it from others who had its place or will have it.
     pub(super) ticket: u64,
     /// True when it is one of the node's `count`, not one that a script added.
@@ -141,7 +149,7 @@ impl Agent {
     }
 
     /// Begins to walk, at this time of the crowd.
-    pub(super) fn begin(&mut self, walker: Box<CrowdWalker>, now_secs: f64) {
+    pub(super) fn begin(&mut self, walker: CrowdWalker, now_secs: f64) {
         self.walked = walker.start_from_character();
         self.clock_secs = now_secs;
         self.walker = Some(walker);
@@ -205,7 +213,7 @@ impl Agent {
                 let left = if last && far < THERE_M {
                     0.0
                 } else if last && stops {
-                    (far - AHEAD_SECS * self.velocity.length()).max(0.0)
+                    (far - AHEAD_SECS * self.present_mps()).max(0.0)
                 } else {
                     f32::INFINITY
                 };
@@ -222,7 +230,10 @@ impl Agent {
                     speed_mps: self.speed_mps,
                     room_rad,
                 };
-                if let Some(detour) = wayfarer.detour(others) {
+                // Who makes no step goes round nobody.
+                if left > 0.0
+                    && let Some(detour) = wayfarer.detour(others)
+                {
                     off += detour.aside;
                     speed *= detour.speed;
                 }
@@ -243,6 +254,12 @@ impl Agent {
             turn_rate_radps: turn * froude,
             ..Controls::STAND
         };
+    }
+
+    /// Speed at the end of the step that it is in, m/s: the measured one lags behind.
+    fn present_mps(&self) -> f32 {
+        let asked = self.controls.speed_mps * self.size.sqrt();
+        asked.min(self.velocity.length())
     }
 
     /// Lets time pass.
@@ -324,6 +341,11 @@ impl Agent {
         if let Some(walker) = &self.walker {
             walker.fetch_pose();
         }
+    }
+
+    /// Its pose among those that all who wear the same share, and the number of its outfit; `None` for one who takes steps of its own.
+    pub fn shared_pose(&self) -> Option<(u32, SharedPose)> {
+        self.walker.as_ref()?.shared_pose()
     }
 
     /// Writes its pose in the space of the character; returns whether there is one.

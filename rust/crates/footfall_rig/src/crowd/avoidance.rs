@@ -74,7 +74,7 @@ impl Wayfarer {
             let direction = direction(self.heading + self.off + aside);
             for speed in SPEEDS {
                 let velocity = direction * (speed * self.speed_mps);
-                let cost = detour_cost(aside, speed) + near.cost(velocity);
+                let cost = near.cost(velocity, detour_cost(aside, speed), best.0);
                 if cost < best.0 {
                     best = (cost, Some(Detour { aside, speed }));
                 }
@@ -117,12 +117,16 @@ impl Near {
         }
     }
 
-    /// Cost of meeting them at this velocity.
-    fn cost(&self, velocity: Vec2) -> f32 {
-        let others = self.others[..self.len].iter();
-        others
-            .map(|(_, way, other)| meeting_cost(*way, velocity - *other))
-            .sum()
+    /// Cost of meeting them at this velocity beside another one, or what of it there is when that reaches `most`.
+    fn cost(&self, velocity: Vec2, beside: f32, most: f32) -> f32 {
+        let mut cost = beside;
+        for (_, way, other) in &self.others[..self.len] {
+            if cost >= most {
+                break;
+            }
+            cost += meeting_cost(*way, velocity - *other);
+        }
+        cost
     }
 }
 

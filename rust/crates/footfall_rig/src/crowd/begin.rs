@@ -81,6 +81,7 @@ impl Crowd {
             agents,
             roster,
             began,
+            seen,
             time_secs,
             ..
         } = self;
@@ -98,6 +99,7 @@ impl Crowd {
             if let Some(mut walker) = made.walker {
                 walker.set_detail(Detail::Quarter);
                 agent.begin(walker, *time_secs);
+                seen[place] = agent.seen();
                 began.push(roster.name(place));
             } else if let Some(walker) = &mut agent.walker {
                 walker.wear(&made.styled);

@@ -1,7 +1,6 @@
 //! Everybody in a crowd, moved on many threads at once.
 
 use super::Crowd;
-use super::agent::Agent;
 use super::tiers::Tier;
 use super::way::Way;
 use footfall_core::Side;
@@ -19,12 +18,23 @@ pub const GROUPS: usize = 4;
 /// Interval at which neighbours are found anew, in frames.
 const NEIGHBOURS_EVERY: u64 = 4;
 
+/// Memory of a row's last frame: everybody's lies together, for most rows are not looked at in a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stir {
+    /// True for one who moved.
+    moved: bool,
+    /// True for one whose foot landed.
+    landed: bool,
+    /// True for one who is far away and shows something of its own still: it moves in every frame.
+    leaves: bool,
+}
+
 impl Crowd {
     /// Lets time pass for everybody.
     pub fn advance(&mut self, dt_secs: f32, avoidance: bool) {
         if dt_secs <= 0.0 {
-            for agent in &mut self.agents {
-                agent.landed = None;
+            for stir in &mut self.stirs {
+                stir.landed = false;
             }
             return;
         }
@@ -35,15 +45,16 @@ impl Crowd {
             return;
         };
         if avoidance && frame.is_multiple_of(NEIGHBOURS_EVERY) {
-            let there = self.agents.iter().filter(|agent| agent.walker.is_some());
             let others = self.others.iter().copied();
             self.neighbours
-                .rebuild(there.map(Agent::seen).chain(others));
+                .rebuild(self.seen.iter().copied().chain(others));
         }
         let Self {
             agents,
             tiers,
             drawn,
+            stirs,
+            seen,
             neighbours,
             way,
             repeats,
@@ -58,24 +69,29 @@ impl Crowd {
             .par_chunks_mut(CHUNK)
             .zip(tiers.par_chunks(CHUNK))
             .zip(drawn.par_chunks_mut(CHUNK))
+            .zip(stirs.par_chunks_mut(CHUNK))
+            .zip(seen.par_chunks_mut(CHUNK))
             .enumerate();
-        chunks.for_each(|(chunk, ((agents, tiers), drawn))| {
+        chunks.for_each(|(chunk, ((((agents, tiers), drawn), stirs), seen))| {
             let thread = rayon::current_thread_index().map_or(0, |index| index + 1);
             let workshop = &workshops[thread.min(workshops.len() - 1)];
             let mut workshop = workshop.lock().unwrap_or_else(PoisonError::into_inner);
-            let moves = |index: usize, tier: Tier| {
+            for (index, (stir, tier)) in stirs.iter_mut().zip(tiers).enumerate() {
                 // Those far away move in their group's frame, for all frames since the last one.
                 let group = (chunk * CHUNK + index) % GROUPS;
-                tier != Tier::Far || frame % GROUPS as u64 == group as u64
-            };
+                stir.moved =
+                    *tier != Tier::Far || stir.leaves || frame % GROUPS as u64 == group as u64;
+                stir.landed = false;
+            }
             for index in 0..agents.len() {
                 if index.is_multiple_of(FETCHED) {
                     let together = index..agents.len().min(index + FETCHED);
-                    let moving = together.filter(|index| moves(*index, tiers[*index]));
+                    let moving = together.filter(|index| stirs[*index].moved);
                     moving.for_each(|index| agents[index].fetch());
                 }
                 let (agent, tier, drawn) = (&mut agents[index], &tiers[index], &mut drawn[index]);
-                let Some(walker) = agent.walker.as_mut().filter(|_| moves(index, *tier)) else {
+                let stir = &mut stirs[index];
+                let Some(walker) = agent.walker.as_mut().filter(|_| stir.moved) else {
                     continue;
                 };
                 walker.set_detail(match tier {
@@ -83,7 +99,8 @@ impl Crowd {
                     // Fifteen frames a second, blended: from a dozen metres on nobody sees the difference.
                     Tier::Near | Tier::Far => Detail::Quarter,
                 });
-                walker.set_repeating(repeats && *tier == Tier::Far);
+                let shares = repeats && *tier == Tier::Far;
+                walker.set_repeating(shares);
                 walker.set_standing_motion(standing_motion);
                 let secs = (now_secs - agent.clock_secs) as f32;
                 agent.clock_secs = now_secs;
@@ -99,21 +116,29 @@ impl Crowd {
                 let (from, heading) = (agent.place, agent.heading);
                 agent.advance(secs, &mut workshop);
                 *drawn = agent.drawn(from, heading);
+                stir.landed = agent.has_landed();
+                stir.leaves = shares && agent.shared_pose().is_none();
+                seen[index] = agent.seen();
             }
         });
     }
 
     /// Returns whether a walker moved in the last frame.
     pub fn moved(&self, index: usize) -> bool {
-        self.tiers.get(index) != Some(&Tier::Far)
-            || self.frame % GROUPS as u64 == (index % GROUPS) as u64
+        self.stirs.get(index).is_some_and(|stir| stir.moved)
+    }
+
+    /// Returns whether a foot of a walker landed in the last frame.
+    pub fn has_landed(&self, index: usize) -> bool {
+        self.stirs.get(index).is_some_and(|stir| stir.landed)
     }
 
     /// Landings in the last frame: walker, foot and place.
     pub fn landed(&self) -> impl Iterator<Item = (usize, Side, Vec3)> {
-        let agents = self.agents.iter().enumerate();
-        agents.filter_map(|(index, agent)| {
-            let (side, place) = agent.landed.filter(|_| self.moved(index))?;
+        let stirs = self.stirs.iter().enumerate();
+        let landed = stirs.filter(|(_, stir)| stir.landed);
+        landed.filter_map(|(index, _)| {
+            let (side, place) = self.agents[index].landed?;
             Some((index, side, place))
         })
     }
