@@ -12,6 +12,7 @@ mod members;
 mod navigation;
 mod others;
 mod scene;
+mod shared_flock;
 
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;

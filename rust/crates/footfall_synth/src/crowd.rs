@@ -259,20 +259,22 @@ impl CrowdWalker {
             return;
         };
         let steps = self.styled.0.shared();
-        steps.write(&stroll.look(), out);
+        steps.write(&stroll.look(0.0, steps), out);
         if let Some(last) = self.own.as_ref().and_then(|own| own.frames.last_pose()) {
             // What it was away from the shared step as that began dies away.
             steps.shift(out, stroll.first_pose(), last, stroll.leaving(LEAVING_SECS));
         }
     }
 
-    /// Its pose among those that all who wear the same [share](StyledBody::shared_pose), and the number of the [`StyledBody`]; `None` where it has one of its own.
-    pub fn shared_pose(&self) -> Option<(u32, SharedPose)> {
-        let stroll = self.stroll.as_ref().filter(|_| self.own.is_none())?;
-        Some((self.styled.1, stroll.look()))
+    /// Its pose so many seconds ago, fewer than a step takes, among those that all who wear the same [share](StyledBody::shared_pose), and the number of the [`StyledBody`]; `None` while it
+    /// takes steps of its own.
+    pub fn shared_pose(&self, ago_secs: f32) -> Option<(u32, SharedPose)> {
+        let stroll = self.stroll.as_ref()?;
+        let look = stroll.look(ago_secs, self.styled.0.shared());
+        Some((self.styled.1, look))
     }
 
-    /// Returns whether it keeps steps of its own.
+    /// Returns whether it takes steps of its own, or its pose comes from one still.
     pub fn has_own_steps(&self) -> bool {
         self.own.is_some()
     }

@@ -53,6 +53,8 @@ pub struct Drawn {
     pub places: [Vec3; 2],
     /// Its headings there. The second is within half a turn of the first.
     pub headings: [f32; 2],
+    /// Time between them, seconds.
+    pub secs: f32,
     /// Its height against that of the character.
     pub size: f32,
     /// Its tint: red, green, blue and opacity.
@@ -292,11 +294,12 @@ impl Agent {
     }
 
     /// Places for drawing, after it moved from there.
-    pub(super) fn drawn(&self, from: Vec3, from_heading: f32) -> Drawn {
+    pub(super) fn drawn(&self, from: Vec3, from_heading: f32, secs: f32) -> Drawn {
         let turned = wrap_angle(self.heading - from_heading);
         Drawn {
             places: [from, self.place],
             headings: [from_heading, from_heading + turned],
+            secs,
             size: self.size,
             tint: self.tint,
         }
@@ -343,9 +346,15 @@ impl Agent {
         }
     }
 
-    /// Its pose among those that all who wear the same share, and the number of its outfit; `None` for one who takes steps of its own.
-    pub fn shared_pose(&self) -> Option<(u32, SharedPose)> {
-        self.walker.as_ref()?.shared_pose()
+    /// Its pose so many seconds ago among those that all who wear the same share, and the number of what it wears; `None` while it takes steps of its own.
+    pub fn shared_pose(&self, ago_secs: f32) -> Option<(u32, SharedPose)> {
+        let walker = self.walker.as_ref()?;
+        walker.shared_pose(ago_secs / self.size.sqrt())
+    }
+
+    pub(super) fn has_own_steps(&self) -> bool {
+        let walker = self.walker.as_ref();
+        walker.is_some_and(CrowdWalker::has_own_steps)
     }
 
     /// Writes its pose in the space of the character; returns whether there is one.

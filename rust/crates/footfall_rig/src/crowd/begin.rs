@@ -82,6 +82,7 @@ impl Crowd {
             roster,
             began,
             seen,
+            stirs,
             time_secs,
             ..
         } = self;
@@ -100,6 +101,7 @@ impl Crowd {
                 walker.set_detail(Detail::Quarter);
                 agent.begin(walker, *time_secs);
                 seen[place] = agent.seen();
+                stirs[place].shares = true;
                 began.push(roster.name(place));
             } else if let Some(walker) = &mut agent.walker {
                 walker.wear(&made.styled);

@@ -104,6 +104,11 @@ impl Kit {
         worn.entry(outfit.clone()).or_insert_with(numbered).clone()
     }
 
+    /// Number of mixtures.
+    pub(super) fn count(&self) -> usize {
+        self.worn().len()
+    }
+
     /// Mixtures by their numbers: those from this one on.
     pub(super) fn from_number(&self, number: u32) -> Vec<StyledBody> {
         let worn = self.worn();

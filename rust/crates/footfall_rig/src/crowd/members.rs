@@ -269,7 +269,7 @@ impl Crowd {
             });
             agent.outfit = Outfit::of(&saved.weights[..saved.weights.len().min(styles)]);
         }
-        self.drawn[place] = agent.drawn(start, heading);
+        self.drawn[place] = agent.drawn(start, heading, 0.0);
         let order = Order {
             place,
             ticket: self.tickets,

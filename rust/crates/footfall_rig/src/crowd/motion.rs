@@ -4,7 +4,7 @@ use super::Crowd;
 use super::tiers::Tier;
 use super::way::Way;
 use footfall_core::Side;
-use footfall_synth::Detail;
+use footfall_synth::{Detail, StyledBody};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::PoisonError;
@@ -25,8 +25,10 @@ pub(super) struct Stir {
     moved: bool,
     /// True for one whose foot landed.
     landed: bool,
-    /// True for one who is far away and shows something of its own still: it moves in every frame.
-    leaves: bool,
+    /// True for one whose pose is one that others have, too.
+    pub(super) shares: bool,
+    /// True for one who takes steps of its own, or shows something of them still.
+    alone: bool,
 }
 
 impl Crowd {
@@ -79,8 +81,8 @@ impl Crowd {
             for (index, (stir, tier)) in stirs.iter_mut().zip(tiers).enumerate() {
                 // Those far away move in their group's frame, for all frames since the last one.
                 let group = (chunk * CHUNK + index) % GROUPS;
-                stir.moved =
-                    *tier != Tier::Far || stir.leaves || frame % GROUPS as u64 == group as u64;
+                let late = *tier == Tier::Far && !(repeats && stir.alone);
+                stir.moved = !late || frame % GROUPS as u64 == group as u64;
                 stir.landed = false;
             }
             for index in 0..agents.len() {
@@ -99,8 +101,7 @@ impl Crowd {
                     // Fifteen frames a second, blended: from a dozen metres on nobody sees the difference.
                     Tier::Near | Tier::Far => Detail::Quarter,
                 });
-                let shares = repeats && *tier == Tier::Far;
-                walker.set_repeating(shares);
+                walker.set_repeating(repeats && *tier == Tier::Far);
                 walker.set_standing_motion(standing_motion);
                 let secs = (now_secs - agent.clock_secs) as f32;
                 agent.clock_secs = now_secs;
@@ -115,9 +116,10 @@ impl Crowd {
                 }
                 let (from, heading) = (agent.place, agent.heading);
                 agent.advance(secs, &mut workshop);
-                *drawn = agent.drawn(from, heading);
+                *drawn = agent.drawn(from, heading, secs);
                 stir.landed = agent.has_landed();
-                stir.leaves = shares && agent.shared_pose().is_none();
+                let own = agent.has_own_steps();
+                (stir.shares, stir.alone) = (!own, own);
                 seen[index] = agent.seen();
             }
         });
@@ -126,6 +128,27 @@ impl Crowd {
     /// Returns whether a walker moved in the last frame.
     pub fn moved(&self, index: usize) -> bool {
         self.stirs.get(index).is_some_and(|stir| stir.moved)
+    }
+
+    /// Returns whether a walker's [pose](super::Agent::shared_pose) is one that others have, too.
+    pub fn shares(&self, index: usize) -> bool {
+        self.stirs.get(index).is_some_and(|stir| stir.shares)
+    }
+
+    /// Returns whether a walker takes steps of its own, or its pose comes from one still. One who is far away and [repeats](Self::repeats) moves in every frame for so long, less than a second.
+    pub fn is_alone(&self, index: usize) -> bool {
+        self.stirs.get(index).is_some_and(|stir| stir.alone)
+    }
+
+    /// Number of mixtures of styles that walkers wear or wore.
+    pub fn worn(&self) -> usize {
+        self.kit.as_ref().map_or(0, |kit| kit.count())
+    }
+
+    /// These mixtures by their numbers: those from one on.
+    pub fn worn_from(&self, number: u32) -> Vec<StyledBody> {
+        let kit = self.kit.as_ref();
+        kit.map(|kit| kit.from_number(number)).unwrap_or_default()
     }
 
     /// Returns whether a foot of a walker landed in the last frame.

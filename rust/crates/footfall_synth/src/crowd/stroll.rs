@@ -271,16 +271,33 @@ impl Stroll {
         course.contacts[pose as usize]
     }
 
-    /// Its pose among the shared ones.
-    pub(super) fn look(&self) -> SharedPose {
+    /// Its pose among the shared ones so long ago: within this step, or the one before.
+    pub(super) fn look(&self, ago_secs: f32, steps: &SharedSteps) -> SharedPose {
         if self.is_standing() {
-            let (pose, blend) = self.ending().rest_pose(self.rest_secs);
+            let rest_secs = (self.rest_secs - ago_secs).max(0.0);
+            let (pose, blend) = self.ending().rest_pose(rest_secs);
             return SharedPose {
                 pose: pose as u32,
                 blend,
                 ..SharedPose::default()
             };
         }
+        let share = self.share - ago_secs / self.secs(steps);
+        if share < 0.0 {
+            let before = Self {
+                side: self.side.other(),
+                speed: self.from,
+                from: self.from,
+                share: (1.0 + share).max(0.0),
+                ..*self
+            };
+            return before.within();
+        }
+        Self { share, ..*self }.within()
+    }
+
+    /// Its pose within the step.
+    fn within(&self) -> SharedPose {
         let share = self.share.clamp(0.0, 1.0);
         let at = share * (STEP_POSES - 1) as f32;
         let pose = (at as usize).min(STEP_POSES - 2);
