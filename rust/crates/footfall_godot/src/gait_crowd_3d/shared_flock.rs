@@ -5,7 +5,7 @@ use super::crowd_mesh::CrowdMesh;
 use super::flock::{Flock, INSTANCE_NUMBERS, POSE_BYTES, write_instance, write_pose};
 use super::scene::{Look, is_seen};
 use footfall_core::{JOINT_COUNT, Joint};
-use footfall_rig::crowd::{Crowd, GROUPS, Tier};
+use footfall_rig::crowd::{Crowd, FETCHED, GROUPS, Tier};
 use footfall_synth::{CrowdPose, StyledBody};
 use glam::Vec4;
 use godot::classes::{Node, Node3D};
@@ -160,12 +160,14 @@ impl Shown<'_> {
     /// Writes the instances of these parts one after the other, on as many threads as there are.
     fn write_all(&self, parts: &[Part], out: &mut [f32]) {
         if let [part] = parts {
-            for (row, out) in part
-                .shown
-                .iter()
-                .zip(out.chunks_exact_mut(INSTANCE_NUMBERS))
-            {
-                self.write(*row as usize, out);
+            let out = out.chunks_mut(FETCHED * INSTANCE_NUMBERS);
+            for (rows, out) in part.shown.chunks(FETCHED).zip(out) {
+                for row in rows {
+                    self.walkers.agents()[*row as usize].fetch_shared();
+                }
+                for (row, out) in rows.iter().zip(out.chunks_exact_mut(INSTANCE_NUMBERS)) {
+                    self.write(*row as usize, out);
+                }
             }
             return;
         }

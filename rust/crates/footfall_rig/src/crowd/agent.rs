@@ -205,7 +205,7 @@ impl Agent {
     }
 
     /// Decides what to do next; what it decides is taken up with the next step. It slows down for its last goal if it `stops` there.
-    pub(super) fn decide<'a>(&mut self, others: impl Iterator<Item = &'a Passerby>, stops: bool) {
+    pub(super) fn decide(&mut self, others: &[Passerby], stops: bool) {
         let mut speed = self.speed_mps;
         let turn = match self.goal {
             Goal::Turn(rate) => rate,
@@ -234,7 +234,7 @@ impl Agent {
                 };
                 // Who makes no step goes round nobody.
                 if left > 0.0
-                    && let Some(detour) = wayfarer.detour(others)
+                    && let Some(detour) = wayfarer.detour(others.iter())
                 {
                     off += detour.aside;
                     speed *= detour.speed;
@@ -337,6 +337,11 @@ impl Agent {
         if let Some(walker) = &self.walker {
             walker.fetch_place();
         }
+    }
+
+    /// Has memory bring what [`shared_pose`](Self::shared_pose) reads.
+    pub fn fetch_shared(&self) {
+        core::hint::black_box((self.size, self.is_made()));
     }
 
     /// Has memory bring what [`pose`](Self::pose) reads.

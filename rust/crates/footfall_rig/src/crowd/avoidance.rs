@@ -133,10 +133,11 @@ impl Near {
 /// Cost of approaching somebody who is there at this velocity.
 fn meeting_cost(way: Vec2, approach: Vec2) -> f32 {
     let secs = (way.dot(approach) / approach.length_squared().max(1e-3)).clamp(0.0, FORESIGHT_SECS);
-    let nearest = (way - approach * secs).length();
-    if nearest >= PERSONAL_M {
+    let nearest = (way - approach * secs).length_squared();
+    if nearest >= PERSONAL_M * PERSONAL_M {
         return 0.0;
     }
+    let nearest = nearest.sqrt();
     let soon = 1.0 - secs / FORESIGHT_SECS;
     let close = ((PERSONAL_M - nearest) / (PERSONAL_M - BODIES_M)).min(1.0);
     let touching = (1.0 - nearest / BODIES_M).max(0.0);

@@ -1,6 +1,7 @@
 //! Everybody in a crowd, moved on many threads at once.
 
 use super::Crowd;
+use super::neighbours::Sight;
 use super::tiers::Tier;
 use super::way::Way;
 use footfall_core::Side;
@@ -78,6 +79,7 @@ impl Crowd {
             let thread = rayon::current_thread_index().map_or(0, |index| index + 1);
             let workshop = &workshops[thread.min(workshops.len() - 1)];
             let mut workshop = workshop.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut sight = Sight::default();
             for (index, (stir, tier)) in stirs.iter_mut().zip(tiers).enumerate() {
                 // Those far away move in their group's frame, for all frames since the last one.
                 let group = (chunk * CHUNK + index) % GROUPS;
@@ -109,9 +111,10 @@ impl Crowd {
                     way.lead(agent);
                     let stops = matches!(way, Way::Told);
                     if avoidance {
-                        agent.decide(neighbours.around(agent.level()), stops);
+                        let seen = neighbours.around(agent.level(), &mut sight);
+                        agent.decide(seen, stops);
                     } else {
-                        agent.decide(core::iter::empty(), stops);
+                        agent.decide(&[], stops);
                     }
                 }
                 let (from, heading) = (agent.place, agent.heading);
@@ -165,4 +168,11 @@ impl Crowd {
             Some((index, side, place))
         })
     }
+}
+    println!(
+        "agent {} walker {} drawn {}",
+        size_of::<super::agent::Agent>(),
+        size_of::<footfall_synth::CrowdWalker>(),
+        size_of::<super::agent::Drawn>()
+    );
 }

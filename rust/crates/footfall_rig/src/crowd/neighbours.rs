@@ -14,8 +14,18 @@ const LEAST_SIGHT_M: f32 = 1.5;
 
 /// So many buckets at least: where there are few, strangers share them.
 const LEAST_BUCKETS: usize = 4096;
-/// Factor between rows of cells: cells that follow each other in a row follow each other in memory, too.
-const ROW: i32 = 0x0037_79b1;
+/// Factor between rows of cells: cells that follow each other in a row follow each other in memory, too, and rows that are near to each other never lie in the same.
+const ROW: u32 = 0x9e37_79b1;
+
+/// Room for who can be seen from a place.
+#[derive(Debug)]
+pub(super) struct Sight([Passerby; MOST_LOOKED_AT]);
+
+impl Default for Sight {
+    fn default() -> Self {
+        Self([Passerby::default(); MOST_LOOKED_AT])
+    }
+}
 
 /// Walkers in the order of the cells that they are in.
 #[derive(Debug, Default)]
@@ -52,7 +62,7 @@ impl Neighbours {
     }
 
     /// Everybody who can be seen from a place: the nearest ones, as far as they can be seen between each other.
-    pub(super) fn around(&self, place: Vec2) -> impl Iterator<Item = &Passerby> {
+    pub(super) fn around<'a>(&self, place: Vec2, found: &'a mut Sight) -> &'a [Passerby] {
         let middle = cell(place);
         let near = rows(middle, 1).flat_map(|row| self.strip(row, 1));
         let near: usize = near.map(<[Passerby]>::len).sum();
@@ -60,14 +70,20 @@ impl Neighbours {
         let sight = (MOST_IN_SIGHT / (core::f32::consts::PI * density.max(1e-3))).sqrt();
         let sight = sight.clamp(LEAST_SIGHT_M, SIGHT_M);
         let cells = (sight / CELL_M).ceil() as i32;
-        rows(middle, cells)
-            .flat_map(move |row| {
-                let strip = self.strip(row, cells).into_iter().flatten();
-                // Other rows may lie in the same memory.
-                strip.filter(move |seen| cell(seen.place).y == row.y)
-            })
-            .filter(move |seen| seen.place.distance_squared(place) < sight * sight)
-            .take(MOST_LOOKED_AT)
+        let mut count = 0;
+        for row in rows(middle, cells) {
+            for seen in self.strip(row, cells).into_iter().flatten() {
+                // Strangers may lie in the same memory.
+                if seen.place.distance_squared(place) < sight * sight {
+                    let Some(room) = found.0.get_mut(count) else {
+                        break;
+                    };
+                    *room = *seen;
+                    count += 1;
+                }
+            }
+        }
+        &found.0[..count]
     }
 
     /// What lies in memory where a row of cells does, so many to both sides of one: in two parts where that goes over its end.
@@ -105,8 +121,8 @@ fn cell(place: Vec2) -> IVec2 {
 }
 
 fn bucket(cell: IVec2, buckets: usize) -> usize {
-    let hash = cell.x.wrapping_add(cell.y.wrapping_mul(ROW));
-    hash.cast_unsigned() as usize & (buckets - 1)
+    let row = cell.y.cast_unsigned().wrapping_mul(ROW);
+    cell.x.cast_unsigned().wrapping_add(row) as usize & (buckets - 1)
 }
 
 #[cfg(test)]
@@ -139,9 +155,11 @@ mod tests {
         let mut places = strewn(0.15);
         places.push(Vec2::NAN);
         let neighbours = neighbours(&places);
+        let mut sight = Sight::default();
         places.pop();
         for place in places.iter().step_by(7) {
-            let found: Vec<Vec2> = neighbours.around(*place).map(|seen| seen.place).collect();
+            let found = neighbours.around(*place, &mut sight);
+            let found: Vec<Vec2> = found.iter().map(|seen| seen.place).collect();
             for other in &places {
                 let times = found.iter().filter(|found| *found == other).count();
                 let near = other.distance(*place) < SIGHT_M;
@@ -155,16 +173,14 @@ mod tests {
         for density in [1.0, 3.0, 6.0, 12.0] {
             let places = strewn(density);
             let neighbours = neighbours(&places);
+            let mut sight = Sight::default();
             for place in places[..200].iter().step_by(7) {
-                let found = neighbours.around(*place).count();
-                assert!((20..=MOST_LOOKED_AT).contains(&found), "{density}: {found}");
+                let found = neighbours.around(*place, &mut sight);
+                let count = found.len();
+                assert!((20..=MOST_LOOKED_AT).contains(&count), "{density}: {count}");
                 let nearest = places.iter().filter(|other| other.distance(*place) < 0.5);
-                let seen =
-                    |other: &&Vec2| neighbours.around(*place).any(|seen| seen.place == **other);
-                assert!(
-                    nearest.take(4).all(|other| seen(&other)),
-                    "the nearest count"
-                );
+                let seen = |other: &Vec2| found.iter().any(|seen| seen.place == *other);
+                assert!(nearest.take(4).all(seen), "the nearest count");
             }
         }
     }
