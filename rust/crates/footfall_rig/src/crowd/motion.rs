@@ -169,10 +169,3 @@ impl Crowd {
         })
     }
 }
-    println!(
-        "agent {} walker {} drawn {}",
-        size_of::<super::agent::Agent>(),
-        size_of::<footfall_synth::CrowdWalker>(),
-        size_of::<super::agent::Drawn>()
-    );
-}
