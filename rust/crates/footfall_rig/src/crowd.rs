@@ -37,7 +37,7 @@ use tiers::Chooser;
 pub use tiers::{Limits, Tier};
 pub use way::{Path, Way};
 
-/// Most walkers of a crowd: the steps of more alone would take gigabytes.
+/// Most walkers of a crowd: names hold no more places.
 pub const MOST_AGENTS: u32 = 100_000;
 
 /// Settings by which walkers differ.
@@ -93,7 +93,7 @@ pub struct Crowd {
     others: Vec<Passerby>,
     way: Way,
     chooser: Chooser,
-    /// True when walkers far away repeat their last two steps instead of taking new ones.
+    /// True when walkers far away walk in steps that they share instead of taking their own.
     pub repeats: bool,
     /// Amount of motion of those who stand: 0 rests in a still pose, 1 moves as people do.
     pub standing_motion: f32,

@@ -169,3 +169,16 @@ impl Crowd {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::agent::{Agent, Drawn, Passerby};
+    use super::*;
+
+    #[test]
+    fn a_row_takes_less_than_half_a_kilobyte() {
+        let seen = 2 * size_of::<Passerby>();
+        let row = size_of::<Agent>() + size_of::<Drawn>() + size_of::<Stir>() + seen;
+        assert!(row + size_of::<Tier>() < 512, "{row} bytes");
+    }
+}
