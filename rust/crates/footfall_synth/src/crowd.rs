@@ -130,7 +130,12 @@ impl CrowdWalker {
     /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before, for the first rest, and for own steps of more walkers than ever.
     pub fn step(&mut self, dt_secs: f32, controls: Controls, workshop: &mut Workshop) {
         self.footstep = None;
-        let mut left = Some(dt_secs.max(0.0).min(MAX_DT_SECS));
+        let passes = dt_secs > 0.0;
+        let mut left = Some(if passes {
+            dt_secs.min(MAX_DT_SECS)
+        } else {
+            0.0
+        });
         while let Some(secs) = left {
             left = if self.stroll.is_some() {
                 self.step_shared(secs, controls, workshop)

@@ -160,7 +160,7 @@ impl Agent {
     /// Share of its stride that is behind it: 0 when its left foot lands, 0.5 when its right foot does.
     pub fn phase(&self) -> f32 {
         let walker = self.walker.as_ref();
-        walker.map_or(self.start_phase, |walker| walker.phase())
+        walker.map_or(self.start_phase, CrowdWalker::phase)
     }
 
     /// Returns whether it walks: it was made, and has begun.
@@ -181,7 +181,7 @@ impl Agent {
     /// Feet that bear on the ground.
     pub fn feet_in_contact(&self) -> [bool; 2] {
         let walker = self.walker.as_ref();
-        walker.map_or([true; 2], |walker| walker.feet_in_contact())
+        walker.map_or([true; 2], CrowdWalker::feet_in_contact)
     }
 
     /// The next landing of each foot in the space of the character, for a body of its size: a large one takes longer for its steps.

@@ -153,12 +153,10 @@ impl Near {
 #[inline]
 fn meeting_cost(way: Vec2, approach: Vec2) -> f32 {
     let secs = way.dot(approach) / approach.length_squared().max(1e-3);
-    let secs = secs.max(0.0).min(FORESIGHT_SECS);
+    let secs = secs.clamp(0.0, FORESIGHT_SECS);
     let nearest = (way - approach * secs).length();
     let soon = 1.0 - secs / FORESIGHT_SECS;
-    let close = ((PERSONAL_M - nearest) / (PERSONAL_M - BODIES_M))
-        .min(1.0)
-        .max(0.0);
+    let close = ((PERSONAL_M - nearest) / (PERSONAL_M - BODIES_M)).clamp(0.0, 1.0);
     let touching = (1.0 - nearest / BODIES_M).max(0.0);
     soon * (CLOSENESS * close + TOUCHING * touching)
 }

@@ -110,7 +110,7 @@ impl Kit {
     }
 
     /// Mixtures by their numbers: those from this one on.
-    pub(super) fn from_number(&self, number: u32) -> Vec<StyledBody> {
+    pub(super) fn numbered_from(&self, number: u32) -> Vec<StyledBody> {
         let worn = self.worn();
         let mut fresh: Vec<StyledBody> = worn
             .values()

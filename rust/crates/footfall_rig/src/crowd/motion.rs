@@ -19,6 +19,18 @@ pub const GROUPS: usize = 4;
 /// Interval at which neighbours are found anew, in frames.
 const NEIGHBOURS_EVERY: u64 = 4;
 
+/// Steps of a walker.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Steps {
+    /// It is not made.
+    #[default]
+    None,
+    /// Its pose is one that others have, too.
+    Shared,
+    /// It takes steps of its own, or shows something of them still.
+    Own,
+}
+
 /// Memory of a row's last frame: everybody's lies together, for most rows are not looked at in a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stir {
@@ -26,10 +38,7 @@ pub(super) struct Stir {
     moved: bool,
     /// True for one whose foot landed.
     landed: bool,
-    /// True for one whose pose is one that others have, too.
-    pub(super) shares: bool,
-    /// True for one who takes steps of its own, or shows something of them still.
-    alone: bool,
+    pub(super) steps: Steps,
 }
 
 impl Crowd {
@@ -83,7 +92,7 @@ impl Crowd {
             for (index, (stir, tier)) in stirs.iter_mut().zip(tiers).enumerate() {
                 // Those far away move in their group's frame, for all frames since the last one.
                 let group = (chunk * CHUNK + index) % GROUPS;
-                let late = *tier == Tier::Far && !(repeats && stir.alone);
+                let late = *tier == Tier::Far && !(repeats && stir.steps == Steps::Own);
                 stir.moved = !late || frame % GROUPS as u64 == group as u64;
                 stir.landed = false;
             }
@@ -121,8 +130,11 @@ impl Crowd {
                 agent.advance(secs, &mut workshop);
                 *drawn = agent.drawn(from, heading, secs);
                 stir.landed = agent.has_landed();
-                let own = agent.has_own_steps();
-                (stir.shares, stir.alone) = (!own, own);
+                stir.steps = if agent.has_own_steps() {
+                    Steps::Own
+                } else {
+                    Steps::Shared
+                };
                 seen[index] = agent.seen();
             }
         });
@@ -135,12 +147,17 @@ impl Crowd {
 
     /// Returns whether a walker's [pose](super::Agent::shared_pose) is one that others have, too.
     pub fn shares(&self, index: usize) -> bool {
-        self.stirs.get(index).is_some_and(|stir| stir.shares)
+        self.takes(index, Steps::Shared)
     }
 
     /// Returns whether a walker takes steps of its own, or its pose comes from one still. One who is far away and [repeats](Self::repeats) moves in every frame for so long, less than a second.
     pub fn is_alone(&self, index: usize) -> bool {
-        self.stirs.get(index).is_some_and(|stir| stir.alone)
+        self.takes(index, Steps::Own)
+    }
+
+    fn takes(&self, index: usize, steps: Steps) -> bool {
+        let stir = self.stirs.get(index);
+        stir.is_some_and(|stir| stir.steps == steps)
     }
 
     /// Number of mixtures of styles that walkers wear or wore.
@@ -151,7 +168,7 @@ impl Crowd {
     /// These mixtures by their numbers: those from one on.
     pub fn worn_from(&self, number: u32) -> Vec<StyledBody> {
         let kit = self.kit.as_ref();
-        kit.map(|kit| kit.from_number(number)).unwrap_or_default()
+        kit.map(|kit| kit.numbered_from(number)).unwrap_or_default()
     }
 
     /// Returns whether a foot of a walker landed in the last frame.

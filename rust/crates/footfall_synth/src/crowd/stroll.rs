@@ -331,7 +331,8 @@ impl SharedSteps {
         let first = look.pose as usize;
         out.blend(&poses[first], &poses[first + 1], look.blend);
         if look.leaving > 0.0 {
-            let first = first.saturating_add_signed(isize::from(look.beside) * STEP_POSES as isize);
+            let first =
+                first.saturating_add_signed(isize::from(look.beside) * STEP_POSES.cast_signed());
             let mut left = CrowdPose::default();
             left.blend(&poses[first], &poses[first + 1], look.blend);
             *out = out.mixed(&left, look.leaving);
