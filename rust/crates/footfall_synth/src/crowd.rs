@@ -5,6 +5,7 @@
 //! joint is in each frame of its step. In between it costs an interpolation. One that is far away walks in steps that were worked out once for everybody
 //! ([`shared`]), and keeps no more than its place among them ([`stroll`]).
 
+mod alone;
 mod feet;
 mod frames;
 mod own;

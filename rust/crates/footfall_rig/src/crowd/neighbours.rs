@@ -86,7 +86,7 @@ impl Neighbours {
         &found.0[..count]
     }
 
-    /// What lies in memory where a row of cells does, so many to both sides of one: in two parts where that goes over its end.
+    /// Everybody who lies in memory where a row of cells does, so many to both sides of one: in two parts where that goes over its end.
     fn strip(&self, middle: IVec2, cells: i32) -> [&[Passerby]; 2] {
         let buckets = self.starts.len().saturating_sub(1);
         if buckets == 0 {

@@ -1,8 +1,7 @@
 //! A walker's own steps: as a generator of its seed makes them, kept in a few kilobytes.
 
-use super::frames::{CrowdFrames, CrowdPlace, CrowdPose, POSE_NUMBERS};
+use super::frames::{CrowdFrames, CrowdPose};
 use super::rest::{Rest, RestBench, leave};
-use super::shared::Shared;
 use super::workshop::{StyledBody, Workshop};
 use crate::controls::Controls;
 use crate::detail::Detail;
@@ -12,10 +11,9 @@ use crate::generator::{GeneratorConfig, check};
 use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape};
 use crate::space::Blend;
 use crate::stage::Arrival;
-use crate::standing::{Amplitude, Life, Moment};
+use crate::standing::{Amplitude, Life};
 use crate::steps::Ask;
 use crate::walker::{Origin, WINDOW};
-use footfall_core::rotation::from_heading;
 use footfall_core::{GroundTransform, Side};
 use footfall_ik::Plant;
 use glam::Vec2;
@@ -40,7 +38,7 @@ pub(super) struct OwnWalk {
     pub(super) config: GeneratorConfig,
     pub(super) styled: StyledBody,
     /// Identity of the walker: weights of the model's walker components.
-    walker: [f64; MAX_COMPONENTS],
+    pub(super) walker: [f64; MAX_COMPONENTS],
     pub(super) chance_position: u64,
     /// Boxed, for most frames need nothing of it.
     pub(super) ending: Box<Ending>,
@@ -128,79 +126,6 @@ impl OwnWalk {
         made.plan_from_start = made.plan_from_character();
         made.live(0.0, workshop);
         Ok(made)
-    }
-
-    /// Goes on alone from the end of a shared step at this place, as the walker of this seed; its chance goes on from this position.
-    pub(super) fn go_on_from(
-        &mut self,
-        (styled, config): (&StyledBody, &GeneratorConfig),
-        (shared, pose): (&Shared, &[i16; POSE_NUMBERS]),
-        start_from_end: &GroundTransform,
-        (chance_position, rest_secs): (u64, f32),
-    ) {
-        let fresh = Planner::new(&styled.0.worn.blend.model, config.seed, variation(config));
-        self.config = *config;
-        self.styled = styled.clone();
-        self.walker = *fresh.walker();
-        self.chance_position = chance_position.max(fresh.chance_position());
-        (*self.ending).clone_from(&shared.ending);
-        self.shape = shared.shape;
-        self.position = self.shape.timing.frames as f32;
-        let place = CrowdPlace {
-            place: shared.end,
-            contact: [true; 2],
-        };
-        self.frames.hold(place, pose);
-        self.landing = None;
-        self.footstep = None;
-        self.even = false;
-        // Where the shared step ends in its own plan is where the walker is.
-        let heading = shared.end.heading - start_from_end.heading;
-        self.plan_from_start = GroundTransform {
-            position: shared.end.position - from_heading(heading) * start_from_end.position,
-            heading,
-        };
-        if let Some((still, life)) = &shared.still {
-            match &mut self.rest {
-                Some(rest) => rest.begin(still),
-                none => *none = Some(Box::new(Rest::new(still))),
-            }
-            self.life = Some(life.clone());
-            if let Some(life) = &mut self.life {
-                life.moment = life.moment.after(rest_secs, true);
-            }
-        } else if let Some(life) = &mut self.life {
-            life.become_walker(config);
-            life.moment = Moment::default();
-        } else {
-            self.life = Life::new(&styled.0.space, &styled.0.skeleton, config);
-        }
-    }
-
-    /// A walker who is about to go on so.
-    pub(super) fn from_shared(
-        styled: &StyledBody,
-        config: &GeneratorConfig,
-        shared: &Shared,
-    ) -> Self {
-        Self {
-            config: *config,
-            styled: styled.clone(),
-            walker: [0.0; MAX_COMPONENTS],
-            chance_position: 0,
-            ending: Box::new(shared.ending.clone()),
-            shape: shared.shape,
-            detail: Detail::Quarter,
-            position: 0.0,
-            frame_rate_hz: styled.0.space.model().frame_rate_hz as f32,
-            frames: CrowdFrames::default(),
-            landing: None,
-            plan_from_start: GroundTransform::default(),
-            footstep: None,
-            life: None,
-            rest: None,
-            even: false,
-        }
     }
 
     /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before and for the first rest. Where a step ends and none is wanted after it, `ends` says so and

@@ -20,7 +20,7 @@ const LEAVING_PARTS: f32 = 64.0;
 /// Place of a walker among shared steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stroll {
-    /// Where the step began.
+    /// Place in which the step began.
     pub(super) start: GroundTransform,
     /// Turn from there to its end, radians.
     turn: f32,
