@@ -9,8 +9,8 @@ namespace Footfall
     /// <summary>Walks thousands of characters: each in its own style, speed, size and phase, from steps of its own.</summary>
     /// <remarks>
     /// <para>Give it a <see cref="Model"/> and a <see cref="Character"/>, a scene with a humanoid skeleton, and choose how many in <see cref="Count"/>. Walkers wander over an area, follow a <c>Path3D</c>, or do what a script tells them, and keep out of each other's way.</para>
-    /// <para>Walkers are drawn by their distance from the camera. The nearest are whole scenes, with everything that hangs from them, such as a <see cref="FootPlacement3D"/>. The next are instances of one mesh whose poses are streamed to the graphics processor, new in every frame; those farther away get a new pose in every few frames, blended in between, and repeat their last two steps. Counts and distances are settable.</para>
-    /// <para>Equal seeds, sizes and time steps give equal crowds, as long as the camera moves equally too: who is far away repeats steps.</para>
+    /// <para>Walkers are drawn by their distance from the camera. The nearest are whole scenes, with everything that hangs from them, such as a <see cref="FootPlacement3D"/>. The next are instances of one mesh whose poses are streamed to the graphics processor, new in every frame; those farther away move in every few frames, are drawn in between, and walk in steps that they share. Counts and distances are settable.</para>
+    /// <para>Equal seeds, sizes and time steps give equal crowds, as long as the camera moves equally too: who is far away shares steps.</para>
     /// </remarks>
     public class GaitCrowd3D : FootfallObject
     {
@@ -270,7 +270,7 @@ namespace Footfall
             set => Native.Set(PropertyName.NearDistance, value);
         }
 
-        /// <summary>If <c>true</c>, walkers beyond that repeat their last two steps instead of taking new ones.</summary>
+        /// <summary>If <c>true</c>, walkers beyond that walk in steps that all in the same style share instead of their own, and cost a kilobyte of memory each. Each has the speed that it would have, but no gait of its own.</summary>
         public bool RepeatFar
         {
             get => Native.Get(PropertyName.RepeatFar).AsBool();

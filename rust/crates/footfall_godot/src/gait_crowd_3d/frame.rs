@@ -112,13 +112,14 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Arguments of the signal `footsteps`, if any feet landed; nothing in the editor.
+    /// Arguments of the signal `footsteps`, if any feet landed and anybody listens; nothing in the editor.
     fn landed(
         &self,
         walkers: &Crowd,
     ) -> Option<(PackedInt32Array, PackedByteArray, PackedVector3Array)> {
         walkers.landed().next()?;
-        if Engine::singleton().is_editor_hint() {
+        let is_heard = self.base().has_connections("footsteps");
+        if !is_heard || Engine::singleton().is_editor_hint() {
             return None;
         }
         let world = self.base().get_global_transform();

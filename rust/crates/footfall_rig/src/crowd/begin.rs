@@ -3,6 +3,7 @@
 use super::Crowd;
 use super::kit::Outfit;
 use super::maker::Order;
+use super::motion::Steps;
 use footfall_synth::{Detail, StyleSpace, SynthError};
 use std::sync::Arc;
 
@@ -81,6 +82,8 @@ impl Crowd {
             agents,
             roster,
             began,
+            seen,
+            stirs,
             time_secs,
             ..
         } = self;
@@ -98,6 +101,8 @@ impl Crowd {
             if let Some(mut walker) = made.walker {
                 walker.set_detail(Detail::Quarter);
                 agent.begin(walker, *time_secs);
+                seen[place] = agent.seen();
+                stirs[place].steps = Steps::Shared;
                 began.push(roster.name(place));
             } else if let Some(walker) = &mut agent.walker {
                 walker.wear(&made.styled);

@@ -1,7 +1,7 @@
 //! Walkers made on threads of their own, so that no frame waits for them. Who is made when does not change who they are.
 
 use super::kit::{CrowdRecipe, Kit, Outfit};
-use footfall_synth::{CrowdWalker, GeneratorConfig, StyledBody, SynthError, Workshop};
+use footfall_synth::{CrowdWalker, GeneratorConfig, StyledBody, SynthError};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -29,18 +29,14 @@ pub(super) struct Order {
 pub(super) struct Made {
     pub(super) order: Order,
     pub(super) styled: StyledBody,
-    pub(super) walker: Option<Box<CrowdWalker>>,
+    pub(super) walker: Option<CrowdWalker>,
 }
 
 #[derive(Debug, Default)]
 struct Queue {
     orders: VecDeque<Order>,
     /// Walkers who left: ten thousand of them take longer to be forgotten than a frame lasts.
-    #[expect(
-        clippy::vec_box,
-        reason = "handed on as they are: to unbox them takes the time that is to be saved"
-    )]
-    left: Vec<Box<CrowdWalker>>,
+    left: Vec<CrowdWalker>,
     /// Threads that will look here again.
     working: usize,
 }
@@ -120,11 +116,7 @@ impl Maker {
     }
 
     /// Forgets walkers who left.
-    #[expect(
-        clippy::vec_box,
-        reason = "handed on as they are: to unbox them takes the time that is to be saved"
-    )]
-    pub(super) fn forget(&mut self, left: Vec<Box<CrowdWalker>>) {
+    pub(super) fn forget(&mut self, left: Vec<CrowdWalker>) {
         if left.len() <= FEW {
             return;
         }
@@ -215,7 +207,6 @@ impl Shared {
             locked(&self.queue).working -= 1;
             return;
         };
-        let mut workshop = Workshop::new(&kit.plain);
         loop {
             let mut queue = locked(&self.queue);
             let left = core::mem::take(&mut queue.left);
@@ -229,7 +220,7 @@ impl Shared {
                 return;
             };
             drop(queue);
-            let made = make(kit, order, &mut workshop);
+            let made = make(kit, order);
             locked(&self.made).push_back(made);
         }
     }
@@ -243,21 +234,17 @@ impl Shared {
             let Some(order) = locked(&self.queue).orders.pop_front() else {
                 break;
             };
-            let made = make(kit, order, &mut locked(&kit.workshops[0]));
+            let made = make(kit, order);
             locked(&self.made).push_back(made);
         }
     }
 }
 
-fn make(kit: &Kit, order: Order, workshop: &mut Workshop) -> Made {
+fn make(kit: &Kit, order: Order) -> Made {
     let styled = kit.tailor(&order.outfit);
-    let walker = order.config.and_then(|config| {
-        // A walker is of the plain walk when it begins, and dresses with its first step.
-        let walker = CrowdWalker::new(&kit.plain, &config, false, workshop);
-        let mut walker = Box::new(walker.ok()?);
-        walker.wear(&styled);
-        Some(walker)
-    });
+    let config = order.config.as_ref();
+    // It takes steps of its own where it is seen to.
+    let walker = config.map(|config| CrowdWalker::sharing(&styled, config));
     Made {
         order,
         styled,
