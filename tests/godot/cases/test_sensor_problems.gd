@@ -115,7 +115,7 @@ func test_a_guided_calibration_is_kept_for_the_next_session() -> void:
 	node = _reconstructor(body)
 	body.step(0.0)
 	check_contains(node.load_calibration(FILE), "for right_foot, the model for right_thigh", "another site")
-	check_contains(node.load_calibration(MODEL), "no calibration", "a model")
+	check_contains(node.load_calibration(MODEL), "not a sensor calibration", "a model")
 	node.set_step_scale(1.2)
 	check_near(node.get_step_scale(), 1.2, 1e-6, "a pocket's steps are set")
 	body.free()

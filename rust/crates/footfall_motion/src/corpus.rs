@@ -89,7 +89,7 @@ pub enum CorpusError {
     },
     /// A condition is neither `column=value` nor `column!=value`.
     #[error(
-        "\"{0}\" is no condition; write column=value or column!=value, for example category=neutral_walk or path=walks/*"
+        "\"{0}\" is not a condition; write column=value or column!=value, for example category=neutral_walk or path=walks/*"
     )]
     Condition(String),
     /// No row meets the conditions.
@@ -105,7 +105,7 @@ pub enum CorpusError {
         values: Vec<String>,
     },
     /// All chosen recordings are broken.
-    #[error("{}: none of the {count} chosen recordings can be used; the first: {first}", index.display())]
+    #[error("{}: none of the {count} selected recordings can be used; the first: {first}", index.display())]
     NothingUsable {
         /// The index.
         index: PathBuf,

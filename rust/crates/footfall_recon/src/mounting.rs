@@ -51,7 +51,7 @@ pub struct Mounting {
 pub enum MountingError {
     /// Too little motion was recorded.
     #[error(
-        "the sensor moves for {moving_secs:.1} s, which is too little to tell how it is mounted; take a few steps, or mount it in line with the body and say so (`--mounting aligned`)"
+        "the sensor moves for {moving_secs:.1} s, too little to find its mounting; take a few steps, or align it with the body and pass `--mounting aligned`"
     )]
     TooLittleMotion {
         /// Time for which it moves.

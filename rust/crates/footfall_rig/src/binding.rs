@@ -27,7 +27,7 @@ pub enum BindingError {
     MissingJoints(#[from] MissingJoints),
     /// A bone does not hang where a body needs it.
     #[error(
-        "bone {bone} ({joint}) does not hang from {expected}; correct the map of joints, or the hierarchy of the rig",
+        "bone {bone} ({joint}) is not below {expected} in the hierarchy; correct the map of joints or the rig",
         joint = joint.name(),
         expected = expected.name()
     )]
@@ -46,7 +46,7 @@ pub enum BindingError {
     )]
     NotStanding,
     /// A segment has no length.
-    #[error("the rest pose cannot stand: {0}")]
+    #[error("the rest pose cannot be used: {0}")]
     Skeleton(#[from] footfall_core::SkeletonError),
 }
 

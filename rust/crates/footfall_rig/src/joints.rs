@@ -20,10 +20,10 @@ pub struct MissingJoints {
 }
 
 impl MissingJoints {
-    /// The missing joints and the reasons, as the end of a sentence about the rig: `lacks Hips; its bones look most like …`.
+    /// The missing joints and the reasons, as the end of a sentence about the rig: `lacks Hips; its bones are closest to …`.
     pub fn findings(&self) -> String {
         let joints: Vec<&str> = self.joints.iter().map(|joint| joint.name()).collect();
-        let family = format!("its bones look most like those of {} rigs", self.family);
+        let family = format!("its bones are closest to those of {} rigs", self.family);
         let mut parts = vec![format!("lacks {}", joints.join(", ")), family];
         parts.extend(self.doubts.iter().cloned());
         parts.join("; ")

@@ -25,6 +25,6 @@ pub enum SynthError {
         value: f32,
     },
     /// The model gives no trajectory.
-    #[error("the model gives no trajectory: {0}; make it anew with `footfall train`")]
+    #[error("the model gives no trajectory: {0}; train it again with `footfall train`")]
     Inference(#[from] ProbError),
 }

@@ -60,12 +60,12 @@ pub enum StateError {
     NoWalk(#[from] SynthError),
     /// It belongs to another model.
     #[error(
-        "the state was saved with another model; give the walker the model that it was saved with"
+        "the state was saved with another model; use that model"
     )]
     OtherModel,
     /// It belongs to another set of styles.
     #[error(
-        "the state was saved with {expected} styles, the walker has {found}; give it the same styles"
+        "the state was saved with {expected} styles, the walker has {found}; use the same styles"
     )]
     OtherStyles {
         /// Number of styles in the state.

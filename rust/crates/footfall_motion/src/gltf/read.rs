@@ -19,7 +19,7 @@ const LONGEST_SECS: f32 = 3600.0;
 #[derive(Debug, thiserror::Error)]
 pub enum GltfError {
     /// The file cannot be read.
-    #[error("{}: {source}; is it there, and glTF 2.0 with its buffers beside it? Else export it anew as .glb", path.display())]
+    #[error("{}: {source}; check that the file exists and is glTF 2.0 with its buffers beside it, or export it again as .glb", path.display())]
     File {
         /// The file.
         path: PathBuf,

@@ -16,7 +16,7 @@ LeftShoulder, LeftUpperArm, LeftLowerArm, LeftHand and their right counterparts.
 
 ## `[[curve]]`
 
-An edit that follows the gait cycle; may repeat. `joint` is a name as above, `axis` is `pitch`, `yaw` or `roll`, and `points` are
+An edit that follows the gait cycle; repeatable. `joint` is a name as above, `axis` is `pitch`, `yaw` or `roll`, and `points` are
 `[percent of the cycle, degrees]`, with a third number if wanted: the percentage (0 to 300) of the joint's own movement about
 its mean there. At least two points, in order, from 0 to below 100; between them the curve is smooth, and it closes. The cycle
 of a joint of the left side or the middle starts when the left foot lands, that of the right side when the right foot does.
