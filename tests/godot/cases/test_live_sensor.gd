@@ -284,7 +284,7 @@ func test_what_cannot_be_opened_is_told() -> void:
 	serial.port = "/nowhere/tty"
 	serial.start()
 	_wait(func() -> bool: return serial.get_state() == &"failed", "a port that is not there")
-	check_contains(serial.get_message(), "no such port", "what is told")
+	check_contains(serial.get_message(), "there is no port", "what is told")
 	serial.columns = "time,ax"
 	serial.start()
 	check_contains(serial.get_message(), "six axes", "columns that are not whole")

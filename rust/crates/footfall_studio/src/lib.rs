@@ -56,7 +56,7 @@ pub fn run(options: StudioOptions) -> Result<(), String> {
     )
     .map_err(|error| {
         format!(
-            "no window can be opened: {error}; on a machine without a screen run it under `xvfb-run`, and see `footfall doctor`"
+            "cannot open a window: {error}; on a machine without a display use `xvfb-run`, and see `footfall doctor`"
         )
     })
 }

@@ -242,13 +242,13 @@ impl TrainView {
         let name = self.name.trim().to_owned();
         if name.is_empty() {
             shell.complain(
-                "a style without a name cannot be told from others; give it one".to_owned(),
+                "a style needs a name; enter one".to_owned(),
             );
             return;
         }
         let Some(base) = base.cloned() else {
             shell.complain(
-                "choose the model to start from, such as addons/footfall/models/locomotion.footfall"
+                "choose the base model, such as addons/footfall/models/locomotion.footfall"
                     .to_owned(),
             );
             return;
