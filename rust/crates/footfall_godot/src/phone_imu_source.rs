@@ -134,7 +134,8 @@ impl LiveSource for PhoneImuSource {
                 folder: PathBuf::from(folder.to_string()),
             })
         });
-        let server = server.map_err(|error| format!("cannot create the code for the phone: {error}"))?;
+        let server =
+            server.map_err(|error| format!("cannot create the code for the phone: {error}"))?;
         Ok(Opened::Phone(server))
     }
 }

@@ -58,9 +58,7 @@ impl GuideStep {
             Self::Connect => "Switch the sensor on and connect it",
             Self::Stand => "Stand still for two seconds",
             Self::Walk => "Walk four steps straight ahead",
-            Self::WalkOn => {
-                "Walk a few more steps straight ahead: the mounting is not known yet"
-            }
+            Self::WalkOn => "Walk a few more steps straight ahead: the mounting is not known yet",
             Self::Done => "Calibrated: move as you like",
         }
     }

@@ -59,9 +59,7 @@ pub enum StateError {
     #[error("the state was damaged: {0}; save it again")]
     NoWalk(#[from] SynthError),
     /// It belongs to another model.
-    #[error(
-        "the state was saved with another model; use that model"
-    )]
+    #[error("the state was saved with another model; use that model")]
     OtherModel,
     /// It belongs to another set of styles.
     #[error(

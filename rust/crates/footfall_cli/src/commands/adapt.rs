@@ -167,12 +167,8 @@ fn report(
     let style = &adapted.style;
     let made_from = &style.provenance;
     let still = without_steps(corpus);
-    let unused = (!still.is_empty()).then(|| {
-        format!(
-            "skipped without two consecutive steps: {}",
-            listed(&still)
-        )
-    });
+    let unused = (!still.is_empty())
+        .then(|| format!("skipped without two consecutive steps: {}", listed(&still)));
     let warnings = unused.into_iter().chain(style.thin_warning()).collect();
     let report = Report {
         output: &args.output,

@@ -248,7 +248,8 @@ fn udp() -> Finding {
 }
 
 fn data_folder() -> Finding {
-    const NEXT: &str = "create it with write permission; it holds phones' certificates and unsaved labels";
+    const NEXT: &str =
+        "create it with write permission; it holds phones' certificates and unsaved labels";
     let Some(base) = dirs::data_local_dir() else {
         return finding("data folder", State::Missing, "this user has none", NEXT);
     };

@@ -320,7 +320,11 @@ fn clips_that_make_no_style_are_named_with_what_to_do() {
         pose.rotations[Joint::Chest.index()] *= Quat::from_rotation_x(breath);
     }
     let glb = mixamo_glb(&idle, &["Idle"]);
-    refuses("idle.glb", &glb, &["no two consecutive steps", "walking clips"]);
+    refuses(
+        "idle.glb",
+        &glb,
+        &["no two consecutive steps", "walking clips"],
+    );
 
     let mut short = walk.clone();
     short.poses.truncate(15);

@@ -62,7 +62,9 @@ impl GaitGenerator3D {
             .filter(|skeleton| skeleton.is_inside_tree())
             .ok_or("Put this node under a Skeleton3D that is in the tree.")?;
         if !(seconds.is_finite() && seconds > 0.0) {
-            return Err(format!("{seconds} is not a valid clip length. Give a positive number of seconds."));
+            return Err(format!(
+                "{seconds} is not a valid clip length. Give a positive number of seconds."
+            ));
         }
         if let Some(speed) = speeds
             .iter()
@@ -87,8 +89,9 @@ impl GaitGenerator3D {
             );
             for &speed in speeds {
                 let make = || self.generator(&source, &weights, clips.binding()).ok();
-                let walk = LoopedWalk::record(make, speed, seconds as f32)
-                    .ok_or_else(|| format!("No whole stride at {speed} m/s in style {name}. Give another speed."))?;
+                let walk = LoopedWalk::record(make, speed, seconds as f32).ok_or_else(|| {
+                    format!("No whole stride at {speed} m/s in style {name}. Give another speed.")
+                })?;
                 let off = walk.speed_mps / speed - 1.0;
                 if off.abs() > 0.001 {
                     godot_warn!(

@@ -85,8 +85,7 @@ impl Link {
         let thread = match thread {
             Ok(thread) => Some(thread),
             Err(error) => {
-                *lock(&shared.state) =
-                    LinkState::Failed(format!("cannot start a thread: {error}"));
+                *lock(&shared.state) = LinkState::Failed(format!("cannot start a thread: {error}"));
                 None
             }
         };

@@ -109,8 +109,7 @@ impl LabelsView {
         };
         let Some(path) = motion.path.clone() else {
             shell.complain(
-                "this motion has no file yet; export it as BVH and open that file"
-                    .to_owned(),
+                "this motion has no file yet; export it as BVH and open that file".to_owned(),
             );
             return false;
         };
@@ -213,8 +212,7 @@ impl LabelsView {
             match (kept.stances(frames), &mut self.labels) {
                 (Some(stances), Some(labels)) => labels.replace(stances),
                 _ => shell.complain(
-                    "the recording has changed; the corrections no longer fit it"
-                        .to_owned(),
+                    "the recording has changed; the corrections no longer fit it".to_owned(),
                 ),
             }
         } else if forgets {

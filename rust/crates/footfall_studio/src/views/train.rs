@@ -241,9 +241,7 @@ impl TrainView {
     fn adapt(&mut self, ui: &Ui, shell: &mut Shell, base: Option<&Arc<GaitModel>>) {
         let name = self.name.trim().to_owned();
         if name.is_empty() {
-            shell.complain(
-                "a style needs a name; enter one".to_owned(),
-            );
+            shell.complain("a style needs a name; enter one".to_owned());
             return;
         }
         let Some(base) = base.cloned() else {

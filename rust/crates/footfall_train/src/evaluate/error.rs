@@ -25,7 +25,9 @@ pub enum EvaluateError {
     )]
     Features,
     /// A pose that is no pose.
-    #[error("style {style}: frame {frame} of a recording is not finite; capture or export it again")]
+    #[error(
+        "style {style}: frame {frame} of a recording is not finite; capture or export it again"
+    )]
     NotFinite {
         /// The style.
         style: String,

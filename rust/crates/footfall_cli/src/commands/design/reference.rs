@@ -38,7 +38,8 @@ pub(super) fn page() -> String {
             section = spec.section;
             page.extend([
                 format!("\n## `[{section}]`\n\n"),
-                "| key | unit | range | as captured | effect |\n| --- | --- | --- | --- | --- |\n".to_owned(),
+                "| key | unit | range | as captured | effect |\n| --- | --- | --- | --- | --- |\n"
+                    .to_owned(),
             ]);
         }
         let (low, high) = (spec.range.start(), spec.range.end());

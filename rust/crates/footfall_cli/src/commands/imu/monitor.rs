@@ -87,10 +87,7 @@ pub(crate) fn run(args: &MonitorArgs) -> Result<()> {
 /// The last line: what to do, when nothing came.
 fn verdict(report: &Report) -> String {
     if report.devices.is_empty() {
-        return format!(
-            "no samples in {:.0} s: {}",
-            report.seconds, report.message
-        );
+        return format!("no samples in {:.0} s: {}", report.seconds, report.message);
     }
     let samples: u64 = report.devices.iter().map(|device| device.samples).sum();
     let lost: u64 = report.devices.iter().map(|device| device.lost).sum();

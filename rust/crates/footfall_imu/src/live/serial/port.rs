@@ -95,8 +95,7 @@ pub fn listen(config: SerialConfig) -> Link {
 fn open(config: &SerialConfig) -> Result<(String, Box<dyn SerialPort>), String> {
     let name = if config.port.is_empty() {
         let usb = ports().into_iter().find(|port| port.is_usb);
-        usb.ok_or("no serial port on USB; plug in a sensor")?
-            .name
+        usb.ok_or("no serial port on USB; plug in a sensor")?.name
     } else {
         config.port.clone()
     };
@@ -166,10 +165,7 @@ impl Session<'_> {
                 heard_secs = now;
                 device.heard(now);
             } else if now - heard_secs > LOST_SECS {
-                return format!(
-                    "{}: no readable data any more",
-                    self.name
-                );
+                return format!("{}: no readable data any more", self.name);
             }
         }
         String::new()

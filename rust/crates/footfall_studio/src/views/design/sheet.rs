@@ -234,8 +234,7 @@ impl SheetPage {
         ui.horizontal(|ui| {
             ui.label("Name");
             ui.add(TextEdit::singleline(&mut self.sheet.name).desired_width(110.0));
-            ui.label("Seed")
-                .on_hover_text("Seed of irregular steps");
+            ui.label("Seed").on_hover_text("Seed of irregular steps");
             if ui.add(DragValue::new(&mut self.seed)).changed() {
                 self.designed = None;
             }
