@@ -26,7 +26,7 @@ use timeline::Timeline;
 /// Least mean speed of a walk that has a direction, m/s.
 const LEAST_SPEED_MPS: f32 = 0.2;
 
-/// Why a clip cannot be designed upon.
+/// Errors of applying a sheet to a clip.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DesignError {
     /// No run of steps to build on.

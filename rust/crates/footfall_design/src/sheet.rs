@@ -247,7 +247,7 @@ impl StyleSheet {
     }
 }
 
-/// Why a sheet cannot be used.
+/// Error of reading a sheet.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {what}")]
 pub struct SheetError {

@@ -11,7 +11,7 @@ use godot::prelude::*;
 use std::fmt;
 use std::ops::Deref;
 
-/// Why a skeleton cannot walk, for the user. Each says what to do.
+/// Reasons why a skeleton cannot walk, for the user, with what to do.
 #[derive(Debug)]
 pub(crate) struct BindingError(footfall_rig::BindingError);
 

@@ -20,7 +20,7 @@ const MEAN_SECS: f64 = 8.0;
 /// Names of the channels, in order.
 const CHANNELS: [&str; 6] = ["ax", "ay", "az", "gx", "gy", "gz"];
 
-/// Why a recording cannot be a body's.
+/// Faults of a sensor's recording.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RecordingFault {
     /// Specific force is given in units of gravity.

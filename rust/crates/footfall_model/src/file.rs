@@ -72,7 +72,7 @@ pub struct Header {
     pub provenance: Provenance,
 }
 
-/// Why bytes are not a model that can be used.
+/// Errors of reading a model from bytes.
 #[derive(Debug, thiserror::Error)]
 pub enum ModelFileError {
     /// The magic bytes are missing.

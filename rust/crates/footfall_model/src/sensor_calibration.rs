@@ -80,7 +80,7 @@ impl CalibratedSensor {
     }
 }
 
-/// Why a calibration cannot be used.
+/// Errors of reading or using a calibration.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CalibrationError {
     /// The bytes are no calibration.

@@ -54,7 +54,7 @@ impl Default for StepSpread {
     }
 }
 
-/// Why styles cannot be worn.
+/// Errors of using styles.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StyleError {
     /// The style was adapted from another model.

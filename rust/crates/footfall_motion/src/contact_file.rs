@@ -32,7 +32,7 @@ pub struct ContactFile {
     pub steps: Vec<StepEntry>,
 }
 
-/// Why a file of contacts cannot be used.
+/// Errors of reading a file of contacts.
 #[derive(Debug, thiserror::Error)]
 pub enum ContactFileError {
     /// It cannot be read or written.

@@ -52,7 +52,7 @@ pub struct Corpus {
     pub report: CorpusReport,
 }
 
-/// Why a corpus cannot be read.
+/// Errors of reading a corpus.
 #[derive(Debug, thiserror::Error)]
 pub enum CorpusError {
     /// The index cannot be opened or is no CSV file.

@@ -31,7 +31,7 @@ pub struct Recording {
     pub is_corrected: bool,
 }
 
-/// Why a recording cannot be used.
+/// Errors of reading a recording.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file is no BVH file.

@@ -46,7 +46,7 @@ pub struct Mounting {
     pub certainty: f32,
 }
 
-/// Why a mounting cannot be found.
+/// Errors of finding a mounting.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MountingError {
     /// Too little motion was recorded.

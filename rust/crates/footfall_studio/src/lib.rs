@@ -36,7 +36,7 @@ pub struct StudioOptions {
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// Why there is no window, and what to do.
+/// Error of opening the window, with what to do.
 pub fn run(options: StudioOptions) -> Result<(), String> {
     let native = eframe::NativeOptions {
         viewport: eframe::egui::ViewportBuilder::default()

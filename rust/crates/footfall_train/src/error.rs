@@ -1,4 +1,4 @@
-//! Why training cannot go on.
+//! Errors of training.
 
 use footfall_core::{Side, Site, SkeletonError};
 use footfall_model::ModelError;
@@ -6,7 +6,7 @@ use footfall_motion::recording::RecordingError;
 use footfall_prob::ProbError;
 use std::path::PathBuf;
 
-/// Why training cannot go on.
+/// Errors of training.
 #[derive(Debug, thiserror::Error)]
 pub enum TrainError {
     /// No clip has a usable step.
@@ -81,7 +81,7 @@ pub enum TrainError {
         /// The best that was found.
         correlation: f64,
     },
-    /// Whoever asked for the work asked it to stop.
+    /// The caller cancelled the work.
     #[error("cancelled; nothing was written")]
     Cancelled,
     /// Inference failed.

@@ -15,7 +15,7 @@ const PLAUSIBLE_RATES_HZ: std::ops::RangeInclusive<f64> = 15.0..=240.0;
 /// Longest animation that is read: a damaged time must not fill the memory.
 const LONGEST_SECS: f32 = 3600.0;
 
-/// Why a glTF file is no recording.
+/// Errors of reading a recording from a glTF file.
 #[derive(Debug, thiserror::Error)]
 pub enum GltfError {
     /// The file cannot be read.

@@ -24,7 +24,7 @@ pub struct RetargetReport {
     pub hip_centres: HipFinding,
 }
 
-/// Why a file cannot be retargeted.
+/// Errors of retargeting a file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RetargetError {
     /// The joints' names fit no map.
@@ -40,7 +40,7 @@ pub enum RetargetError {
         missing: Vec<Joint>,
         /// The map that fits best.
         map: String,
-        /// Why joints that have bones of their names were left out, each with `; ` before it.
+        /// Reasons for leaving out joints with bones of their names, each preceded by `; `.
         doubts: String,
         /// All joints of the file.
         joints: Vec<String>,

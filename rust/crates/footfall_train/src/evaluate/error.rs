@@ -1,6 +1,6 @@
-//! Why walks cannot be judged.
+//! Errors of evaluating walks.
 
-/// Why walks cannot be judged.
+/// Errors of evaluating walks.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EvaluateError {
     /// A class without a sample.
