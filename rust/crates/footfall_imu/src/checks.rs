@@ -7,14 +7,14 @@ use glam::{Quat, Vec3};
 /// Lowest rate from which a gait can be reconstructed, samples a second.
 pub const LEAST_RATE_HZ: f64 = 20.0;
 
-/// No limb turns faster than this for a hundredth of the time, rad/s; degrees for radians do.
+/// Angular rate that no limb exceeds in 1 % of the time, rad/s; degrees in place of radians do.
 const FASTEST_RADPS: f32 = 45.0;
 
-/// The mean of specific force is gravity, give or take what the sensor is faster at the end than at the beginning, m/s².
+/// Limit of the mean specific force's difference from gravity, m/s²: the change of velocity over a recording contributes to it.
 const LEAST_FORCE: f32 = 3.5;
 const MOST_FORCE: f32 = 20.0;
 
-/// Over so long the angular rate is integrated, seconds: drift is small within it.
+/// Time over which the angular rate is integrated, seconds: drift is small within it.
 const MEAN_SECS: f64 = 8.0;
 
 /// Names of the channels, in order.

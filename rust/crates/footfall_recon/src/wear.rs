@@ -1,7 +1,7 @@
-//! Rest and rides: a sensor that lies, and one that is moved without steps.
+//! Rest and rides: a sensor that lies, and one that moves without steps.
 //!
-//! Neither is anybody's gait. A sensor that is still tells by gravity how it is turned: on somebody who stands, as the model's people wore it. A lift
-//! changes how strong gravity is while nothing turns.
+//! Neither is a gait. Gravity shows the orientation of a still sensor: on a standing person, that of the model's people. A lift
+//! changes the strength of gravity while nothing turns.
 
 use crate::half_life::follow_share;
 use footfall_imu::{GRAVITY_MPS2, ImuSample};

@@ -49,7 +49,7 @@ pub enum StreamFault {
         /// The end that it reaches, m/s² or rad/s.
         value: f32,
     },
-    /// Too few samples come for a gait.
+    /// The sample rate is too low for a gait.
     #[error(
         "the sensor sends only {rate_hz:.0} samples a second, a gait needs {LEAST_RATE_HZ}; move sensor and receiver closer together, or set the sensor to 100"
     )]
@@ -57,14 +57,14 @@ pub enum StreamFault {
         /// Samples a second.
         rate_hz: f32,
     },
-    /// Far fewer or more samples come than were promised.
+    /// The sample rate is far from the promised one.
     #[error(
         "the sensor sends {rate_hz:.0} samples a second instead of {promised_hz:.0}; check its rate, its battery and the connection"
     )]
     Pace {
         /// Samples a second.
         rate_hz: f32,
-        /// Those that were promised, or came in the beginning.
+        /// Promised rate, or that of the beginning.
         promised_hz: f32,
     },
 }
@@ -83,7 +83,7 @@ impl StreamFault {
         }
     }
 
-    /// Returns true when nothing can be made of the samples, so that the body had better stand.
+    /// Returns true when the samples are unusable, so that the body should stand.
     pub const fn is_blinding(&self) -> bool {
         !matches!(self, Self::Saturated { .. } | Self::Pace { .. })
     }
