@@ -90,10 +90,7 @@ pub(crate) fn start(engine: &Engine, game: &Path) -> Result<()> {
         &log,
     )?;
     if !said.contains("DEMO OK") {
-        bail!(
-            "the exported demo failed: {}",
-            log.display()
-        );
+        bail!("the exported demo failed: {}", log.display());
     }
     Ok(())
 }

@@ -76,8 +76,8 @@ pub(crate) fn provision() -> Result<Engine> {
         return Ok(engine);
     }
     let program = fetch(&cache)?;
-    let engine = probe(&program, template_of(&cache))
-        .context("the downloaded Godot does not run")?;
+    let engine =
+        probe(&program, template_of(&cache)).context("the downloaded Godot does not run")?;
     let marker = format!("{LAYOUT}\n{}\n{}\n", engine.version, program.display());
     fs::write(cache.join("finished"), marker)
         .with_context(|| format!("cannot write into {}", cache.display()))?;

@@ -31,7 +31,7 @@ pub(crate) struct GaitModel {
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
-    /// Description of the model and of the recordings that it was trained on, or what is wrong with its file.
+    /// Description of the model and its training recordings, or the problem of its file.
     #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
     description: PhantomVar<GString>,
 
@@ -69,7 +69,7 @@ impl GaitModel {
         self.base_mut().emit_changed();
     }
 
-    /// Description of the model and of the recordings that it was trained on, or what is wrong with its file.
+    /// Description of the model and its training recordings, or the problem of its file.
     #[func]
     fn get_description(&self) -> GString {
         self.loaded

@@ -19,7 +19,7 @@ pub(crate) struct GaitStyle {
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
-    /// Description of the style and of the recordings that it was made from, or what is wrong with its file.
+    /// Description of the style and its recordings, or the problem of its file.
     #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
     description: PhantomVar<GString>,
 
@@ -51,7 +51,7 @@ impl GaitStyle {
         self.base_mut().emit_changed();
     }
 
-    /// Description of the style and of the recordings that it was made from, or what is wrong with its file.
+    /// Description of the style and its recordings, or the problem of its file.
     #[func]
     fn get_description(&self) -> GString {
         self.loaded.describe(describe)

@@ -23,7 +23,7 @@ pub(crate) struct ImuModel {
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
-    /// Sensors that the model is for and recordings that it was trained on, or the fault of its file.
+    /// Sensors of the model and its training recordings, or the problem of its file.
     #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
     description: PhantomVar<GString>,
 
@@ -58,7 +58,7 @@ impl ImuModel {
         self.base_mut().emit_changed();
     }
 
-    /// Sensors that the model is for and recordings that it was trained on, or the fault of its file.
+    /// Sensors of the model and its training recordings, or the problem of its file.
     #[func]
     fn get_description(&self) -> GString {
         self.loaded.describe(|prepared| describe(prepared.model()))
