@@ -174,12 +174,12 @@ mod tests {
         );
         assert_eq!(
             LINES[1].cells(&machine),
-            ["1.00 µs", "0.500 µs (asked), 0.5 times"]
+            ["1.00 µs", "0.500 µs (goal), 0.5 times"]
         );
         assert_eq!(LINES[2].cells(&machine), ["-", "-"]);
         let page = page(&[machine]);
         assert!(page.contains(
-            "| Crowd of 10,000, all fresh, a frame | 5.50 ms | 6.00 ms (asked), 1.1 times |"
+            "| Crowd of 10,000, all new poses, per frame | 5.50 ms | 6.00 ms (goal), 1.1 times |"
         ));
     }
 
