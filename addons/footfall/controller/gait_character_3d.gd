@@ -21,7 +21,7 @@ const TURN_SECS := 0.35
 const SLOW_FROM := 1.75
 const SLOWEST_FROM := 2.6
 const SLOWEST_SHARE := 0.3
-## Smaller angles are no reason for somebody who stands to take a step, radians.
+## Angle below which a standing character does not take a step, radians.
 const LEAST_TURN := 0.15
 ## Distance ahead at which an edge is looked for, metres.
 const EDGE_REACH := 0.08

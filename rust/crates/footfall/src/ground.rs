@@ -32,7 +32,7 @@
 //! };
 //! let mut pose = Pose::rest(&body);
 //! for _ in 0..60 {
-//!     pose = Pose::rest(&body); // The next frame of an animation: here, of somebody who stands.
+//!     pose = Pose::rest(&body); // The next frame of an animation: here, of a standing person.
 //!     placer.step(1.0 / 60.0, &input, &mut slope, &mut pose);
 //! }
 //! let feet: &[PlacedFoot; 2] = placer.feet();

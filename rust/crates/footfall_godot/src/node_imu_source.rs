@@ -56,7 +56,7 @@ impl NodeImuSource {
         ))
     }
 
-    /// Problem with the node, for whoever listens.
+    /// Problem with the node, for the user of the source.
     pub(crate) fn problem(&self, listener: &Gd<Node>) -> Option<String> {
         listener
             .is_inside_tree()

@@ -5,7 +5,7 @@
 //! the [corrections](contact_file) that a person made; and [`corpus`], many files at once.
 //! [`switches`] are contacts from joint angles alone, [`sensor_switches`] from a sensor on a foot; [`published_events`] judge them. [`virtual_imu`]
 //! measures what a sensor on the body would have, [`phases`] cuts any locomotion at its contacts and extremes, and [`jumps`] finds jumps off both feet.
-//! [`figure`] is a body as capsules, for whoever draws it; [`gltf`] takes clips to and from other programs by way of [`skeletal`], and [`game_clip`] makes recordings of clips that walk in place or loop.
+//! [`figure`] is a body as capsules, for code that draws it; [`gltf`] takes clips to and from other programs by way of [`skeletal`], and [`game_clip`] makes recordings of clips that walk in place or loop.
 
 pub mod bvh;
 pub mod contact_file;

@@ -14,7 +14,7 @@ const STILL_MPS2: f32 = 1.0;
 /// For so long it is still before it lies, seconds: a foot in a slow walk stands for a second.
 const LIES_SECS: f32 = 1.5;
 
-/// Angle from up on somebody who stands to up on a sensor that lies; cosine. Trousers' pockets tilt by 30°, feet in high heels by 45.
+/// Angle from up on a standing person to up on a sensor that lies; cosine. Trousers' pockets tilt by 30°, feet in high heels by 45.
 const LIES_COSINE: f32 = 0.6;
 
 /// Half-lives with which the vertical and the strength of specific force are followed, seconds.
@@ -38,7 +38,7 @@ const RIDE_HELD_SECS: f32 = 3.0;
 /// Posture of a sensor that is worn, in the site's axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WearMonitor {
-    /// Up on somebody who stands.
+    /// Up on a standing person.
     standing_up: Vec3,
     last_secs: Option<f64>,
     still_secs: f32,
@@ -62,7 +62,7 @@ pub(crate) enum Posture {
 }
 
 impl WearMonitor {
-    /// For a sensor whose up is this on somebody who stands.
+    /// For a sensor whose up is this on a standing person.
     pub(crate) const fn new(standing_up: Vec3) -> Self {
         Self {
             standing_up,

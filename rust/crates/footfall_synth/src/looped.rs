@@ -143,7 +143,7 @@ impl Recording {
         way / (self.frame_secs * (to - from) as f32)
     }
 
-    /// The frames between which whole strides of about this length lie that begin and end alike; `None` where nobody walks.
+    /// The frames between which whole strides of about this length lie that begin and end alike; `None` without a walk.
     fn best_loop(&self, speed_mps: f32, secs: f32) -> Option<(usize, usize)> {
         let strides = self
             .contacts
@@ -237,7 +237,7 @@ impl Recording {
         }
     }
 
-    /// Lets somebody who stands go over, as the end comes, to how they came to the frame `first`. All that lies between two poses on the same feet stands
+    /// Blends a standing person, towards the end, to their approach of the frame `first`. All that lies between two poses on the same feet stands
     /// on them, too.
     fn meet(&mut self, first: usize) {
         let last = self.poses.len() - 1;

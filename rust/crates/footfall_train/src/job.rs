@@ -13,7 +13,7 @@ pub struct JobProgress {
     pub task: String,
     /// Parts of it that are finished.
     pub done: usize,
-    /// All of its parts; 0 when nobody knows.
+    /// All of its parts; 0 if unknown.
     pub total: usize,
     /// Log-likelihoods so far.
     pub fits: Vec<f64>,

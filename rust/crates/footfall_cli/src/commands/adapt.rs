@@ -124,7 +124,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     report(args, &corpus, &adapted, bytes.len(), seconds)
 }
 
-/// The clips in which nobody walks, by name and length.
+/// Clips without a walk, by name and length.
 fn without_steps(corpus: &Corpus) -> Vec<String> {
     let clips = corpus.clips.iter();
     clips

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// Longer recordings of somebody who stands are of no use.
+/// Longest useful recording of a standing person.
 const LONGEST_STAND_SECS: f64 = 3600.0;
 
 /// Generate a walk from a model
@@ -62,7 +62,7 @@ pub(crate) struct SynthArgs {
     json: bool,
 }
 
-/// The gait that is asked for.
+/// The gait that is requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum GaitArg {
     Auto,
@@ -197,7 +197,7 @@ fn follow(
     )
 }
 
-/// Somebody who stands, as long as is asked for.
+/// Standing person, for the requested time.
 fn stand(args: &SynthArgs, model: &Arc<GaitModel>, styles: Vec<StyleReport>) -> Result<()> {
     ensure!(
         (0.0..=LONGEST_STAND_SECS).contains(&args.seconds),

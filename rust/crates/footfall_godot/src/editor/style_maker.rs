@@ -76,7 +76,7 @@ impl Order {
     }
 }
 
-/// The clips in which somebody walks.
+/// Clips with a walk.
 #[derive(Default)]
 pub(super) struct Walks {
     pub(super) recordings: Vec<Recording>,

@@ -112,7 +112,7 @@ impl GaitGenerator3D {
     /// Restores a state from `get_state()` in the next frame. A state of another model, of other styles or from a damaged
     /// file is refused: the log gives the reason, and the walk continues unchanged.
     ///
-    /// `seed`, `phase` and `variation` keep their values for the next walk that starts anew.
+    /// `seed`, `phase` and `variation` keep their values for the next walk that restarts.
     #[func]
     fn set_state(&mut self, state: PackedByteArray) {
         self.pending.state = Some(state);

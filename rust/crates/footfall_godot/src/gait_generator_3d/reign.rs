@@ -13,7 +13,7 @@ use godot::prelude::*;
 const FAR_M: f32 = 0.4;
 /// Longer than this nobody goes over, seconds.
 const MOST_SECS: f64 = 10.0;
-/// A walk that was measured anew goes over to itself within this time, seconds.
+/// Time of the transition of a walk that was measured again, seconds.
 const RESIZE_SECS: f64 = 0.3;
 
 /// States of control of the skeleton.

@@ -14,7 +14,7 @@ use footfall_synth::{Controls, GaitGenerator, GeneratorConfig};
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
-/// A body that has kept a new size for so many frames is measured anew.
+/// Number of frames after which a body of a new size is measured again.
 const SETTLED_FRAMES: u8 = 12;
 
 /// A generator, the skeleton that it poses and the node that travels.

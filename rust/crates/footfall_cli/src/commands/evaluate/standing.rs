@@ -39,7 +39,7 @@ pub(crate) struct StandingArgs {
     json: bool,
 }
 
-/// Somebody who stands.
+/// Standing person.
 pub(super) struct Person {
     pub(super) name: String,
     pub(super) measures: StandingMeasures,
