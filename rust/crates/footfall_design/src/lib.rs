@@ -1,9 +1,9 @@
-//! Offline: styles without a capture studio. A style sheet says what is to change about a captured walk, and the walk comes
-//! out in that style, feet planted.
+//! Offline: styles without motion capture of them. A style sheet describes changes to a captured walk, and the walk is converted
+//! to that style, with planted feet.
 //!
-//! Data flows: [`sheet`] text to numbers; `timeline`, which captured frame a new frame shows; `course`, the way over the
-//! ground; `body`, pelvis, trunk, head and arms; `ground`, hips, feet and legs. What the capture has of natural variation
-//! between steps stays.
+//! Data flow: [`sheet`] parses text to numbers; `timeline` maps new frames to captured ones; `course` computes the path over the
+//! ground; `body` edits pelvis, trunk, head and arms; `ground` solves hips, feet and legs. The natural variation of the capture
+//! between steps is kept.
 
 mod body;
 mod chance;
