@@ -164,7 +164,7 @@ impl ContactFile {
         })?;
         if file.frames != clip.poses.len() {
             return Err(refuse(format!(
-                "has contacts of {} frames, but the recording has {}; make them anew with `footfall contacts`",
+                "has contacts of {} frames, but the recording has {}; detect them again with `footfall contacts`",
                 file.frames,
                 clip.poses.len()
             )));

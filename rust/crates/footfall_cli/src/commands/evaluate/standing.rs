@@ -58,7 +58,7 @@ fn evaluate(args: &StandingArgs) -> Result<Report> {
     let captured = people(&clips);
     if captured.is_empty() {
         bail!(
-            "{}: nobody stands at ease for 20 seconds in the chosen recordings; widen --where",
+            "{}: in the selected recordings nobody stands at ease for 20 seconds; widen --where",
             args.judged.corpus.display()
         );
     }
