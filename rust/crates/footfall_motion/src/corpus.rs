@@ -1,4 +1,4 @@
-//! Many recordings at once, chosen from an index by what its columns say; hip joints are found person by person.
+//! Many recordings at once, selected from an index by its columns; hip joints are found person by person.
 
 mod people;
 mod selection;
@@ -43,7 +43,7 @@ impl CorpusReport {
     }
 }
 
-/// Recordings chosen from an index.
+/// Recordings selected from an index.
 #[derive(Clone, Debug)]
 pub struct Corpus {
     /// In the order of the index; at least one.
