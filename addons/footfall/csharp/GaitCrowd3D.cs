@@ -6,11 +6,11 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Walks thousands of characters: each in its own style, speed, size and phase, from steps of its own.</summary>
+    /// <summary>Walks thousands of characters, each with its own style, speed, size, phase and steps.</summary>
     /// <remarks>
-    /// <para>Give it a <see cref="Model"/> and a <see cref="Character"/>, a scene with a humanoid skeleton, and choose how many in <see cref="Count"/>. Walkers wander over an area, follow a <c>Path3D</c>, or do what a script tells them, and keep out of each other's way.</para>
-    /// <para>Walkers are drawn by their distance from the camera. The nearest are whole scenes, with everything that hangs from them, such as a <see cref="FootPlacement3D"/>. The next are instances of one mesh whose poses are streamed to the graphics processor, new in every frame; those farther away get a new pose in every few frames, blended in between, and repeat their last two steps. Counts and distances are settable.</para>
-    /// <para>Equal seeds, sizes and time steps give equal crowds, as long as the camera moves equally too: who is far away repeats steps.</para>
+    /// <para>Set its <see cref="Model"/>, its <see cref="Character"/> (a scene with a humanoid skeleton) and the number of walkers, <see cref="Count"/>. Walkers wander over an area, follow a <c>Path3D</c>, or do what a script sets, and avoid each other.</para>
+    /// <para>The distance from the camera determines how walkers are drawn. The nearest are full scenes with all their nodes, such as a <see cref="FootPlacement3D"/>. The next are instances of one mesh with poses streamed to the GPU, new in every frame. More distant ones get a new pose every few frames, blended in between, and repeat their last two steps. Numbers and distances are settings.</para>
+    /// <para>Equal seeds, sizes and time steps give equal crowds, if the camera moves equally: distant walkers repeat steps.</para>
     /// </remarks>
     public class GaitCrowd3D : FootfallObject
     {
@@ -109,21 +109,21 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>The way of walking: a <c>.footfall</c> file such as <c>addons/footfall/models/locomotion.footfall</c>, with which the crowd walks where this is empty.</summary>
+        /// <summary>The gait model: a <c>.footfall</c> file such as <c>addons/footfall/models/locomotion.footfall</c>, which is also used if this is empty.</summary>
         public GaitModel Model
         {
             get => GaitModel.From(Native.Get(PropertyName.Model).AsGodotObject());
             set => Native.Set(PropertyName.Model, value);
         }
 
-        /// <summary>Styles that walkers wear, <c>.footstyle</c> files that were made for this model.</summary>
+        /// <summary>Styles of walkers: <c>.footstyle</c> files made for this model.</summary>
         public GaitStyle[] Styles
         {
             get => List(Native.Get(PropertyName.Styles), GaitStyle.From);
             set => SetList(PropertyName.Styles, value);
         }
 
-        /// <summary>Greatest weight of a walker's style. Each wears one of <see cref="Styles"/> or none, drawn by its seed.</summary>
+        /// <summary>Greatest weight of a walker's style. Each walker has one of <see cref="Styles"/> or none, drawn by its seed.</summary>
         public double StyleAmount
         {
             get => Native.Get(PropertyName.StyleAmount).AsDouble();
@@ -137,21 +137,21 @@ namespace Footfall
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Number of walkers that the crowd has of its own. <see cref="AddAgents"/> adds more. While it runs, raising it adds some and lowering it removes those that came last; the others walk on.</summary>
+        /// <summary>Number of the crowd's own walkers; <see cref="AddAgents"/> adds more. At run time, raising it adds walkers and lowering it removes the latest ones; the others continue.</summary>
         public long Count
         {
             get => Native.Get(PropertyName.Count).AsInt64();
             set => Native.Set(PropertyName.Count, value);
         }
 
-        /// <summary>Behaviour of the walkers by themselves: they wander over <see cref="Area"/>, follow <see cref="Path"/>, go from place to place of the world's navigation map, or do only what a script tells them.</summary>
+        /// <summary>Behaviour of the walkers: they wander over <see cref="Area"/>, follow <see cref="Path"/>, walk between places of the world's navigation map, or do only what a script sets.</summary>
         public CrowdBehaviour Behaviour
         {
             get => (CrowdBehaviour)Native.Get(PropertyName.Behaviour).AsInt64();
             set => Native.Set(PropertyName.Behaviour, (long)value);
         }
 
-        /// <summary>The rectangle around this node in which walkers begin and wander.</summary>
+        /// <summary>Size of the rectangle around this node in which walkers start and wander.</summary>
         public Vector2 Area
         {
             get => Native.Get(PropertyName.Area).AsVector2();
@@ -172,28 +172,28 @@ namespace Footfall
             set => Native.Set(PropertyName.PathWidth, value);
         }
 
-        /// <summary>The navigation layers that walkers keep to, for <see cref="Behaviour"/> navigate and <see cref="SetDestinations"/>.</summary>
+        /// <summary>Navigation layers of the walkers, for <see cref="Behaviour"/> navigate and <see cref="SetDestinations"/>.</summary>
         public uint NavigationLayers
         {
             get => Native.Get(PropertyName.NavigationLayers).AsUInt32();
             set => Native.Set(PropertyName.NavigationLayers, value);
         }
 
-        /// <summary>The slowest and the fastest walker. Those faster than about 2 m/s run, where the model knows how.</summary>
+        /// <summary>Speed of the slowest and of the fastest walker. Above about 2 m/s they run, if the model can.</summary>
         public Vector2 SpeedRange
         {
             get => Native.Get(PropertyName.SpeedRange).AsVector2();
             set => Native.Set(PropertyName.SpeedRange, value);
         }
 
-        /// <summary>The smallest and the largest walker, against the size of the character.</summary>
+        /// <summary>Size of the smallest and of the largest walker, relative to the character.</summary>
         public Vector2 SizeRange
         {
             get => Native.Get(PropertyName.SizeRange).AsVector2();
             set => Native.Set(PropertyName.SizeRange, value);
         }
 
-        /// <summary>Colours of which each walker gets one, multiplied with the colour of its material. None is white.</summary>
+        /// <summary>Colours, one of which multiplies the material's colour of each walker. If empty, white.</summary>
         public Color[] Colours
         {
             get => Native.Get(PropertyName.Colours).AsColorArray();
@@ -207,91 +207,91 @@ namespace Footfall
             set => Native.Set(PropertyName.Seed, value);
         }
 
-        /// <summary>Motion of walkers who stand: 0 rests in a still pose, 1 sways, breathes, shifts weight and looks about as people do, up to 2. A model that knows nothing of standing rests in a still pose.</summary>
+        /// <summary>Motion of standing walkers: 0 is a still pose; 1 sways, breathes, shifts weight and looks about as people do; up to 2. Models without standing motion stand in a still pose.</summary>
         public double StandingMotion
         {
             get => Native.Get(PropertyName.StandingMotion).AsDouble();
             set => Native.Set(PropertyName.StandingMotion, value);
         }
 
-        /// <summary>If <c>true</c>, walkers with a goal keep out of each other's way.</summary>
+        /// <summary>If <c>true</c>, walkers with a goal avoid each other.</summary>
         public bool Avoidance
         {
             get => Native.Get(PropertyName.Avoidance).AsBool();
             set => Native.Set(PropertyName.Avoidance, value);
         }
 
-        /// <summary>Group of nodes that walkers with a goal keep clear of as of each other, such as players; a <see cref="GaitCrowd3D"/> in it counts with everybody in it. None: walkers see only each other.</summary>
+        /// <summary>Group of nodes that walkers with a goal also avoid, such as players; a <see cref="GaitCrowd3D"/> in it counts with all its walkers. If empty, walkers avoid only each other.</summary>
         public StringName AvoidedGroup
         {
             get => Native.Get(PropertyName.AvoidedGroup).AsStringName();
             set => Native.Set(PropertyName.AvoidedGroup, value);
         }
 
-        /// <summary>If <c>true</c>, time passes.</summary>
+        /// <summary>If <c>true</c>, time advances.</summary>
         public bool Playing
         {
             get => Native.Get(PropertyName.Playing).AsBool();
             set => Native.Set(PropertyName.Playing, value);
         }
 
-        /// <summary>The physics layers that are ground, looked at once for every step of every walker. None: the ground is flat, at the height of this node.</summary>
+        /// <summary>Physics layers of the ground, queried once per step and walker. If none, the ground is flat, at the height of this node.</summary>
         public uint GroundMask
         {
             get => Native.Get(PropertyName.GroundMask).AsUInt32();
             set => Native.Set(PropertyName.GroundMask, value);
         }
 
-        /// <summary>Number of the nearest walkers that are whole scenes.</summary>
+        /// <summary>Number of the nearest walkers that are full scenes.</summary>
         public long FullCount
         {
             get => Native.Get(PropertyName.FullCount).AsInt64();
             set => Native.Set(PropertyName.FullCount, value);
         }
 
-        /// <summary>Their greatest distance from the camera.</summary>
+        /// <summary>Greatest distance of full scenes from the camera.</summary>
         public double FullDistance
         {
             get => Native.Get(PropertyName.FullDistance).AsDouble();
             set => Native.Set(PropertyName.FullDistance, value);
         }
 
-        /// <summary>Number of walkers beyond them that have a new pose in every frame.</summary>
+        /// <summary>Number of walkers beyond them with a new pose in every frame.</summary>
         public long NearCount
         {
             get => Native.Get(PropertyName.NearCount).AsInt64();
             set => Native.Set(PropertyName.NearCount, value);
         }
 
-        /// <summary>Their greatest distance from the camera.</summary>
+        /// <summary>Greatest distance of these walkers from the camera.</summary>
         public double NearDistance
         {
             get => Native.Get(PropertyName.NearDistance).AsDouble();
             set => Native.Set(PropertyName.NearDistance, value);
         }
 
-        /// <summary>If <c>true</c>, walkers beyond that repeat their last two steps instead of taking new ones.</summary>
+        /// <summary>If <c>true</c>, more distant walkers repeat their last two steps instead of taking new ones.</summary>
         public bool RepeatFar
         {
             get => Native.Get(PropertyName.RepeatFar).AsBool();
             set => Native.Set(PropertyName.RepeatFar, value);
         }
 
-        /// <summary>If <c>true</c>, poses of walkers whom the camera does not see are left out.</summary>
+        /// <summary>If <c>true</c>, walkers outside the camera's view get no poses.</summary>
         public bool Culling
         {
             get => Native.Get(PropertyName.Culling).AsBool();
             set => Native.Set(PropertyName.Culling, value);
         }
 
-        /// <summary>A material with a shader of your own, which includes <c>addons/footfall/shaders/crowd_pose.gdshaderinc</c>. Left empty, instances are drawn with the colours and the texture of the character's own materials.</summary>
+        /// <summary>Material with a shader of your own that includes <c>addons/footfall/shaders/crowd_pose.gdshaderinc</c>. If empty, instances are drawn with the colours and the texture of the character's own materials.</summary>
         public ShaderMaterial Material
         {
             get => (ShaderMaterial)Native.Get(PropertyName.Material).AsGodotObject();
             set => Native.Set(PropertyName.Material, value);
         }
 
-        /// <summary>Walkers were made and began to walk in the last frame: their ids. Making many takes a while, on other threads; <see cref="IsMaking"/> tells whether there are more to come.</summary>
+        /// <summary>Emitted with the ids of walkers that were created and began to walk in the last frame. Creation runs on other threads; <see cref="IsMaking"/> returns <c>true</c> while more are pending.</summary>
         /// <value>Handlers take <c>agents</c>.</value>
         public event Action<int[]> AgentsReady
         {
@@ -299,7 +299,7 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.AgentsReady, Callable.From(value));
         }
 
-        /// <summary>Feet touched down in the last frame: whose, which (0 left, 1 right), and where in global space. One signal for all of them.</summary>
+        /// <summary>Emitted once per frame with all contacts of the frame: ids of walkers, feet (0 left, 1 right), and positions in global space.</summary>
         /// <value>Handlers take <c>agents</c>, <c>feet</c>, <c>positions</c>.</value>
         public event Action<int[], byte[], Vector3[]> Footsteps
         {
@@ -307,88 +307,88 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.Footsteps, Callable.From(value));
         }
 
-        /// <summary>Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns their ids, in the same order, without those for whom there was no finite place; none when the crowd cannot be made.</summary>
-        /// <remarks>They have their ids at once and appear as soon as they are made, on other threads: see <see cref="AgentsReady"/>. Five hundred a frame join the arrays, so that adding many holds no frame. Whoever reads or sets something of walkers before has all of them join in that call, and finds them where they were put.</remarks>
+        /// <summary>Adds walkers at these positions and headings (radians about +Y from +Z; 0 if missing), in this node's space. Returns their ids in the same order, without those of non-finite positions; empty if the crowd cannot be created.</summary>
+        /// <remarks>Walkers have ids at once and appear when they are created, on other threads: see <see cref="AgentsReady"/>. Five hundred a frame join the arrays, so that adding many does not stall a frame. A call that reads or sets walkers before that makes all of them join first, at their initial positions.</remarks>
         public int[] AddAgents(Vector3[] positions, float[] headings) => Native.Call(MethodName.AddAgents, positions, headings).AsInt32Array();
 
-        /// <summary>Lets time pass at once, in seconds, whatever <see cref="Playing"/> says: for tests, and for games with a clock of their own. It waits for walkers that are still being made, so that equal calls give equal crowds.</summary>
+        /// <summary>Advances time immediately, in seconds, whatever <see cref="Playing"/> is: for tests, and for games with their own clock. The call waits for pending walkers, so that equal calls give equal crowds.</summary>
         public void Advance(double delta) => Native.Call(MethodName.Advance, delta);
 
         /// <summary>Removes all walkers.</summary>
         public void ClearAgents() => Native.Call(MethodName.ClearAgents);
 
-        /// <summary>The id of the walker that is nearest to a point of global space, at most <c>max_distance</c> away, or -1.</summary>
+        /// <summary>Returns the id of the walker nearest to a point in global space, within <c>max_distance</c>, or -1.</summary>
         public int FindNearest(Vector3 position, double maxDistance = double.PositiveInfinity) => Native.Call(MethodName.FindNearest, position, maxDistance).AsInt32();
 
-        /// <summary>Number of walkers, with those who are still being made.</summary>
+        /// <summary>Returns the number of walkers, including pending ones.</summary>
         public long GetAgentCount() => Native.Call(MethodName.GetAgentCount).AsInt64();
 
-        /// <summary>The whole scene that shows a walker, or null while it is drawn as an instance. The scene is lent: it shows another walker later.</summary>
+        /// <summary>Returns the full scene that shows a walker, or <c>null</c> while it is drawn as an instance. Do not keep it: it shows another walker later.</summary>
         public Node3D GetAgentNode(int agent) => (Node3D)Native.Call(MethodName.GetAgentNode, agent).AsGodotObject();
 
-        /// <summary>The id of the walker whom a node shows: a whole scene of the crowd, or anything in it, such as a body that a ray has hit. -1 when it shows nobody.</summary>
+        /// <summary>Returns the id of the walker that a node shows: a full scene of the crowd, or any node in it, such as a body that a ray has hit. -1 if it shows none.</summary>
         public int GetAgentOf(Node node) => Native.Call(MethodName.GetAgentOf, node).AsInt32();
 
-        /// <summary>The ids of all walkers, in the order in which they came. All arrays that are for everybody have this order.</summary>
-        /// <remarks>An id stays a walker's own for as long as it is in the crowd, through <see cref="GetState"/> and <see cref="SetState"/> too, and is nobody else's for long after. As long as nobody is removed, ids are 0, 1, 2 and so on.</remarks>
+        /// <summary>Returns the ids of all walkers, in the order in which they were added. All arrays for all walkers have this order.</summary>
+        /// <remarks>A walker keeps its id while it is in the crowd, also through <see cref="GetState"/> and <see cref="SetState"/>; ids are not reused for a long time. While no walker is removed, ids are 0, 1, 2 and so on.</remarks>
         public int[] GetAgents() => Native.Call(MethodName.GetAgents).AsInt32Array();
 
-        /// <summary>Headings of walkers, radians about +Y from +Z. Shapes and ids as of <see cref="GetPositions"/>.</summary>
+        /// <summary>Returns the headings of walkers, radians about +Y from +Z. Shapes and ids as of <see cref="GetPositions"/>.</summary>
         public float[] GetHeadings(int[] agents) => Native.Call(MethodName.GetHeadings, agents).AsFloat32Array();
 
-        /// <summary>Share of its stride that each walker has behind it: 0 when its left foot lands, 0.5 when its right foot does. Shapes and ids as of <see cref="GetPositions"/>.</summary>
+        /// <summary>Returns the phase of each walker's stride: 0 at the left initial contact, 0.5 at the right. Shapes and ids as of <see cref="GetPositions"/>.</summary>
         public float[] GetPhases(int[] agents) => Native.Call(MethodName.GetPhases, agents).AsFloat32Array();
 
-        /// <summary>Places of walkers, on the ground, in this node's space: one place for each id in <c>agents</c>, or for everybody in the order of <see cref="GetAgents"/>. An id that nobody has gets places that are not finite.</summary>
+        /// <summary>Returns the positions of walkers on the ground, in this node's space: one for each id in <c>agents</c>, or for all walkers in the order of <see cref="GetAgents"/>. Unknown ids give positions that are not finite.</summary>
         public Vector3[] GetPositions(int[] agents) => Native.Call(MethodName.GetPositions, agents).AsVector3Array();
 
-        /// <summary>Problems that keep the crowd from walking, each with what to do next; empty without any.</summary>
+        /// <summary>Returns the problems that keep the crowd from walking, each with what to do next; empty if there are none.</summary>
         public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
 
-        /// <summary>The size of walkers, against the character. Shapes and ids as of <see cref="GetPositions"/>.</summary>
+        /// <summary>Returns the sizes of walkers, relative to the character. Shapes and ids as of <see cref="GetPositions"/>.</summary>
         public float[] GetSizes(int[] agents) => Native.Call(MethodName.GetSizes, agents).AsFloat32Array();
 
-        /// <summary>The crowd as it is now, to be saved: who walks where, how, in which phase and with which id. <see cref="SetState"/> goes on from it with the same walkers at the same places; their next steps are drawn anew.</summary>
+        /// <summary>Returns the state of the crowd, to be saved: places, goals, phases and ids of all walkers. <see cref="SetState"/> continues with the same walkers at the same places; their next steps are drawn again.</summary>
         public byte[] GetState() => Native.Call(MethodName.GetState).AsByteArray();
 
-        /// <summary>Tiers of walkers: 0 as a whole scene, 1 with a new pose in every frame, 2 as one far away, or one that is not made yet. Shapes and ids as of <see cref="GetPositions"/>; 2 for an id that nobody has.</summary>
+        /// <summary>Returns the tiers of walkers: 0 for a full scene, 1 for a new pose in every frame, 2 for a distant walker, or one that is not created yet. Shapes and ids as of <see cref="GetPositions"/>; 2 for an unknown id.</summary>
         public byte[] GetTiers(int[] agents) => Native.Call(MethodName.GetTiers, agents).AsByteArray();
 
-        /// <summary>Returns whether a walker has this id.</summary>
+        /// <summary>Returns <c>true</c> if a walker has this id.</summary>
         public bool HasAgent(int agent) => Native.Call(MethodName.HasAgent, agent).AsBool();
 
-        /// <summary>Returns whether walkers are still being made.</summary>
+        /// <summary>Returns <c>true</c> while walkers are pending.</summary>
         public bool IsMaking() => Native.Call(MethodName.IsMaking).AsBool();
 
-        /// <summary>The id of the first walker that a ray meets, or -1. In global space, as <c>Camera3D.project_ray_origin()</c> and <c>Camera3D.project_ray_normal()</c> have it: from one point to another. Bodies count as capsules.</summary>
+        /// <summary>Returns the id of the first walker that a ray hits, or -1. The ray goes between two points in global space, as from <c>Camera3D.project_ray_origin()</c> and <c>Camera3D.project_ray_normal()</c>. Bodies count as capsules.</summary>
         public int Pick(Vector3 from, Vector3 to) => Native.Call(MethodName.Pick, from, to).AsInt32();
 
-        /// <summary>Removes the walkers that have these ids. Nobody else's id or way changes.</summary>
+        /// <summary>Removes the walkers with these ids. Other walkers keep their ids and goals.</summary>
         public void RemoveAgents(int[] agents) => Native.Call(MethodName.RemoveAgents, agents);
 
-        /// <summary>Makes the crowd anew from <see cref="Count"/> and <see cref="Seed"/>.</summary>
+        /// <summary>Creates the crowd again from <see cref="Count"/> and <see cref="Seed"/>.</summary>
         public void Restart() => Native.Call(MethodName.Restart);
 
-        /// <summary>Lets one walker wear styles: weights in the order of <see cref="Styles"/>, taken up with its next step. They are rounded to eighths, so that a crowd needs few mixtures.</summary>
+        /// <summary>Sets the style weights of one walker, in the order of <see cref="Styles"/>, from its next step on. They are rounded to eighths, so that a crowd needs few mixtures.</summary>
         public void SetAgentStyle(int agent, float[] weights) => Native.Call(MethodName.SetAgentStyle, agent, weights);
 
-        /// <summary>Sends walkers over the navigation map of the world, around what is between, to places in this node's space. They stop there. For <see cref="Behaviour"/> scripted. Not finite: the goal stays. Each way takes some tens of microseconds to find, once. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
-        /// <remarks>Returns whether there was a way for everybody; whoever has none keeps its goal. In the first frames of a scene there is no map yet.</remarks>
+        /// <summary>Sends walkers to positions in this node's space, around obstacles on the world's navigation map. They stop there. For <see cref="Behaviour"/> scripted. A non-finite position keeps the goal. Each path takes some tens of microseconds to find, once. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        /// <remarks>Returns <c>true</c> if there was a path for every walker; a walker without one keeps its goal. In the first frames of a scene there is no map yet.</remarks>
         public bool SetDestinations(Vector3[] destinations, int[] agents) => Native.Call(MethodName.SetDestinations, destinations, agents).AsBool();
 
-        /// <summary>Sets the speeds that walkers would like to walk, in metres per second: one speed for each id in <c>agents</c>, or for everybody in the order of <see cref="GetAgents"/>. Missing or not finite: it stays.</summary>
+        /// <summary>Sets the requested speeds of walkers, in metres per second: one for each id in <c>agents</c>, or for all walkers in the order of <see cref="GetAgents"/>. Missing and non-finite speeds change nothing.</summary>
         public void SetSpeeds(float[] speeds, int[] agents) => Native.Call(MethodName.SetSpeeds, speeds, agents);
 
-        /// <summary>Goes on from what <see cref="GetState"/> told. Bytes that are no crowd are refused: the log says why, and the crowd stays as it is.</summary>
+        /// <summary>Restores a state from <see cref="GetState"/>. Other bytes are refused: the log gives the reason, and the crowd does not change.</summary>
         public void SetState(byte[] state) => Native.Call(MethodName.SetState, state);
 
-        /// <summary>Sends walkers straight to places, in this node's space. They stop there. For <see cref="Behaviour"/> scripted. Not finite: the goal stays. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        /// <summary>Sends walkers straight to positions in this node's space, where they stop. For <see cref="Behaviour"/> scripted. A non-finite position keeps the goal. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
         public void SetTargets(Vector3[] targets, int[] agents) => Native.Call(MethodName.SetTargets, targets, agents);
 
         /// <summary>Sets the tints of walkers. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
         public void SetTints(Color[] colours, int[] agents) => Native.Call(MethodName.SetTints, colours, agents);
 
-        /// <summary>Sets how fast walkers turn, in radians per second, positive to their left; they give up their goals. For <see cref="Behaviour"/> scripted. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        /// <summary>Sets the turn rates of walkers, in radians per second, positive to their left, and clears their goals. For <see cref="Behaviour"/> scripted. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
         public void SetTurnRates(float[] turnRates, int[] agents) => Native.Call(MethodName.SetTurnRates, turnRates, agents);
     }
 }
