@@ -251,7 +251,12 @@ fn data_folder() -> Finding {
     const NEXT: &str =
         "create it with write permission; it holds phones' certificates and unsaved labels";
     let Some(base) = dirs::data_local_dir() else {
-        return finding("data folder", State::Missing, "this user has no data folder", NEXT);
+        return finding(
+            "data folder",
+            State::Missing,
+            "this user has no data folder",
+            NEXT,
+        );
     };
     let folder = base.join("footfall");
     let probe = folder.join(format!(".doctor.{}", std::process::id()));
