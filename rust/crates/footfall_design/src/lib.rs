@@ -30,7 +30,7 @@ const LEAST_SPEED_MPS: f32 = 0.2;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DesignError {
     /// No run of steps to build on.
-    #[error("the longest walk has {steps} steps; give a clip with at least two steps in a row")]
+    #[error("the longest walk has {steps} steps; give a clip with at least two consecutive steps")]
     TooFewSteps {
         /// Steps of the longest walk.
         steps: usize,
