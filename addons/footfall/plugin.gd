@@ -2,4 +2,4 @@
 extends EditorPlugin
 ## Footfall's entry in Project Settings → Plugins, which must name a script.
 ##
-## There is nothing to switch on: the library registers its nodes and its file types by itself as soon as the folder is in the project.
+## There is nothing to enable: the library registers its nodes and file types as soon as the folder is in the project.

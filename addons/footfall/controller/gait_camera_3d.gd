@@ -1,26 +1,26 @@
 extends SpringArm3D
-## A camera behind a character: follows smoothly, looks around by mouse, right stick and touch, and comes nearer where a wall is between.
+## Camera behind a character: follows smoothly, looks around by mouse, right stick and touch, and moves closer if a wall is in between.
 ##
-## Height follows more softly than the rest, so that stairs are a slope to it.
+## Its height follows more softly than the rest, so stairs look like a slope.
 
 const GaitInput := preload("gait_input.gd")
-## Farther from what it follows than this it jumps there, metres: the character was put elsewhere.
+## Distance from the target beyond which the camera jumps to it, metres: the character was teleported.
 const FAR := 4.0
 const LOWEST := deg_to_rad(-75.0)
 const HIGHEST := deg_to_rad(50.0)
 
 enum MouseLook {
-	## A click catches the mouse, Escape frees it.
+	## A click captures the mouse, Escape releases it.
 	CAPTURED,
 	## The view turns while the left button is held.
 	HELD,
-	## The mouse is left alone.
+	## The mouse has no effect.
 	NONE,
 }
 
 ## Use of the mouse for looking around.
 @export var mouse_look := MouseLook.CAPTURED
-## Angle by which a pixel of the mouse turns the view.
+## Angle by which the view turns for each pixel of mouse motion.
 @export_range(0.0, 1.0, 0.01, "radians_as_degrees", "suffix:°/px") var mouse_speed := 0.005
 ## Speed at which the right stick turns the view.
 @export_range(0.0, 360.0, 1.0, "radians_as_degrees", "suffix:°/s") var stick_speed := 2.5
@@ -28,10 +28,10 @@ enum MouseLook {
 @export_range(0.0, 1.0, 0.01, "suffix:s") var follow_half_life := 0.05
 ## Half-life of the camera's distance from its place, up and down.
 @export_range(0.0, 1.0, 0.01, "suffix:s") var height_half_life := 0.15
-## The nearest and the farthest that the mouse wheel brings it.
+## Closest and farthest distance by mouse wheel.
 @export var distance_range := Vector2(1.2, 12.0)
 
-## The point that it looks at, in global space; set by the character.
+## Point that the camera looks at, in global space; set by the character.
 var _target := Vector3.INF
 var _climb := 0.0
 
@@ -44,7 +44,7 @@ func _ready() -> void:
 		add_excluded_object(body.get_rid())
 
 
-## Moves the point that it looks at.
+## Moves the point that the camera looks at.
 func follow(point: Vector3) -> void:
 	if not _target.is_finite() or global_position.distance_to(point) > FAR:
 		global_position = point

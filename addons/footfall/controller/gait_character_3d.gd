@@ -1,14 +1,14 @@
 @tool
 class_name GaitCharacter3D
 extends CharacterBody3D
-## A character for keyboard, gamepad and touch that walks by its own steps: root motion moves the body, physics stops it.
+## Character for keyboard, gamepad and touch that moves by its own steps: root motion moves the body, physics stops it.
 ##
-## Put `gait_character_3d.tscn` into a scene with a floor and give it your character as [member character_scene]. It faces +Z, as
-## imported characters do. The capsule steps onto edges at once; the figure in it and the camera follow smoothly.
+## Put `gait_character_3d.tscn` into a scene with a floor and set your character as [member character_scene]. It faces +Z, as
+## imported characters do. The capsule steps onto edges at once; the character in it and the camera follow smoothly.
 
-## The character leaves the ground to jump.
+## Emitted when the character leaves the ground in a jump.
 signal jumped
-## The character stands again after a jump or a fall, in which it came down at this speed, m/s.
+## Emitted when the character lands after a jump or a fall, at this fall speed in m/s.
 signal landed(fall_speed: float)
 
 const GaitInput := preload("gait_input.gd")
@@ -21,7 +21,7 @@ const TURN_SECS := 0.35
 const SLOW_FROM := 1.75
 const SLOWEST_FROM := 2.6
 const SLOWEST_SHARE := 0.3
-## Smaller angles are no reason for somebody who stands to take a step, radians.
+## Angle below which a standing character does not take a step, radians.
 const LEAST_TURN := 0.15
 ## Distance ahead at which an edge is looked for, metres.
 const EDGE_REACH := 0.08
@@ -37,68 +37,68 @@ const CATCH_UP_SECS := 0.1
 ## From the ground to what the camera looks at, as a share of the height.
 const EYE_HEIGHT := 0.8
 
-## Your character: an imported glTF or FBX file, or a scene made of one. It may hold a [GaitGenerator3D] and a [FootPlacement3D] of
-## its own; those that it lacks are added.
+## Your character: an imported glTF or FBX file, or a scene made from one. It may contain a [GaitGenerator3D] and a [FootPlacement3D];
+## missing ones are added.
 @export var character_scene: PackedScene:
 	set(value):
 		character_scene = value
 		_wear()
-## Names of the bones, for rigs that [GaitGenerator3D] does not recognise.
+## Assignment of bones, for rigs that [GaitGenerator3D] does not recognise.
 @export var bone_map: BoneMap:
 	set(value):
 		bone_map = value
 		_wear()
-## If [code]true[/code], the capsule takes its size from the character's skeleton.
+## If [code]true[/code], the capsule is sized to the character's skeleton.
 @export var measure_capsule := true
 
 @export_group("Walking")
-## Speed of the walk. Keep to what the model knows: [method GaitModel.get_speed_range].
+## Walking speed. Stay within the model's range: [method GaitModel.get_speed_range].
 @export_range(0.0, 3.0, 0.05, "or_greater", "suffix:m/s") var walk_speed := 1.3
-## Speed of hurrying, while the action `hurry` is pressed.
+## Speed while the action `hurry` is pressed.
 @export_range(0.0, 5.0, 0.05, "or_greater", "suffix:m/s") var hurry_speed := 3.2
-## Turning towards where it is asked to go, at most.
+## Maximum turn rate towards the requested direction.
 @export_range(0.0, 360.0, 1.0, "or_greater", "radians_as_degrees", "suffix:°/s") var max_turn_rate := 3.5
-## Higher edges than this are walls.
+## Height of the highest edge that is a step; higher edges are walls.
 @export_range(0.0, 0.5, 0.01, "or_greater", "suffix:m") var step_height := 0.22
-## Half-life of the figure's distance from its capsule after an edge, which the capsule steps onto at once.
+## Half-life of the character's distance from its capsule after an edge, which the capsule steps onto at once.
 @export_range(0.0, 0.5, 0.01, "suffix:s") var step_half_life := 0.15
 
 @export_group("Air")
-## Rise of the hips in a jump, and height of the highest wall that it jumps onto; 0 for characters that do not.
+## Rise of the hips in a jump, and height of the highest wall that it jumps onto; 0 turns jumps off.
 @export_range(0.0, 2.0, 0.01, "or_greater", "suffix:m") var jump_height := 0.45
-## Share of the control that is left in the air.
+## Acceleration by steering in the air.
 @export_range(0.0, 20.0, 0.1, "suffix:m/s²") var air_acceleration := 3.0
 
 @export_group("Steering")
-## If [code]true[/code], keyboard, gamepad and touch steer it. Off for characters that only scripts or `navigation` steer.
+## If [code]true[/code], keyboard, gamepad and touch steer the character. Turn it off for characters that only scripts or `navigation` steer.
 @export var player_controlled := true
-## If [code]true[/code], it faces where the camera looks, whatever way it goes; the action `aim` does the same.
+## If [code]true[/code], the character faces where the camera looks, in whatever direction it goes; the action `aim` does the same.
 @export var aims := false
-## Walks where this agent is sent, around what is in the way, while nobody steers.
+## Navigation agent that the character follows, around obstacles, while nothing else steers it.
 @export var navigation: NavigationAgent3D
 
-## Set to walk without a player: a direction on the ground, of length 0 to 1.
+## Direction on the ground, of length 0 to 1, for walking without a player.
 var autopilot := Vector3.ZERO
-## Set to crouch without a player.
+## If [code]true[/code], the character crouches without a player.
 var crouches := false
-## The generator that walks the character; null without one.
+## The generator that walks the character; [code]null[/code] without a character.
 var gait: GaitGenerator3D:
 	get:
 		return _figure.gait if _figure else null
-## The foot placement that keeps its feet on the ground; null without a character.
+## The foot placement that keeps the feet on the ground; [code]null[/code] without a character.
 var placement: FootPlacement3D:
 	get:
 		return _figure.placement if _figure else null
 
-## Identity of the walk, for the other peers of a multiplayer game; see [member GaitGenerator3D.replica_identity].
-## Put [code]gait_synchronizer.tscn[/code] below the character.
+## Identity of the walk for the other peers of a multiplayer game; see [member GaitGenerator3D.replica_identity].
+## Add [code]gait_synchronizer.tscn[/code] below the character.
 var replica_identity: PackedByteArray:
 	get:
 		return gait.replica_identity if gait else PackedByteArray()
 	set(identity):
 		if gait:
 			gait.replica_identity = identity
-## Progress of the walk, for the other peers; see [member GaitGenerator3D.replica_state].
+## Progress of the walk for the other peers; see [member GaitGenerator3D.replica_state].
 var replica_state: PackedByteArray:
 	get:
 		return gait.replica_state if gait else PackedByteArray()
@@ -135,9 +135,9 @@ func _ready() -> void:
 
 func _get_configuration_warnings() -> PackedStringArray:
 	if character_scene == null:
-		return ["Give Character Scene your character: drag its file from the FileSystem dock there."]
+		return ["Set Character Scene: drag your character's file from the FileSystem dock onto it."]
 	if gait == null:
-		return ["%s holds no Skeleton3D: give Character Scene a character with a humanoid skeleton." % character_scene.resource_path]
+		return ["%s has no Skeleton3D. Set Character Scene to a character with a humanoid skeleton." % character_scene.resource_path]
 	return gait.get_problems()
 
 
@@ -158,7 +158,7 @@ func _physics_process(delta: float) -> void:
 		_camera.call(&"follow", _figure.global_position + Vector3.UP * EYE_HEIGHT * _standing_height)
 
 
-## Jumps, if it is on the ground: onto a wall of which it stands in front, else up, or over what is ahead of somebody who walks or runs.
+## Jumps, if the character is on the ground: onto a wall in front of it, else up, or over what is ahead while it walks or runs.
 func jump() -> void:
 	if not is_on_floor() or jump_height <= 0.0:
 		return
@@ -169,13 +169,13 @@ func jump() -> void:
 	_take_off()
 
 
-## Jumps to a place near by, in global space, such as the other side of a gap; see [method GaitGenerator3D.jump_to].
+## Jumps to a nearby place in global space, such as the other side of a gap; see [method GaitGenerator3D.jump_to].
 func jump_to(place: Vector3) -> void:
 	if is_on_floor() and gait:
 		gait.jump_to(place)
 
 
-## Puts the character elsewhere, standing still; nothing of the way there is seen.
+## Teleports the character and lets it stand, without a transition.
 func teleport(place: Transform3D) -> void:
 	global_transform = place.orthonormalized()
 	velocity = Vector3.ZERO

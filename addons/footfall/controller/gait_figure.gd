@@ -1,6 +1,6 @@
 @tool
 extends Node3D
-## The visible part of a character: your scene, with the nodes that walk it, above a capsule that it follows smoothly.
+## Visible part of a character: your scene, with the nodes that walk it, above a capsule that it follows smoothly.
 
 const MODEL := "res://addons/footfall/models/locomotion.footfall"
 ## The highest bone is a head's joint or its end: a body is so much higher.
@@ -11,7 +11,7 @@ const WIDTH_PER_SHOULDERS := 1.4
 const WIDTH_PER_HEIGHT := 0.3
 const MOST_WIDTH_PER_HEIGHT := 0.6
 
-## The generator that walks the character and the foot placement below it; null without a skeleton.
+## The generator that walks the character and the foot placement below it; [code]null[/code] without a skeleton.
 var gait: GaitGenerator3D
 var placement: FootPlacement3D
 ## Distance from where it belongs and the speed at which that changes: metres, upwards.

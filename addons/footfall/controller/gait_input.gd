@@ -1,7 +1,7 @@
-## The controller's input actions.
+## Input actions of the controller.
 ##
-## An action of the project's Input Map with one of the names below is used as it is. Where there is none, an action of the same
-## name with the prefix `footfall_` is made for the running game: the Input Map of the project never changes.
+## An action of the project's Input Map with one of the names below is used as it is. If there is none, an action of the same
+## name with the prefix `footfall_` is added to the running game: the Input Map of the project does not change.
 
 ## Actions of the controller → the project's actions that do it, best first.
 const NAMES: Dictionary[StringName, Array] = {
@@ -18,7 +18,7 @@ const NAMES: Dictionary[StringName, Array] = {
 	&"jump": [&"jump"],
 	&"crouch": [&"crouch"],
 }
-## Keys of actions that the project does not have.
+## Keys of actions that the project lacks.
 const KEYS: Dictionary[StringName, Array] = {
 	&"forward": [KEY_W, KEY_UP],
 	&"back": [KEY_S, KEY_DOWN],
@@ -50,7 +50,7 @@ const PREFIX := "footfall_"
 const DEADZONE := 0.2
 
 
-## The action of the Input Map that does what is asked; made if there is none.
+## Returns the action of the Input Map for a name; adds it if there is none.
 static func action(wish: StringName) -> StringName:
 	for known: StringName in NAMES[wish]:
 		if InputMap.has_action(known):

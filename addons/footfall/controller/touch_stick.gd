@@ -1,7 +1,7 @@
 extends Control
-## A stick under the left thumb, on touchscreens only: it appears where a finger goes down on the left half of the screen.
+## Stick for the left thumb, on touchscreens only: it appears where a finger touches the left half of the screen.
 ##
-## It presses the controller's movement actions, so a game need not know of it. Fingers elsewhere are left to others.
+## It presses the controller's movement actions, so a game need not know of it. Other fingers are ignored.
 
 const GaitInput := preload("gait_input.gd")
 const RADIUS := 90.0

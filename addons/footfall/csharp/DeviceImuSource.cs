@@ -6,8 +6,8 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Hears the phone that the game runs on, through Godot's <c>Input</c>.</summary>
-    /// <remarks>Switch on <c>input_devices/sensors/enable_accelerometer</c>, <c>enable_gravity</c> and <c>enable_gyroscope</c> in the project settings. Godot gives what the phone measured last, once a frame: keep 60 frames a second or more. Units and signs are made alike on Android and iOS; keep the orientation of the screen fixed.</remarks>
+    /// <summary>Reads the sensors of the phone that runs the game, through Godot's <c>Input</c>.</summary>
+    /// <remarks>Turn <c>input_devices/sensors/enable_accelerometer</c>, <c>enable_gravity</c> and <c>enable_gyroscope</c> on in the project settings. Godot delivers the last measurement once a frame: keep 60 frames per second or more. Units and signs are the same on Android and iOS. Keep the screen orientation fixed.</remarks>
     public class DeviceImuSource : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -44,7 +44,7 @@ namespace Footfall
         /// <summary>Loads one from a file of the project.</summary>
         public static DeviceImuSource Load(string path) => From(GD.Load<Resource>(path));
 
-        /// <summary>Returns whether this device gives motion; if not, it has no sensors, or the project settings leave them off.</summary>
+        /// <summary>Returns <c>true</c> if this device delivers motion. If not, it has no sensors, or the project settings turn them off.</summary>
         public static bool IsAvailable() => ClassDB.ClassCallStatic(NativeName, MethodName.IsAvailable).AsBool();
     }
 }

@@ -6,10 +6,10 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Puts the feet of an animation on the ground: slopes, stairs, rough ground and platforms that move.</summary>
+    /// <summary>Places the feet of an animation on the ground: slopes, stairs, rough ground and moving platforms.</summary>
     /// <remarks>
-    /// <para>Add it under a <c>Skeleton3D</c> with humanoid bones, below whatever animates it: a <see cref="GaitGenerator3D"/>, or an <c>AnimationPlayer</c> or <c>AnimationTree</c> elsewhere. A foot that stands is locked where it was put, in the plane of the ground; the pelvis moves so that both legs reach, and a foot on its way keeps clear of edges. With a <see cref="GaitGenerator3D"/> the node knows beforehand where and when each foot will land. For other animations it finds out when a foot is low and slow; feet settle a little later then.</para>
-    /// <para>The animation should move over a flat floor at the height of the character's origin. The ground is what is on <see cref="CollisionMask"/>.</para>
+    /// <para>Add it under a <c>Skeleton3D</c> with humanoid bones, below the node that animates it: a <see cref="GaitGenerator3D"/>, or an <c>AnimationPlayer</c> or <c>AnimationTree</c> elsewhere. A standing foot is locked in place, in the plane of the ground. The pelvis moves so that both legs reach, and a swinging foot keeps clear of edges. With a <see cref="GaitGenerator3D"/> the node knows in advance where and when each foot will land. With other animation it detects a contact from a low and slow foot; feet then settle a little later.</para>
+    /// <para>The animation should move over a flat floor at the height of the character's origin. Ground is everything on <see cref="CollisionMask"/>.</para>
     /// </remarks>
     public class FootPlacement3D : FootfallObject
     {
@@ -77,77 +77,77 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>The physics layers that are ground. Bodies that belong to the character itself are never ground.</summary>
+        /// <summary>The physics layers that are ground. Bodies of the character itself are never ground.</summary>
         public uint CollisionMask
         {
             get => Native.Get(PropertyName.CollisionMask).AsUInt32();
             set => Native.Set(PropertyName.CollisionMask, value);
         }
 
-        /// <summary>Ground is looked for with spheres of this radius. At 0 it is looked for with rays, which is faster; spheres pass over gaps.</summary>
+        /// <summary>Radius of the spheres that find ground. At 0 rays find it, which is faster; spheres bridge gaps.</summary>
         public double CastRadius
         {
             get => Native.Get(PropertyName.CastRadius).AsDouble();
             set => Native.Set(PropertyName.CastRadius, value);
         }
 
-        /// <summary>Edges that are higher than this are walls, and lower ones an abyss: no foot goes there. The ground ahead is followed edge by edge, so that a staircase of lower steps is never out of reach.</summary>
+        /// <summary>Height of the highest edge that feet follow. Higher edges are walls, and deeper ones drops: no foot goes there. The ground ahead is followed edge by edge, so a staircase of lower steps is never out of reach.</summary>
         public double MaxStep
         {
             get => Native.Get(PropertyName.MaxStep).AsDouble();
             set => Native.Set(PropertyName.MaxStep, value);
         }
 
-        /// <summary>Feet are tilted against the animation by this much at most.</summary>
+        /// <summary>Limit of a foot's tilt relative to the animation.</summary>
         public double MaxTilt
         {
             get => Native.Get(PropertyName.MaxTilt).AsDouble();
             set => Native.Set(PropertyName.MaxTilt, value);
         }
 
-        /// <summary>Time in which the pelvis makes half of its way up or down.</summary>
+        /// <summary>Half-life of the pelvis' vertical motion.</summary>
         public double PelvisHalfLife
         {
             get => Native.Get(PropertyName.PelvisHalfLife).AsDouble();
             set => Native.Set(PropertyName.PelvisHalfLife, value);
         }
 
-        /// <summary>Largest offset of the pelvis from the animation.</summary>
+        /// <summary>Limit of the pelvis' offset from the animation.</summary>
         public double MaxPelvisOffset
         {
             get => Native.Get(PropertyName.MaxPelvisOffset).AsDouble();
             set => Native.Set(PropertyName.MaxPelvisOffset, value);
         }
 
-        /// <summary>A foot that the animation drags this far from where it is locked is put anew.</summary>
+        /// <summary>Distance between a locked foot and the animation beyond which the foot is planted again.</summary>
         public double MaxDrift
         {
             get => Native.Get(PropertyName.MaxDrift).AsDouble();
             set => Native.Set(PropertyName.MaxDrift, value);
         }
 
-        /// <summary>A foot that the animation turns this far from where it is locked is put anew.</summary>
+        /// <summary>Angle between a locked foot and the animation beyond which the foot is planted again.</summary>
         public double MaxTwist
         {
             get => Native.Get(PropertyName.MaxTwist).AsDouble();
             set => Native.Set(PropertyName.MaxTwist, value);
         }
 
-        /// <summary>If <c>true</c>, a foot that would stand across an edge, as on stairs, is put ahead of it, behind it or beside it. A <see cref="GaitGenerator3D"/> beside this node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.</summary>
+        /// <summary>If <c>true</c>, a foothold that crosses an edge, as on stairs, is moved ahead, back or aside. A <see cref="GaitGenerator3D"/> beside this node adapts the length of its steps to that, and to ground that is too high or too low for one step.</summary>
         public bool AdjustFootholds
         {
             get => Native.Get(PropertyName.AdjustFootholds).AsBool();
             set => Native.Set(PropertyName.AdjustFootholds, value);
         }
 
-        /// <summary>If <c>true</c>, a <see cref="GaitGenerator3D"/> beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking function, down to 0.45 of its speed), from a step before it gets there.</summary>
+        /// <summary>If <c>true</c>, a <see cref="GaitGenerator3D"/> beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking function, down to 0.45 of its speed), starting one step ahead.</summary>
         public bool AdaptSpeed
         {
             get => Native.Get(PropertyName.AdaptSpeed).AsBool();
             set => Native.Set(PropertyName.AdaptSpeed, value);
         }
 
-        /// <summary>If <c>true</c>, the character rises and falls with the ground under its feet, for characters that no physics holds there.</summary>
+        /// <summary>If <c>true</c>, the character moves up and down with the ground under its feet, for characters without physics.</summary>
         /// <remarks>Leave it off for a <c>CharacterBody3D</c> with gravity and <c>move_and_slide()</c>.</remarks>
         public bool FollowGround
         {
@@ -155,7 +155,7 @@ namespace Footfall
             set => Native.Set(PropertyName.FollowGround, value);
         }
 
-        /// <summary>If <c>true</c>, the character is in the air: feet are left to the animation. Set it from the game, for example <c>foot_placement.in_air = not is_on_floor()</c>.</summary>
+        /// <summary>If <c>true</c>, the character is in the air and feet follow the animation. Set it from the game, for example <c>foot_placement.in_air = not is_on_floor()</c>.</summary>
         public bool InAir
         {
             get => Native.Get(PropertyName.InAir).AsBool();
@@ -163,28 +163,28 @@ namespace Footfall
         }
 
         /// <summary>The <c>Node3D</c> whose origin is on the floor of the animation, above the <c>Skeleton3D</c>. Its Y axis is up.</summary>
-        /// <remarks>Left empty, it is the one that a <see cref="GaitGenerator3D"/> beside this node moves, or would move.</remarks>
+        /// <remarks>If empty, it is the node that a <see cref="GaitGenerator3D"/> beside this node moves or would move.</remarks>
         public NodePath Character
         {
             get => Native.Get(PropertyName.Character).AsNodePath();
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names. Left empty, it is that of a <see cref="GaitGenerator3D"/> beside this node.</summary>
+        /// <summary>Assignment of bones to the joints of the profile, for rigs that are not recognised. It takes precedence over bone names. If empty, the map of a <see cref="GaitGenerator3D"/> beside this node is used.</summary>
         public BoneMap BoneMap
         {
             get => (BoneMap)Native.Get(PropertyName.BoneMap).AsGodotObject();
             set => Native.Set(PropertyName.BoneMap, value);
         }
 
-        /// <summary>If <c>true</c>, soles and the normals of the ground are drawn: green where a foot is locked, orange where it is not.</summary>
+        /// <summary>If <c>true</c>, soles and ground normals are drawn: green where a foot is locked, orange elsewhere.</summary>
         public bool DebugDraw
         {
             get => Native.Get(PropertyName.DebugDraw).AsBool();
             set => Native.Set(PropertyName.DebugDraw, value);
         }
 
-        /// <summary>A foot leaves the ground. Not emitted in the editor.</summary>
+        /// <summary>Emitted when a foot leaves the ground. Not emitted in the editor.</summary>
         /// <value>Handlers take <c>foot</c>.</value>
         public event Action<StringName> FootLifted
         {
@@ -192,7 +192,7 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.FootLifted, Callable.From(value));
         }
 
-        /// <summary>A foot is locked to the ground: <c>foot</c> is <c>left</c> or <c>right</c>, <c>position</c> the ground under its ankle in global space, <c>normal</c> the ground's. Emitted once for every contact, not in the editor.</summary>
+        /// <summary>Emitted when a foot is locked to the ground: <c>foot</c> is <c>left</c> or <c>right</c>, <c>position</c> the ground under its ankle in global space, <c>normal</c> the ground's normal. Emitted once for every contact, not in the editor.</summary>
         /// <value>Handlers take <c>foot</c>, <c>position</c>, <c>normal</c>.</value>
         public event Action<StringName, Vector3, Vector3> FootPlanted
         {
@@ -200,26 +200,26 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.FootPlanted, Callable.From(value));
         }
 
-        /// <summary>The body that a foot, <c>left</c> or <c>right</c>, is locked to, or null.</summary>
+        /// <summary>Returns the body that the foot, <c>left</c> or <c>right</c>, is locked to, or <c>null</c>.</summary>
         public Node3D GetFootSupport(StringName foot) => (Node3D)Native.Call(MethodName.GetFootSupport, foot).AsGodotObject();
 
-        /// <summary>Returns the place of a foot's sole (<c>left</c> or <c>right</c>) in global space: its origin lies on the ground under the ankle of the flat foot, +Y is the ground's normal and +Z points to the toes. For a foot on its way, of the place over which it is.</summary>
+        /// <summary>Returns the transform of a foot's sole (<c>left</c> or <c>right</c>) in global space: its origin is on the ground under the ankle of the flat foot, +Y is the ground's normal and +Z points to the toes. For a swinging foot, it is the ground below it.</summary>
         public Transform3D GetFootTransform(StringName foot) => Native.Call(MethodName.GetFootTransform, foot).AsTransform3D();
 
-        /// <summary>Grade of the ground under the feet: rise by run, positive uphill.</summary>
+        /// <summary>Returns the grade of the ground under the feet: rise over run, positive uphill.</summary>
         public double GetGrade() => Native.Call(MethodName.GetGrade).AsDouble();
 
-        /// <summary>Offset of the pelvis from the animation, in metres upwards.</summary>
+        /// <summary>Returns the offset of the pelvis from the animation, in metres upwards.</summary>
         public double GetPelvisOffset() => Native.Call(MethodName.GetPelvisOffset).AsDouble();
 
-        /// <summary>Problems that keep the feet from being placed, each with what to do next; empty without any.</summary>
-        /// <remarks>The editor shows the same as configuration warnings.</remarks>
+        /// <summary>Returns the problems that keep the feet from being placed, each with what to do next; empty if there are none.</summary>
+        /// <remarks>The editor shows the same texts as configuration warnings.</remarks>
         public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
 
-        /// <summary>Returns whether a foot, <c>left</c> or <c>right</c>, is locked to the ground.</summary>
+        /// <summary>Returns <c>true</c> if the foot, <c>left</c> or <c>right</c>, is locked to the ground.</summary>
         public bool IsFootPlanted(StringName foot) => Native.Call(MethodName.IsFootPlanted, foot).AsBool();
 
-        /// <summary>Forgets where the feet were put, for example after the character was put elsewhere. Also measures the skeleton anew.</summary>
+        /// <summary>Discards the places of the feet, for example after a teleport of the character. Also measures the skeleton again.</summary>
         public void Reset() => Native.Call(MethodName.Reset);
     }
 }

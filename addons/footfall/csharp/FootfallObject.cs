@@ -3,10 +3,10 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>A node or resource of Footfall's, seen with types.</summary>
+    /// <summary>Typed wrapper of a node or resource of Footfall.</summary>
     /// <remarks>
-    /// C# cannot derive from classes of an extension. A wrapper holds the engine's object and nothing else: make as many of one object as you like,
-    /// they are equal.
+    /// C# cannot derive from classes of an extension. A wrapper holds only the engine's object; all wrappers of one object are
+    /// equal.
     /// </remarks>
     public abstract class FootfallObject : IEquatable<FootfallObject>
     {
@@ -18,7 +18,7 @@ namespace Footfall
         /// <summary>The engine's object.</summary>
         protected GodotObject Native { get; }
 
-        /// <summary>Whether the engine's object is still there and not about to be freed.</summary>
+        /// <summary>True while the engine's object exists and is not queued for deletion.</summary>
         public bool IsValid => GodotObject.IsInstanceValid(Native) && !Native.IsQueuedForDeletion();
 
         public static implicit operator Variant(FootfallObject wrapper) => wrapper?.Native;
@@ -46,7 +46,7 @@ namespace Footfall
             return native != null && native.IsClass(className);
         }
 
-        /// <summary>Whether there is an object; throws if it is of another class.</summary>
+        /// <summary>Returns true if there is an object; throws if it is of another class.</summary>
         protected static bool Checked(GodotObject native, StringName className)
         {
             if (native != null && !IsA(native, className))

@@ -6,11 +6,11 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Walks a character: every frame it poses the parent <c>Skeleton3D</c> with steps generated from a trained model.</summary>
+    /// <summary>Walks a character: poses the parent <c>Skeleton3D</c> in every frame with steps generated from a trained model.</summary>
     /// <remarks>
-    /// <para>Add it under a <c>Skeleton3D</c> with humanoid bones, give it a <see cref="Model"/>, and the character walks. No animation clips are needed. Feet stay where they are put; every seed walks a little differently.</para>
-    /// <para>Bones are found by <see cref="BoneMap"/> where there is one, else by the names of <c>SkeletonProfileHumanoid</c>, else the rig is recognised: Mixamo, <c>VRM</c> (<c>VRoid</c>), Unreal, Rigify, Reallusion CC, Daz Genesis, <c>MakeHuman</c>, Biped and others. Chest, <c>UpperChest</c>, Neck, the shoulders and the toes may be missing. Bones that are none of the body's 22 joints, such as fingers, keep the pose that they have.</para>
-    /// <para>In the editor the character walks in place while <see cref="Playing"/> is on, and nothing of it is saved.</para>
+    /// <para>Add it under a <c>Skeleton3D</c> with humanoid bones, set its <see cref="Model"/>, and the character walks. No animation clips are needed. Feet stay planted; every seed gives a slightly different walk.</para>
+    /// <para>Bones are found by <see cref="BoneMap"/> if it is set, else by the names of <c>SkeletonProfileHumanoid</c>, else by recognising the rig: Mixamo, <c>VRM</c> (<c>VRoid</c>), Unreal, Rigify, Reallusion CC, Daz Genesis, <c>MakeHuman</c>, Biped and others. Chest, <c>UpperChest</c>, Neck, the shoulders and the toes may be missing. Bones that are none of the body's 22 joints, such as fingers, keep their pose.</para>
+    /// <para>In the editor the character walks in place while <see cref="Playing"/> is on; the scene does not save the preview.</para>
     /// </remarks>
     public class GaitGenerator3D : FootfallObject
     {
@@ -103,92 +103,92 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>The way of walking: a <c>.footfall</c> file such as <c>addons/footfall/models/locomotion.footfall</c>, or a <c>.footdyn</c> file such as <c>addons/footfall/models/walk.footdyn</c>, a switching model, which is smaller and wears no styles.</summary>
-        /// <remarks>A node that is added in the editor has <c>locomotion.footfall</c>; where this is empty, as after <c>GaitGenerator3D.new()</c> in a script, the character walks with the same.</remarks>
+        /// <summary>The gait model: a <c>.footfall</c> file such as <c>addons/footfall/models/locomotion.footfall</c>, or a <c>.footdyn</c> file such as <c>addons/footfall/models/walk.footdyn</c>, a switching model, which is smaller and has no styles.</summary>
+        /// <remarks>A node added in the editor starts with <c>locomotion.footfall</c>. If this is empty, as after <c>GaitGenerator3D.new()</c> in a script, the same model is used.</remarks>
         public GaitModel Model
         {
             get => GaitModel.From(Native.Get(PropertyName.Model).AsGodotObject());
             set => Native.Set(PropertyName.Model, value);
         }
 
-        /// <summary>Styles to walk in, <c>.footstyle</c> files that were made for this model. <see cref="StyleWeights"/> says how much of each.</summary>
-        /// <remarks>Changing the list starts the walk anew; change weights to change the style while it walks.</remarks>
+        /// <summary>Styles of the walk: <c>.footstyle</c> files made for this model. <see cref="StyleWeights"/> sets the weight of each.</summary>
+        /// <remarks>Changing the list starts the walk anew. To change the style of a running walk, change the weights.</remarks>
         public GaitStyle[] Styles
         {
             get => List(Native.Get(PropertyName.Styles), GaitStyle.From);
             set => SetList(PropertyName.Styles, value);
         }
 
-        /// <summary>Weights of the styles, in the order of <see cref="Styles"/>: 0 is none, 1 the style as it was recorded.</summary>
-        /// <remarks>Any mixture goes: more than 1 exaggerates, less than 0 is the opposite, and the sum need not be 1. What is too much for a body is held back. May change at any time; the walk takes it up with the next step. A missing weight counts as 0.</remarks>
+        /// <summary>Weights of the styles, in the order of <see cref="Styles"/>: 0 is none, 1 the style as recorded.</summary>
+        /// <remarks>Any mixture is valid: more than 1 exaggerates, less than 0 gives the opposite, and the sum need not be 1. Poses beyond a body's limits are limited. Changes apply with the next step. A missing weight counts as 0.</remarks>
         public float[] StyleWeights
         {
             get => Native.Get(PropertyName.StyleWeights).AsFloat32Array();
             set => Native.Set(PropertyName.StyleWeights, value);
         }
 
-        /// <summary>Walking or running speed in metres per second. Cadence and step length follow as they do in people, and <see cref="Gait"/> says from where on it runs.</summary>
-        /// <remarks>May change at any time: a walk whose foot is in the air takes it up at once, any other step with the next. <see cref="GaitModel.GetSpeedRange"/> tells what the model was trained on. At 0 the character stops within two steps and stands, or turns in place by <see cref="TurnRate"/>.</remarks>
+        /// <summary>Walking or running speed in metres per second. Cadence and step length follow as in people; <see cref="Gait"/> sets when the character runs.</summary>
+        /// <remarks>A change applies at once while a foot of a walk is in the air, otherwise with the next step. <see cref="GaitModel.GetSpeedRange"/> returns the speeds that the model was trained on. At 0 the character stops within two steps and stands, or turns on the spot by <see cref="TurnRate"/>.</remarks>
         public double Speed
         {
             get => Native.Get(PropertyName.Speed).AsDouble();
             set => Native.Set(PropertyName.Speed, value);
         }
 
-        /// <summary>Turning of the character in radians per second. Positive turns to its left. Taken up as <see cref="Speed"/> is.</summary>
+        /// <summary>Turn rate of the character in radians per second; positive turns to its left. Changes apply as for <see cref="Speed"/>.</summary>
         public double TurnRate
         {
             get => Native.Get(PropertyName.TurnRate).AsDouble();
             set => Native.Set(PropertyName.TurnRate, value);
         }
 
-        /// <summary>Direction of travel relative to where the character faces, in radians: 0 forwards, 90° to its left, -90° to its right, 180° backwards.</summary>
-        /// <remarks>For characters that look at something else than their way. Taken up as <see cref="Speed"/> is, over several steps where the change is great. Steps to the side and backwards are shorter than those forwards, as people's are: sideways a character reaches about 0.65 m/s, backwards 1 m/s, whatever <see cref="Speed"/> says.</remarks>
+        /// <summary>Direction of travel relative to the facing direction, in radians: 0 forwards, 90° to the left, -90° to the right, 180° backwards.</summary>
+        /// <remarks>For characters that look elsewhere than where they go. Changes apply as for <see cref="Speed"/>; large changes take several steps. Steps sideways and backwards are shorter than forward steps, as in people: a character reaches about 1.6 m/s sideways and 2.0 m/s backwards, whatever <see cref="Speed"/> is.</remarks>
         public double Direction
         {
             get => Native.Get(PropertyName.Direction).AsDouble();
             set => Native.Set(PropertyName.Direction, value);
         }
 
-        /// <summary>Walking or running.</summary>
-        /// <remarks>Auto changes as people do: it runs from about 2 m/s on, sooner on short legs, and walks again a little below that. Walk and Run keep to one gait at any speed; the steps in which the character starts and stops are walked, as are those to the side and backwards. A model that only walks, as every <c>.footdyn</c>, walks. <see cref="GetCurrentGait"/> tells which it is.</remarks>
+        /// <summary>Choice between walking and running.</summary>
+        /// <remarks>Auto changes as people do: the character runs above about 2 m/s, or sooner on short legs, and walks again a little below that speed. Walk and Run keep to one gait at any speed. Starting and stopping steps and steps sideways or backwards are always walked. Models without running, such as every <c>.footdyn</c>, only walk. <see cref="GetCurrentGait"/> returns the current gait.</remarks>
         public GaitMode Gait
         {
             get => (GaitMode)Native.Get(PropertyName.Gait).AsInt64();
             set => Native.Set(PropertyName.Gait, (long)value);
         }
 
-        /// <summary>Depth of the crouch, standing or walking: 0 upright, 1 as low as the model's people.</summary>
-        /// <remarks>Taken up at once and smoothly; feet stay where they are. Who crouches goes no faster than those people do, about 1 m/s at 1. A model that knows no crouch (any <c>.footdyn</c>, and <c>.footfall</c> files without <c>footfall train --crouching</c>) stays upright.</remarks>
+        /// <summary>Depth of the crouch, standing or walking: 0 upright, 1 as low as the recorded people.</summary>
+        /// <remarks>Changes apply at once and smoothly; feet stay in place. A crouching character is as slow as those people, about 1 m/s at 1. A model without crouching (any <c>.footdyn</c>, and <c>.footfall</c> files trained without <c>footfall train --crouching</c>) stays upright.</remarks>
         public double Crouch
         {
             get => Native.Get(PropertyName.Crouch).AsDouble();
             set => Native.Set(PropertyName.Crouch, value);
         }
 
-        /// <summary>Weight of the walk in the spine's pose: at 0 <c>Spine</c>, <c>Chest</c> and <c>UpperChest</c> are posed by what else animates the skeleton, such as an <c>AnimationPlayer</c>, an <c>AnimationTree</c> or a script. Hips and legs always walk.</summary>
-        /// <remarks>The spine keeps the direction that the animation gives it in the character's space, whatever the hips do, so that steps do not shake what is aimed. Like the other weights it may be keyed and changed at any time; nothing pops on the way.</remarks>
+        /// <summary>Weight of the walk in the spine's pose. At 0, other animation poses <c>Spine</c>, <c>Chest</c> and <c>UpperChest</c>, such as an <c>AnimationPlayer</c>, an <c>AnimationTree</c> or a script. Hips and legs always walk.</summary>
+        /// <remarks>The spine keeps the animation's orientation relative to the character, whatever the hips do, so steps do not shake an aimed weapon. All weights can be keyed and changed at any time without a jump in the pose.</remarks>
         public double SpineWeight
         {
             get => Native.Get(PropertyName.SpineWeight).AsDouble();
             set => Native.Set(PropertyName.SpineWeight, value);
         }
 
-        /// <summary>Weight of the walk in the pose of <c>Neck</c> and <c>Head</c>; at 0 they look where the animation has them look in the character's space.</summary>
+        /// <summary>Weight of the walk in the pose of <c>Neck</c> and <c>Head</c>. At 0 they keep the animation's orientation relative to the character.</summary>
         public double HeadWeight
         {
             get => Native.Get(PropertyName.HeadWeight).AsDouble();
             set => Native.Set(PropertyName.HeadWeight, value);
         }
 
-        /// <summary>Weight of the walk in the left arm's pose, from shoulder to hand; at 0 it hangs from the walking chest as the animation poses it.</summary>
+        /// <summary>Weight of the walk in the left arm's pose, from shoulder to hand. At 0 the arm follows the walking chest, posed by the animation.</summary>
         public double LeftArmWeight
         {
             get => Native.Get(PropertyName.LeftArmWeight).AsDouble();
             set => Native.Set(PropertyName.LeftArmWeight, value);
         }
 
-        /// <summary>Weight of the walk in the right arm's pose, from shoulder to hand; at 0 it hangs from the walking chest as the animation poses it.</summary>
+        /// <summary>Weight of the walk in the right arm's pose, from shoulder to hand. At 0 the arm follows the walking chest, posed by the animation.</summary>
         public double RightArmWeight
         {
             get => Native.Get(PropertyName.RightArmWeight).AsDouble();
@@ -196,22 +196,22 @@ namespace Footfall
         }
 
         /// <summary>Seed of the walk. Equal seeds give equal walks.</summary>
-        /// <remarks>0 gives every node a walk of its own, and a place in the stride of its own to begin at: both follow from the node's path in its scene, so a scene that is run again walks as before, and two nodes differ. <see cref="GetEffectiveSeed"/> tells which it is. A saved state holds it, so a walk that is loaded goes on alike wherever the node is then. Changing it starts the walk anew.</remarks>
+        /// <remarks>0 derives the seed and the initial phase from the node's path in its scene: the walk is the same whenever the scene runs, and differs between nodes. <see cref="GetEffectiveSeed"/> returns the seed in use. A saved state holds the seed, so a loaded walk continues alike wherever the node is. Changing it starts the walk anew.</remarks>
         public long Seed
         {
             get => Native.Get(PropertyName.Seed).AsInt64();
             set => Native.Set(PropertyName.Seed, value);
         }
 
-        /// <summary>Phase of the stride at which the walk starts: 0 with the left foot touching down, 0.5 with the right, up to 1.</summary>
-        /// <remarks>With a <see cref="Seed"/> of 0 it is counted from the node's own place in the stride. Changing it starts the walk anew.</remarks>
+        /// <summary>Phase of the stride at which the walk starts: 0 at the left initial contact, 0.5 at the right, up to 1.</summary>
+        /// <remarks>With a <see cref="Seed"/> of 0 it is relative to the node's own initial phase. Changing it starts the walk anew.</remarks>
         public double Phase
         {
             get => Native.Get(PropertyName.Phase).AsDouble();
             set => Native.Set(PropertyName.Phase, value);
         }
 
-        /// <summary>Variation between steps: 0 repeats the same step, 1 varies as people do.</summary>
+        /// <summary>Variation between steps: 0 repeats the same step, 1 varies as in people.</summary>
         /// <remarks>Changing it starts the walk anew.</remarks>
         public double Variation
         {
@@ -219,8 +219,8 @@ namespace Footfall
             set => Native.Set(PropertyName.Variation, value);
         }
 
-        /// <summary>Motion of the character as it stands: 0 rests in a still pose, 1 sways, breathes, shifts its weight and looks about as people do, up to 2.</summary>
-        /// <remarks>Feet stay planted. Seeds differ, and nothing comes back in a loop. It comes up as the character comes to rest and dies away with the first step. A model that knows nothing of standing, as those of earlier versions and every <c>.footdyn</c>, rests in a still pose.</remarks>
+        /// <summary>Motion of the standing character: 0 is a still pose; 1 sways, breathes, shifts weight and looks about as people do; up to 2.</summary>
+        /// <remarks>Feet stay planted. Seeds differ, and the motion does not loop. It fades in as the character comes to rest and out with the first step. Models without standing motion, such as those of earlier versions and every <c>.footdyn</c>, stand in a still pose.</remarks>
         public double StandingMotion
         {
             get => Native.Get(PropertyName.StandingMotion).AsDouble();
@@ -228,14 +228,14 @@ namespace Footfall
         }
 
         /// <summary>Resolution of the walk: every frame of the model, every second (half) or every fourth (quarter).</summary>
-        /// <remarks>Lower it for characters far from the camera. The walk is the same, but feet slip a little between frames. Taken up with the next step.</remarks>
+        /// <remarks>Lower it for characters far from the camera. The walk is the same, but feet slip slightly between frames. Changes apply with the next step.</remarks>
         public GaitDetail Detail
         {
             get => (GaitDetail)Native.Get(PropertyName.Detail).AsInt64();
             set => Native.Set(PropertyName.Detail, (long)value);
         }
 
-        /// <summary>If <c>true</c>, the character walks. When off, it holds the pose that it is in.</summary>
+        /// <summary>If <c>true</c>, the character walks. If <c>false</c>, it holds its pose.</summary>
         public bool Playing
         {
             get => Native.Get(PropertyName.Playing).AsBool();
@@ -243,7 +243,7 @@ namespace Footfall
         }
 
         /// <summary>If <c>true</c>, the walk moves the character.</summary>
-        /// <remarks>On: the node found through <see cref="Character"/> travels, in such a way that the standing foot does not move. Off: the character walks in place, and <see cref="GetRootMotionDelta"/> tells how far it would have travelled.</remarks>
+        /// <remarks>On: the node of <see cref="Character"/> travels so that the standing foot does not move. Off: the character walks in place, and <see cref="GetRootMotionDelta"/> returns the travel.</remarks>
         public bool RootMotion
         {
             get => Native.Get(PropertyName.RootMotion).AsBool();
@@ -251,35 +251,35 @@ namespace Footfall
         }
 
         /// <summary>The <c>Node3D</c> that travels, above the <c>Skeleton3D</c>. Its Y axis is up.</summary>
-        /// <remarks>Left empty, it is the nearest <c>CharacterBody3D</c> above the skeleton; failing that the root of the scene that the skeleton came in, for an imported character its top node.</remarks>
+        /// <remarks>If empty, the nearest <c>CharacterBody3D</c> above the skeleton travels; without one, the root of the scene that contains the skeleton, which for an imported character is its top node.</remarks>
         public NodePath Character
         {
             get => Native.Get(PropertyName.Character).AsNodePath();
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names.</summary>
+        /// <summary>Assignment of bones to the joints of the profile, for rigs that are not recognised. It takes precedence over bone names.</summary>
         public BoneMap BoneMap
         {
             get => (BoneMap)Native.Get(PropertyName.BoneMap).AsGodotObject();
             set => Native.Set(PropertyName.BoneMap, value);
         }
 
-        /// <summary>Identity of the walk for other peers of a multiplayer game, for a <c>MultiplayerSynchronizer</c> such as <c>controller/gait_synchronizer.tscn</c> of the add-on: to be replicated On Change, and with Spawn. Peers without the multiplayer authority of the node that travels get it, and make that walker's steps. Empty until the walk begins.</summary>
+        /// <summary>Identity of the walk for other peers of a multiplayer game. A <c>MultiplayerSynchronizer</c>, such as the add-on's <c>controller/gait_synchronizer.tscn</c>, replicates it On Change and with Spawn. Peers without multiplayer authority over the node that travels receive it and make that walker's steps. Empty until the walk begins.</summary>
         public byte[] ReplicaIdentity
         {
             get => Native.Get(PropertyName.ReplicaIdentity).AsByteArray();
             set => Native.Set(PropertyName.ReplicaIdentity, value);
         }
 
-        /// <summary>Progress of the walk for other peers: 24 bytes, to be replicated Always, every 0.03 to 0.07 s. Any may get lost. On peers that get it nothing else steers the character; what parts it from its place is walked off, beyond 0.75 m it is set there. Places are those of the parent of the node that travels, or of the <c>CharacterBody3D</c> that it is in: do not replicate its <c>position</c> and <c>rotation</c> as well.</summary>
+        /// <summary>Progress of the walk for other peers: 24 bytes, replicated Always, every 0.03 to 0.07 s. Updates may be lost. On peers that receive it nothing else steers the character. The next steps walk off a difference in place; beyond 0.75 m the character is moved. Places are relative to the parent of the node that travels, or of the <c>CharacterBody3D</c> that holds it: do not also replicate <c>position</c> and <c>rotation</c>.</summary>
         public byte[] ReplicaState
         {
             get => Native.Get(PropertyName.ReplicaState).AsByteArray();
             set => Native.Set(PropertyName.ReplicaState, value);
         }
 
-        /// <summary>A step begins: <c>foot</c>, <c>left</c> or <c>right</c>, will land at <c>position</c> in <c>seconds</c>, as long as the walk goes on as it does.</summary>
+        /// <summary>Emitted when a step begins: <c>foot</c>, <c>left</c> or <c>right</c>, will land at <c>position</c> in <c>seconds</c> if nothing changes the walk.</summary>
         /// <remarks><c>position</c> is in global space, on the flat floor of the walk. Emitted once for every step, not in the editor.</remarks>
         /// <value>Handlers take <c>foot</c>, <c>position</c>, <c>seconds</c>.</value>
         public event Action<StringName, Vector3, double> FootholdPlanned
@@ -288,7 +288,7 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.FootholdPlanned, Callable.From(value));
         }
 
-        /// <summary>A foot touches down: <c>foot</c> is <c>left</c> or <c>right</c>, <c>position</c> the middle of the contact on the ground, in global space.</summary>
+        /// <summary>Emitted when a foot touches down: <c>foot</c> is <c>left</c> or <c>right</c>, <c>position</c> the middle of the contact on the ground, in global space.</summary>
         /// <remarks>Emitted exactly once for every initial contact, not in the editor.</remarks>
         /// <value>Handlers take <c>foot</c>, <c>position</c>.</value>
         public event Action<StringName, Vector3> Footstep
@@ -297,7 +297,7 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.Footstep, Callable.From(value));
         }
 
-        /// <summary>The character begins to walk or to run: <see cref="Gait"/> is <c>walk</c> or <c>run</c>. Emitted with the first step of it, not in the editor.</summary>
+        /// <summary>Emitted with the first step of a new gait: <see cref="Gait"/> is <c>walk</c> or <c>run</c>. Not emitted in the editor.</summary>
         /// <value>Handlers take <c>gait</c>.</value>
         public event Action<StringName> GaitChanged
         {
@@ -305,14 +305,14 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.GaitChanged, Callable.From(value));
         }
 
-        /// <summary>After <see cref="HandOver"/>: the pose is that of what else animates the skeleton.</summary>
+        /// <summary>Emitted after <see cref="HandOver"/>, when other animation poses the whole skeleton.</summary>
         public event Action HandedOver
         {
             add => Native.Connect(SignalName.HandedOver, Callable.From(value));
             remove => Native.Disconnect(SignalName.HandedOver, Callable.From(value));
         }
 
-        /// <summary>A foot, <c>left</c> or <c>right</c>, lands after a jump: one after a leap, both after a jump off both feet. Not emitted in the editor.</summary>
+        /// <summary>Emitted when a foot, <c>left</c> or <c>right</c>, lands after a jump: one foot after a leap, both after a two-footed jump. Not emitted in the editor.</summary>
         /// <value>Handlers take <c>foot</c>.</value>
         public event Action<StringName> Landed
         {
@@ -320,7 +320,7 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.Landed, Callable.From(value));
         }
 
-        /// <summary>A peer's message about this walk is refused: <c>reason</c> says why and what to do. Emitted every five seconds at most; the walk goes on as before.</summary>
+        /// <summary>Emitted when a peer's message about this walk is refused: <c>reason</c> gives the cause and what to do. Emitted every five seconds at most; the walk continues.</summary>
         /// <value>Handlers take <c>reason</c>.</value>
         public event Action<string> ReplicaRefused
         {
@@ -328,92 +328,92 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.ReplicaRefused, Callable.From(value));
         }
 
-        /// <summary>Emitted when the pose from before <see cref="TakeOver"/> has faded: the pose is the walk's.</summary>
+        /// <summary>Emitted after <see cref="TakeOver"/>, when the previous pose has faded out.</summary>
         public event Action TakenOver
         {
             add => Native.Connect(SignalName.TakenOver, Callable.From(value));
             remove => Native.Disconnect(SignalName.TakenOver, Callable.From(value));
         }
 
-        /// <summary>The character leaves the ground in a jump. Not emitted in the editor.</summary>
+        /// <summary>Emitted when the character leaves the ground in a jump. Not emitted in the editor.</summary>
         public event Action TookOff
         {
             add => Native.Connect(SignalName.TookOff, Callable.From(value));
             remove => Native.Disconnect(SignalName.TookOff, Callable.From(value));
         }
 
-        /// <summary>Makes animations of this character's walk, which an <c>AnimationPlayer</c> or <c>AnimationTree</c> plays without the add-on: for a platform that the add-on is not built for, for another tool, or for a crowd of one's own. Returns <c>null</c> where the character cannot walk; the log says why.</summary>
+        /// <summary>Bakes this character's walk to animations, which an <c>AnimationPlayer</c> or <c>AnimationTree</c> plays without the add-on: for platforms without a build of the add-on, for other tools, or for a crowd of your own. Returns <c>null</c> if the character cannot walk; the log gives the reason.</summary>
         /// <remarks>
-        /// <para><c>seconds</c> is how long a clip is about: whole strides are taken, from one touching down of the left foot to another. <see cref="Styles"/> names some of the node's <see cref="Styles"/>, and <c>neutral</c> the walk without one; empty are all of them. <c>speeds</c> are in metres per second. The clips are <c>walk_&lt;style&gt;_&lt;speed&gt;</c>, such as <c>walk_sad_1.2</c>, and <c>idle_&lt;style&gt;</c>; all of them loop, and are made of <see cref="Seed"/>, <see cref="Variation"/> and <see cref="StandingMotion"/>.</para>
-        /// <para>The root moves evenly, exactly at the speed that the clip is named for. Its track is the topmost bone above the hips, or the <c>Skeleton3D</c> itself where hips are topmost. Tell it to whoever plays the clips: <c>player.root_motion_track = library.get_meta(&quot;root_motion_track&quot;)</c>. Paths begin at the root of the scene that the skeleton came in, where an imported character has its <c>AnimationPlayer</c>.</para>
-        /// <para>A clip takes some tens of milliseconds to make. Nothing of the node changes.</para>
+        /// <para><c>seconds</c> is the approximate length of a clip: it is rounded to whole strides, from one left initial contact to another. <see cref="Styles"/> names some of the node's <see cref="Styles"/>, or <c>neutral</c> for the walk without a style; if it is empty, all are baked. <c>speeds</c> are in metres per second. The clips are named <c>walk_&lt;style&gt;_&lt;speed&gt;</c>, such as <c>walk_sad_1.2</c>, and <c>idle_&lt;style&gt;</c>. All of them loop and use <see cref="Seed"/>, <see cref="Variation"/> and <see cref="StandingMotion"/>.</para>
+        /// <para>The root moves at exactly the constant speed in the clip's name. Its track is the topmost bone above the hips, or the <c>Skeleton3D</c> itself if the hips are topmost. Set it on the player: <c>player.root_motion_track = library.get_meta(&quot;root_motion_track&quot;)</c>. Paths start at the root of the scene that contains the skeleton, where an imported character has its <c>AnimationPlayer</c>.</para>
+        /// <para>Baking takes some tens of milliseconds per clip. The node does not change.</para>
         /// </remarks>
         public AnimationLibrary Bake(double seconds, string[] styles, float[] speeds) => (AnimationLibrary)Native.Call(MethodName.Bake, seconds, styles, speeds).AsGodotObject();
 
-        /// <summary>The gait of the step that is walked now: <c>walk</c> or <c>run</c>.</summary>
+        /// <summary>Returns the gait of the current step: <c>walk</c> or <c>run</c>.</summary>
         public StringName GetCurrentGait() => Native.Call(MethodName.GetCurrentGait).AsStringName();
 
-        /// <summary>The seed of the walk: <see cref="Seed"/>, or where that is 0 the node's own, or that of the state that it goes on from.</summary>
+        /// <summary>Returns the seed in use: <see cref="Seed"/>; if that is 0, the node's own seed, or that of a restored state.</summary>
         public long GetEffectiveSeed() => Native.Call(MethodName.GetEffectiveSeed).AsInt64();
 
-        /// <summary>Problems that keep the character from walking, each with what to do next; empty without any.</summary>
-        /// <remarks>The editor shows the same as configuration warnings.</remarks>
+        /// <summary>Returns the problems that keep the character from walking, each with what to do next; empty if there are none.</summary>
+        /// <remarks>The editor shows the same texts as configuration warnings.</remarks>
         public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
 
-        /// <summary>Returns the character's travel and turn in its own space: axes and scale are those of its node.</summary>
+        /// <summary>Returns the character's travel and turn in its own space, along the axes and in the scale of its node.</summary>
         /// <remarks>
-        /// <para>Asked in <c>_physics_process()</c>, since the frame of the physics before; asked in <c>_process()</c>, since the frame before: whoever asks once a frame is told all of it, at any frame rate, and asked twice in a frame it says the same. After the skeleton has moved within a frame, as in a function connected to <c>modification_processed</c>, it is that frame's. For a skeleton that is advanced by hand, it is what the last <c>advance()</c> did.</para>
+        /// <para>The call returns the travel since the previous physics frame in <c>_physics_process()</c>, and since the previous frame in <c>_process()</c>: one call per frame adds up to the whole travel at any frame rate, and repeated calls in a frame return the same value. After the skeleton has moved within a frame, as in a function connected to <c>modification_processed</c>, it returns that frame's travel. For a skeleton that is advanced by hand, it returns the travel of the last <c>advance()</c>.</para>
         /// <para>With <see cref="RootMotion"/> off, move the character by it in a function connected to <c>modification_processed</c>, so that body and feet move in the same frame: <c>character.global_transform *= gait.get_root_motion_delta()</c>, or with collisions <c>character.move_and_collide(character.global_basis * gait.get_root_motion_delta().origin)</c>.</para>
         /// </remarks>
         public Transform3D GetRootMotionDelta() => Native.Call(MethodName.GetRootMotionDelta).AsTransform3D();
 
-        /// <summary>The walk as it is now, to be saved or sent: <see cref="SetState"/> of a node with the same model, styles and body goes on from it with the same poses. About 1.5 kB; empty while the character does not walk.</summary>
-        /// <remarks>It holds the walk and not the place of the character: save that beside it.</remarks>
+        /// <summary>Returns the current state of the walk, to be saved or sent: <see cref="SetState"/> on a node with the same model, styles and body continues with the same poses. About 1.5 kB; empty while the character does not walk.</summary>
+        /// <remarks>The state does not include the character's transform: save it as well.</remarks>
         public byte[] GetState() => Native.Call(MethodName.GetState).AsByteArray();
 
-        /// <summary>Time since the walk began, in seconds.</summary>
+        /// <summary>Returns the time since the walk began, in seconds.</summary>
         public double GetTime() => Native.Call(MethodName.GetTime).AsDouble();
 
-        /// <summary>Leaves the skeleton to what else animates it, such as an <c>AnimationPlayer</c>: its pose takes over within <c>seconds</c>, the character comes to rest, and feet on the ground stay where they are, or make a step if the animation has them elsewhere; that may take half a second more. Then <see cref="HandedOver"/> is emitted, and the node does nothing until <see cref="TakeOver"/>.</summary>
+        /// <summary>Gives the skeleton to other animation, such as an <c>AnimationPlayer</c>: its pose fades in within <c>seconds</c>, the character comes to rest, and feet on the ground stay in place, or take a step if the animation has them elsewhere, which may take half a second more. Then <see cref="HandedOver"/> is emitted, and the node does nothing until <see cref="TakeOver"/>.</summary>
         /// <remarks>With 0 seconds it does nothing from the next frame on.</remarks>
         public void HandOver(double seconds) => Native.Call(MethodName.HandOver, seconds);
 
-        /// <summary>Returns whether any part of a foot, <c>left</c> or <c>right</c>, stands on the ground.</summary>
+        /// <summary>Returns <c>true</c> if any part of the foot, <c>left</c> or <c>right</c>, is on the ground.</summary>
         public bool IsFootOnGround(StringName foot) => Native.Call(MethodName.IsFootOnGround, foot).AsBool();
 
-        /// <summary>Returns whether the skeleton is left to other animation: after <see cref="HandOver"/>, until <see cref="TakeOver"/>.</summary>
+        /// <summary>Returns <c>true</c> while other animation has the skeleton: after <see cref="HandOver"/>, until <see cref="TakeOver"/>.</summary>
         public bool IsHandedOver() => Native.Call(MethodName.IsHandedOver).AsBool();
 
-        /// <summary>Returns whether the character makes the steps of another peer's: an identity has come for it, and this peer has not the multiplayer authority of the node that travels.</summary>
+        /// <summary>Returns <c>true</c> if the character makes the steps of another peer: it has received an identity, and this peer has no multiplayer authority over the node that travels.</summary>
         public bool IsReplica() => Native.Call(MethodName.IsReplica).AsBool();
 
-        /// <summary>Asks for one jump in which the hips rise <c>height</c> metres above where they were: 0.1 to 0.5 is what adults do.</summary>
+        /// <summary>Requests one jump in which the hips rise by <c>height</c> metres; 0.1 to 0.5 is typical of adults.</summary>
         /// <remarks>
-        /// <para>A standing character jumps off both feet at once; one that walks or runs forwards leaps with the next step, off one foot onto the other; one that goes sideways or backwards comes to a stand first. The body bends its knees, <see cref="TookOff"/> is emitted as it leaves the ground and <see cref="Landed"/> as it is back. A jump off both feet moves the character up and down by its root motion; a leap lifts the body above the character. Asking again while a jump is waited for or under way changes nothing.</para>
-        /// <para>Returns whether there will be a jump: not before the first frame of the walk, with a model that knows none (any <c>.footdyn</c>, and <c>.footfall</c> files without <c>footfall train --jumping</c>), or for a height that is none.</para>
+        /// <para>A standing character jumps off both feet. One that walks or runs forwards leaps with the next step, off one foot onto the other. One that goes sideways or backwards stops first. The body bends its knees; <see cref="TookOff"/> is emitted as it leaves the ground and <see cref="Landed"/> as it returns. The root motion of a two-footed jump moves the character up and down; a leap lifts the body above the character. Further requests while a jump is pending or under way have no effect.</para>
+        /// <para>Returns <c>true</c> if the character will jump. It will not before the first frame of the walk, with a model without jumps (any <c>.footdyn</c>, and <c>.footfall</c> files trained without <c>footfall train --jumping</c>), or for an invalid height.</para>
         /// </remarks>
         public bool Jump(double height) => Native.Call(MethodName.Jump, height).AsBool();
 
-        /// <summary>Asks for one jump off both feet that lands at <c>position</c>, in global space: onto a wall, over a gap, down from a ledge. Who moves comes to a stand first. It does not turn: face the place before. It rises as high as the way needs.</summary>
-        /// <remarks>A place farther than people jump (about twice the length of the legs ahead, two thirds of it to the side or back, and six tenths of it up) is not reached; the jump goes as far as it can in that direction. Returns whether there will be a jump, as <see cref="Jump"/> does.</remarks>
+        /// <summary>Requests one two-footed jump that lands at <c>position</c>, in global space: onto a wall, over a gap, down from a ledge. A moving character stops first. The character does not turn: face the place before the jump. The jump is as high as its distance requires.</summary>
+        /// <remarks>A place beyond the reach of people (about twice the leg length ahead, two thirds of it to the side or back, and six tenths of it up) is not reached; the jump goes as far as it can in that direction. Returns <c>true</c> if the character will jump, as <see cref="Jump"/> does.</remarks>
         public bool JumpTo(Vector3 position) => Native.Call(MethodName.JumpTo, position).AsBool();
 
-        /// <summary>Pushes the character by an impulse in newton seconds, in global space; only its way over the ground counts. The body has 70 kg: 20 make it sway over its feet, 60 take a step or two, 140 and more count as 140.</summary>
-        /// <remarks>It comes to a stand again, or goes on as asked. In a jump off both feet, before the first frame of the walk and with a <c>.footdyn</c> model nothing happens.</remarks>
+        /// <summary>Pushes the character by an impulse in newton seconds, in global space; only its horizontal part counts. The body's mass is 70 kg: 20 make it sway over its feet, 60 take a step or two, and more than 140 count as 140.</summary>
+        /// <remarks>The character then stands again or continues as controlled. In a two-footed jump, before the first frame of the walk and with a <c>.footdyn</c> model a push has no effect.</remarks>
         public void Push(Vector3 impulse) => Native.Call(MethodName.Push, impulse);
 
-        /// <summary>Starts the walk anew from <see cref="Seed"/> and <see cref="Phase"/>, where the character stands now. Also measures the skeleton anew.</summary>
+        /// <summary>Starts the walk anew from <see cref="Seed"/> and <see cref="Phase"/> at the character's current place. Also measures the skeleton again.</summary>
         public void Restart() => Native.Call(MethodName.Restart);
 
-        /// <summary>Goes to a time of the walk, in seconds from where it began: it is walked there from its beginning with the speed, turning and styles that are set now. The character does not travel by it. At most an hour; a minute takes some milliseconds.</summary>
+        /// <summary>Moves to a time of the walk, in seconds from its beginning, computed with the current speed, turning and styles. The character does not travel. At most an hour; a minute takes some milliseconds.</summary>
         public void Seek(double seconds) => Native.Call(MethodName.Seek, seconds);
 
-        /// <summary>Goes on from a state that <see cref="GetState"/> told, at the next frame. A state of another model, other styles or from a damaged file is refused: the log says why, and the walk goes on as it was.</summary>
-        /// <remarks><see cref="Seed"/>, <see cref="Phase"/> and <see cref="Variation"/> keep their values, for the next walk that starts anew.</remarks>
+        /// <summary>Restores a state from <see cref="GetState"/> in the next frame. A state of another model, of other styles or from a damaged file is refused: the log gives the reason, and the walk continues unchanged.</summary>
+        /// <remarks><see cref="Seed"/>, <see cref="Phase"/> and <see cref="Variation"/> keep their values for the next walk that restarts.</remarks>
         public void SetState(byte[] state) => Native.Call(MethodName.SetState, state);
 
-        /// <summary>Begins to walk from whatever pose and speed the skeleton has: the end of an attack, a jump that lands, a ragdoll. The walk begins on the side and at the moment of the stride that fit best, or with a first step if the body stands; feet on the ground stay there until they are lifted. What parts the two motions is gone in <c>seconds</c>; then <see cref="TakenOver"/> is emitted.</summary>
-        /// <remarks>Call it after <see cref="HandOver"/>, so that the node knows how fast the body is; else it watches the skeleton for two frames first. A <c>PhysicalBoneSimulator3D</c> has to be above this node under the skeleton; where the body fell, the character follows it.</remarks>
+        /// <summary>Starts to walk from the current pose and speed of the skeleton: after an attack, a landing, a ragdoll. The walk begins at the best matching side and phase of the stride, or with a first step if the body stands. Feet on the ground stay there until they lift. The difference between the two motions fades out in <c>seconds</c>; then <see cref="TakenOver"/> is emitted.</summary>
+        /// <remarks>Call it after <see cref="HandOver"/>, so that the node knows the body's speed; otherwise it first observes the skeleton for two frames. A <c>PhysicalBoneSimulator3D</c> must be above this node under the skeleton; the character then moves to where the body fell.</remarks>
         public void TakeOver(double seconds) => Native.Call(MethodName.TakeOver, seconds);
     }
 }

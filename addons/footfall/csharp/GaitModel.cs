@@ -6,8 +6,8 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>A way of walking that was learned from recordings: a trained walk (<c>.footfall</c>, made by <c>footfall train</c>) or a switching model (<c>.footdyn</c>, made by <c>footfall dynamics fit</c>).</summary>
-    /// <remarks>Either file in the project is this resource, as it is. Give it to a <see cref="GaitGenerator3D"/>'s <c>model</c>. One model serves any number of characters. A trained walk knows many walkers, changes its step with its speed and wears styles; a switching model is a hundredth of its size, and is one person's way of walking.</remarks>
+    /// <summary>Gait model learned from recordings: a trained walk (<c>.footfall</c>, made by <c>footfall train</c>) or a switching model (<c>.footdyn</c>, made by <c>footfall dynamics fit</c>).</summary>
+    /// <remarks>Godot loads either file as this resource, without import. Set it as the <c>model</c> of a <see cref="GaitGenerator3D"/>. One model serves any number of characters. A trained walk knows many walkers, adapts its steps to the speed and supports styles. A switching model has a hundredth of its size and one person's way of walking.</remarks>
     public class GaitModel : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -54,29 +54,29 @@ namespace Footfall
         /// <summary>Loads one from a file of the project.</summary>
         public static GaitModel Load(string path) => From(GD.Load<Resource>(path));
 
-        /// <summary>The bytes of the <c>.footfall</c> or <c>.footdyn</c> file.</summary>
-        /// <remarks>Plain bytes, so that a scene or <c>.res</c> file that holds the resource needs nothing but built-in storage.</remarks>
+        /// <summary>Bytes of the <c>.footfall</c> or <c>.footdyn</c> file.</summary>
+        /// <remarks>Plain bytes, so that a scene or <c>.res</c> file with this resource needs built-in storage only.</remarks>
         public byte[] Data
         {
             get => Native.Get(PropertyName.Data).AsByteArray();
             set => Native.Set(PropertyName.Data, value);
         }
 
-        /// <summary>Description of the model and of the recordings that it was trained on, or what is wrong with its file.</summary>
+        /// <summary>Description of the model and its training recordings, or the problem of its file.</summary>
         public string Description => Native.Get(PropertyName.Description).AsString();
 
-        /// <summary>Makes a model from the bytes of a <c>.footfall</c> or <c>.footdyn</c> file, for example one that the game downloaded.</summary>
-        /// <remarks>Ask <see cref="GetError"/> whether the bytes were a model.</remarks>
+        /// <summary>Creates a model from the bytes of a <c>.footfall</c> or <c>.footdyn</c> file, for example a downloaded one.</summary>
+        /// <remarks><see cref="GetError"/> returns a problem if the bytes are not a model.</remarks>
         public static GaitModel FromBytes(byte[] bytes) => GaitModel.From(ClassDB.ClassCallStatic(NativeName, MethodName.FromBytes, bytes).AsGodotObject());
 
-        /// <summary>Problem of the model's file, with the next thing to do; empty without one.</summary>
+        /// <summary>Returns the problem of the model's file, with what to do next; empty if there is none.</summary>
         public string GetError() => Native.Call(MethodName.GetError).AsString();
 
-        /// <summary>The slowest and the fastest walk that the model was trained on, in metres per second. Zero for a broken model; a switching model knows one speed.</summary>
+        /// <summary>Returns the slowest and the fastest walk that the model was trained on, in metres per second. Zero for an invalid model; a switching model knows one speed.</summary>
         /// <remarks>A <see cref="GaitGenerator3D"/> also walks outside this range, by extrapolation.</remarks>
         public Vector2 GetSpeedRange() => Native.Call(MethodName.GetSpeedRange).AsVector2();
 
-        /// <summary>Returns whether this is a switching model, which wears no styles.</summary>
+        /// <summary>Returns <c>true</c> for a switching model, which has no styles.</summary>
         public bool IsSwitching() => Native.Call(MethodName.IsSwitching).AsBool();
     }
 }

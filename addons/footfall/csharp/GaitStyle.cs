@@ -6,8 +6,8 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>A style of walking, made by <c>footfall adapt</c> from about a dozen steps and stored in a <c>.footstyle</c> file.</summary>
-    /// <remarks>A <c>.footstyle</c> file in the project is this resource, as it is. Add it to a <see cref="GaitGenerator3D"/>'s <c>styles</c> and give it a weight in <c>style_weights</c>. A style belongs to the <see cref="GaitModel"/> that it was adapted from.</remarks>
+    /// <summary>Style of walking, made by <c>footfall adapt</c> from about a dozen steps and stored in a <c>.footstyle</c> file.</summary>
+    /// <remarks>Godot loads a <c>.footstyle</c> file as this resource, without import. Add it to the <c>styles</c> of a <see cref="GaitGenerator3D"/> and set its weight in <c>style_weights</c>. A style fits only the <see cref="GaitModel"/> that it was adapted from.</remarks>
     public class GaitStyle : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -54,29 +54,29 @@ namespace Footfall
         /// <summary>Loads one from a file of the project.</summary>
         public static GaitStyle Load(string path) => From(GD.Load<Resource>(path));
 
-        /// <summary>The bytes of the <c>.footstyle</c> file.</summary>
-        /// <remarks>Plain bytes, so that a scene or <c>.res</c> file that holds the resource needs nothing but built-in storage.</remarks>
+        /// <summary>Bytes of the <c>.footstyle</c> file.</summary>
+        /// <remarks>Plain bytes, so that a scene or <c>.res</c> file with this resource needs built-in storage only.</remarks>
         public byte[] Data
         {
             get => Native.Get(PropertyName.Data).AsByteArray();
             set => Native.Set(PropertyName.Data, value);
         }
 
-        /// <summary>Description of the style and of the recordings that it was made from, or what is wrong with its file.</summary>
+        /// <summary>Description of the style and its recordings, or the problem of its file.</summary>
         public string Description => Native.Get(PropertyName.Description).AsString();
 
-        /// <summary>Makes a style from the bytes of a <c>.footstyle</c> file, for example one that the game downloaded.</summary>
-        /// <remarks>Ask <see cref="GetError"/> whether the bytes were a style.</remarks>
+        /// <summary>Creates a style from the bytes of a <c>.footstyle</c> file, for example a downloaded one.</summary>
+        /// <remarks><see cref="GetError"/> returns a problem if the bytes are not a style.</remarks>
         public static GaitStyle FromBytes(byte[] bytes) => GaitStyle.From(ClassDB.ClassCallStatic(NativeName, MethodName.FromBytes, bytes).AsGodotObject());
 
-        /// <summary>Problem of the style's file, with the next thing to do; empty without one.</summary>
+        /// <summary>Returns the problem of the style's file, with what to do next; empty if there is none.</summary>
         public string GetError() => Native.Call(MethodName.GetError).AsString();
 
-        /// <summary>Name of the style, such as <c>proud</c>. Empty for a broken style.</summary>
+        /// <summary>Returns the name of the style, such as <c>proud</c>. Empty for an invalid style.</summary>
         public string GetStyleName() => Native.Call(MethodName.GetStyleName).AsString();
 
-        /// <summary>Speed at which people walked in this style, in metres per second. Zero for a broken style.</summary>
-        /// <remarks>A character walks at its node's <c>speed</c> whatever its style; this is the speed that suits the style best.</remarks>
+        /// <summary>Returns the speed at which people walked in this style, in metres per second. Zero for an invalid style.</summary>
+        /// <remarks>A character walks at its node's <c>speed</c> in any style; this speed suits the style best.</remarks>
         public double GetUsualSpeed() => Native.Call(MethodName.GetUsualSpeed).AsDouble();
     }
 }

@@ -6,7 +6,7 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Makes styles of walking of the clips that a game has. For scripts in the editor (<c>@tool</c>, <c>EditorScript</c>); exported games are without it.</summary>
+    /// <summary>Makes styles of walking from a game's clips. For scripts in the editor (<c>@tool</c>, <c>EditorScript</c>); exported games do not have this class.</summary>
     /// <remarks>The <i>Gait Style</i> dock does the same with a form.</remarks>
     public class GaitStyleMaker : FootfallObject
     {
@@ -48,20 +48,20 @@ namespace Footfall
             return wrapper != null;
         }
 
-        /// <summary>The skeleton that animations without a character were made for. Scenes and files of characters bring their own.</summary>
+        /// <summary>Skeleton of animations without a character. Scenes and character files have their own.</summary>
         public Skeleton3D Skeleton
         {
             get => (Skeleton3D)Native.Get(PropertyName.Skeleton).AsGodotObject();
             set => Native.Set(PropertyName.Skeleton, value);
         }
 
-        /// <summary>The problem of the style that was asked for last, or what there is to be said about it: that it is thin, and which clips show no steps. Empty when all is well.</summary>
+        /// <summary>Returns the problem of the last style, or a remark: that it is thin, and which clips show no steps. Empty if there is none.</summary>
         public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
 
-        /// <summary>Adapts the walk of <c>model</c> to <c>clips</c> and returns the style, or <c>null</c>; <see cref="GetMessage"/> says why, or that the style is thin.</summary>
+        /// <summary>Adapts the walk of <c>model</c> to <c>clips</c> and returns the style, or <c>null</c>. <see cref="GetMessage"/> returns the reason, or warns that the style is thin.</summary>
         /// <remarks>
-        /// <para>A clip is a <c>PackedScene</c> with a <c>Skeleton3D</c> and an <c>AnimationPlayer</c>, all of whose animations are taken; an <c>Animation</c> or an <c>AnimationLibrary</c> of <see cref="Skeleton"/>; or the path of a <c>.bvh</c>, <c>.glb</c>, <c>.gltf</c>, imported or saved file, with <c>#Name</c> behind it for one of its animations. Clips that walk in place get their travel from the standing foot, and loops are repeated. Takes some seconds, and the editor waits.</para>
-        /// <para>Save the style's <c>data</c> as a <c>.footstyle</c> file to use it in the game.</para>
+        /// <para>A clip is a <c>PackedScene</c> with a <c>Skeleton3D</c> and an <c>AnimationPlayer</c>, whose animations are all used; an <c>Animation</c> or an <c>AnimationLibrary</c> for <see cref="Skeleton"/>; or the path of a <c>.bvh</c>, <c>.glb</c>, <c>.gltf</c>, imported or saved file, followed by <c>#Name</c> for one of its animations. In-place clips get their travel from the standing foot, and loops are repeated. The call blocks the editor for some seconds.</para>
+        /// <para>To use the style in a game, save its <c>data</c> as a <c>.footstyle</c> file.</para>
         /// </remarks>
         public GaitStyle MakeStyle(GaitModel model, Godot.Collections.Array clips, string name) => GaitStyle.From(Native.Call(MethodName.MakeStyle, model, clips, name).AsGodotObject());
     }

@@ -6,8 +6,8 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Knows what one or two inertial sensors on a body mean for the whole body (<c>.footimu</c>, made by <c>footfall imu train</c>).</summary>
-    /// <remarks>The file in the project is this resource, as it is. Give it to an <see cref="ImuReconstructor3D"/>'s <c>model</c>. One model serves any number of characters.</remarks>
+    /// <summary>Sensor model that maps one or two inertial sensors on a body to the whole body (<c>.footimu</c>, made by <c>footfall imu train</c>).</summary>
+    /// <remarks>Godot loads the file as this resource, without import. Set it as the <c>model</c> of an <see cref="ImuReconstructor3D"/>. One model serves any number of characters.</remarks>
     public class ImuModel : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -53,25 +53,25 @@ namespace Footfall
         /// <summary>Loads one from a file of the project.</summary>
         public static ImuModel Load(string path) => From(GD.Load<Resource>(path));
 
-        /// <summary>The bytes of the <c>.footimu</c> file.</summary>
-        /// <remarks>Plain bytes, so that a scene or <c>.res</c> file that holds the resource needs nothing but built-in storage.</remarks>
+        /// <summary>Bytes of the <c>.footimu</c> file.</summary>
+        /// <remarks>Plain bytes, so that a scene or <c>.res</c> file with this resource needs built-in storage only.</remarks>
         public byte[] Data
         {
             get => Native.Get(PropertyName.Data).AsByteArray();
             set => Native.Set(PropertyName.Data, value);
         }
 
-        /// <summary>Sensors that the model is for and recordings that it was trained on, or the fault of its file.</summary>
+        /// <summary>Sensors of the model and its training recordings, or the problem of its file.</summary>
         public string Description => Native.Get(PropertyName.Description).AsString();
 
-        /// <summary>Makes a model from the bytes of a <c>.footimu</c> file, for example one that the game downloaded.</summary>
-        /// <remarks>Ask <see cref="GetError"/> whether the bytes were a model.</remarks>
+        /// <summary>Creates a model from the bytes of a <c>.footimu</c> file, for example a downloaded one.</summary>
+        /// <remarks><see cref="GetError"/> returns a problem if the bytes are not a model.</remarks>
         public static ImuModel FromBytes(byte[] bytes) => ImuModel.From(ClassDB.ClassCallStatic(NativeName, MethodName.FromBytes, bytes).AsGodotObject());
 
-        /// <summary>Problem of the model's file, with the next thing to do; empty without one.</summary>
+        /// <summary>Returns the problem of the model's file, with what to do next; empty if there is none.</summary>
         public string GetError() => Native.Call(MethodName.GetError).AsString();
 
-        /// <summary>Sites of the sensors, in order: for example <c>right_foot</c>. Empty for a broken model.</summary>
+        /// <summary>Returns the sites of the sensors, in order, for example <c>right_foot</c>. Empty for an invalid model.</summary>
         public string[] GetSites() => Native.Call(MethodName.GetSites).AsStringArray();
     }
 }

@@ -8,7 +8,7 @@ namespace Footfall
 {
     /// <summary>Drives a whole character from one or two inertial sensors on a person: walking, running, jumping, hopping, sidestepping.</summary>
     /// <remarks>
-    /// <para>Add it under a <c>Skeleton3D</c> with humanoid bones, give it a <see cref="Model"/> for the place at which the sensor is worn, and a <see cref="Source"/>; or push samples of any sensor with <see cref="PushSample"/>. The pose is that of recorded people whose sensors would have measured the same; feet that stand stay where they are.</para>
+    /// <para>Add it under a <c>Skeleton3D</c> with humanoid bones. Set its <see cref="Model"/> for the place where the sensor is worn, and its <see cref="Source"/>; or push samples of any sensor by <see cref="PushSample"/>. The pose is that of recorded people whose sensors would have measured the same. Standing feet stay in place.</para>
     /// <para>Bones are found as by <see cref="GaitGenerator3D"/>. In the editor the character stands.</para>
     /// </remarks>
     public class ImuReconstructor3D : FootfallObject
@@ -90,21 +90,21 @@ namespace Footfall
         }
 
         /// <summary>The sensor model: a <c>.footimu</c> file.</summary>
-        /// <remarks>A node that is added in the editor has <c>addons/footfall/models/right_foot.footimu</c>; where this is empty, it is used as well.</remarks>
+        /// <remarks>A node added in the editor starts with <c>addons/footfall/models/right_foot.footimu</c>. The same model is used if this is empty.</remarks>
         public ImuModel Model
         {
             get => ImuModel.From(Native.Get(PropertyName.Model).AsGodotObject());
             set => Native.Set(PropertyName.Model, value);
         }
 
-        /// <summary>Source of the samples: a <see cref="PhoneImuSource"/>, <see cref="SerialImuSource"/>, <see cref="NetworkImuSource"/>, <see cref="DeviceImuSource"/>, <see cref="NodeImuSource"/> or <see cref="ReplayImuSource"/>. Live ones are opened in the game, not in the editor, and drive one node each. May be empty when a script pushes samples.</summary>
+        /// <summary>Source of the samples: a <see cref="PhoneImuSource"/>, <see cref="SerialImuSource"/>, <see cref="NetworkImuSource"/>, <see cref="DeviceImuSource"/>, <see cref="NodeImuSource"/> or <see cref="ReplayImuSource"/>. Live sources open in the game, not in the editor, and drive one node each. Leave it empty if a script pushes samples.</summary>
         public Resource Source
         {
             get => (Resource)Native.Get(PropertyName.Source).AsGodotObject();
             set => Native.Set(PropertyName.Source, value);
         }
 
-        /// <summary>Source of the second sensor's samples, for a model of two.</summary>
+        /// <summary>Source of the second sensor's samples, for a model of two sensors.</summary>
         public Resource SecondSource
         {
             get => (Resource)Native.Get(PropertyName.SecondSource).AsGodotObject();
@@ -118,28 +118,28 @@ namespace Footfall
             set => Native.Set(PropertyName.Mounting, (long)value);
         }
 
-        /// <summary>If <c>true</c>, the body's way moves the character. Off: it stays, and <see cref="GetRootMotionDelta"/> tells how far it would have gone.</summary>
+        /// <summary>If <c>true</c>, the body's travel moves the character. If <c>false</c>, the character stays in place, and <see cref="GetRootMotionDelta"/> returns the travel.</summary>
         public bool RootMotion
         {
             get => Native.Get(PropertyName.RootMotion).AsBool();
             set => Native.Set(PropertyName.RootMotion, value);
         }
 
-        /// <summary>The <c>Node3D</c> that travels, above the <c>Skeleton3D</c>; found as by <see cref="GaitGenerator3D"/> when empty.</summary>
+        /// <summary>The <c>Node3D</c> that travels, above the <c>Skeleton3D</c>. If empty, it is found as by <see cref="GaitGenerator3D"/>.</summary>
         public NodePath Character
         {
             get => Native.Get(PropertyName.Character).AsNodePath();
             set => Native.Set(PropertyName.Character, value);
         }
 
-        /// <summary>Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names.</summary>
+        /// <summary>Assignment of bones to the joints of the profile, for rigs that are not recognised. It takes precedence over bone names.</summary>
         public BoneMap BoneMap
         {
             get => (BoneMap)Native.Get(PropertyName.BoneMap).AsGodotObject();
             set => Native.Set(PropertyName.BoneMap, value);
         }
 
-        /// <summary>The body does something else now: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
+        /// <summary>Emitted when the behaviour changes: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
         /// <value>Handlers take <c>behaviour</c>.</value>
         public event Action<StringName> BehaviourChanged
         {
@@ -147,7 +147,7 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.BehaviourChanged, Callable.From(value));
         }
 
-        /// <summary>The calibration asks something else of the player: a step, as of <see cref="GetCalibrationStep"/>, and a message.</summary>
+        /// <summary>Emitted when the calibration reaches another step: its name as from <see cref="GetCalibrationStep"/>, and a message for the player.</summary>
         /// <value>Handlers take <c>step</c>, <c>message</c>.</value>
         public event Action<StringName, string> CalibrationChanged
         {
@@ -155,7 +155,7 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.CalibrationChanged, Callable.From(value));
         }
 
-        /// <summary>A foot came down: <c>left</c> or <c>right</c>, and where in global space.</summary>
+        /// <summary>Emitted when a foot lands: <c>foot</c> is <c>left</c> or <c>right</c>, <c>position</c> is in global space.</summary>
         /// <value>Handlers take <c>foot</c>, <c>position</c>.</value>
         public event Action<StringName, Vector3> Footstep
         {
@@ -163,21 +163,21 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.Footstep, Callable.From(value));
         }
 
-        /// <summary>Samples come, for the first time or again.</summary>
+        /// <summary>Emitted when samples arrive, for the first time or again.</summary>
         public event Action SensorFound
         {
             add => Native.Connect(SignalName.SensorFound, Callable.From(value));
             remove => Native.Disconnect(SignalName.SensorFound, Callable.From(value));
         }
 
-        /// <summary>Nothing was heard of the sensors for half a second. The body goes on as is probable.</summary>
+        /// <summary>Emitted after half a second without samples. The body continues as is probable.</summary>
         public event Action SensorLost
         {
             add => Native.Connect(SignalName.SensorLost, Callable.From(value));
             remove => Native.Disconnect(SignalName.SensorLost, Callable.From(value));
         }
 
-        /// <summary>Something else is wrong with a sensor now, or with how it is worn: a name, as of <see cref="GetSensorProblem"/>, and a message that says what to do. Both are empty when all is well again.</summary>
+        /// <summary>Emitted when the problem of a sensor or of its mounting changes: a name as from <see cref="GetSensorProblem"/>, and a message that says what to do. Both are empty when the problem is solved.</summary>
         /// <value>Handlers take <c>sensor</c>, <c>problem</c>, <c>message</c>.</value>
         public event Action<long, StringName, string> SensorProblemChanged
         {
@@ -185,78 +185,78 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.SensorProblemChanged, Callable.From(value));
         }
 
-        /// <summary>Forgets how the sensors are worn, and finds it out anew: when they have moved. The character stands until samples come.</summary>
+        /// <summary>Discards the mounting of the sensors and calibrates it again, after the sensors have moved. The character stands until samples arrive.</summary>
         public void ForgetMounting() => Native.Call(MethodName.ForgetMounting);
 
-        /// <summary>The body's behaviour: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
+        /// <summary>Returns the body's behaviour: <c>stand</c>, <c>walk</c>, <c>run</c>, <c>jump</c>, <c>hop</c> or <c>sidestep</c>.</summary>
         public StringName GetBehaviour() => Native.Call(MethodName.GetBehaviour).AsStringName();
 
-        /// <summary>Message for the player about the step of the calibration.</summary>
+        /// <summary>Returns the message for the player about the current step of the calibration.</summary>
         public string GetCalibrationMessage() => Native.Call(MethodName.GetCalibrationMessage).AsString();
 
-        /// <summary>Progress of the step of the calibration, 0 to 1.</summary>
+        /// <summary>Returns the progress of the current step of the calibration, 0 to 1.</summary>
         public double GetCalibrationProgress() => Native.Call(MethodName.GetCalibrationProgress).AsDouble();
 
-        /// <summary>Step of the calibration: <c>connect</c>, <c>stand</c>, <c>walk</c>, <c>walk_on</c> or <c>done</c>; empty where none was begun.</summary>
+        /// <summary>Returns the step of the calibration: <c>connect</c>, <c>stand</c>, <c>walk</c>, <c>walk_on</c> or <c>done</c>; empty if none was started.</summary>
         public StringName GetCalibrationStep() => Native.Call(MethodName.GetCalibrationStep).AsStringName();
 
-        /// <summary>Returns the model's confidence, 0 to 1: the probability that the wearer's motion is among those the model learned. 0 where nothing is heard.</summary>
-        /// <remarks>Walking is about 0.85. Below 0.1, with a sensor that is shaken, worn elsewhere or mounted otherwise than is thought, the body stands.</remarks>
+        /// <summary>Returns the model's confidence, 0 to 1: the probability that the wearer's motion is among the motions the model learned. 0 without samples.</summary>
+        /// <remarks>Walking gives about 0.85. Below 0.1, as with a sensor that is shaken, worn elsewhere or mounted in another orientation, the body stands.</remarks>
         public double GetConfidence() => Native.Call(MethodName.GetConfidence).AsDouble();
 
-        /// <summary>Age of the live sensors' newest sample when the pose is made, in seconds; 0 for others.</summary>
+        /// <summary>Returns the age of the live sensors' newest sample when the pose is made, in seconds; 0 for other sources.</summary>
         public double GetLatency() => Native.Call(MethodName.GetLatency).AsDouble();
 
-        /// <summary>Certainty of a sensor's mounting, 0 to 1; 0 before it was found.</summary>
+        /// <summary>Returns the certainty of a sensor's mounting, 0 to 1; 0 before it is known.</summary>
         public double GetMountingCertainty(long sensor) => Native.Call(MethodName.GetMountingCertainty, sensor).AsDouble();
 
-        /// <summary>Problems that keep the character from being driven, each with what to do next, and those of the sensors that are heard; empty without any.</summary>
-        /// <remarks>The editor shows the first as configuration warnings.</remarks>
+        /// <summary>Returns the problems that keep the character from being driven, each with what to do next, and those of the connected sensors; empty if there are none.</summary>
+        /// <remarks>The editor shows the first ones as configuration warnings.</remarks>
         public string[] GetProblems() => Native.Call(MethodName.GetProblems).AsStringArray();
 
-        /// <summary>The body's motion in the character's own space since the frame before by the clock of who asks, as of <see cref="GaitGenerator3D"/>.</summary>
+        /// <summary>Returns the body's travel in the character's own space since the previous frame, as <see cref="GetRootMotionDelta"/> of <see cref="GaitGenerator3D"/>.</summary>
         public Transform3D GetRootMotionDelta() => Native.Call(MethodName.GetRootMotionDelta).AsTransform3D();
 
-        /// <summary>Message for the player about the problem with a sensor, with the next thing to do; empty while all is well.</summary>
+        /// <summary>Returns the message for the player about the problem with a sensor, with what to do next; empty if there is none.</summary>
         public string GetSensorMessage(long sensor = 0) => Native.Call(MethodName.GetSensorMessage, sensor).AsString();
 
-        /// <summary>Problem with a sensor or with how it is worn; empty while all is well. The body stands or goes on as is probable meanwhile.</summary>
-        /// <remarks><c>silent</c>: nothing is heard. <c>force_in_g</c>, <c>gravity</c>, <c>rate_in_degrees</c>: units or scale are wrong. <c>stuck_axis</c>, <c>saturated</c>: an axis keeps one value, or reaches the end of the sensor's range. <c>slow</c>, <c>pace</c>: too few samples come for a gait, or far fewer or more than at first. <c>lies</c>, <c>rides</c>: the sensor lies still, or is moved without steps. <c>unexplained</c>: the model does not know the motion. <c>other_side</c>: it is worn on the other side of the body. <c>turned</c>: it is worn otherwise than it was calibrated or said to be.</remarks>
+        /// <summary>Returns the problem with a sensor or its mounting; empty if there is none. Meanwhile the body stands or continues as is probable.</summary>
+        /// <remarks><c>silent</c>: no samples. <c>force_in_g</c>, <c>gravity</c>, <c>rate_in_degrees</c>: wrong units or scale. <c>stuck_axis</c>, <c>saturated</c>: an axis keeps one value, or reaches the end of the sensor's range. <c>slow</c>, <c>pace</c>: too few samples for a gait, or far fewer or more than at first. <c>lies</c>, <c>rides</c>: the sensor lies still, or moves without steps. <c>unexplained</c>: motion that the model does not know. <c>other_side</c>: worn on the other side of the body. <c>turned</c>: the mounting differs from the calibration or from <see cref="Mounting"/>.</remarks>
         public StringName GetSensorProblem(long sensor = 0) => Native.Call(MethodName.GetSensorProblem, sensor).AsStringName();
 
-        /// <summary>Length of the player's steps beside those of the people in the model: a sensor on a foot measures it as they walk.</summary>
+        /// <summary>Returns the length of the player's steps relative to those of the people in the model; a foot sensor measures it as they walk.</summary>
         public double GetStepScale() => Native.Call(MethodName.GetStepScale).AsDouble();
 
-        /// <summary>Takes over a calibration that was saved, in place of finding it out: call it once the sensors are heard. Tells what is wrong, or nothing: a file of a later version, for other sites than the model's or of another sensor than the one that is heard is not taken.</summary>
+        /// <summary>Loads a saved calibration instead of calibrating. Call it when the sensors are connected. Returns the problem, or an empty string: a file of a later version, for sites other than the model's or of a sensor other than the connected one is refused.</summary>
         public string LoadCalibration(string path) => Native.Call(MethodName.LoadCalibration, path).AsString();
 
-        /// <summary>Says how many samples a second a sensor was promised to give, so that fewer or more are a problem. Without a promise, fewer than in the beginning are.</summary>
+        /// <summary>Sets the sample rate that a sensor should deliver, in samples per second; fewer or more are a problem. By default, fewer than at first are.</summary>
         public void PromiseRate(double rate, long sensor = 0) => Native.Call(MethodName.PromiseRate, rate, sensor);
 
-        /// <summary>Takes a sample of a sensor: 0, or 1 for the second site of the model. <c>time</c> is the sensor's clock in seconds, <c>force</c> its specific force in m/s² (gravity included), <c>rate</c> its angular rate in rad/s, both in its own axes.</summary>
-        /// <remarks>Samples that are late, repeated or not finite are left out.</remarks>
+        /// <summary>Adds a sample of a sensor: 0, or 1 for the second site of the model. <c>time</c> is the sensor's clock in seconds, <c>force</c> its specific force in m/s² (including gravity), <c>rate</c> its angular rate in rad/s, both in the sensor's own axes.</summary>
+        /// <remarks>Late, repeated and non-finite samples are dropped.</remarks>
         public void PushSample(long sensor, double time, Vector3 force, Vector3 rate) => Native.Call(MethodName.PushSample, sensor, time, force, rate);
 
-        /// <summary>The direction in which the character faces now is straight ahead of the person from now on.</summary>
+        /// <summary>Takes the direction in which the character faces now as straight ahead of the person.</summary>
         public void ResetHeading() => Native.Call(MethodName.ResetHeading);
 
-        /// <summary>Keeps how the sensors are worn, what they measure at rest and how long the player's steps are, in a small file for the next session. Tells what is wrong, or nothing.</summary>
+        /// <summary>Saves the mounting of the sensors, their values at rest and the length of the player's steps to a small file for the next session. Returns the problem, or an empty string.</summary>
         public string SaveCalibration(string path) => Native.Call(MethodName.SaveCalibration, path).AsString();
 
-        /// <summary>Sets the length of the player's steps beside those of the people in the model, 0.7 to 1.4: for a phone in the pocket, which cannot measure it.</summary>
+        /// <summary>Sets the length of the player's steps relative to those of the people in the model, 0.7 to 1.4: for a phone in the pocket, which cannot measure it.</summary>
         public void SetStepScale(double scale) => Native.Call(MethodName.SetStepScale, scale);
 
-        /// <summary>Begins a calibration of about five seconds: the player stands for two seconds and takes four steps. Forgets how the sensors are worn.</summary>
-        /// <remarks><see cref="CalibrationChanged"/> tells what to do next. Where <see cref="Mounting"/> is <c>ALIGNED</c> there is nothing to find out.</remarks>
+        /// <summary>Begins a calibration of about five seconds: the player stands for two seconds and takes four steps. Discards the mounting of the sensors.</summary>
+        /// <remarks><see cref="CalibrationChanged"/> reports what to do next. With <see cref="Mounting"/> <c>ALIGNED</c> there is nothing to calibrate.</remarks>
         public void StartCalibration() => Native.Call(MethodName.StartCalibration);
 
-        /// <summary>Records what a sensor gives from now on, into a file that a <see cref="ReplayImuSource"/> plays; tells whether the file can be made.</summary>
+        /// <summary>Records a sensor's samples from now on into a file that a <see cref="ReplayImuSource"/> plays. Returns <c>true</c> if the file can be created.</summary>
         public bool StartRecording(string path, long sensor = 0) => Native.Call(MethodName.StartRecording, path, sensor).AsBool();
 
-        /// <summary>Ends a recording and gives its file its name; tells whether all of it was written.</summary>
+        /// <summary>Ends a recording and renames its temporary file. Returns <c>true</c> if all of it was written.</summary>
         public bool StopRecording(long sensor = 0) => Native.Call(MethodName.StopRecording, sensor).AsBool();
 
-        /// <summary>Turns the body by an angle, in radians, to the left: for steering by stick where the player cannot turn.</summary>
+        /// <summary>Turns the body to the left by an angle in radians, for steering by stick where the player cannot turn.</summary>
         public void Turn(double angle) => Native.Call(MethodName.Turn, angle);
     }
 }

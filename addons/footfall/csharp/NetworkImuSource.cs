@@ -6,8 +6,8 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Hears an inertial sensor over the local network: an app on a phone, or a tracker.</summary>
-    /// <remarks>At a UDP port everything is recognised that owoTrack, SlimeVR trackers, ZIG SIM, GyrOSC, SensaGram and HyperIMU send; Sensor Logger posts over HTTP; SensorServer on a phone is asked at its address. Only senders on the local network are heard.</remarks>
+    /// <summary>Receives samples from an inertial sensor on the local network: an app on a phone, or a tracker.</summary>
+    /// <remarks>A UDP port recognises the formats of owoTrack, SlimeVR trackers, ZIG SIM, GyrOSC, SensaGram and HyperIMU. Sensor Logger posts over HTTP. For SensorServer, the game connects to the phone's address. Senders outside the local network are ignored.</remarks>
     public class NetworkImuSource : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -64,7 +64,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Transport, (long)value);
         }
 
-        /// <summary>The port of this machine at which <c>Udp</c> (trackers look for 6969) or <c>Http</c> listens.</summary>
+        /// <summary>The port of this machine on which <c>Udp</c> (trackers look for 6969) or <c>Http</c> listens.</summary>
         public long Port
         {
             get => Native.Get(PropertyName.Port).AsInt64();
@@ -78,23 +78,23 @@ namespace Footfall
             set => Native.Set(PropertyName.Address, value);
         }
 
-        /// <summary>Number of the sensor at the port, from 0 in the order in which sensors were first heard: several players share a port.</summary>
+        /// <summary>Number of the sensor at the port, from 0 in the order of their first samples, so that several players share a port.</summary>
         public long Sensor
         {
             get => Native.Get(PropertyName.Sensor).AsInt64();
             set => Native.Set(PropertyName.Sensor, value);
         }
 
-        /// <summary>Message for the player: what is awaited, or what is wrong and what to do. Empty while all is well.</summary>
+        /// <summary>Returns the message for the player: what is pending, or what is wrong and what to do. Empty while all is well.</summary>
         public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
 
-        /// <summary>Status of the sensor: <c>name</c>, <c>format</c>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
+        /// <summary>Returns the status of the sensor: <c>name</c>, <c>format</c>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples per second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², last value) and <c>rotation</c> (rad/s, last value). Empty before the first sample.</summary>
         public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
 
-        /// <summary>State of the source: <c>closed</c>, <c>opening</c>, <c>listening</c> (nothing was heard yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (it is tried again).</summary>
+        /// <summary>Returns the state of the source: <c>closed</c>, <c>opening</c>, <c>listening</c> (no samples yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (opening is retried).</summary>
         public StringName GetState() => Native.Call(MethodName.GetState).AsStringName();
 
-        /// <summary>Opens the port now; otherwise it is opened when a node uses this source for the first time.</summary>
+        /// <summary>Opens the port now. Otherwise it opens when a node first uses this source.</summary>
         public void Start() => Native.Call(MethodName.Start);
 
         /// <summary>Closes the port, unless another source uses it.</summary>

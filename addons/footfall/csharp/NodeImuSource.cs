@@ -6,10 +6,10 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Takes a node for a sensor: an <c>XRController3D</c> or <c>XRNode3D</c> of a tracker on the belt or a foot, an <c>XRCamera3D</c>, any <c>Node3D</c> that moves as a body does.</summary>
+    /// <summary>Uses a node as a sensor: an <c>XRController3D</c> or <c>XRNode3D</c> of a tracker on the belt or a foot, an <c>XRCamera3D</c>, or any <c>Node3D</c> that moves like a part of a body.</summary>
     /// <remarks>
-    /// <para>The motion of the node gives the measurements of a sensor on it, frame by frame; the body follows 34 ms later. Keep 60 frames a second or more. The sensor's axes are those of the node for somebody who looks along its -Z: with the mounting <c>Aligned</c>, the node's -Z points ahead and its y axis up while the person stands.</para>
-    /// <para>Nodes of XR are taken as they move in the room: a vehicle, a thumbstick or a teleport that moves their <c>XROrigin3D</c> does not move the body. Other nodes are taken as they move in the world; a jump in space begins anew.</para>
+    /// <para>The source computes the measurements of a sensor on the node from its motion; the body follows 34 ms later. Keep 60 frames per second or more. The sensor's axes are those of the node seen along its -Z: with the mounting <c>Aligned</c>, the node's -Z axis points ahead and its y axis up while the person stands.</para>
+    /// <para>XR nodes are read relative to their <c>XROrigin3D</c>: a vehicle, a thumbstick or a teleport that moves the origin does not move the body. Other nodes are read in world space; a teleport restarts the source.</para>
     /// </remarks>
     public class NodeImuSource : FootfallObject
     {
@@ -47,7 +47,7 @@ namespace Footfall
         /// <summary>Loads one from a file of the project.</summary>
         public static NodeImuSource Load(string path) => From(GD.Load<Resource>(path));
 
-        /// <summary>The node, as seen from the <see cref="ImuReconstructor3D"/>; an absolute path serves as well.</summary>
+        /// <summary>Path to the node from the <see cref="ImuReconstructor3D"/>; an absolute path works as well.</summary>
         public NodePath Node
         {
             get => Native.Get(PropertyName.Node).AsNodePath();

@@ -6,8 +6,8 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Hears a phone through its browser: the game serves a page, shows its address as a code, and the phone that scans it is the sensor. Nothing is installed.</summary>
-    /// <remarks>The page comes over HTTPS, with a certificate that this machine signed itself and keeps under <c>user://footfall_phone</c>: the browser warns of it once. Each player has a code of their own, new at every start, and one phone at a time. Only the local network is served.</remarks>
+    /// <summary>Receives samples from a phone's browser: the game serves a page and shows its address as a code; the phone that scans it becomes the sensor. There is nothing to install.</summary>
+    /// <remarks>The page uses HTTPS with a certificate that this machine signs itself and keeps under <c>user://footfall_phone</c>; the browser warns of it once. Each player has a code of their own, new at every start, and one phone at a time. Only the local network is served.</remarks>
     public class PhoneImuSource : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -65,36 +65,36 @@ namespace Footfall
             set => Native.Set(PropertyName.Port, value);
         }
 
-        /// <summary>Whose phone, from 0: players share the port.</summary>
+        /// <summary>Number of the player, from 0. Players share the port.</summary>
         public long Player
         {
             get => Native.Get(PropertyName.Player).AsInt64();
             set => Native.Set(PropertyName.Player, value);
         }
 
-        /// <summary>If <c>true</c>, the phone vibrates when a foot of the character comes down.</summary>
+        /// <summary>If <c>true</c>, the phone vibrates when a foot of the character lands.</summary>
         public bool VibrateOnFootsteps
         {
             get => Native.Get(PropertyName.VibrateOnFootsteps).AsBool();
             set => Native.Set(PropertyName.VibrateOnFootsteps, value);
         }
 
-        /// <summary>Message for the player: what is awaited, or what is wrong and what to do. Empty while all is well.</summary>
+        /// <summary>Returns the message for the player: what is pending, or what is wrong and what to do. Empty while all is well.</summary>
         public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
 
-        /// <summary>The address as a code to scan, one pixel a module with a light margin; <c>null</c> before <see cref="Start"/>. Show it large and without filter.</summary>
+        /// <summary>Returns the address as a QR code, one pixel per module with a light margin; <c>null</c> before <see cref="Start"/>. Show it large and without filter.</summary>
         public Image GetQrCode() => (Image)Native.Call(MethodName.GetQrCode).AsGodotObject();
 
-        /// <summary>Status of the sensor: <c>name</c>, <c>format</c>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
+        /// <summary>Returns the status of the sensor: <c>name</c>, <c>format</c>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples per second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², last value) and <c>rotation</c> (rad/s, last value). Empty before the first sample.</summary>
         public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
 
-        /// <summary>State of the source: <c>closed</c>, <c>opening</c>, <c>listening</c> (nothing was heard yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (it is tried again).</summary>
+        /// <summary>Returns the state of the source: <c>closed</c>, <c>opening</c>, <c>listening</c> (no samples yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (opening is retried).</summary>
         public StringName GetState() => Native.Call(MethodName.GetState).AsStringName();
 
-        /// <summary>The address of the page for this player; empty before <see cref="Start"/>, and while the port cannot be had.</summary>
+        /// <summary>Returns the address of the page for this player; empty before <see cref="Start"/>, and while the port is unavailable.</summary>
         public string GetUrl() => Native.Call(MethodName.GetUrl).AsString();
 
-        /// <summary>Opens the port now; otherwise it is opened when a node uses this source for the first time.</summary>
+        /// <summary>Opens the port now. Otherwise it opens when a node first uses this source.</summary>
         public void Start() => Native.Call(MethodName.Start);
 
         /// <summary>Closes the port, unless another source uses it.</summary>

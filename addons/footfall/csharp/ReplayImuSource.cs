@@ -6,8 +6,8 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Plays the recording of a sensor as if it was worn now.</summary>
-    /// <remarks>The file has the columns <c>time_s,ax,ay,az,gx,gy,gz</c>: seconds, specific force in m/s² (gravity included) and angular rate in rad/s, as <c>footfall imu simulate</c> writes it. Godot takes <c>.csv</c> files for translations: give the file another extension, such as <c>.imu</c>, and add that to the filters of an export.</remarks>
+    /// <summary>Replays the recording of a sensor as if the sensor were worn now.</summary>
+    /// <remarks>The file has the columns <c>time_s,ax,ay,az,gx,gy,gz</c>: seconds, specific force in m/s² (including gravity) and angular rate in rad/s, as <c>footfall imu simulate</c> writes it. Godot imports <c>.csv</c> files as translations: give the file another extension, such as <c>.imu</c>, and add it to the export filters.</remarks>
     public class ReplayImuSource : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -59,17 +59,17 @@ namespace Footfall
             set => Native.Set(PropertyName.File, value);
         }
 
-        /// <summary>If <c>true</c>, the recording begins anew when it is over; otherwise the sensor falls silent.</summary>
+        /// <summary>If <c>true</c>, the recording loops; otherwise the sensor falls silent at its end.</summary>
         public bool Repeat
         {
             get => Native.Get(PropertyName.Repeat).AsBool();
             set => Native.Set(PropertyName.Repeat, value);
         }
 
-        /// <summary>Problem of the recording, with the next thing to do; empty without one.</summary>
+        /// <summary>Returns the problem of the recording, with what to do next; empty if there is none.</summary>
         public string GetError() => Native.Call(MethodName.GetError).AsString();
 
-        /// <summary>Length of the recording in seconds; 0 for a broken one.</summary>
+        /// <summary>Returns the length of the recording in seconds; 0 for an invalid one.</summary>
         public double GetLength() => Native.Call(MethodName.GetLength).AsDouble();
     }
 }

@@ -6,8 +6,8 @@ using Godot;
 
 namespace Footfall
 {
-    /// <summary>Hears an inertial sensor on a serial port: USB or Bluetooth.</summary>
-    /// <remarks>WitMotion, x-IMU3, Xsens MTi and boards that print lines of text are recognised, and so is their baud rate; a Yost 3-Space has to be chosen as <see cref="Format"/>. A port that is unplugged is opened again. On Linux the user has to be in the group <c>dialout</c>.</remarks>
+    /// <summary>Receives samples from an inertial sensor on a serial port: USB or Bluetooth.</summary>
+    /// <remarks>WitMotion, x-IMU3, Xsens MTi and boards that print lines of text are recognised, with their baud rate; for a Yost 3-Space set <see cref="Format"/>. An unplugged port is reopened when it returns. On Linux the user must be in the group <c>dialout</c>.</remarks>
     public class SerialImuSource : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>
@@ -61,14 +61,14 @@ namespace Footfall
         /// <summary>Loads one from a file of the project.</summary>
         public static SerialImuSource Load(string path) => From(GD.Load<Resource>(path));
 
-        /// <summary>The port, such as <c>/dev/ttyUSB0</c> or <c>COM3</c>; empty for the first one on USB.</summary>
+        /// <summary>Name of the port, such as <c>/dev/ttyUSB0</c> or <c>COM3</c>; empty for the first one on USB.</summary>
         public string Port
         {
             get => Native.Get(PropertyName.Port).AsString();
             set => Native.Set(PropertyName.Port, value);
         }
 
-        /// <summary>Bits a second; 0 to find out.</summary>
+        /// <summary>Baud rate; 0 to detect it.</summary>
         public long BaudRate
         {
             get => Native.Get(PropertyName.BaudRate).AsInt64();
@@ -82,48 +82,48 @@ namespace Footfall
             set => Native.Set(PropertyName.Format, (long)value);
         }
 
-        /// <summary>Names of the columns of lines of text, such as <c>t,ax,ay,az,gx,gy,gz</c>; empty when the device prints a header or this order.</summary>
-        /// <remarks>A name may tell its unit, as in <c>ax_g</c>, <c>gx_dps</c>, <c>time_ms</c>. Units that are not told are guessed.</remarks>
+        /// <summary>Names of the columns of lines of text, such as <c>t,ax,ay,az,gx,gy,gz</c>; empty if the device prints a header or uses this order.</summary>
+        /// <remarks>A name may include its unit, as in <c>ax_g</c>, <c>gx_dps</c>, <c>time_ms</c>. Missing units are guessed.</remarks>
         public string Columns
         {
             get => Native.Get(PropertyName.Columns).AsString();
             set => Native.Set(PropertyName.Columns, value);
         }
 
-        /// <summary>Unit of the acceleration in lines of text that do not tell it.</summary>
+        /// <summary>Unit of the acceleration in lines of text without units.</summary>
         public ImuForceUnit ForceUnit
         {
             get => (ImuForceUnit)Native.Get(PropertyName.ForceUnit).AsInt64();
             set => Native.Set(PropertyName.ForceUnit, (long)value);
         }
 
-        /// <summary>Unit of the angular rate in lines of text that do not tell it.</summary>
+        /// <summary>Unit of the angular rate in lines of text without units.</summary>
         public ImuRateUnit RateUnit
         {
             get => (ImuRateUnit)Native.Get(PropertyName.RateUnit).AsInt64();
             set => Native.Set(PropertyName.RateUnit, (long)value);
         }
 
-        /// <summary>Unit of time in lines of text that do not tell it.</summary>
+        /// <summary>Unit of time in lines of text without units.</summary>
         public ImuTimeUnit TimeUnit
         {
             get => (ImuTimeUnit)Native.Get(PropertyName.TimeUnit).AsInt64();
             set => Native.Set(PropertyName.TimeUnit, (long)value);
         }
 
-        /// <summary>Message for the player: what is awaited, or what is wrong and what to do. Empty while all is well.</summary>
+        /// <summary>Returns the message for the player: what is pending, or what is wrong and what to do. Empty while all is well.</summary>
         public string GetMessage() => Native.Call(MethodName.GetMessage).AsString();
 
-        /// <summary>Status of the sensor: <c>name</c>, <see cref="Format"/>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples a second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², the last) and <c>rotation</c> (rad/s, the last). Empty before it is heard.</summary>
+        /// <summary>Returns the status of the sensor: <c>name</c>, <see cref="Format"/>, <c>samples</c>, <c>lost</c> and <c>rejected</c> (counts), <c>rate</c> (samples per second), <c>jitter</c> (seconds), <c>silent</c> (seconds), <c>force</c> (m/s², last value) and <c>rotation</c> (rad/s, last value). Empty before the first sample.</summary>
         public Godot.Collections.Dictionary GetSensorStatus() => Native.Call(MethodName.GetSensorStatus).AsGodotDictionary();
 
-        /// <summary>State of the source: <c>closed</c>, <c>opening</c>, <c>listening</c> (nothing was heard yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (it is tried again).</summary>
+        /// <summary>Returns the state of the source: <c>closed</c>, <c>opening</c>, <c>listening</c> (no samples yet), <c>receiving</c>, <c>silent</c> or <c>failed</c> (opening is retried).</summary>
         public StringName GetState() => Native.Call(MethodName.GetState).AsStringName();
 
-        /// <summary>The serial ports of this machine, those on USB first.</summary>
+        /// <summary>Returns the serial ports of this machine, those on USB first.</summary>
         public static string[] ListPorts() => ClassDB.ClassCallStatic(NativeName, MethodName.ListPorts).AsStringArray();
 
-        /// <summary>Opens the port now; otherwise it is opened when a node uses this source for the first time.</summary>
+        /// <summary>Opens the port now. Otherwise it opens when a node first uses this source.</summary>
         public void Start() => Native.Call(MethodName.Start);
 
         /// <summary>Closes the port, unless another source uses it.</summary>

@@ -96,7 +96,7 @@ func sensor() -> Dictionary:
 ## Message about the connection.
 func told() -> String:
 	if _source is DeviceImuSource:
-		return "" if DeviceImuSource.is_available() else "This device gives no motion: it has no sensors, or the project settings leave them off."
+		return "" if DeviceImuSource.is_available() else "This device delivers no motion: it has no sensors, or the project settings turn them off."
 	return _sentence(_source.get_message())
 
 

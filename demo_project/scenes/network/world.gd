@@ -39,7 +39,7 @@ func _ready() -> void:
 	multiplayer.peer_connected.connect(_come)
 	multiplayer.peer_disconnected.connect(_go)
 	multiplayer.connected_to_server.connect(func() -> void: told.emit("Joined. WASD walks."))
-	multiplayer.connection_failed.connect(func() -> void: told.emit("Nobody answers there. Has somebody pressed Host, and is UDP port %d open?" % DEFAULT_PORT))
+	multiplayer.connection_failed.connect(func() -> void: told.emit("No answer. Check that Host is pressed there and that UDP port %d is open." % DEFAULT_PORT))
 	multiplayer.server_disconnected.connect(func() -> void:
 		leave()
 		told.emit("The host has left. Host a game yourself, or join another."))
@@ -49,11 +49,11 @@ func _ready() -> void:
 func host(port := DEFAULT_PORT) -> bool:
 	var peer := ENetMultiplayerPeer.new()
 	if peer.create_server(port, MOST_GUESTS) != OK:
-		told.emit("Port %d is taken: a game is hosted on this machine already. Join 127.0.0.1." % port)
+		told.emit("Port %d is taken: this machine already hosts a game. Join 127.0.0.1." % port)
 		return false
 	multiplayer.multiplayer_peer = peer
 	_come(1)
-	told.emit("You host. Others join %s." % _own_address())
+	told.emit("Hosting. Others join %s." % _own_address())
 	return true
 
 

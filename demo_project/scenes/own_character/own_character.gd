@@ -51,7 +51,7 @@ func load_file(path: String) -> void:
 		return
 	var scene := document.generate_scene(state)
 	if not scene is Node3D:
-		%Problem.text = "%s holds no character." % path.get_file()
+		%Problem.text = "%s has no character." % path.get_file()
 		return
 	_walk(scene)
 
@@ -59,7 +59,7 @@ func load_file(path: String) -> void:
 func _walk(character: Node3D) -> void:
 	var skeletons := character.find_children("*", "Skeleton3D", true, false)
 	if skeletons.is_empty():
-		%Problem.text = "There is no skeleton in it."
+		%Problem.text = "The file has no skeleton."
 		character.free()
 		return
 	for walker: Node3D in walkers:

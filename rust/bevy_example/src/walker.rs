@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// A humanoid that walks from where its entity is.
 #[derive(Component)]
 pub(crate) struct Walker {
-    /// The walk that is asked for.
+    /// The walk that is requested.
     pub(crate) controls: Controls,
     pub(crate) gait: GaitGenerator,
     pub(crate) binding: RigBinding,

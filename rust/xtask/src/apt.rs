@@ -136,7 +136,7 @@ impl Apt {
         if !status.success() {
             let said = fs::read_to_string(&log).unwrap_or_default();
             bail!(
-                "the download broke off; run this again to go on where it stopped:\n{}",
+                "the download was interrupted; run this again to resume it:\n{}",
                 process::tail(&said, 8)
             );
         }

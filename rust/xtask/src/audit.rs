@@ -21,7 +21,7 @@ pub(crate) fn command() -> Result<()> {
 fn workflows() -> Result<()> {
     let actionlint = tools::of_go("actionlint", ACTIONLINT.0, ACTIONLINT.1)?;
     lint(&actionlint, &paths::repository_root())?;
-    eprintln!("actionlint: every workflow is as it should be");
+    eprintln!("actionlint: all workflows pass");
     Ok(())
 }
 
@@ -32,7 +32,7 @@ fn lint(actionlint: &Path, folder: &Path) -> Result<()> {
             .args(["-no-color", "-shellcheck=", "-pyflakes="])
             .current_dir(folder),
     )
-    .context("a workflow is not as it should be")
+    .context("a workflow fails actionlint")
     .map(drop)
 }
 
@@ -48,18 +48,18 @@ fn dependencies() -> Result<()> {
     let settled = check(&["bans", "licenses", "sources"])?;
     if !settled.status.success() {
         bail!(
-            "the dependencies are not as deny.toml wants them:\n{}",
+            "the dependencies violate deny.toml:\n{}",
             process::tail(&String::from_utf8_lossy(&settled.stderr), 30)
         );
     }
-    eprintln!("cargo-deny: licences, sources and bans are as they should be");
+    eprintln!("cargo-deny: licences, sources and bans pass");
     let advisories = check(&["advisories"])?;
     let said = String::from_utf8_lossy(&advisories.stderr);
     if advisories.status.success() {
         eprintln!("cargo-deny: no advisory concerns the dependencies");
     } else if unreachable(&said) {
         eprintln!(
-            "cargo-deny: the database of advisories is not to be had here; the workflow asks it"
+            "cargo-deny: the database of advisories is not available here; the workflow checks it"
         );
     } else {
         bail!(

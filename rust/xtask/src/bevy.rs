@@ -19,7 +19,7 @@ pub(crate) fn command() -> Result<()> {
     process::run(vulkan.given_to(&mut example))?;
     let pictures = contact_sheet::pictures(&folder)?;
     if pictures.is_empty() {
-        bail!("the example left no pictures in {}", folder.display());
+        bail!("the example rendered no pictures in {}", folder.display());
     }
     let sheet = folder.join("contact_sheet.png");
     contact_sheet::write(&pictures, &sheet)?;

@@ -13,7 +13,7 @@ use std::path::Path;
 pub(crate) struct Import {
     /// The library, where the format says it.
     pub(crate) library: String,
-    /// The name; `#` and a number for one that is asked for by its number.
+    /// The name; `#` and a number for one that is requested by its number.
     pub(crate) name: String,
     /// The version of the name, as `GLIBC_2.17`; empty without one.
     pub(crate) version: String,

@@ -50,7 +50,7 @@ pub(crate) fn add_target(target: &str) -> Result<()> {
             .args(["--quiet", "target", "add"])
             .args(targets),
     )
-    .with_context(|| format!("Rust's standard library for {target} is not to be had"))
+    .with_context(|| format!("Rust's standard library for {target} is not available"))
     .map(drop)
 }
 

@@ -42,7 +42,7 @@ pub(crate) fn command() -> Result<()> {
     let folder = paths::target_folder().join("demo");
     import(&engine, &project, "demo")?;
     if !display.is_virtual() {
-        eprintln!("the demo runs in its window; close it to come back");
+        eprintln!("the demo runs in a window; close the window to end");
         return process::run(&mut open::on(&engine, &display, &project));
     }
     paths::make_empty(&folder)?;
@@ -61,7 +61,7 @@ pub(crate) fn command() -> Result<()> {
         let pictures = contact_sheet::pictures(&folder)?;
         if pictures.is_empty() {
             bail!(
-                "the scene left no pictures; what Godot said is in {}",
+                "the scene rendered no pictures; Godot's output is in {}",
                 log.display()
             );
         }

@@ -100,7 +100,7 @@ fn install(packages: &[&str]) -> Result<()> {
     if paths::on_path(&["apt-get"]).is_none() || !is_root() {
         bail!("{advice}");
     }
-    eprintln!("no display: installing {wanted} for one in memory …");
+    eprintln!("no display: installing {wanted} for a virtual one …");
     let apt_get = || {
         let mut command = Command::new("apt-get");
         command

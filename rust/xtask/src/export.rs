@@ -68,7 +68,7 @@ pub(crate) fn make(engine: &Engine, project: &Path, game: &Path, log: &Path) -> 
     for file in [game, &game.with_extension("pck")] {
         if !file.is_file() {
             bail!(
-                "Godot exported no {}: what it said is in {}",
+                "Godot exported no {}; its output is in {}",
                 file.display(),
                 log.display()
             );
@@ -90,10 +90,7 @@ pub(crate) fn start(engine: &Engine, game: &Path) -> Result<()> {
         &log,
     )?;
     if !said.contains("DEMO OK") {
-        bail!(
-            "the exported demo did not end as it should: {}",
-            log.display()
-        );
+        bail!("the exported demo failed: {}", log.display());
     }
     Ok(())
 }

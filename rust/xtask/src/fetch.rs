@@ -36,7 +36,7 @@ pub(crate) fn once(
 /// Unpacks a package of Python's index into a folder; pip itself checks what it downloads.
 ///
 /// # Errors
-/// When there is no Python with pip, or the package is not to be had for this machine.
+/// When there is no Python with pip, or the package is not available for this machine.
 pub(crate) fn wheel(requirement: &str, folder: &Path) -> Result<()> {
     let python = paths::on_path(&["python3", "python"])
         .context("there is no `python3` on the PATH: install Python with pip")?;

@@ -47,7 +47,7 @@ pub(crate) fn command() -> Result<()> {
 /// Writes pictures as a film that repeats. Of each only what has changed is kept.
 fn write(pictures: &[PathBuf], film: &std::path::Path) -> Result<()> {
     if pictures.is_empty() {
-        bail!("the scene left no pictures to make a film of")
+        bail!("the scene rendered no pictures for the film")
     }
     let file = File::create(film).with_context(|| format!("cannot write {}", film.display()))?;
     let mut encoder = Encoder::new(BufWriter::new(file), SIZE.0, SIZE.1, &[])?;

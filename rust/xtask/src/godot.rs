@@ -50,7 +50,7 @@ pub(crate) fn command(template: bool) -> Result<()> {
 /// Finds Godot, or fetches it.
 ///
 /// # Errors
-/// When `GODOT` names something unusable, or when Godot is neither found nor to be had; the message says what to do.
+/// When `GODOT` names something unusable, or when Godot is neither found nor downloadable; the message says what to do.
 pub(crate) fn provision() -> Result<Engine> {
     if let Some(named) = env::var_os("GODOT").filter(|value| !value.is_empty()) {
         let program = PathBuf::from(named);
@@ -76,8 +76,8 @@ pub(crate) fn provision() -> Result<Engine> {
         return Ok(engine);
     }
     let program = fetch(&cache)?;
-    let engine = probe(&program, template_of(&cache))
-        .context("the Godot that was just fetched does not run")?;
+    let engine =
+        probe(&program, template_of(&cache)).context("the downloaded Godot does not run")?;
     let marker = format!("{LAYOUT}\n{}\n{}\n", engine.version, program.display());
     fs::write(cache.join("finished"), marker)
         .with_context(|| format!("cannot write into {}", cache.display()))?;
@@ -92,7 +92,7 @@ fn cached(cache: &Path) -> Option<Engine> {
     if template.is_some()
         && let Err(reason) = apt::refresh(cache)
     {
-        eprintln!("fetching Godot anew: {reason:#}");
+        eprintln!("downloading Godot again: {reason:#}");
         return None;
     }
     probe(&program, template).ok()
@@ -151,7 +151,7 @@ fn fetch(cache: &Path) -> Result<PathBuf> {
     eprintln!("not from the package archive: {apt_reason}");
     official::fetch(cache).map_err(|official_reason| {
         anyhow::anyhow!(
-            "no Godot of at least {}.{} on this machine, and none to be had.\n  \
+            "there is no Godot {}.{} or newer on this machine, and none could be downloaded.\n  \
              package archive: {apt_reason}\n  official release: {official_reason:#}\n\
              Get it from godotengine.org, then put `godot` on the PATH or let the variable GODOT name it.",
             OLDEST.0,
@@ -170,7 +170,7 @@ fn probe(program: &Path, release_template: Option<PathBuf>) -> Result<Engine> {
         .rfind(|line| parsed(line).is_some());
     let Some(version) = version else {
         bail!(
-            "`{} --version` does not answer with a version: it said {said:?}",
+            "`{} --version` does not print a version, but {said:?}",
             program.display()
         );
     };
@@ -230,7 +230,7 @@ mod tests {
         let file = env::temp_dir().join(format!("footfall_godot_{}", std::process::id()));
         for (answer, reason) in [
             ("4.5.1.stable", "at least 4.6"),
-            ("hello", "does not answer with a version"),
+            ("hello", "does not print a version"),
         ] {
             fs::write(&file, format!("#!/bin/sh\necho {answer}\n")).unwrap();
             fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).unwrap();

@@ -23,7 +23,7 @@ pub(crate) fn command(update: bool) -> Result<()> {
     }
     process::run(&mut cargo)?;
     if update {
-        eprintln!("tests/golden is renewed: read `git diff tests/golden` before you commit it");
+        eprintln!("tests/golden is updated; read `git diff tests/golden` before you commit it");
     }
     Ok(())
 }

@@ -46,7 +46,7 @@ fn link(project: &Path, relative: &Path, addons: &Path) -> Result<()> {
                 .with_context(|| format!("cannot remove the stale link {}", link.display()))?;
         }
         Ok(_) => bail!(
-            "{} is in the way of the link to addons/: move it elsewhere",
+            "{} blocks the link to addons/; move it elsewhere",
             link.display()
         ),
         Err(_) => {}

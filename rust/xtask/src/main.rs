@@ -61,33 +61,33 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Find or fetch Godot 4.6 or newer; its path is the last line of stdout.
+    /// Find or download Godot 4.6 or newer, and print its path as the last line of stdout.
     Godot {
-        /// Print the path of the release export template instead, where this Godot comes with one.
+        /// Print the path of the release export template instead, if this Godot has one.
         #[arg(long)]
         template: bool,
     },
-    /// Build the add-on's library and put it into `addons/footfall/bin`.
+    /// Build the add-on's library into `addons/footfall/bin`.
     Library(library::Options),
     /// Build the library for exported games for each platform, check it as far as this machine can, and print a table.
     Platforms(platforms::Settings),
-    /// Make the add-on visible inside `demo_project` and `tests/godot`, without a second copy.
+    /// Link the add-on into `demo_project` and `tests/godot`.
     Link,
     /// Make the demo's character, `demo_project/characters/mannequin.glb`.
     Mannequin,
     /// Pack the add-on into `rust/target/footfall-addon.zip`.
     Addon {
-        /// Build nothing: the libraries of all platforms are in `addons/footfall/bin` already.
+        /// Use the libraries in `addons/footfall/bin` without building.
         #[arg(long)]
         packed: bool,
     },
-    /// Make all of a release that this machine can, the add-on for every platform first, in a folder below `rust/target`.
+    /// Collect a release in a folder below `rust/target`, beginning with the add-on for every platform.
     Release(release::Settings),
-    /// Check the workflows with actionlint, and the dependencies with cargo-deny; both are fetched.
+    /// Check the workflows with actionlint, and the dependencies with cargo-deny; both are downloaded.
     Audit,
-    /// Train the models that the add-on ships; `FOOTFALL_DATA` names the motion data.
+    /// Train the models of the add-on on the motion data in `FOOTFALL_DATA`.
     Models {
-        /// The ones to train; all when absent. Styles are trained on the walk that is there
+        /// Models to train [default: all]. Styles are trained on the existing walk
         which: Vec<models::Which>,
     },
     /// Compare results with those kept in `tests/golden`.
@@ -96,34 +96,34 @@ enum Command {
         #[arg(long)]
         update: bool,
     },
-    /// Make the add-on's typed wrappers for C# from the library's class reference.
+    /// Generate the add-on's typed C# wrappers from the library's class reference.
     Csharp {
-        /// Make none: compare, compile and try those that are there.
+        /// Compare, compile and run the existing wrappers instead.
         #[arg(long)]
         check: bool,
     },
     /// Check the design's invariants.
     Tidy,
-    /// Check everything: format, rules, lints, tests, docs, the nodes in Godot, the demo.
+    /// Run all checks: format, rules, lints, tests, docs, the nodes in Godot, the demo.
     Verify {
-        /// Only these steps, for example `clippy` or `godot-tests`.
+        /// Steps to run, for example `clippy` or `godot-tests` [default: all]
         steps: Vec<String>,
     },
-    /// Build all and open the demo; without a display, leave pictures of it.
+    /// Build everything and open the demo; without a display, render pictures of it.
     Demo,
     /// Film the tour of the third-person scene for the README.
     Film,
-    /// Build and test the example in Bevy, and leave pictures of it.
+    /// Build and test the Bevy example, and render pictures of it.
     Bevy,
     /// Export the demo as a game for this machine into `rust/target/export`, and start it once without a window.
     Export {
-        /// Build the game's library as it is released.
+        /// Use the library for exported games.
         #[arg(long)]
         shipped: bool,
     },
-    /// Measure kernels and crowds on this machine, each beside its peer or limit, in one table.
+    /// Measure kernels and crowds on this machine, each beside a peer or a limit, in one table.
     Bench {
-        /// Keep the measurement in `rust/benchmarks`, and write `rust/BENCHMARKS.md` anew.
+        /// Keep the measurement in `rust/benchmarks` and update `rust/BENCHMARKS.md`.
         #[arg(long)]
         keep: bool,
     },
@@ -135,11 +135,11 @@ enum Command {
         /// Whole skeletons.
         #[arg(long, default_value_t = 1500)]
         skeletons: u32,
-        /// Print JSON, as is always done.
+        /// Print JSON, which is the default.
         #[arg(long)]
         json: bool,
     },
-    /// Start Godot on a project folder, on a display in memory where there is none.
+    /// Start Godot on a project folder, on a virtual display if there is none.
     Open {
         /// The project's folder, from the repository's root.
         project: PathBuf,

@@ -222,7 +222,7 @@ fn data_folder(root: &Path) -> Result<PathBuf> {
     let folder = named.unwrap_or_else(|| PathBuf::from(DATA));
     if !root.join(&folder).join("index.csv").is_file() {
         bail!(
-            "{} holds no index.csv: let FOOTFALL_DATA name the folder with the motion data",
+            "{} has no index.csv; set FOOTFALL_DATA to the folder with the motion data",
             folder.display()
         );
     }

@@ -24,7 +24,7 @@ impl Mono {
     /// Finds Mono, or fetches it.
     ///
     /// # Errors
-    /// Why there is none and none to be had.
+    /// Reason why it is missing and cannot be obtained.
     pub(crate) fn provision() -> Result<Self> {
         if paths::on_path(&["mcs"]).is_some() && paths::on_path(&["mono"]).is_some() {
             return Ok(Self::Installed);

@@ -87,7 +87,7 @@ fn check_recordings(folder: &Path) -> Result<()> {
     let index = folder.join("index.csv");
     let mut table = csv::Reader::from_path(&index).with_context(|| {
         format!(
-            "{}: FOOTFALL_DATA promises recordings; put them there or unset it",
+            "{} is missing, but FOOTFALL_DATA promises recordings; add it or unset FOOTFALL_DATA",
             index.display()
         )
     })?;
@@ -100,7 +100,7 @@ fn check_recordings(folder: &Path) -> Result<()> {
         let file = folder.join(record.get(column).unwrap_or_default());
         ensure!(
             file.is_file(),
-            "{}, line {}: {} is missing; fetch it or unset FOOTFALL_DATA",
+            "{}, line {}: {} is missing; add it or unset FOOTFALL_DATA",
             index.display(),
             row + 2,
             file.display()

@@ -8,7 +8,7 @@ use std::process::Command;
 /// Installs a program of a crate; returns its path.
 ///
 /// # Errors
-/// When it is not to be had or does not compile.
+/// When it is not available or does not compile.
 pub(crate) fn of_crate(name: &str, version: &str) -> Result<PathBuf> {
     let folder = fetch::once(name, version, |folder| {
         eprintln!("installing {name} {version} …");
@@ -26,7 +26,7 @@ pub(crate) fn of_crate(name: &str, version: &str) -> Result<PathBuf> {
 /// Installs a program of a Go module; returns its path.
 ///
 /// # Errors
-/// When there is no Go, or the module is not to be had.
+/// When there is no Go, or the module is not available.
 pub(crate) fn of_go(name: &str, package: &str, version: &str) -> Result<PathBuf> {
     let go = paths::on_path(&["go"])
         .with_context(|| format!("there is no `go` on the PATH, which installs {name}"))?;

@@ -93,7 +93,7 @@ pub(crate) fn command(only: &[String]) -> Result<()> {
     if let Some(unknown) = only.iter().find(|name| !known(name)) {
         let names: Vec<&str> = STEPS.iter().map(|step| step.name).collect();
         bail!(
-            "there is no step `{unknown}`: they are {}",
+            "there is no step `{unknown}`; the steps are {}",
             names.join(", ")
         );
     }

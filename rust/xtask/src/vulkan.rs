@@ -31,7 +31,7 @@ impl Vulkan {
     /// Finds a driver, or fetches one that needs no graphics card.
     ///
     /// # Errors
-    /// Why there is none and none to be had.
+    /// Reason why it is missing and cannot be obtained.
     pub(crate) fn provision() -> Result<Self> {
         let root = Path::new("/");
         let has_driver = env::var_os("VK_DRIVER_FILES").is_some()

@@ -65,7 +65,7 @@ func test_a_wrong_character_is_a_problem() -> void:
 	walker.gait.character = ^"nothing/there"
 	check_contains("\n".join(walker.gait.get_problems()), "nothing/there", "names the path")
 	walker.gait.character = walker.gait.get_path_to(beside)
-	check_contains("\n".join(walker.gait.get_problems()), "does not hold", "says why")
+	check_contains("\n".join(walker.gait.get_problems()), "does not contain", "says why")
 
 
 func test_the_game_may_move_the_character_at_any_time() -> void:

@@ -59,7 +59,7 @@ func test_animations_alone_need_their_skeleton() -> void:
 	add_child(other)
 	maker.skeleton = other
 	check(maker.make_style(model, [animation], "box") == null, "a box does not walk")
-	check_contains(maker.get_message(), "turns no bone", "and the message says so")
+	check_contains(maker.get_message(), "rotates no bone", "and the message says so")
 
 
 func test_files_and_single_animations_are_taken() -> void:
@@ -104,17 +104,17 @@ func test_what_makes_no_style_is_named_with_what_to_do() -> void:
 	no_skeleton.add_child(MeshInstance3D.new())
 	var maker := GaitStyleMaker.new()
 	for case: Array in [
-		[[], ["Give clips"]],
+		[[], ["Give at least one clip"]],
 		[[7], ["7", "Give scenes"]],
 		[["res://nothing.glb"], ["nothing.glb"]],
-		[["res://nothing.fbx"], ["nothing.fbx is not there", "Choose"]],
+		[["res://nothing.fbx"], ["nothing.fbx does not exist", "Choose"]],
 		[["/elsewhere/hero.fbx"], ["hero.fbx", "into the project"]],
 		[[PackedScene.new()], ["empty scene", "Choose the scene of a character"]],
 		[[GameClip.packed(no_skeleton)], ["no Skeleton3D", "Choose"]],
 		[[GameClip.packed(GameClip.character())], ["no AnimationPlayer", "Choose"]],
 		[[load(Walker.MODEL)], ["locomotion.footfall is a GaitModel", "Choose"]],
-		[[GameClip.scene({still = GameClip.still(walk)})], ["#still", "no two steps", "Choose clips that walk"]],
-		[[GameClip.scene({short = short})], ["#short (0.5 s)", "no two steps"]],
+		[[GameClip.scene({still = GameClip.still(walk)})], ["#still", "no two consecutive steps", "Choose walking clips"]],
+		[[GameClip.scene({short = short})], ["#short (0.5 s)", "no two consecutive steps"]],
 		[[GameClip.packed(strange)], ["#walk", "LeftFoot", "BoneMap"]],
 	]:
 		check(maker.make_style(model, case[0], "none") == null, "no style of %s" % [case[0]])

@@ -106,7 +106,7 @@ func test_a_board_on_the_network_drives_a_body_and_is_recorded() -> void:
 	check_equal(replay.get_error(), "", "what was recorded plays")
 	check_near(replay.get_length(), 569 * DELTA, 0.1, "its length")
 	_wait(func() -> bool: return source.get_state() == &"silent", "silence is told")
-	check_contains(source.get_message(), "nothing was heard", "what is told")
+	check_contains(source.get_message(), "no samples from", "what is told")
 	source.stop()
 	check_equal(String(source.get_state()), "closed", "after it was stopped")
 	body.free()
@@ -284,7 +284,7 @@ func test_what_cannot_be_opened_is_told() -> void:
 	serial.port = "/nowhere/tty"
 	serial.start()
 	_wait(func() -> bool: return serial.get_state() == &"failed", "a port that is not there")
-	check_contains(serial.get_message(), "no such port", "what is told")
+	check_contains(serial.get_message(), "there is no port", "what is told")
 	serial.columns = "time,ax"
 	serial.start()
 	check_contains(serial.get_message(), "six axes", "columns that are not whole")

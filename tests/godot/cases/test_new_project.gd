@@ -41,7 +41,7 @@ func test_a_switching_model_passes_over_styles_and_walks() -> void:
 		walker.gait.model = load(SWITCHING)
 	styled.gait.styles = [load(STYLE), null]
 	styled.gait.style_weights = PackedFloat32Array([1.0, 1.0])
-	check_contains("; ".join(styled.gait.get_problems()), "wears no styles", "a warning")
+	check_contains("; ".join(styled.gait.get_problems()), "has no styles", "a warning")
 	for walker: Walker in [plain, styled]:
 		walker.walk(120)
 	check(styled.global_position.z > 0.5, "it walks")

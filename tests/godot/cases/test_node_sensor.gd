@@ -63,7 +63,7 @@ func test_a_path_that_leads_nowhere_is_told() -> void:
 	begin_expected_errors()
 	var body := WornSensor.driven(self, MODEL, source)
 	var node := _reconstructor(body)
-	check_contains("\n".join(node.get_problems()), "set its Node", "no node")
+	check_contains("\n".join(node.get_problems()), "Set its Node", "no node")
 	source.node = ^"../Nowhere"
 	check_contains("\n".join(node.get_problems()), "../Nowhere", "a wrong path")
 	body.step(DELTA)

@@ -99,4 +99,4 @@ func test_a_node_beside_the_skeleton_is_told_where_to_go() -> void:
 	check_contains(problems, "Armature/GeneralSkeleton", "names the skeleton of the scene")
 	skeleton.free()
 	problems = "\n".join(gait.get_problems())
-	check_contains(problems, "there is none in this scene", "says that there is none")
+	check_contains(problems, "This scene has none", "says that there is none")

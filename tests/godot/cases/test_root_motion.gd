@@ -126,7 +126,7 @@ func test_the_first_of_two_generators_walks() -> void:
 	alone.walk(120)
 	check_equal(both.position, alone.position, "as far as with one")
 	check_equal(both.bones, alone.bones, "in the same pose")
-	check_contains(second.get_problems()[0], "walks the same Skeleton3D already", "the second one's problem")
+	check_contains(second.get_problems()[0], "already walks the same Skeleton3D", "the second one's problem")
 	check_contains(second.get_problems()[0], "Remove one of the two", "what to do")
 	check_equal(both.gait.get_problems(), PackedStringArray(), "the first one has none")
 	both.gait.active = false

@@ -109,12 +109,12 @@ func test_broken_sources_and_missing_parts_rest() -> void:
 	var source := ReplayImuSource.new()
 	check_contains(source.get_error(), "File", "no file")
 	source.file = "user://none.imu"
-	check_contains(source.get_error(), "no such file", "a file that is not there")
+	check_contains(source.get_error(), "there is no file", "a file that is not there")
 	var still: Array[Array] = []
 	for n: int in 100:
 		still.append([n * 0.01, Vector3(0.0, 1.0, 0.0), Vector3(0.0, 0.01 * n, 0.0)])
 	source.file = _write(still)
-	check_contains(source.get_error(), "in g", "the wrong unit")
+	check_contains(source.get_error(), "unit is g", "the wrong unit")
 	var node := _reconstructor(body)
 	node.source = source
 	node.model = load(MODEL)

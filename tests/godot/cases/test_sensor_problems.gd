@@ -79,7 +79,7 @@ func test_a_guided_calibration_is_kept_for_the_next_session() -> void:
 		asked.append(String(step))
 		check(message.length() > 10, "%s is asked" % step))
 	body.step(0.0)
-	check_contains(node.save_calibration(FILE), "calibrate first", "nothing is known yet")
+	check_contains(node.save_calibration(FILE), "Calibrate first", "nothing is known yet")
 	var done_secs := 0.0
 	for n: int in samples.size():
 		_push(node, body, samples[n])
@@ -103,7 +103,7 @@ func test_a_guided_calibration_is_kept_for_the_next_session() -> void:
 	node.mounting = ImuReconstructor3D.AUTO
 	check_contains(node.load_calibration(FILE), "after the first frame", "too soon")
 	body.step(0.0)
-	check_contains(node.load_calibration("user://none.footcal"), "no such file", "no file")
+	check_contains(node.load_calibration("user://none.footcal"), "There is no file", "no file")
 	check_equal(node.load_calibration(FILE), "", "loaded")
 	for sample: Array in samples.slice(180, 420):
 		_push(node, body, sample)
@@ -115,7 +115,7 @@ func test_a_guided_calibration_is_kept_for_the_next_session() -> void:
 	node = _reconstructor(body)
 	body.step(0.0)
 	check_contains(node.load_calibration(FILE), "for right_foot, the model for right_thigh", "another site")
-	check_contains(node.load_calibration(MODEL), "no calibration", "a model")
+	check_contains(node.load_calibration(MODEL), "not a sensor calibration", "a model")
 	node.set_step_scale(1.2)
 	check_near(node.get_step_scale(), 1.2, 1e-6, "a pocket's steps are set")
 	body.free()

@@ -22,7 +22,7 @@ func test_the_shipped_switching_model_is_there() -> void:
 	check(not (load(Walker.MODEL) as GaitModel).is_switching(), "the trained walk knows its own")
 	var speeds := model.get_speed_range()
 	check(speeds.x > 0.8 and speeds.x < 1.5, "a walking speed: %s" % speeds)
-	check_contains(model.description, "Two systems", "it describes itself")
+	check_contains(model.description, "Two linear systems", "it describes itself")
 
 
 func test_it_walks_with_planted_feet_and_tells_its_footsteps() -> void:
@@ -69,7 +69,7 @@ func test_styles_are_passed_over_with_what_to_do() -> void:
 	var walker := _walker()
 	walker.gait.styles = [load("res://addons/footfall/models/sad.footstyle")]
 	walker.gait.style_weights = PackedFloat32Array([1.0])
-	check_contains("\n".join(walker.gait.get_problems()), "empty Styles", "what to do")
+	check_contains("\n".join(walker.gait.get_problems()), "Clear Styles", "what to do")
 	walker.gait.styles = []
 	walker.gait.style_weights = PackedFloat32Array()
 	check_equal(walker.gait.get_problems(), PackedStringArray(), "and then it is done")

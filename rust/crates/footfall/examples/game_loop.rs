@@ -22,7 +22,7 @@ fn street(from: Vec3, way: Vec3) -> Option<Ground> {
     })
 }
 
-/// Plays seven seconds; `show` sees where the character is in each frame, its feet and its pose.
+/// Plays seven seconds; `show` receives the character's place in each frame, its feet and its pose.
 pub(crate) fn play(
     model: &Arc<GaitModel>,
     mut show: impl FnMut(usize, Frame, &FootPlacer, &Pose),
@@ -53,7 +53,7 @@ pub(crate) fn play(
             airborne: false,
         };
         if placer.pace() < 1.0 {
-            // A foothold on the kerb has been chosen for this step.
+            // A foothold on the kerb is chosen for this step.
             walker.keep_step();
         }
         if let Some(share) = placer.step_share(&input, &mut street) {

@@ -1,4 +1,4 @@
-//! Plays the recording of one sensor on a foot back as fast as it was recorded, and moves a whole body by it.
+//! Replays the recording of one foot sensor in real time, and drives a whole body by it.
 //!
 //! `cargo run --example replay_sensor [IMU.csv]`
 #![expect(clippy::print_stdout, reason = "examples print")]
@@ -11,12 +11,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::{env, error, fs};
 
-/// The model of a sensor on the right foot that ships with the project.
+/// The project's model for a sensor on the right foot.
 const MODEL: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../../../addons/footfall/models/right_foot.footimu"
 );
-/// Measurements of such a sensor on a walk that the project generated.
+/// Measurements of such a sensor on a generated walk.
 pub(crate) const RECORDING: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../../../tests/data/walker_1_slow.right_foot.csv"
@@ -35,7 +35,7 @@ pub(crate) fn body() -> Result<Reconstructor, Box<dyn error::Error>> {
     )?)
 }
 
-/// Replays a recording at 60 frames a second; `show` sees every frame's time in seconds, the body and its pose.
+/// Replays a recording at 60 frames a second; `show` receives every frame's time in seconds, the body and its pose.
 pub(crate) fn replay(
     recording: &ImuRecording,
     body: &mut Reconstructor,

@@ -1,4 +1,4 @@
-//! Walks a dozen steps and writes them as BVH, for any program that shows animation.
+//! Walks a dozen steps and writes them as BVH, for any animation program.
 //!
 //! `cargo run --example walk_once [MODEL.footfall [OUT.bvh]]`
 #![expect(clippy::print_stdout, reason = "examples print")]
@@ -10,13 +10,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::{env, error, fs};
 
-/// The walk that ships with the project.
+/// The project's walk.
 pub(crate) const MODEL: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../../../addons/footfall/models/locomotion.footfall"
 );
 
-/// Generates a walk of so many steps, out of standing and back into it.
+/// Generates a walk of this many steps that begins and ends standing.
 pub(crate) fn walk(model: &Arc<GaitModel>, steps: usize) -> Result<SynthesizedWalk, SynthError> {
     let config = WalkConfig {
         steps,

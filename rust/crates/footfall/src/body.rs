@@ -1,7 +1,7 @@
-//! Bodies and their motion: joints, lengths, poses, clips, and the joints of a game's own rig.
+//! Bodies and their motion: joints, lengths, poses, clips, and the joints of a game's rig.
 //!
-//! A [`Skeleton`] has the lengths of one body: an offset per [`Joint`] and a [`FootShape`] per [`Side`]. A [`Pose`] has its rotations. [`forward_kinematics`] makes a
-//! [`ModelPose`] of both, in which every joint has a place.
+//! A [`Skeleton`] holds the lengths of one body: an offset per [`Joint`] and a [`FootShape`] per [`Side`]. A [`Pose`] holds its rotations. [`forward_kinematics`] computes a
+//! [`ModelPose`] from both, with the position of every joint.
 //!
 //! ```
 //! use footfall::body::{Joint, ModelPose, Pose, Skeleton, forward_kinematics};
@@ -35,8 +35,8 @@
 //! assert_eq!(jump.resampled(60.0).poses.len(), 31);
 //! ```
 //!
-//! A game's own skeleton is a [`Rig`]: the names of its bones, and what each hangs from. [`recognise`] returns a [`Recognition`]: the family that fits
-//! best, the [`Placement`] of the joints, and a [`Doubt`] for each joint that it left out.
+//! A game's own skeleton is a [`Rig`]: the names and parents of its bones. [`recognise`] returns a [`Recognition`]: the best matching family,
+//! the [`Placement`] of the joints, and a [`Doubt`] for each joint that it left out.
 //!
 //! ```
 //! use footfall::body::{Joint, Rig, recognise};
@@ -57,7 +57,7 @@
 //! assert_eq!(found.placement.joint(Joint::LeftToes), None);
 //! ```
 //!
-//! [`from_heading`] and [`heading`] turn a heading about the vertical into a rotation and back.
+//! [`from_heading`] and [`heading`] convert a heading about the vertical to a rotation and back.
 //!
 //! ```
 //! use footfall::body::{from_heading, heading};

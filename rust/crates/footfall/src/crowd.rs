@@ -1,6 +1,6 @@
-//! Walkers by the thousand, each in a hundredth of a generator's memory.
+//! Thousands of walkers, each with a hundredth of a generator's memory.
 //!
-//! A [`StyledBody`] is a mixture of styles on one body, measured once for all who share it. A [`Workshop`] works steps out: make one a thread. A [`CrowdWalker`] borrows
+//! A [`StyledBody`] is a mixture of styles on one body, measured once for all walkers that share it. A [`Workshop`] generates steps: create one per thread. A [`CrowdWalker`] borrows
 //! it about twice a second and writes a [`CrowdPose`]: every joint in the space of the character, ready for a shader or a skeleton.
 //!
 //! ```
@@ -37,8 +37,8 @@
 //!
 //! # Whole crowds
 //!
-//! A [`Crowd`] also decides who walks where. A [`CrowdRecipe`] is what its walkers are made of, on threads of its own; [`CrowdSettings`] are how they differ. Its
-//! [`Way`] leads them over an area, along a [`Path`], or as each [`Agent`] is told. They keep out of each other's way.
+//! A [`Crowd`] also directs its walkers. A [`CrowdRecipe`] holds what they are made of, on threads of its own; [`CrowdSettings`] set their differences. A
+//! [`Way`] leads them over an area, along a [`Path`], or as each [`Agent`] is told. They avoid each other.
 //!
 //! ```
 //! use footfall::crowd::{Crowd, CrowdRecipe, CrowdSettings, Limits, Tier, Way};
@@ -56,21 +56,21 @@
 //!
 //! let limits = Limits { counts: [5, 20], distances_m: [8.0, 40.0] };
 //! for frame in 0..120 {
-//!     // A game calls `begin_some`, which waits for nobody.
+//!     // A game calls `begin_some`, which does not block.
 //!     crowd.begin_all()?;
 //!     crowd.advance(1.0 / 60.0, true);
 //!     if frame % 8 == 0 {
 //!         crowd.choose_tiers(Vec3::ZERO, &limits);
 //!     }
 //!     for (drawn, tier) in crowd.drawn().iter().zip(crowd.tiers()) {
-//!         // Put a character at `drawn.places[1]`: one with a skeleton for `Tier::Full`, an instance else.
+//!         // Put a character at `drawn.places[1]`: one with a skeleton for `Tier::Full`, otherwise an instance.
 //!         assert!(drawn.places[1].is_finite() && *tier <= Tier::Far);
 //!     }
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A walker keeps its name in the [`Roster`] for as long as it is there. Here one is sent to a place, and the crowd is saved with it.
+//! A walker keeps its name, a number, in the [`Roster`] while it is in the crowd. This example sends one walker to a place, and saves the crowd.
 //!
 //! ```
 //! # use footfall::crowd::{CrowdRecipe, CrowdSettings};
@@ -103,8 +103,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A walker's [`Goal`] is what it does by itself, [`Drawn`] its places for drawing. Of those far away one group of [`GROUPS`] moves in each frame; a renderer that writes many
-//! poses fetches [`FETCHED`] of them together ([`Agent::fetch_pose`]). A crowd has at most [`MOST_AGENTS`]. [`CrowdStateError`] says what is wrong with bytes.
+//! A [`Goal`] is a walker's own target, [`Drawn`] holds its places for drawing. One group of [`GROUPS`] of the distant walkers moves in each frame; a renderer that writes many
+//! poses fetches [`FETCHED`] of them together ([`Agent::fetch_pose`]). A crowd has at most [`MOST_AGENTS`]. [`CrowdStateError`] reports invalid bytes.
 
 pub use footfall_rig::crowd::{
     Agent, Crowd, CrowdRecipe, CrowdSettings, CrowdStateError, Drawn, FETCHED, GROUPS, Goal,

@@ -1,7 +1,7 @@
 //! Walks in real time, whole walks, and loops.
 //!
-//! A [`StyleSpace`] prepares a model and its styles once for all walkers. A [`GaitGenerator`] is one walker; its [`GeneratorConfig`] makes it differ from others.
-//! [`Controls`] are what it is asked to do. A [`SynthError`] says why a model, a body or a setting cannot be used.
+//! A [`StyleSpace`] prepares a model and its styles once for all walkers. A [`GaitGenerator`] is one walker; its [`GeneratorConfig`] distinguishes it from others.
+//! [`Controls`] hold the requested speed, turning and direction. A [`SynthError`] reports an unusable model, body or setting.
 //!
 //! ```
 //! use footfall::body::Pose;
@@ -29,14 +29,14 @@
 //! let GroundTransform { position, heading } = walker.start_from_character();
 //! assert!(footprints.len() >= 7 && heading > 1.5 && position.x > 1.0);
 //!
-//! walker.set_style_weights(&[0.0]); // With the next step it is sad no more,
-//! walker.set_detail(Detail::Half); // and far away: every second frame is put on the ground.
+//! walker.set_style_weights(&[0.0]); // From the next step on it is not sad,
+//! walker.set_detail(Detail::Half); // and far away: every second frame is placed on the ground.
 //! for _ in 0..180 {
 //!     walker.step(1.0 / 60.0, &Controls::STAND, &mut pose);
 //! }
 //! assert!(walker.is_standing() && walker.feet_in_contact() == [true, true]);
 //!
-//! // A saved game: all of the walk in some 1.5 kB.
+//! // A saved game: the whole walk in about 1.5 kB.
 //! let state = walker.state();
 //! let mut other = GaitGenerator::new(&styles, &[], &body, &config)?;
 //! other.restore(&state)?;
@@ -44,8 +44,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Above about 2 m/s a walker runs, if its model knows how: [`Controls::gait`] is a [`GaitChoice`], and [`GaitGenerator::gait`] the [`Gait`] of the current step.
-//! [`synthesize_moves`] makes a clip of one [`Move`] after another.
+//! Above about 2 m/s a walker runs, if its model can: [`Controls::gait`] is a [`GaitChoice`], and [`GaitGenerator::gait`] returns the [`Gait`] of the current step.
+//! [`synthesize_moves`] makes a clip of a sequence of [`Move`]s.
 //!
 //! ```
 //! use footfall::gait::{Controls, Gait, GaitChoice, Move, StandConfig, StyleSpace, synthesize_moves};
@@ -77,8 +77,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A walker jumps when it is asked to, to a height or to a place, and [`GaitGenerator::jump_phase`] is the [`JumpPhase`] that it is in. [`Controls::crouch`]
-//! keeps it low.
+//! A walker jumps on request, to a height or to a place; [`GaitGenerator::jump_phase`] returns the [`JumpPhase`]. [`Controls::crouch`]
+//! lowers it.
 //!
 //! ```
 //! use footfall::body::Pose;
@@ -106,9 +106,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`StateError`] says why a state cannot be taken up; the walker then goes on as before.
+//! [`StateError`] reports a state that cannot be restored; the walker then continues as before.
 //!
-//! A generator of a [`DynamicsModel`](crate::model::DynamicsModel) is made by [`GaitGenerator::switching`] and used in the same way.
+//! [`GaitGenerator::switching`] creates a generator of a [`DynamicsModel`](crate::model::DynamicsModel), which is used in the same way.
 //!
 //! ```
 //! use footfall::body::{Pose, Skeleton};
@@ -131,9 +131,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`synthesize`] solves a whole walk at once, as a [`WalkConfig`] asks. The [`SynthesizedWalk`] has the clip, each foot's contacts as [`FrameSpan`]s, and
+//! [`synthesize`] solves a whole walk at once, by a [`WalkConfig`]. The [`SynthesizedWalk`] holds the clip, each foot's contacts as [`FrameSpan`]s, and
 //! its [`GaitEvent`]s, each of an [`EventKind`]. [`synthesize_standing`] (with a [`StandConfig`]) and [`synthesize_switching`] (with a [`SwitchingWalkConfig`]) make clips of
-//! somebody who stands, and of a switching model.
+//! a standing person and of a switching model.
 //!
 //! ```
 //! use footfall::gait::{
@@ -182,7 +182,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`LoopedWalk`] is a clip that repeats, for engines and platforms that play animations only.
+//! A [`LoopedWalk`] is a looping clip, for engines and platforms that only play animations.
 //!
 //! ```
 //! use footfall::gait::{GaitGenerator, GeneratorConfig, LoopedWalk, StyleSpace};

@@ -1,9 +1,9 @@
 //! Feet on real ground, and legs that reach.
 //!
-//! A [`FootPlacer`] takes poses over a flat floor, of a [`GaitGenerator`](crate::gait::GaitGenerator) or of any other animation, and puts their feet on the [`Terrain`] of a game: its
-//! [`Ground`] at a point, on a support that a [`SupportId`] names and that may move. A [`PlacementConfig`] has limits, with [`ContactThresholds`] for animations that do
-//! not say when a foot stands; a [`PlacementInput`] says where the floor is in the world, as a [`Frame`], and what is known of the animation: contacts, and
-//! each foot's next [`Landing`]. A [`PlacedFoot`] is what became of a foot. The [game loop](crate#a-game-loop) has all of it; this animation knows nothing:
+//! A [`FootPlacer`] takes poses over a flat floor, from a [`GaitGenerator`](crate::gait::GaitGenerator) or any other animation, and places their feet on a game's [`Terrain`]: its
+//! [`Ground`] at a point, on a support with a [`SupportId`] that may move. A [`PlacementConfig`] holds limits, with [`ContactThresholds`] for animations without
+//! contacts. A [`PlacementInput`] holds the floor's place in the world as a [`Frame`], and optional knowledge of the animation: contacts, and
+//! each foot's next [`Landing`]. A [`PlacedFoot`] is the result for a foot. The [game loop](crate#a-game-loop) uses all of this; the following animation has no contacts:
 //!
 //! ```
 //! use footfall::body::{Pose, Skeleton};
@@ -32,7 +32,7 @@
 //! };
 //! let mut pose = Pose::rest(&body);
 //! for _ in 0..60 {
-//!     pose = Pose::rest(&body); // The next frame of an animation: here, of somebody who stands.
+//!     pose = Pose::rest(&body); // The next frame of an animation: here, of a standing person.
 //!     placer.step(1.0 / 60.0, &input, &mut slope, &mut pose);
 //! }
 //! let feet: &[PlacedFoot; 2] = placer.feet();
@@ -41,7 +41,7 @@
 //! }
 //! ```
 //!
-//! A closure is ground on which nothing moves. A [`Terrain`] of its own also says where each support is now.
+//! A closure is ground on which nothing moves. An implementation of [`Terrain`] also returns the current place of each support.
 //!
 //! ```
 //! use footfall::glam::Vec3;
@@ -70,8 +70,8 @@
 //! assert_eq!(ground.position.y, 2.0);
 //! ```
 //!
-//! A [`Leg`] is solved alone where a game knows where a foot has to be: a [`FootTarget`] has the ankle and how foot and toes are turned, a [`LegSolution`] what
-//! the leg does.
+//! A [`Leg`] can be solved alone if the game knows the place of the foot: a [`FootTarget`] holds the ankle and the rotations of foot and toes, a [`LegSolution`] the
+//! result for the leg.
 //!
 //! ```
 //! use footfall::body::{Joint, Pose, Side, Skeleton};
@@ -88,7 +88,7 @@
 //! assert!(pose.rotation(Joint::LeftLowerLeg).angle_between(Quat::IDENTITY) > 1.0);
 //! ```
 //!
-//! A [`RockerFoot`] has the points of a sole: where they are when the foot stands on a [`Plant`] and rolls over heel, ball and toes.
+//! A [`RockerFoot`] holds the points of a sole, as the foot stands on a [`Plant`] and rolls over heel, ball and toes.
 //!
 //! ```
 //! use footfall::body::{Side, Skeleton};

@@ -1,7 +1,7 @@
-//! From one motion to another: no jump, and feet that stand stay where they are.
+//! Transitions between motions: no jump, and standing feet stay in place.
 //!
-//! A [`Handover`] begins with two frames of the motion that ends and two of the one that goes on, each as a [`Moving`]. [`standing_feet`] finds which feet stand in
-//! an animation that does not say.
+//! A [`Handover`] starts from two frames of the motion that ends and two of the motion that follows, each as a [`Moving`]. [`standing_feet`] detects the standing feet of
+//! an animation without contacts.
 //!
 //! ```
 //! use footfall::body::{Joint, Pose, Skeleton};

@@ -2,7 +2,7 @@
 //!
 //! # A walk
 //!
-//! The models of this page come with the project. Paths are those of its repository.
+//! The project ships the models of this page. Paths are relative to its repository.
 //!
 //! ```
 //! use footfall::body::Pose;
@@ -28,15 +28,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Pose`](body::Pose) holds the place of the hips and one rotation a joint, in the space of the character: origin on the ground below it, +Z
-//! where it faces. [`start_from_character`](gait::GaitGenerator::start_from_character) is where the character has come to. An engine puts its
-//! object there and the rotations on its bones: [`rig`] measures a character and writes poses to it, whatever the axes of its bones are. Give
+//! A [`Pose`](body::Pose) holds the position of the hips and one rotation per joint, in the space of the character: origin on the ground below it, +Z
+//! ahead. [`start_from_character`](gait::GaitGenerator::start_from_character) is the character's place relative to its start. An engine puts its
+//! object there and the rotations on its bones: [`rig`] measures a character and writes poses to it, whatever the axes of its bones. Pass
 //! [`GaitGenerator::new`](gait::GaitGenerator::new) the lengths of your character as a [`Skeleton`](body::Skeleton), and its feet meet the ground exactly.
 //!
 //! # A game loop
 //!
-//! Uneven ground needs three things: the [`Terrain`](ground::Terrain) of your game, a [`FootPlacer`](ground::FootPlacer), and somebody who carries the
-//! character up and down. A frame goes like this.
+//! Uneven ground needs three things: the [`Terrain`](ground::Terrain) of your game, a [`FootPlacer`](ground::FootPlacer), and code that moves the
+//! character up and down. One frame looks like this:
 //!
 //! ```
 //! use footfall::body::Pose;
@@ -59,7 +59,7 @@
 //! }
 //!
 //! impl Character {
-//!     /// Moves on by a frame; returns where the game is to put the character. `pose` is what to show there.
+//!     /// Advances one frame; returns the character's place in the world. `pose` is the pose to show there.
 //!     fn frame(&mut self, dt_secs: f32, speed_mps: f32, terrain: &mut impl Terrain) -> Frame {
 //!         // People slow down uphill, and lean into it.
 //!         self.walker.set_grade(self.placer.way_grade());
@@ -76,10 +76,10 @@
 //!             airborne: false,
 //!         };
 //!         if self.placer.pace() < 1.0 {
-//!             // The foothold of this step has been chosen: what is asked for now waits for the next.
+//!             // The foothold of this step is chosen: new controls wait for the next step.
 //!             self.walker.keep_step();
 //!         }
-//!         // A step that would end on the edge becomes a shorter or a longer one.
+//!         // A step that would end on an edge becomes shorter or longer.
 //!         if let Some(share) = self.placer.step_share(&input, terrain) {
 //!             self.walker.stretch_step(share);
 //!             input.landings = self.walker.landings();
@@ -152,14 +152,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A sensor that is worn in any other way than along the axes of the foot is turned first: [`reconstruction::find_mounting`] finds out from a few steps.
+//! A sensor in another orientation than the axes of the foot must be rotated first: [`reconstruction::find_mounting`] finds its mounting from a few steps.
 //!
 //! # What it promises
 //!
-//! - `new` makes every check and returns an error that says what to do. `step` cannot fail and does not allocate.
+//! - `new` checks everything and returns an error that says what to do. `step` cannot fail and does not allocate.
 //! - The same model, seed and sequence of time steps give the same poses, bit for bit on one machine.
-//! - Nothing reads a clock, a file or global randomness, but for [`sensor::csv::read`], which reads the file that it is given, and the ports of the feature `live`.
-//! - A model file of any released version loads, or says which version wrote it and what to do.
+//! - The library reads no clock, file or global randomness, except [`sensor::csv::read`], which reads the given file, and the ports of the feature `live`.
+//! - A model file of any released version loads, or an error states its version and what to do.
 //!
 //! # Space and units
 //!
@@ -169,7 +169,7 @@
 //!
 //! # Features
 //!
-//! `live` opens serial ports and sockets for sensors; it brings an HTTP server, TLS and their dependencies. Nothing is on by default.
+//! `live` opens serial ports and sockets for sensors; it adds an HTTP server, TLS and their dependencies. It is off by default.
 //!
 //! Modules in suggested reading order: [`body`], [`model`], [`gait`], [`rig`], [`ground`], [`handover`], [`crowd`], [`network`], [`sensor`], [`reconstruction`].
 

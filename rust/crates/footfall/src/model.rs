@@ -1,10 +1,10 @@
-//! Models as files hold them: walks, styles, sensors.
+//! Models in files: walks, styles, sensors.
 //!
-//! Every model is read from bytes and written to bytes; the files are the caller's. A [`ModelFileError`] says what is wrong with bytes, a [`ModelError`] which part
-//! of a model makes no sense. No input panics.
+//! Models are read from and written to bytes; the caller handles files. A [`ModelFileError`] reports invalid bytes, a [`ModelError`] the invalid part
+//! of a model. No input panics.
 //!
-//! A [`GaitModel`] (`.footfall`) walks, stands and wears styles. A [`GaitStyle`] (`.footstyle`) is a way of walking for one of them; a [`StyleError`] says when it
-//! is for another. [`Provenance`] says what a model was trained on and on which terms.
+//! A [`GaitModel`] (`.footfall`) walks, stands and supports styles. A [`GaitStyle`] (`.footstyle`) is a way of walking for one model; a [`StyleError`] reports another
+//! model's style. [`Provenance`] records a model's training data and their terms.
 //!
 //! ```
 //! use footfall::model::{GaitModel, GaitStyle, ModelFileError};
@@ -22,7 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`DynamicsModel`] (`.footdyn`) is gait as two linear systems that take turns. A [`WalkModel`] is either kind, as the file's header says.
+//! A [`DynamicsModel`] (`.footdyn`) is gait as two linear systems that switch. A [`WalkModel`] is either kind, by the file's header.
 //!
 //! ```
 //! use footfall::model::WalkModel;
@@ -36,7 +36,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! An [`ImuModel`] (`.footimu`) knows what one or two sensors measure while a body moves; [`Site`] is where each is worn.
+//! An [`ImuModel`] (`.footimu`) maps the measurements of one or two sensors to a moving body; a [`Site`] is the place of a sensor.
 //!
 //! ```
 //! use footfall::model::{ImuModel, Site};

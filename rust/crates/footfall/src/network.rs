@@ -1,6 +1,6 @@
-//! Walkers on several machines: the same steps from 24 bytes now and then.
+//! Walkers on several machines: the same steps from updates of 24 bytes.
 //!
-//! One machine walks a character and sends [`UPDATE_BYTES`] fifteen to thirty times a second; the others make the same steps with the character's model, an eighth of a second after they hear of them.
+//! One machine controls a character and sends [`UPDATE_BYTES`] fifteen to thirty times a second; the others make the same steps with the character's model, an eighth of a second after they receive them.
 //!
 //! ```
 //! use footfall::body::Pose;
@@ -51,8 +51,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Messages of peers are checked: [`ReplicaError`] says why something is refused, and then nothing changes. A peer whose walker jumps through the level sends an
-//! identity first; nobody else is believed to go faster than people run.
+//! Messages of peers are checked: [`ReplicaError`] gives the reason for a refusal, and then nothing changes. A peer whose walker teleports sends an
+//! identity first; other moves faster than people run are refused.
 
 pub use footfall_synth::replica::{
     Followed, ReplicaError, UPDATE_BYTES, WalkFollower, WalkIdentity, WalkSender,

@@ -1,8 +1,8 @@
-//! A whole body from what one or two sensors measure.
+//! A whole body from the measurements of one or two sensors.
 //!
-//! [`Prepared`] lays a model out once for all bodies. A [`Reconstructor`] takes samples as they come and writes poses; a [`ReconConfig`], with a [`TrackerConfig`] in it, has
-//! its settings, a [`SensorState`] says whether anything is heard, a [`Behaviour`] what the body does. [`reconstruct_recording`] makes a [`Reconstructed`] of a whole
-//! recording, where later samples help. Poses are in the space where the body began; [`Reconstructor::split`] divides one into the character's place and the pose above it.
+//! [`Prepared`] prepares a model once for all bodies. A [`Reconstructor`] takes samples as they arrive and writes poses. A [`ReconConfig`], with a [`TrackerConfig`], holds
+//! its settings; a [`SensorState`] reports whether samples arrive, a [`Behaviour`] what the body does. [`reconstruct_recording`] makes a [`Reconstructed`] of a whole
+//! recording, in which later samples improve earlier frames. Poses are relative to the body's start; [`Reconstructor::split`] divides one into the character's place and the pose above it.
 //!
 //! ```
 //! use footfall::body::Pose;
@@ -43,10 +43,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Blending`], in [`ReconConfig`], is how the shown body goes over from one course of the recordings to another.
+//! [`Blending`], in [`ReconConfig`], is the transition of the shown body between segments of the recordings.
 //!
-//! [`find_mounting`] finds the [`Mounting`] of a sensor that is worn in any orientation, from a recording of a few steps; a [`MountingError`] says when there is too
-//! little motion. Give [`Mounting::site_from_sensor`] to [`Reconstructor::set_mounting`].
+//! [`find_mounting`] finds the [`Mounting`] of a sensor in any orientation from a recording of a few steps; a [`MountingError`] reports too
+//! little motion. Pass [`Mounting::site_from_sensor`] to [`Reconstructor::set_mounting`].
 //!
 //! ```
 //! use footfall::glam::Quat;
@@ -70,8 +70,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`examine()`] finds the mounting and what is wrong with it: an [`Examination`] with a [`SensorProblem`] where the sensor is on the other side of the body, or turned against the mounting that is
-//! believed. [`find_exchange`] does so for two sensors that may be exchanged. Each problem says what the wearer is to do; [`Reconstructor::problem`] has that of the moment.
+//! [`examine()`] finds the mounting and its problems: an [`Examination`] with a [`SensorProblem`] if the sensor is on the other side of the body, or turned from the assumed
+//! mounting. [`find_exchange`] does so for two sensors that may be swapped. Each problem tells the wearer what to do; [`Reconstructor::problem`] returns the current one.
 //!
 //! ```
 //! use footfall::glam::Quat;
@@ -97,9 +97,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`SensorCalibration`] keeps what a session has learned of wearer and sensors, a [`CalibratedSensor`] for each [`Site`], as the bytes of a `.footcal` file; a [`CalibrationError`] says why one is refused. A
-//! [`CalibrationGuide`] leads the wearer to it through the [`GuideStep`]s. [`Prepared::wear`] makes a [`WornRecording`] of samples in the sensor's axes, ready for
-//! [`reconstruct_recording`], with a [`ProblemSpan`] for each problem on the way.
+//! A [`SensorCalibration`] stores what a session has learned about wearer and sensors, with a [`CalibratedSensor`] per [`Site`], as the bytes of a `.footcal` file; a [`CalibrationError`] gives the reason for a refusal. A
+//! [`CalibrationGuide`] guides the wearer through the [`GuideStep`]s. [`Prepared::wear`] makes a [`WornRecording`] of samples in the sensor's axes, ready for
+//! [`reconstruct_recording`], with a [`ProblemSpan`] for each problem.
 //!
 //! ```
 //! use footfall::glam::Quat;

@@ -1,7 +1,7 @@
-//! A game's own character as a body, and poses on its bones.
+//! A game's character as a body, and poses on its bones.
 //!
-//! A [`RestRig`] has the bones as they rest: names, parents and transforms, in any units and axes. [`joint_bones`] finds the joints among them. A [`RigBinding`] is both
-//! measured: the [`Skeleton`](crate::body::Skeleton) for the walker, the way from a pose to rotations of bones, and that from the ground under the body to the object that carries
+//! A [`RestRig`] holds the bones in the rest pose: names, parents and transforms, in any units and axes. [`joint_bones`] finds the joints among them. A [`RigBinding`] holds the
+//! measurements: the [`Skeleton`](crate::body::Skeleton) for the walker, the conversion from a pose to bone rotations, and the transform from the ground under the body to the object that carries
 //! the rig. Rest poses may be A-poses, and bones may be missing.
 //!
 //! ```
@@ -68,8 +68,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`RigBinding::write_layered`] leaves arms, spine or head to other animation by [`LayerWeights`]. [`BindingError`] names the bone that is wrong, and [`MissingJoints`] what a rig
-//! lacks: then fill in [`MappedBones`] by hand. [`relative_size`] says whether a character was scaled since it was measured.
+//! [`RigBinding::write_layered`] leaves arms, spine or head to other animation by [`LayerWeights`]. [`BindingError`] names a wrong bone, [`MissingJoints`] the joints that a rig
+//! lacks: fill in [`MappedBones`] by hand then. [`relative_size`] returns the scale of a character since it was measured.
 //!
 //! ```
 //! use footfall::glam::{Affine3A, Vec3};

@@ -1,7 +1,7 @@
 //! Inertial sensors: samples, recordings, orientation, gait events and strides of a foot, and live ports.
 //!
-//! An [`ImuSample`] is a time, a specific force in m/s² (at rest [`GRAVITY_MPS2`] along up) and an angular rate in rad/s. An [`ImuRecording`] is a row of them; the
-//! module [`csv`] reads and writes its file, with an [`ImuCsvError`] that names line and column. [`check_recording`] finds wrong units, axes and rates, each a [`RecordingFault`].
+//! An [`ImuSample`] is a time, a specific force in m/s² (at rest [`GRAVITY_MPS2`] along up) and an angular rate in rad/s. An [`ImuRecording`] is a sequence of samples; the
+//! module [`csv`] reads and writes its file, with an [`ImuCsvError`] that names line and column. [`check_recording`] detects wrong units, axes and rates, each a [`RecordingFault`].
 //!
 //! ```
 //! use footfall::glam::Vec3;
@@ -31,8 +31,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`StreamMonitor`] judges samples as they come. Its [`StreamFault`] says what is wrong, with what to do; a [`FaultSpan`] also says when. [`find_rest`] finds where a sensor was still: its
-//! [`Rest`] is the sensor's bias and gravity.
+//! A [`StreamMonitor`] checks samples as they arrive. A [`StreamFault`] says what is wrong and what to do; a [`FaultSpan`] adds the time. [`find_rest`] finds a time at which a sensor was still: its
+//! [`Rest`] holds the sensor's bias and gravity.
 //!
 //! ```
 //! use footfall::glam::Vec3;
@@ -59,7 +59,7 @@
 //! assert!(rest.rate_bias.distance(bias) < 1e-4 && (rest.force.length() - 9.7).abs() < 1e-3);
 //! ```
 //!
-//! [`detect_swings`] finds each [`Swing`] of a foot that wears a sensor, [`events_of`] its [`SensorEvent`]s, [`measure_strides`] the [`SensorStride`]s.
+//! [`detect_swings`] finds each [`Swing`] of a foot with a sensor, [`events_of`] its [`SensorEvent`]s, [`measure_strides`] the [`SensorStride`]s.
 //!
 //! ```
 //! use footfall::sensor::{SensorEvent, SensorStride, Swing, csv, detect_swings, events_of, measure_strides};
@@ -77,7 +77,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! An [`OrientationFilter`] follows how a sensor is turned.
+//! An [`OrientationFilter`] tracks the orientation of a sensor.
 //!
 //! ```
 //! use footfall::glam::Vec3;

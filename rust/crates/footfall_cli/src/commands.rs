@@ -23,7 +23,7 @@ mod walk_output;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-/// Learn a gait from motion capture, and walk with it.
+/// Train gait models on motion capture, and generate walks with them.
 #[derive(Debug, Parser)]
 #[command(
     name = "footfall",

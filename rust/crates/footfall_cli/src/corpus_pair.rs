@@ -62,7 +62,7 @@ impl Args for CorpusPair {
                     .value_name("COLUMN=VALUE")
                     .value_parser(|text: &str| text.parse::<Where>())
                     .action(ArgAction::Append)
-                    .help("Condition on a column of the table named last before it; may repeat"),
+                    .help("Condition on a column of the table named last before it; repeatable"),
             )
     }
 

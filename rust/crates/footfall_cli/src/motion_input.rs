@@ -71,10 +71,10 @@ impl KneesArgs {
 /// Recordings that an index lists.
 #[derive(Debug, clap::Args)]
 pub(crate) struct CorpusArgs {
-    /// Table of the recordings
+    /// Index of the recordings
     #[arg(long = "corpus", value_name = "INDEX.csv")]
     pub(crate) index: PathBuf,
-    /// Condition on a column, for example `category=neutral_walk`; may repeat
+    /// Condition on a column, for example `category=neutral_walk`; repeatable
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     pub(crate) conditions: Vec<Where>,
     #[command(flatten)]

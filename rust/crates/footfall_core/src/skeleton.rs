@@ -28,7 +28,7 @@ pub struct FootShape {
     pub toe_tip: Vec3,
 }
 
-/// Why a body cannot be used.
+/// Errors of a body.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SkeletonError {
     /// A leg or foot segment has no length.

@@ -1,9 +1,9 @@
-//! Offline: styles without a capture studio. A style sheet says what is to change about a captured walk, and the walk comes
-//! out in that style, feet planted.
+//! Offline: styles without motion capture of them. A style sheet describes changes to a captured walk, and the walk is converted
+//! to that style, with planted feet.
 //!
-//! Data flows: [`sheet`] text to numbers; `timeline`, which captured frame a new frame shows; `course`, the way over the
-//! ground; `body`, pelvis, trunk, head and arms; `ground`, hips, feet and legs. What the capture has of natural variation
-//! between steps stays.
+//! Data flow: [`sheet`] parses text to numbers; `timeline` maps new frames to captured ones; `course` computes the path over the
+//! ground; `body` edits pelvis, trunk, head and arms; `ground` solves hips, feet and legs. The natural variation of the capture
+//! between steps is kept.
 
 mod body;
 mod chance;
@@ -26,11 +26,11 @@ use timeline::Timeline;
 /// Least mean speed of a walk that has a direction, m/s.
 const LEAST_SPEED_MPS: f32 = 0.2;
 
-/// Why a clip cannot be designed upon.
+/// Errors of applying a sheet to a clip.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DesignError {
     /// No run of steps to build on.
-    #[error("the longest walk has {steps} steps; give a clip with at least two steps in a row")]
+    #[error("the longest walk has {steps} steps; give a clip with at least two consecutive steps")]
     TooFewSteps {
         /// Steps of the longest walk.
         steps: usize,

@@ -88,44 +88,44 @@ macro_rules! sections {
 sections! {
     /// `[walk]`: steps in space and time.
     Walk "walk" {
-        stride: 100.0, 30.0..=150.0, "%", "Length of the steps, of the captured one.";
-        cadence: 100.0, 40.0..=170.0, "%", "Steps a minute, of the captured cadence.";
-        stance_share: 0.0, -8.0..=15.0, "% of the stride", "How much longer each foot stands; more means both feet are down for longer.";
-        width: 0.0, -25.0..=30.0, "cm", "Added to the distance between the feet, side to side; below zero narrows, to a cross-over at most.";
+        stride: 100.0, 30.0..=150.0, "%", "Step length relative to the capture.";
+        cadence: 100.0, 40.0..=170.0, "%", "Cadence relative to the capture.";
+        stance_share: 0.0, -8.0..=15.0, "% of the stride", "Added stance time of each foot; more gives a longer double support.";
+        width: 0.0, -25.0..=30.0, "cm", "Added lateral distance between the feet; below zero narrows the walk, at most to a cross-over.";
         toe_out: 0.0, -30.0..=40.0, "degrees", "Turns the toes of both feet out.";
     }
     /// `[feet]`: how they land, push off and swing.
     Feet "feet" {
         landing: 0.0, -40.0..=20.0, "degrees", "Foot pitch at landing: above zero the toes are higher and the heel strikes harder, -20 lands about flat, -35 on the toes.";
-        push_off: 100.0, 0.0..=150.0, "%", "How far the heel rises before the foot leaves the ground.";
-        heel_raise: 0.0, 0.0..=45.0, "degrees", "Raises the heels all the time: on tiptoe.";
+        push_off: 100.0, 0.0..=150.0, "%", "Rise of the heel before the foot leaves the ground.";
+        heel_raise: 0.0, 0.0..=45.0, "degrees", "Raises the heels permanently: on tiptoe.";
         lift: 0.0, -3.0..=25.0, "cm", "Lifts the swinging foot, and with it the knee, higher.";
     }
     /// `[pelvis]`: height, sway and turns of the hips.
     Pelvis "pelvis" {
         height: 0.0, -25.0..=5.0, "cm", "Raises or lowers the hips; lower bends the knees. Straight legs set an upper limit.";
-        bounce: 100.0, 0.0..=300.0, "%", "How much the hips go up and down. Shorter steps lessen it by themselves.";
-        sway: 100.0, 0.0..=300.0, "%", "How much the hips go from side to side.";
+        bounce: 100.0, 0.0..=300.0, "%", "Vertical motion of the hips. Shorter steps reduce it by themselves.";
+        sway: 100.0, 0.0..=300.0, "%", "Lateral motion of the hips.";
         sway_more: 0.0, -5.0..=10.0, "cm", "Added sway to each side, towards the standing foot.";
-        tilt: 0.0, -20.0..=25.0, "degrees", "Tilts the pelvis forward; the trunk stays as it is.";
-        list: 0.0, -10.0..=20.0, "degrees", "Added drop of the swinging side, to each side: hips that roll.";
+        tilt: 0.0, -20.0..=25.0, "degrees", "Tilts the pelvis forward; the trunk keeps its pose.";
+        list: 0.0, -10.0..=20.0, "degrees", "Added drop of the swinging side, to each side: rolling hips.";
         turn: 0.0, -10.0..=20.0, "degrees", "Added turn that brings the hip of the stepping leg forward, to each side.";
     }
     /// `[trunk]`: from waist to shoulders.
     Trunk "trunk" {
         lean: 0.0, -20.0..=45.0, "degrees", "Leans the trunk forward from the waist.";
         slump: 0.0, -25.0..=45.0, "degrees", "Rounds the upper back; below zero pushes the chest out.";
-        side_lean: 0.0, -25.0..=25.0, "degrees", "Leans the trunk to its left all the time.";
+        side_lean: 0.0, -25.0..=25.0, "degrees", "Leans the trunk to its left permanently.";
         sway: 0.0, -10.0..=15.0, "degrees", "Added lean over the standing foot, to each side.";
-        turn: 0.0, -15.0..=20.0, "degrees", "Added turn of the shoulders against the hips, to each side.";
-        amplitude: 100.0, 0.0..=300.0, "%", "How much the trunk moves about its mean posture.";
+        turn: 0.0, -15.0..=20.0, "degrees", "Added turn of the shoulders relative to the hips, to each side.";
+        amplitude: 100.0, 0.0..=300.0, "%", "Motion of the trunk about its mean posture.";
     }
     /// `[head]`: where the face points.
     Head "head" {
         pitch: 0.0, -35.0..=50.0, "degrees", "Lowers the face, whatever the trunk does: 30 looks at the ground.";
         turn: 0.0, -60.0..=60.0, "degrees", "Turns the face to its left.";
         tilt: 0.0, -30.0..=30.0, "degrees", "Tilts the head towards the left shoulder.";
-        amplitude: 100.0, 0.0..=300.0, "%", "How much the head moves about its mean posture.";
+        amplitude: 100.0, 0.0..=300.0, "%", "Motion of the head about its mean posture.";
     }
     /// `[shoulders]`: the shoulder girdle.
     Shoulders "shoulders" {
@@ -134,8 +134,8 @@ sections! {
     }
     /// `[arms]`: swing and carriage of both arms.
     Arms "arms" {
-        swing: 100.0, 0.0..=250.0, "%", "How far the upper arms swing.";
-        elbow_swing: 100.0, 0.0..=250.0, "%", "How much the elbows bend and stretch with the swing.";
+        swing: 100.0, 0.0..=250.0, "%", "Swing of the upper arms.";
+        elbow_swing: 100.0, 0.0..=250.0, "%", "Bending and stretching of the elbows with the swing.";
         forward: 0.0, -40.0..=90.0, "degrees", "Carries the upper arms further forward.";
         out: 0.0, -15.0..=70.0, "degrees", "Carries the upper arms further from the body.";
         elbow: 0.0, -30.0..=120.0, "degrees", "Bends the elbows more.";
@@ -144,28 +144,28 @@ sections! {
     /// `[left]` and `[right]`: what one side does differently, for limps and habits.
     OneSide "left" {
         step_length: 100.0, 50.0..=130.0, "%", "Length of the step that ends with this foot.";
-        step_time: 100.0, 60.0..=150.0, "%", "Time for which this foot carries the body: shorter spares it.";
-        drop: 0.0, -5.0..=10.0, "cm", "How much the hips sink while this foot carries the body.";
-        lift: 0.0, -3.0..=20.0, "cm", "Lifts this foot higher when it swings.";
-        arm_swing: 100.0, 0.0..=250.0, "%", "How far this arm swings.";
+        step_time: 100.0, 60.0..=150.0, "%", "Time for which this foot carries the body; shorter spares the leg.";
+        drop: 0.0, -5.0..=10.0, "cm", "Drop of the hips while this foot carries the body.";
+        lift: 0.0, -3.0..=20.0, "cm", "Lifts this foot higher in its swing.";
+        arm_swing: 100.0, 0.0..=250.0, "%", "Swing of this arm.";
     }
     /// `[irregular]`: chance, anew for every step; the numbers are standard deviations.
     Irregular "irregular" {
-        step_length: 0.0, 0.0..=25.0, "%", "Of the length of the steps.";
-        step_time: 0.0, 0.0..=25.0, "%", "Of the time of the steps.";
-        step_width: 0.0, 0.0..=10.0, "cm", "Of where the feet land, side to side.";
-        wander: 0.0, 0.0..=25.0, "cm", "Of a slow weave off the straight path.";
-        trunk: 0.0, 0.0..=10.0, "degrees", "Of a slow lean and sway of the trunk.";
-        head: 0.0, 0.0..=15.0, "degrees", "Of slow turns and nods of the head.";
-        arms: 0.0, 0.0..=20.0, "degrees", "Of slow moves of the arms.";
-        period: 1.6, 0.6..=6.0, "seconds", "How slow the slow ones are.";
+        step_length: 0.0, 0.0..=25.0, "%", "Irregularity of the step length.";
+        step_time: 0.0, 0.0..=25.0, "%", "Irregularity of the step time.";
+        step_width: 0.0, 0.0..=10.0, "cm", "Irregularity of the lateral landing place.";
+        wander: 0.0, 0.0..=25.0, "cm", "Amplitude of a slow weave off the straight path.";
+        trunk: 0.0, 0.0..=10.0, "degrees", "Amplitude of a slow lean and sway of the trunk.";
+        head: 0.0, 0.0..=15.0, "degrees", "Amplitude of slow turns and nods of the head.";
+        arms: 0.0, 0.0..=20.0, "degrees", "Amplitude of slow movements of the arms.";
+        period: 1.6, 0.6..=6.0, "seconds", "Period of the slow movements.";
     }
     /// `[joints.NAME]`: any joint by its name.
     JointEdit "joints.NAME" {
         pitch: 0.0, -90.0..=90.0, "degrees", "Turns the joint about the left-right axis of its parent; a trunk leans forward, a hanging arm goes back.";
         yaw: 0.0, -90.0..=90.0, "degrees", "Turns the joint about the up axis of its parent, to the left.";
         roll: 0.0, -90.0..=90.0, "degrees", "Turns the joint about the forward axis of its parent; a trunk leans right, a left arm rises.";
-        amplitude: 100.0, 0.0..=300.0, "%", "How much the joint moves about its mean.";
+        amplitude: 100.0, 0.0..=300.0, "%", "Motion of the joint about its mean.";
     }
 }
 
@@ -247,7 +247,7 @@ impl StyleSheet {
     }
 }
 
-/// Why a sheet cannot be used.
+/// Error of reading a sheet.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {what}")]
 pub struct SheetError {

@@ -57,7 +57,7 @@ pub(crate) fn no_skeleton(modifier: &Gd<SkeletonModifier3D>) -> GString {
     let skeletons: Vec<Gd<Node>> = found.done().iter_shared().take(MOST_NAMED).collect();
     let Some(first) = skeletons.first() else {
         return GString::from(&format!(
-            "{NEXT}: there is none in this scene. Add a character with a skeleton, such as an imported glTF file."
+            "{NEXT}. This scene has none: add a character with a skeleton, such as an imported glTF file."
         ));
     };
     let paths = skeletons
@@ -72,6 +72,6 @@ pub(crate) fn no_skeleton(modifier: &Gd<SkeletonModifier3D>) -> GString {
         format!("right-click {name} in the Scene dock, turn on Editable Children, then ")
     });
     GString::from(&format!(
-        "{NEXT}: {opened}drag it onto {named}. A character that was imported anew may have another name for its skeleton."
+        "{NEXT}: {opened}drag it onto {named}. A reimported character may have another name for its skeleton."
     ))
 }

@@ -66,7 +66,7 @@ fn named(
         .get_node_or_null(path)
         .and_then(|found| found.try_cast::<Node3D>().ok())
         .ok_or_else(|| {
-            format!("Character names {path}, and there is no Node3D. Choose a Node3D above the Skeleton3D.")
+            format!("Character is set to {path}, which is not a Node3D. Choose a Node3D above the Skeleton3D.")
         })?;
     if found.clone().upcast::<Node>() == skeleton.clone().upcast::<Node>()
         || found.is_ancestor_of(skeleton)
@@ -74,7 +74,7 @@ fn named(
         Ok(found)
     } else {
         Err(format!(
-            "Character names {path}, which does not hold the Skeleton3D. Choose a Node3D above the Skeleton3D."
+            "Character is set to {path}, which does not contain the Skeleton3D. Choose a Node3D above the Skeleton3D."
         ))
     }
 }

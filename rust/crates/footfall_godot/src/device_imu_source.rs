@@ -9,10 +9,10 @@ use godot::prelude::*;
 /// Platforms give gravity in m/s² or in units of itself; its length decides which.
 const LEAST_MPS2: f32 = 3.0;
 
-/// Hears the phone that the game runs on, through Godot's `Input`.
+/// Reads the sensors of the phone that runs the game, through Godot's `Input`.
 ///
-/// Switch on `input_devices/sensors/enable_accelerometer`, `enable_gravity` and `enable_gyroscope` in the project settings. Godot gives what the phone measured last, once a
-/// frame: keep 60 frames a second or more. Units and signs are made alike on Android and iOS; keep the orientation of the screen fixed.
+/// Turn `input_devices/sensors/enable_accelerometer`, `enable_gravity` and `enable_gyroscope` on in the project settings. Godot delivers the last measurement once a
+/// frame: keep 60 frames per second or more. Units and signs are the same on Android and iOS. Keep the screen orientation fixed.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct DeviceImuSource {
@@ -24,7 +24,7 @@ impl IResource for DeviceImuSource {}
 
 #[godot_api]
 impl DeviceImuSource {
-    /// Returns whether this device gives motion; if not, it has no sensors, or the project settings leave them off.
+    /// Returns `true` if this device delivers motion. If not, it has no sensors, or the project settings turn them off.
     #[func]
     fn is_available() -> bool {
         measure().is_some()

@@ -22,14 +22,14 @@ use session::Session;
 /// Time constant with which the character rises and falls with the ground, seconds.
 const RISE_SECS: f32 = 0.12;
 
-/// Puts the feet of an animation on the ground: slopes, stairs, rough ground and platforms that move.
+/// Places the feet of an animation on the ground: slopes, stairs, rough ground and moving platforms.
 ///
-/// Add it under a `Skeleton3D` with humanoid bones, below whatever animates it: a `GaitGenerator3D`, or an `AnimationPlayer` or
-/// `AnimationTree` elsewhere. A foot that stands is locked where it was put, in the plane of the ground; the pelvis moves so that
-/// both legs reach, and a foot on its way keeps clear of edges. With a `GaitGenerator3D` the node knows beforehand where and when each
-/// foot will land. For other animations it finds out when a foot is low and slow; feet settle a little later then.
+/// Add it under a `Skeleton3D` with humanoid bones, below the node that animates it: a `GaitGenerator3D`, or an `AnimationPlayer` or
+/// `AnimationTree` elsewhere. A standing foot is locked in place, in the plane of the ground. The pelvis moves so that
+/// both legs reach, and a swinging foot keeps clear of edges. With a `GaitGenerator3D` the node knows in advance where and when each
+/// foot will land. With other animation it detects a contact from a low and slow foot; feet then settle a little later.
 ///
-/// The animation should move over a flat floor at the height of the character's origin. The ground is what is on `collision_mask`.
+/// The animation should move over a flat floor at the height of the character's origin. Ground is everything on `collision_mask`.
 #[derive(GodotClass)]
 #[class(tool, init, base = SkeletonModifier3D)]
 #[expect(
@@ -37,85 +37,85 @@ const RISE_SECS: f32 = 0.12;
     reason = "the inspector shows check boxes"
 )]
 pub(crate) struct FootPlacement3D {
-    /// The physics layers that are ground. Bodies that belong to the character itself are never ground.
+    /// The physics layers that are ground. Bodies of the character itself are never ground.
     #[export(flags_3d_physics)]
     #[var(set = set_collision_mask)]
     #[init(val = 1)]
     collision_mask: u32,
 
-    /// Ground is looked for with spheres of this radius. At 0 it is looked for with rays, which is faster; spheres pass over gaps.
+    /// Radius of the spheres that find ground. At 0 rays find it, which is faster; spheres bridge gaps.
     #[export(range = (0.0, 0.2, 0.001, suffix = "m"))]
     #[var(set = set_cast_radius)]
     cast_radius: f64,
 
-    /// Edges that are higher than this are walls, and lower ones an abyss: no foot goes there. The ground ahead is followed edge by
-    /// edge, so that a staircase of lower steps is never out of reach.
+    /// Height of the highest edge that feet follow. Higher edges are walls, and deeper ones drops: no foot goes there. The ground ahead is followed edge by
+    /// edge, so a staircase of lower steps is never out of reach.
     #[export(range = (0.0, 1.0, 0.01, or_greater, suffix = "m"))]
     #[init(val = 0.5)]
     max_step: f64,
 
-    /// Feet are tilted against the animation by this much at most.
+    /// Limit of a foot's tilt relative to the animation.
     #[export(range = (0.0, 60.0, 0.1, radians_as_degrees))]
     #[init(val = 0.6)]
     max_tilt: f64,
 
-    /// Time in which the pelvis makes half of its way up or down.
+    /// Half-life of the pelvis' vertical motion.
     #[export(range = (0.01, 0.5, 0.01, or_greater, suffix = "s"))]
     #[init(val = 0.08)]
     pelvis_half_life: f64,
 
-    /// Largest offset of the pelvis from the animation.
+    /// Limit of the pelvis' offset from the animation.
     #[export(range = (0.0, 1.0, 0.01, or_greater, suffix = "m"))]
     #[init(val = 0.6)]
     max_pelvis_offset: f64,
 
-    /// A foot that the animation drags this far from where it is locked is put anew.
+    /// Distance between a locked foot and the animation beyond which the foot is planted again.
     #[export(range = (0.0, 0.5, 0.01, or_greater, suffix = "m"))]
     #[init(val = 0.2)]
     max_drift: f64,
 
-    /// A foot that the animation turns this far from where it is locked is put anew.
+    /// Angle between a locked foot and the animation beyond which the foot is planted again.
     #[export(range = (0.0, 90.0, 0.1, radians_as_degrees))]
     #[init(val = 0.6)]
     max_twist: f64,
 
-    /// If `true`, a foot that would stand across an edge, as on stairs, is put ahead of it, behind it or beside it. A `GaitGenerator3D` beside this
-    /// node makes its steps shorter or longer for that, and for ground that would be too high or too low for one step.
+    /// If `true`, a foothold that crosses an edge, as on stairs, is moved ahead, back or aside. A `GaitGenerator3D` beside this
+    /// node adapts the length of its steps to that, and to ground that is too high or too low for one step.
     #[export]
     #[init(val = true)]
     adjust_footholds: bool,
 
     /// If `true`, a `GaitGenerator3D` beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking
-    /// function, down to 0.45 of its speed), from a step before it gets there.
+    /// function, down to 0.45 of its speed), starting one step ahead.
     #[export]
     #[init(val = true)]
     adapt_speed: bool,
 
-    /// If `true`, the character rises and falls with the ground under its feet, for characters that no physics holds there.
+    /// If `true`, the character moves up and down with the ground under its feet, for characters without physics.
     ///
     /// Leave it off for a `CharacterBody3D` with gravity and `move_and_slide()`.
     #[export]
     follow_ground: bool,
 
-    /// If `true`, the character is in the air: feet are left to the animation. Set it from the game, for example
+    /// If `true`, the character is in the air and feet follow the animation. Set it from the game, for example
     /// `foot_placement.in_air = not is_on_floor()`.
     #[var]
     in_air: bool,
 
     /// The `Node3D` whose origin is on the floor of the animation, above the `Skeleton3D`. Its Y axis is up.
     ///
-    /// Left empty, it is the one that a `GaitGenerator3D` beside this node moves, or would move.
+    /// If empty, it is the node that a `GaitGenerator3D` beside this node moves or would move.
     #[export(node_path = ("Node3D"))]
     #[var(set = set_character)]
     character: NodePath,
 
-    /// Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names. Left empty, it is that of a
-    /// `GaitGenerator3D` beside this node.
+    /// Assignment of bones to the joints of the profile, for rigs that are not recognised. It takes precedence over bone names. If empty, the map of a
+    /// `GaitGenerator3D` beside this node is used.
     #[export]
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
 
-    /// If `true`, soles and the normals of the ground are drawn: green where a foot is locked, orange where it is not.
+    /// If `true`, soles and ground normals are drawn: green where a foot is locked, orange elsewhere.
     #[export]
     debug_draw: bool,
 
@@ -163,12 +163,12 @@ impl ISkeletonModifier3D for FootPlacement3D {
 
 #[godot_api]
 impl FootPlacement3D {
-    /// A foot is locked to the ground: `foot` is `left` or `right`, `position` the ground under its ankle in global space, `normal` the
-    /// ground's. Emitted once for every contact, not in the editor.
+    /// Emitted when a foot is locked to the ground: `foot` is `left` or `right`, `position` the ground under its ankle in global space, `normal` the
+    /// ground's normal. Emitted once for every contact, not in the editor.
     #[signal]
     fn foot_planted(foot: StringName, position: Vector3, normal: Vector3);
 
-    /// A foot leaves the ground. Not emitted in the editor.
+    /// Emitted when a foot leaves the ground. Not emitted in the editor.
     #[signal]
     fn foot_lifted(foot: StringName);
 
@@ -219,7 +219,7 @@ impl FootPlacement3D {
             return problems;
         };
         if self.collision_mask == 0 {
-            problems.push("Collision Mask is empty: choose the physics layers that are ground.");
+            problems.push("Collision Mask is empty. Choose the physics layers that are ground.");
         }
         if skeleton.is_inside_tree()
             && let Err(problem) = self.bind(&skeleton)
@@ -230,7 +230,7 @@ impl FootPlacement3D {
             && generator.get_index() > self.base().get_index()
         {
             problems.push(
-                "Move this node below the GaitGenerator3D: modifiers work from top to bottom.",
+                "Move this node below the GaitGenerator3D. Modifiers run from top to bottom.",
             );
         }
         problems

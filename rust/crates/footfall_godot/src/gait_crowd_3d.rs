@@ -25,7 +25,7 @@ use others::Others;
 use scene::CrowdScene;
 
 /// Warning where there is no character.
-const NO_CHARACTER: &str = "No character. Load a scene with a humanoid character into Character, for example an imported .glb.";
+const NO_CHARACTER: &str = "There is no character. Load a scene with a humanoid character into Character, for example an imported .glb.";
 
 /// More walkers than this are refused.
 const MOST_AGENTS: i64 = footfall_rig::crowd::MOST_AGENTS as i64;
@@ -44,17 +44,17 @@ pub(crate) enum CrowdBehaviour {
     Navigate = 3,
 }
 
-/// Walks thousands of characters: each in its own style, speed, size and phase, from steps of its own.
+/// Walks thousands of characters, each with its own style, speed, size, phase and steps.
 ///
-/// Give it a `model` and a `character`, a scene with a humanoid skeleton, and choose how many in `count`. Walkers wander over an area,
-/// follow a `Path3D`, or do what a script tells them, and keep out of each other's way.
+/// Set its `model`, its `character` (a scene with a humanoid skeleton) and the number of walkers, `count`. Walkers wander over an area,
+/// follow a `Path3D`, or do what a script sets, and avoid each other.
 ///
-/// Walkers are drawn by their distance from the camera. The nearest are whole scenes, with everything that hangs from them,
-/// such as a `FootPlacement3D`. The next are instances of one mesh whose poses are streamed to the graphics processor, new in every
-/// frame; those farther away move in every few frames, are drawn in between, and walk in steps that they share. Counts and
-/// distances are settable.
+/// The distance from the camera determines how walkers are drawn. The nearest are full scenes with all their nodes,
+/// such as a `FootPlacement3D`. The next are instances of one mesh with poses streamed to the GPU, new in every
+/// frame. More distant ones update every few frames, are blended in between, and walk in shared steps. Numbers and
+/// distances are settings.
 ///
-/// Equal seeds, sizes and time steps give equal crowds, as long as the camera moves equally too: who is far away shares steps.
+/// Equal seeds, sizes and time steps give equal crowds, if the camera moves equally: distant walkers share steps.
 #[derive(GodotClass)]
 #[class(tool, init, base = Node3D)]
 #[expect(
@@ -62,17 +62,17 @@ pub(crate) enum CrowdBehaviour {
     reason = "the inspector shows check boxes"
 )]
 pub(crate) struct GaitCrowd3D {
-    /// The way of walking: a `.footfall` file such as `addons/footfall/models/locomotion.footfall`, with which the crowd walks where this is empty.
+    /// The gait model: a `.footfall` file such as `addons/footfall/models/locomotion.footfall`, which is also used if this is empty.
     #[export]
     #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
     model: Option<Gd<GaitModel>>,
 
-    /// Styles that walkers wear, `.footstyle` files that were made for this model.
+    /// Styles of walkers: `.footstyle` files made for this model.
     #[export]
     #[var(set = set_styles)]
     styles: Array<Option<Gd<GaitStyle>>>,
 
-    /// Greatest weight of a walker's style. Each wears one of `styles` or none, drawn by its seed.
+    /// Greatest weight of a walker's style. Each walker has one of `styles` or none, drawn by its seed.
     #[export(range = (0.0, 1.5, 0.01))]
     #[var(set = set_style_amount)]
     #[init(val = 1.0)]
@@ -83,20 +83,20 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_character)]
     character: Option<Gd<PackedScene>>,
 
-    /// Number of walkers that the crowd has of its own. `add_agents()` adds more. While it runs, raising it adds some and lowering it removes
-    /// those that came last; the others walk on.
+    /// Number of the crowd's own walkers; `add_agents()` adds more. At run time, raising it adds walkers and lowering it removes
+    /// the latest ones; the others continue.
     #[export(range = (0.0, 20000.0, 1.0, or_greater))]
     #[var(set = set_count)]
     #[init(val = 200)]
     count: i64,
 
-    /// Behaviour of the walkers by themselves: they wander over `area`, follow `path`, go from place to place of the
-    /// world's navigation map, or do only what a script tells them.
+    /// Behaviour of the walkers: they wander over `area`, follow `path`, walk between places of the
+    /// world's navigation map, or do only what a script sets.
     #[export]
     #[var(set = set_behaviour)]
     behaviour: CrowdBehaviour,
 
-    /// The rectangle around this node in which walkers begin and wander.
+    /// Size of the rectangle around this node in which walkers start and wander.
     #[export(range = (0.0, 1000.0, 0.1, or_greater, suffix = "m"))]
     #[var(set = set_area)]
     #[init(val = Vector2::new(40.0, 40.0))]
@@ -113,24 +113,24 @@ pub(crate) struct GaitCrowd3D {
     #[init(val = 4.0)]
     path_width: f64,
 
-    /// The navigation layers that walkers keep to, for `behaviour` navigate and `set_destinations()`.
+    /// Navigation layers of the walkers, for `behaviour` navigate and `set_destinations()`.
     #[export(flags_3d_navigation)]
     #[init(val = 1)]
     navigation_layers: u32,
 
-    /// The slowest and the fastest walker. Those faster than about 2 m/s run, where the model knows how.
+    /// Speed of the slowest and of the fastest walker. Above about 2 m/s they run, if the model can.
     #[export(range = (0.4, 4.0, 0.01, or_greater, or_less, suffix = "m/s"))]
     #[var(set = set_speed_range)]
     #[init(val = Vector2::new(0.95, 1.55))]
     speed_range: Vector2,
 
-    /// The smallest and the largest walker, against the size of the character.
+    /// Size of the smallest and of the largest walker, relative to the character.
     #[export(range = (0.5, 2.0, 0.01, or_greater, or_less))]
     #[var(set = set_size_range)]
     #[init(val = Vector2::new(0.92, 1.08))]
     size_range: Vector2,
 
-    /// Colours of which each walker gets one, multiplied with the colour of its material. None is white.
+    /// Colours, one of which multiplies the material's colour of each walker. If empty, white.
     #[export]
     #[var(set = set_colours)]
     colours: PackedColorArray,
@@ -140,64 +140,64 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_seed)]
     seed: i64,
 
-    /// Motion of walkers who stand: 0 rests in a still pose, 1 sways, breathes, shifts weight and looks about as people do, up to 2. A model that knows
-    /// nothing of standing rests in a still pose.
+    /// Motion of standing walkers: 0 is a still pose; 1 sways, breathes, shifts weight and looks about as people do; up to 2. Models without
+    /// standing motion stand in a still pose.
     #[export(range = (0.0, 2.0, 0.01))]
     #[init(val = 1.0)]
     standing_motion: f64,
 
-    /// If `true`, walkers with a goal keep out of each other's way.
+    /// If `true`, walkers with a goal avoid each other.
     #[export]
     #[init(val = true)]
     avoidance: bool,
 
-    /// Group of nodes that walkers with a goal keep clear of as of each other, such as players; a `GaitCrowd3D` in it counts with everybody in it.
-    /// None: walkers see only each other.
+    /// Group of nodes that walkers with a goal also avoid, such as players; a `GaitCrowd3D` in it counts with all its walkers.
+    /// If empty, walkers avoid only each other.
     #[export]
     avoided_group: StringName,
 
-    /// If `true`, time passes.
+    /// If `true`, time advances.
     #[export]
     #[init(val = true)]
     playing: bool,
 
-    /// The physics layers that are ground, looked at once for every step of every walker. None: the ground is flat, at the height of
+    /// Physics layers of the ground, queried once per step and walker. If none, the ground is flat, at the height of
     /// this node.
     #[export(flags_3d_physics)]
     ground_mask: u32,
 
-    /// Number of the nearest walkers that are whole scenes.
+    /// Number of the nearest walkers that are full scenes.
     #[export_group(name = "Tiers")]
     #[export(range = (0.0, 200.0, 1.0, or_greater))]
     #[init(val = 12)]
     full_count: i64,
 
-    /// Their greatest distance from the camera.
+    /// Greatest distance of full scenes from the camera.
     #[export(range = (0.0, 100.0, 0.1, or_greater, suffix = "m"))]
     #[init(val = 12.0)]
     full_distance: f64,
 
-    /// Number of walkers beyond them that have a new pose in every frame.
+    /// Number of walkers beyond them with a new pose in every frame.
     #[export(range = (0.0, 10000.0, 1.0, or_greater))]
     #[init(val = 600)]
     near_count: i64,
 
-    /// Their greatest distance from the camera.
+    /// Greatest distance of these walkers from the camera.
     #[export(range = (0.0, 500.0, 0.1, or_greater, suffix = "m"))]
     #[init(val = 60.0)]
     near_distance: f64,
 
-    /// If `true`, walkers beyond that walk in steps that all in the same style share instead of their own, and cost a kilobyte of memory each. Each has the speed that it would have, but no gait of its own.
+    /// If `true`, more distant walkers walk in steps that all walkers of the same style share, and cost one kilobyte of memory each. Each keeps its speed, but not its own gait.
     #[export]
     #[init(val = true)]
     repeat_far: bool,
 
-    /// If `true`, poses of walkers whom the camera does not see are left out.
+    /// If `true`, walkers outside the camera's view get no poses.
     #[export]
     #[init(val = true)]
     culling: bool,
 
-    /// A material with a shader of your own, which includes `addons/footfall/shaders/crowd_pose.gdshaderinc`. Left empty, instances are
+    /// Material with a shader of your own that includes `addons/footfall/shaders/crowd_pose.gdshaderinc`. If empty, instances are
     /// drawn with the colours and the texture of the character's own materials.
     #[export]
     #[var(set = set_material)]
@@ -247,27 +247,27 @@ impl INode3D for GaitCrowd3D {
 
 #[godot_api]
 impl GaitCrowd3D {
-    /// `behaviour`: walkers go from one place of `area` to another.
+    /// `behaviour`: walkers walk between places of `area`.
     #[constant]
     const WANDER: i32 = CrowdBehaviour::Wander as i32;
     /// `behaviour`: walkers follow `path`.
     #[constant]
     const PATH: i32 = CrowdBehaviour::Path as i32;
-    /// `behaviour`: walkers do what `set_targets()`, `set_destinations()` or `set_turn_rates()` tell them.
+    /// `behaviour`: walkers follow `set_targets()`, `set_destinations()` or `set_turn_rates()`.
     #[constant]
     const SCRIPTED: i32 = CrowdBehaviour::Scripted as i32;
 
-    /// `behaviour`: walkers go from place to place of the world's navigation map, around what is between them. A few hundred find their
-    /// first way within a second.
+    /// `behaviour`: walkers walk between places of the world's navigation map, around obstacles. A few hundred find their
+    /// first path within a second.
     #[constant]
     const NAVIGATE: i32 = CrowdBehaviour::Navigate as i32;
 
-    /// Feet touched down in the last frame: whose, which (0 left, 1 right), and where in global space. One signal for all of them.
+    /// Emitted once per frame with all contacts of the frame: ids of walkers, feet (0 left, 1 right), and positions in global space.
     #[signal]
     fn footsteps(agents: PackedInt32Array, feet: PackedByteArray, positions: PackedVector3Array);
 
-    /// Walkers were made and began to walk in the last frame: their ids. Making many takes a while, on other threads; `is_making()` tells
-    /// whether there are more to come.
+    /// Emitted with the ids of walkers that were created and began to walk in the last frame. Creation runs on other threads; `is_making()` returns
+    /// `true` while more are pending.
     #[signal]
     fn agents_ready(agents: PackedInt32Array);
 
@@ -301,7 +301,7 @@ impl GaitCrowd3D {
     fn set_count(&mut self, count: i64) {
         if count > MOST_AGENTS {
             godot_warn!(
-                "A crowd holds {MOST_AGENTS} walkers at most: count {count} is cut to that."
+                "A crowd holds {MOST_AGENTS} walkers at most. Count {count} is limited to that."
             );
         }
         self.count = count.clamp(0, MOST_AGENTS);

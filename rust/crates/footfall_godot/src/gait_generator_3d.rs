@@ -1,4 +1,4 @@
-//! `GaitGenerator3D`: walks a character.
+//! The class `GaitGenerator3D`, which walks a character.
 
 mod absence;
 mod bake;
@@ -42,123 +42,123 @@ use replica::Replica;
 use rival::Rivals;
 use session::Session;
 
-/// Walks a character: every frame it poses the parent `Skeleton3D` with steps generated from a trained model.
+/// Walks a character: poses the parent `Skeleton3D` in every frame with steps generated from a trained model.
 ///
-/// Add it under a `Skeleton3D` with humanoid bones, give it a `model`, and the character walks. No animation clips are needed.
-/// Feet stay where they are put; every seed walks a little differently.
+/// Add it under a `Skeleton3D` with humanoid bones, set its `model`, and the character walks. No animation clips are needed.
+/// Feet stay planted; every seed gives a slightly different walk.
 ///
-/// Bones are found by `bone_map` where there is one, else by the names of `SkeletonProfileHumanoid`, else the rig is recognised: Mixamo, `VRM` (`VRoid`), Unreal,
+/// Bones are found by `bone_map` if it is set, else by the names of `SkeletonProfileHumanoid`, else by recognising the rig: Mixamo, `VRM` (`VRoid`), Unreal,
 /// Rigify, Reallusion CC, Daz Genesis, `MakeHuman`, Biped and others. Chest, `UpperChest`, Neck, the shoulders and the toes may be missing. Bones that are none of the body's 22
-/// joints, such as fingers, keep the pose that they have.
+/// joints, such as fingers, keep their pose.
 ///
-/// In the editor the character walks in place while `playing` is on, and nothing of it is saved.
+/// In the editor the character walks in place while `playing` is on; the scene does not save the preview.
 #[derive(GodotClass)]
 #[class(tool, init, base = SkeletonModifier3D)]
 pub(crate) struct GaitGenerator3D {
-    /// The way of walking: a `.footfall` file such as `addons/footfall/models/locomotion.footfall`, or a `.footdyn` file such as
-    /// `addons/footfall/models/walk.footdyn`, a switching model, which is smaller and wears no styles.
+    /// The gait model: a `.footfall` file such as `addons/footfall/models/locomotion.footfall`, or a `.footdyn` file such as
+    /// `addons/footfall/models/walk.footdyn`, a switching model, which is smaller and has no styles.
     ///
-    /// A node that is added in the editor has `locomotion.footfall`; where this is empty, as after `GaitGenerator3D.new()` in a script, the
-    /// character walks with the same.
+    /// A node added in the editor starts with `locomotion.footfall`. If this is empty, as after `GaitGenerator3D.new()` in a script, the
+    /// same model is used.
     #[export]
     #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
     model: Option<Gd<GaitModel>>,
 
-    /// Styles to walk in, `.footstyle` files that were made for this model. `style_weights` says how much of each.
+    /// Styles of the walk: `.footstyle` files made for this model. `style_weights` sets the weight of each.
     ///
-    /// Changing the list starts the walk anew; change weights to change the style while it walks.
+    /// Changing the list starts the walk anew. To change the style of a running walk, change the weights.
     #[export]
     #[var(set = set_styles)]
     styles: Array<Option<Gd<GaitStyle>>>,
 
-    /// Weights of the styles, in the order of `styles`: 0 is none, 1 the style as it was recorded.
+    /// Weights of the styles, in the order of `styles`: 0 is none, 1 the style as recorded.
     ///
-    /// Any mixture goes: more than 1 exaggerates, less than 0 is the opposite, and the sum need not be 1. What is too much for a
-    /// body is held back. May change at any time; the walk takes it up with the next step. A missing weight counts as 0.
+    /// Any mixture is valid: more than 1 exaggerates, less than 0 gives the opposite, and the sum need not be 1. Poses beyond a
+    /// body's limits are limited. Changes apply with the next step. A missing weight counts as 0.
     #[export]
     #[var(set = set_style_weights)]
     style_weights: PackedFloat32Array,
 
-    /// Walking or running speed in metres per second. Cadence and step length follow as they do in people, and `gait` says from where on it runs.
+    /// Walking or running speed in metres per second. Cadence and step length follow as in people; `gait` sets when the character runs.
     ///
-    /// May change at any time: a walk whose foot is in the air takes it up at once, any other step with the next. `GaitModel.get_speed_range()` tells what the model was
-    /// trained on. At 0 the character stops within two steps and stands, or turns in place by `turn_rate`.
+    /// A change applies at once while a foot of a walk is in the air, otherwise with the next step. `GaitModel.get_speed_range()` returns the speeds that the model was
+    /// trained on. At 0 the character stops within two steps and stands, or turns on the spot by `turn_rate`.
     #[export(range = (0.0, 5.0, 0.01, or_greater, suffix = "m/s"))]
     #[var(set = set_speed)]
     #[init(val = 1.3)]
     speed: f64,
 
-    /// Turning of the character in radians per second. Positive turns to its left. Taken up as `speed` is.
+    /// Turn rate of the character in radians per second; positive turns to its left. Changes apply as for `speed`.
     #[export(range = (-180.0, 180.0, 0.1, or_less, or_greater, radians_as_degrees, suffix = "°/s"))]
     #[var(set = set_turn_rate)]
     turn_rate: f64,
 
-    /// Direction of travel relative to where the character faces, in radians: 0 forwards, 90° to its left, -90° to its right, 180° backwards.
+    /// Direction of travel relative to the facing direction, in radians: 0 forwards, 90° to the left, -90° to the right, 180° backwards.
     ///
-    /// For characters that look at something else than their way. Taken up as `speed` is, over several steps where the change is
-    /// great. Steps to the side and backwards are shorter than those forwards, as people's are: sideways a character reaches about 0.65 m/s,
-    /// backwards 1 m/s, whatever `speed` says.
+    /// For characters that look elsewhere than where they go. Changes apply as for `speed`; large changes take several
+    /// steps. Steps sideways and backwards are shorter than forward steps, as in people: a character reaches about 1.6 m/s sideways and
+    /// 2.0 m/s backwards, whatever `speed` is.
     #[export(range = (-180.0, 180.0, 1.0, radians_as_degrees, suffix = "°"))]
     #[var(set = set_direction)]
     direction: f64,
 
-    /// Walking or running.
+    /// Choice between walking and running.
     ///
-    /// Auto changes as people do: it runs from about 2 m/s on, sooner on short legs, and walks again a little below that. Walk and Run keep to one
-    /// gait at any speed; the steps in which the character starts and stops are walked, as are those to the side and backwards. A model that only walks,
-    /// as every `.footdyn`, walks. `get_current_gait()` tells which it is.
+    /// Auto changes as people do: the character runs above about 2 m/s, or sooner on short legs, and walks again a little below that speed. Walk and Run keep to one
+    /// gait at any speed. Starting and stopping steps and steps sideways or backwards are always walked. Models without running,
+    /// such as every `.footdyn`, only walk. `get_current_gait()` returns the current gait.
     #[export]
     gait: GaitMode,
 
-    /// Depth of the crouch, standing or walking: 0 upright, 1 as low as the model's people.
+    /// Depth of the crouch, standing or walking: 0 upright, 1 as low as the recorded people.
     ///
-    /// Taken up at once and smoothly; feet stay where they are. Who crouches goes no faster than those people do, about 1 m/s at 1. A model that knows
-    /// no crouch (any `.footdyn`, and `.footfall` files without `footfall train --crouching`) stays upright.
+    /// Changes apply at once and smoothly; feet stay in place. A crouching character is as slow as those people, about 1 m/s at 1. A model without
+    /// crouching (any `.footdyn`, and `.footfall` files trained without `footfall train --crouching`) stays upright.
     #[export(range = (0.0, 1.0, 0.01))]
     #[var(set = set_crouch)]
     crouch: f64,
 
-    /// Weight of the walk in the spine's pose: at 0 `Spine`, `Chest` and `UpperChest` are posed by what else animates the skeleton, such
+    /// Weight of the walk in the spine's pose. At 0, other animation poses `Spine`, `Chest` and `UpperChest`, such
     /// as an `AnimationPlayer`, an `AnimationTree` or a script. Hips and legs always walk.
     ///
-    /// The spine keeps the direction that the animation gives it in the character's space, whatever the hips do, so that steps do not shake
-    /// what is aimed. Like the other weights it may be keyed and changed at any time; nothing pops on the way.
+    /// The spine keeps the animation's orientation relative to the character, whatever the hips do, so steps do not shake
+    /// an aimed weapon. All weights can be keyed and changed at any time without a jump in the pose.
     #[export(range = (0.0, 1.0, 0.01))]
     #[init(val = 1.0)]
     spine_weight: f64,
 
-    /// Weight of the walk in the pose of `Neck` and `Head`; at 0 they look where the animation has them look in the character's space.
+    /// Weight of the walk in the pose of `Neck` and `Head`. At 0 they keep the animation's orientation relative to the character.
     #[export(range = (0.0, 1.0, 0.01))]
     #[init(val = 1.0)]
     head_weight: f64,
 
-    /// Weight of the walk in the left arm's pose, from shoulder to hand; at 0 it hangs from the walking chest as the animation poses it.
+    /// Weight of the walk in the left arm's pose, from shoulder to hand. At 0 the arm follows the walking chest, posed by the animation.
     #[export(range = (0.0, 1.0, 0.01))]
     #[init(val = 1.0)]
     left_arm_weight: f64,
 
-    /// Weight of the walk in the right arm's pose, from shoulder to hand; at 0 it hangs from the walking chest as the animation poses it.
+    /// Weight of the walk in the right arm's pose, from shoulder to hand. At 0 the arm follows the walking chest, posed by the animation.
     #[export(range = (0.0, 1.0, 0.01))]
     #[init(val = 1.0)]
     right_arm_weight: f64,
 
     /// Seed of the walk. Equal seeds give equal walks.
     ///
-    /// 0 gives every node a walk of its own, and a place in the stride of its own to begin at: both follow from the node's path in its
-    /// scene, so a scene that is run again walks as before, and two nodes differ. `get_effective_seed()` tells which it is. A saved state
-    /// holds it, so a walk that is loaded goes on alike wherever the node is then. Changing it starts the walk anew.
+    /// 0 derives the seed and the initial phase from the node's path in its scene: the walk is the same whenever the scene runs, and
+    /// differs between nodes. `get_effective_seed()` returns the seed in use. A saved state
+    /// holds the seed, so a loaded walk continues alike wherever the node is. Changing it starts the walk anew.
     #[export]
     #[var(set = set_seed)]
     seed: i64,
 
-    /// Phase of the stride at which the walk starts: 0 with the left foot touching down, 0.5 with the right, up to 1.
+    /// Phase of the stride at which the walk starts: 0 at the left initial contact, 0.5 at the right, up to 1.
     ///
-    /// With a `seed` of 0 it is counted from the node's own place in the stride. Changing it starts the walk anew.
+    /// With a `seed` of 0 it is relative to the node's own initial phase. Changing it starts the walk anew.
     #[export(range = (0.0, 1.0, 0.01))]
     #[var(set = set_phase)]
     phase: f64,
 
-    /// Variation between steps: 0 repeats the same step, 1 varies as people do.
+    /// Variation between steps: 0 repeats the same step, 1 varies as in people.
     ///
     /// Changing it starts the walk anew.
     #[export(range = (0.0, 1.0, 0.01, or_greater))]
@@ -166,55 +166,55 @@ pub(crate) struct GaitGenerator3D {
     #[init(val = 1.0)]
     variation: f64,
 
-    /// Motion of the character as it stands: 0 rests in a still pose, 1 sways, breathes, shifts its weight and looks about as people do, up to 2.
+    /// Motion of the standing character: 0 is a still pose; 1 sways, breathes, shifts weight and looks about as people do; up to 2.
     ///
-    /// Feet stay planted. Seeds differ, and nothing comes back in a loop. It comes up as the character comes to rest and dies away with the first
-    /// step. A model that knows nothing of standing, as those of earlier versions and every `.footdyn`, rests in a still pose.
+    /// Feet stay planted. Seeds differ, and the motion does not loop. It fades in as the character comes to rest and out with the first
+    /// step. Models without standing motion, such as those of earlier versions and every `.footdyn`, stand in a still pose.
     #[export(range = (0.0, 2.0, 0.01))]
     #[init(val = 1.0)]
     standing_motion: f64,
 
     /// Resolution of the walk: every frame of the model, every second (half) or every fourth (quarter).
     ///
-    /// Lower it for characters far from the camera. The walk is the same, but feet slip a little between frames. Taken up with
+    /// Lower it for characters far from the camera. The walk is the same, but feet slip slightly between frames. Changes apply with
     /// the next step.
     #[export]
     detail: GaitDetail,
 
-    /// If `true`, the character walks. When off, it holds the pose that it is in.
+    /// If `true`, the character walks. If `false`, it holds its pose.
     #[export]
     #[init(val = true)]
     playing: bool,
 
     /// If `true`, the walk moves the character.
     ///
-    /// On: the node found through `character` travels, in such a way that the standing foot does not move. Off: the character
-    /// walks in place, and `get_root_motion_delta()` tells how far it would have travelled.
+    /// On: the node of `character` travels so that the standing foot does not move. Off: the character
+    /// walks in place, and `get_root_motion_delta()` returns the travel.
     #[export]
     #[init(val = true)]
     root_motion: bool,
 
     /// The `Node3D` that travels, above the `Skeleton3D`. Its Y axis is up.
     ///
-    /// Left empty, it is the nearest `CharacterBody3D` above the skeleton; failing that the root of the scene that the skeleton came in,
-    /// for an imported character its top node.
+    /// If empty, the nearest `CharacterBody3D` above the skeleton travels; without one, the root of the scene that contains the skeleton,
+    /// which for an imported character is its top node.
     #[export(node_path = ("Node3D"))]
     #[var(set = set_character)]
     character: NodePath,
 
-    /// Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names.
+    /// Assignment of bones to the joints of the profile, for rigs that are not recognised. It takes precedence over bone names.
     #[export]
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
 
-    /// Identity of the walk for other peers of a multiplayer game, for a `MultiplayerSynchronizer` such as `controller/gait_synchronizer.tscn` of the add-on: to be replicated
-    /// On Change, and with Spawn. Peers without the multiplayer authority of the node that travels get it, and make that walker's steps. Empty until the walk begins.
+    /// Identity of the walk for other peers of a multiplayer game. A `MultiplayerSynchronizer`, such as the add-on's `controller/gait_synchronizer.tscn`, replicates it
+    /// On Change and with Spawn. Peers without multiplayer authority over the node that travels receive it and make that walker's steps. Empty until the walk begins.
     #[var(get = get_replica_identity, set = set_replica_identity)]
     replica_identity: PhantomVar<PackedByteArray>,
 
-    /// Progress of the walk for other peers: 24 bytes, to be replicated Always, every 0.03 to 0.07 s. Any may get lost.
-    /// On peers that get it nothing else steers the character; what parts it from its place is walked off, beyond 0.75 m it is set there. Places are those of the parent of the
-    /// node that travels, or of the `CharacterBody3D` that it is in: do not replicate its `position` and `rotation` as well.
+    /// Progress of the walk for other peers: 24 bytes, replicated Always, every 0.03 to 0.07 s. Updates may be lost.
+    /// On peers that receive it nothing else steers the character. The next steps walk off a difference in place; beyond 0.75 m the character is moved. Places are relative to the parent of the
+    /// node that travels, or of the `CharacterBody3D` that holds it: do not also replicate `position` and `rotation`.
     #[var(get = get_replica_state, set = set_replica_state)]
     replica_state: PhantomVar<PackedByteArray>,
 
@@ -264,39 +264,39 @@ impl ISkeletonModifier3D for GaitGenerator3D {
 
 #[godot_api]
 impl GaitGenerator3D {
-    /// A foot touches down: `foot` is `left` or `right`, `position` the middle of the contact on the ground, in global space.
+    /// Emitted when a foot touches down: `foot` is `left` or `right`, `position` the middle of the contact on the ground, in global space.
     ///
     /// Emitted exactly once for every initial contact, not in the editor.
     #[signal]
     fn footstep(foot: StringName, position: Vector3);
 
-    /// A step begins: `foot`, `left` or `right`, will land at `position` in `seconds`, as long as the walk goes on as it does.
+    /// Emitted when a step begins: `foot`, `left` or `right`, will land at `position` in `seconds` if nothing changes the walk.
     ///
     /// `position` is in global space, on the flat floor of the walk. Emitted once for every step, not in the editor.
     #[signal]
     fn foothold_planned(foot: StringName, position: Vector3, seconds: f64);
 
-    /// The character begins to walk or to run: `gait` is `walk` or `run`. Emitted with the first step of it, not in the editor.
+    /// Emitted with the first step of a new gait: `gait` is `walk` or `run`. Not emitted in the editor.
     #[signal]
     fn gait_changed(gait: StringName);
 
-    /// The character leaves the ground in a jump. Not emitted in the editor.
+    /// Emitted when the character leaves the ground in a jump. Not emitted in the editor.
     #[signal]
     fn took_off();
 
-    /// A foot, `left` or `right`, lands after a jump: one after a leap, both after a jump off both feet. Not emitted in the editor.
+    /// Emitted when a foot, `left` or `right`, lands after a jump: one foot after a leap, both after a two-footed jump. Not emitted in the editor.
     #[signal]
     fn landed(foot: StringName);
 
-    /// Emitted when the pose from before `take_over()` has faded: the pose is the walk's.
+    /// Emitted after `take_over()`, when the previous pose has faded out.
     #[signal]
     fn taken_over();
 
-    /// A peer's message about this walk is refused: `reason` says why and what to do. Emitted every five seconds at most; the walk goes on as before.
+    /// Emitted when a peer's message about this walk is refused: `reason` gives the cause and what to do. Emitted every five seconds at most; the walk continues.
     #[signal]
     fn replica_refused(reason: GString);
 
-    /// After `hand_over()`: the pose is that of what else animates the skeleton.
+    /// Emitted after `hand_over()`, when other animation poses the whole skeleton.
     #[signal]
     fn handed_over();
 

@@ -11,27 +11,27 @@ use std::cell::OnceCell;
 use std::sync::{Arc, Weak};
 
 /// Problem of a model that cannot wear styles.
-pub(crate) const NO_STYLES: &str = "A switching model (.footdyn) wears no styles and walks without them: empty Styles, or load a .footfall file into Model.";
+pub(crate) const NO_STYLES: &str = "A switching model (.footdyn) has no styles and walks without them. Clear Styles, or load a .footfall file into Model.";
 
 /// Warning where there is no model.
-pub(crate) const NO_MODEL: &str = "No gait model, and the add-on's own, models/locomotion.footfall, is gone. Load a .footfall file into Model.";
+pub(crate) const NO_MODEL: &str = "There is no gait model, and the add-on's own, models/locomotion.footfall, is missing. Load a .footfall file into Model.";
 
-/// A way of walking that was learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
+/// Gait model learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
 /// (`.footdyn`, made by `footfall dynamics fit`).
 ///
-/// Either file in the project is this resource, as it is. Give it to a `GaitGenerator3D`'s `model`. One model serves
-/// any number of characters. A trained walk knows many walkers, changes its step with its speed and wears styles; a switching model is a
-/// hundredth of its size, and is one person's way of walking.
+/// Godot loads either file as this resource, without import. Set it as the `model` of a `GaitGenerator3D`. One model serves
+/// any number of characters. A trained walk knows many walkers, adapts its steps to the speed and supports styles. A switching model has a
+/// hundredth of its size and one person's way of walking.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct GaitModel {
-    /// The bytes of the `.footfall` or `.footdyn` file.
+    /// Bytes of the `.footfall` or `.footdyn` file.
     ///
-    /// Plain bytes, so that a scene or `.res` file that holds the resource needs nothing but built-in storage.
+    /// Plain bytes, so that a scene or `.res` file with this resource needs built-in storage only.
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
-    /// Description of the model and of the recordings that it was trained on, or what is wrong with its file.
+    /// Description of the model and its training recordings, or the problem of its file.
     #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
     description: PhantomVar<GString>,
 
@@ -49,9 +49,9 @@ impl IResource for GaitModel {}
 
 #[godot_api]
 impl GaitModel {
-    /// Makes a model from the bytes of a `.footfall` or `.footdyn` file, for example one that the game downloaded.
+    /// Creates a model from the bytes of a `.footfall` or `.footdyn` file, for example a downloaded one.
     ///
-    /// Ask `get_error()` whether the bytes were a model.
+    /// `get_error()` returns a problem if the bytes are not a model.
     #[func]
     fn from_bytes(bytes: PackedByteArray) -> Gd<Self> {
         let mut model = Self::new_gd();
@@ -59,7 +59,7 @@ impl GaitModel {
         model
     }
 
-    /// Replaces the model by the one in these bytes of a `.footfall` or `.footdyn` file.
+    /// Replaces the model by the content of a `.footfall` or `.footdyn` file.
     #[func]
     pub(crate) fn set_data(&mut self, data: PackedByteArray) {
         self.loaded = Loaded::read(&data, WalkModel::from_bytes);
@@ -69,21 +69,21 @@ impl GaitModel {
         self.base_mut().emit_changed();
     }
 
-    /// Description of the model and of the recordings that it was trained on, or what is wrong with its file.
+    /// Description of the model and its training recordings, or the problem of its file.
     #[func]
     fn get_description(&self) -> GString {
         self.loaded
             .describe(|model| describe(model, self.speeds_of(model)))
     }
 
-    /// Problem of the model's file, with the next thing to do; empty without one.
+    /// Returns the problem of the model's file, with what to do next; empty if there is none.
     #[func]
     fn get_error(&self) -> GString {
         self.trained()
             .map_or_else(|error| GString::from(&error), |_| GString::new())
     }
 
-    /// The slowest and the fastest walk that the model was trained on, in metres per second. Zero for a broken model; a switching
+    /// Returns the slowest and the fastest walk that the model was trained on, in metres per second. Zero for an invalid model; a switching
     /// model knows one speed.
     ///
     /// A `GaitGenerator3D` also walks outside this range, by extrapolation.
@@ -95,7 +95,7 @@ impl GaitModel {
         })
     }
 
-    /// Returns whether this is a switching model, which wears no styles.
+    /// Returns `true` for a switching model, which has no styles.
     #[func]
     pub(crate) fn is_switching(&self) -> bool {
         matches!(self.trained().as_deref(), Ok(WalkModel::Dynamics(_)))
@@ -118,7 +118,7 @@ impl GaitModel {
     /// Text for the user that says what is wrong with the file.
     pub(crate) fn trained(&self) -> Result<Arc<WalkModel>, String> {
         self.loaded
-            .content("the gait model is empty: load a .footfall or a .footdyn file in its place")
+            .content("the gait model is empty. Load a .footfall or .footdyn file instead")
     }
 
     /// The model with these styles, prepared once for all characters that wear the same.
@@ -152,7 +152,7 @@ impl GaitModel {
     ) -> Result<(Arc<TrainedWalk>, Option<Arc<StyleSpace>>), String> {
         let WalkModel::Gait(model) = &*self.trained()? else {
             return Err(
-                "A crowd walks with a trained walk (.footfall), not with a switching model: load another Model.".to_owned(),
+                "A crowd needs a trained walk (.footfall), not a switching model. Load another Model.".to_owned(),
             );
         };
         Ok((Arc::clone(model), self.space_with(styles)))
@@ -199,7 +199,7 @@ fn describe(model: &WalkModel, [slowest, fastest]: [f32; 2]) -> String {
             from.steps, from.subjects, from.clips
         ),
         WalkModel::Dynamics(model) => format!(
-            "Two systems of order {} that switch when a foot lands, at {slowest:.2} m/s: {} steps of {} people in {} recordings.",
+            "Two linear systems of order {} that switch when a foot lands, at {slowest:.2} m/s: {} steps of {} people in {} recordings.",
             model.regime(Side::Left).system.order(),
             from.steps,
             from.subjects,

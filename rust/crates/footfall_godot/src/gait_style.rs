@@ -6,20 +6,20 @@ use godot::classes::{IResource, Resource};
 use godot::prelude::*;
 use std::sync::Arc;
 
-/// A style of walking, made by `footfall adapt` from about a dozen steps and stored in a `.footstyle` file.
+/// Style of walking, made by `footfall adapt` from about a dozen steps and stored in a `.footstyle` file.
 ///
-/// A `.footstyle` file in the project is this resource, as it is. Add it to a `GaitGenerator3D`'s `styles` and
-/// give it a weight in `style_weights`. A style belongs to the `GaitModel` that it was adapted from.
+/// Godot loads a `.footstyle` file as this resource, without import. Add it to the `styles` of a `GaitGenerator3D` and
+/// set its weight in `style_weights`. A style fits only the `GaitModel` that it was adapted from.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct GaitStyle {
-    /// The bytes of the `.footstyle` file.
+    /// Bytes of the `.footstyle` file.
     ///
-    /// Plain bytes, so that a scene or `.res` file that holds the resource needs nothing but built-in storage.
+    /// Plain bytes, so that a scene or `.res` file with this resource needs built-in storage only.
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
-    /// Description of the style and of the recordings that it was made from, or what is wrong with its file.
+    /// Description of the style and its recordings, or the problem of its file.
     #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
     description: PhantomVar<GString>,
 
@@ -33,9 +33,9 @@ impl IResource for GaitStyle {}
 
 #[godot_api]
 impl GaitStyle {
-    /// Makes a style from the bytes of a `.footstyle` file, for example one that the game downloaded.
+    /// Creates a style from the bytes of a `.footstyle` file, for example a downloaded one.
     ///
-    /// Ask `get_error()` whether the bytes were a style.
+    /// `get_error()` returns a problem if the bytes are not a style.
     #[func]
     fn from_bytes(bytes: PackedByteArray) -> Gd<Self> {
         let mut style = Self::new_gd();
@@ -43,7 +43,7 @@ impl GaitStyle {
         style
     }
 
-    /// Replaces the style by the one in these bytes of a `.footstyle` file.
+    /// Replaces the style by the content of a `.footstyle` file.
     #[func]
     pub(crate) fn set_data(&mut self, data: PackedByteArray) {
         self.loaded = Loaded::read(&data, TrainedStyle::from_bytes);
@@ -51,29 +51,29 @@ impl GaitStyle {
         self.base_mut().emit_changed();
     }
 
-    /// Description of the style and of the recordings that it was made from, or what is wrong with its file.
+    /// Description of the style and its recordings, or the problem of its file.
     #[func]
     fn get_description(&self) -> GString {
         self.loaded.describe(describe)
     }
 
-    /// Problem of the style's file, with the next thing to do; empty without one.
+    /// Returns the problem of the style's file, with what to do next; empty if there is none.
     #[func]
     fn get_error(&self) -> GString {
         self.trained()
             .map_or_else(|error| GString::from(&error), |_| GString::new())
     }
 
-    /// Name of the style, such as `proud`. Empty for a broken style.
+    /// Returns the name of the style, such as `proud`. Empty for an invalid style.
     #[func]
     fn get_style_name(&self) -> GString {
         self.trained()
             .map_or_else(|_| GString::new(), |style| GString::from(&style.name))
     }
 
-    /// Speed at which people walked in this style, in metres per second. Zero for a broken style.
+    /// Returns the speed at which people walked in this style, in metres per second. Zero for an invalid style.
     ///
-    /// A character walks at its node's `speed` whatever its style; this is the speed that suits the style best.
+    /// A character walks at its node's `speed` in any style; this speed suits the style best.
     #[func]
     fn get_usual_speed(&self) -> f64 {
         self.trained().map_or(0.0, |style| style.speed_mps)
@@ -87,7 +87,7 @@ impl GaitStyle {
     /// Text for the user that says what is wrong with the file.
     pub(crate) fn trained(&self) -> Result<Arc<TrainedStyle>, String> {
         self.loaded
-            .content("the gait style is empty: load a .footstyle file in its place")
+            .content("the gait style is empty. Load a .footstyle file instead")
     }
 }
 

@@ -8,22 +8,22 @@ use godot::prelude::*;
 use std::sync::Arc;
 
 /// Warning where there is no model.
-pub(crate) const NO_MODEL: &str = "No sensor model, and the add-on's own, models/right_foot.footimu, is gone. Load a .footimu file into Model.";
+pub(crate) const NO_MODEL: &str = "There is no sensor model, and the add-on's own, models/right_foot.footimu, is missing. Load a .footimu file into Model.";
 
-/// Knows what one or two inertial sensors on a body mean for the whole body (`.footimu`, made by `footfall imu train`).
+/// Sensor model that maps one or two inertial sensors on a body to the whole body (`.footimu`, made by `footfall imu train`).
 ///
-/// The file in the project is this resource, as it is. Give it to an `ImuReconstructor3D`'s `model`. One model serves any number of
+/// Godot loads the file as this resource, without import. Set it as the `model` of an `ImuReconstructor3D`. One model serves any number of
 /// characters.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct ImuModel {
-    /// The bytes of the `.footimu` file.
+    /// Bytes of the `.footimu` file.
     ///
-    /// Plain bytes, so that a scene or `.res` file that holds the resource needs nothing but built-in storage.
+    /// Plain bytes, so that a scene or `.res` file with this resource needs built-in storage only.
     #[var(set = set_data, usage_flags = [STORAGE])]
     data: PackedByteArray,
 
-    /// Sensors that the model is for and recordings that it was trained on, or the fault of its file.
+    /// Sensors of the model and its training recordings, or the problem of its file.
     #[var(get = get_description, no_set, usage_flags = [EDITOR, READ_ONLY], hint = MULTILINE_TEXT)]
     description: PhantomVar<GString>,
 
@@ -37,9 +37,9 @@ impl IResource for ImuModel {}
 
 #[godot_api]
 impl ImuModel {
-    /// Makes a model from the bytes of a `.footimu` file, for example one that the game downloaded.
+    /// Creates a model from the bytes of a `.footimu` file, for example a downloaded one.
     ///
-    /// Ask `get_error()` whether the bytes were a model.
+    /// `get_error()` returns a problem if the bytes are not a model.
     #[func]
     fn from_bytes(bytes: PackedByteArray) -> Gd<Self> {
         let mut model = Self::new_gd();
@@ -47,7 +47,7 @@ impl ImuModel {
         model
     }
 
-    /// Replaces the model by the one in these bytes of a `.footimu` file.
+    /// Replaces the model by the content of a `.footimu` file.
     #[func]
     pub(crate) fn set_data(&mut self, data: PackedByteArray) {
         self.loaded = Loaded::read(&data, |bytes| {
@@ -58,20 +58,20 @@ impl ImuModel {
         self.base_mut().emit_changed();
     }
 
-    /// Sensors that the model is for and recordings that it was trained on, or the fault of its file.
+    /// Sensors of the model and its training recordings, or the problem of its file.
     #[func]
     fn get_description(&self) -> GString {
         self.loaded.describe(|prepared| describe(prepared.model()))
     }
 
-    /// Problem of the model's file, with the next thing to do; empty without one.
+    /// Returns the problem of the model's file, with what to do next; empty if there is none.
     #[func]
     fn get_error(&self) -> GString {
         self.prepared()
             .map_or_else(|error| GString::from(&error), |_| GString::new())
     }
 
-    /// Sites of the sensors, in order: for example `right_foot`. Empty for a broken model.
+    /// Returns the sites of the sensors, in order, for example `right_foot`. Empty for an invalid model.
     #[func]
     fn get_sites(&self) -> PackedStringArray {
         let sites = self
@@ -97,7 +97,7 @@ impl ImuModel {
     /// Text for the user that says what is wrong with the file.
     pub(crate) fn prepared(&self) -> Result<Arc<Prepared>, String> {
         self.loaded
-            .content("the sensor model is empty: load a .footimu file in its place")
+            .content("the sensor model is empty. Load a .footimu file instead")
     }
 }
 

@@ -30,8 +30,8 @@ use worn::Worn;
 
 /// Drives a whole character from one or two inertial sensors on a person: walking, running, jumping, hopping, sidestepping.
 ///
-/// Add it under a `Skeleton3D` with humanoid bones, give it a `model` for the place at which the sensor is worn, and a `source`; or push samples of
-/// any sensor with `push_sample`. The pose is that of recorded people whose sensors would have measured the same; feet that stand stay where they are.
+/// Add it under a `Skeleton3D` with humanoid bones. Set its `model` for the place where the sensor is worn, and its `source`; or push samples of
+/// any sensor by `push_sample`. The pose is that of recorded people whose sensors would have measured the same. Standing feet stay in place.
 ///
 /// Bones are found as by `GaitGenerator3D`. In the editor the character stands.
 #[derive(GodotClass)]
@@ -39,18 +39,18 @@ use worn::Worn;
 pub(crate) struct ImuReconstructor3D {
     /// The sensor model: a `.footimu` file.
     ///
-    /// A node that is added in the editor has `addons/footfall/models/right_foot.footimu`; where this is empty, it is used as well.
+    /// A node added in the editor starts with `addons/footfall/models/right_foot.footimu`. The same model is used if this is empty.
     #[export]
     #[var(set = set_model, usage_flags = [DEFAULT, EDITOR_INSTANTIATE_OBJECT])]
     model: Option<Gd<ImuModel>>,
 
-    /// Source of the samples: a `PhoneImuSource`, `SerialImuSource`, `NetworkImuSource`, `DeviceImuSource`, `NodeImuSource` or `ReplayImuSource`. Live ones are opened in the game, not in the
-    /// editor, and drive one node each. May be empty when a script pushes samples.
+    /// Source of the samples: a `PhoneImuSource`, `SerialImuSource`, `NetworkImuSource`, `DeviceImuSource`, `NodeImuSource` or `ReplayImuSource`. Live sources open in the game, not in the
+    /// editor, and drive one node each. Leave it empty if a script pushes samples.
     #[export]
     #[var(hint = RESOURCE_TYPE, hint_string = imu_source::CLASSES)]
     source: Option<Gd<Resource>>,
 
-    /// Source of the second sensor's samples, for a model of two.
+    /// Source of the second sensor's samples, for a model of two sensors.
     #[export]
     #[var(hint = RESOURCE_TYPE, hint_string = imu_source::CLASSES)]
     second_source: Option<Gd<Resource>>,
@@ -60,17 +60,17 @@ pub(crate) struct ImuReconstructor3D {
     #[var(set = set_mounting)]
     mounting: ImuMounting,
 
-    /// If `true`, the body's way moves the character. Off: it stays, and `get_root_motion_delta()` tells how far it would have gone.
+    /// If `true`, the body's travel moves the character. If `false`, the character stays in place, and `get_root_motion_delta()` returns the travel.
     #[export]
     #[init(val = true)]
     root_motion: bool,
 
-    /// The `Node3D` that travels, above the `Skeleton3D`; found as by `GaitGenerator3D` when empty.
+    /// The `Node3D` that travels, above the `Skeleton3D`. If empty, it is found as by `GaitGenerator3D`.
     #[export(node_path = ("Node3D"))]
     #[var(set = set_character)]
     character: NodePath,
 
-    /// Map of the bones to the profile's joints, where they are not recognised. It comes before the bones' names.
+    /// Assignment of bones to the joints of the profile, for rigs that are not recognised. It takes precedence over bone names.
     #[export]
     #[var(set = set_bone_map)]
     bone_map: Option<Gd<BoneMap>>,
@@ -92,10 +92,10 @@ pub(crate) struct ImuReconstructor3D {
 #[godot(via = i64)]
 #[repr(i32)]
 pub(crate) enum ImuMounting {
-    /// Anyhow: its axes are found from how it moves, after about four seconds of motion. Until then the character stands.
+    /// Any orientation: about four seconds of motion calibrate its axes. Until then the character stands.
     #[default]
     Auto = 0,
-    /// With its axes parallel to the body's in the T-pose: x to the left, y up, z forward.
+    /// Axes parallel to the body's in the T-pose: x to the left, y up, z forward.
     Aligned = 1,
 }
 
@@ -126,35 +126,35 @@ impl ISkeletonModifier3D for ImuReconstructor3D {
 
 #[godot_api]
 impl ImuReconstructor3D {
-    /// `mounting`: the sensors are worn anyhow.
+    /// `mounting`: the sensors may have any orientation; motion calibrates them.
     #[constant]
     const AUTO: i32 = ImuMounting::Auto as i32;
-    /// `mounting`: their axes are parallel to the body's in the T-pose.
+    /// `mounting`: the sensors' axes are parallel to the body's in the T-pose.
     #[constant]
     const ALIGNED: i32 = ImuMounting::Aligned as i32;
 
-    /// A foot came down: `left` or `right`, and where in global space.
+    /// Emitted when a foot lands: `foot` is `left` or `right`, `position` is in global space.
     #[signal]
     fn footstep(foot: StringName, position: Vector3);
 
-    /// The body does something else now: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
+    /// Emitted when the behaviour changes: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
     #[signal]
     fn behaviour_changed(behaviour: StringName);
 
-    /// Nothing was heard of the sensors for half a second. The body goes on as is probable.
+    /// Emitted after half a second without samples. The body continues as is probable.
     #[signal]
     fn sensor_lost();
 
-    /// Samples come, for the first time or again.
+    /// Emitted when samples arrive, for the first time or again.
     #[signal]
     fn sensor_found();
 
-    /// Something else is wrong with a sensor now, or with how it is worn: a name, as of `get_sensor_problem()`, and a message that says what to do. Both are empty when
-    /// all is well again.
+    /// Emitted when the problem of a sensor or of its mounting changes: a name as from `get_sensor_problem()`, and a message that says what to do. Both are empty when
+    /// the problem is solved.
     #[signal]
     fn sensor_problem_changed(sensor: i64, problem: StringName, message: GString);
 
-    /// The calibration asks something else of the player: a step, as of `get_calibration_step()`, and a message.
+    /// Emitted when the calibration reaches another step: its name as from `get_calibration_step()`, and a message for the player.
     #[signal]
     fn calibration_changed(step: StringName, message: GString);
 

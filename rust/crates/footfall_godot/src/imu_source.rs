@@ -89,7 +89,7 @@ pub(crate) fn problem(source: &Gd<Resource>, listener: &Gd<Node>) -> Option<Stri
     let known = CLASSES.split(',').any(|class| source.is_class(class));
     (!known).then(|| {
         format!(
-            "{} is no source of a sensor; use one of {}",
+            "{} is not a sensor source. Use one of {}",
             source.get_class(),
             CLASSES.replace(',', ", ")
         )
@@ -186,7 +186,7 @@ impl Live {
         let told = self.with(|opened| opened.link().state().message().to_owned());
         match (self.state(place), self.status(place)) {
             ("silent", Some(status)) => format!(
-                "nothing was heard of {} for {:.0} s",
+                "no samples from {} for {:.0} s",
                 status.name,
                 status.silent_secs()
             ),
@@ -231,7 +231,7 @@ macro_rules! live_source_api {
     ($class:ident) => {
         #[godot_api(secondary)]
         impl $class {
-            /// Opens the port now; otherwise it is opened when a node uses this source for the first time.
+            /// Opens the port now. Otherwise it opens when a node first uses this source.
             #[func]
             fn start(&self) {
                 $crate::imu_source::LiveSource::live(self)
@@ -244,22 +244,22 @@ macro_rules! live_source_api {
                 $crate::imu_source::LiveSource::live(self).close();
             }
 
-            /// State of the source: `closed`, `opening`, `listening` (nothing was heard yet), `receiving`, `silent` or `failed` (it is tried again).
+            /// Returns the state of the source: `closed`, `opening`, `listening` (no samples yet), `receiving`, `silent` or `failed` (opening is retried).
             #[func]
             fn get_state(&self) -> StringName {
                 let place = $crate::imu_source::LiveSource::place(self);
                 StringName::from($crate::imu_source::LiveSource::live(self).state(place))
             }
 
-            /// Message for the player: what is awaited, or what is wrong and what to do. Empty while all is well.
+            /// Returns the message for the player: what is pending, or what is wrong and what to do. Empty while all is well.
             #[func]
             fn get_message(&self) -> GString {
                 let place = $crate::imu_source::LiveSource::place(self);
                 GString::from(&$crate::imu_source::LiveSource::live(self).message(place))
             }
 
-            /// Status of the sensor: `name`, `format`, `samples`, `lost` and `rejected` (counts), `rate` (samples a second), `jitter` (seconds),
-            /// `silent` (seconds), `force` (m/s², the last) and `rotation` (rad/s, the last). Empty before it is heard.
+            /// Returns the status of the sensor: `name`, `format`, `samples`, `lost` and `rejected` (counts), `rate` (samples per second), `jitter` (seconds),
+            /// `silent` (seconds), `force` (m/s², last value) and `rotation` (rad/s, last value). Empty before the first sample.
             #[func]
             fn get_sensor_status(&self) -> VarDictionary {
                 let place = $crate::imu_source::LiveSource::place(self);

@@ -1,14 +1,14 @@
 //! The Godot nodes: the only crate that names `godot`.
 //!
-//! `gait_model` is the resource that holds a trained walk, `gait_style` one that holds a style of it, `gait_generator_3d` the
-//! node that walks a character with them, `foot_placement_3d` the one that puts feet on uneven ground, `gait_crowd_3d` the one that walks thousands;
-//! `imu_model` is the resource that knows what sensors mean, `replay_imu_source` one that plays their recordings,
-//! `serial_`, `network_`, `phone_` and `device_imu_source` those that hear them live, `imu_source` what all of these are to `imu_reconstructor_3d`, the node that they drive; `loaded` is what a resource made of a file,
-//! `format_loader` what loads it, `shipped` where the models are that come with the add-on.
-//! Between the engine and the runtime, which is `footfall_rig` where bones and crowds are concerned, stand `skeleton_binding` (the engine's bones), `character` and `travel` (which node travels, and how), `physics_ground` (what feet stand on) and `convert` (vectors).
+//! Resources: `gait_model` holds a trained walk, `gait_style` a style, `imu_model` a sensor model. Nodes: `gait_generator_3d`
+//! walks a character, `foot_placement_3d` places feet on uneven ground, `gait_crowd_3d` walks thousands, `imu_reconstructor_3d` drives a character by sensors.
+//! Sources of samples: `replay_imu_source` for recordings,
+//! `serial_`, `network_`, `phone_` and `device_imu_source` for live sensors, `imu_source` as their common interface. `loaded` holds a resource's parsed file,
+//! `format_loader` loads files, `shipped` finds the add-on's models.
+//! `skeleton_binding` (bones), `character` and `travel` (the node that travels, and its motion), `physics_ground` (ground) and `convert` (vectors) connect the engine with the runtime, which for bones and crowds is `footfall_rig`.
 //!
-//! Two flavours are built. With the feature `editor` the library also holds `editor` (a dock, gizmos, a preview bar) and the
-//! class reference that Godot shows; exported games get the library without. Both register the same runtime classes.
+//! The library is built in two flavours. The feature `editor` adds `editor` (a dock, gizmos, a preview bar) and the
+//! class reference that Godot shows; exported games get the library without it. Both register the same runtime classes.
 
 #![expect(
     unsafe_code,

@@ -10,10 +10,10 @@ use godot::prelude::*;
 
 static LINKS: SharedPorts<(NetworkImuTransport, String), Link> = SharedPorts::new();
 
-/// Hears an inertial sensor over the local network: an app on a phone, or a tracker.
+/// Receives samples from an inertial sensor on the local network: an app on a phone, or a tracker.
 ///
-/// At a UDP port everything is recognised that owoTrack, SlimeVR trackers, ZIG SIM, GyrOSC, SensaGram and HyperIMU send; Sensor Logger posts over HTTP;
-/// SensorServer on a phone is asked at its address. Only senders on the local network are heard.
+/// A UDP port recognises the formats of owoTrack, SlimeVR trackers, ZIG SIM, GyrOSC, SensaGram and HyperIMU. Sensor Logger posts over HTTP. For
+/// SensorServer, the game connects to the phone's address. Senders outside the local network are ignored.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct NetworkImuSource {
@@ -22,7 +22,7 @@ pub(crate) struct NetworkImuSource {
     #[var(set = set_transport)]
     transport: NetworkImuTransport,
 
-    /// The port of this machine at which `Udp` (trackers look for 6969) or `Http` listens.
+    /// The port of this machine on which `Udp` (trackers look for 6969) or `Http` listens.
     #[export(range = (1.0, 65535.0, 1.0))]
     #[init(val = i64::from(udp::DEFAULT_PORT))]
     #[var(set = set_port)]
@@ -33,7 +33,7 @@ pub(crate) struct NetworkImuSource {
     #[var(set = set_address)]
     address: GString,
 
-    /// Number of the sensor at the port, from 0 in the order in which sensors were first heard: several players share a port.
+    /// Number of the sensor at the port, from 0 in the order of their first samples, so that several players share a port.
     #[export(range = (0.0, 15.0, 1.0))]
     sensor: i64,
 
@@ -57,13 +57,13 @@ impl IResource for NetworkImuSource {}
 
 #[godot_api]
 impl NetworkImuSource {
-    /// `transport`: datagrams at `port`.
+    /// `transport`: datagrams on `port`.
     #[constant]
     const UDP: i32 = NetworkImuTransport::Udp as i32;
-    /// `transport`: posts at `port`, to `/data`.
+    /// `transport`: posts on `port`, to `/data`.
     #[constant]
     const HTTP: i32 = NetworkImuTransport::Http as i32;
-    /// `transport`: the phone at `address` is asked.
+    /// `transport`: a connection to the phone at `address`.
     #[constant]
     const WEB_SOCKET: i32 = NetworkImuTransport::WebSocket as i32;
 
@@ -110,7 +110,7 @@ impl LiveSource for NetworkImuSource {
             let port = u16::try_from(self.port).ok().filter(|port| *port > 0);
             port.ok_or_else(|| {
                 format!(
-                    "{} is no port; set Port to a number from 1 to 65535",
+                    "{} is not a port. Set Port to a number from 1 to 65535",
                     self.port
                 )
             })
@@ -129,7 +129,7 @@ impl LiveSource for NetworkImuSource {
                 (port.to_string(), Box::new(move || http::listen(port)))
             }
             NetworkImuTransport::WebSocket if address.is_empty() => {
-                return Err("set Address to the one that SensorServer shows".to_owned());
+                return Err("set Address to the address that SensorServer shows".to_owned());
             }
             NetworkImuTransport::WebSocket => (
                 address.clone(),

@@ -5,17 +5,17 @@ use glam::{Quat, Vec3};
 use godot::classes::{IResource, Node3D, Resource, XrCamera3D, XrNode3D};
 use godot::prelude::*;
 
-/// Takes a node for a sensor: an `XRController3D` or `XRNode3D` of a tracker on the belt or a foot, an `XRCamera3D`, any `Node3D` that moves as a body does.
+/// Uses a node as a sensor: an `XRController3D` or `XRNode3D` of a tracker on the belt or a foot, an `XRCamera3D`, or any `Node3D` that moves like a part of a body.
 ///
-/// The motion of the node gives the measurements of a sensor on it, frame by frame; the body follows 34 ms later. Keep 60 frames a second or more. The sensor's axes are
-/// those of the node for somebody who looks along its -Z: with the mounting `Aligned`, the node's -Z points ahead and its y axis up while the person stands.
+/// The source computes the measurements of a sensor on the node from its motion; the body follows 34 ms later. Keep 60 frames per second or more. The sensor's axes are
+/// those of the node seen along its -Z: with the mounting `Aligned`, the node's -Z axis points ahead and its y axis up while the person stands.
 ///
-/// Nodes of XR are taken as they move in the room: a vehicle, a thumbstick or a teleport that moves their `XROrigin3D` does not move the body. Other nodes are taken
-/// as they move in the world; a jump in space begins anew.
+/// XR nodes are read relative to their `XROrigin3D`: a vehicle, a thumbstick or a teleport that moves the origin does not move the body. Other nodes are read
+/// in world space; a teleport restarts the source.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct NodeImuSource {
-    /// The node, as seen from the `ImuReconstructor3D`; an absolute path serves as well.
+    /// Path to the node from the `ImuReconstructor3D`; an absolute path works as well.
     #[export(node_path = ("Node3D"))]
     #[var(set = set_node)]
     node: NodePath,
@@ -56,7 +56,7 @@ impl NodeImuSource {
         ))
     }
 
-    /// Problem with the node, for whoever listens.
+    /// Problem with the node, for the user of the source.
     pub(crate) fn problem(&self, listener: &Gd<Node>) -> Option<String> {
         listener
             .is_inside_tree()
@@ -66,13 +66,13 @@ impl NodeImuSource {
 
     fn find(&self, listener: &Gd<Node>) -> Result<Gd<Node3D>, String> {
         if self.node.is_empty() {
-            return Err("the NodeImuSource has no node: set its Node".to_owned());
+            return Err("the NodeImuSource has no node. Set its Node".to_owned());
         }
         listener
             .try_get_node_as::<Node3D>(&self.node)
             .ok_or_else(|| {
                 format!(
-                    "the NodeImuSource finds no Node3D at \"{}\" from {}: set its Node",
+                    "the NodeImuSource finds no Node3D at \"{}\" from {}. Set its Node",
                     self.node,
                     listener.get_name()
                 )

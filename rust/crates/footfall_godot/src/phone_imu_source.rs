@@ -18,9 +18,9 @@ const MARGIN: usize = 4;
 /// Folder of the certificate.
 const FOLDER: &str = "user://footfall_phone";
 
-/// Hears a phone through its browser: the game serves a page, shows its address as a code, and the phone that scans it is the sensor. Nothing is installed.
+/// Receives samples from a phone's browser: the game serves a page and shows its address as a code; the phone that scans it becomes the sensor. There is nothing to install.
 ///
-/// The page comes over HTTPS, with a certificate that this machine signed itself and keeps under `user://footfall_phone`: the browser warns of it once. Each player has a
+/// The page uses HTTPS with a certificate that this machine signs itself and keeps under `user://footfall_phone`; the browser warns of it once. Each player has a
 /// code of their own, new at every start, and one phone at a time. Only the local network is served.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
@@ -31,11 +31,11 @@ pub(crate) struct PhoneImuSource {
     #[var(set = set_port)]
     port: i64,
 
-    /// Whose phone, from 0: players share the port.
+    /// Number of the player, from 0. Players share the port.
     #[export(range = (0.0, 7.0, 1.0))]
     player: i64,
 
-    /// If `true`, the phone vibrates when a foot of the character comes down.
+    /// If `true`, the phone vibrates when a foot of the character lands.
     #[export]
     #[init(val = true)]
     vibrate_on_footsteps: bool,
@@ -49,13 +49,13 @@ impl IResource for PhoneImuSource {}
 
 #[godot_api]
 impl PhoneImuSource {
-    /// The address of the page for this player; empty before `start()`, and while the port cannot be had.
+    /// Returns the address of the page for this player; empty before `start()`, and while the port is unavailable.
     #[func]
     fn get_url(&self) -> GString {
         GString::from(&self.url().unwrap_or_default())
     }
 
-    /// The address as a code to scan, one pixel a module with a light margin; `null` before `start()`. Show it large and without filter.
+    /// Returns the address as a QR code, one pixel per module with a light margin; `null` before `start()`. Show it large and without filter.
     #[func]
     fn get_qr_code(&self) -> Option<Gd<Image>> {
         let (width, modules) = qr_code(&self.url()?)?;
@@ -122,7 +122,7 @@ impl LiveSource for PhoneImuSource {
         let port = u16::try_from(self.port).ok().filter(|port| *port > 0);
         let port = port.ok_or_else(|| {
             format!(
-                "{} is no port; set Port to a number from 1 to 65535",
+                "{} is not a port. Set Port to a number from 1 to 65535",
                 self.port
             )
         })?;
@@ -134,7 +134,8 @@ impl LiveSource for PhoneImuSource {
                 folder: PathBuf::from(folder.to_string()),
             })
         });
-        let server = server.map_err(|error| format!("no code for phones can be made: {error}"))?;
+        let server =
+            server.map_err(|error| format!("cannot create the code for the phone: {error}"))?;
         Ok(Opened::Phone(server))
     }
 }

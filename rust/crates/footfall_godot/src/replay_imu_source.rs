@@ -7,11 +7,11 @@ use std::cell::OnceCell;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Plays the recording of a sensor as if it was worn now.
+/// Replays the recording of a sensor as if the sensor were worn now.
 ///
-/// The file has the columns `time_s,ax,ay,az,gx,gy,gz`: seconds, specific force in m/s² (gravity included) and angular rate in rad/s, as
-/// `footfall imu simulate` writes it. Godot takes `.csv` files for translations: give the file another extension, such as `.imu`, and add that
-/// to the filters of an export.
+/// The file has the columns `time_s,ax,ay,az,gx,gy,gz`: seconds, specific force in m/s² (including gravity) and angular rate in rad/s, as
+/// `footfall imu simulate` writes it. Godot imports `.csv` files as translations: give the file another extension, such as `.imu`, and add it
+/// to the export filters.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct ReplayImuSource {
@@ -20,7 +20,7 @@ pub(crate) struct ReplayImuSource {
     #[var(set = set_file)]
     file: GString,
 
-    /// If `true`, the recording begins anew when it is over; otherwise the sensor falls silent.
+    /// If `true`, the recording loops; otherwise the sensor falls silent at its end.
     #[export]
     #[init(val = true)]
     repeat: bool,
@@ -42,14 +42,14 @@ impl ReplayImuSource {
         self.base_mut().emit_changed();
     }
 
-    /// Problem of the recording, with the next thing to do; empty without one.
+    /// Returns the problem of the recording, with what to do next; empty if there is none.
     #[func]
     fn get_error(&self) -> GString {
         self.recording()
             .map_or_else(|error| GString::from(&error), |_| GString::new())
     }
 
-    /// Length of the recording in seconds; 0 for a broken one.
+    /// Returns the length of the recording in seconds; 0 for an invalid one.
     #[func]
     fn get_length(&self) -> f64 {
         self.recording()
@@ -73,10 +73,10 @@ impl ReplayImuSource {
 
 fn read(file: &GString) -> Result<Arc<ImuRecording>, String> {
     if file.is_empty() {
-        return Err("the replay has no recording: set its File".to_owned());
+        return Err("the ReplayImuSource has no recording. Set its File".to_owned());
     }
     if !FileAccess::file_exists(file) {
-        return Err(format!("{file}: there is no such file"));
+        return Err(format!("there is no file {file}"));
     }
     let text = FileAccess::get_file_as_string(file).to_string();
     let recording =

@@ -11,19 +11,19 @@ use godot::register::info::PropertyInfo;
 
 static PORTS: SharedPorts<SerialConfig, Link> = SharedPorts::new();
 
-/// Hears an inertial sensor on a serial port: USB or Bluetooth.
+/// Receives samples from an inertial sensor on a serial port: USB or Bluetooth.
 ///
-/// WitMotion, x-IMU3, Xsens MTi and boards that print lines of text are recognised, and so is their baud rate; a Yost 3-Space has to be chosen as `format`.
-/// A port that is unplugged is opened again. On Linux the user has to be in the group `dialout`.
+/// WitMotion, x-IMU3, Xsens MTi and boards that print lines of text are recognised, with their baud rate; for a Yost 3-Space set `format`.
+/// An unplugged port is reopened when it returns. On Linux the user must be in the group `dialout`.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]
 pub(crate) struct SerialImuSource {
-    /// The port, such as `/dev/ttyUSB0` or `COM3`; empty for the first one on USB.
+    /// Name of the port, such as `/dev/ttyUSB0` or `COM3`; empty for the first one on USB.
     #[export]
     #[var(set = set_port)]
     port: GString,
 
-    /// Bits a second; 0 to find out.
+    /// Baud rate; 0 to detect it.
     #[export(range = (0.0, 4_000_000.0, 1.0))]
     #[var(set = set_baud_rate)]
     baud_rate: i64,
@@ -33,24 +33,24 @@ pub(crate) struct SerialImuSource {
     #[var(set = set_format)]
     format: SerialImuFormat,
 
-    /// Names of the columns of lines of text, such as `t,ax,ay,az,gx,gy,gz`; empty when the device prints a header or this order.
+    /// Names of the columns of lines of text, such as `t,ax,ay,az,gx,gy,gz`; empty if the device prints a header or uses this order.
     ///
-    /// A name may tell its unit, as in `ax_g`, `gx_dps`, `time_ms`. Units that are not told are guessed.
+    /// A name may include its unit, as in `ax_g`, `gx_dps`, `time_ms`. Missing units are guessed.
     #[export]
     #[var(set = set_columns)]
     columns: GString,
 
-    /// Unit of the acceleration in lines of text that do not tell it.
+    /// Unit of the acceleration in lines of text without units.
     #[export]
     #[var(set = set_force_unit)]
     force_unit: ImuForceUnit,
 
-    /// Unit of the angular rate in lines of text that do not tell it.
+    /// Unit of the angular rate in lines of text without units.
     #[export]
     #[var(set = set_rate_unit)]
     rate_unit: ImuRateUnit,
 
-    /// Unit of time in lines of text that do not tell it.
+    /// Unit of time in lines of text without units.
     #[export]
     #[var(set = set_time_unit)]
     time_unit: ImuTimeUnit,
@@ -123,7 +123,7 @@ impl IResource for SerialImuSource {
 
 #[godot_api]
 impl SerialImuSource {
-    /// `format`, and every unit: found out.
+    /// `format`, and every unit: detected.
     #[constant]
     const AUTO: i32 = 0;
     /// `format`: WitMotion's standard protocol.
@@ -153,7 +153,7 @@ impl SerialImuSource {
     /// `rate_unit`: rad/s.
     #[constant]
     const RADIANS_PER_SECOND: i32 = ImuRateUnit::RadiansPerSecond as i32;
-    /// `rate_unit`: degrees a second.
+    /// `rate_unit`: degrees per second.
     #[constant]
     const DEGREES_PER_SECOND: i32 = ImuRateUnit::DegreesPerSecond as i32;
     /// `time_unit`: seconds.
@@ -166,7 +166,7 @@ impl SerialImuSource {
     #[constant]
     const MICROSECONDS: i32 = ImuTimeUnit::Microseconds as i32;
 
-    /// The serial ports of this machine, those on USB first.
+    /// Returns the serial ports of this machine, those on USB first.
     #[func]
     fn list_ports() -> PackedStringArray {
         port::ports()

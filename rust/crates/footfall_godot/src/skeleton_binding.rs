@@ -11,7 +11,7 @@ use godot::prelude::*;
 use std::fmt;
 use std::ops::Deref;
 
-/// Why a skeleton cannot walk, for the user. Each says what to do.
+/// Reasons why a skeleton cannot walk, for the user, with what to do.
 #[derive(Debug)]
 pub(crate) struct BindingError(footfall_rig::BindingError);
 
@@ -21,7 +21,7 @@ impl fmt::Display for BindingError {
         match &self.0 {
             Rig::MissingJoints(missing) => write!(
                 f,
-                "The skeleton {}. Give this node a Bone Map that tells which bones these are (Bone Map, New BoneMap), or reimport the character \
+                "The skeleton {}. Set this node's Bone Map (Bone Map, New BoneMap) and assign these bones, or reimport the character \
                  with a BoneMap (Advanced Import Settings, Skeleton3D, Retarget).",
                 missing.findings()
             ),
@@ -31,7 +31,7 @@ impl fmt::Display for BindingError {
                 expected,
             } => write!(
                 f,
-                "Bone {bone} ({}) does not hang from {}. Correct the Bone Map, or the hierarchy of the skeleton.",
+                "Bone {bone} ({}) is not below {} in the hierarchy. Correct the Bone Map or the skeleton.",
                 joint.name(),
                 expected.name()
             ),
@@ -39,7 +39,7 @@ impl fmt::Display for BindingError {
                 "The rest pose does not stand upright: LeftUpperLeg and RightUpperLeg must be side by side in the Character's axes. \
                  Give the skeleton a standing T-pose as its rest pose, or turn its node upright.",
             ),
-            Rig::Skeleton(error) => write!(f, "The rest pose cannot stand: {error}."),
+            Rig::Skeleton(error) => write!(f, "The rest pose cannot be used: {error}."),
         }
     }
 }

@@ -1,8 +1,8 @@
-//! From one motion to another: the body goes over without a jump, and feet that stand stay where they are.
+//! Transitions between motions: no jump, and standing feet stay in place.
 //!
-//! Offsets between the two motions, in place and in speed, die away while the second goes on (inertialization, after Bollo,
-//! "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018). Feet are kept apart from that: one that stands in both
-//! keeps its place until the new motion lifts it, or makes a step of its own.
+//! Offsets between the two motions, in place and in speed, decay while the second continues (inertialization, after Bollo,
+//! "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018). Feet are treated separately: a foot that stands in both
+//! motions keeps its place until the new motion lifts it, or takes a step of its own.
 
 mod fading;
 mod foot;
@@ -39,18 +39,18 @@ const MOST_YIELD_MPS2: f32 = 40.0;
 const MAX_SPEED_MPS: f32 = 6.0;
 const MAX_TURN_RADPS: f32 = 25.0;
 
-/// A motion at one moment: two frames of it, in the axes of the ground, with y = 0 the floor.
+/// A motion at one time: two of its frames, in the axes of the ground, with y = 0 the floor.
 #[derive(Clone, Copy, Debug)]
 pub struct Moving<'a> {
-    /// The frame before.
+    /// Previous frame.
     pub before: &'a Pose,
-    /// The frame now.
+    /// Current frame.
     pub now: &'a Pose,
-    /// True for the feet that stand.
+    /// True for standing feet.
     pub stands: [bool; 2],
 }
 
-/// A body on its way from one motion to another. Allocates nothing.
+/// Transition of a body from one motion to another. Does not allocate.
 #[derive(Clone, Debug)]
 pub struct Handover {
     hips: Fading,
@@ -74,7 +74,7 @@ struct BodyFrame {
 }
 
 impl Handover {
-    /// From one motion to another on the same ground, whose frames are both `dt_secs` apart, within `secs`.
+    /// Starts a transition between motions on the same ground, whose frames are both `dt_secs` apart, within `secs`.
     pub fn new(
         skeleton: &Skeleton,
         from: &Moving<'_>,
@@ -122,8 +122,8 @@ impl Handover {
         }
     }
 
-    /// Lets time pass and changes a pose of the motion that goes on to what the body does. `stands` says which feet that motion has on the
-    /// ground, `rests` whether it leaves them there for good: then feet that stand elsewhere make a step, one after the other.
+    /// Advances time and changes a pose of the new motion to the body's. `stands` marks the feet that the new motion has on the
+    /// ground, `rests` whether it leaves them there for good: feet that stand elsewhere then take a step, one after the other.
     pub fn step(&mut self, dt_secs: f32, stands: [bool; 2], rests: bool, pose: &mut Pose) {
         self.hips.advance(dt_secs);
         if rests {
@@ -175,7 +175,7 @@ impl Handover {
         }
     }
 
-    /// Returns true when nothing is left of the motion that ended.
+    /// Returns true when the previous motion has decayed completely.
     pub fn is_over(&self) -> bool {
         self.hips.is_over() && self.feet.iter().all(HeldFoot::is_over)
     }
@@ -218,7 +218,7 @@ fn below(height: f32, limit: f32, give: f32) -> f32 {
     limit - give * (-into / give).exp()
 }
 
-/// Finds the feet that stand in a motion without known contacts: those that are low and slow. `stood` has those that stood in the frame before.
+/// Detects the standing feet of a motion without known contacts: those that are low and slow. `stood` marks the feet that stood in the previous frame.
 pub fn standing_feet(
     skeleton: &Skeleton,
     before: &Pose,

@@ -9,10 +9,10 @@ use glam::{Quat, Vec3};
 use knee::{Angle, knee_hinge};
 pub use target::{FootTarget, FootTargetx8};
 
-/// Share of the straight leg that the solver uses at most: a leg that is quite straight makes the knee snap.
+/// Largest share of the straight leg that the solver uses: the knee of a completely straight leg snaps.
 const MAX_EXTENSION: f32 = 0.9995;
 
-/// One leg of a body, with what its solution needs of the skeleton.
+/// One leg of a body, with the measures that its solution needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
     side: Side,
@@ -23,7 +23,7 @@ pub struct Leg {
     shank: f32,
 }
 
-/// Solution of a leg: where its joints are and how they are turned.
+/// Solution of a leg: positions and rotations of its joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegSolution {
     /// Position of the hip joint in model space, metres.
@@ -32,7 +32,7 @@ pub struct LegSolution {
     pub thigh: Quat,
     /// `model_from_shank` rotation.
     pub shank: Quat,
-    /// Position of the ankle in the end, metres.
+    /// Resulting position of the ankle, metres.
     pub ankle: Vec3,
 }
 
@@ -65,16 +65,16 @@ impl Leg {
         }
     }
 
-    /// The way from the hip joint to the ankle of a leg that is turned so in model space, metres.
+    /// Vector from the hip joint to the ankle of a leg with these rotations in model space, metres.
     pub fn ankle_from_hip(&self, thigh: Quat, shank: Quat) -> Vec3 {
         thigh * self.thigh_axis + shank * self.shank_axis
     }
 
-    /// Turns thigh, shank, foot and toes of a pose so that the foot meets its target. `hips_rotation` is the hips' in
+    /// Rotates thigh, shank, foot and toes of a pose so that the foot meets its target. `hips_rotation` is the hips' in
     /// model space.
     ///
-    /// The knee stays in the plane in which the pose already bends it. Out of reach, the leg is stretched towards the
-    /// target and the ankle falls short.
+    /// The knee stays in the plane in which the pose bends it. If the target is out of reach, the leg stretches towards
+    /// it and the ankle falls short.
     pub fn solve(
         &self,
         hips: Vec3,

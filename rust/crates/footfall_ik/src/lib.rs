@@ -1,7 +1,7 @@
-//! Leg inverse kinematics, the standing foot, and feet on real ground: the runtime's way of keeping a foot where it was put.
+//! Leg inverse kinematics, the standing foot, and feet on real ground.
 //!
-//! Godot 4.6 has a `TwoBoneIK3D`, but it ignores the target's rotation and knows nothing of contacts; this crate turns
-//! the ankle too and is the same code in the editor, in tests and on the command line.
+//! Godot 4.6 has a `TwoBoneIK3D`, but it ignores the target's rotation and does not know contacts. This crate also rotates
+//! the ankle, and is the same code in the editor, in tests and on the command line.
 
 pub mod handover;
 pub mod leg;

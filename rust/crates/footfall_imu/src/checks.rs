@@ -7,25 +7,25 @@ use glam::{Quat, Vec3};
 /// Lowest rate from which a gait can be reconstructed, samples a second.
 pub const LEAST_RATE_HZ: f64 = 20.0;
 
-/// No limb turns faster than this for a hundredth of the time, rad/s; degrees for radians do.
+/// Angular rate that no limb exceeds in 1 % of the time, rad/s; degrees in place of radians do.
 const FASTEST_RADPS: f32 = 45.0;
 
-/// The mean of specific force is gravity, give or take what the sensor is faster at the end than at the beginning, m/s².
+/// Limit of the mean specific force's difference from gravity, m/s²: the change of velocity over a recording contributes to it.
 const LEAST_FORCE: f32 = 3.5;
 const MOST_FORCE: f32 = 20.0;
 
-/// Over so long the angular rate is integrated, seconds: drift is small within it.
+/// Time over which the angular rate is integrated, seconds: drift is small within it.
 const MEAN_SECS: f64 = 8.0;
 
 /// Names of the channels, in order.
 const CHANNELS: [&str; 6] = ["ax", "ay", "az", "gx", "gy", "gz"];
 
-/// Why a recording cannot be a body's.
+/// Faults of a sensor's recording.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RecordingFault {
     /// Specific force is given in units of gravity.
     #[error(
-        "the specific force has a mean of {mean:.2}, turned into one direction: it is in g; multiply ax, ay and az by 9.80665 to have m/s²"
+        "the specific force has a mean of {mean:.2} in one direction: its unit is g; multiply ax, ay and az by 9.80665 to get m/s²"
     )]
     ForceInG {
         /// Magnitude of the mean.
@@ -33,7 +33,7 @@ pub enum RecordingFault {
     },
     /// Gravity is not in it, or the scale is another.
     #[error(
-        "the specific force has a mean of {mean:.2} m/s², turned into one direction, where gravity is 9.8; give ax, ay and az in m/s² with gravity included"
+        "the specific force has a mean of {mean:.2} m/s² in one direction, gravity is 9.8; give ax, ay and az in m/s² including gravity"
     )]
     Force {
         /// Magnitude of the mean.
@@ -41,7 +41,7 @@ pub enum RecordingFault {
     },
     /// Angular rate is given in degrees.
     #[error(
-        "the angular rate exceeds {high:.0} rad/s for a hundredth of the time: it is in degrees per second; multiply gx, gy and gz by 0.0174533"
+        "the angular rate exceeds {high:.0} rad/s in 1 % of the time: its unit is degrees per second; multiply gx, gy and gz by 0.0174533"
     )]
     RateInDegrees {
         /// The magnitude that is exceeded.
@@ -171,12 +171,12 @@ mod tests {
             let text = result.unwrap_err().to_string();
             assert!(text.contains(part), "{text}");
         };
-        is(changed(|s| s.force /= GRAVITY_MPS2), "in g");
-        is(changed(|s| s.force *= 1000.0), "where gravity is 9.8");
+        is(changed(|s| s.force /= GRAVITY_MPS2), "unit is g");
+        is(changed(|s| s.force *= 1000.0), "gravity is 9.8; give");
         let phase = |s: &ImuSample| (s.time_secs * core::f64::consts::TAU).sin() as f32;
         let gravity =
             |s: &ImuSample| Quat::from_rotation_x(-0.7 * phase(s)) * Vec3::Y * GRAVITY_MPS2;
-        is(changed(|s| s.force -= gravity(s)), "gravity included");
+        is(changed(|s| s.force -= gravity(s)), "including gravity");
         is(changed(|s| s.rate *= 57.3), "degrees");
         is(changed(|s| s.rate.z = 0.0), "gz");
         is(check_recording(&swinging(10.0)), "10.0 samples a second");

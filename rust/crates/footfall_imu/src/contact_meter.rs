@@ -75,11 +75,11 @@ const LONGEST_GAP_SECS: f64 = 0.1;
 pub struct ToldContact {
     /// True while the foot is on the ground.
     pub stands: bool,
-    /// Time since it came down or was lifted, seconds; infinite where nobody knows.
+    /// Time since it landed or lifted, seconds; infinite while unknown.
     pub for_secs: f32,
 }
 
-/// Contact of the foot that wears a sensor, sample by sample. Allocates nothing.
+/// Contact of a foot with a sensor, sample by sample. Does not allocate.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactMeter {
     last_secs: Option<f64>,
@@ -157,7 +157,7 @@ impl ContactMeter {
         self.told(self.last_secs?)
     }
 
-    /// Takes a sample in the site's axes. Samples that are not finite or late are passed over.
+    /// Adds a sample in the site's axes. Samples that are not finite or late are ignored.
     pub fn push(&mut self, sample: ImuSample) {
         if !sample.is_finite() {
             return;
@@ -194,7 +194,7 @@ impl ContactMeter {
         };
     }
 
-    /// Swings of a recording in the site's axes, in order, each as it is told when it ends.
+    /// Returns the swings of a recording in the site's axes, in order, each as reported at its end.
     pub fn swings_of(recording: &ImuRecording) -> Vec<Swing> {
         let (mut meter, mut lifted) = (Self::default(), None);
         let mut swings = Vec::new();

@@ -9,7 +9,7 @@ const HEADER: [&str; 7] = ["time_s", "ax", "ay", "az", "gx", "gy", "gz"];
 /// Longest recording that is read, samples: a day at 200 Hz is shorter.
 const MAX_SAMPLES: usize = 20_000_000;
 
-/// Why a recording cannot be read.
+/// Errors of reading a recording.
 #[derive(Debug, thiserror::Error)]
 pub enum ImuCsvError {
     /// The file cannot be opened or is no CSV file.

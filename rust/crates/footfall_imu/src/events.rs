@@ -76,7 +76,7 @@ pub struct Swing {
     pub initial_secs: f64,
 }
 
-/// Finds the swings of a foot, in order. A recording in which nobody walks has none.
+/// Finds the swings of a foot, in order. A recording without a walk has none.
 pub fn detect_swings(recording: &ImuRecording) -> Vec<Swing> {
     let rate_hz = recording.rate_hz();
     let even = recording.evenly_spaced();

@@ -1,10 +1,10 @@
 //! Runtime: samples, orientation, features and gait events of inertial sensors.
 //!
-//! Modules in the order in which data flows: [`sample`]s, read from [`csv`] recordings or taken of tracked poses by a [`pose_meter`]; recordings and their [`checks`], a [`stream_monitor`] that tells what is wrong with samples as they come, what a sensor measures at [`rest`], [`orientation`] of the sensor, the
-//! [`features`] that a reconstructor compares with its model, and, for a sensor on a foot, gait [`events`] and [`strides`], which a [`contact_meter`] and a
-//! [`stride_meter`] tell as they are made. With the feature `live`, [`live`] hears sensors over serial ports and networks; without, nothing here opens a port.
+//! Modules in the order of data flow: [`sample`]s, read from [`csv`] recordings or computed from tracked poses by a [`pose_meter`]; recordings and their [`checks`], a [`stream_monitor`] that checks live samples, the measurements at [`rest`], the [`orientation`] of the sensor, the
+//! [`features`] that a reconstructor compares with its model, and, for a foot sensor, gait [`events`] and [`strides`], which a [`contact_meter`] and a
+//! [`stride_meter`] report live. With the feature `live`, [`live`] receives samples over serial ports and networks; without it, the crate opens no port.
 //!
-//! Everywhere specific force is in m/s² and holds gravity (a sensor at rest reads +9.81 along up), angular rate is in rad/s, and axes are
+//! Specific force is in m/s² and includes gravity (a sensor at rest reads +9.81 along up), angular rate is in rad/s, and axes are
 //! right-handed.
 
 pub mod checks;

@@ -18,10 +18,10 @@ const RATE_HALF_SECS: f64 = 0.017;
 /// Poses that follow each other sooner than this are thinned out, seconds.
 const LEAST_STEP_SECS: f64 = 0.003;
 
-/// After a longer gap the window begins anew, seconds.
+/// Gap after which the window restarts, seconds.
 const GAP_SECS: f64 = 0.2;
 
-/// Fastest motion of a body. What is faster was put elsewhere, and the window begins anew: m/s and rad/s.
+/// Fastest motion of a body, m/s and rad/s. Faster changes are teleports, which restart the window.
 const FASTEST_MPS: f32 = 20.0;
 const FASTEST_RADPS: f32 = 35.0;
 
@@ -51,10 +51,10 @@ impl Default for PoseMeter {
 }
 
 impl PoseMeter {
-    /// Takes the next pose: `time_secs` rises, `position` is in metres with y up, `world_from_sensor` is the orientation of the sensor's axes.
+    /// Adds the next pose: `time_secs` rises, `position` is in metres with y up, `world_from_sensor` is the orientation of the sensor's axes.
     ///
-    /// Returns the sample of the middle of the window, up to 34 ms ago, or `None` while fewer than three poses are in it. A pose that is not finite, that comes
-    /// within 3 ms of the last or does not follow it gives none, either; a jump in space or a gap in time starts the window anew.
+    /// Returns the sample of the middle of the window, up to 34 ms ago, or `None` while it has fewer than three poses. A pose that is not finite, or
+    /// within 3 ms of the last or before it, returns none either; a teleport or a gap in time restarts the window.
     pub fn push(
         &mut self,
         time_secs: f64,

@@ -1,15 +1,15 @@
-//! Rest of a sensor: what it measures while nothing moves it, which is its errors and gravity.
+//! Rest of a sensor: its measurements while still, which are its errors and gravity.
 
 use crate::sample::{ImuRecording, ImuSample};
 use glam::Vec3;
 
-/// A rest lasts so long, seconds.
+/// Length of a rest, seconds.
 const REST_SECS: f64 = 0.8;
 
-/// A rest begins at every so many-th part of that.
+/// Number of starts tried within that length.
 const PARTS: u32 = 4;
 
-/// At rest angular rate and specific force deviate by less than this from their means, rad/s and m/s², and a rate is all bias below this, rad/s.
+/// Largest deviation from the mean at rest of angular rate and specific force, rad/s and m/s², and largest rate that counts as bias.
 const DEVIATIONS: [f32; 2] = [0.06, 0.25];
 const MOST_BIAS: f32 = 0.3;
 
@@ -22,7 +22,7 @@ pub struct Rest {
     pub force: Vec3,
 }
 
-/// Finds the stillest stretch of a recording; `None` where the sensor never rests.
+/// Finds the stillest stretch of a recording; `None` if the sensor never rests.
 pub fn find_rest(recording: &ImuRecording) -> Option<Rest> {
     let mut best: Option<(f32, Rest)> = None;
     let samples = &recording.samples;

@@ -17,7 +17,7 @@ pub struct ImuSample {
 }
 
 impl ImuSample {
-    /// Measurement of a sensor on somebody who stands, in axes whose +Y is up.
+    /// Measurement of a sensor on a standing person, in axes whose +Y is up.
     pub const fn standing(time_secs: f64) -> Self {
         Self {
             time_secs,
@@ -53,7 +53,7 @@ impl ImuSample {
     }
 }
 
-/// A recording of one sensor: samples whose times rise. What is read from a file has at least two.
+/// A recording of one sensor: samples at rising times. Files hold at least two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImuRecording {
     /// In the order of their times.
@@ -98,7 +98,7 @@ impl ImuRecording {
         }
     }
 
-    /// As many samples at even intervals, by lines between those that there are: lost samples leave no gap.
+    /// Returns as many samples at even intervals by linear interpolation: lost samples leave no gap.
     #[must_use]
     pub fn evenly_spaced(&self) -> Self {
         let (rate_hz, start) = (self.rate_hz(), self.start_secs());

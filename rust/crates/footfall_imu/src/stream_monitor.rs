@@ -1,7 +1,7 @@
-//! Watch over a sensor's raw samples: what is wrong with them, while they come.
+//! Monitoring of a sensor's raw samples as they arrive.
 //!
-//! Each part looks for one kind of fault; a part that has seen one holds it for a while, so that a message can be read. [`check_recording`](crate::check_recording)
-//! judges a recording as a whole; this needs no future and allocates nothing.
+//! Each part detects one kind of fault and holds it for a while, so that a message can be read. [`check_recording`](crate::check_recording)
+//! checks a recording as a whole; this monitor needs no later samples and does not allocate.
 
 mod axes;
 mod fault;
@@ -17,13 +17,13 @@ use pace::Pace;
 use rails::Rails;
 use units::Units;
 
-/// A longer step in time is a pause of the stream and no step, seconds.
+/// Step in time above which the stream pauses, seconds.
 const PAUSE_SECS: f64 = 0.5;
 
 /// Specific force x, y, z and angular rate x, y, z.
 const CHANNELS: usize = 6;
 
-/// Watches the samples of one sensor, in the sensor's own axes.
+/// Monitors the samples of one sensor, in the sensor's own axes.
 #[derive(Clone, Copy, Debug)]
 pub struct StreamMonitor {
     last: Option<ImuSample>,
@@ -34,7 +34,7 @@ pub struct StreamMonitor {
 }
 
 impl StreamMonitor {
-    /// Watches a sensor that was promised to give so many samples a second; without a promise, one that keeps the rate at which it began.
+    /// Creates a monitor for a promised sample rate; without one, for the rate at which the sensor begins.
     pub const fn new(promised_hz: Option<f64>) -> Self {
         Self {
             last: None,
@@ -45,12 +45,12 @@ impl StreamMonitor {
         }
     }
 
-    /// Forgets the samples, and keeps the promise.
+    /// Discards the samples and keeps the promised rate.
     pub const fn reset(&mut self) {
         *self = Self::new(self.pace.promised_hz());
     }
 
-    /// Takes a sample. Those that are late, repeated or not finite are left out.
+    /// Adds a sample. Late, repeated and non-finite ones are dropped.
     pub fn push(&mut self, sample: ImuSample) {
         if !sample.is_finite() {
             return;
@@ -77,7 +77,7 @@ impl StreamMonitor {
         self.pace.step(step_secs);
     }
 
-    /// The gravest fault of the last seconds.
+    /// Returns the most severe fault of the last seconds.
     pub fn fault(&self) -> Option<StreamFault> {
         // An axis that is stuck at rest also makes gravity wrong.
         let axes = self.axes.fault();
@@ -86,7 +86,7 @@ impl StreamMonitor {
             .or_else(|| self.rails.fault())
     }
 
-    /// The faults of a whole recording, each with the times between which it was told, in the order of their begin.
+    /// Returns the faults of a whole recording, with the times between which each was reported, in the order of their begin.
     pub fn faults_of(recording: &ImuRecording, promised_hz: Option<f64>) -> Vec<FaultSpan> {
         let mut monitor = Self::new(promised_hz);
         let mut spans: Vec<FaultSpan> = Vec::new();
@@ -113,14 +113,14 @@ impl StreamMonitor {
     }
 }
 
-/// A fault, and when a monitor told it, on the recording's clock.
+/// A fault, and the times between which a monitor reported it, on the recording's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaultSpan {
-    /// The first sample at which it was told, seconds.
+    /// First sample at which it was reported, seconds.
     pub start_secs: f64,
-    /// The last, seconds.
+    /// Last sample, seconds.
     pub end_secs: f64,
-    /// The fault, as it was first told.
+    /// Fault as first reported.
     pub fault: StreamFault,
 }
 

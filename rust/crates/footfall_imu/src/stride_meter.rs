@@ -34,7 +34,7 @@ pub struct Rest {
     pub stride: Option<SensorStride>,
 }
 
-/// Measures strides of one sensor, worn anyhow on a foot. Allocates nothing.
+/// Measures the strides of a sensor in any orientation on a foot. Does not allocate.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StrideMeter {
     last: Option<ImuSample>,
@@ -54,12 +54,12 @@ enum State {
     Moving,
     /// At rest since a time; how quiet the quietest moment was, and the stride that ended there.
     Settling(f64, f32, Option<SensorStride>),
-    /// At rest, and told so.
+    /// At rest, and reported.
     Resting,
 }
 
 impl StrideMeter {
-    /// Takes a sample; tells of a rest once it is over or has lasted a moment. Samples that are not finite or late are passed over.
+    /// Adds a sample; returns a rest once it is over or has lasted a moment. Samples that are not finite or late are ignored.
     pub fn push(&mut self, sample: ImuSample) -> Option<Rest> {
         if !sample.is_finite() {
             return None;

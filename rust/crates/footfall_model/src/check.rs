@@ -5,7 +5,7 @@
 pub enum ModelError {
     /// A part has the wrong size.
     #[error(
-        "{part}: has {found} numbers where {expected} belong; make the model anew with `footfall train`"
+        "{part} has {found} numbers instead of {expected}; train the model again with `footfall train`"
     )]
     Shape {
         /// The part.
@@ -17,7 +17,7 @@ pub enum ModelError {
     },
     /// A number is not finite, or not positive where it must be.
     #[error(
-        "{part}: a number is not finite or out of range; make the model anew with `footfall train`"
+        "{part}: a number is not finite or out of range; train the model again with `footfall train`"
     )]
     Value {
         /// The part.

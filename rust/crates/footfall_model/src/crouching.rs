@@ -1,9 +1,9 @@
-//! Crouching: the posture of somebody who keeps low, standing or walking.
+//! Crouching: the posture of a low body, standing or walking.
 
 use crate::check::{ModelError, check_finite, check_len};
 use crate::jumping::BESIDE_COUNT;
 
-/// Posture of people who keep low.
+/// Posture of crouching people.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrouchModel {
     /// The deepest crouch of the recordings beside the same person upright: [`BESIDE_COUNT`] numbers, the same left and right. The hips' way upwards

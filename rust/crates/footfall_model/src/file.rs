@@ -72,7 +72,7 @@ pub struct Header {
     pub provenance: Provenance,
 }
 
-/// Why bytes are not a model that can be used.
+/// Errors of reading a model from bytes.
 #[derive(Debug, thiserror::Error)]
 pub enum ModelFileError {
     /// The magic bytes are missing.
@@ -86,7 +86,7 @@ pub enum ModelFileError {
     },
     /// The file was written by a later version.
     #[error(
-        "the model has format {version}, written by Footfall {written_by}; this build reads up to {FORMAT_VERSION}: update Footfall"
+        "the model has format {version} of Footfall {written_by}, this build reads up to {FORMAT_VERSION}; update Footfall"
     )]
     Newer {
         /// The file's format version.
@@ -106,7 +106,7 @@ pub enum ModelFileError {
         reason: String,
     },
     /// The file holds another kind of model.
-    #[error("the file holds a model of kind '{found}' where '{expected}' is needed")]
+    #[error("the file holds a model of kind '{found}' instead of '{expected}'")]
     WrongKind {
         /// The kind that was asked for.
         expected: &'static str,

@@ -80,15 +80,15 @@ impl CalibratedSensor {
     }
 }
 
-/// Why a calibration cannot be used.
+/// Errors of reading or using a calibration.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CalibrationError {
     /// The bytes are no calibration.
-    #[error("this is no calibration of sensors; calibrate, and save that")]
+    #[error("the file is not a sensor calibration; calibrate, and save the calibration")]
     NotACalibration,
     /// The file was written by a later version.
     #[error(
-        "the calibration was written by Footfall {written_by}, in a format that this build does not know: update Footfall, or calibrate again"
+        "the calibration has a format of Footfall {written_by}, which this build does not know; update Footfall, or calibrate again"
     )]
     Newer {
         /// The version of Footfall that wrote it.
@@ -98,7 +98,7 @@ pub enum CalibrationError {
     #[error("the calibration is damaged; calibrate again")]
     Damaged,
     /// A number makes no sense.
-    #[error("the calibration's {part} cannot be; calibrate again")]
+    #[error("the calibration's {part} is not valid; calibrate again")]
     Value {
         /// Name of the part.
         part: &'static str,
@@ -115,7 +115,7 @@ pub enum CalibrationError {
     },
     /// It is of another sensor than the one that is connected.
     #[error(
-        "the calibration is of the sensor '{calibrated}', and '{connected}' is connected: connect '{calibrated}', or calibrate again"
+        "the calibration is of the sensor '{calibrated}', but '{connected}' is connected; connect '{calibrated}', or calibrate again"
     )]
     OtherDevice {
         /// Name of the device in the calibration.

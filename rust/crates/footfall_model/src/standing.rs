@@ -27,7 +27,7 @@ pub const LOOK_DIRECTIONS: usize = 2;
 pub struct StandingModel {
     /// Features ([`FEATURE_COUNT`]) of the upright posture, the same left and right, with ankles straight below the hip joints.
     pub posture: Vec<f64>,
-    /// Distance of the hips of somebody who stands at ease ahead of that, leg lengths.
+    /// Distance of the hips of a person who stands at ease ahead of that, leg lengths.
     pub hips_ahead: f64,
     /// Weight on one leg for long. All people have as much of it.
     pub stance: SwayOctave,

@@ -1,4 +1,4 @@
-//! A style: how someone walks differently, and walks between and beyond styles.
+//! Styles: differences in walking, and mixtures of and beyond styles.
 
 mod running;
 
@@ -12,8 +12,8 @@ use footfall_core::Joint;
 
 /// A style adapted from a base model.
 ///
-/// It holds what a walk in the style needs in place of the base's own; the rest (the body, the response to speed, how walkers
-/// and steps differ) stays the base's.
+/// It replaces parts of the base walk; the rest (the body, the response to speed, variation between walkers
+/// and steps) stays the base's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaitStyle {
     /// Name of the style.
@@ -54,7 +54,7 @@ impl Default for StepSpread {
     }
 }
 
-/// Why styles cannot be worn.
+/// Errors of using styles.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StyleError {
     /// The style was adapted from another model.
@@ -75,7 +75,7 @@ pub enum StyleError {
         /// The weight.
         weight: f64,
     },
-    /// A style or the base has content that makes no sense.
+    /// A style or the base has invalid content.
     #[error("style '{style}' cannot be used: {source}")]
     Content {
         /// The style.
@@ -88,13 +88,13 @@ pub enum StyleError {
     Base(ModelError),
 }
 
-/// Weights beyond this say nothing more: poses are at their limits long before.
+/// Limit of weights: poses reach their limits long before.
 const MAX_WEIGHT: f64 = 10.0;
 
-/// Farther than this beyond the base and the styles in use no logarithm of a variance, duration or speed goes.
+/// Largest distance of the logarithm of a variance, duration or speed beyond the base and the styles in use.
 const LOG_MARGIN: f64 = 0.5;
 
-/// Fewer steps than this make a style that hangs on chance.
+/// Number of steps below which a style depends on chance.
 const FEW_STEPS: usize = 6;
 
 /// Fine motion is scaled with the swing of its joint in a style, within these bounds.
@@ -102,7 +102,7 @@ const LEAST_FINE_SCALE: f64 = 0.5;
 const MOST_FINE_SCALE: f64 = 2.0;
 
 impl GaitStyle {
-    /// A warning for a style of so few steps that what is chance in them is in the style.
+    /// Returns a warning for a style of so few steps that chance is part of it.
     pub fn thin_warning(&self) -> Option<String> {
         let steps = self.provenance.steps;
         (1..FEW_STEPS).contains(&steps).then(|| {
@@ -138,18 +138,18 @@ impl GaitStyle {
 }
 
 impl GaitModel {
-    /// This walk in a mixture of styles.
+    /// Returns this walk in a mixture of styles.
     ///
-    /// Means and terminal contacts go from the base's towards each style's by its weight, and so do the logarithms of variances,
-    /// durations and speed: no styles, or weights of 0, give the base; one style with weight 1 gives that style; weights may add
-    /// up to anything, exceed 1 (exaggeration) or be negative (the opposite).
+    /// Means and terminal contacts move from the base's towards each style's by its weight, as do the logarithms of variances,
+    /// durations and speed: no styles, or weights of 0, give the base; one style with weight 1 gives that style; weights may have
+    /// any sum, exceed 1 (exaggeration) or be negative (the opposite).
     ///
-    /// Poses stay human: the joint rotations of all states stay within what joints can do, or what the base and the given
-    /// styles do themselves. Where the weights ask for more, the walk goes as far in their direction as the first joint
+    /// Poses stay human: the joint rotations of all states stay within the limits of joints, or of the base and the given
+    /// styles. Where the weights exceed them, the walk goes as far in their direction as the first joint
     /// allows. Durations, variances and speed stay near those of the base and the styles.
     ///
     /// # Errors
-    /// [`StyleError`] when a style was made for another model, a weight is not finite, or content makes no sense.
+    /// [`StyleError`] when a style was made for another model, a weight is not finite, or content is invalid.
     pub fn styled(&self, styles: &[(&GaitStyle, f64)]) -> Result<Self, StyleError> {
         let all: Vec<&GaitStyle> = styles.iter().map(|(style, _)| *style).collect();
         self.check_styles(&all)?;
@@ -164,10 +164,10 @@ impl GaitModel {
         Ok(self.mixture(styles))
     }
 
-    /// Checks that this model can wear these styles.
+    /// Checks that these styles fit this model.
     ///
     /// # Errors
-    /// [`StyleError`] when a style was made for another model, or content makes no sense.
+    /// [`StyleError`] when a style was made for another model, or content is invalid.
     pub fn check_styles(&self, styles: &[&GaitStyle]) -> Result<(), StyleError> {
         self.check().map_err(StyleError::Base)?;
         let fingerprint = self.fingerprint().map_err(StyleError::Base)?;

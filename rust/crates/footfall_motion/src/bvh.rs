@@ -126,7 +126,7 @@ impl BvhFile {
     }
 }
 
-/// Why a BVH file could not be read or written.
+/// Errors of reading or writing a BVH file.
 #[derive(Debug, thiserror::Error)]
 pub enum BvhError {
     /// The text is not a BVH file, or a damaged one.

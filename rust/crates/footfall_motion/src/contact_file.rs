@@ -1,7 +1,7 @@
-//! Contacts, events and steps as JSON: what `footfall contacts` prints, and what a person's corrections are kept in.
+//! Contacts, events and steps as JSON: output of `footfall contacts`, and format of corrections by hand.
 //!
-//! Corrections lie beside the recording (`walk.bvh.labels.json` for `walk.bvh`); whoever reads a corpus gets them instead of
-//! what the detector finds.
+//! Corrections are stored beside the recording (`walk.bvh.labels.json` for `walk.bvh`) and replace the detected contacts
+//! in everything that reads recordings.
 
 use crate::contacts::Contacts;
 use crate::files;
@@ -32,7 +32,7 @@ pub struct ContactFile {
     pub steps: Vec<StepEntry>,
 }
 
-/// Why a file of contacts cannot be used.
+/// Errors of reading a file of contacts.
 #[derive(Debug, thiserror::Error)]
 pub enum ContactFileError {
     /// It cannot be read or written.
@@ -82,7 +82,7 @@ pub struct StepEntry {
 }
 
 impl ContactFile {
-    /// From detected contacts and steps.
+    /// Creates a file from detected contacts and steps.
     pub fn new(contacts: &Contacts, walks: &[Walk]) -> Self {
         let stances = Side::BOTH.map(|side| contacts.foot(side).stances.as_slice());
         let report = Self::from_spans(
@@ -94,7 +94,7 @@ impl ContactFile {
         report.with_steps(walks)
     }
 
-    /// The same with the steps of these walks.
+    /// Creates the same with the steps of these walks.
     #[must_use]
     pub fn with_steps(mut self, walks: &[Walk]) -> Self {
         for (index, walk) in walks.iter().enumerate() {
@@ -109,7 +109,7 @@ impl ContactFile {
         self
     }
 
-    /// From stances and events, without steps.
+    /// Creates a file from stances and events, without steps.
     pub fn from_spans(
         fps: f64,
         frames: usize,
@@ -137,7 +137,7 @@ impl ContactFile {
         }
     }
 
-    /// Returns the path of contacts that a person corrected: beside the recording, under its name.
+    /// Returns the path of corrected contacts: beside the recording, under its name.
     pub fn beside(recording: &Path) -> PathBuf {
         let mut name = recording.file_name().unwrap_or_default().to_owned();
         name.push(".labels.json");
@@ -164,7 +164,7 @@ impl ContactFile {
         })?;
         if file.frames != clip.poses.len() {
             return Err(refuse(format!(
-                "has contacts of {} frames, but the recording has {}; make them anew with `footfall contacts`",
+                "has contacts of {} frames, but the recording has {}; detect them again with `footfall contacts`",
                 file.frames,
                 clip.poses.len()
             )));

@@ -1,8 +1,8 @@
-//! When the heel and the toes of each foot bear on the ground, and the gait events that follow.
+//! Contacts of heel and toes with the ground, and the resulting gait events.
 //!
 //! A point of the sole comes into contact when it is low and has come to rest, and leaves it when it is high or fast, with
 //! hysteresis. Heights are above the level at which the point itself rests nearby, for a leg of 0.84 m; speeds are shares of the
-//! speed of the swings nearby, so that a runner's sliding stance and an old man's slow swing are told apart, in one clip too.
+//! speed of the swings nearby, which distinguishes a runner's sliding stance from an old man's slow swing, also within one clip.
 //!
 //! **Definition.** An initial contact is the first frame in which any part of the foot bears on the ground, a terminal contact
 //! the last. Published kinematic detectors differ from each other by 20 to 50 ms; the limits here lie between them. Mean delay and
@@ -16,17 +16,17 @@
 //! | Bandai styled walks, 30 fps, the same | +13 ± 17 | 0.97 | -2 ± 14 | 1.00 |
 //! | O3DE walks with stops and turns, 60 fps, one actor | +12 ± 12 | 0.99 | -16 ± 12 | 0.99 |
 //!
-//! The vertical speed of the middle of the foot (O'Connor et al. 2007) has the initial contacts of the same walks 23 to 37 ms after
+//! The vertical speed of the middle of the foot (O'Connor et al. 2007) gives the initial contacts of the same walks 23 to 37 ms after
 //! ours and the terminal ones 16 to 24 ms before.
 //!
 //! Neither is made for runs: there a foot reaches farthest ahead before it lands and farthest behind after it lifts. Against the time
 //! for which the body falls freely (centre of mass below -0.5 g), landings of CMU runs are about 25 ms early to on time and lifts 40 ms
 //! late, part of which is the push that is weaker than half the body's weight.
 //!
-//! **Strangers.** Three things made feet of people whom nobody had looked at lift 40 to 150 ms early. The speed of a swing and the
-//! levels at which soles rest were those of the clip, and a clip in which somebody mostly stands has hardly any swings, and soles that
-//! lie as they do in standing; they are now those nearby. And the toes of a retargeted body that do not bend as the person's slide
-//! back while the ball rises, so the speed of neither tells: now both must go forward, or both up.
+//! **Unknown people.** Feet of people outside the tuning set used to lift 40 to 150 ms early, for three reasons. The speed of a swing and the
+//! levels at which soles rest were those of the clip, but a clip of mostly standing has few swings, and soles that
+//! lie as they do in standing; both are now local. The toes of a retargeted body that do not bend like the person's slide
+//! back while the ball rises, so neither speed alone shows a lift: now both must go forward, or both up.
 
 mod hysteresis;
 mod levels;

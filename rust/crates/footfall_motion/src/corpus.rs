@@ -1,4 +1,4 @@
-//! Many recordings at once, chosen from an index by what its columns say; hip joints are found person by person.
+//! Many recordings at once, selected from an index by its columns; hip joints are found person by person.
 
 mod people;
 mod selection;
@@ -43,7 +43,7 @@ impl CorpusReport {
     }
 }
 
-/// Recordings chosen from an index.
+/// Recordings selected from an index.
 #[derive(Clone, Debug)]
 pub struct Corpus {
     /// In the order of the index; at least one.
@@ -52,7 +52,7 @@ pub struct Corpus {
     pub report: CorpusReport,
 }
 
-/// Why a corpus cannot be read.
+/// Errors of reading a corpus.
 #[derive(Debug, thiserror::Error)]
 pub enum CorpusError {
     /// The index cannot be opened or is no CSV file.
@@ -89,7 +89,7 @@ pub enum CorpusError {
     },
     /// A condition is neither `column=value` nor `column!=value`.
     #[error(
-        "\"{0}\" is no condition; write column=value or column!=value, for example category=neutral_walk or path=walks/*"
+        "\"{0}\" is not a condition; write column=value or column!=value, for example category=neutral_walk or path=walks/*"
     )]
     Condition(String),
     /// No row meets the conditions.
@@ -105,7 +105,7 @@ pub enum CorpusError {
         values: Vec<String>,
     },
     /// All chosen recordings are broken.
-    #[error("{}: none of the {count} chosen recordings can be used; the first: {first}", index.display())]
+    #[error("{}: none of the {count} selected recordings can be used; the first: {first}", index.display())]
     NothingUsable {
         /// The index.
         index: PathBuf,

@@ -1,4 +1,4 @@
-//! A body as tapered capsules, for whoever draws motion.
+//! A body as tapered capsules, for code that draws motion.
 
 use footfall_core::{Joint, ModelPose, Side, Skeleton};
 use glam::Vec3;

@@ -1,14 +1,14 @@
-//! A person's true hip joints, from knees that bend as people's do.
+//! True hip joints of a person, from the bending of the knees.
 //!
-//! Skeletons are fitted to markers, and a hip joint has no marker of its own: fits misplace it by centimetres, the same way
-//! in all recordings of a person. The ankle stays where it was seen, so the error shows in the knee: a hip that is 1 cm too
+//! Skeletons are fitted to markers, and a hip joint has no marker of its own: fits misplace it by centimetres, in the same way
+//! in all recordings of a person. The ankle stays in place, so the error shows in the knee: a hip that is 1 cm too
 //! low bends a nearly straight leg by 8°, and one too far forward bends it more at heel strike than at push-off. This
-//! module turns that round: it moves the hip joints of a person and stretches the legs, once for all recordings, to where
-//! they make the knees over stance most probable under normal gait with its spread between people.
+//! module inverts the relation: it moves a person's hip joints and stretches the legs, once for all recordings, so that
+//! the knees over stance become most probable under normal gait with its spread between people.
 //!
-//! The correction is of the skeleton, never of the motion: who crouches still does. It is made where the knees are more
-//! probable on misplaced joints than on joints that are where they belong, of people who walk plainly or in a manner of
-//! their own; [`Origin`] says how much more, and [`HipVerdict`] names every other case.
+//! The correction changes the skeleton, never the motion: a crouching person still crouches. It is applied if the knees are more
+//! probable on misplaced joints than on correct ones of people who walk plainly or in a manner of
+//! their own; [`Origin`] sets by how much, and [`HipVerdict`] names every other case.
 
 mod fit;
 mod leg;

@@ -20,7 +20,7 @@ const LEFT_STANDING_SHARE: f32 = 0.015;
 const STANDING_SHARE: f32 = 0.88;
 /// Hips that rise faster than this push off, m/s.
 const PUSHING_MPS: f32 = 0.1;
-/// Hips of somebody who stands go no faster over the ground, m/s.
+/// Hips of a standing person go no faster over the ground, m/s.
 const STANDING_MPS: f32 = 0.4;
 /// Hips rise above standing by so much at least, as a share of their height in the T-pose: feet that are drawn up are no jump.
 const LEAST_RISE_SHARE: f32 = 0.08;

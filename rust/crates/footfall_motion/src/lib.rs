@@ -1,11 +1,11 @@
 //! Offline: BVH files, retargeting, contacts, steps and corpora.
 //!
-//! Modules in the order in which data flows: [`bvh`] text to joints and channels, [`retarget`] to a clip on the canonical
-//! body with the hip joints where [`hip_centres`] finds them, [`contacts`] of its feet with the ground, [`steps`] of its walks; [`recording`], all of these for one file, with
-//! the [corrections](contact_file) that a person made; and [`corpus`], many files at once.
-//! [`switches`] are contacts from joint angles alone, [`sensor_switches`] from a sensor on a foot; [`published_events`] judge them. [`virtual_imu`]
-//! measures what a sensor on the body would have, [`phases`] cuts any locomotion at its contacts and extremes, and [`jumps`] finds jumps off both feet.
-//! [`figure`] is a body as capsules, for whoever draws it; [`gltf`] takes clips to and from other programs by way of [`skeletal`], and [`game_clip`] makes recordings of clips that walk in place or loop.
+//! Modules in the order of data flow: [`bvh`] reads text to joints and channels; [`retarget`] makes a clip on the canonical
+//! body, with the hip joints where [`hip_centres`] finds them; [`contacts`] of its feet with the ground; [`steps`] of its walks; [`recording`] combines these for one file, with
+//! [corrections](contact_file) by hand; and [`corpus`] reads many files at once.
+//! [`switches`] detects contacts from joint angles only, [`sensor_switches`] from a foot sensor; [`published_events`] is the reference for both. [`virtual_imu`]
+//! simulates sensors on the body, [`phases`] cuts any locomotion at its contacts and extrema, and [`jumps`] finds two-footed jumps.
+//! [`figure`] represents a body by capsules, for drawing. [`gltf`] reads and writes clips by way of [`skeletal`], and [`game_clip`] makes recordings of in-place and looping clips.
 
 pub mod bvh;
 pub mod contact_file;

@@ -25,7 +25,7 @@ const WALKING_SPEEDS_MPS: [f32; 2] = [0.4, 2.3];
 /// More than this between the ways before and after a frame is a turn, radians.
 const MOST_TURN_RAD: f32 = 0.52;
 
-/// Events of somebody who walks, and where they can be trusted.
+/// Events of a walking person, and where they can be trusted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PublishedEvents {
     /// In the order of their frames.

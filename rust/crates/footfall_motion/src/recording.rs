@@ -1,4 +1,4 @@
-//! A recording as everyone needs it: read, on the canonical body, with its contacts and walks, and with what an index says of it.
+//! Labelled recordings: motion on the canonical body with its contacts, walks and index row.
 
 use crate::bvh::{self, BvhError, BvhFile};
 use crate::contact_file::{ContactFile, ContactFileError};
@@ -16,31 +16,31 @@ use std::path::{Path, PathBuf};
 /// A recording with its labels. Trainers, evaluations and tools take slices of these.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// Its row of the index. Without an index, the file and whoever was [named](Self::of_subject).
+    /// Row of the index. Without an index, the file and the person [named](Self::of_subject) by the caller.
     pub row: IndexRow,
     /// The motion on the canonical body.
     pub retargeted: Retargeted,
-    /// Contacts of its feet: as a person corrected them where there is a [file of corrections](ContactFile::beside), else as
+    /// Contacts of its feet: from a [file of corrections](ContactFile::beside) if there is one, else
     /// detected.
     pub contacts: Contacts,
-    /// Contacts as detected, whatever was corrected.
+    /// Contacts as detected, without corrections.
     pub detected: Contacts,
-    /// Its walks, by its contacts.
+    /// Walks, by its contacts.
     pub walks: Vec<Walk>,
-    /// True when the contacts are a person's.
+    /// True when the contacts are corrected by hand.
     pub is_corrected: bool,
 }
 
-/// Why a recording cannot be used.
+/// Errors of reading a recording.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The file is no BVH file.
+    /// The file is not a BVH file.
     #[error(transparent)]
     Bvh(#[from] BvhError),
-    /// The file is no glTF file with an animation that can be used.
+    /// The file is not a glTF file with a usable animation.
     #[error(transparent)]
     Gltf(#[from] GltfError),
-    /// The motion cannot be put on the canonical body.
+    /// The motion cannot be retargeted to the canonical body.
     #[error("{}: {source}", path.display())]
     Retarget {
         /// The file.

@@ -97,7 +97,7 @@ impl Switch {
     }
 }
 
-/// Finds the switches of a clip from its frame `first_frame` on. A clip that is too short, or in which nobody walks, has none.
+/// Finds the switches of a clip from its frame `first_frame` on. A clip that is too short, or without a walk, has none.
 ///
 /// # Errors
 /// [`ProbError::NotFinite`] when a pose is not finite.

@@ -49,7 +49,7 @@ impl VirtualImuConfig {
         }
     }
 
-    /// A board that nobody calibrated, on a strap that gives, `aligned` but for that. Its clock is true, so that its times are the clip's.
+    /// Uncalibrated board, on a loose strap, `aligned` but for that. Its clock is true, so that its times are the clip's.
     pub fn strapped(rate_hz: f64, seed: u64) -> Self {
         Self {
             noise: Some(SensorNoise {

@@ -3,9 +3,9 @@
 //! Pure functions from slices to records: no input or output, no clock, no randomness. Matrices are
 //! row-major slices with their shape in the documentation of each argument; probabilities are f64.
 //!
-//! In suggested reading order: [`gaussian`] and [`duration`] (what a state is), [`hsmm`] (which
-//! frames belong to which state); then from states back to motion, [`windows`], [`mlpg`] and
-//! [`global_variance`]. [`regression`] adapts a model with few frames; [`clustering`] finds the contexts that share one. [`switching`]
+//! In suggested reading order: [`gaussian`] and [`duration`] (the parts of a state), [`hsmm`] (assignment of
+//! frames to states); then, from states back to motion, [`windows`], [`mlpg`] and
+//! [`global_variance`]. [`regression`] adapts a model with few frames; [`clustering`] finds contexts that share a model. [`switching`]
 //! detects changes of a system, [`subspace`] identifies it.
 
 pub mod clustering;

@@ -1,4 +1,4 @@
-//! Continuity where the tracker goes over to other segments (Mousas 2017, section 6).
+//! Continuity where the tracker changes to other segments (Mousas 2017, section 6).
 
 use crate::body::{BodyFrame, Course};
 use footfall_core::ease::smooth_step;
@@ -20,24 +20,24 @@ const PARTED_SECS: f32 = 0.2;
 /// For so long a body that has just begun goes over to any course as to a near one, seconds: what it shows is a guess.
 const BEGINNING_SECS: f32 = 0.5;
 
-/// Transition of the body from one course of the recordings to another.
+/// Transition of the body between segments of the recordings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Blending {
-    /// At once.
+    /// Immediate.
     Off,
-    /// As published (after Levine et al.): the body goes on at the velocity that the recordings have there and is drawn to what they say.
+    /// As published (after Levine et al.): the body moves at the recordings' velocity and is drawn to their pose.
     Velocity {
-        /// Share of the way to the target that is gone in a frame.
+        /// Share of the way to the target per frame.
         gain: f32,
     },
-    /// Offsets in place and in velocity die away as in a critically damped spring (inertialization, after Bollo 2018).
+    /// Offsets in place and in velocity decay as in a critically damped spring (inertialization, after Bollo 2018).
     Inertial {
         /// Rates of the spring, 1/s: where the two are near each other, and where they are far apart.
         rates: [f32; 2],
     },
 }
 
-/// The body as it is shown.
+/// The shown body.
 #[derive(Clone, Copy, Debug)]
 pub struct Blend {
     blending: Blending,

@@ -1,4 +1,4 @@
-//! Calibrations of a reconstructor: all that a session has learned of wearer and sensors, for the next.
+//! Calibrations of a reconstructor: everything that a session has learned about wearer and sensors, for the next session.
 
 use crate::reconstructor::Reconstructor;
 use footfall_imu::GRAVITY_MPS2;
@@ -6,10 +6,10 @@ use footfall_model::{CalibratedSensor, CalibrationError, SensorCalibration};
 use glam::Quat;
 
 impl Reconstructor {
-    /// Takes over a calibration: mountings, errors of the sensors, and length of the wearer's steps.
+    /// Applies a calibration: mountings, errors of the sensors, and length of the wearer's steps.
     ///
     /// # Errors
-    /// [`CalibrationError::OtherSites`] when it is for sensors at other sites than the model's; nothing is taken over then.
+    /// [`CalibrationError::OtherSites`] when it is for sensors at sites other than the model's; nothing is applied then.
     pub fn calibrate(&mut self, calibration: &SensorCalibration) -> Result<(), CalibrationError> {
         calibration.check()?;
         calibration.check_sites(&self.prepared().model().sites)?;
@@ -21,7 +21,7 @@ impl Reconstructor {
         Ok(())
     }
 
-    /// Calibration of wearer and sensors so far; `None` while a mounting is not known. Names of devices are empty and every mounting is certain: only the caller knows better.
+    /// Returns the calibration of wearer and sensors so far; `None` while a mounting is unknown. Names of devices are empty and every mounting counts as certain; the caller fills them in.
     pub fn calibration(&self) -> Option<SensorCalibration> {
         let sites = self.prepared().model().sites.iter().enumerate();
         let sensors: Option<Vec<CalibratedSensor>> = sites

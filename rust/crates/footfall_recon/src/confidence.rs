@@ -1,8 +1,8 @@
-//! Confidence: how well the model explains what the sensors say, and the body that stands where it explains little.
+//! Confidence: how well the model explains the measurements, and the standing body shown when it explains little.
 //!
-//! The mean logarithm of the density of what was measured, given what was probable before, is turned into a probability by a logistic curve. The curve was fitted
-//! to what a model without jumps and hops makes of walks and runs of people left out (CMU's 16 and 35, simulated right foot; ipol's 1 to 4, real) on one side, and of jumps
-//! (CMU's 91) and shaken sensors on the other, frames of motion, both sides alike in weight. Of others, the same model:
+//! A logistic curve turns the mean logarithm of the density of the measurements, given the prediction, into a probability. The curve was fitted
+//! to the output of a model without jumps and hops: on one side walks and runs of people left out (CMU's 16 and 35, simulated right foot; ipol's 1 to 4, real), on the other jumps
+//! (CMU's 91) and shaken sensors; frames of motion, with equal weight for both sides. Results of the same model for others:
 //!
 //! | frames of motion | frames | median | below 0.5 | below 0.2 |
 //! | --- | --- | --- | --- | --- |
@@ -14,7 +14,7 @@
 //! | jumps and hops, CMU's unidentified people, simulated | 903 | 0.43 | 62 % | 15 % |
 //! | a shaken sensor | 510 | 0.01 | 100 % | 100 % |
 //!
-//! To a foot, walking backwards is walking: what a sensor cannot tell apart is not found out.
+//! A foot cannot distinguish walking backwards from walking: motions with equal measurements are not detected.
 
 use crate::body::{BodyFrame, Course};
 use footfall_core::Behaviour;

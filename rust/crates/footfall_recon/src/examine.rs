@@ -1,9 +1,9 @@
-//! Examination of a stretch of samples: the mounting, and whether the sensor is worn where it should be.
+//! Examination of a stretch of samples: the mounting and its problems.
 //!
-//! Legs are each other's mirror images. What a sensor on the left foot measures is, mirrored, what one on the right foot would: where the model explains the
+//! Legs are mirror images of each other: the measurements of a sensor on the left foot are, mirrored, those of a sensor on the right foot. If the model explains the
 //! mirrored samples better than the samples, the sensor is on the other side.
 //!
-//! Logarithms of how much better, by the shipped model of the right foot, on the first six seconds of walking of 36 recordings of real feet (the limit was seen on them):
+//! Logarithms of the ratio, by the shipped model of the right foot, on the first six seconds of walking of 36 recordings of real feet (the limit was chosen on them):
 //!
 //! | feet | recordings | least | most |
 //! | --- | --- | --- | --- |
@@ -12,7 +12,7 @@
 //! | ipol's subject 4, "right" | 2 | 88 | 93 |
 //! | ipol's subject 4, "left" | 2 | -119 | -107 |
 //!
-//! Subject 4's sensors seem to have been exchanged in both recordings.
+//! Subject 4's sensors seem to have been swapped in both recordings.
 
 use crate::mounting::{Finder, Found, Mounting, MountingError, moving_frames};
 use crate::prepared::Prepared;
@@ -23,25 +23,25 @@ use footfall_imu::{FeatureFrame, ImuRecording};
 use glam::Quat;
 use std::sync::Arc;
 
-/// Mirrored samples have to be explained better by so much, as a logarithm of probability, before the other side, or an exchange, is told.
+/// Logarithm of the probability ratio above which mirrored samples indicate the other side, or swapped sensors.
 const OTHER_SIDE: f64 = 6.0;
 
-/// A mounting that differs by less from the one that is believed is the same, radians.
+/// Angle up to which a mounting agrees with the assumed one, radians.
 const SAME: f32 = 0.7;
 
-/// A mounting less certain speaks against none.
+/// Certainty below which a mounting contradicts none.
 const CERTAIN: f32 = 0.9;
 
 /// Result of an examination.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Examination {
-    /// The mounting that explains the samples best.
+    /// Mounting that explains the samples best.
     pub mounting: Mounting,
-    /// Problem with how it is worn.
+    /// Problem with the mounting.
     pub finding: Option<SensorProblem>,
 }
 
-/// Finds how the sensor at a site of the model is worn, and what is wrong with it: on the other side, or turned against the mounting that is `believed`.
+/// Finds the mounting of the sensor at a site of the model, and its problems: on the other side, or turned from the `believed` mounting.
 ///
 /// # Errors
 /// [`MountingError::TooLittleMotion`] when the recording shows less than a second of motion.

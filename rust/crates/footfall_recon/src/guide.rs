@@ -1,27 +1,27 @@
 //! Guided calibration: stand for two seconds, then take four steps.
 //!
-//! Standing tells the errors of the sensor, steps tell how it is worn. The guide knows what to ask of the wearer next; who drives the body gives it the samples and looks for
-//! the mounting when it [says so](CalibrationGuide::wants_mounting).
+//! Standing gives the errors of the sensor, steps give its mounting. The guide holds the next request to the wearer. The owner of the body passes it the samples and looks for
+//! the mounting when it [requests it](CalibrationGuide::wants_mounting).
 
 use footfall_imu::ImuSample;
 
 /// Time to stand, seconds.
 const STAND_SECS: f32 = 2.0;
 
-/// Whoever does not stand for so long starts to walk without it, seconds.
+/// Time after which a wearer who does not stand is asked to walk, seconds.
 const PATIENCE_SECS: f32 = 6.0;
 
-/// A sensor that turns more slowly stands, rad/s; one that turns faster moves.
+/// Angular rate below which the sensor stands, and above which it moves, rad/s.
 const STANDS_RADPS: f32 = 0.3;
 const MOVES_RADPS: f32 = 0.5;
 
 /// Time of movement in four steps, seconds; the mounting is looked for then, and after as much again.
 const WALK_SECS: f32 = 2.0;
 
-/// A mounting that is as certain as this is found.
+/// Certainty of a mounting that counts as found.
 const CERTAIN: f32 = 0.8;
 
-/// A longer step in time is a pause, seconds.
+/// Time between samples that counts as a pause, seconds.
 const PAUSE_SECS: f64 = 0.5;
 
 /// Request to the wearer.
@@ -34,14 +34,14 @@ pub enum GuideStep {
     Stand,
     /// Walk four steps.
     Walk,
-    /// Walk on: the steps did not tell how the sensor is worn.
+    /// Walk on: the steps did not determine the mounting.
     WalkOn,
     /// Anything.
     Done,
 }
 
 impl GuideStep {
-    /// The name for scripts, for example `stand`.
+    /// Name for scripts, for example `stand`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Connect => "connect",
@@ -52,21 +52,19 @@ impl GuideStep {
         }
     }
 
-    /// The message for the wearer.
+    /// Message for the wearer.
     pub const fn message(self) -> &'static str {
         match self {
             Self::Connect => "Switch the sensor on and connect it",
             Self::Stand => "Stand still for two seconds",
             Self::Walk => "Walk four steps straight ahead",
-            Self::WalkOn => {
-                "Walk on, a few steps straight ahead: it is not known yet how the sensor is worn"
-            }
+            Self::WalkOn => "Walk a few more steps straight ahead: the mounting is not known yet",
             Self::Done => "Calibrated: move as you like",
         }
     }
 }
 
-/// Leads a wearer through the calibration of one sensor.
+/// Guides a wearer through the calibration of one sensor.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CalibrationGuide {
     step: GuideStep,
@@ -80,7 +78,7 @@ pub struct CalibrationGuide {
 }
 
 impl CalibrationGuide {
-    /// Request to the wearer now.
+    /// Current request to the wearer.
     pub const fn step(&self) -> GuideStep {
         self.step
     }

@@ -1,10 +1,10 @@
-//! Runtime: what one or two inertial sensors measure becomes a body (Mousas 2017).
+//! Runtime: a body from the measurements of one or two inertial sensors (Mousas 2017).
 //!
-//! Modules in the order in which data flows: [`prepared`] lays a model out for the loop that reads it, `sensor` makes frames of samples, unless a [`problem`] with them or with how it is worn (`watch`, `wear`) speaks against it, [`tracker`] tells how probable each of
-//! its frames is, [`body`] is what they say in the mean, `confidence` how well they say it, [`blend`] keeps it continuous, [`ground`] moves it, in steps as long as the wearer's (`travel`), and keeps
+//! Modules in the order of data flow: [`prepared`] lays a model out for the inner loop; `sensor` turns samples into frames, unless `watch` and `wear` find a [`problem`]; [`tracker`] computes the probability of each of
+//! the model's frames; [`body`] is their weighted mean, `confidence` its reliability; [`blend`] keeps it continuous; [`ground`] moves it, with steps as long as the wearer's (`travel`), and keeps
 //! its feet in place.
-//! [`mounting`] finds how a sensor is worn, [`mod@examine`] whether it is worn where it should be; [`reconstructor`] is all of it for samples as they come, with a `calibration` to keep, [`recording`] for a recording as a whole.
-//! [`Published`] names what the paper does otherwise, to compare.
+//! [`mounting`] finds the mounting of a sensor, [`mod@examine`] its problems. [`reconstructor`] combines all of this for live samples, with a `calibration` to save, [`recording`] for whole recordings.
+//! [`Published`] lists the published variants of single parts, for comparison.
 
 pub mod blend;
 pub mod body;

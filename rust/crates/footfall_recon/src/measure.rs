@@ -16,7 +16,7 @@ const LEAST_UPRIGHT: f32 = 0.6;
 /// A vertical that is less certain tells no heading, radians.
 const TILT_KNOWN: f32 = 0.12;
 
-/// A sensor's frame, and the contact of the foot that wears it when the frame ends; `None` where nobody knows.
+/// A sensor's frame, and the contact of the foot that wears it when the frame ends; `None` while unknown.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensorFrame {
     pub(crate) frame: FeatureFrame,

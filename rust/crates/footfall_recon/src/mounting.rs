@@ -1,10 +1,10 @@
-//! Mounting of a sensor, found from what it measures.
+//! Mounting of a sensor, estimated from its measurements.
 //!
-//! Gravity tells two of the three angles: the mean of up over a stretch of motion points where it does in the model. The third is the one under which
-//! the model explains the motion best; a few candidates are then refined together with the other two, by turns finding the frames of the model and the rotation
-//! that brings what was measured closest to theirs (Wahba's problem). How much better the best is than any that differs by much says how sure it is.
+//! Gravity determines two of the three angles: the mean vertical over a stretch of motion must match the model's. The third angle is the one under which
+//! the model explains the motion best. A few candidates are refined together with the other two angles, alternately finding the frames of the model and the rotation
+//! that brings the measurements closest to theirs (Wahba's problem). The margin of the best over very different ones gives the certainty.
 //!
-//! Found to within a few degrees from 2 s of walking, turning, jumping or hopping; of two runs of 1.4 s one was found and one was not, with certainty.
+//! The mounting is found to within a few degrees from 2 s of walking, turning, jumping or hopping; of two runs of 1.4 s one was found and one was not, with certainty.
 
 use crate::measure::{SensorFrame, measure};
 use crate::prepared::Prepared;
@@ -16,42 +16,42 @@ use glam::{Mat3, Quat, Vec3};
 use nalgebra::Matrix3;
 use std::sync::Arc;
 
-/// Turns about the vertical that are tried.
+/// Number of rotations about the vertical to try.
 const CANDIDATES: usize = 24;
 
-/// The best of them that are refined.
+/// Number of the best ones to refine.
 const REFINED: usize = 5;
 
 /// Rounds of refinement for each.
 const ROUNDS: usize = 3;
 
-/// Frames that are listened to, 6 seconds at 30 frames a second.
+/// Maximum number of frames used, 6 seconds at 30 frames a second.
 const MOST_FRAMES: usize = 180;
 
-/// Fewer frames of motion tell no mounting, seconds.
+/// Minimum time of motion for a mounting, seconds.
 const LEAST_SECS: f64 = 1.0;
 
-/// A sensor that turns more slowly rests, rad/s.
+/// Angular rate below which a sensor rests, rad/s.
 const REST_RADPS: f32 = 0.5;
 
-/// Rotations closer to each other than this mean the same mounting, radians.
+/// Angle within which rotations count as the same mounting, radians.
 const SAME: f32 = 0.6;
 
 /// Mounting of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mounting {
-    /// Turns the sensor's axes into the site's.
+    /// Rotation from the sensor's axes to the site's.
     pub site_from_sensor: Quat,
     /// Probability that no very different rotation is right, 0 to 1.
     pub certainty: f32,
 }
 
-/// Why a mounting cannot be found.
+/// Errors of finding a mounting.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MountingError {
     /// Too little motion was recorded.
     #[error(
-        "the sensor moves for {moving_secs:.1} s, which is too little to tell how it is mounted; take a few steps, or mount it in line with the body and say so (`--mounting aligned`)"
+        "the sensor moves for {moving_secs:.1} s, too little to find its mounting; take a few steps, or align it with the body and pass `--mounting aligned`"
     )]
     TooLittleMotion {
         /// Time for which it moves.

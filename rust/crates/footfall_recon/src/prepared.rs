@@ -1,4 +1,4 @@
-//! A model laid out for the loop that reads it.
+//! A model prepared for the inner loop.
 
 use crate::body::BodyFrame;
 use crate::confidence::{standing_body, standing_rows};
@@ -35,7 +35,7 @@ pub struct Prepared {
     pub(crate) phase_deviations: Option<PhaseDeviations>,
     /// The body of the people who stand, to show where the model explains little.
     pub(crate) standing: Option<BodyFrame>,
-    /// Up in the axes of each site on the people who stand.
+    /// Vertical in the axes of each site on the people who stand.
     pub(crate) standing_up: [Vec3; MAX_SENSORS],
     /// Feet that wear sensors.
     pub(crate) worn_feet: Vec<WornFoot>,
@@ -111,7 +111,7 @@ impl Prepared {
         self
     }
 
-    /// Contacts of the left and the right foot, as the sensors on them report them by number; `None` where none is worn or nobody knows.
+    /// Returns the contacts of the left and the right foot from the numbered sensors on them; `None` without a sensor or before the contact is known.
     pub(crate) fn told_contacts(
         &self,
         told: impl Fn(usize) -> Option<ToldContact>,
@@ -123,8 +123,8 @@ impl Prepared {
         contacts
     }
 
-    /// Watches the recording of a sensor, by its number in the model, in the sensor's axes, and turns it into the site's as it was calibrated. `promised_hz` is the number of
-    /// samples a second that the sensor was said to give.
+    /// Checks the recording of a sensor, by its number in the model, in the sensor's axes, and rotates it to the site's by its calibration. `promised_hz` is the
+    /// sample rate that the sensor should deliver.
     pub fn wear(
         &self,
         sensor: usize,
@@ -139,12 +139,12 @@ impl Prepared {
         WornRecording::watched(watch, recording, calibrated, alone)
     }
 
-    /// The model.
+    /// Returns the model.
     pub const fn model(&self) -> &Arc<ImuModel> {
         &self.model
     }
 
-    /// Frames of a segment.
+    /// Returns the frames of a segment.
     pub(crate) fn frames_of(&self, segment: usize) -> Range<usize> {
         self.starts[segment]..self.starts[segment + 1]
     }
@@ -157,7 +157,7 @@ impl Prepared {
             .is_some_and(|next| next.follows)
     }
 
-    /// A frame of the body.
+    /// Returns a frame of the body.
     pub(crate) fn body_row(&self, frame: usize) -> &[f32] {
         &self.model.body[frame * BODY_COUNT..(frame + 1) * BODY_COUNT]
     }
@@ -172,7 +172,7 @@ impl Prepared {
     }
 }
 
-/// Mean direction of up in the axes of a site of people who stand; the site's own where nobody stands or the model has no such site.
+/// Returns the mean vertical in the axes of a site of standing people; the site's own if nobody stands or the model has no such site.
 fn standing_up(model: &ImuModel, sensor: usize) -> Vec3 {
     if sensor >= model.sites.len() {
         return Vec3::Y;

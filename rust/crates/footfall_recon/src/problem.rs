@@ -1,58 +1,58 @@
-//! Problems with a sensor and with how it is worn, each with the next thing to do.
+//! Problems with a sensor and its mounting, each with what to do next.
 
 use footfall_core::Site;
 use footfall_imu::StreamFault;
 
-/// Problem with a sensor. The body stands or goes on as is probable while it lasts.
+/// Problem with a sensor. Meanwhile the body stands or continues as is probable.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SensorProblem {
-    /// No samples come.
+    /// No samples arrive.
     #[error(
-        "nothing is heard of the sensor; check that it is on, charged, in reach and sends here"
+        "no samples from the sensor; check that it is on, charged, in range, and sends to this machine"
     )]
     Silent,
     /// The samples themselves are at fault.
     #[error(transparent)]
     Stream(#[from] StreamFault),
-    /// It is still, and turned otherwise than on somebody who stands.
+    /// It is still, and oriented differently than on a standing person.
     #[error(
-        "the sensor lies, or its wearer sits or lies down: the body stands; stand up, or put the sensor back on as it was"
+        "the sensor was put down, or its wearer sits or lies: the body stands; stand up, or put the sensor back on as before"
     )]
     Lies,
-    /// It is moved as a whole, without steps.
+    /// It moves as a whole, without steps.
     #[error(
-        "the sensor is moved without steps, as in a lift or a vehicle: the body stands; wait until it stops"
+        "the sensor moves without steps, as in a lift or a vehicle: the body stands; wait until the ride ends"
     )]
     Rides,
-    /// The model explains little of what is measured.
+    /// The model explains little of the measurements.
     #[error(
-        "the model does not know this motion: the body stands; wear the sensor tied to the {}, walk a few steps, and calibrate again", place(*site)
+        "the model does not know this motion: the body stands; strap the sensor firmly to the {}, walk a few steps, and calibrate again", place(*site)
     )]
     Unexplained {
         /// The site that the model is for.
         site: Site,
     },
-    /// It is worn on the other side of the body than the model's.
+    /// It is worn on the other side of the body.
     #[error(
-        "the sensor moves like one on the {}, where the model is for the {}; change it over, or load the model of that side", place(*worn), place(*site)
+        "the sensor moves like one on the {}, the model is for the {}; move it to the other side, or load the model of that side", place(*worn), place(*site)
     )]
     OtherSide {
         /// The site that the model is for.
         site: Site,
-        /// The site that wears it.
+        /// Site of the sensor.
         worn: Site,
     },
-    /// It is turned against the mounting that is believed.
+    /// It is turned from the assumed mounting.
     #[error(
-        "the sensor is turned by {degrees:.0}° against its mounting: it has slipped, or is another's; put it back, or calibrate again"
+        "the sensor is turned by {degrees:.0}° from its mounting: it has slipped, or belongs to another player; put it back, or calibrate again"
     )]
     Turned {
         /// Angle between both mountings.
         degrees: f32,
     },
-    /// Two sensors of one body are exchanged.
+    /// Two sensors of one body are swapped.
     #[error(
-        "the sensors of {} and {} are exchanged; change them over, or give them in the other order", place(*first), place(*second)
+        "the sensors of {} and {} are swapped; exchange them, or pass them in the other order", place(*first), place(*second)
     )]
     Exchanged {
         /// The model's first site.
@@ -106,7 +106,7 @@ mod tests {
             text.contains("one on the left foot") && text.contains("for the right foot"),
             "{text}"
         );
-        assert!(text.contains("change it over"), "{text}");
+        assert!(text.contains("move it to the other side"), "{text}");
         let fault = SensorProblem::from(StreamFault::Slow { rate_hz: 12.0 });
         assert_eq!(fault.name(), "slow");
         assert!(fault.to_string().contains("12 samples"), "{fault}");

@@ -1,4 +1,4 @@
-//! Samples to poses, as they come.
+//! Live reconstruction: samples to poses.
 
 mod worn;
 
@@ -19,7 +19,7 @@ use footfall_model::imu_model::MAX_SENSORS;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Sensors whose times are further apart are on clocks of their own, seconds.
+/// Difference in time beyond which sensors have clocks of their own, seconds.
 const ONE_CLOCK_SECS: f64 = 2.0;
 
 /// Confidence below which the body stands.
@@ -33,15 +33,15 @@ const TOLD_FOR_SECS: f32 = 0.1;
 pub struct ReconConfig {
     /// Settings of the tracker.
     pub tracker: TrackerConfig,
-    /// Transition of the body from one course of the recordings to another.
+    /// Transition of the body between segments of the recordings.
     pub blending: Blending,
     /// Silence after which a sensor counts as lost, seconds.
     pub lost_after_secs: f32,
-    /// Stands where the model explains little of what is measured, rather than showing what explains it best.
+    /// If true, the body stands where the model explains little of the measurements, instead of showing the best explanation.
     pub stands_unexplained: bool,
-    /// A new behaviour shows when it is more probable than this.
+    /// Probability above which a new behaviour is shown.
     pub behaviour_probability: f32,
-    /// Length of the wearer's steps beside those of the people in the model, before any is measured.
+    /// Length of the wearer's steps relative to the people in the model, before any is measured.
     pub stride: f32,
 }
 
@@ -63,11 +63,11 @@ impl Default for ReconConfig {
 /// Reception of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorState {
-    /// Nothing came yet.
+    /// No samples yet.
     Waiting,
-    /// Samples come.
+    /// Samples arrive.
     Tracking,
-    /// None came for [`ReconConfig::lost_after_secs`]; the body goes on with what is probable, and comes to stand.
+    /// No samples for [`ReconConfig::lost_after_secs`]; the body continues as is probable, then stands.
     Lost,
 }
 
@@ -81,7 +81,7 @@ pub struct Reconstructor {
     blend: Blend,
     ground: Ground,
     sensors: [Sensor; MAX_SENSORS],
-    /// Finding of a look at a stretch of each sensor's samples.
+    /// Result of examining each sensor's samples.
     findings: [Option<SensorProblem>; MAX_SENSORS],
     /// Time in which the model explained little, seconds.
     unexplained_secs: f32,
@@ -89,13 +89,13 @@ pub struct Reconstructor {
     confidence: Confidence,
     behaviour: ShownBehaviour,
     silent_secs: f32,
-    /// Frames that were shown ahead of the last one measured.
+    /// Number of frames shown beyond the last measured one.
     ahead: f32,
     heading: Option<f32>,
 }
 
 impl Reconstructor {
-    /// For a body with these proportions.
+    /// Creates a reconstructor for a body with these proportions.
     ///
     /// # Errors
     /// [`SkeletonError`] names a leg or foot without length.
@@ -128,7 +128,7 @@ impl Reconstructor {
         })
     }
 
-    /// Forgets everything measured; the body stands at the origin.
+    /// Discards all measurements; the body stands at the origin.
     pub fn reset(&mut self) {
         for sensor in &mut self.sensors {
             sensor.reset();
@@ -144,17 +144,17 @@ impl Reconstructor {
         self.heading = None;
     }
 
-    /// The direction in which the body faces now is this heading from now on, radians.
+    /// Sets the heading of the direction in which the body faces now, radians.
     pub fn reset_heading(&mut self, heading: f32) {
         self.ground.set_heading(heading);
     }
 
-    /// Heading of the body, radians.
+    /// Returns the heading of the body, radians.
     pub const fn heading(&self) -> f32 {
         self.ground.heading()
     }
 
-    /// Returns the behaviour that is shown. None is shown for less than 0.2 s.
+    /// Returns the shown behaviour; each is shown for at least 0.2 s.
     pub const fn behaviour(&self) -> Behaviour {
         self.behaviour.behaviour()
     }
@@ -170,8 +170,8 @@ impl Reconstructor {
         }
     }
 
-    /// Returns how well the model explains what the sensors say, 0 to 1: the probability that what is done is among what it learned. 0 where nothing is heard.
-    /// The body stands where it is low.
+    /// Returns the confidence, 0 to 1: the probability that the current motion is among those the model learned. 0 without samples.
+    /// The body stands at low confidence.
     pub fn confidence(&self) -> f32 {
         match self.sensor_state() {
             SensorState::Tracking => self.confidence.value(),
@@ -179,7 +179,7 @@ impl Reconstructor {
         }
     }
 
-    /// Footprints of the feet that came to stand in the last step, metres.
+    /// Returns the footprints of the feet that landed in the last step, metres.
     pub fn landings(&self) -> [Option<Vec3>; 2] {
         self.ground.landings()
     }
@@ -189,12 +189,12 @@ impl Reconstructor {
         self.ground.stands()
     }
 
-    /// Probabilities of the behaviours, in the order of [`Behaviour::ALL`].
+    /// Returns the probabilities of the behaviours, in the order of [`Behaviour::ALL`].
     pub const fn behaviours(&self) -> &[f32; Behaviour::ALL.len()] {
         self.tracker.behaviours()
     }
 
-    /// Writes how probable each phase of the model is, in the order of [`ImuModel::phases`](footfall_model::ImuModel::phases).
+    /// Writes the probability of each phase of the model, in the order of [`ImuModel::phases`](footfall_model::ImuModel::phases).
     pub fn phase_probabilities(&self, out: &mut Vec<f32>) {
         let model = &self.prepared.model;
         out.clear();
@@ -207,12 +207,12 @@ impl Reconstructor {
         }
     }
 
-    /// Samples that were not finite, repeated or late.
+    /// Returns the number of samples that were not finite, repeated or late.
     pub fn rejected_samples(&self) -> u64 {
         self.sensors.iter().map(Sensor::rejected).sum()
     }
 
-    /// Takes a sample of a sensor (0, or 1 for the second site of the model); others are ignored.
+    /// Adds a sample of a sensor (0, or 1 for the second site of the model); other sensors are ignored.
     pub fn push(&mut self, sensor: usize, sample: ImuSample) {
         let used = self.prepared.model.sites.len();
         if sensor >= used {
@@ -230,8 +230,8 @@ impl Reconstructor {
         self.catch_up();
     }
 
-    /// Goes on by a frame of the model as often as every sensor has one, or one of them has too many. Sensors on one clock are taken together when
-    /// their frames end together: one that was heard earlier, or that lost more, goes on alone until the other has caught up.
+    /// Advances by a frame of the model as often as every sensor has one, or one of them has too many. Sensors on one clock advance together when
+    /// their frames end together: a sensor that started earlier or lost more samples advances alone until the other has caught up.
     fn catch_up(&mut self) {
         let used = self.prepared.model.sites.len();
         let period_secs = 1.0 / self.prepared.model.frame_rate_hz;
@@ -294,7 +294,7 @@ impl Reconstructor {
         );
     }
 
-    /// Goes on by `dt_secs` and writes the pose; the rest pose until the first frame is measured.
+    /// Advances by `dt_secs` and writes the pose; the rest pose until the first frame is measured.
     pub fn step(&mut self, dt_secs: f32, pose: &mut Pose) {
         let dt_secs = if dt_secs.is_finite() {
             dt_secs.max(0.0)
@@ -326,7 +326,7 @@ impl Reconstructor {
         }
     }
 
-    /// Contacts of the feet, as far as sensors on them report them.
+    /// Contacts of the feet, if sensors on them report them.
     fn told_contacts(&self) -> [Option<ToldContact>; 2] {
         let heard = self.silent_secs < TOLD_FOR_SECS && self.confidence.is_trusted();
         let told = |sensor: usize| {
@@ -339,7 +339,7 @@ impl Reconstructor {
         self.prepared.told_contacts(told)
     }
 
-    /// Splits a pose that [`step`](Self::step) wrote into the place and heading of the body on the ground, and the pose above it, which faces +Z.
+    /// Splits a pose from [`step`](Self::step) into the place and heading of the body on the ground, and the pose above it, which faces +Z.
     pub fn split(&self, pose: &mut Pose) -> (Vec3, f32) {
         let (place, heading) = (self.ground.place(), self.ground.heading());
         let level = from_heading(-heading);
@@ -348,7 +348,7 @@ impl Reconstructor {
         (place, heading)
     }
 
-    /// Without samples the body goes on as the recordings do.
+    /// Without samples the body continues as the recordings do.
     fn coast(&mut self, frames: f32) {
         self.heading = None;
         if self.ahead + frames >= 1.0 {

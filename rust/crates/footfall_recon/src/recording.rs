@@ -1,4 +1,4 @@
-//! A recording as a whole: what is measured later helps, too.
+//! Reconstruction of a whole recording: later samples improve earlier frames.
 
 use crate::blend::{Blend, Blending};
 use crate::body::BodyFrame;
@@ -31,14 +31,14 @@ pub struct Reconstructed {
     pub behaviours: Vec<Behaviour>,
     /// Confidence in the model at each frame and those shortly before it, 0 to 1.
     pub confidences: Vec<f32>,
-    /// Length of the wearer's steps beside those of the people in the model, as it was known at the end.
+    /// Length of the wearer's steps relative to the people in the model, as known at the end.
     pub stride: f32,
 }
 
 /// Reconstructs the body of recordings, one for each site of the model, already in the sites' axes.
 ///
-/// With `live` each frame is what a [`Reconstructor`](crate::Reconstructor) shows when it is measured; otherwise two to four seconds of
-/// what comes after it are heard as well (forward-backward).
+/// With `live`, each frame is what a [`Reconstructor`](crate::Reconstructor) shows when it is measured; otherwise the two to four seconds
+/// after it are used as well (forward-backward).
 ///
 /// # Errors
 /// [`SkeletonError`] names a leg or foot without length.

@@ -60,16 +60,16 @@ impl Frames {
 /// Use of a sensor's samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sight {
-    /// It is what the body does.
+    /// Usable.
     Sees,
-    /// Nothing can be made of it: the body stands.
+    /// Unusable: the body stands.
     Blind,
 }
 
-/// A sensor as it is worn, and its frames that nobody has taken yet.
+/// A worn sensor, and its frames that wait to be used.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sensor {
-    /// `site_from_sensor` rotation; `None` while nobody knows.
+    /// `site_from_sensor` rotation; `None` while it is unknown.
     mounting: Option<Quat>,
     /// Angular rate at rest, in the sensor's axes, as it was calibrated.
     rate_bias: Vec3,
@@ -82,7 +82,7 @@ pub(crate) struct Sensor {
 }
 
 impl Sensor {
-    /// An aligned sensor whose up is this on somebody who stands.
+    /// Creates an aligned sensor with this vertical on a standing person.
     pub(crate) fn new(frame_rate_hz: f64, on_foot: bool, standing_up: Vec3) -> Self {
         Self {
             mounting: Some(Quat::IDENTITY),
@@ -96,7 +96,7 @@ impl Sensor {
         }
     }
 
-    /// Is worn otherwise from now on, or nobody knows how: what it measured in other axes means nothing any more.
+    /// Sets another mounting, or none: earlier measurements in other axes are discarded.
     pub(crate) fn set_mounting(&mut self, site_from_sensor: Option<Quat>) {
         self.mounting = site_from_sensor;
         self.watch.forget_mounting();
@@ -127,7 +127,7 @@ impl Sensor {
         self.watch.gravity_mps2()
     }
 
-    /// Was promised to give so many samples a second.
+    /// Sets the promised sample rate.
     pub(crate) const fn promise_rate(&mut self, rate_hz: f64) {
         self.watch.promise_rate(rate_hz);
     }
@@ -154,8 +154,8 @@ impl Sensor {
         self.sight
     }
 
-    /// Takes a sample in the sensor's axes; the oldest frame goes when too many wait. While nothing can be made of the samples, the person is taken to stand, or,
-    /// where another sensor sees (`other_sees`), frames are empty. Returns true when that changes.
+    /// Adds a sample in the sensor's axes; the oldest frame is dropped when too many wait. While the samples are unusable, the person is assumed to stand, or,
+    /// if another sensor is usable (`other_sees`), frames are empty. Returns true when that changes.
     pub(crate) fn push(&mut self, mut sample: ImuSample, other_sees: bool) -> bool {
         let raw = sample;
         sample.rate -= self.rate_bias;

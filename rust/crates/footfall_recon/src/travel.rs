@@ -1,7 +1,7 @@
-//! Steps as long as the wearer's: a sensor on a foot measures its strides, and the body's are lengthened or shortened to them.
+//! Steps as long as the wearer's: a foot sensor measures its strides, and the body's are lengthened or shortened to match.
 //!
-//! Of every stride the way of the foot that the sensor measured is compared with the way of the foot that was shown; the factor on the recordings'
-//! steps follows the quotient. Standing feet stay where they are: [`ground`](crate::ground) swings the legs further, it does not slide the body.
+//! For every stride, the measured travel of the foot is compared with the shown travel; the factor on the recordings'
+//! steps follows the quotient. Standing feet stay in place: [`ground`](crate::ground) swings the legs further and does not slide the body.
 
 use crate::half_life::follow_share;
 use footfall_core::{Side, Site};

@@ -1,4 +1,4 @@
-//! Watch over one sensor: its samples, and how it lies.
+//! Monitoring of one sensor: its samples, and its orientation.
 
 use crate::problem::SensorProblem;
 use crate::wear::{Posture, WearMonitor};
@@ -14,7 +14,7 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// For a sensor whose up is this on somebody who stands, and that may have been promised to give so many samples a second.
+    /// Creates the monitors of a sensor with this vertical on a standing person, and optionally a promised sample rate.
     pub(crate) const fn new(standing_up: Vec3, promised_hz: Option<f64>) -> Self {
         Self {
             stream: StreamMonitor::new(promised_hz),
@@ -22,12 +22,12 @@ impl Watch {
         }
     }
 
-    /// Has another mounting from now on.
+    /// Restarts with another mounting.
     pub(crate) const fn forget_mounting(&mut self) {
         self.wear.reset();
     }
 
-    /// Forgets the samples.
+    /// Discards the samples.
     pub(crate) const fn reset(&mut self) {
         self.stream.reset();
         self.wear.reset();
@@ -43,7 +43,7 @@ impl Watch {
         self.wear.gravity_mps2()
     }
 
-    /// Was promised to give so many samples a second.
+    /// Sets the promised sample rate.
     pub(crate) const fn promise_rate(&mut self, rate_hz: f64) {
         self.stream = StreamMonitor::new(Some(rate_hz));
     }
@@ -56,7 +56,7 @@ impl Watch {
         }
     }
 
-    /// Returns true when nothing can be made of the samples, so that the wearer is taken to stand.
+    /// Returns true when the samples are unusable, so that the wearer is assumed to stand.
     pub(crate) fn is_blind(&self) -> bool {
         self.wear.posture() != Posture::Worn
             || self.stream.fault().is_some_and(|fault| fault.is_blinding())
@@ -76,32 +76,32 @@ impl Watch {
     }
 }
 
-/// A recording of a sensor as a reconstructor takes it.
+/// A sensor's recording, ready for a reconstructor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WornRecording {
-    /// Samples in the site's axes; those of which nothing can be made are left out, or are of somebody who stands.
+    /// Samples in the site's axes. Unusable ones are left out, or replaced by those of a standing person.
     pub recording: ImuRecording,
     /// Problems, with their times.
     pub problems: Vec<ProblemSpan>,
 }
 
-/// A problem with a sensor, and the times between which it was told.
+/// A problem with a sensor, and the times between which it was reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProblemSpan {
-    /// The first sample at which it was told, on the recording's clock, seconds.
+    /// First sample at which it was reported, on the recording's clock, seconds.
     pub start_secs: f64,
-    /// The last, seconds.
+    /// Last sample, seconds.
     pub end_secs: f64,
-    /// The problem, as it was first told.
+    /// Problem as first reported.
     pub problem: SensorProblem,
 }
 
-/// Problems that pause for less are one, seconds.
+/// Pause up to which problems count as one, seconds.
 const ONE_SECS: f64 = 1.0;
 
 impl WornRecording {
-    /// Watches a recording in the sensor's axes, of a sensor that is calibrated so. Samples of which nothing can be made are left out where another sensor goes on, and are of somebody who
-    /// stands where this one is `alone`.
+    /// Checks a recording in the sensor's axes, of a sensor with this calibration. Unusable samples are left out if another sensor continues, or replaced by those of a
+    /// standing person if this sensor is `alone`.
     pub(crate) fn watched(
         mut watch: Watch,
         recording: &ImuRecording,

@@ -1,7 +1,7 @@
-//! Rest and rides: a sensor that lies, and one that is moved without steps.
+//! Rest and rides: a sensor that lies, and one that moves without steps.
 //!
-//! Neither is anybody's gait. A sensor that is still tells by gravity how it is turned: on somebody who stands, as the model's people wore it. A lift
-//! changes how strong gravity is while nothing turns.
+//! Neither is a gait. Gravity shows the orientation of a still sensor: on a standing person, that of the model's people. A lift
+//! changes the strength of gravity while nothing turns.
 
 use crate::half_life::follow_share;
 use footfall_imu::{GRAVITY_MPS2, ImuSample};
@@ -14,7 +14,7 @@ const STILL_MPS2: f32 = 1.0;
 /// For so long it is still before it lies, seconds: a foot in a slow walk stands for a second.
 const LIES_SECS: f32 = 1.5;
 
-/// Angle from up on somebody who stands to up on a sensor that lies; cosine. Trousers' pockets tilt by 30°, feet in high heels by 45.
+/// Angle from up on a standing person to up on a sensor that lies; cosine. Trousers' pockets tilt by 30°, feet in high heels by 45.
 const LIES_COSINE: f32 = 0.6;
 
 /// Half-lives with which the vertical and the strength of specific force are followed, seconds.
@@ -38,7 +38,7 @@ const RIDE_HELD_SECS: f32 = 3.0;
 /// Posture of a sensor that is worn, in the site's axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WearMonitor {
-    /// Up on somebody who stands.
+    /// Up on a standing person.
     standing_up: Vec3,
     last_secs: Option<f64>,
     still_secs: f32,
@@ -62,7 +62,7 @@ pub(crate) enum Posture {
 }
 
 impl WearMonitor {
-    /// For a sensor whose up is this on somebody who stands.
+    /// For a sensor whose up is this on a standing person.
     pub(crate) const fn new(standing_up: Vec3) -> Self {
         Self {
             standing_up,

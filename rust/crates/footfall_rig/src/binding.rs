@@ -1,4 +1,4 @@
-//! Joints to bones and back: a game's rig measured as a body, and poses moved between the two.
+//! Binding of joints and bones: a game's rig measured as a body, and poses converted between the two.
 
 mod bones;
 mod layers;
@@ -16,7 +16,7 @@ use footfall_ik::placement::Frame;
 use glam::{Affine3A, Quat, Vec3};
 pub use layers::LayerWeights;
 
-/// Facing is measured at the hips and rounded to this: a rest pose is seldom symmetric to the last degree.
+/// Rounding of the facing direction, which is measured at the hips: a rest pose is seldom symmetric to the last degree.
 const FACING_GRAIN: f32 = 5.0_f32.to_radians();
 
 /// Reasons why a rig cannot be a body.
@@ -25,18 +25,18 @@ pub enum BindingError {
     /// Required joints have no bones.
     #[error(transparent)]
     MissingJoints(#[from] MissingJoints),
-    /// A bone does not hang where a body needs it.
+    /// A bone is not below the expected joint.
     #[error(
-        "bone {bone} ({joint}) does not hang from {expected}; correct the map of joints, or the hierarchy of the rig",
+        "bone {bone} ({joint}) is not below {expected} in the hierarchy; correct the map of joints or the rig",
         joint = joint.name(),
         expected = expected.name()
     )]
     WrongParent {
         /// Name of the bone.
         bone: String,
-        /// The joint that it is.
+        /// Joint of the bone.
         joint: Joint,
-        /// The joint that it should hang from.
+        /// Joint that should be above it.
         expected: Joint,
     },
     /// Left and right hip are not beside each other.
@@ -46,16 +46,16 @@ pub enum BindingError {
     )]
     NotStanding,
     /// A segment has no length.
-    #[error("the rest pose cannot stand: {0}")]
+    #[error("the rest pose cannot be used: {0}")]
     Skeleton(#[from] footfall_core::SkeletonError),
 }
 
-/// Bones of a rig as joints, with its body measured.
+/// Bones of a rig as joints, with the measured body.
 #[derive(Clone, Debug)]
 pub struct RigBinding {
-    /// Proportions in the character's units, metres where it is not scaled.
+    /// Proportions in the character's units: metres for an unscaled character.
     pub body: Skeleton,
-    /// From the floor under the body, facing +Z, to the character.
+    /// Transform from the floor under the body, facing +Z, to the character.
     pub character_from_ground: Affine3A,
     ground_from_rig: Affine3A,
     bones: Vec<BoundBone>,
@@ -63,10 +63,10 @@ pub struct RigBinding {
 }
 
 impl RigBinding {
-    /// Measures a rig whose joints are these bones, as [`joint_bones`](crate::joint_bones) finds them.
+    /// Measures a rig with these joints' bones, as from [`joint_bones`](crate::joint_bones).
     ///
     /// # Errors
-    /// [`BindingError`] when the bones make no body that stands.
+    /// [`BindingError`] when the bones do not form a standing body.
     pub fn new(
         rig: &RestRig,
         bones: &[Option<usize>; JOINT_COUNT],
@@ -109,7 +109,7 @@ impl RigBinding {
         })
     }
 
-    /// The joint whose rotation the bone of each joint takes: its own, or that of a missing joint above it.
+    /// Returns the joint whose rotation the bone of each joint takes: its own, or that of a missing joint above it.
     pub fn turned_by(&self) -> [Joint; JOINT_COUNT] {
         let mut turned_by = Joint::ALL;
         for bound in &self.bones {
@@ -118,12 +118,12 @@ impl RigBinding {
         turned_by
     }
 
-    /// Ground under the body of a character that is in this place, facing where the body does.
+    /// Returns the ground under the body of a character at this place, in the body's facing direction.
     pub fn world_from_ground(&self, world_from_character: &Frame) -> Frame {
         world_from_character.child(&self.ground())
     }
 
-    /// Place of a character whose body stands on this ground: for the object of an engine that carries the rig. Undoes
+    /// Returns the place of a character whose body stands on this ground: the transform for an engine's object that carries the rig. Inverse of
     /// [`world_from_ground`](Self::world_from_ground).
     pub fn world_from_character(&self, world_from_ground: &Frame) -> Frame {
         world_from_ground.child(&self.ground().local(&Frame::IDENTITY))
@@ -136,12 +136,12 @@ impl RigBinding {
         }
     }
 
-    /// The bones that are posed, parents first; the hips' is the first.
+    /// Returns the posed bones, parents first; the hips' bone is the first.
     pub fn bones(&self) -> impl Iterator<Item = usize> {
         self.bones.iter().map(|bound| bound.bone)
     }
 
-    /// For every bone of the rig that was measured, the joint that it moves with, and how its rest pose becomes the T-pose: from the rig's space to the
+    /// Returns, for every bone of the measured rig, the joint that it moves with, and the transform of its rest pose to the T-pose: from the rig's space to the
     /// ground. Bones above the hips move with them.
     pub fn t_pose_of_bones(&self, rig: &RestRig) -> Vec<(Joint, Affine3A)> {
         let t_pose = ModelPose::of(&self.body, &Pose::rest(&self.body));
@@ -162,7 +162,7 @@ impl RigBinding {
             .collect()
     }
 
-    /// From the ground to the bone above the hips' bone.
+    /// Transform from the ground to the bone above the hips' bone.
     fn above_hips(&self, bones: &impl Bones, links: &[usize]) -> Affine3A {
         links.iter().fold(self.ground_from_rig, |above, link| {
             above * bones.transform(*link)
@@ -170,7 +170,7 @@ impl RigBinding {
     }
 }
 
-/// Returns whether a joint is the hips or one of a leg.
+/// Returns true for the hips and the joints of legs.
 fn is_leg(joint: Joint) -> bool {
     let of_leg = |side: Side| {
         [side.upper_leg(), side.lower_leg(), side.foot(), side.toes()].contains(&joint)
@@ -178,7 +178,7 @@ fn is_leg(joint: Joint) -> bool {
     joint == Joint::Hips || Side::BOTH.into_iter().any(of_leg)
 }
 
-/// Heading of a body whose left hip joint is in this direction from the right one.
+/// Returns the heading of a body whose left hip joint is in this direction from the right one.
 fn facing(to_left: Vec3) -> Option<f32> {
     let level = Vec3::new(to_left.x, 0.0, to_left.z);
     if level.length() < 0.5 * to_left.length() || to_left.length() < 1e-6 {

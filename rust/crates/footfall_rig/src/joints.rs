@@ -4,39 +4,39 @@ use crate::rest_body::is_optional;
 use footfall_core::rig::{Placement, Recognition, recognise};
 use footfall_core::{JOINT_COUNT, Joint, Rig};
 
-/// A user's map: the bone of each joint, `Some(None)` for one that was named and does not exist, `None` for a joint that is not mapped.
+/// User's map: the bone of each joint; `Some(None)` for a named bone that does not exist, `None` for a joint that is not mapped.
 pub type MappedBones = [Option<Option<usize>>; JOINT_COUNT];
 
-/// Joints that no bone was found for.
+/// Joints without a bone.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the rig {}; map these joints to bones by hand", self.findings())]
 pub struct MissingJoints {
     /// The joints.
     pub joints: Vec<Joint>,
-    /// The family of rigs that the bones look most like.
+    /// Closest family of rigs.
     pub family: String,
-    /// Reasons why bones of these names were left out.
+    /// Reasons for leaving out bones with these names.
     pub doubts: Vec<String>,
 }
 
 impl MissingJoints {
-    /// The missing joints and the reasons, as the end of a sentence about the rig: `lacks Hips; its bones look most like …`.
+    /// Returns the missing joints and the reasons, as the end of a sentence about the rig: `lacks Hips; its bones are closest to …`.
     pub fn findings(&self) -> String {
         let joints: Vec<&str> = self.joints.iter().map(|joint| joint.name()).collect();
-        let family = format!("its bones look most like those of {} rigs", self.family);
+        let family = format!("its bones are closest to those of {} rigs", self.family);
         let mut parts = vec![format!("lacks {}", joints.join(", ")), family];
         parts.extend(self.doubts.iter().cloned());
         parts.join("; ")
     }
 }
 
-/// Finds the bone of each joint. Joints that may be missing are `None`.
+/// Finds the bone of each joint. Optional joints may be `None`.
 ///
-/// Bones in the map hold. The others have the joints' names, if all that are needed do; else the whole rig is looked at, for in many
+/// Bones in the map take precedence. The others are found by the joints' names if these cover all required joints; otherwise the whole rig is recognised, since in many
 /// families a `Spine` is not the joint of that name.
 ///
 /// # Errors
-/// Joints that are needed and missing.
+/// Required joints without a bone.
 pub fn joint_bones(
     rig: &Rig,
     mapped: &MappedBones,
@@ -77,7 +77,7 @@ pub fn joint_bones(
     })
 }
 
-/// Returns whether the neck carries the arms, as in 3ds Max's Biped: then it is a part of the trunk, for a neck that turns must not turn them.
+/// Returns true if the neck carries the arms, as in 3ds Max's Biped: it then belongs to the trunk, since a turning neck must not turn the arms.
 fn arms_hang_from_neck(rig: &Rig, placement: &Placement) -> bool {
     let neck = placement.joint(Joint::Neck);
     let arms = [Joint::LeftUpperArm, Joint::RightUpperArm].map(|arm| placement.joint(arm));

@@ -1,7 +1,7 @@
-//! Between a game and the walkers: a game's own rig as the canonical body and back, and crowds of walkers.
+//! Conversion between a game's rig and the canonical body, and crowds of walkers.
 //!
-//! [`RestRig`] has the bones of a character as they rest, and [`joint_bones`] finds the joints among them. [`RigBinding`] measures the body and moves
-//! poses between the two, through the [`Bones`] of any engine. [`crowd`] walks thousands: who they are, where they go and how, and how each is to be drawn. [`root_motion`] hands a
+//! [`RestRig`] holds the bones of a character in the rest pose, and [`joint_bones`] finds the joints among them. [`RigBinding`] measures the body and converts
+//! poses between the two, through the [`Bones`] of any engine. [`crowd`] walks thousands of walkers: ids, goals, steps, and levels of detail. [`root_motion`] passes a
 //! character's travel to an engine's two clocks.
 
 pub mod crowd;

@@ -1,16 +1,16 @@
-//! A body's proportions from the rest pose of any character.
+//! Proportions of a body from the rest pose of any character.
 //!
-//! Rest poses differ: A-poses, splayed legs, missing bones. The runtime wants the T-pose of [`Skeleton`]: arms along ±X, legs
-//! straight down, soles flat. So limbs are turned into it here, and the turn of each is kept for the way back.
+//! Rest poses differ: A-poses, splayed legs, missing bones. The runtime needs the T-pose of [`Skeleton`]: arms along ±X, legs
+//! straight down, soles flat. Limbs are rotated into it here, and the rotations are kept for the inverse.
 
 use footfall_core::{FootShape, JOINT_COUNT, Joint, Side, Skeleton, SkeletonError, rotation};
 use glam::{Quat, Vec3};
 
-/// Shares of the leg's length (hip joint to ankle), as on [`Skeleton::standard`]: for points without a bone.
+/// Positions as shares of the leg's length (hip joint to ankle), as on [`Skeleton::standard`], for points without a bone.
 mod share {
     /// Ankle above the sole.
     pub(super) const ANKLE_HEIGHT: f32 = 0.101;
-    /// Ankles lower or higher than this above the origin mean that the origin is not the floor.
+    /// Limits of the ankles above the origin, beyond which the origin is not the floor.
     pub(super) const PLAUSIBLE_ANKLE_HEIGHT: core::ops::Range<f32> = 0.02..0.25;
     /// Joint of the toes above the sole.
     pub(super) const BALL_HEIGHT: f32 = 0.024;
@@ -27,28 +27,28 @@ mod share {
 /// Positions of a character's joints in its rest pose, in metres: Y up, facing +Z, its left +X, the hips at x = z = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct RestJoints {
-    /// Place of each joint; `None` for an optional one that the character lacks.
+    /// Position of each joint; `None` for a missing optional joint.
     pub(crate) positions: [Option<Vec3>; JOINT_COUNT],
-    /// End of the left and of the right toes, where a bone marks it.
+    /// Ends of the left and the right toes, if bones mark them.
     pub(crate) toe_ends: [Option<Vec3>; 2],
-    /// Height of the character's origin, the floor as long as the ankles are a little above it.
+    /// Height of the character's origin, which is the floor if the ankles are a little above it.
     pub(crate) origin_height: f32,
 }
 
-/// A body, and how its rest pose relates to its T-pose.
+/// A body, and the relation of its rest pose to its T-pose.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RestBody {
     /// Proportions in the T-pose.
     pub(crate) skeleton: Skeleton,
     /// Rotation of each joint's bone from the rest pose to the T-pose, in the axes of the model.
     pub(crate) t_pose_from_rest: [Quat; JOINT_COUNT],
-    /// The joint whose rotation each joint's bone takes: itself, or the last missing one that is folded into it.
+    /// Joint whose rotation each joint's bone takes: its own, or the last missing one that is folded into it.
     pub(crate) turned_by: [Joint; JOINT_COUNT],
     /// Height of the floor on which the rest pose stands.
     pub(crate) floor_height: f32,
 }
 
-/// Returns whether a character can do without a bone for this joint.
+/// Returns true if a character needs no bone for this joint.
 pub(crate) const fn is_optional(joint: Joint) -> bool {
     matches!(
         joint,
@@ -66,7 +66,7 @@ impl RestBody {
     /// Measures a character.
     ///
     /// # Errors
-    /// When a segment of a leg has no length. Joints that are not optional must be there; a missing one counts as the origin.
+    /// [`SkeletonError`] when a segment of a leg has no length. Joints that are not optional must be present; a missing one counts as the origin.
     pub(crate) fn new(joints: &RestJoints) -> Result<Self, SkeletonError> {
         let at = |joint: Joint| joints.positions[joint.index()].unwrap_or_default();
         let leg_length = |side: Side| {
@@ -109,7 +109,7 @@ impl RestBody {
     }
 }
 
-/// The character's origin, or a sole's height below the ankles where the origin cannot be the floor.
+/// Returns the character's origin, or a sole's height below the ankles if the origin cannot be the floor.
 fn floor_height(joints: &RestJoints, leg: f32) -> f32 {
     let height = |joint: Joint| joints.positions[joint.index()].map(|position| position.y);
     let lowest = |joint: fn(Side) -> Joint| {
@@ -128,7 +128,7 @@ fn floor_height(joints: &RestJoints, leg: f32) -> f32 {
     }
 }
 
-/// All joints: a missing one lies at the neighbour that it is folded into.
+/// Returns all joints: a missing one lies at the neighbour into which it is folded.
 fn with_missing(joints: &RestJoints, floor_height: f32, leg: f32) -> [Vec3; JOINT_COUNT] {
     let mut positions = joints.positions.map(Option::unwrap_or_default);
     let is_missing = |joint: Joint| joints.positions[joint.index()].is_none();
@@ -159,7 +159,7 @@ fn with_missing(joints: &RestJoints, floor_height: f32, leg: f32) -> [Vec3; JOIN
     positions
 }
 
-/// The turns that bring arms along ±X and legs straight down. Trunk, shoulders and feet stay as they rest.
+/// Returns the rotations that bring arms along ±X and legs straight down. Trunk, shoulders and feet keep their rest pose.
 fn t_pose_from_rest(positions: &[Vec3; JOINT_COUNT]) -> [Quat; JOINT_COUNT] {
     let mut turns = [Quat::IDENTITY; JOINT_COUNT];
     let mut aim = |joint: Joint, towards: Joint, direction: Vec3| {
@@ -188,7 +188,7 @@ const fn arm(side: Side) -> [Joint; 3] {
     }
 }
 
-/// The points on which a foot stands, all in the plane of the floor.
+/// Returns the points on which a foot stands, all in the plane of the floor.
 fn sole(
     joints: &RestJoints,
     skeleton: &Skeleton,
@@ -214,8 +214,8 @@ fn sole(
     }
 }
 
-/// Folds the trunk's missing joints into the bone below them. A missing neck or shoulder needs nothing of the kind: the bone
-/// above it is turned by its own joint, which has the missing one's rotation in it.
+/// Folds the trunk's missing joints into the bone below them. A missing neck or shoulder needs no folding: the bone
+/// above it is rotated by its own joint, which includes the missing one's rotation.
 fn turned_by(joints: &RestJoints) -> [Joint; JOINT_COUNT] {
     let mut turned_by = Joint::ALL;
     let is_missing = |joint: Joint| joints.positions[joint.index()].is_none();

@@ -1,21 +1,21 @@
-//! Bones of a character as they rest.
+//! Bones of a character in the rest pose.
 
 use footfall_core::Rig;
 use glam::Affine3A;
 
-/// Bones of a character: names, what each hangs from, and rest poses.
+/// Bones of a character: names, parents, and rest poses.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RestRig {
     rig: Rig,
     /// Rest pose of each bone in the space of the rig.
     rests: Vec<Affine3A>,
-    /// The same, from the bone above it.
+    /// The same, relative to the parent bone.
     own_rests: Vec<Affine3A>,
 }
 
 impl RestRig {
-    /// Bones in any order: name, the bone that it hangs from, and its rest pose relative to that bone. A parent that does not exist, or that would close a
-    /// circle, counts as none.
+    /// Creates a rig from bones in any order: name, parent, and rest pose relative to the parent. A parent that does not exist, or would close a
+    /// cycle, counts as none.
     pub fn new(bones: impl IntoIterator<Item = (String, Option<usize>, Affine3A)>) -> Self {
         let (named, own_rests): (Vec<_>, Vec<_>) = bones
             .into_iter()
@@ -39,22 +39,22 @@ impl RestRig {
         }
     }
 
-    /// The names of the bones, and what each hangs from.
+    /// Returns the names and parents of the bones.
     pub fn rig(&self) -> &Rig {
         &self.rig
     }
 
-    /// Rest pose of a bone in the space of the rig.
+    /// Returns the rest pose of a bone in the space of the rig.
     pub fn rest(&self, bone: usize) -> Affine3A {
         self.rests.get(bone).copied().unwrap_or_default()
     }
 
-    /// Rest pose of a bone relative to the bone above it.
+    /// Returns the rest pose of a bone relative to its parent.
     pub fn own_rest(&self, bone: usize) -> Affine3A {
         self.own_rests.get(bone).copied().unwrap_or_default()
     }
 
-    /// The first bone that hangs from another.
+    /// Returns the first child of a bone.
     pub(crate) fn first_below(&self, bone: usize) -> Option<usize> {
         (0..self.rig.len()).find(|below| self.rig.parent(*below) == Some(bone))
     }

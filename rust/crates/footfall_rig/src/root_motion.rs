@@ -1,10 +1,10 @@
-//! Travel of a character, for callers once a frame of the physics, once a drawn frame, or when it happens.
+//! Travel of a character for callers per physics frame, per drawn frame, or as it happens.
 
 use core::ops::Mul;
 
-/// Travel by two clocks, so that each counts every frame's share of it exactly once.
+/// Travel by two clocks: each counts every frame's travel exactly once.
 ///
-/// `T` is an engine's transform: its default is the identity, and a product takes the right one first.
+/// `T` is an engine's transform: its default is the identity, and a product applies the right one first.
 #[derive(Debug, Default)]
 pub struct RootMotion<T> {
     physics: Tally<T>,
@@ -12,12 +12,12 @@ pub struct RootMotion<T> {
     last: T,
 }
 
-/// Travel in the latest frame of a clock that saw any.
+/// Travel in the latest frame of a clock with any.
 #[derive(Debug, Default)]
 struct Tally<T> {
     frame: u64,
     sum: T,
-    /// True when it was asked for in that very frame.
+    /// True when it was read in that very frame.
     is_read: bool,
 }
 
@@ -28,11 +28,11 @@ pub struct FrameClock {
     pub physics: u64,
     /// Number of the drawn frame.
     pub process: u64,
-    /// True while the physics' frame is worked out.
+    /// True during the physics frame.
     pub in_physics: bool,
 }
 
-/// Moment within a frame at which a skeleton moves.
+/// Time within a frame at which a skeleton moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Advance {
     /// At the end of every frame of the physics.
@@ -44,14 +44,14 @@ pub enum Advance {
 }
 
 impl<T: Copy + Default + Mul<Output = T>> RootMotion<T> {
-    /// Counts travel, in the character's own axes.
+    /// Adds travel, in the character's own axes.
     pub fn add(&mut self, delta: T, now: FrameClock) {
         self.last = delta;
         self.physics.add(delta, now.physics);
         self.process.add(delta, now.process);
     }
 
-    /// Returns the travel since the frame before, by the clock of the caller; in the frame in which a skeleton has just moved, that frame's.
+    /// Returns the travel since the previous frame by the caller's clock; in the frame in which a skeleton has just moved, that frame's travel.
     #[must_use]
     pub fn since_last_frame(&mut self, advance: Advance, now: FrameClock) -> T {
         let (tally, frame) = if now.in_physics {

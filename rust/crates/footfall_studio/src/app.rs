@@ -136,7 +136,7 @@ impl Studio {
                 self.shell.library.open(context, path);
             }
             _ => self.shell.complain(format!(
-                "{}: nothing that can be shown; open .bvh, .footfall, .footstyle, a sensor's .csv or a folder",
+                "{}: cannot be shown; open .bvh, .footfall, .footstyle, a sensor's .csv or a folder",
                 path.display()
             )),
         }
@@ -258,7 +258,7 @@ impl Studio {
         let longest = self.frame_secs.iter().copied().fold(0.0, f32::max);
         let mean = self.frame_secs.iter().sum::<f32>() / self.frame_secs.len() as f32;
         ui.weak(format!("{:.1} ms", 1e3 * mean)).on_hover_text(format!(
-            "What a frame costs the processor, of the last {} frames; the longest {:.1} ms, the longest ever {:.1} ms",
+            "Processor time of a frame, mean of the last {} frames; longest {:.1} ms, longest ever {:.1} ms",
             self.frame_secs.len(),
             1e3 * longest,
             1e3 * self.longest_frame_secs

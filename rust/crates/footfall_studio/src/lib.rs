@@ -1,8 +1,8 @@
-//! Tool: see the motion, make the style.
+//! Tool: Footfall Studio, a desktop application for motion and styles.
 //!
-//! Data flows: `library` finds recordings, `motion` is one that is looked at, `shell` holds what all `views` share, and `app` is
-//! the window. `scene` draws bodies, `playback` is the playhead, `curves` the joint angles over time, `labels` the contacts that
-//! may be corrected. Whatever takes longer than a frame is a `job` on a thread of its own.
+//! Data flow: `library` finds recordings, `motion` is the selected one, `shell` holds the shared state of all `views`, and `app` is
+//! the window. `scene` draws bodies, `playback` is the playhead, `curves` the joint angles over time, `labels` the editable
+//! contacts. Work that takes longer than a frame is a `job` on a thread of its own.
 
 mod app;
 mod curves;
@@ -36,7 +36,7 @@ pub struct StudioOptions {
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// Why there is no window, and what to do.
+/// Error of opening the window, with what to do.
 pub fn run(options: StudioOptions) -> Result<(), String> {
     let native = eframe::NativeOptions {
         viewport: eframe::egui::ViewportBuilder::default()
@@ -56,7 +56,7 @@ pub fn run(options: StudioOptions) -> Result<(), String> {
     )
     .map_err(|error| {
         format!(
-            "no window can be opened: {error}; on a machine without a screen run it under `xvfb-run`, and see `footfall doctor`"
+            "cannot open a window: {error}; on a machine without a display use `xvfb-run`, and see `footfall doctor`"
         )
     })
 }

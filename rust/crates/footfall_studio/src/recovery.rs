@@ -61,7 +61,7 @@ pub(crate) fn keep(folder: &Path, kept: &Kept) -> Result<(), String> {
         .and_then(|()| footfall_motion::files::write_atomic(&file, &text))
         .map_err(|error| {
             format!(
-                "{}: unsaved labels cannot be kept there: {error}",
+                "{}: cannot save the recovery file of unsaved labels: {error}",
                 file.display()
             )
         })

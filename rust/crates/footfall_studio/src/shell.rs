@@ -281,7 +281,7 @@ impl Shell {
             }
             Err(error) => {
                 self.complain(format!(
-                    "{}: {error}; check that you may write there",
+                    "{}: {error}; check the folder's write permission",
                     path.display()
                 ));
                 false

@@ -1,9 +1,9 @@
-//! Level of detail of a walker: walkers far away need fewer poses.
+//! Level of detail of a walker: distant walkers need fewer poses.
 
 /// Level of detail of a walker.
 ///
-/// The trajectory is the same; with less detail fewer of its frames are put on the ground, and what lies between is
-/// interpolated. Feet then slip a little between frames, which shows only close by.
+/// The trajectory is the same. With less detail, fewer of its frames are placed on the ground, and the others are
+/// interpolated. Feet then slip slightly between frames, which is visible only close by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
     /// Every frame of the model.

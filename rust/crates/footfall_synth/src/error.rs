@@ -1,16 +1,16 @@
-//! Why a walk cannot be generated.
+//! Errors of generating a walk.
 
 use footfall_core::SkeletonError;
 use footfall_model::{ModelError, StyleError};
 use footfall_prob::ProbError;
 
-/// Why a walk cannot be generated.
+/// Errors of generating a walk.
 #[derive(Debug, thiserror::Error)]
 pub enum SynthError {
-    /// The model's content makes no sense.
+    /// The model's content is invalid.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// A style cannot be worn by the model.
+    /// A style does not fit the model.
     #[error(transparent)]
     Style(#[from] StyleError),
     /// The body cannot walk.
@@ -25,6 +25,6 @@ pub enum SynthError {
         value: f32,
     },
     /// The model gives no trajectory.
-    #[error("the model gives no trajectory: {0}; make it anew with `footfall train`")]
+    #[error("the model gives no trajectory: {0}; train it again with `footfall train`")]
     Inference(#[from] ProbError),
 }

@@ -1,4 +1,4 @@
-//! The walk and the ground that it is put on: where feet will land, and steps that are to land elsewhere.
+//! Interface to the ground: coming landings, and steps that land elsewhere.
 
 use crate::footstep::Footstep;
 use crate::generator::GaitGenerator;
@@ -9,41 +9,41 @@ use footfall_core::rotation::from_heading;
 use footfall_ik::placement::{Frame, Landing};
 use glam::Vec3;
 
-/// Until this share of a step it can still become another.
+/// Share of a step until which it can still change.
 const STRETCHED_UNTIL: f32 = 0.25;
-/// By how much a step is shortened and lengthened at most.
+/// Limits of shortening and lengthening a step.
 const SHORTEST: f32 = 0.25;
 const LONGEST: f32 = 1.5;
-/// By how much it is quicker at most: nobody trips up stairs.
+/// Greatest factor on its tempo: people do not hurry up stairs.
 const MOST_HASTE: f32 = 1.5;
-/// Steps are no shorter than this and near enough to what was wanted within that, metres, which takes so many trials at most.
+/// Shortest step and tolerance of its length, metres, and the maximum number of trials for it.
 const SHORT_STEP_M: f32 = 0.05;
 const SAME_LENGTH_M: f32 = 0.01;
 const STRETCHES: usize = 3;
 
 impl GaitGenerator {
-    /// Next landing of each foot and the body's place then, for callers that put feet on real ground.
+    /// Returns the next landing of each foot and the body's place then, for callers that place feet on real ground.
     pub fn landings(&self) -> [Option<Landing>; 2] {
         let arrival = &self.steps.source().stage().arrival;
         landings(self.next_footstep(), &self.plan_from_character(), arrival)
     }
 
-    /// Leaves the current step as it is: something else that is asked for waits for the next one. For whoever has chosen a foothold for it.
+    /// Keeps the current step unchanged: new controls wait for the next one. For callers that have chosen a foothold for it.
     pub fn keep_step(&mut self) {
         self.steps.source_mut().keep();
     }
 
-    /// Goes on on a way of this grade, rise by run, positive uphill: the trunk leans into it. For whoever knows the ground; until it is told otherwise.
+    /// Sets the grade of the way, rise over run, positive uphill: the trunk leans into it. Holds until the next call.
     ///
-    /// A grade that is not finite counts as level. Nothing happens with a switching model.
+    /// A grade that is not finite counts as level. A switching model ignores it.
     pub fn set_grade(&mut self, grade: f32) {
         if let Some(moves) = &mut self.moves {
             moves.climb(grade);
         }
     }
 
-    /// Has the step that has just begun land at this share of its way, within what people do; the walk goes on at the speed that this
-    /// gives and comes back to the one that is asked for with the steps to follow. Once a step is under way it stays as it is.
+    /// Scales the length of the step that has just begun by this share, within people's limits. The walk continues at the resulting
+    /// speed and returns to the requested one over the next steps. A step further under way stays as it is.
     pub fn stretch_step(&mut self, share: f32) {
         let timing = self.shape().timing;
         let begun = self.position < STRETCHED_UNTIL * timing.frames as f32;

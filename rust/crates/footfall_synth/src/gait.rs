@@ -1,26 +1,26 @@
-//! Walking and running, and which of the two a step is.
+//! Walking and running, and the choice between them.
 
 use glam::Vec2;
 
-/// Kind of gait: the way in which the legs carry the body.
+/// Kind of gait.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Gait {
-    /// One foot bears at least.
+    /// At least one foot bears.
     #[default]
     Walk,
     /// Both feet are in the air between one step and the next.
     Run,
 }
 
-/// The gait that is asked for.
+/// Requested gait.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum GaitChoice {
-    /// As people choose: they run where walking costs them more, from about 2 m/s on.
+    /// Automatic: runs above about 2 m/s, where walking costs people more.
     #[default]
     Auto,
-    /// Walks however fast.
+    /// Walks at any speed.
     Walk,
-    /// Runs however slowly, but for the steps in which it starts and stops.
+    /// Runs at any speed, except in the steps in which it starts and stops.
     Run,
 }
 
@@ -30,22 +30,22 @@ const RUN_FROM_FROUDE: f32 = 0.5;
 const WALK_FROM_FROUDE: f32 = 0.4;
 pub(crate) const GRAVITY_MPS2: f32 = 9.81;
 
-/// Widest direction of a run from where the runner faces, radians: beyond it people walk, as nobody runs sideways.
+/// Largest angle between the direction of a run and the facing direction, radians: people do not run sideways.
 pub(crate) const WIDEST_RUN_RAD: f32 = 1.1;
 
-/// Fastest speed that is walked and that is run, m/s.
+/// Fastest speed of a walk and of a run, m/s.
 pub(crate) const FASTEST_WALK_MPS: f32 = 3.0;
 pub(crate) const FASTEST_RUN_MPS: f32 = 6.0;
 
-/// By how much a step's velocity differs from that of the step before at most, m/s, walked and run: people who set out or brake hard
-/// change theirs by 3 to 4 m/s a second.
+/// Largest difference in velocity between consecutive steps, m/s, walked and run: people who start or brake hard
+/// change their velocity by 3 to 4 m/s².
 const MOST_CHANGE_MPS: [f32; 2] = [1.2, 1.6];
 
-/// Speed from which a walker can come to a stand within the next two steps, and to which it starts within one, m/s.
+/// Speed from which a walker can stop within the next two steps, and which it reaches in its first step, m/s.
 pub(crate) const STOPPABLE_MPS: f32 = 2.0;
 
 impl GaitChoice {
-    /// The gait of a step at this velocity to the left and forwards, after one of `before`, on legs of this length. `starts_or_stops` says whether the
+    /// Returns the gait of a step at this velocity to the left and forwards, after one of `before`, on legs of this length. `starts_or_stops` is true if the
     /// step begins or ends standing.
     pub(crate) fn of_step(
         self,
@@ -72,7 +72,7 @@ impl GaitChoice {
 }
 
 impl Gait {
-    /// By how much the velocity of a step may differ from that of the one before, m/s.
+    /// Largest difference in velocity from the previous step, m/s.
     pub(crate) const fn most_change_mps(self) -> f32 {
         MOST_CHANGE_MPS[self as usize]
     }
@@ -85,7 +85,7 @@ impl Gait {
         }
     }
 
-    /// A velocity to the left and forwards as seen from where the steps face: a runner's body turns to where it runs.
+    /// Returns a velocity to the left and forwards relative to the facing direction of the steps: a runner's body turns to its direction of travel.
     pub(crate) fn seen_from_steps(self, velocity_mps: Vec2) -> Vec2 {
         match self {
             Self::Walk => velocity_mps,

@@ -1,4 +1,4 @@
-//! The streaming generator: one walker, for as long as you like.
+//! Streaming generator: one walker, for any length of time.
 
 use crate::controls::Controls;
 use crate::detail::Detail;
@@ -19,27 +19,27 @@ use footfall_model::DynamicsModel;
 use glam::Quat;
 use std::sync::Arc;
 
-/// Initial contacts that one call of [`GaitGenerator::step`] reports at most.
+/// Maximum number of initial contacts that one call of [`GaitGenerator::step`] reports.
 const MAX_FOOTSTEPS: usize = 64;
 
-/// A single call advances by this much at most, seconds.
+/// Maximum time by which a single call advances, seconds.
 pub(crate) const MAX_DT_SECS: f32 = 10.0;
 
-/// Closer than this share of a frame counts as on it: time adds up with rounding.
+/// Share of a frame within which a time counts as on the frame: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;
 
-/// Settings that make one walker differ from another.
+/// Settings that distinguish one walker from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GeneratorConfig {
-    /// Seed of the walker's own way of walking and of the variation of its steps.
+    /// Seed of the walker's manner and of the variation of its steps.
     pub seed: u64,
-    /// Phase of the stride to begin at: 0 is the left foot's initial contact, 0.5 the right's.
+    /// Initial phase of the stride: 0 is the left foot's initial contact, 0.5 the right's.
     pub phase: f32,
-    /// Deviation of walkers and steps from the average: 0 not at all, 1 as in the recordings.
+    /// Deviation of walkers and steps from the average: 0 none, 1 as in the recordings.
     pub variation: f32,
 }
 
-/// Walks one body in real time, in styles of a [`GaitModel`](footfall_model::GaitModel) or as a [`DynamicsModel`] does.
+/// Walks one body in real time, in styles of a [`GaitModel`](footfall_model::GaitModel) or by a [`DynamicsModel`].
 ///
 /// All checks are in [`new`](Self::new) and [`switching`](Self::switching); [`step`](Self::step) cannot fail and does not
 /// allocate. The same model, seed and sequence of calls give the same poses, bit for bit on one machine.
@@ -54,23 +54,23 @@ pub struct GaitGenerator {
     /// Frames since the current step began.
     pub(crate) position: f32,
     pub(crate) plan_from_start: GroundTransform,
-    /// Life of the standing body; `None` where the model stands still.
+    /// Motion of the standing body; `None` where the model stands still.
     pub(crate) life: Option<Life>,
     /// Crouches and jumps; `None` with a switching model.
     pub(crate) moves: Option<Moves>,
-    /// The jump that is waited for.
+    /// Pending jump.
     pub(crate) asked_jump: Option<Leap>,
     pub(crate) footsteps: Vec<Footstep>,
-    /// The speed forwards that was asked for last, m/s.
+    /// Last requested forward speed, m/s.
     pub(crate) asked_mps: f32,
     start_from_character: GroundTransform,
     contact: [bool; 2],
-    /// Controls that hold no news for the current step.
+    /// Controls to which the current step already responds.
     pub(crate) heard: Option<Controls>,
 }
 
 impl GaitGenerator {
-    /// A walker with the proportions of `skeleton`, at the origin and facing +Z, in a mixture of the space's styles:
+    /// Creates a walker with the proportions of `skeleton`, at the origin and facing +Z, in a mixture of the space's styles:
     /// weights as of [`set_style_weights`](Self::set_style_weights), none for the plain walk.
     ///
     /// # Errors
@@ -91,7 +91,7 @@ impl GaitGenerator {
         Ok(generator)
     }
 
-    /// A walker with the proportions of `skeleton`, at the origin and facing +Z, whose steps two linear systems put out. It
+    /// Creates a walker with the proportions of `skeleton`, at the origin and facing +Z, whose steps come from two linear systems. It
     /// knows one way of walking: other speeds than the recorded one stretch its steps and their time.
     ///
     /// # Errors
@@ -140,7 +140,7 @@ impl GaitGenerator {
         generator
     }
 
-    /// Starts over at the origin, standing still.
+    /// Restarts at the origin, standing still.
     pub fn stand(&mut self) {
         if self.steps.source_mut().stand(self.detail) {
             self.position = self.steps.source().shape().timing.frames as f32;
@@ -151,31 +151,31 @@ impl GaitGenerator {
         }
     }
 
-    /// Sets the liveliness of standing: 0 is a still pose, 1 as the model's people move, 2 at most. Where the model knows nothing of standing it is
-    /// still.
+    /// Sets the amount of standing motion: 0 is a still pose, 1 as the model's people move, 2 at most. A model without standing motion
+    /// stands still.
     pub fn set_standing_motion(&mut self, amount: f32) {
         if let Some(life) = &mut self.life {
             life.set_amount(amount);
         }
     }
 
-    /// Wears a mixture of the space's styles, one weight each, from the next step on: weights as of
-    /// [`GaitModel::styled`](footfall_model::GaitModel::styled). Missing weights and those that are not finite count as 0.
+    /// Sets the mixture of the space's styles from the next step on, one weight each: weights as of
+    /// [`GaitModel::styled`](footfall_model::GaitModel::styled). Missing and non-finite weights count as 0.
     ///
-    /// Takes about a millisecond when weights change, and nothing when they do not. Someone who stands takes the new
-    /// posture with the first step. A walker of a [`DynamicsModel`] has no styles.
+    /// Takes about a millisecond when weights change, and nothing otherwise. A standing walker adopts the new
+    /// posture with its first step. A walker of a [`DynamicsModel`] has no styles.
     pub fn set_style_weights(&mut self, weights: &[f32]) {
         if let Steps::Styled(steps) = &mut self.steps {
             steps.set_style_weights(&self.skeleton, weights);
         }
     }
 
-    /// The seed that it walks by: that of its beginning, or of the state that it goes on from.
+    /// Returns the seed in use: the initial one, or that of a restored state.
     pub fn seed(&self) -> u64 {
         self.config.seed
     }
 
-    /// The weights of the styles that are worn from the next step on.
+    /// Returns the weights of the styles from the next step on.
     pub fn style_weights(&self) -> &[f32] {
         match &self.steps {
             Steps::Styled(steps) => &steps.worn().weights,
@@ -183,7 +183,7 @@ impl GaitGenerator {
         }
     }
 
-    /// The speed that suits the model and this body best: that of its recordings, m/s.
+    /// Returns the speed that suits the model and this body best, that of its recordings, m/s.
     pub fn usual_speed_mps(&self) -> f32 {
         match &self.steps {
             Steps::Styled(steps) => steps.worn().model.speed.reference_mps as f32,
@@ -196,8 +196,8 @@ impl GaitGenerator {
         self.detail = detail;
     }
 
-    /// Advances by `dt_secs` and writes the pose, in the character's own space: above the ground point that
-    /// [`start_from_character`](Self::start_from_character) tells, facing +Z.
+    /// Advances by `dt_secs` and writes the pose in the character's own space: above the ground point of
+    /// [`start_from_character`](Self::start_from_character), facing +Z.
     ///
     /// A `dt_secs` of 0 gives the same pose again.
     pub fn step(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
@@ -218,7 +218,7 @@ impl GaitGenerator {
         self.show(dt_secs, controls, out);
     }
 
-    /// Takes up what is asked for in a frame.
+    /// Responds to the controls of a frame.
     pub(crate) fn begin_frame(&mut self, controls: &Controls) -> Controls {
         self.footsteps.clear();
         let controls = self.steered(controls);
@@ -226,7 +226,7 @@ impl GaitGenerator {
         controls
     }
 
-    /// Writes the pose of this moment, with all that moves on top of the steps; `dt_secs` have passed.
+    /// Writes the current pose, with all motion above the steps; `dt_secs` have passed.
     pub(crate) fn show(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
         let plan_from_character = self.plan_from_character();
         let (frame, next, weight) = self.frames();
@@ -253,7 +253,7 @@ impl GaitGenerator {
         }
     }
 
-    /// Moves the pose of someone who stands, or has just begun to walk.
+    /// Adds the motion of a walker that stands, or has just begun to walk.
     fn live(&mut self, dt_secs: f32, out: &mut Pose) {
         let stands = self.is_standing();
         let Some(life) = &mut self.life else { return };
@@ -265,24 +265,24 @@ impl GaitGenerator {
         }
     }
 
-    /// Updates the character's place, as after a step of no time.
+    /// Updates the character's place without advancing time.
     pub(crate) fn tell_place(&mut self) {
         self.footsteps.clear();
         self.start_from_character = self.plan_from_start.local(&self.plan_from_character());
     }
 
-    /// Place and heading of the character, from where it began.
+    /// Returns the place and heading of the character relative to its start.
     pub fn start_from_character(&self) -> GroundTransform {
         self.start_from_character
     }
 
-    /// The initial contacts during the last [`step`](Self::step), oldest first.
+    /// Returns the initial contacts during the last [`step`](Self::step), oldest first.
     pub fn footsteps(&self) -> &[Footstep] {
         &self.footsteps
     }
 
-    /// Next landing of the foot on its way, in the character's space as it is now, and the seconds until then: as long as the
-    /// character goes on as it does. `None` for a walker that rests.
+    /// Returns the next landing of the swinging foot, in the character's current space, and the seconds until then, if the
+    /// controls stay as they are. `None` for a walker that rests.
     pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
         if self.is_standing() {
             return None;
@@ -295,23 +295,23 @@ impl GaitGenerator {
         Some((footstep, secs.max(0.0)))
     }
 
-    /// Returns true when the walker has come to a stand and rests.
+    /// Returns true when the walker has stopped and rests.
     pub fn is_standing(&self) -> bool {
         let step = self.shape();
         step.amplitude.to < 1.0 && self.position >= step.timing.frames as f32
     }
 
-    /// The share of the current step that has passed; of the rest of one that was planned anew, of that.
+    /// Returns the share of the current step that has passed; for a replanned step, of its rest.
     pub(crate) fn share_of_step(&self) -> f32 {
         self.position / self.shape().timing.frames as f32
     }
 
-    /// The gait of the current step.
+    /// Returns the gait of the current step.
     pub fn gait(&self) -> Gait {
         self.steps.source().gait()
     }
 
-    /// Returns the contacts of the left and the right foot; neither does in the flight of a run.
+    /// Returns the contacts of the left and the right foot; both are false in the flight of a run.
     pub fn feet_in_contact(&self) -> [bool; 2] {
         self.contact
     }
@@ -334,14 +334,14 @@ impl GaitGenerator {
         }
     }
 
-    /// Reports an initial contact, as long as there is room for it.
+    /// Reports an initial contact while there is room for it.
     pub(crate) fn report(&mut self, footstep: Footstep) {
         if self.footsteps.len() < MAX_FOOTSTEPS {
             self.footsteps.push(footstep);
         }
     }
 
-    /// Has a step whose foot is in the air obey what is asked for now.
+    /// Lets a step with a foot in the air respond to the current controls.
     fn replan(&mut self, controls: &Controls) {
         if self.heard.as_ref() == Some(controls) {
             return;
@@ -359,7 +359,7 @@ impl GaitGenerator {
         self.heard = Some(*controls);
     }
 
-    /// The frames on both sides of now, and the weight of the later one.
+    /// Returns the frames before and after the current time, and the weight of the later one.
     fn frames(&self) -> (&PlantedFrame, &PlantedFrame, f32) {
         let frames = &self.steps.source().stage().frames;
         let step = self.shape();
@@ -379,7 +379,7 @@ impl GaitGenerator {
     }
 }
 
-/// Checks what every walker needs, and tells the foot that lands first.
+/// Checks the inputs of a walker, and returns the foot that lands first.
 pub(crate) fn check(skeleton: &Skeleton, config: &GeneratorConfig) -> Result<Side, SynthError> {
     skeleton.check()?;
     for (setting, value) in [("phase", config.phase), ("variation", config.variation)] {

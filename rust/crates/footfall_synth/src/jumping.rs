@@ -1,7 +1,7 @@
-//! Jumps of a walker, asked for, waited for and made; and pushes.
+//! Jumps of a walker, from request to landing; and pushes.
 //!
-//! A standing walker jumps off both feet ([`moves`](crate::moves)). One that walks or runs forwards leaps: the next step is one of the run whose flight lasts as
-//! long as the rise takes ([`StepPlan::leap`](crate::plan::StepPlan::leap)). Who goes sideways, backwards or hardly at all comes to a stand first.
+//! A standing walker jumps off both feet ([`moves`](crate::moves)). One that walks or runs forwards leaps: the next step is a step of the run whose flight lasts as
+//! long as the rise takes ([`StepPlan::leap`](crate::plan::StepPlan::leap)). One that goes sideways, backwards or very slowly stops first.
 
 use crate::controls::Controls;
 use crate::footstep::Footstep;
@@ -13,23 +13,23 @@ use footfall_core::Side;
 use footfall_core::rotation::from_heading;
 use glam::{Vec2, Vec3};
 
-/// Slower than this nobody leaps off one foot, m/s.
+/// Speed below which a walker does not leap, m/s.
 const LEAST_LEAP_MPS: f32 = 0.8;
 
-/// Rise of a jump to a place as high as where it begins: metres, and share of the distance; and how much higher than the place the hips come.
+/// Rise of a jump to a place at the height of its beginning: metres, and share of the distance; and the height of the hips above the place.
 const RISE_TO_PLACE_M: f32 = 0.2;
 const RISE_BY_DISTANCE: f32 = 0.08;
 const RISE_ABOVE_PLACE_M: f32 = 0.25;
 
-/// Less is no jump, metres.
+/// Smallest rise of a jump, metres.
 const LEAST_RISE_M: f32 = 0.01;
 
 impl GaitGenerator {
-    /// Asks for one jump in which the hips rise this high above where they were, standing, walking or running, metres: 0.1 to 0.5 is what adults do. It is made as soon as
-    /// the feet allow: at once by who stands, with the next step by who walks or runs forwards faster than 0.8 m/s (a leap off one foot onto the other),
-    /// and after coming to a stand by everybody else. Asking again while one is waited for or made changes nothing.
+    /// Requests one jump in which the hips rise by this height above their current one, standing, walking or running, metres; 0.1 to 0.5 is typical of adults. It begins as soon as
+    /// the feet allow: at once for a standing walker, with the next step for one that walks or runs forwards faster than 0.8 m/s (a leap off one foot onto the other),
+    /// and after a stop for all others. Further requests while a jump is pending or under way have no effect.
     ///
-    /// Returns whether there will be a jump: not with a model that knows none, nor for a rise that is not finite or hardly one.
+    /// Returns true if there will be a jump: not with a model without jumps, nor for a rise that is not finite or too small.
     pub fn jump(&mut self, rise_m: f32) -> bool {
         self.ask_jump(Leap {
             rise_m,
@@ -37,11 +37,11 @@ impl GaitGenerator {
         })
     }
 
-    /// Asks for one jump off both feet that lands on a place, as it is seen by the character that stands: metres to the left, up and ahead. Who moves
-    /// comes to a stand first. A place farther than people jump (about twice the length of the legs ahead, two thirds of it to the side or
+    /// Requests one two-footed jump that lands at a place relative to the standing character: metres to the left, up and ahead. A moving walker
+    /// stops first. A place beyond the reach of people (about twice the leg length ahead, two thirds of it to the side or
     /// back) is not reached: the jump goes as far as it can in that direction.
     ///
-    /// Returns whether there will be a jump, as [`jump`](Self::jump) does.
+    /// Returns true if there will be a jump, as [`jump`](Self::jump) does.
     pub fn jump_to(&mut self, place: Vec3) -> bool {
         let level = RISE_TO_PLACE_M + RISE_BY_DISTANCE * place.with_y(0.0).length();
         self.ask_jump(Leap {
@@ -50,7 +50,7 @@ impl GaitGenerator {
         })
     }
 
-    /// Asks for this jump, as [`jump`](Self::jump) does for one.
+    /// Requests this jump, as [`jump`](Self::jump) does.
     pub(crate) fn ask_jump(&mut self, leap: Leap) -> bool {
         let possible = self.moves.as_ref().is_some_and(Moves::can_jump);
         let sensible = leap.way.is_finite() && leap.rise_m.is_finite();
@@ -63,13 +63,13 @@ impl GaitGenerator {
         true
     }
 
-    /// The phase of the jump that is under way; nothing while it is waited for.
+    /// Returns the phase of the current jump; `None` while it is pending.
     pub fn jump_phase(&self) -> Option<JumpPhase> {
         let both = self.moves.as_ref().and_then(Moves::phase);
         both.or_else(|| self.leap_phase())
     }
 
-    /// The phase of a leap off one foot. Its landing is the beginning of the next step, which is one like any other.
+    /// Returns the phase of a leap. Its landing is the beginning of the next step, an ordinary one.
     fn leap_phase(&self) -> Option<JumpPhase> {
         let Steps::Styled(steps) = &self.steps else {
             return None;
@@ -83,7 +83,7 @@ impl GaitGenerator {
         })
     }
 
-    /// The controls of somebody who crouches, jumps or waits to.
+    /// Returns the controls of a walker that crouches, jumps or has a pending jump.
     pub(crate) fn steered(&self, controls: &Controls) -> Controls {
         let Some(moves) = &self.moves else {
             return *controls;
@@ -113,10 +113,10 @@ impl GaitGenerator {
         }
     }
 
-    /// Pushes the walker by a change of velocity, m/s, to its left and forwards: an impulse over the mass of the body. The body gives way over its feet and comes
-    /// back; a push of more than 0.3 m/s is stepped off in its direction, out of standing and while walking. More than 2 m/s, which would throw people over, counts as that.
+    /// Pushes the walker by a change of velocity, m/s, to its left and forwards: an impulse over the mass of the body. The body sways over its feet and
+    /// returns; a push of more than 0.3 m/s is followed by steps in its direction, out of standing and while walking. More than 2 m/s, which would throw people over, counts as 2 m/s.
     ///
-    /// Nothing happens with a push that is not finite, in a jump off both feet, and with a switching model.
+    /// A push that is not finite, in a two-footed jump, or with a switching model has no effect.
     pub fn push(&mut self, velocity_mps: Vec2) {
         if let Some(moves) = &mut self.moves
             && velocity_mps.is_finite()
@@ -126,7 +126,7 @@ impl GaitGenerator {
         }
     }
 
-    /// Returns true when the jump that is asked for can be a step.
+    /// Returns true when the requested jump can be a step.
     fn leaps(&self, controls: &Controls) -> bool {
         let Some(leap) = self.asked_jump else {
             return false;
@@ -142,7 +142,7 @@ impl GaitGenerator {
             && velocity.length() >= LEAST_LEAP_MPS
     }
 
-    /// The rise of the leap that the next step is, if it is one.
+    /// Returns the rise of the next step's leap, if it is one.
     pub(crate) fn next_leap(&mut self, controls: &Controls) -> Option<f32> {
         if self.leaps(controls) {
             self.asked_jump.take().map(|leap| leap.rise_m)
@@ -151,7 +151,7 @@ impl GaitGenerator {
         }
     }
 
-    /// Lets the time of crouches and jumps pass, and begins those that are waited for.
+    /// Advances crouches and jumps, and begins pending ones.
     pub(crate) fn pass_moves(&mut self, secs: f32, controls: &Controls) {
         let stands = self.is_standing();
         let Some(moves) = &mut self.moves else { return };
@@ -169,13 +169,13 @@ impl GaitGenerator {
         }
     }
 
-    /// Lets the character be so far from where it was: to the left, up and ahead.
+    /// Displaces the character: to the left, up and ahead.
     fn shift(&mut self, way: Vec3) {
         let faced = from_heading(self.plan_from_character().heading);
         self.plan_from_start.position -= faced * way;
     }
 
-    /// Reports both feet where a jump has put them.
+    /// Reports the contacts of both feet after a jump.
     fn report_landing(&mut self) {
         let faced = self.plan_from_start.local(&self.plan_from_character());
         let Some(way) = self.moves.as_ref().and_then(Moves::way) else {

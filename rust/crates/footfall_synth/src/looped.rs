@@ -1,4 +1,4 @@
-//! Walks that end as they begin, for tools that play clips.
+//! Looping walks, for tools that play clips.
 
 use crate::controls::Controls;
 use crate::generator::GaitGenerator;
@@ -9,29 +9,29 @@ use footfall_core::{
 };
 use glam::{Quat, Vec3};
 
-/// Walked before anything is kept, seconds: speed and style have settled.
+/// Time before recording starts, seconds: speed and style settle.
 const SETTLING_SECS: f32 = 4.0;
-/// Walked beyond the wanted length to choose a beginning and an end from, seconds.
+/// Time beyond the requested length in which a beginning and an end are chosen, seconds.
 const CHOICE_SECS: f32 = 120.0;
-/// A loop is at most this long, seconds.
+/// Maximum length of a loop, seconds.
 const MOST_SECS: f32 = 120.0;
-/// Number of corrections of the asked speed, and the relative error at which it is good enough.
+/// Number of corrections of the requested speed, and the relative error that suffices.
 const CORRECTIONS: usize = 6;
 const SPEED_TOLERANCE: f32 = 0.003;
-/// Time is stretched by this share at most, so that the speed is the wanted one exactly.
+/// Maximum share by which time is stretched to match the requested speed exactly.
 const MOST_STRETCH: f32 = 0.03;
-/// A mismatch of joints' velocities counts as one of places this many seconds apart.
+/// Time by which a mismatch of joint velocities is weighted against one of positions, seconds.
 const VELOCITY_SECS: f32 = 0.1;
-/// For this long before the end, trunk and arms go over to how they came to the beginning, seconds.
+/// Time before the end in which trunk and arms blend to their approach of the beginning, seconds.
 const FADE_SECS: f32 = 0.4;
-/// For this long before the end, somebody who stands goes over to how they came to the beginning, seconds.
+/// The same for a standing person, seconds.
 const STANDING_FADE_SECS: f32 = 2.0;
-/// A mismatch of a leg's joints counts as much as this many of others': arms that drift are not seen, feet that do are.
+/// Weight of a mismatch of a leg's joints relative to other joints: drifting feet are visible, drifting arms are not.
 const LEG_WEIGHT: f32 = 6.0;
-/// A relative error of speed counts as a mismatch of this many metres.
+/// Weight of a relative error of speed, metres of mismatch.
 const SPEED_ERROR_M: f32 = 1.0;
 
-/// A walk of whole strides, straight ahead at an even pace, whose last frame is its first one, one loop farther.
+/// Walk of whole strides, straight ahead at constant speed, whose last frame equals its first one, one loop farther.
 #[derive(Clone, Debug)]
 pub struct LoopedWalk {
     /// Time between two frames, seconds.
@@ -40,19 +40,19 @@ pub struct LoopedWalk {
     pub poses: Vec<Pose>,
     /// Speed of that point.
     pub speed_mps: f32,
-    /// Largest distance that a joint was moved to close the loop, metres; spread evenly over it.
+    /// Largest distance by which a joint was moved to close the loop, metres, spread evenly over the loop.
     pub seam_m: f32,
 }
 
 impl LoopedWalk {
-    /// Length of one loop, seconds.
+    /// Returns the length of one loop, seconds.
     pub fn duration_secs(&self) -> f32 {
         self.frame_secs * self.poses.len().saturating_sub(1) as f32
     }
 
-    /// The loop of about this length at this speed that closes best. It begins and ends with initial contacts of the left foot.
+    /// Records the loop of about this length at this speed that closes best. It begins and ends with initial contacts of the left foot.
     ///
-    /// `make` gives a generator at its beginning; each gives the same walk. `None` where it gives none or nobody walks. A speed that it cannot walk becomes the nearest that it can.
+    /// `make` returns a generator at its beginning; each call gives the same walk. `None` if it returns none or the walk does not move. A speed out of reach becomes the nearest possible one.
     pub fn record(
         make: impl Fn() -> Option<GaitGenerator>,
         speed_mps: f32,
@@ -76,7 +76,7 @@ impl LoopedWalk {
         Some(recording.closed(from, to, speed_mps))
     }
 
-    /// Somebody who stands, for this long.
+    /// Records a standing person for this long.
     pub fn standing(mut generator: GaitGenerator, secs: f32) -> Self {
         generator.stand();
         let secs = secs.clamp(0.0, MOST_SECS);
@@ -143,7 +143,7 @@ impl Recording {
         way / (self.frame_secs * (to - from) as f32)
     }
 
-    /// The frames between which whole strides of about this length lie that begin and end alike; `None` where nobody walks.
+    /// The frames between which whole strides of about this length lie that begin and end alike; `None` without a walk.
     fn best_loop(&self, speed_mps: f32, secs: f32) -> Option<(usize, usize)> {
         let strides = self
             .contacts
@@ -237,7 +237,7 @@ impl Recording {
         }
     }
 
-    /// Lets somebody who stands go over, as the end comes, to how they came to the frame `first`. All that lies between two poses on the same feet stands
+    /// Blends a standing person, towards the end, to their approach of the frame `first`. All that lies between two poses on the same feet stands
     /// on them, too.
     fn meet(&mut self, first: usize) {
         let last = self.poses.len() - 1;

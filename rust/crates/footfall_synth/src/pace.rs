@@ -1,4 +1,4 @@
-//! From a wanted speed to a pace of the model, by measuring what the model does.
+//! Conversion of a requested speed to a pace of the model, by measuring the model.
 
 use crate::error::SynthError;
 use crate::plan::{Manner, Pace, Planner};

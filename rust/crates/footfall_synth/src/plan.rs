@@ -1,4 +1,4 @@
-//! Plan of the coming steps: how long their states last and what their means are.
+//! Plan of the coming steps: durations and means of their states.
 
 mod offsets;
 mod planner;

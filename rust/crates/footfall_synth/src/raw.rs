@@ -1,4 +1,4 @@
-//! Legs and hips of generated features before the body is put on the ground.
+//! Legs and hips of generated features before the body is placed on the ground.
 
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::{Joint, Pose, Side, Skeleton};

@@ -1,4 +1,4 @@
-//! Whole walks as the streaming generator walks them.
+//! Recordings of the streaming generator.
 
 use crate::controls::Controls;
 use crate::error::SynthError;
@@ -13,10 +13,10 @@ use std::sync::Arc;
 /// Standing before and after the walk, seconds.
 const STANDING_SECS: f64 = 0.6;
 
-/// No walk takes longer than this a step, seconds.
+/// Maximum time per step, seconds.
 const LONGEST_STEP_SECS: f64 = 4.0;
 
-/// A walk out of standing and back into it.
+/// Walk that begins and ends standing.
 pub(crate) fn from_standing(
     model: &Arc<GaitModel>,
     skeleton: &Skeleton,
@@ -68,16 +68,16 @@ pub(crate) fn from_standing(
 /// Controls of a walker from a time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Move {
-    /// From when, seconds.
+    /// Start time, seconds.
     pub time_secs: f64,
     /// The controls.
     pub controls: Controls,
-    /// Rise of the hips in one jump that is asked for then, metres, as of [`GaitGenerator::jump`]; 0 asks for none.
+    /// Rise of the hips in one jump requested at that time, metres, as of [`GaitGenerator::jump`]; 0 for none.
     pub jump_m: f32,
 }
 
-/// Generates somebody who does one thing after another, out of standing; the first move begins at once, whatever its time. It is who `config` says, for
-/// as long as that says.
+/// Generates a sequence of moves out of standing; the first begins at once, whatever its time. `config` sets the person and the
+/// length.
 ///
 /// # Errors
 /// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
@@ -102,22 +102,22 @@ pub fn synthesize_moves(
     Ok(recording.into_walk(skeleton))
 }
 
-/// Settings of a recording of somebody who stands.
+/// Settings of a recording of a standing person.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandConfig {
     /// Length, seconds.
     pub seconds: f64,
-    /// Seed of the person who stands.
+    /// Seed of the person.
     pub seed: u64,
     /// Differences between people: 0 none, 1 as in the recordings.
     pub variation: f32,
-    /// Motion of those who stand, as of [`GaitGenerator::set_standing_motion`].
+    /// Amount of standing motion, as of [`GaitGenerator::set_standing_motion`].
     pub motion: f32,
     /// Frames per second of the clip; the model's when absent.
     pub frame_rate_hz: Option<f64>,
 }
 
-/// Generates somebody who stands.
+/// Generates a standing person.
 ///
 /// # Errors
 /// [`SynthError`] when the model or the skeleton cannot be used or a setting is not finite.
@@ -133,7 +133,7 @@ pub fn synthesize_standing(
     Ok(recording.into_walk(skeleton))
 }
 
-/// Somebody who stands, about to be recorded at so many frames a second.
+/// Generator of a standing person, to be recorded at this frame rate.
 fn standing_recording(
     model: &Arc<GaitModel>,
     skeleton: &Skeleton,

@@ -1,7 +1,7 @@
-//! The rest of a step that is planned anew while its foot is in the air.
+//! Rest of a step that is replanned while its foot is in the air.
 //!
-//! Requests may change in the middle of a swing. The rest of the step is then a step of its own: it begins with a foot in the air, goes on from the
-//! frames that were shown, and takes the states of the new plan that have not passed yet. So nothing of it has to fit what was planned before.
+//! Controls may change in the middle of a swing. The rest of the step then becomes a step of its own: it begins with a foot in the air, continues the
+//! frames already shown, and takes the states of the new plan that have not passed yet. It need not fit the previous plan.
 
 use crate::plan::StepPlan;
 use crate::walker::TIE;

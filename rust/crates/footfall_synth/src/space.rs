@@ -1,4 +1,4 @@
-//! A model and the styles that its walkers can wear: what costs time is prepared once, mixtures are quick.
+//! A model and its styles, prepared once; mixtures are quick.
 
 use crate::error::SynthError;
 use crate::fine_motion::{FineTables, Scale};
@@ -17,17 +17,17 @@ pub struct StyleSpace {
     model: Arc<GaitModel>,
     fingerprint: u32,
     styles: Vec<Arc<GaitStyle>>,
-    /// Per feature, the pull that keeps the variance of the base walk and of each style.
+    /// Pull per feature that keeps the variance of the base walk and of each style.
     base_pull: Vec<f64>,
     style_pulls: Vec<Vec<f64>>,
-    /// Parts that only the model's run has; `None` where it only walks.
+    /// Parts of the model's run; `None` where it only walks.
     running: Option<RunningParts>,
     fine: Option<Arc<FineTables>>,
     /// Standing of the model's people; `None` where it stands still.
     standing: Option<Arc<StandingTables>>,
     /// Crouches and jumps of its people.
     moves: Arc<MoveTables>,
-    /// Mixtures that somebody wears.
+    /// Mixtures in use.
     blends: Mutex<Vec<Weak<Blend>>>,
     benches: Workbenches,
 }
@@ -39,7 +39,7 @@ struct RunningParts {
     fine: Option<Arc<FineTables>>,
 }
 
-/// One mixture of styles, ready to be walked.
+/// One mixture of styles, ready to walk.
 #[derive(Debug)]
 pub(crate) struct Blend {
     /// One weight a style.
@@ -50,14 +50,14 @@ pub(crate) struct Blend {
     pub(crate) fine: Option<Arc<FineTables>>,
     /// Factors on the features of the fine motion.
     pub(crate) fine_scale: Scale,
-    /// The gait that its steps are of.
+    /// Gait of its steps.
     pub(crate) gait: Gait,
-    /// The same mixture, run; nothing in a run, and where the model only walks.
+    /// The run of the same mixture; `None` in a run, and where the model only walks.
     pub(crate) running: Option<Arc<Self>>,
 }
 
 impl Blend {
-    /// The mixture of a walk, or its run.
+    /// Returns the mixture of a walk, or its run.
     pub(crate) fn of_gait(self: &Arc<Self>, gait: Gait) -> &Arc<Self> {
         match (gait, &self.running) {
             (Gait::Run, Some(running)) => running,
@@ -67,10 +67,10 @@ impl Blend {
 }
 
 impl StyleSpace {
-    /// Prepares a model and its styles, some 10 ms each.
+    /// Prepares a model and its styles, which takes some 10 ms each.
     ///
     /// # Errors
-    /// [`SynthError`] when the model cannot be used, or a style cannot be worn by it.
+    /// [`SynthError`] when the model cannot be used, or a style does not fit it.
     pub fn new(model: &Arc<GaitModel>, styles: &[Arc<GaitStyle>]) -> Result<Self, SynthError> {
         model.check()?;
         let all: Vec<&GaitStyle> = styles.iter().map(AsRef::as_ref).collect();
@@ -101,17 +101,17 @@ impl StyleSpace {
         })
     }
 
-    /// The base model.
+    /// Returns the base model.
     pub fn model(&self) -> &Arc<GaitModel> {
         &self.model
     }
 
-    /// [`GaitModel::fingerprint`] of the base model.
+    /// Returns the [`GaitModel::fingerprint`] of the base model.
     pub(crate) fn fingerprint(&self) -> u32 {
         self.fingerprint
     }
 
-    /// The styles, in the order of their weights.
+    /// Returns the styles, in the order of their weights.
     pub fn styles(&self) -> &[Arc<GaitStyle>] {
         &self.styles
     }
@@ -126,7 +126,7 @@ impl StyleSpace {
         &self.moves
     }
 
-    /// The weights as they are used: one a style, 0 for what is missing or not finite.
+    /// Returns the weights in use: one per style, 0 for missing and non-finite ones.
     pub(crate) fn weights(&self, weights: &[f32]) -> impl Iterator<Item = f32> {
         (0..self.styles.len()).map(|style| match weights.get(style) {
             Some(weight) if weight.is_finite() => *weight,
@@ -134,12 +134,12 @@ impl StyleSpace {
         })
     }
 
-    /// Works at a bench that all walkers of the space share.
+    /// Runs work at a bench that all walkers of the space share.
     pub(crate) fn at_bench<R>(&self, work: impl FnOnce(&mut Workbench) -> R) -> R {
         self.benches.at_one(&self.model, work)
     }
 
-    /// The mixture by these weights: the same one for all who wear it at the same time.
+    /// Returns the mixture by these weights, shared by all walkers that use it at the same time.
     pub(crate) fn blend(&self, weights: &[f32]) -> Arc<Blend> {
         let weights: Vec<f32> = self.weights(weights).collect();
         let mut worn = self.blends.lock().unwrap_or_else(PoisonError::into_inner);
@@ -182,7 +182,7 @@ impl StyleSpace {
         }
     }
 
-    /// The pull of a mixture: between those of the base and of the styles in it.
+    /// Returns the pull of a mixture: between those of the base and of its styles.
     fn pull(&self, weights: &[f32]) -> Vec<f64> {
         let worn = || {
             let pairs = self.style_pulls.iter().zip(weights);
@@ -207,7 +207,7 @@ impl RunningParts {
         })
     }
 
-    /// The run of a mixture of styles by these weights, of somebody who stands like this.
+    /// Returns the run of a mixture of styles by these weights, for a person with this standing posture.
     fn mix(&self, model: &GaitModel, standing: &[f32; FEATURE_COUNT], weights: &[f32]) -> Blend {
         let mut statistics = Statistics::new(model);
         statistics.set_pull(&self.pull);

@@ -1,4 +1,4 @@
-//! The ground under one walker: steps of generated features become frames on it.
+//! Stage of one walker: steps of generated features become frames on the ground.
 
 use crate::detail::Detail;
 use crate::plan::StepShape;

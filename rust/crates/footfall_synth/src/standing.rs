@@ -1,8 +1,8 @@
 //! Standing, and the steps between standing and walking.
 //!
-//! A model that was trained on people who stand has their posture; of one that knows walking only it is the mean of a walk over a straight pair of legs. A
-//! step that starts or ends a walk grows out of it or shrinks into it: features between the two, with the same planted feet. Whoever rests there lives:
-//! [`sway`] says where the body is beside its posture at a moment, [`carry`] moves it there on feet that stay, [`life`] says how much of that there is.
+//! A model that was trained on standing people has their posture. For a model that only walks, the posture is the mean of a walk over straight legs. A
+//! step that starts or ends a walk blends between that posture and the walk, with the same planted feet. A resting walker moves:
+//! [`sway`] computes the body's offset from its posture, [`carry`] applies it over planted feet, [`life`] holds its amount.
 
 mod carry;
 mod life;

@@ -1,8 +1,8 @@
-//! Saving a walker in the middle of a step and going on from there, bit for bit.
+//! Saved states: a walker continues from the middle of a step, bit for bit.
 //!
-//! A state holds what cannot be worked out again: the seed, how far chance has come, what the current step was asked to be,
-//! and what it took over from the step before (where the feet stood and the last frames of the trajectory). The rest is
-//! made again from the model.
+//! A state holds everything that cannot be derived: the seed, the progress of chance, the requests to the current step,
+//! and the input from the step before (the places of the feet and the last frames of the trajectory). The rest is
+//! generated again from the model.
 
 mod aside;
 mod climbing;
@@ -27,8 +27,8 @@ use quick::Quick;
 use running::Running;
 use serde::{Deserialize, Serialize};
 
-/// The version of the layout that this build writes; it reads those before, too, which knew no corrections of the way, no climbs, no balance, no jumps and no steps that change in their middle,
-/// no running and no life in standing.
+/// Version of the layout that this build writes. It also reads earlier versions, which lack corrections of the way, climbs, balance, jumps and steps that change in their middle,
+/// running and standing motion.
 const VERSION: u8 = 10;
 const UNLED_VERSION: u8 = 9;
 const LEVEL_VERSION: u8 = 8;
@@ -37,13 +37,13 @@ const RUNNING_VERSION: u8 = 6;
 const WALKING_VERSION: u8 = 5;
 const STILL_VERSION: u8 = 4;
 
-/// Nothing that a state holds is larger than this: metres, radians, frames and factors are not.
+/// Limit of all numbers of a state: metres, radians, frames and factors.
 const MAX_VALUE: f64 = 1e7;
 
-/// No step is slower than this factor on its tempo.
+/// Smallest factor on the tempo of a step.
 const LEAST_TEMPO: f64 = 1e-3;
 
-/// Why a state cannot be taken up.
+/// Errors of restoring a state.
 #[derive(Debug, thiserror::Error)]
 pub enum StateError {
     /// Its bytes cannot be decoded.
@@ -52,20 +52,18 @@ pub enum StateError {
     /// Another version of Footfall wrote it.
     #[error("the state has format {0}, this build reads {VERSION}; save it again")]
     Version(u8),
-    /// A number or a shape in it makes no sense.
+    /// A number or a shape in it is invalid.
     #[error("the state was damaged; save it again")]
     Damaged,
-    /// The model gives no walk from it.
+    /// The model generates no walk from it.
     #[error("the state was damaged: {0}; save it again")]
     NoWalk(#[from] SynthError),
     /// It belongs to another model.
-    #[error(
-        "the state was saved with another model; give the walker the model that it was saved with"
-    )]
+    #[error("the state was saved with another model; use that model")]
     OtherModel,
     /// It belongs to another set of styles.
     #[error(
-        "the state was saved with {expected} styles, the walker has {found}; give it the same styles"
+        "the state was saved with {expected} styles, the walker has {found}; use the same styles"
     )]
     OtherStyles {
         /// Number of styles in the state.
@@ -134,7 +132,7 @@ struct Alive {
 }
 
 impl GaitGenerator {
-    /// Everything that [`restore`](Self::restore) needs to go on from here: about 1.5 kB and four bytes per style; some 200 bytes
+    /// Returns everything that [`restore`](Self::restore) needs to continue: about 1.5 kB and four bytes per style; some 200 bytes
     /// for a walker of a switching model.
     pub fn state(&self) -> Vec<u8> {
         let place = &self.plan_from_start;
@@ -213,10 +211,10 @@ impl GaitGenerator {
         postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
 
-    /// Goes on from a [`state`](Self::state) of a walker with the same model, styles and body; the seed is the state's.
+    /// Restores a [`state`](Self::state) of a walker with the same model, styles and body; the seed becomes the state's.
     ///
     /// # Errors
-    /// [`StateError`]; the walker then walks on as before.
+    /// [`StateError`]; the walker then continues as before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
         let slow = Quick::of_slow(&state);
@@ -315,7 +313,7 @@ impl State {
         }
     }
 
-    /// Returns true when no number is beyond reason.
+    /// Returns true when all numbers are within limits.
     fn is_sensible(&self) -> bool {
         let singles = [self.phase, self.variation, self.position, self.turn_rate];
         let feet = self.feet.iter().flat_map(Feet::numbers);

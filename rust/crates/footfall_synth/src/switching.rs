@@ -1,4 +1,4 @@
-//! Steps of a switching model: two linear systems take turns, each from a state in which a recorded segment began (*Gait as a
+//! Steps of a switching model: two linear systems alternate, each from a state in which a recorded segment began (*Gait as a
 //! switching dynamical system*, section 4).
 
 mod source;

@@ -1,8 +1,8 @@
-//! Keeps the global variance of the corpus: generated joints swing as far as captured ones (equations 12 to 15 of the
+//! Preservation of the corpus' global variance: generated joints swing as far as captured ones (equations 12 to 15 of the
 //! paper, solved to their optimum).
 //!
-//! A whole walk is solved with the global variance in its objective. The streaming generator cannot: it never sees the
-//! whole. But the optimum is a plain trajectory under a constant pull per feature, so the pull is found once on a
+//! A whole walk is solved with the global variance in its objective. The streaming generator never sees the
+//! whole walk, but the optimum is an ordinary trajectory under a constant pull per feature. The pull is found once on a
 //! sample walk and then used on every window.
 
 use crate::error::SynthError;

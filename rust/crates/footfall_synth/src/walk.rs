@@ -1,4 +1,4 @@
-//! A whole walk at once.
+//! Whole walks, solved at once.
 
 use crate::error::SynthError;
 use crate::fine_motion::{FineBench, FineTables, neighbours};
@@ -18,35 +18,35 @@ use footfall_model::{FEATURE_COUNT, GaitModel, layout};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// Steps at either end of the sentence that are solved but not shown.
+/// Number of hidden steps at either end of the walk.
 const LEAD_STEPS: usize = 1;
 
 /// Slowest speed of a whole walk, m/s.
 const MIN_SPEED_MPS: f64 = 0.1;
 
-/// Times add up with rounding: a frame this close counts as reached.
+/// Tolerance with which a frame counts as reached: times add up with rounding.
 const TIME_SLACK_SECS: f64 = 1e-9;
 
-/// Settings of a walk to be made.
+/// Settings of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WalkConfig {
     /// Number of steps.
     pub steps: usize,
     /// Seed of the walker and of the variation of its steps.
     pub seed: u64,
-    /// Deviation of walkers and steps from the average: 0 not at all, 1 as in the recordings.
+    /// Deviation of walkers and steps from the average: 0 none, 1 as in the recordings.
     pub variation: f32,
     /// Speed over the ground, m/s; the corpus' mean when absent.
     pub speed_mps: Option<f32>,
-    /// Turning, rad/s, positive to the left.
+    /// Turn rate, rad/s, positive to the left.
     pub turn_rate_radps: f32,
     /// Frames per second of the clip; the model's when absent.
     pub frame_rate_hz: Option<f64>,
-    /// Direction of travel, relative to where the walker faces, as of [`Controls::direction_rad`](crate::Controls::direction_rad).
+    /// Direction of travel relative to the facing direction, as of [`Controls::direction_rad`](crate::Controls::direction_rad).
     pub direction_rad: f32,
-    /// Walking or running, where the model knows both.
+    /// Choice between walking and running, if the model has both.
     pub gait: GaitChoice,
-    /// True when the walk begins and ends standing, as one that does not go forwards does in any case; otherwise it is cut out of a longer
+    /// True when the walk begins and ends standing, as does any walk that does not go forwards; otherwise it is cut from a longer
     /// one.
     pub from_standing: bool,
 }
@@ -54,14 +54,14 @@ pub struct WalkConfig {
 /// A generated walk.
 #[derive(Clone, Debug)]
 pub struct SynthesizedWalk {
-    /// The motion: first frame at the origin and facing +Z, an initial contact of the left foot or standing.
+    /// Motion: first frame at the origin and facing +Z, an initial contact of the left foot or standing.
     pub clip: Clip,
-    /// When the left and the right foot bear on the ground.
+    /// Contacts of the left and the right foot.
     pub contacts: [Vec<FrameSpan>; 2],
 }
 
 impl SynthesizedWalk {
-    /// The ends of the contacts, but for those at the clip's own ends.
+    /// Returns the ends of the contacts, except those at the clip's own ends.
     pub fn events(&self) -> Vec<GaitEvent> {
         let last = self.clip.poses.len() - 1;
         let mut events = Vec::new();
@@ -83,7 +83,7 @@ impl SynthesizedWalk {
     }
 }
 
-/// Generates a walk; the trajectory is solved over the whole sentence of steps (equations 9 to 15 of the paper), but for a
+/// Generates a walk. The trajectory is solved over the whole sequence of steps (equations 9 to 15 of the paper), except for a
 /// walk [`from_standing`](WalkConfig::from_standing) or in another direction than forwards, which is streamed.
 ///
 /// # Errors
@@ -143,7 +143,7 @@ pub fn synthesize(
     ))
 }
 
-/// The gait of a whole walk.
+/// Returns the gait of a whole walk.
 fn gait_of(model: &GaitModel, skeleton: &Skeleton, config: &WalkConfig) -> Gait {
     if model.running.is_none() {
         return Gait::Walk;
@@ -154,7 +154,7 @@ fn gait_of(model: &GaitModel, skeleton: &Skeleton, config: &WalkConfig) -> Gait 
     gait.of_step(Gait::Walk, speed * Vec2::Y, leg_length, false)
 }
 
-/// Puts planned steps on the ground; the first and the last [`LEAD_STEPS`] are not shown.
+/// Places planned steps on the ground; the first and the last [`LEAD_STEPS`] are hidden.
 pub(crate) fn put_on_ground(
     model: &GaitModel,
     skeleton: &Skeleton,
@@ -274,7 +274,7 @@ pub(crate) fn put_on_ground(
     SynthesizedWalk { clip, contacts }
 }
 
-/// Moves a walk that begins under a heading to the origin and to +Z.
+/// Moves a walk with any initial heading to the origin and to +Z.
 fn start_at_origin(poses: &mut [Pose], heading: f32) {
     let Some(first) = poses.first() else { return };
     let from = Vec3::new(first.root_position.x, 0.0, first.root_position.z);

@@ -1,4 +1,4 @@
-//! Workloads of benchmarks that are no part of the interface.
+//! Benchmark workloads, outside the public interface.
 
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
@@ -7,7 +7,7 @@ use footfall_core::{Side, Skeleton};
 use footfall_model::DynamicsModel;
 use std::sync::Arc;
 
-/// A switching model that puts out the features of one segment after another, on no ground.
+/// Switching model that generates the features of one segment after another, without ground.
 #[derive(Debug)]
 pub struct SwitchingWorkload(SwitchingSteps);
 
@@ -23,7 +23,7 @@ impl SwitchingWorkload {
         SwitchingSteps::new(model, &Skeleton::standard(), &config, Side::Left).map(Self)
     }
 
-    /// Works out the next segment; returns how many frames it has.
+    /// Generates the next segment; returns its number of frames.
     pub fn segment(&mut self) -> usize {
         self.0.work_out_next()
     }

@@ -1,4 +1,4 @@
-//! A mixture of styles on one body, and what it makes of the next step that is asked for.
+//! A mixture of styles on one body, and its next step by the controls.
 
 use crate::controls::STANDING_SPEED_MPS;
 use crate::detail::Detail;

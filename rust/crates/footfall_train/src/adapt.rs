@@ -63,7 +63,7 @@ pub struct AdaptConfig {
 }
 
 impl AdaptConfig {
-    /// The way that suits a dozen steps best, with the first `steps` of them.
+    /// Returns the settings that suit a dozen steps best, with the first `steps` of them.
     pub const fn first_steps(steps: usize) -> Self {
         Self {
             method: AdaptMethod::Csmaplr,
@@ -72,7 +72,7 @@ impl AdaptConfig {
     }
 }
 
-/// A style and how the adaptation went.
+/// A style, and measures of its adaptation.
 #[derive(Clone, Debug)]
 pub struct Adapted {
     /// The style.
@@ -88,11 +88,11 @@ pub struct Adapted {
     pub frames: usize,
 }
 
-/// Adapts `base` to the walks of `clips` and calls the result `name`. Clips are read as training reads them: any frame rate,
+/// Adapts `base` to the walks of `clips` and names the result `name`. Clips are read as in training: at any frame rate, on the
 /// canonical body. `provenance` gets the counts of clips, subjects and steps filled in.
 ///
 /// # Errors
-/// [`TrainError`] when the clips hold fewer than two steps in a row, or the base cannot explain them.
+/// [`TrainError`] when the clips hold no two consecutive steps, or the base cannot explain them.
 pub fn adapt_style(
     base: &GaitModel,
     clips: &[Recording],
@@ -176,7 +176,7 @@ fn distinct_steps(clips: &[Recording]) -> usize {
     clips.iter().map(of_clip).sum()
 }
 
-/// Returns true when there is enough in walks to learn a style from: a step of each foot, one after the other.
+/// Returns true when walks suffice to train a style: two consecutive steps, one of each foot.
 pub fn shows_steps(walks: &[Walk]) -> bool {
     walks.iter().any(|walk| walk.steps.len() >= LEAST_STEPS)
 }

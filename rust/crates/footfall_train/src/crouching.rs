@@ -1,4 +1,4 @@
-//! Crouching, as a part of a model of how they walk.
+//! Crouching, as a part of a gait model.
 
 use crate::beside::{Upright, symmetric};
 use footfall_core::{Clip, Joint};

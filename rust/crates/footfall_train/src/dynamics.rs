@@ -1,6 +1,6 @@
-//! Gait as a switching system from labelled clips (*Gait as a switching dynamical system*, sections 3 and 4).
+//! Training of switching models on labelled clips (*Gait as a switching dynamical system*, sections 3 and 4).
 //!
-//! Hip and knee angles tell when the legs change roles; the poses between two switches are a segment; every other segment
+//! Hip and knee angles show when the legs change roles. The poses between two switches are a segment; every other segment
 //! belongs to the same system. Poses are reduced to their principal components, and each system is identified in closed form over
 //! all of its segments, then refined.
 
@@ -46,7 +46,7 @@ pub struct DynamicsConfig {
 }
 
 impl Default for DynamicsConfig {
-    /// As the paper has it.
+    /// Returns the paper's settings.
     fn default() -> Self {
         Self {
             frame_rate_hz: 60.0,
@@ -57,7 +57,7 @@ impl Default for DynamicsConfig {
     }
 }
 
-/// A fitted model and how well it explains its clips.
+/// A fitted model, and its fit to its clips.
 #[derive(Clone, Debug)]
 pub struct FittedDynamics {
     /// The model.

@@ -1,4 +1,4 @@
-//! Why training cannot go on.
+//! Errors of training.
 
 use footfall_core::{Side, Site, SkeletonError};
 use footfall_model::ModelError;
@@ -6,14 +6,14 @@ use footfall_motion::recording::RecordingError;
 use footfall_prob::ProbError;
 use std::path::PathBuf;
 
-/// Why training cannot go on.
+/// Errors of training.
 #[derive(Debug, thiserror::Error)]
 pub enum TrainError {
     /// No clip has a usable step.
-    #[error("no clip holds two steps in a row; choose walks with `--where category=…`")]
+    #[error("no clip has two consecutive steps; select walks with `--where category=…`")]
     NoSteps,
     /// Nothing was chosen to learn from.
-    #[error("no recordings; open some, or tick those to use")]
+    #[error("no recordings are selected; open or tick some")]
     NoRecordings,
     /// A recording cannot be used.
     #[error(transparent)]
@@ -28,7 +28,7 @@ pub enum TrainError {
     },
     /// Fewer steps in a row than show both feet.
     #[error(
-        "{found} steps are too few for a style, which needs two in a row and is better with six to twelve; choose longer walks"
+        "{found} steps are too few for a style: it needs two consecutive steps, better six to twelve; use longer walks"
     )]
     TooFewSteps {
         /// Number found.
@@ -53,26 +53,26 @@ pub enum TrainError {
         frames: usize,
     },
     /// The frame rate is not usable.
-    #[error("a frame rate of {frame_rate_hz} fps cannot be trained at; use 20 to 240")]
+    #[error("{frame_rate_hz} fps is not a frame rate for training; use 20 to 240")]
     FrameRate {
         /// Value that was asked for.
         frame_rate_hz: f64,
     },
     /// A number of sensors that no model has.
-    #[error("{found} sensors cannot be trained on; name one site or two")]
+    #[error("{found} sensors are not supported; give one site or two")]
     Sensors {
         /// Value that was asked for.
         found: usize,
     },
     /// Nothing moves long enough, or there is too much.
-    #[error("the clips have {found} frames for a sensor model; choose between 1 and 2000000")]
+    #[error("the clips have {found} frames; a sensor model needs 1 to 2000000")]
     ImuFrames {
         /// Number found.
         found: usize,
     },
     /// A sensor's recording that is not of the clip it was given for.
     #[error(
-        "no part of the recording moves as the {} of the clip does (correlation {correlation:.2} at best): it must be worn there, and hold the whole clip of a second or more",
+        "no part of the recording moves like the {} of the clip (best correlation {correlation:.2}); give a recording of a sensor worn there that covers the whole clip of a second or more",
         site.name()
     )]
     Unsynchronised {
@@ -81,10 +81,10 @@ pub enum TrainError {
         /// The best that was found.
         correlation: f64,
     },
-    /// Whoever asked for the work asked it to stop.
-    #[error("stopped before the end; nothing was written")]
+    /// The caller cancelled the work.
+    #[error("cancelled; nothing was written")]
     Cancelled,
     /// Inference failed.
-    #[error("the walk cannot be explained by the model: {0}")]
+    #[error("the model cannot explain the walk: {0}")]
     Inference(#[from] ProbError),
 }

@@ -30,7 +30,7 @@ pub struct ImuTrainConfig {
     pub mirror: bool,
     /// Most frames that are kept: then the cycles of movement that stand best for all others. All are kept when `None`.
     pub most_frames: Option<usize>,
-    /// True when simulated sensors are those of a board that nobody calibrated on a strap that gives, not ideal ones. It was measured to help nobody.
+    /// True when simulated sensors are those of an uncalibrated board on a loose strap, not ideal ones. Measurements showed no gain.
     pub strapped: bool,
 }
 

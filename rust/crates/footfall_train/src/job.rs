@@ -1,4 +1,4 @@
-//! Work on a thread of its own: how far it is, whether it is to stop, and what comes of it.
+//! Background jobs: progress, cancellation, and result.
 
 use crate::progress::Progress;
 use std::ops::ControlFlow;
@@ -6,14 +6,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Report of a worker while it works.
+/// Progress report of a worker.
 #[derive(Clone, Debug, Default)]
 pub struct JobProgress {
-    /// Present work.
+    /// Current stage.
     pub task: String,
-    /// Parts of it that are finished.
+    /// Number of finished parts.
     pub done: usize,
-    /// All of its parts; 0 when nobody knows.
+    /// Number of all parts; 0 if unknown.
     pub total: usize,
     /// Log-likelihoods so far.
     pub fits: Vec<f64>,
@@ -35,7 +35,7 @@ impl core::fmt::Debug for Reporter {
 }
 
 impl Reporter {
-    /// Reports the present work; returns whether to go on with it.
+    /// Reports the current stage; returns whether to continue.
     pub fn tell(&self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
         self.update(|progress| {
             task.clone_into(&mut progress.task);
@@ -70,7 +70,7 @@ impl Progress for Reporter {
     }
 }
 
-/// Work that goes on. Dropping it asks it to stop, and forgets what it makes.
+/// Running work. Dropping it cancels the work and discards the result.
 pub struct Job<T> {
     shared: Arc<Shared>,
     receiver: Receiver<T>,
@@ -85,7 +85,7 @@ impl<T> core::fmt::Debug for Job<T> {
 }
 
 impl<T> Job<T> {
-    /// Its last report.
+    /// Returns the last report.
     pub fn progress(&self) -> JobProgress {
         self.shared
             .progress
@@ -94,14 +94,14 @@ impl<T> Job<T> {
             .clone()
     }
 
-    /// Asks it to stop soon.
+    /// Requests cancellation.
     pub fn cancel(&self) {
         self.shared.cancelled.store(true, Ordering::Relaxed);
     }
 }
 
 impl<T: Send + 'static> Job<T> {
-    /// Starts work on a thread; `wake` is called there whenever there is something new.
+    /// Starts work on a thread; calls `wake` there whenever there is news.
     pub fn start(
         name: &str,
         wake: impl Fn() + Send + Sync + 'static,
@@ -154,7 +154,7 @@ impl<T> Drop for Job<T> {
     }
 }
 
-/// A job that there may be: polls it and forgets it when it has ended.
+/// An optional job: polls it and drops it at its end.
 pub fn finished<T: Send + 'static>(job: &mut Option<Job<T>>) -> Option<Result<T, String>> {
     let ended = job.as_ref()?.poll()?;
     *job = None;

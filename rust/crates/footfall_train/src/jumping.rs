@@ -1,4 +1,4 @@
-//! Jumps off both feet, as a part of a model of how they walk.
+//! Two-footed jumps, as a part of a gait model.
 
 use crate::beside::{Upright, symmetric};
 use footfall_core::Clip;

@@ -1,8 +1,8 @@
-//! Offline: a corpus of walks becomes a model.
+//! Offline: training of models on a corpus of walks.
 //!
-//! Modules in suggested reading order: [`train`] (the whole as one function), [`dataset`] and [`sequence`] (what is
-//! trained on), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps), [`contexts`] (the ends of a walk);
-//! [`adapt`] (a style from a dozen steps); [`dynamics`] (gait as a switching system); [`imu`] (what a sensor on a body means); [`standing`], [`jumping`] and [`crouching`] (how people do that); [`recordings`], [`model_file`] (what tools read) and [`job`] (for tools with windows); and [`evaluate`], which judges what comes out.
+//! Modules in suggested reading order: [`train`] (all steps of training in one function), [`dataset`] and [`sequence`] (training
+//! data), [`normalise`], [`average`] (the hidden semi-Markov model), [`differences`] (speed, walkers and steps), [`contexts`] (the ends of a walk);
+//! [`adapt`] (a style from a dozen steps); [`dynamics`] (switching models); [`imu`] (sensor models); [`standing`], [`jumping`] and [`crouching`]; [`recordings`], [`model_file`] (input of tools) and [`job`] (background work for windows); and [`evaluate`], which evaluates the results.
 
 pub mod adapt;
 pub mod average;

@@ -2,7 +2,7 @@
 
 use core::ops::ControlFlow;
 
-/// Receives how far a piece of work has come. Called from the working thread.
+/// Receives the progress of work. Called from the working thread.
 pub trait Progress {
     /// `done` of `total` parts of `task` are finished. [`ControlFlow::Break`] asks the work to stop: it then ends with
     /// [`TrainError::Cancelled`](crate::TrainError::Cancelled).
@@ -12,7 +12,7 @@ pub trait Progress {
     fn fit(&mut self, _log_likelihood: f64) {}
 }
 
-/// For callers that do not want to know.
+/// Ignores progress.
 impl Progress for () {
     fn advance(&mut self, _task: &str, _done: usize, _total: usize) -> ControlFlow<()> {
         ControlFlow::Continue(())

@@ -1,4 +1,4 @@
-//! Running, as a part of a model of how they walk.
+//! Running, as a part of a gait model.
 
 use crate::error::TrainError;
 use crate::progress::Progress;

@@ -1,8 +1,8 @@
-//! Standing, from recordings of people who stand.
+//! Standing, from recordings of standing people.
 //!
-//! Of every recording the [stretches] count in which somebody stands upright on planted feet with arms that hang. Their mean is the posture.
-//! Motion about it is split into looks, which jump and hold (`looks`), and the rest, a Gaussian process of octaves (`octaves`).
-//! People who fidget and people who hardly move weigh the same.
+//! The [stretches] of every recording count in which a person stands upright on planted feet with hanging arms. Their mean is the posture.
+//! Motion about it is split into glances, which jump and hold (`looks`), and the rest, a Gaussian process of octaves (`octaves`).
+//! People who fidget and people who hardly move have equal weight.
 
 mod looks;
 mod octaves;
@@ -46,7 +46,7 @@ const CHAINS: [&[Joint]; 2] = [
     &[Joint::Neck, Joint::Head],
 ];
 
-/// A recording in which somebody may stand.
+/// A recording in which a person may stand.
 #[derive(Clone, Debug)]
 pub struct StandingClip {
     /// The person.
@@ -87,7 +87,7 @@ impl StandingClip {
     }
 }
 
-/// Learns how people stand; `None` when nobody stands.
+/// Learns how people stand; `None` if nobody stands.
 pub fn learn(clips: &[StandingClip]) -> Option<LearnedStanding> {
     let people = people(clips);
     if people.is_empty() {

@@ -1,4 +1,4 @@
-//! The average walk from recordings, as one function.
+//! Training of the average walk, as one function.
 
 use crate::average::{AverageWalk, EmConfig};
 use crate::average_body::average_body;
@@ -15,7 +15,7 @@ use footfall_model::{FEATURE_COUNT, GaitModel, GlobalVarianceModel, Provenance, 
 use footfall_motion::recording::Recording;
 use footfall_prob::windows::Windows;
 
-/// Least spread (relative to the mean, squared) of the global variance: a corpus of few walks knows it badly.
+/// Smallest relative variance of the global variance: a small corpus does not determine it.
 const GLOBAL_VARIANCE_SPREAD: f64 = 0.01;
 
 /// Least global variance of a feature, rad².
@@ -30,11 +30,11 @@ pub struct TrainConfig {
     pub windows: Windows,
     /// True when every walk is also used with left and right exchanged, which makes the average walk symmetric.
     pub mirror: bool,
-    /// When to stop.
+    /// Criterion to stop.
     pub em: EmConfig,
 }
 
-/// A trained model and how training went.
+/// A trained model, and measures of its training.
 #[derive(Clone, Debug)]
 pub struct Trained {
     /// The average walk.

@@ -17,16 +17,16 @@ struct Line(&'static str, &'static str, &'static str, Beside);
 
 const LINES: [Line; 11] = [
     Line(
-        "Trajectory of 1,000 frames by MLPG, f64, a frame",
+        "MLPG trajectory of 1,000 frames, f64, per frame",
         "µs",
         "kernels.mlpg_f64_us_per_frame",
         Peer("jbonsai", "kernels.jbonsai_us_per_frame"),
     ),
     Line(
-        "One walker, a frame",
+        "One walker, per frame",
         "µs",
         "kernels.walker_us_per_frame",
-        Limit(0.5, "asked"),
+        Limit(0.5, "goal"),
     ),
     Line(
         "Switching model, fit of ten segments",
@@ -41,43 +41,43 @@ const LINES: [Line; 11] = [
         Peer("dense pseudo-inverse", "kernels.projection_dense_ms"),
     ),
     Line(
-        "Switching model, features of a frame",
+        "Switching model, features per frame",
         "µs",
         "kernels.switching_us_per_frame",
         Peer("dense matrices", "kernels.switching_dense_us_per_frame"),
     ),
     Line(
-        "A body from one sensor, model of 10,000 frames, a frame",
+        "Body from one sensor, model of 10,000 frames, per frame",
         "µs",
         "kernels.imu_us_per_frame_10k",
-        Limit(40.0, "asked; the paper has 758,000"),
+        Limit(40.0, "goal; the paper has 758,000"),
     ),
     Line(
-        "From a sample over UDP to its pose, one in a hundred",
+        "Delay from a UDP sample to its pose, 99th percentile",
         "ms",
         "kernels.imu_sample_to_pose_p99_ms",
         Limit(16.7, "a frame at 60 Hz"),
     ),
     Line(
-        "Crowd of 10,000, all fresh, a frame",
+        "Crowd of 10,000, all new poses, per frame",
         "ms",
         "crowds.all_fresh_ms",
-        Limit(6.0, "asked"),
+        Limit(6.0, "goal"),
     ),
     Line(
-        "Crowd of 10,000 in tiers, a frame",
+        "Crowd of 10,000 in tiers, per frame",
         "ms",
         "crowds.tiers_ms",
         Limit(16.7, "a frame at 60 Hz"),
     ),
     Line(
-        "Adding 10,000 walkers, the call",
+        "Call that adds 10,000 walkers",
         "ms",
         "crowds.add_agents_ms",
         Limit(16.7, "a frame at 60 Hz"),
     ),
     Line(
-        "Longest part of a frame while they are made",
+        "Longest part of a frame while they are created",
         "ms",
         "crowds.making_longest_ms",
         Limit(16.7, "a frame at 60 Hz"),
@@ -131,16 +131,16 @@ pub(super) fn text(machine: &Machine) -> String {
 /// The page with all machines that were kept.
 pub(super) fn page(machines: &[Machine]) -> String {
     let head = "# Benchmarks\n\n\
-        Each line stands beside a peer that ran in the same process, or beside a limit. \"Times\" says how often the figure goes into what is beside it: below 1 the limit is missed.\n\
-        `cargo xtask bench` prints the table for your machine, `cargo xtask bench --keep` adds your machine to this page.\n\
-        Machines that others use at the same time are noisy: trust ratios more than times.\n";
+        Each line compares a measurement with a peer in the same process, or with a limit. \"Times\" is the ratio of the reference to the measurement: below 1, the limit is missed.\n\
+        `cargo xtask bench` prints the table for your machine; `cargo xtask bench --keep` adds your machine to this page.\n\
+        On machines with other load, trust ratios more than times.\n";
     let tables = machines.iter().map(|machine| {
         let lines = LINES.iter().map(|line| {
             let [own, beside] = line.cells(machine);
             format!("| {} | {own} | {beside} |\n", line.0)
         });
         format!(
-            "\n## {}, {} threads\n\n{}, Footfall {}.\n\n| | here | beside |\n| --- | --- | --- |\n{}",
+            "\n## {}, {} threads\n\n{}, Footfall {}.\n\n| | measured | reference |\n| --- | --- | --- |\n{}",
             machine.processor,
             machine.threads,
             machine.platform,
@@ -174,12 +174,12 @@ mod tests {
         );
         assert_eq!(
             LINES[1].cells(&machine),
-            ["1.00 µs", "0.500 µs (asked), 0.5 times"]
+            ["1.00 µs", "0.500 µs (goal), 0.5 times"]
         );
         assert_eq!(LINES[2].cells(&machine), ["-", "-"]);
         let page = page(&[machine]);
         assert!(page.contains(
-            "| Crowd of 10,000, all fresh, a frame | 5.50 ms | 6.00 ms (asked), 1.1 times |"
+            "| Crowd of 10,000, all new poses, per frame | 5.50 ms | 6.00 ms (goal), 1.1 times |"
         ));
     }
 

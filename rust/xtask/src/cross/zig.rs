@@ -19,7 +19,7 @@ impl Zig {
     /// Finds it in the cache, or fetches it.
     ///
     /// # Errors
-    /// When it is not to be had.
+    /// When it is not available.
     pub(crate) fn provision() -> Result<Self> {
         let packages = [
             format!("ziglang=={ZIG}"),

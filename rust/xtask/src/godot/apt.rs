@@ -46,7 +46,7 @@ pub(super) fn fetch(archive: &Archive, cache: &Path) -> Result<PathBuf> {
 /// Godot for arm64 in a folder with all that it needs besides a kernel, as an emulator takes it; returns the root of its files.
 ///
 /// # Errors
-/// When it is not to be had.
+/// When it is not available.
 pub(super) fn arm64(cache: &Path) -> Result<PathBuf> {
     let architecture = &archive::ARM64;
     let root = unpack(&Archive::find(cache)?, architecture, &["godot"], cache)?;
@@ -89,7 +89,7 @@ fn unpack(
     eprintln!("asking {} for Debian's suite {SUITE} …", archive.site);
     process::read(apt.get().arg("update")).with_context(|| {
         format!(
-            "cannot read the suite {SUITE} of {}; is the network there?",
+            "cannot read the suite {SUITE} of {}; check the network connection",
             archive.site
         )
     })?;

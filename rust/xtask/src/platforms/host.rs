@@ -14,7 +14,7 @@ const OLD: [&str; 3] = ["4", "5", "0"];
 /// Compiles the host for a target as zig names it.
 ///
 /// # Errors
-/// When zig is not to be had or fails.
+/// When zig is not available or fails.
 pub(super) fn compile(target: &str, suffix: &str) -> Result<PathBuf> {
     let folder = paths::target_folder().join("platforms");
     fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;

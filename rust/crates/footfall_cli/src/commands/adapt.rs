@@ -13,11 +13,11 @@ use footfall_train::{AdaptConfig, AdaptMethod, Adapted, adapt_style, shows_steps
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Make a style from a dozen steps
+/// Train a style on a dozen steps
 ///
-/// Moves a base model to the walks that an index lists. Any frame rate, any body, any walker: 6 to 12 steps straight ahead are
-/// enough, BVH or glTF (`hero.glb#Walk` where a file has several animations). Clips that walk in place travel as their standing feet
-/// tell, and loops are repeated. The style fits the base model that it was made for, and no other.
+/// Adapts a base model to the walks of an index. Any frame rate, body and walker will do: 6 to 12 steps straight ahead are
+/// enough, as BVH or glTF (`hero.glb#Walk` selects one of several animations). In-place clips get their travel from the standing feet,
+/// and loops are repeated. The style fits only the base model that it was made for.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall adapt --base walk.footfall --corpus index.csv --where style=sad --name sad -o sad.footstyle\n  \
@@ -32,13 +32,13 @@ pub(crate) struct AdaptArgs {
     /// Name of the style
     #[arg(long)]
     name: String,
-    /// Use the first so many steps; all when absent
+    /// Use only the first N steps [default: all]
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..))]
     steps: Option<u32>,
     /// Method by which the base is adapted
     #[arg(long, value_enum, default_value_t = MethodArg::Csmaplr)]
     method: MethodArg,
-    /// Description of the data for the style's provenance, in your words; the conditions when absent
+    /// Description of the data for the style's provenance [default: the conditions]
     #[arg(long, value_name = "TEXT")]
     describe: Option<String>,
     /// File to write the style to
@@ -51,9 +51,9 @@ pub(crate) struct AdaptArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum MethodArg {
-    /// One transform for all states, joint by joint, without a prior to speak of
+    /// One transform for all states, joint by joint, with a weak prior
     Cmllr,
-    /// Transforms over a tree of states, each held near its parent's
+    /// Transforms over a tree of states, each kept near its parent's
     Csmaplr,
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     let run = TrainingRun::begin(&args.corpus, args.describe.as_deref(), &args.output)?;
     ensure!(
         !args.name.trim().is_empty(),
-        "a style without a name cannot be told from others; give --name a word"
+        "a style needs a name; pass one to --name"
     );
     let base = read_model_file(&args.base, GaitModel::from_bytes)?;
     let mut progress = TrainingProgress(output::Progress::new());
@@ -95,7 +95,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     let still = without_steps(&corpus);
     ensure!(
         still.len() < corpus.clips.len(),
-        "{}: no two steps in a row in {}; give clips that walk, of both feet's steps",
+        "{}: {} has no two consecutive steps; give walking clips with steps of both feet",
         args.corpus.index.display(),
         listed(&still)
     );
@@ -124,7 +124,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
     report(args, &corpus, &adapted, bytes.len(), seconds)
 }
 
-/// The clips in which nobody walks, by name and length.
+/// Clips without a walk, by name and length.
 fn without_steps(corpus: &Corpus) -> Vec<String> {
     let clips = corpus.clips.iter();
     clips
@@ -167,12 +167,8 @@ fn report(
     let style = &adapted.style;
     let made_from = &style.provenance;
     let still = without_steps(corpus);
-    let unused = (!still.is_empty()).then(|| {
-        format!(
-            "nothing was learned from {}: no two steps in a row",
-            listed(&still)
-        )
-    });
+    let unused = (!still.is_empty())
+        .then(|| format!("skipped without two consecutive steps: {}", listed(&still)));
     let warnings = unused.into_iter().chain(style.thin_warning()).collect();
     let report = Report {
         output: &args.output,

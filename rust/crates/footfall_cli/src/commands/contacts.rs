@@ -38,7 +38,7 @@ pub(crate) struct ContactsArgs {
 enum Method {
     /// Heights and speeds of heels and toes
     Kinematic,
-    /// Switches of hip and knee angles: initial contacts only, stances until the other foot's, no steps
+    /// Switches of hip and knee angles: initial contacts only; a stance lasts until the other foot's; no steps
     Switching,
 }
 

@@ -17,11 +17,11 @@ use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Turn captured walks into a style with a style sheet
+/// Apply a style sheet to captured walks
 ///
-/// A style sheet is a short TOML file that says what to change: posture, swing, stride, cadence, sway, how the feet land.
-/// One recording becomes one file; a corpus becomes a folder with an index, from which `footfall adapt` learns the style.
-/// Names of shipped sheets: proud, decided, sad, topmodel, drunk, cool, afraid, tiptoeing, heavy, `in_a_hurry`, manly, and
+/// A style sheet is a short TOML file of changes: posture, swing, stride, cadence, sway, landing of the feet.
+/// One recording gives one file; a corpus gives a folder with an index, from which `footfall adapt` trains the style.
+/// Shipped sheets are proud, decided, sad, topmodel, drunk, cool, afraid, tiptoeing, heavy, `in_a_hurry`, manly, and
 /// template.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -33,33 +33,33 @@ pub(crate) struct DesignArgs {
     /// One recording of a walk
     #[arg(value_name = "IN", conflicts_with_all = ["corpus", "conditions"])]
     input: Option<PathBuf>,
-    /// The style sheet: a file, or the name of a shipped one
+    /// Style sheet: a file, or the name of a shipped sheet
     #[arg(long, value_name = "SHEET.toml", required_unless_present_any = ["keys", "print"])]
     sheet: Option<String>,
-    /// Table of the recordings
+    /// Index of the recordings
     #[arg(long, value_name = "INDEX.csv")]
     corpus: Option<PathBuf>,
-    /// Condition on a column, for example `category=neutral_walk`; may repeat
+    /// Condition on a column, for example `category=neutral_walk`; repeatable
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
-    /// Least number of steps of all clips of a corpus
+    /// Minimum total number of steps from a corpus
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
-    /// Seed of a sheet with irregular steps
+    /// Seed of a sheet's irregular steps
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// The file to write, or for a corpus the folder
+    /// Output file, or output folder for a corpus
     #[arg(short, long, value_name = "OUT", required_unless_present_any = ["keys", "print"])]
     output: Option<PathBuf>,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
-    /// Print every key of a sheet as a Markdown page, and stop
+    /// Print all keys of a sheet as a Markdown page and exit
     #[arg(long, conflicts_with_all = ["print", "json"])]
     keys: bool,
-    /// Print a shipped sheet, and stop
+    /// Print a shipped sheet and exit
     #[arg(long, value_name = "NAME", conflicts_with = "json")]
     print: Option<String>,
 }
@@ -178,7 +178,7 @@ fn shipped_text(name: &str) -> Result<&'static str> {
     shipped::text(name).with_context(|| {
         let names: Vec<&str> = shipped::SHEETS.iter().map(|(name, _)| *name).collect();
         format!(
-            "no shipped sheet \"{name}\"; there are {}; a sheet of your own is given as a file, such as {name}.toml",
+            "there is no shipped sheet \"{name}\", only {}; pass a sheet of your own as a file, such as {name}.toml",
             names.join(", ")
         )
     })

@@ -15,10 +15,10 @@ const LEAST_GODOT: [u32; 2] = [4, 6];
 /// Port that phones and trackers send to by default.
 const UDP_PORT: u16 = 6969;
 
-/// Check that this machine has what Footfall needs
+/// Check this machine for everything that Footfall needs
 ///
-/// Godot, graphics, a screen, serial ports and who may open them, network ports, folders to write to. Tells what to do about each
-/// thing that is missing; exits with 1 only when something is missing that the add-on cannot do without.
+/// Checks Godot, graphics, display, serial ports and their permissions, network ports, and writable folders. Prints what to do about each
+/// missing item. Exits with 1 only if the add-on cannot work without it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  footfall doctor\n  footfall doctor --json")]
 pub(crate) struct DoctorArgs {
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &DoctorArgs) -> Result<()> {
         output::print_text(&lines.join("\n"))?;
     }
     if !summary.is_empty() {
-        bail!("cannot be done without: {summary}; see above for what to do");
+        bail!("required, but missing: {summary}; see above for what to do");
     }
     Ok(())
 }
@@ -107,7 +107,7 @@ fn finding(what: &'static str, state: State, found: impl Into<String>, next: &st
 
 /// Looked for as `cargo xtask godot` does: the variable, the path, the cache.
 fn godot() -> Finding {
-    const NEXT: &str = "get Godot 4.6 from godotengine.org and put it on the PATH or let the variable GODOT name it; in the repository \
+    const NEXT: &str = "get Godot 4.6 from godotengine.org and put it on the PATH or set the variable GODOT to it; in the repository \
                         `cargo xtask godot` fetches one";
     let named = env::var_os("GODOT").filter(|value| !value.is_empty());
     let cached = dirs::cache_dir().map(|folder| folder.join("footfall/godot/godot"));
@@ -173,13 +173,13 @@ fn graphics() -> Finding {
             "graphics",
             State::Missing,
             "a graphics device, no Vulkan driver",
-            "install mesa-vulkan-drivers or your card's driver for Forward+; Compatibility runs without",
+            "install mesa-vulkan-drivers or your card's driver for Forward+; Compatibility works without it",
         ),
         (false, _) => finding(
             "graphics",
             State::Missing,
             "no graphics device",
-            "pictures are painted in software, which is slow; run games with --rendering-driver opengl3",
+            "rendering is in software and slow; run games with --rendering-driver opengl3",
         ),
     }
 }
@@ -209,7 +209,7 @@ fn serial() -> Finding {
             "serial ports",
             State::Missing,
             format!("none on USB, {} others", ports.len()),
-            "plug a sensor in to use one; `footfall imu monitor --ports` lists them",
+            "to use a serial sensor, plug it in; `footfall imu monitor --ports` lists the ports",
         );
     }
     let shut = usb.iter().find(|name| {
@@ -242,15 +242,21 @@ fn udp() -> Finding {
             "UDP port 6969",
             State::Missing,
             error.to_string(),
-            "end the program that has it (a SlimeVR server?), or give another port in the source and in the app",
+            "end the program that uses it (a SlimeVR server?), or set another port in the source and in the app",
         ),
     }
 }
 
 fn data_folder() -> Finding {
-    const NEXT: &str = "make it and let yourself write there: phones' certificates and unsaved labels are kept in it";
+    const NEXT: &str =
+        "create it with write permission; it holds phones' certificates and unsaved labels";
     let Some(base) = dirs::data_local_dir() else {
-        return finding("data folder", State::Missing, "this user has none", NEXT);
+        return finding(
+            "data folder",
+            State::Missing,
+            "this user has no data folder",
+            NEXT,
+        );
     };
     let folder = base.join("footfall");
     let probe = folder.join(format!(".doctor.{}", std::process::id()));

@@ -9,7 +9,7 @@ pub(super) use fit::SizeArgs;
 use anyhow::Result;
 use clap::Subcommand;
 
-/// Gait as two systems that switch when a foot lands
+/// Switching models: gait as two linear systems that switch when a foot lands
 #[derive(Debug, clap::Args)]
 pub(crate) struct DynamicsArgs {
     #[command(subcommand)]

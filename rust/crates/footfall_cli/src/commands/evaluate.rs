@@ -14,7 +14,7 @@ mod training;
 use anyhow::Result;
 use clap::Subcommand;
 
-/// Judge walks by measures: the papers' tables on your own data
+/// Evaluate models and detectors: the papers' tables on your own data
 #[derive(Debug, clap::Args)]
 pub(crate) struct EvaluateArgs {
     #[command(subcommand)]

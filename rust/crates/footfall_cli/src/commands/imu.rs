@@ -16,7 +16,7 @@ use footfall_core::Site;
 use footfall_imu::{ImuRecording, check_recording, csv};
 use std::path::Path;
 
-/// A body from one or two inertial sensors, and what such sensors tell of its steps
+/// Bodies and gait events from one or two inertial sensors
 #[derive(Debug, clap::Args)]
 pub(crate) struct ImuArgs {
     #[command(subcommand)]
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &ImuArgs) -> Result<()> {
 pub(in crate::commands) fn parse_site(name: &str) -> Result<Site, String> {
     Site::from_name(name).ok_or_else(|| {
         let names: Vec<&str> = Site::ALL.into_iter().map(Site::name).collect();
-        format!("no site is called so; there are {}", names.join(", "))
+        format!("unknown site; the sites are {}", names.join(", "))
     })
 }
 

@@ -21,12 +21,12 @@ use std::fs::{self, File};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-/// Tell what is in a file
+/// Show the contents of a file
 ///
-/// A recording (.bvh) or a game's clip (.glb, .gltf, with `#Name` where there are several): skeleton, frames, rate, speed, contacts and steps. A model (.footfall): where it comes from, states,
-/// durations, speeds. A style (.footstyle): which base it fits, where it comes from. A
-/// switching model (.footdyn): its two systems. A sensor model (.footimu): sites, frames, behaviours. A calibration (.footcal): how sensors are worn. An index (.csv): clips by
-/// category, style and subject. A recording of a sensor (.csv): samples, rate, what is wrong with it.
+/// A recording (.bvh) or a game's clip (.glb, .gltf, with `#Name` if there are several): skeleton, frames, rate, speed, contacts and steps. A model (.footfall): its source, states,
+/// durations, speeds. A style (.footstyle): its base and source. A
+/// switching model (.footdyn): its two systems. A sensor model (.footimu): sites, frames, behaviours. A calibration (.footcal): mounting of the sensors. An index (.csv): clips by
+/// category, style and subject. A recording of a sensor (.csv): samples, rate, problems.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall inspect walk.bvh\n  \

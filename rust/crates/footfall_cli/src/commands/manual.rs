@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
     footfall manual ~/.local/share/man/man1\n  \
     footfall manual man && man man/footfall-synth.1")]
 pub(crate) struct ManualArgs {
-    /// The folder to write to; it is made if it is not there
+    /// Output folder; created if it does not exist
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
     /// Print one JSON object on stdout

@@ -10,7 +10,7 @@ use footfall_motion::retarget::normalised_start;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Put a recording on the canonical body
+/// Retarget a recording to the canonical body
 ///
 /// Writes a BVH file with the joints of Godot's humanoid profile: metres, Y up, floor at 0, the first frame of the motion
 /// at the origin facing +Z, a T-pose at zero rotations. Directions of limbs and trunk are kept; travel and height are
@@ -24,10 +24,10 @@ pub(crate) struct RetargetArgs {
     /// The recording, .bvh, .glb or .gltf
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// File to write
+    /// Output file
     #[arg(short, long, value_name = "OUT.bvh")]
     output: PathBuf,
-    /// Frames per second of the output; the input's when absent
+    /// Frames per second of the output [default: the input's]
     #[arg(long)]
     fps: Option<f64>,
     #[command(flatten)]

@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 
 /// Draw motion on one page
 ///
-/// For each file: figures at true scale travelling over the floor, the path from above with its footfalls, poses over time
-/// from the side and from the front, contact bars, and joint curves. Files of any known skeleton.
+/// For each file, of any known skeleton: figures at true scale along the floor, the path from above with its footfalls, poses over time
+/// from the side and the front, contact bars, and joint curves.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall sheet walk.bvh -o sheet.png\n  \
@@ -25,13 +25,13 @@ pub(crate) struct SheetArgs {
     /// One or more recordings, .bvh, .glb or .gltf, drawn one below the other
     #[arg(value_name = "RECORDING", required = true)]
     inputs: Vec<PathBuf>,
-    /// File to write the picture to
+    /// Output file for the picture
     #[arg(short, long, value_name = "SHEET.png")]
     output: PathBuf,
-    /// First moment shown, in seconds from frame 0; the first frame of the motion when absent
+    /// Start of the drawing, in seconds from frame 0 [default: the first frame of the motion]
     #[arg(long)]
     start: Option<f64>,
-    /// Number of seconds to draw; all when absent
+    /// Seconds to draw [default: all]
     #[arg(long)]
     seconds: Option<f64>,
     /// Figures in each pose strip
@@ -40,7 +40,7 @@ pub(crate) struct SheetArgs {
     /// Width of the picture in pixels
     #[arg(long, default_value_t = 1800, value_parser = clap::value_parser!(u32).range(600..=8000))]
     width: u32,
-    /// Contacts to draw instead of detected ones: what `footfall contacts --json` or `synth --contacts` wrote, one for each
+    /// Contacts to draw instead of detected ones: output of `footfall contacts --json` or `synth --contacts`, one for each
     /// recording
     #[arg(long, value_name = "CONTACTS.json")]
     contacts: Vec<PathBuf>,
@@ -64,7 +64,7 @@ pub(crate) fn run(args: &SheetArgs) -> Result<()> {
     output::refuse_overwrite(&inputs, &args.output)?;
     ensure!(
         args.contacts.is_empty() || args.contacts.len() == args.inputs.len(),
-        "{} recordings but {} files of contacts; give --contacts once for each recording, in the same order",
+        "{} recordings but {} files of contacts; pass --contacts once for each recording, in the same order",
         args.inputs.len(),
         args.contacts.len()
     );
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &SheetArgs) -> Result<()> {
     let mut png = Vec::new();
     PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
         .write_image(&rgb, width, height, ExtendedColorType::Rgb8)
-        .context("the picture does not fit PNG")?;
+        .context("the picture is too large for PNG")?;
     output::write_atomic(&args.output, &png)?;
     if args.json {
         return output::print_json(&Report {

@@ -4,10 +4,10 @@ use anyhow::{Result, bail};
 use footfall_studio::StudioOptions;
 use std::path::PathBuf;
 
-/// See the motion, make the style: the desktop tool
+/// Open Footfall Studio, the desktop tool
 ///
-/// Opens recordings and folders of them, corrects contacts, trains walks and styles, designs and mixes styles, hears sensors, and
-/// shows the papers' tables. Files may also be dropped on its window.
+/// The studio opens recordings and folders, corrects contacts, trains walks and styles, designs and mixes styles, connects to sensors, and
+/// shows the papers' tables. Files may also be dropped onto its window.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall studio\n  \
@@ -21,7 +21,7 @@ pub(crate) struct StudioArgs {
 
 pub(crate) fn run(args: &StudioArgs) -> Result<()> {
     if let Some(missing) = args.paths.iter().find(|path| !path.exists()) {
-        bail!("{}: there is no such file", missing.display());
+        bail!("there is no file {}", missing.display());
     }
     let options = StudioOptions {
         paths: args.paths.clone(),

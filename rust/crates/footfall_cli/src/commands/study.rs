@@ -9,10 +9,10 @@ use footfall_motion::corpus::Corpus;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Write a web page on which people judge real and synthesised walks
+/// Write a web page for a perception study of real and synthesised walks
 ///
-/// One self-contained file with stick figures and three tests in random order of walks: real or synthetic, which style, how
-/// alike. Answers stay in the participant's browser and can be downloaded as CSV. Works offline and on phones.
+/// The page is one self-contained file with stick figures and three tests of walks in random order: real or synthetic, recognition of the style,
+/// and similarity. Answers stay in the participant's browser and can be downloaded as CSV. It works offline and on phones.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall study --real index.csv --where category=styled_walk --synthesised made.csv -o study.html\n  \
@@ -22,13 +22,13 @@ pub(crate) struct StudyArgs {
     corpora: CorpusPair,
     #[command(flatten)]
     knees: KneesArgs,
-    /// File to write the page to
+    /// Output file for the page
     #[arg(short, long, value_name = "STUDY.html")]
     output: PathBuf,
-    /// Most walks, or pairs of walks, in each test
+    /// Maximum number of walks, or pairs of walks, in each test
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=100))]
     trials: u16,
-    /// Most pairs of a real and a synthesised walk of each style
+    /// Maximum number of pairs of a real and a synthesised walk for each style
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=20))]
     pairs: u16,
     /// Longest walk in seconds
@@ -54,12 +54,12 @@ struct Report<'a> {
 pub(crate) fn run(args: &StudyArgs) -> Result<()> {
     let Some(choice) = &args.corpora.synthesised else {
         anyhow::bail!(
-            "a study compares real with synthesised walks; name the latter's table with --synthesised INDEX.csv"
+            "a study compares real with synthesised walks; pass the index of the latter as --synthesised INDEX.csv"
         );
     };
     ensure!(
         (2.0..=30.0).contains(&args.seconds),
-        "walks of {} s cannot be shown; give --seconds a number from 2 to 30",
+        "cannot show walks of {} s; set --seconds to 2 to 30",
         args.seconds
     );
     output::refuse_overwrite(&[&args.corpora.real.index, &choice.index], &args.output)?;

@@ -17,10 +17,10 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// Longer recordings of somebody who stands are of no use.
+/// Longest useful recording of a standing person.
 const LONGEST_STAND_SECS: f64 = 3600.0;
 
-/// Make a walk from a model
+/// Generate a walk from a model
 ///
 /// The same model, seed and settings give the same bytes.
 #[derive(Debug, clap::Args)]
@@ -33,20 +33,20 @@ pub(crate) struct SynthArgs {
     /// The model
     #[arg(long, value_name = "WALK.footfall")]
     model: PathBuf,
-    /// A style to walk in and its weight, 1 when absent; may repeat. Beyond 1 exaggerates, below 0 is the opposite
+    /// Style and its weight, 1 by default; repeatable. More than 1 exaggerates, less than 0 gives the opposite
     #[arg(long = "style", value_name = "STYLE.footstyle[:WEIGHT]")]
     styles: Vec<StyleArg>,
-    /// Number of steps to take
+    /// Number of steps
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     steps: u32,
-    /// Begin and end standing; otherwise the walk is cut out of a longer one
+    /// Begin and end standing; otherwise the walk is cut from a longer one
     #[arg(long)]
     standing: bool,
     /// Controls over time: a table with the columns `time_s`, `speed_mps`, `turn_dps`, `direction_deg`, gait, crouch and `jump_m`. A row holds until the next,
-    /// the last for one second; missing columns keep their defaults. It begins standing
+    /// the last for one second; missing columns keep their defaults. The walk begins standing
     #[arg(long, value_name = "MOVES.csv", conflicts_with_all = ["steps", "standing", "seconds", "speed", "turn", "direction", "gait"])]
     controls: Option<PathBuf>,
-    /// Walk or run; auto runs from about 2 m/s on, if the model knows how
+    /// Gait; auto runs above about 2 m/s, if the model can
     #[arg(long, value_enum, default_value_t = GaitArg::Auto)]
     gait: GaitArg,
     /// Seconds to stand, with `--speed 0`
@@ -62,7 +62,7 @@ pub(crate) struct SynthArgs {
     json: bool,
 }
 
-/// The gait that is asked for.
+/// The gait that is requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum GaitArg {
     Auto,
@@ -95,14 +95,14 @@ impl FromStr for StyleArg {
         let (path, weight) = match text.rsplit_once(':') {
             Some((path, weight)) if !weight.contains(['/', '\\']) => {
                 let number: f64 = weight.parse().map_err(|error| {
-                    format!("'{weight}' is no weight ({error}); write FILE.footstyle:0.7")
+                    format!("'{weight}' is not a weight ({error}); write FILE.footstyle:0.7")
                 })?;
                 (path, number)
             }
             _ => (text, 1.0),
         };
         if path.is_empty() {
-            return Err("no file; write FILE.footstyle:0.7".to_owned());
+            return Err("there is no file name; write FILE.footstyle:0.7".to_owned());
         }
         Ok(Self {
             path: path.into(),
@@ -197,11 +197,11 @@ fn follow(
     )
 }
 
-/// Somebody who stands, as long as is asked for.
+/// Standing person, for the requested time.
 fn stand(args: &SynthArgs, model: &Arc<GaitModel>, styles: Vec<StyleReport>) -> Result<()> {
     ensure!(
         (0.0..=LONGEST_STAND_SECS).contains(&args.seconds),
-        "nobody stands for {} seconds; give --seconds a number up to {LONGEST_STAND_SECS}",
+        "cannot stand for {} seconds; set --seconds to {LONGEST_STAND_SECS} at most",
         args.seconds
     );
     let config = StandConfig {
@@ -216,7 +216,7 @@ fn stand(args: &SynthArgs, model: &Arc<GaitModel>, styles: Vec<StyleReport>) -> 
     let mut warnings = Vec::new();
     if model.standing.is_none() {
         warnings.push(format!(
-            "{} knows nothing of standing: the pose is still; train it with --standing",
+            "{} has no standing motion: the pose is still; train it with --standing",
             args.model.display()
         ));
     }
@@ -234,7 +234,7 @@ pub(crate) fn dressed(path: &Path, styles: &[StyleArg]) -> Result<(GaitModel, Ve
     for StyleArg { path, weight } in chosen {
         if !weight.is_finite() {
             bail!(
-                "{}: a weight of {weight} says nothing; give a number",
+                "{}: the weight {weight} is not finite; give a number",
                 path.display()
             );
         }

@@ -23,8 +23,8 @@ use std::path::{Path, PathBuf};
 
 /// Train an average walk
 ///
-/// Reads the recordings that an index lists (columns path, category, style and subject, paths relative to the index), finds
-/// their steps and learns one model of the left and the right step. `*` in a condition stands for any run of characters;
+/// Reads the recordings of an index (columns path, category, style and subject, paths relative to the index), detects
+/// their steps and trains one model of the left and the right step. `*` in a condition stands for any run of characters;
 /// all conditions must hold.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -35,18 +35,18 @@ use std::path::{Path, PathBuf};
 pub(crate) struct TrainArgs {
     #[command(flatten)]
     corpus: CorpusArgs,
-    /// Condition on recordings of people who stand, for example `category=idle`; may repeat. The model learns from them how to stand;
-    /// without, it stands still
+    /// Condition on recordings of people who stand, for example `category=idle`; repeatable. The model learns standing motion from them;
+    /// without them it stands still
     #[arg(long = "standing", value_name = "COLUMN=VALUE")]
     standing: Vec<Where>,
-    /// Condition on recordings in which people run, for example `category=running`; may repeat. The model learns from the runs in them how to
-    /// run; without, it only walks
+    /// Condition on recordings in which people run, for example `category=running`; repeatable. The model learns running from
+    /// them; without them it only walks
     #[arg(long = "running", value_name = "COLUMN=VALUE")]
     running: Vec<Where>,
-    /// Condition on recordings in which people jump off both feet, out of standing, for example `category=jumping`; may repeat
+    /// Condition on recordings of two-footed jumps out of standing, for example `category=jumping`; repeatable
     #[arg(long = "jumping", value_name = "COLUMN=VALUE")]
     jumping: Vec<Where>,
-    /// Condition on recordings in which people go upright and crouched, for example `path=o3de/Crouching1.bvh`; may repeat
+    /// Condition on recordings in which people walk upright and crouched, for example `path=o3de/Crouching1.bvh`; repeatable
     #[arg(long = "crouching", value_name = "COLUMN=VALUE")]
     crouching: Vec<Where>,
     /// File to write the model to
@@ -55,13 +55,13 @@ pub(crate) struct TrainArgs {
     /// Frames per second of the model
     #[arg(long, default_value_t = 60.0)]
     fps: f64,
-    /// Time differences that the model holds
+    /// Time differences of the model
     #[arg(long, value_enum, default_value_t = WindowsArg::Compact)]
     windows: WindowsArg,
-    /// Description of the data for the model's provenance, in your words; the conditions when absent
+    /// Description of the data for the model's provenance [default: the conditions]
     #[arg(long, value_name = "TEXT")]
     describe: Option<String>,
-    /// Most iterations of expectation-maximisation
+    /// Maximum number of iterations of expectation-maximisation
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=500))]
     iterations: u16,
     /// Print one JSON object on stdout
@@ -138,7 +138,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     let run = TrainingRun::begin(&args.corpus, args.describe.as_deref(), &args.output)?;
     ensure!(
         (20.0..=240.0).contains(&args.fps),
-        "a model at {} frames per second cannot be trained; give --fps a number from 20 to 240",
+        "cannot train a model at {} frames per second; set --fps to 20 to 240",
         args.fps
     );
     let mut progress = TrainingProgress(output::Progress::new());
@@ -191,7 +191,7 @@ fn running_of(
 ) -> Result<GaitModel> {
     learn_running(walk, &corpus.clips, &config(args), made_from, progress).with_context(|| {
         format!(
-            "{}: nobody runs for some steps in what --running chooses; widen it",
+            "{}: the recordings of --running show no run of several steps; widen it",
             args.corpus.index.display()
         )
     })
@@ -205,7 +205,7 @@ fn learn_standing(corpus: &Corpus, args: &TrainArgs) -> Result<LearnedStanding> 
         .collect();
     standing::learn(&clips).with_context(|| {
         format!(
-            "{}: nobody stands upright with hanging arms for some seconds in what --standing chooses; widen it",
+            "{}: in the recordings of --standing nobody stands upright with hanging arms for several seconds; widen it",
             args.corpus.index.display()
         )
     })
@@ -257,7 +257,7 @@ fn report(
     let mut warnings = Vec::new();
     if made_from.subjects == 1 {
         warnings.push(
-            "all steps are of one subject: walkers will differ only as that one's steps do; add recordings of others"
+            "all steps are of one subject: walkers will differ only as much as that subject's steps; add recordings of others"
                 .to_owned(),
         );
     }

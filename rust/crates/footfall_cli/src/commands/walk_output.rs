@@ -15,10 +15,10 @@ pub(super) struct WalkArgs {
     /// Seed of the walker, and of its walk
     #[arg(long, default_value_t = 1)]
     pub(super) seed: u64,
-    /// Frames per second; the model's when absent
+    /// Frames per second [default: the model's]
     #[arg(long)]
     pub(super) fps: Option<f64>,
-    /// Speed over the ground in m/s; that of the recordings when absent
+    /// Speed over the ground in m/s [default: the recordings']
     #[arg(long)]
     pub(super) speed: Option<f32>,
     /// Turning in degrees per second, positive to the left
@@ -29,7 +29,7 @@ pub(super) struct WalkArgs {
         value_name = "DEG_PER_S"
     )]
     pub(super) turn: f32,
-    /// Direction of travel, relative to where it faces: 0 forwards, 90 to the left, 180 backwards. A trained walk that does not go forwards begins and
+    /// Direction of travel relative to the facing direction: 0 forwards, 90 to the left, 180 backwards. Unless it is 0, a trained walk begins and
     /// ends standing
     #[arg(
         long,
@@ -41,10 +41,10 @@ pub(super) struct WalkArgs {
     /// Variation of the walker and its steps about the average: 0 none, 1 as in the recordings
     #[arg(long, default_value_t = 1.0)]
     pub(super) variation: f32,
-    /// File to write
+    /// Output file
     #[arg(short, long, value_name = "OUT.bvh")]
     pub(super) output: PathBuf,
-    /// File to write the contacts to, as `footfall contacts --json` prints them
+    /// Output file for the contacts, in the format of `footfall contacts --json`
     #[arg(long, value_name = "OUT.json")]
     contacts: Option<PathBuf>,
 }
@@ -72,12 +72,12 @@ impl WalkArgs {
         }
         ensure!(
             self.contacts.as_ref() != Some(&self.output),
-            "{} is both the motion and the contacts; give --contacts another name",
+            "{} is the output of both motion and contacts; pass another name to --contacts",
             self.output.display()
         );
         ensure!(
             self.fps.is_none_or(|fps| (1.0..=1000.0).contains(&fps)),
-            "{} frames per second cannot be written; give --fps a number from 1 to 1000",
+            "cannot write {} frames per second; set --fps to 1 to 1000",
             self.fps.unwrap_or_default()
         );
         Ok(())
@@ -88,7 +88,7 @@ impl WalkArgs {
         ensure!(
             self.speed
                 .is_none_or(|speed| speed > 0.0 && speed.is_finite()),
-            "a walk at {} m/s goes nowhere; give --speed a number above zero",
+            "a walk at {} m/s does not move; set --speed above zero",
             self.speed.unwrap_or_default()
         );
         Ok(())

@@ -59,5 +59,5 @@ fn the_check_up_tells_what_to_do_about_everything_that_is_missing() {
 #[test]
 fn a_studio_that_finds_nothing_to_open_says_so() {
     let done = footfall(Path::new("."), &["studio", "no/such.bvh"]);
-    done.fails_with(&["no/such.bvh", "no such file"]);
+    done.fails_with(&["no/such.bvh", "there is no file"]);
 }

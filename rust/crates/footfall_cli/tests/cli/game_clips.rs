@@ -320,12 +320,16 @@ fn clips_that_make_no_style_are_named_with_what_to_do() {
         pose.rotations[Joint::Chest.index()] *= Quat::from_rotation_x(breath);
     }
     let glb = mixamo_glb(&idle, &["Idle"]);
-    refuses("idle.glb", &glb, &["no two steps", "clips that walk"]);
+    refuses(
+        "idle.glb",
+        &glb,
+        &["no two consecutive steps", "walking clips"],
+    );
 
     let mut short = walk.clone();
     short.poses.truncate(15);
     let glb = mixamo_glb(&short, &["Walk"]);
-    refuses("short.glb", &glb, &["(0.5 s)", "no two steps"]);
+    refuses("short.glb", &glb, &["(0.5 s)", "no two consecutive steps"]);
 
     // A name that stays as long keeps the file's sizes.
     let glb = mixamo_glb(&walk, &["Walk"]);

@@ -193,7 +193,7 @@ fn real_sensors_take_the_place_of_simulated_ones() {
         trained.stderr
     );
     assert!(
-        trained.stderr.contains("simulates the sensor"),
+        trained.stderr.contains("a simulated sensor is used"),
         "{}",
         trained.stderr
     );

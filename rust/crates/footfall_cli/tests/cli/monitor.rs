@@ -151,7 +151,7 @@ fn wrong_arguments_and_silence_say_what_to_do() {
             "0.5",
         ],
     );
-    assert!(run.stdout.contains("no such port"), "{}", run.stdout);
+    assert!(run.stdout.contains("there is no port"), "{}", run.stdout);
     let ports = footfall(folder.path(), &["imu", "monitor", "--ports", "--json"]).json();
     assert!(ports["ports"].is_array());
 }

@@ -32,7 +32,7 @@ impl StyleSheet {
     pub fn parse(text: &str) -> Result<Self, SheetError> {
         let reader = Reader { text };
         let table = DeTable::parse(text).map_err(|error| {
-            let what = error.message().lines().next().unwrap_or("this is no TOML");
+            let what = error.message().lines().next().unwrap_or("this is not TOML");
             reader.error(&error.span().unwrap_or(0..0), what.to_owned())
         })?;
         let mut sheet = Self::default();

@@ -12,13 +12,13 @@ use godot::prelude::*;
 /// Steps that are taken from the clips at most.
 const MOST_STEPS: usize = 12;
 
-/// Makes styles of walking of the clips that a game has. For scripts in the editor (`@tool`, `EditorScript`); exported games are without it.
+/// Makes styles of walking from a game's clips. For scripts in the editor (`@tool`, `EditorScript`); exported games do not have this class.
 ///
 /// The *Gait Style* dock does the same with a form.
 #[derive(GodotClass)]
 #[class(tool, init, base = RefCounted)]
 pub(super) struct GaitStyleMaker {
-    /// The skeleton that animations without a character were made for. Scenes and files of characters bring their own.
+    /// Skeleton of animations without a character. Scenes and character files have their own.
     #[var]
     skeleton: Option<Gd<Skeleton3D>>,
     message: GString,
@@ -27,14 +27,14 @@ pub(super) struct GaitStyleMaker {
 
 #[godot_api]
 impl GaitStyleMaker {
-    /// Adapts the walk of `model` to `clips` and returns the style, or `null`; `get_message()` says why, or that the style is thin.
+    /// Adapts the walk of `model` to `clips` and returns the style, or `null`. `get_message()` returns the reason, or warns that the style is thin.
     ///
-    /// A clip is a `PackedScene` with a `Skeleton3D` and an `AnimationPlayer`, all of whose animations are taken; an `Animation` or an
-    /// `AnimationLibrary` of `skeleton`; or the path of a `.bvh`, `.glb`, `.gltf`, imported or saved file, with `#Name` behind it for one
-    /// of its animations. Clips that walk in place get their travel from the standing foot, and loops are repeated. Takes some seconds,
-    /// and the editor waits.
+    /// A clip is a `PackedScene` with a `Skeleton3D` and an `AnimationPlayer`, whose animations are all used; an `Animation` or an
+    /// `AnimationLibrary` for `skeleton`; or the path of a `.bvh`, `.glb`, `.gltf`, imported or saved file, followed by `#Name` for one
+    /// of its animations. In-place clips get their travel from the standing foot, and loops are repeated. The call blocks the editor for some
+    /// seconds.
     ///
-    /// Save the style's `data` as a `.footstyle` file to use it in the game.
+    /// To use the style in a game, save its `data` as a `.footstyle` file.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn make_style(
@@ -55,8 +55,8 @@ impl GaitStyleMaker {
         }
     }
 
-    /// The problem of the style that was asked for last, or what there is to be said about it: that it is thin, and which clips show no steps. Empty
-    /// when all is well.
+    /// Returns the problem of the last style, or a remark: that it is thin, and which clips show no steps. Empty
+    /// if there is none.
     #[func]
     fn get_message(&self) -> GString {
         self.message.clone()
@@ -70,11 +70,11 @@ impl GaitStyleMaker {
         clips: &VarArray,
         name: &GString,
     ) -> Result<(Gd<GaitStyle>, String), String> {
-        let model = model.ok_or("Give the GaitModel that is to wear the style.")?;
+        let model = model.ok_or("Give the GaitModel for which to make the style.")?;
         let trained = model.bind().trained()?;
         let WalkModel::Gait(base) = &*trained else {
             return Err(
-                "A switching model (.footdyn) wears no styles. Give a .footfall file.".into(),
+                "A switching model (.footdyn) has no styles. Give a .footfall file.".into(),
             );
         };
         let mut all = Vec::new();
@@ -82,7 +82,7 @@ impl GaitStyleMaker {
             all.extend(self.clips_of(&clip)?);
         }
         if all.is_empty() {
-            return Err("Give clips of someone who walks in the style.".to_owned());
+            return Err("Give at least one clip of a walk in the style.".to_owned());
         }
         let walks = Walks::read(&all, &name.to_string(), &mut ())?;
         let made_from = Provenance {
@@ -110,7 +110,7 @@ impl GaitStyleMaker {
             return Clip::all_of(&path, skeletons);
         }
         Err(format!(
-            "{clip} is no clip. Give scenes, animations, libraries of animations or paths of files."
+            "{clip} is not a clip. Give scenes, animations, animation libraries or file paths."
         ))
     }
 }

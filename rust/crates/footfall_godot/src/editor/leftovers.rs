@@ -33,7 +33,7 @@ fn remove_in(folder: &Gd<EditorFileSystemDirectory>) {
             && FileAccess::file_exists(&format!("{file}.uid"))
             && DirAccess::remove_absolute(&import) == Error::OK
         {
-            godot_print!("{import}: removed, for {class} files are no longer imported.");
+            godot_print!("Removed {import}: {class} files are no longer imported.");
         }
     }
     for index in 0..folder.get_subdir_count() {

@@ -55,7 +55,7 @@ impl FootfallPreviewBar {
         time.set_step(0.01);
         time.set_h_size_flags(control::SizeFlags::EXPAND_FILL);
         time.set_v_size_flags(control::SizeFlags::SHRINK_CENTER);
-        time.set_tooltip_text("Go to a time of the walk, as it goes with the settings below");
+        time.set_tooltip_text("Go to a time of the walk, computed with the settings below");
         time.connect("value_changed", &bar.callable("scrub"));
         let told = Label::new_alloc();
         for child in [

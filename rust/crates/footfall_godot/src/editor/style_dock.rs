@@ -214,7 +214,7 @@ impl FootfallStyleDock {
         let form = self.form.as_ref().ok_or("The dock is not open.")?;
         if self.recordings.is_empty() {
             return Err(
-                "Add recordings of the style first: BVH files of someone who walks in it, or characters with animations (.glb, .fbx), or animations."
+                "Add recordings of the style first: BVH files of a walk in it, characters with animations (.glb, .fbx), or animations."
                     .to_owned(),
             );
         }
@@ -225,16 +225,16 @@ impl FootfallStyleDock {
         let file = form.file();
         if !file.starts_with("res://") || !file.ends_with(".footstyle") {
             return Err(format!(
-                "{file}: give a file of this project, such as res://styles/{name}.footstyle."
+                "{file} is not in this project. Give a path such as res://styles/{name}.footstyle."
             ));
         }
         let model = form
             .base_model()
-            .ok_or("Choose a base: a .footfall file.")?;
+            .ok_or("Choose a base model: a .footfall file.")?;
         let trained = model.bind().trained()?;
         let WalkModel::Gait(base) = &*trained else {
             return Err(
-                "A switching model (.footdyn) wears no styles. Choose a .footfall file.".to_owned(),
+                "A switching model (.footdyn) has no styles. Choose a .footfall file.".to_owned(),
             );
         };
         Ok(Order {
@@ -274,7 +274,7 @@ impl FootfallStyleDock {
         let found = ResourceLoader::singleton().load(file);
         found
             .and_then(|resource| resource.try_cast().ok())
-            .ok_or_else(|| format!("{file} is gone. Make the style again."))
+            .ok_or_else(|| format!("{file} no longer exists. Make the style again."))
     }
 
     fn tell(&mut self, message: &str) {

@@ -76,7 +76,7 @@ impl Order {
     }
 }
 
-/// The clips in which somebody walks.
+/// Clips with a walk.
 #[derive(Default)]
 pub(super) struct Walks {
     pub(super) recordings: Vec<Recording>,
@@ -111,7 +111,7 @@ impl Walks {
         }
         if walks.recordings.is_empty() && !walks.left_out.is_empty() {
             return Err(format!(
-                "No two steps in a row in {}. Choose clips that walk, with steps of both feet.",
+                "{} has no two consecutive steps. Choose walking clips with steps of both feet.",
                 walks.left_out.join(", ")
             ));
         }
@@ -125,7 +125,7 @@ impl Walks {
             .map(|warning| format!("A thin style: {warning}."));
         let left_out = (!self.left_out.is_empty()).then(|| {
             format!(
-                "Nothing was learned from {}: no two steps in a row.",
+                "Skipped without two consecutive steps: {}.",
                 self.left_out.join(", ")
             )
         });

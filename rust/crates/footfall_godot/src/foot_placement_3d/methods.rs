@@ -8,15 +8,15 @@ use godot::prelude::*;
 
 #[godot_api(secondary)]
 impl FootPlacement3D {
-    /// Returns whether a foot, `left` or `right`, is locked to the ground.
+    /// Returns `true` if the foot, `left` or `right`, is locked to the ground.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn is_foot_planted(&self, foot: StringName) -> bool {
         self.foot(&foot).is_some_and(|placed| placed.locked)
     }
 
-    /// Returns the place of a foot's sole (`left` or `right`) in global space: its origin lies on the ground under the ankle of the flat foot,
-    /// +Y is the ground's normal and +Z points to the toes. For a foot on its way, of the place over which it is.
+    /// Returns the transform of a foot's sole (`left` or `right`) in global space: its origin is on the ground under the ankle of the flat foot,
+    /// +Y is the ground's normal and +Z points to the toes. For a swinging foot, it is the ground below it.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn get_foot_transform(&self, foot: StringName) -> Transform3D {
@@ -25,7 +25,7 @@ impl FootPlacement3D {
         })
     }
 
-    /// The body that a foot, `left` or `right`, is locked to, or null.
+    /// Returns the body that the foot, `left` or `right`, is locked to, or `null`.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn get_foot_support(&self, foot: StringName) -> Option<Gd<Node3D>> {
@@ -34,30 +34,30 @@ impl FootPlacement3D {
         Gd::try_from_instance_id(id).ok()
     }
 
-    /// Offset of the pelvis from the animation, in metres upwards.
+    /// Returns the offset of the pelvis from the animation, in metres upwards.
     #[func]
     fn get_pelvis_offset(&self) -> f64 {
         let session = self.session.as_ref();
         session.map_or(0.0, |session| f64::from(session.placer.pelvis_offset_m()))
     }
 
-    /// Grade of the ground under the feet: rise by run, positive uphill.
+    /// Returns the grade of the ground under the feet: rise over run, positive uphill.
     #[func]
     fn get_grade(&self) -> f64 {
         let session = self.session.as_ref();
         session.map_or(0.0, |session| f64::from(session.placer.grade()))
     }
 
-    /// Forgets where the feet were put, for example after the character was put elsewhere. Also measures the skeleton anew.
+    /// Discards the places of the feet, for example after a teleport of the character. Also measures the skeleton again.
     #[func]
     pub(super) fn reset(&mut self) {
         self.forget();
         self.base_mut().update_configuration_warnings();
     }
 
-    /// Problems that keep the feet from being placed, each with what to do next; empty without any.
+    /// Returns the problems that keep the feet from being placed, each with what to do next; empty if there are none.
     ///
-    /// The editor shows the same as configuration warnings.
+    /// The editor shows the same texts as configuration warnings.
     #[func]
     fn get_problems(&self) -> PackedStringArray {
         self.problems()

@@ -10,8 +10,8 @@ use godot::prelude::*;
 
 #[godot_api(secondary)]
 impl GaitCrowd3D {
-    /// Places of walkers, on the ground, in this node's space: one place for each id in `agents`, or for everybody in the order of
-    /// `get_agents()`. An id that nobody has gets places that are not finite.
+    /// Returns the positions of walkers on the ground, in this node's space: one for each id in `agents`, or for all walkers in the order of
+    /// `get_agents()`. Unknown ids give positions that are not finite.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn get_positions(
@@ -22,7 +22,7 @@ impl GaitCrowd3D {
         self.each(&agents, nowhere, |agent| convert::vector3(agent.place))
     }
 
-    /// Headings of walkers, radians about +Y from +Z. Shapes and ids as of `get_positions()`.
+    /// Returns the headings of walkers, radians about +Y from +Z. Shapes and ids as of `get_positions()`.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn get_headings(
@@ -32,7 +32,7 @@ impl GaitCrowd3D {
         self.each(&agents, f32::NAN, |agent| agent.heading)
     }
 
-    /// Share of its stride that each walker has behind it: 0 when its left foot lands, 0.5 when its right foot does. Shapes and ids as of
+    /// Returns the phase of each walker's stride: 0 at the left initial contact, 0.5 at the right. Shapes and ids as of
     /// `get_positions()`.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
@@ -43,7 +43,7 @@ impl GaitCrowd3D {
         self.each(&agents, f32::NAN, Agent::phase)
     }
 
-    /// The size of walkers, against the character. Shapes and ids as of `get_positions()`.
+    /// Returns the sizes of walkers, relative to the character. Shapes and ids as of `get_positions()`.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn get_sizes(
@@ -53,8 +53,8 @@ impl GaitCrowd3D {
         self.each(&agents, f32::NAN, |agent| agent.size)
     }
 
-    /// Tiers of walkers: 0 as a whole scene, 1 with a new pose in every frame, 2 as one far away, or one that is not made yet.
-    /// Shapes and ids as of `get_positions()`; 2 for an id that nobody has.
+    /// Returns the tiers of walkers: 0 for a full scene, 1 for a new pose in every frame, 2 for a distant walker, or one that is not created yet.
+    /// Shapes and ids as of `get_positions()`; 2 for an unknown id.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn get_tiers(
@@ -70,8 +70,8 @@ impl GaitCrowd3D {
         self.places(&agents).into_iter().map(tier).collect()
     }
 
-    /// Sets the speeds that walkers would like to walk, in metres per second: one speed for each id in `agents`, or for everybody in the order of
-    /// `get_agents()`. Missing or not finite: it stays.
+    /// Sets the requested speeds of walkers, in metres per second: one for each id in `agents`, or for all walkers in the order of
+    /// `get_agents()`. Missing and non-finite speeds change nothing.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_speeds(
@@ -86,7 +86,7 @@ impl GaitCrowd3D {
         });
     }
 
-    /// Sets how fast walkers turn, in radians per second, positive to their left; they give up their goals. For `behaviour` scripted. Shapes
+    /// Sets the turn rates of walkers, in radians per second, positive to their left, and clears their goals. For `behaviour` scripted. Shapes
     /// and ids as of `set_speeds()`.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
@@ -102,7 +102,7 @@ impl GaitCrowd3D {
         });
     }
 
-    /// Sends walkers straight to places, in this node's space. They stop there. For `behaviour` scripted. Not finite: the goal stays. Shapes and
+    /// Sends walkers straight to positions in this node's space, where they stop. For `behaviour` scripted. A non-finite position keeps the goal. Shapes and
     /// ids as of `set_speeds()`.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
@@ -118,11 +118,11 @@ impl GaitCrowd3D {
         });
     }
 
-    /// Sends walkers over the navigation map of the world, around what is between, to places in this node's space. They stop there. For
-    /// `behaviour` scripted. Not finite: the goal stays. Each way takes some tens of microseconds to find, once. Shapes and ids as of
+    /// Sends walkers to positions in this node's space, around obstacles on the world's navigation map. They stop there. For
+    /// `behaviour` scripted. A non-finite position keeps the goal. Each path takes some tens of microseconds to find, once. Shapes and ids as of
     /// `set_speeds()`.
     ///
-    /// Returns whether there was a way for everybody; whoever has none keeps its goal. In the first frames of a scene there is no map yet.
+    /// Returns `true` if there was a path for every walker; a walker without one keeps its goal. In the first frames of a scene there is no map yet.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_destinations(
@@ -157,7 +157,7 @@ impl GaitCrowd3D {
         });
     }
 
-    /// Lets one walker wear styles: weights in the order of `styles`, taken up with its next step. They are rounded to eighths, so that a
+    /// Sets the style weights of one walker, in the order of `styles`, from its next step on. They are rounded to eighths, so that a
     /// crowd needs few mixtures.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]

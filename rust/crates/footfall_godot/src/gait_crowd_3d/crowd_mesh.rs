@@ -47,10 +47,10 @@ impl CrowdMesh {
     pub(super) fn new(scene: &Gd<PackedScene>, host: &mut Gd<Node3D>) -> Result<Self, String> {
         let made = scene
             .instantiate()
-            .ok_or("Character cannot be instantiated: open the scene and repair it.")?;
+            .ok_or("Character cannot be instantiated. Open the scene and repair it.")?;
         let mut character = made.try_cast::<Node3D>().map_err(|node| {
             node.free();
-            "The root of Character is no Node3D: choose a scene with a character.".to_owned()
+            "The root of Character is not a Node3D. Choose a scene with a character.".to_owned()
         })?;
         host.add_child_ex(&character)
             .internal(godot::classes::node::InternalMode::BACK)
@@ -63,7 +63,7 @@ impl CrowdMesh {
 
     fn of(character: &Gd<Node3D>) -> Result<Self, String> {
         let skeleton = skeleton_of(character).ok_or(
-            "Character has no Skeleton3D: choose a scene with a humanoid character, such as an imported .glb.",
+            "Character has no Skeleton3D. Choose a scene with a humanoid character, such as an imported .glb.",
         )?;
         let binding = SkeletonBinding::new(&skeleton, character, None)
             .map_err(|error| format!("Character: {error}"))?;
@@ -84,7 +84,10 @@ impl CrowdMesh {
             }
         }
         if instances.is_empty() {
-            return Err("Character has no skinned mesh under its Skeleton3D.".to_owned());
+            return Err(
+                "Character has no skinned mesh under its Skeleton3D. Choose a scene with one."
+                    .to_owned(),
+            );
         }
         // Meshes that take over with the distance: the second for those near, the last for those far away.
         let mut begins: Vec<f32> = instances.iter().map(|(begin, _)| *begin).collect();

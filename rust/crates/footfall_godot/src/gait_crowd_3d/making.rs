@@ -42,7 +42,7 @@ impl GaitCrowd3D {
                 let path = self.base().get_node_or_null(&self.path);
                 let path = path
                     .and_then(|node| node.try_cast::<Path3D>().ok())
-                    .ok_or("Path names no Path3D: choose one, or another Behaviour.")?;
+                    .ok_or("Path is not set to a Path3D. Choose one, or another Behaviour.")?;
                 let points = path
                     .get_curve()
                     .map(|curve| curve.get_baked_points())
@@ -55,7 +55,7 @@ impl GaitCrowd3D {
                 });
                 Path::new(points.collect())
                     .map(Way::Path)
-                    .ok_or_else(|| "The Path3D has no length: draw its curve.".to_owned())
+                    .ok_or_else(|| "The Path3D has no length. Draw its curve.".to_owned())
             }
         }
     }

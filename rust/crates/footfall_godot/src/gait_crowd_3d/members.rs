@@ -11,12 +11,12 @@ const NOBODY: i32 = -1;
 
 #[godot_api(secondary)]
 impl GaitCrowd3D {
-    /// Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns their
-    /// ids, in the same order, without those for whom there was no finite place; none when the crowd cannot be made.
+    /// Adds walkers at these positions and headings (radians about +Y from +Z; 0 if missing), in this node's space. Returns their
+    /// ids in the same order, without those of non-finite positions; empty if the crowd cannot be created.
     ///
-    /// They have their ids at once and appear as soon as they are made, on other threads: see `agents_ready`. Five hundred a frame join the
-    /// arrays, so that adding many holds no frame. Whoever reads or sets something of walkers before has all of them join in that call,
-    /// and finds them where they were put.
+    /// Walkers have ids at once and appear when they are created, on other threads: see `agents_ready`. Five hundred a frame join the
+    /// arrays, so that adding many does not stall a frame. A call that reads or sets walkers before that makes all of them join first,
+    /// at their initial positions.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn add_agents(
@@ -31,7 +31,7 @@ impl GaitCrowd3D {
         let room = (MOST_AGENTS as usize).saturating_sub(walkers.roster().order().len());
         if positions.len() > room {
             godot_warn!(
-                "A crowd holds {MOST_AGENTS} walkers at most: {} are left out.",
+                "A crowd holds {MOST_AGENTS} walkers at most. {} are left out.",
                 positions.len() - room
             );
         }
@@ -43,7 +43,7 @@ impl GaitCrowd3D {
         walkers.add(starts.into_iter()).into()
     }
 
-    /// Removes the walkers that have these ids. Nobody else's id or way changes.
+    /// Removes the walkers with these ids. Other walkers keep their ids and goals.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn remove_agents(&mut self, agents: PackedInt32Array) {
@@ -70,14 +70,14 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Makes the crowd anew from `count` and `seed`.
+    /// Creates the crowd again from `count` and `seed`.
     #[func]
     pub(super) fn restart(&mut self) {
         self.forget();
         self.base_mut().update_configuration_warnings();
     }
 
-    /// Number of walkers, with those who are still being made.
+    /// Returns the number of walkers, including pending ones.
     #[func]
     fn get_agent_count(&mut self) -> i64 {
         self.make();
@@ -87,10 +87,10 @@ impl GaitCrowd3D {
         })
     }
 
-    /// The ids of all walkers, in the order in which they came. All arrays that are for everybody have this order.
+    /// Returns the ids of all walkers, in the order in which they were added. All arrays for all walkers have this order.
     ///
-    /// An id stays a walker's own for as long as it is in the crowd, through `get_state()` and `set_state()` too, and is nobody
-    /// else's for long after. As long as nobody is removed, ids are 0, 1, 2 and so on.
+    /// A walker keeps its id while it is in the crowd, also through `get_state()` and `set_state()`; ids are not reused for a long
+    /// time. While no walker is removed, ids are 0, 1, 2 and so on.
     #[func]
     fn get_agents(&mut self) -> PackedInt32Array {
         self.make();
@@ -98,22 +98,22 @@ impl GaitCrowd3D {
         walkers.flat_map(Crowd::names).collect()
     }
 
-    /// Returns whether a walker has this id.
+    /// Returns `true` if a walker has this id.
     #[func]
     fn has_agent(&mut self, agent: i32) -> bool {
         self.make();
         self.place(agent).is_some()
     }
 
-    /// Returns whether walkers are still being made.
+    /// Returns `true` while walkers are pending.
     #[func]
     fn is_making(&self) -> bool {
         let walkers = self.walkers.as_ref();
         walkers.is_some_and(Crowd::is_making)
     }
 
-    /// The id of the first walker that a ray meets, or -1. In global space, as `Camera3D.project_ray_origin()` and
-    /// `Camera3D.project_ray_normal()` have it: from one point to another. Bodies count as capsules.
+    /// Returns the id of the first walker that a ray hits, or -1. The ray goes between two points in global space, as from `Camera3D.project_ray_origin()` and
+    /// `Camera3D.project_ray_normal()`. Bodies count as capsules.
     #[func]
     fn pick(&mut self, from: Vector3, to: Vector3) -> i32 {
         self.make_whole();
@@ -124,7 +124,7 @@ impl GaitCrowd3D {
         self.name_at(met)
     }
 
-    /// The id of the walker that is nearest to a point of global space, at most `max_distance` away, or -1.
+    /// Returns the id of the walker nearest to a point in global space, within `max_distance`, or -1.
     #[func]
     fn find_nearest(
         &mut self,
@@ -141,15 +141,15 @@ impl GaitCrowd3D {
         self.name_at(nearest)
     }
 
-    /// The whole scene that shows a walker, or null while it is drawn as an instance. The scene is lent: it shows another walker later.
+    /// Returns the full scene that shows a walker, or `null` while it is drawn as an instance. Do not keep it: it shows another walker later.
     #[func]
     fn get_agent_node(&self, agent: i32) -> Option<Gd<Node3D>> {
         let scene = self.scene.as_ref()?;
         scene.actors().node_of(self.place(agent)?)
     }
 
-    /// The id of the walker whom a node shows: a whole scene of the crowd, or anything in it, such as a body that a ray has hit. -1
-    /// when it shows nobody.
+    /// Returns the id of the walker that a node shows: a full scene of the crowd, or any node in it, such as a body that a ray has hit. -1
+    /// if it shows none.
     #[func]
     fn get_agent_of(&self, node: Option<Gd<Node>>) -> i32 {
         let scene = self.scene.as_ref();
@@ -159,8 +159,8 @@ impl GaitCrowd3D {
         self.name_at(place)
     }
 
-    /// The crowd as it is now, to be saved: who walks where, how, in which phase and with which id. `set_state()` goes on from it with
-    /// the same walkers at the same places; their next steps are drawn anew.
+    /// Returns the state of the crowd, to be saved: places, goals, phases and ids of all walkers. `set_state()` continues with
+    /// the same walkers at the same places; their next steps are drawn again.
     #[func]
     fn get_state(&mut self) -> PackedByteArray {
         self.make_whole();
@@ -169,7 +169,7 @@ impl GaitCrowd3D {
         bytes.unwrap_or_default().into()
     }
 
-    /// Goes on from what `get_state()` told. Bytes that are no crowd are refused: the log says why, and the crowd stays as it is.
+    /// Restores a state from `get_state()`. Other bytes are refused: the log gives the reason, and the crowd does not change.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_state(&mut self, state: PackedByteArray) {
@@ -184,13 +184,13 @@ impl GaitCrowd3D {
             Ok(_) => {}
             Err(problem) => {
                 let node = self.base().get_path();
-                godot_warn!("{node}: the state is refused: {problem}");
+                godot_warn!("{node}: the state was refused: {problem}");
             }
         }
     }
 
-    /// Lets time pass at once, in seconds, whatever `playing` says: for tests, and for games with a clock of their own. It waits for
-    /// walkers that are still being made, so that equal calls give equal crowds.
+    /// Advances time immediately, in seconds, whatever `playing` is: for tests, and for games with their own clock. The call waits for
+    /// pending walkers, so that equal calls give equal crowds.
     #[func]
     fn advance(&mut self, delta: f64) {
         if delta.is_finite() {
@@ -198,7 +198,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Problems that keep the crowd from walking, each with what to do next; empty without any.
+    /// Returns the problems that keep the crowd from walking, each with what to do next; empty if there are none.
     #[func]
     fn get_problems(&mut self) -> PackedStringArray {
         if self.problems().is_empty() {

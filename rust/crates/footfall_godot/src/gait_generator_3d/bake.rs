@@ -17,19 +17,19 @@ const ROOT_MOTION_TRACK: &str = "root_motion_track";
 
 #[godot_api(secondary)]
 impl GaitGenerator3D {
-    /// Makes animations of this character's walk, which an `AnimationPlayer` or `AnimationTree` plays without the add-on: for a platform that the
-    /// add-on is not built for, for another tool, or for a crowd of one's own. Returns `null` where the character cannot walk; the log says why.
+    /// Bakes this character's walk to animations, which an `AnimationPlayer` or `AnimationTree` plays without the add-on: for platforms without
+    /// a build of the add-on, for other tools, or for a crowd of your own. Returns `null` if the character cannot walk; the log gives the reason.
     ///
-    /// `seconds` is how long a clip is about: whole strides are taken, from one touching down of the left foot to another. `styles` names some of
-    /// the node's `styles`, and `neutral` the walk without one; empty are all of them. `speeds` are in metres per second. The clips are
-    /// `walk_<style>_<speed>`, such as `walk_sad_1.2`, and `idle_<style>`; all of them loop, and are made of `seed`,
+    /// `seconds` is the approximate length of a clip: it is rounded to whole strides, from one left initial contact to another. `styles` names some of
+    /// the node's `styles`, or `neutral` for the walk without a style; if it is empty, all are baked. `speeds` are in metres per second. The clips are
+    /// named `walk_<style>_<speed>`, such as `walk_sad_1.2`, and `idle_<style>`. All of them loop and use `seed`,
     /// `variation` and `standing_motion`.
     ///
-    /// The root moves evenly, exactly at the speed that the clip is named for. Its track is the topmost bone above the hips, or the `Skeleton3D`
-    /// itself where hips are topmost. Tell it to whoever plays the clips: `player.root_motion_track = library.get_meta("root_motion_track")`.
-    /// Paths begin at the root of the scene that the skeleton came in, where an imported character has its `AnimationPlayer`.
+    /// The root moves at exactly the constant speed in the clip's name. Its track is the topmost bone above the hips, or the `Skeleton3D`
+    /// itself if the hips are topmost. Set it on the player: `player.root_motion_track = library.get_meta("root_motion_track")`.
+    /// Paths start at the root of the scene that contains the skeleton, where an imported character has its `AnimationPlayer`.
     ///
-    /// A clip takes some tens of milliseconds to make. Nothing of the node changes.
+    /// Baking takes some tens of milliseconds per clip. The node does not change.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn bake(
@@ -42,7 +42,7 @@ impl GaitGenerator3D {
             Ok(library) => Some(library),
             Err(problem) => {
                 let node = self.base().get_name();
-                godot_error!("{node}: nothing is baked: {problem}");
+                godot_error!("{node}: nothing was baked: {problem}");
                 None
             }
         }
@@ -62,14 +62,16 @@ impl GaitGenerator3D {
             .filter(|skeleton| skeleton.is_inside_tree())
             .ok_or("Put this node under a Skeleton3D that is in the tree.")?;
         if !(seconds.is_finite() && seconds > 0.0) {
-            return Err(format!("{seconds} seconds are no length of a clip."));
+            return Err(format!(
+                "{seconds} is not a valid clip length. Give a positive number of seconds."
+            ));
         }
         if let Some(speed) = speeds
             .iter()
             .find(|speed| !(speed.is_finite() && **speed >= 0.2))
         {
             return Err(format!(
-                "{speed} m/s is no speed to walk at: give 0.2 or more."
+                "{speed} m/s is not a walking speed. Give 0.2 or more."
             ));
         }
         let source = self.find_source()?;
@@ -87,8 +89,9 @@ impl GaitGenerator3D {
             );
             for &speed in speeds {
                 let make = || self.generator(&source, &weights, clips.binding()).ok();
-                let walk = LoopedWalk::record(make, speed, seconds as f32)
-                    .ok_or_else(|| format!("No whole stride at {speed} m/s in {name}."))?;
+                let walk = LoopedWalk::record(make, speed, seconds as f32).ok_or_else(|| {
+                    format!("No whole stride at {speed} m/s in style {name}. Give another speed.")
+                })?;
                 let off = walk.speed_mps / speed - 1.0;
                 if off.abs() > 0.001 {
                     godot_warn!(
@@ -148,7 +151,7 @@ fn worn(source: &WalkSource, names: &[GString]) -> Result<Vec<(String, Vec<f32>)
             let index = known.iter().position(|known| *known == name);
             if index.is_none() && name != PLAIN {
                 return Err(format!(
-                    "there is no style {name} among Styles: they are {PLAIN}, {}.",
+                    "Styles has no style {name}. It has {PLAIN}, {}.",
                     known.join(", ")
                 ));
             }

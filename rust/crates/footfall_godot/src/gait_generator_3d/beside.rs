@@ -34,7 +34,7 @@ impl GaitGenerator3D {
         self.preview_paused = Some(paused);
     }
 
-    /// Feet that stand, and the places where they land next, on the floor of the walk; `None` while nobody walks.
+    /// Feet that stand, and the places where they land next, on the floor of the walk; `None` without a walk.
     pub(crate) fn feet(&self) -> Option<([bool; 2], [Option<Landing>; 2])> {
         let session = self
             .session

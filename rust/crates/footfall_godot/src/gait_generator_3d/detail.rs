@@ -3,7 +3,7 @@
 use footfall_synth::Detail;
 use godot::prelude::*;
 
-/// Detail in which a walk is worked out.
+/// Share of a walk's frames that are computed.
 #[derive(GodotConvert, Var, Export, Default, Clone, Copy, Debug)]
 #[godot(via = i64)]
 pub(crate) enum GaitDetail {

@@ -107,7 +107,7 @@ impl Maker<'_> {
         Ok(generator)
     }
 
-    /// The phase from which somebody who stands goes off with the foot that is farther behind.
+    /// Phase from which a standing person starts with the foot that is farther behind.
     fn first_phase(&self, from: &Seen) -> Result<f32, SynthError> {
         if self.controls.is_standing() {
             return Ok(self.config.phase);

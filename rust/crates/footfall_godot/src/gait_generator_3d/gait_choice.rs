@@ -3,7 +3,7 @@
 use footfall_synth::{Gait, GaitChoice};
 use godot::prelude::*;
 
-/// The gait that a character is asked for.
+/// Gait of a character.
 #[derive(GodotConvert, Var, Export, Default, Clone, Copy, Debug)]
 #[godot(via = i64)]
 pub(crate) enum GaitMode {

@@ -9,12 +9,12 @@ use godot::prelude::*;
 
 #[godot_api(secondary)]
 impl GaitGenerator3D {
-    /// Returns the character's travel and turn in its own space: axes and scale are those of its node.
+    /// Returns the character's travel and turn in its own space, along the axes and in the scale of its node.
     ///
-    /// Asked in `_physics_process()`, since the frame of the physics before; asked in `_process()`, since the frame before: whoever asks once
-    /// a frame is told all of it, at any frame rate, and asked twice in a frame it says the same. After the skeleton has moved within a frame, as in a
-    /// function connected to `modification_processed`, it is that frame's. For a skeleton that is advanced by hand, it is what the last
-    /// `advance()` did.
+    /// The call returns the travel since the previous physics frame in `_physics_process()`, and since the previous frame in `_process()`: one call per frame
+    /// adds up to the whole travel at any frame rate, and repeated calls in a frame return the same value. After the skeleton has moved within a frame, as in a
+    /// function connected to `modification_processed`, it returns that frame's travel. For a skeleton that is advanced by hand, it returns the travel of the last
+    /// `advance()`.
     ///
     /// With `root_motion` off, move the character by it in a function connected to `modification_processed`, so that body and feet
     /// move in the same frame: `character.global_transform *= gait.get_root_motion_delta()`, or with collisions
@@ -28,20 +28,20 @@ impl GaitGenerator3D {
             .since_last_frame(advance_of(&skeleton), frame_clock())
     }
 
-    /// The seed of the walk: `seed`, or where that is 0 the node's own, or that of the state that it goes on from.
+    /// Returns the seed in use: `seed`; if that is 0, the node's own seed, or that of a restored state.
     #[func]
     fn get_effective_seed(&self) -> i64 {
         self.effective_seed().cast_signed()
     }
 
-    /// The gait of the step that is walked now: `walk` or `run`.
+    /// Returns the gait of the current step: `walk` or `run`.
     #[func]
     fn get_current_gait(&self) -> StringName {
         let session = self.session.as_ref();
         name_of(session.map_or(Gait::Walk, |session| session.generator.gait()))
     }
 
-    /// Returns whether any part of a foot, `left` or `right`, stands on the ground.
+    /// Returns `true` if any part of the foot, `left` or `right`, is on the ground.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn is_foot_on_ground(&self, foot: StringName) -> bool {
@@ -55,7 +55,7 @@ impl GaitGenerator3D {
             .is_some_and(|side| contacts[side.index()])
     }
 
-    /// Starts the walk anew from `seed` and `phase`, where the character stands now. Also measures the skeleton anew.
+    /// Starts the walk anew from `seed` and `phase` at the character's current place. Also measures the skeleton again.
     #[func]
     pub(super) fn restart(&mut self) {
         self.session = None;
@@ -64,8 +64,8 @@ impl GaitGenerator3D {
         self.base_mut().update_configuration_warnings();
     }
 
-    /// Goes to a time of the walk, in seconds from where it began: it is walked there from its beginning with the speed, turning and styles that
-    /// are set now. The character does not travel by it. At most an hour; a minute takes some milliseconds.
+    /// Moves to a time of the walk, in seconds from its beginning, computed with the current speed, turning and styles. The character does not
+    /// travel. At most an hour; a minute takes some milliseconds.
     #[func]
     pub(crate) fn seek(&mut self, seconds: f64) {
         if seconds.is_finite() {
@@ -75,7 +75,7 @@ impl GaitGenerator3D {
         }
     }
 
-    /// Time since the walk began, in seconds.
+    /// Returns the time since the walk began, in seconds.
     #[func]
     pub(crate) fn get_time(&self) -> f64 {
         let session = self.session.as_ref().map(|session| session.elapsed_secs);
@@ -83,18 +83,18 @@ impl GaitGenerator3D {
         session.or(absent).unwrap_or_default()
     }
 
-    /// Problems that keep the character from walking, each with what to do next; empty without any.
+    /// Returns the problems that keep the character from walking, each with what to do next; empty if there are none.
     ///
-    /// The editor shows the same as configuration warnings.
+    /// The editor shows the same texts as configuration warnings.
     #[func]
     fn get_problems(&self) -> PackedStringArray {
         self.problems()
     }
 
-    /// The walk as it is now, to be saved or sent: `set_state()` of a node with the same model, styles and body goes on from it
+    /// Returns the current state of the walk, to be saved or sent: `set_state()` on a node with the same model, styles and body continues
     /// with the same poses. About 1.5 kB; empty while the character does not walk.
     ///
-    /// It holds the walk and not the place of the character: save that beside it.
+    /// The state does not include the character's transform: save it as well.
     #[func]
     fn get_state(&self) -> PackedByteArray {
         match (&self.session, &self.pending.state) {
@@ -109,10 +109,10 @@ impl GaitGenerator3D {
         }
     }
 
-    /// Goes on from a state that `get_state()` told, at the next frame. A state of another model, other styles or from a damaged
-    /// file is refused: the log says why, and the walk goes on as it was.
+    /// Restores a state from `get_state()` in the next frame. A state of another model, of other styles or from a damaged
+    /// file is refused: the log gives the reason, and the walk continues unchanged.
     ///
-    /// `seed`, `phase` and `variation` keep their values, for the next walk that starts anew.
+    /// `seed`, `phase` and `variation` keep their values for the next walk that restarts.
     #[func]
     fn set_state(&mut self, state: PackedByteArray) {
         self.pending.state = Some(state);

@@ -31,15 +31,15 @@ impl Flight {
 
 #[godot_api(secondary)]
 impl GaitGenerator3D {
-    /// Asks for one jump in which the hips rise `height` metres above where they were: 0.1 to 0.5 is what adults do.
+    /// Requests one jump in which the hips rise by `height` metres; 0.1 to 0.5 is typical of adults.
     ///
-    /// A standing character jumps off both feet at once; one that walks or runs forwards leaps with the next step, off one foot onto the other; one that goes sideways
-    /// or backwards comes to a stand first. The body bends its knees, `took_off` is emitted as it leaves the ground and `landed` as it is back. A
-    /// jump off both feet moves the character up and down by its root motion; a leap lifts the body above the character. Asking again while a jump is
-    /// waited for or under way changes nothing.
+    /// A standing character jumps off both feet. One that walks or runs forwards leaps with the next step, off one foot onto the other. One that goes sideways
+    /// or backwards stops first. The body bends its knees; `took_off` is emitted as it leaves the ground and `landed` as it returns. The root motion of a
+    /// two-footed jump moves the character up and down; a leap lifts the body above the character. Further requests while a jump is
+    /// pending or under way have no effect.
     ///
-    /// Returns whether there will be a jump: not before the first frame of the walk, with a model that knows none (any `.footdyn`, and
-    /// `.footfall` files without `footfall train --jumping`), or for a height that is none.
+    /// Returns `true` if the character will jump. It will not before the first frame of the walk, with a model without jumps (any `.footdyn`, and
+    /// `.footfall` files trained without `footfall train --jumping`), or for an invalid height.
     #[func]
     fn jump(&mut self, height: f64) -> bool {
         self.with_session(|session| {
@@ -48,11 +48,11 @@ impl GaitGenerator3D {
         })
     }
 
-    /// Asks for one jump off both feet that lands at `position`, in global space: onto a wall, over a gap, down from a ledge. Who moves comes to a stand
-    /// first. It does not turn: face the place before. It rises as high as the way needs.
+    /// Requests one two-footed jump that lands at `position`, in global space: onto a wall, over a gap, down from a ledge. A moving character stops
+    /// first. The character does not turn: face the place before the jump. The jump is as high as its distance requires.
     ///
-    /// A place farther than people jump (about twice the length of the legs ahead, two thirds of it to the side or back, and six tenths of it up) is not
-    /// reached; the jump goes as far as it can in that direction. Returns whether there will be a jump, as `jump()` does.
+    /// A place beyond the reach of people (about twice the leg length ahead, two thirds of it to the side or back, and six tenths of it up) is not
+    /// reached; the jump goes as far as it can in that direction. Returns `true` if the character will jump, as `jump()` does.
     #[func]
     fn jump_to(&mut self, position: Vector3) -> bool {
         self.with_session(|session| {
@@ -63,11 +63,11 @@ impl GaitGenerator3D {
         })
     }
 
-    /// Pushes the character by an impulse in newton seconds, in global space; only its way over the ground counts. The body has 70 kg: 20 make it sway over
-    /// its feet, 60 take a step or two, 140 and more count as 140.
+    /// Pushes the character by an impulse in newton seconds, in global space; only its horizontal part counts. The body's mass is 70 kg: 20 make it sway over
+    /// its feet, 60 take a step or two, and more than 140 count as 140.
     ///
-    /// It comes to a stand again, or goes on as asked. In a jump off both feet, before the first frame of the walk and with a `.footdyn` model
-    /// nothing happens.
+    /// The character then stands again or continues as controlled. In a two-footed jump, before the first frame of the walk and with a `.footdyn` model
+    /// a push has no effect.
     #[func]
     fn push(&mut self, impulse: Vector3) {
         if let Some(session) = &mut self.session

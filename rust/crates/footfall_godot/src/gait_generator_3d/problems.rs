@@ -31,7 +31,7 @@ impl GaitGenerator3D {
         let (styles, weights) = (self.styles.len(), self.style_weights.len());
         if styles != weights {
             let problem = format!(
-                "There are {styles} styles and {weights} style weights. Give Style Weights one number for every style."
+                "Styles has {styles} entries, Style Weights has {weights}. Set one weight for every style."
             );
             problems.push(&GString::from(&problem));
         }

@@ -13,7 +13,7 @@ use godot::prelude::*;
 const FAR_M: f32 = 0.4;
 /// Longer than this nobody goes over, seconds.
 const MOST_SECS: f64 = 10.0;
-/// A walk that was measured anew goes over to itself within this time, seconds.
+/// Time of the transition of a walk that was measured again, seconds.
 const RESIZE_SECS: f64 = 0.3;
 
 /// States of control of the skeleton.
@@ -36,12 +36,12 @@ pub(super) enum Wish {
 
 #[godot_api(secondary)]
 impl GaitGenerator3D {
-    /// Begins to walk from whatever pose and speed the skeleton has: the end of an attack, a jump that lands, a ragdoll. The walk begins on
-    /// the side and at the moment of the stride that fit best, or with a first step if the body stands; feet on the ground stay there until
-    /// they are lifted. What parts the two motions is gone in `seconds`; then `taken_over` is emitted.
+    /// Starts to walk from the current pose and speed of the skeleton: after an attack, a landing, a ragdoll. The walk begins at
+    /// the best matching side and phase of the stride, or with a first step if the body stands. Feet on the ground stay there until
+    /// they lift. The difference between the two motions fades out in `seconds`; then `taken_over` is emitted.
     ///
-    /// Call it after `hand_over()`, so that the node knows how fast the body is; else it watches the skeleton for two frames first. A
-    /// `PhysicalBoneSimulator3D` has to be above this node under the skeleton; where the body fell, the character follows it.
+    /// Call it after `hand_over()`, so that the node knows the body's speed; otherwise it first observes the skeleton for two frames. A
+    /// `PhysicalBoneSimulator3D` must be above this node under the skeleton; the character then moves to where the body fell.
     #[func]
     fn take_over(&mut self, seconds: f64) {
         if self.reign == Reign::Walking {
@@ -53,8 +53,8 @@ impl GaitGenerator3D {
         self.wish = Some(Wish::TakeOver(within_reason(seconds)));
     }
 
-    /// Leaves the skeleton to what else animates it, such as an `AnimationPlayer`: its pose takes over within `seconds`, the character comes
-    /// to rest, and feet on the ground stay where they are, or make a step if the animation has them elsewhere; that may take half a
+    /// Gives the skeleton to other animation, such as an `AnimationPlayer`: its pose fades in within `seconds`, the character comes
+    /// to rest, and feet on the ground stay in place, or take a step if the animation has them elsewhere, which may take half a
     /// second more. Then `handed_over` is emitted, and the node does nothing until `take_over()`.
     ///
     /// With 0 seconds it does nothing from the next frame on.
@@ -66,7 +66,7 @@ impl GaitGenerator3D {
         };
     }
 
-    /// Returns whether the skeleton is left to other animation: after `hand_over()`, until `take_over()`.
+    /// Returns `true` while other animation has the skeleton: after `hand_over()`, until `take_over()`.
     #[func]
     fn is_handed_over(&self) -> bool {
         self.reign == Reign::Away

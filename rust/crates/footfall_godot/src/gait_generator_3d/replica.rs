@@ -34,7 +34,7 @@ struct Led {
 
 #[godot_api(secondary)]
 impl GaitGenerator3D {
-    /// Returns whether the character makes the steps of another peer's: an identity has come for it, and this peer has not the multiplayer authority of the node that travels.
+    /// Returns `true` if the character makes the steps of another peer: it has received an identity, and this peer has no multiplayer authority over the node that travels.
     #[func]
     fn is_replica(&self) -> bool {
         self.replica.is_led()

@@ -44,6 +44,6 @@ impl GaitGenerator3D {
 fn told(rival: &Gd<GaitGenerator3D>) -> String {
     let name = rival.get_name();
     format!(
-        "{name} above this node walks the same Skeleton3D already, so this node does nothing. Remove one of the two, or turn Active off."
+        "{name} above this node already walks the same Skeleton3D, so this node does nothing. Remove one of the two, or turn Active off."
     )
 }

@@ -14,7 +14,7 @@ use footfall_synth::{Controls, GaitGenerator, GeneratorConfig};
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
-/// A body that has kept a new size for so many frames is measured anew.
+/// Number of frames after which a body of a new size is measured again.
 const SETTLED_FRAMES: u8 = 12;
 
 /// A generator, the skeleton that it poses and the node that travels.
@@ -47,7 +47,7 @@ impl Session {
     /// Starts a walk where the character stands; when `controls` ask for none, it stands there.
     ///
     /// # Errors
-    /// Why the generator refuses, for the user.
+    /// Reason of the generator's refusal, for the user.
     pub(super) fn new(
         source: &WalkSource,
         style_weights: &[f32],
@@ -98,7 +98,7 @@ impl Session {
     /// Goes on from a saved state; the character stays where it is.
     ///
     /// # Errors
-    /// Why the state cannot be taken up, for the user.
+    /// Reason why the state cannot be restored, for the user.
     pub(super) fn restore(&mut self, state: &[u8]) -> Result<(), String> {
         self.generator
             .restore(state)
@@ -112,7 +112,7 @@ impl Session {
     /// and lets what parts them die away.
     ///
     /// # Errors
-    /// Why the generator refuses, for the user.
+    /// Reason of the generator's refusal, for the user.
     pub(super) fn go_on_from(
         &mut self,
         from: &Seen,

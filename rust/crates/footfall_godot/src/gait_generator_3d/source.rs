@@ -66,6 +66,6 @@ impl GaitGenerator3D {
         };
         let mut model = self.used_model()?;
         let source = model.bind_mut().source(&styles);
-        source.map_err(|error| format!("The styles cannot be worn: {error}"))
+        source.map_err(|error| format!("The styles cannot be used: {error}"))
     }
 }

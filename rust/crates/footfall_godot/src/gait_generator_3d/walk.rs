@@ -120,7 +120,7 @@ impl GaitGenerator3D {
             && let Err(problem) = session.restore(state.as_slice())
         {
             let node = self.base().get_path();
-            godot_warn!("{node}: the state is refused: {problem}");
+            godot_warn!("{node}: the state was refused: {problem}");
         }
         if let Some(secs) = self.pending.seek.take() {
             session.skip(secs, self.controls());

@@ -74,25 +74,25 @@ impl ImuReconstructor3D {
 
 #[godot_api(secondary)]
 impl ImuReconstructor3D {
-    /// Problem with a sensor or with how it is worn; empty while all is well. The body stands or goes on as is probable meanwhile.
+    /// Returns the problem with a sensor or its mounting; empty if there is none. Meanwhile the body stands or continues as is probable.
     ///
-    /// `silent`: nothing is heard. `force_in_g`, `gravity`, `rate_in_degrees`: units or scale are wrong. `stuck_axis`, `saturated`: an axis keeps one value, or reaches the end of the sensor's range. `slow`, `pace`: too few samples come
-    /// for a gait, or far fewer or more than at first. `lies`, `rides`: the sensor lies still, or is moved without steps. `unexplained`: the model does not know the motion. `other_side`: it is worn on the other side
-    /// of the body. `turned`: it is worn otherwise than it was calibrated or said to be.
+    /// `silent`: no samples. `force_in_g`, `gravity`, `rate_in_degrees`: wrong units or scale. `stuck_axis`, `saturated`: an axis keeps one value, or reaches the end of the sensor's range. `slow`, `pace`: too few samples
+    /// for a gait, or far fewer or more than at first. `lies`, `rides`: the sensor lies still, or moves without steps. `unexplained`: motion that the model does not know. `other_side`: worn on the other side
+    /// of the body. `turned`: the mounting differs from the calibration or from `mounting`.
     #[func]
     fn get_sensor_problem(&self, #[opt(default = 0)] sensor: i64) -> StringName {
         let problem = self.sensor_problem(sensor);
         StringName::from(problem.map_or("", |problem| problem.name()))
     }
 
-    /// Message for the player about the problem with a sensor, with the next thing to do; empty while all is well.
+    /// Returns the message for the player about the problem with a sensor, with what to do next; empty if there is none.
     #[func]
     fn get_sensor_message(&self, #[opt(default = 0)] sensor: i64) -> GString {
         let problem = self.sensor_problem(sensor);
         problem.map_or_else(GString::new, |problem| GString::from(&problem.to_string()))
     }
 
-    /// Says how many samples a second a sensor was promised to give, so that fewer or more are a problem. Without a promise, fewer than in the beginning are.
+    /// Sets the sample rate that a sensor should deliver, in samples per second; fewer or more are a problem. By default, fewer than at first are.
     #[func]
     fn promise_rate(&mut self, rate: f64, #[opt(default = 0)] sensor: i64) {
         if let (Some(session), Ok(sensor)) = (&mut self.session, usize::try_from(sensor)) {
@@ -100,9 +100,9 @@ impl ImuReconstructor3D {
         }
     }
 
-    /// Begins a calibration of about five seconds: the player stands for two seconds and takes four steps. Forgets how the sensors are worn.
+    /// Begins a calibration of about five seconds: the player stands for two seconds and takes four steps. Discards the mounting of the sensors.
     ///
-    /// `calibration_changed` tells what to do next. Where `mounting` is `ALIGNED` there is nothing to find out.
+    /// `calibration_changed` reports what to do next. With `mounting` `ALIGNED` there is nothing to calibrate.
     #[func]
     fn start_calibration(&mut self) {
         let Some(session) = &mut self.session else {
@@ -114,31 +114,31 @@ impl ImuReconstructor3D {
         session.asked = None;
     }
 
-    /// Step of the calibration: `connect`, `stand`, `walk`, `walk_on` or `done`; empty where none was begun.
+    /// Returns the step of the calibration: `connect`, `stand`, `walk`, `walk_on` or `done`; empty if none was started.
     #[func]
     fn get_calibration_step(&self) -> StringName {
         StringName::from(self.guide().map_or("", |guide| guide.step().name()))
     }
 
-    /// Message for the player about the step of the calibration.
+    /// Returns the message for the player about the current step of the calibration.
     #[func]
     fn get_calibration_message(&self) -> GString {
         GString::from(self.guide().map_or("", |guide| guide.step().message()))
     }
 
-    /// Progress of the step of the calibration, 0 to 1.
+    /// Returns the progress of the current step of the calibration, 0 to 1.
     #[func]
     fn get_calibration_progress(&self) -> f64 {
         self.guide()
             .map_or(0.0, |guide| f64::from(guide.progress()))
     }
 
-    /// Keeps how the sensors are worn, what they measure at rest and how long the player's steps are, in a small file for the next session. Tells what is wrong, or nothing.
+    /// Saves the mounting of the sensors, their values at rest and the length of the player's steps to a small file for the next session. Returns the problem, or an empty string.
     #[func]
     fn save_calibration(&self, path: GString) -> GString {
         let path = String::from(path);
         let Some(calibration) = self.session.as_ref().and_then(Session::calibration) else {
-            return "It is not known yet how the sensors are worn: calibrate first.".into();
+            return "The mounting of the sensors is not known yet. Calibrate first.".into();
         };
         let bytes = match calibration.to_bytes() {
             Ok(bytes) => PackedByteArray::from(bytes),
@@ -147,21 +147,21 @@ impl ImuReconstructor3D {
         if written(&path, &bytes) {
             return GString::new();
         }
-        GString::from(&format!("{path}: cannot be written; save to user://"))
+        GString::from(&format!("Cannot write {path}. Save to user://."))
     }
 
-    /// Takes over a calibration that was saved, in place of finding it out: call it once the sensors are heard. Tells what is wrong, or nothing: a file of a later version, for other sites
-    /// than the model's or of another sensor than the one that is heard is not taken.
+    /// Loads a saved calibration instead of calibrating. Call it when the sensors are connected. Returns the problem, or an empty string: a file of a later version, for sites other
+    /// than the model's or of a sensor other than the connected one is refused.
     #[func]
     fn load_calibration(&mut self, path: GString) -> GString {
         let path = String::from(path);
         let Some(session) = &mut self.session else {
-            return "The character is not driven yet: load the calibration after the first frame."
+            return "The sensors do not drive the character yet. Load the calibration after the first frame."
                 .into();
         };
         if !FileAccess::file_exists(path.as_str()) {
             return GString::from(&format!(
-                "{path}: there is no such file; calibrate, and save that"
+                "There is no file {path}. Calibrate, and save the calibration."
             ));
         }
         let bytes = FileAccess::get_file_as_bytes(path.as_str());
@@ -173,14 +173,14 @@ impl ImuReconstructor3D {
         )
     }
 
-    /// Length of the player's steps beside those of the people in the model: a sensor on a foot measures it as they walk.
+    /// Returns the length of the player's steps relative to those of the people in the model; a foot sensor measures it as they walk.
     #[func]
     fn get_step_scale(&self) -> f64 {
         let session = self.session.as_ref();
         session.map_or(1.0, |session| f64::from(session.reconstructor.stride()))
     }
 
-    /// Sets the length of the player's steps beside those of the people in the model, 0.7 to 1.4: for a phone in the pocket, which cannot measure it.
+    /// Sets the length of the player's steps relative to those of the people in the model, 0.7 to 1.4: for a phone in the pocket, which cannot measure it.
     #[func]
     fn set_step_scale(&mut self, scale: f64) {
         if let Some(session) = &mut self.session {

@@ -11,10 +11,10 @@ use godot::prelude::*;
 
 #[godot_api(secondary)]
 impl ImuReconstructor3D {
-    /// Takes a sample of a sensor: 0, or 1 for the second site of the model. `time` is the sensor's clock in seconds, `force` its specific
-    /// force in m/s² (gravity included), `rate` its angular rate in rad/s, both in its own axes.
+    /// Adds a sample of a sensor: 0, or 1 for the second site of the model. `time` is the sensor's clock in seconds, `force` its specific
+    /// force in m/s² (including gravity), `rate` its angular rate in rad/s, both in the sensor's own axes.
     ///
-    /// Samples that are late, repeated or not finite are left out.
+    /// Late, repeated and non-finite samples are dropped.
     #[func]
     fn push_sample(&mut self, sensor: i64, time: f64, force: Vector3, rate: Vector3) {
         let sample = ImuSample {
@@ -27,7 +27,7 @@ impl ImuReconstructor3D {
         }
     }
 
-    /// The direction in which the character faces now is straight ahead of the person from now on.
+    /// Takes the direction in which the character faces now as straight ahead of the person.
     #[func]
     fn reset_heading(&mut self) {
         if let Some(session) = &mut self.session {
@@ -36,7 +36,7 @@ impl ImuReconstructor3D {
         }
     }
 
-    /// Turns the body by an angle, in radians, to the left: for steering by stick where the player cannot turn.
+    /// Turns the body to the left by an angle in radians, for steering by stick where the player cannot turn.
     #[func]
     fn turn(&mut self, angle: f64) {
         if let Some(session) = &mut self.session {
@@ -45,7 +45,7 @@ impl ImuReconstructor3D {
         }
     }
 
-    /// Forgets how the sensors are worn, and finds it out anew: when they have moved. The character stands until samples come.
+    /// Discards the mounting of the sensors and calibrates it again, after the sensors have moved. The character stands until samples arrive.
     #[func]
     fn forget_mounting(&mut self) {
         if let Some(session) = &mut self.session {
@@ -53,14 +53,14 @@ impl ImuReconstructor3D {
         }
     }
 
-    /// Age of the live sensors' newest sample when the pose is made, in seconds; 0 for others.
+    /// Returns the age of the live sensors' newest sample when the pose is made, in seconds; 0 for other sources.
     #[func]
     fn get_latency(&self) -> f64 {
         let sensors = self.session.iter().flat_map(|session| &session.sensors);
         sensors.map(Worn::latency_secs).fold(0.0, f64::max)
     }
 
-    /// Records what a sensor gives from now on, into a file that a `ReplayImuSource` plays; tells whether the file can be made.
+    /// Records a sensor's samples from now on into a file that a `ReplayImuSource` plays. Returns `true` if the file can be created.
     #[func]
     fn start_recording(&mut self, path: GString, #[opt(default = 0)] sensor: i64) -> bool {
         let path = String::from(path);
@@ -69,13 +69,13 @@ impl ImuReconstructor3D {
         worn.is_some_and(|worn| worn.start_recording(&path.to_string()))
     }
 
-    /// Ends a recording and gives its file its name; tells whether all of it was written.
+    /// Ends a recording and renames its temporary file. Returns `true` if all of it was written.
     #[func]
     fn stop_recording(&mut self, #[opt(default = 0)] sensor: i64) -> bool {
         self.worn_mut(sensor).is_some_and(Worn::stop_recording)
     }
 
-    /// The body's behaviour: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
+    /// Returns the body's behaviour: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
     #[func]
     fn get_behaviour(&self) -> StringName {
         let behaviour = self
@@ -85,17 +85,17 @@ impl ImuReconstructor3D {
         StringName::from(behaviour.name())
     }
 
-    /// Returns the model's confidence, 0 to 1: the probability that the wearer's motion is among those the model learned. 0 where nothing
-    /// is heard.
+    /// Returns the model's confidence, 0 to 1: the probability that the wearer's motion is among the motions the model learned. 0 without
+    /// samples.
     ///
-    /// Walking is about 0.85. Below 0.1, with a sensor that is shaken, worn elsewhere or mounted otherwise than is thought, the body stands.
+    /// Walking gives about 0.85. Below 0.1, as with a sensor that is shaken, worn elsewhere or mounted in another orientation, the body stands.
     #[func]
     fn get_confidence(&self) -> f64 {
         let session = self.session.as_ref();
         session.map_or(0.0, |s| f64::from(s.reconstructor.confidence()))
     }
 
-    /// Certainty of a sensor's mounting, 0 to 1; 0 before it was found.
+    /// Returns the certainty of a sensor's mounting, 0 to 1; 0 before it is known.
     #[func]
     fn get_mounting_certainty(&self, sensor: i64) -> f64 {
         if self.mounting == ImuMounting::Aligned {
@@ -107,7 +107,7 @@ impl ImuReconstructor3D {
         mounting.map_or(0.0, |mounting| f64::from(mounting.certainty))
     }
 
-    /// The body's motion in the character's own space since the frame before by the clock of who asks, as of `GaitGenerator3D`.
+    /// Returns the body's travel in the character's own space since the previous frame, as `get_root_motion_delta()` of `GaitGenerator3D`.
     #[func]
     fn get_root_motion_delta(&mut self) -> Transform3D {
         let Some(skeleton) = self.base().get_skeleton() else {
@@ -117,9 +117,9 @@ impl ImuReconstructor3D {
             .since_last_frame(advance_of(&skeleton), frame_clock())
     }
 
-    /// Problems that keep the character from being driven, each with what to do next, and those of the sensors that are heard; empty without any.
+    /// Returns the problems that keep the character from being driven, each with what to do next, and those of the connected sensors; empty if there are none.
     ///
-    /// The editor shows the first as configuration warnings.
+    /// The editor shows the first ones as configuration warnings.
     #[func]
     fn get_problems(&self) -> PackedStringArray {
         let mut problems = self.problems();

@@ -37,7 +37,7 @@ pub(super) struct Session {
     pub(super) state: SensorState,
 }
 
-/// The pose, above the body's place, of somebody who stands.
+/// The pose, above the body's place, of a standing person.
 pub(super) fn standing(reconstructor: &Reconstructor) -> Pose {
     let mut own = reconstructor.clone();
     let mut pose = Pose::default();

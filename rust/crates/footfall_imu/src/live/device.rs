@@ -322,7 +322,7 @@ mod tests {
         assert!((status.rate_hz - 100.0).abs() < 1.0, "{}", status.rate_hz);
         assert!(status.delay_secs.abs() < 1e-3, "{}", status.delay_secs);
         let fault = status.fault.expect("forces in g are a fault");
-        assert!(fault.contains("in g"), "{fault}");
+        assert!(fault.contains("unit is g"), "{fault}");
         assert!(
             samples
                 .windows(2)

@@ -85,8 +85,7 @@ impl Link {
         let thread = match thread {
             Ok(thread) => Some(thread),
             Err(error) => {
-                *lock(&shared.state) =
-                    LinkState::Failed(format!("the system gives no thread: {error}"));
+                *lock(&shared.state) = LinkState::Failed(format!("cannot start a thread: {error}"));
                 None
             }
         };
@@ -269,11 +268,11 @@ pub(super) fn bind_problem(what: &str, port: u16, error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::AddrInUse => {
             format!(
-                "{what} port {port} is taken by another program; close it, or choose another port"
+                "{what} port {port} is taken by another program; close the program, or choose another port"
             )
         }
         io::ErrorKind::PermissionDenied => {
-            format!("{what} port {port} may not be opened by this user; choose one above 1023")
+            format!("this user may not open {what} port {port}; choose a port above 1023")
         }
         _ => format!("{what} port {port} cannot be opened: {error}"),
     }

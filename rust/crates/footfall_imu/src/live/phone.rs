@@ -150,7 +150,7 @@ pub(super) fn until_stopped(link: &LinkWriter, server: impl Future<Output = Stri
         .build();
     let runtime = match runtime {
         Ok(runtime) => runtime,
-        Err(error) => return format!("the system gives no events: {error}"),
+        Err(error) => return format!("cannot create an event queue: {error}"),
     };
     let stopped = async {
         while !link.stopped() {

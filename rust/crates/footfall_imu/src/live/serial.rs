@@ -70,7 +70,7 @@ impl SerialFormat {
     pub const fn caveat(self) -> Option<&'static str> {
         match self {
             Self::Bno085 => Some(
-                "a BNO085 in RVC mode sends no angular rate, so it cannot drive a body; read it by SHTP on a board that prints lines of text",
+                "a BNO085 in RVC mode sends no angular rate and cannot drive a body; read it by SHTP on a board that prints lines of text",
             ),
             _ => None,
         }

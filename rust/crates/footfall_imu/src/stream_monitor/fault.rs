@@ -7,7 +7,7 @@ use crate::checks::LEAST_RATE_HZ;
 pub enum StreamFault {
     /// Specific force is given in units of gravity.
     #[error(
-        "the sensor at rest measures {rest:.2} where gravity is 9.81 m/s²: it gives g; multiply its acceleration by 9.80665"
+        "the sensor at rest measures {rest:.2}, gravity is 9.81 m/s²: its unit is g; multiply its acceleration by 9.80665"
     )]
     ForceInG {
         /// Magnitude of specific force at rest.
@@ -15,7 +15,7 @@ pub enum StreamFault {
     },
     /// Specific force at rest is no gravity.
     #[error(
-        "the sensor at rest measures {rest:.2} m/s² where gravity is 9.81; give acceleration in m/s² with gravity included, or calibrate the accelerometer"
+        "the sensor at rest measures {rest:.2} m/s², gravity is 9.81; send acceleration in m/s² including gravity, or calibrate the accelerometer"
     )]
     Gravity {
         /// Magnitude of specific force at rest, m/s².
@@ -23,7 +23,7 @@ pub enum StreamFault {
     },
     /// Angular rate is given in degrees.
     #[error(
-        "the sensor turns by {high:.0} rad/s, faster than any limb: it gives degrees; multiply its angular rate by 0.0174533"
+        "the sensor reports {high:.0} rad/s, faster than any limb: its unit is degrees; multiply its angular rate by 0.0174533"
     )]
     RateInDegrees {
         /// The magnitude that was reached.
@@ -31,7 +31,7 @@ pub enum StreamFault {
     },
     /// An axis does not change while the others do.
     #[error(
-        "{axis} stays at {value:.2} while the sensor moves: the axis is stuck; restart the sensor, and replace it if that does not help"
+        "{axis} stays at {value:.2} while the sensor moves: the axis is stuck; restart the sensor, or replace it if that does not help"
     )]
     StuckAxis {
         /// Name of the axis: `ax` to `gz`.
@@ -41,7 +41,7 @@ pub enum StreamFault {
     },
     /// An axis reaches the end of the sensor's range again and again.
     #[error(
-        "{axis} ends at {value:.1} again and again: its range is too small; set the sensor to ±8 g and ±1000 °/s or more"
+        "{axis} repeatedly stops at {value:.1}: its range is too small; set the sensor to ±8 g and ±1000 °/s or more"
     )]
     Saturated {
         /// Name of the axis.
@@ -49,22 +49,22 @@ pub enum StreamFault {
         /// The end that it reaches, m/s² or rad/s.
         value: f32,
     },
-    /// Too few samples come for a gait.
+    /// The sample rate is too low for a gait.
     #[error(
-        "only {rate_hz:.0} samples a second come, a gait needs {LEAST_RATE_HZ}; bring sensor and receiver closer together, or set the sensor to 100"
+        "the sensor sends only {rate_hz:.0} samples a second, a gait needs {LEAST_RATE_HZ}; move sensor and receiver closer together, or set the sensor to 100"
     )]
     Slow {
         /// Samples a second.
         rate_hz: f32,
     },
-    /// Far fewer or more samples come than were promised.
+    /// The sample rate is far from the promised one.
     #[error(
-        "{rate_hz:.0} samples a second come where {promised_hz:.0} were to be expected; look at the sensor's rate, its battery and the connection"
+        "the sensor sends {rate_hz:.0} samples a second instead of {promised_hz:.0}; check its rate, its battery and the connection"
     )]
     Pace {
         /// Samples a second.
         rate_hz: f32,
-        /// Those that were promised, or came in the beginning.
+        /// Promised rate, or that of the beginning.
         promised_hz: f32,
     },
 }
@@ -83,7 +83,7 @@ impl StreamFault {
         }
     }
 
-    /// Returns true when nothing can be made of the samples, so that the body had better stand.
+    /// Returns true when the samples are unusable, so that the body should stand.
     pub const fn is_blinding(&self) -> bool {
         !matches!(self, Self::Saturated { .. } | Self::Pace { .. })
     }

@@ -97,7 +97,7 @@ fn the_end_of_a_range_is_told_when_it_is_reached_again_and_again() {
     let end = 2.0 * GRAVITY_MPS2;
     let clipped =
         faults(|sample| sample.force = sample.force.clamp(Vec3::splat(-end), Vec3::splat(end)));
-    is_told(&clipped, "saturated", "ay ends at 19.6", 8.0);
+    is_told(&clipped, "saturated", "ay repeatedly stops at 19.6", 8.0);
     assert!(!clipped[0].fault.is_blinding());
     let wide = faults(|sample| {
         let end = Vec3::splat(4.0 * GRAVITY_MPS2);
@@ -120,7 +120,7 @@ fn units_are_told_at_rest_and_in_motion() {
             s.force *= 0.001;
         }
     });
-    is_told(&free, "gravity", "gravity included", 2.0);
+    is_told(&free, "gravity", "including gravity", 2.0);
     let degrees = faults(|s| s.rate *= 1_f32.to_degrees());
     is_told(&degrees, "rate_in_degrees", "0.0174533", 4.0);
 }
@@ -149,13 +149,13 @@ fn a_rate_that_was_not_promised_is_told() {
     is_told(
         &every(2, Some(100.0)),
         "pace",
-        "50 samples a second come where 100",
+        "50 samples a second instead of 100",
         3.0,
     );
     is_told(
         &every(1, Some(50.0)),
         "pace",
-        "100 samples a second come where 50",
+        "100 samples a second instead of 50",
         3.0,
     );
     is_told(&every(6, None), "slow", "only 17 samples", 3.0);
@@ -168,7 +168,7 @@ fn a_rate_that_was_not_promised_is_told() {
         sample.time_secs < 6.0 || odd
     });
     let spans = StreamMonitor::faults_of(&failing, None);
-    is_told(&spans, "pace", "where 100", 10.5);
+    is_told(&spans, "pace", "instead of 100", 10.5);
     assert!(spans[0].start_secs > 6.0);
 }
 

@@ -205,7 +205,10 @@ fn a_phone_with_newer_sensors_streams() {
         assert!((sample.rate.x - 0.5).abs() < 0.11, "{sample:?}");
     }
     wait_for("the page says that it works", || {
-        browser.state().contains("feels this phone").then_some(())
+        browser
+            .state()
+            .contains("receives this phone's motion")
+            .then_some(())
     });
     let figures = browser.run("document.getElementById('figures').textContent");
     assert!(

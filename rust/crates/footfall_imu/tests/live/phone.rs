@@ -171,7 +171,7 @@ fn strangers_stay_out_and_one_phone_drives_one_player() {
         (game.device(0).status().samples == 1).then_some(())
     });
     second.send(message(2)).unwrap();
-    told(&mut second, "another phone");
+    told(&mut second, "Another phone");
     // The other player's code is free.
     let mut third = game.open(1, "third");
     third.send(message(1)).unwrap();

@@ -160,7 +160,7 @@ fn a_port_that_is_not_there_is_named_and_tried_again() {
         LinkState::Failed(problem) => Some(problem),
         _ => None,
     });
-    assert!(problem.contains("no such port"), "{problem}");
+    assert!(problem.contains("there is no port"), "{problem}");
     // It is plugged in.
     let (device, name) = terminal();
     std::os::unix::fs::symlink(name, &port).unwrap();

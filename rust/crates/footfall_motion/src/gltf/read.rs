@@ -15,11 +15,11 @@ const PLAUSIBLE_RATES_HZ: std::ops::RangeInclusive<f64> = 15.0..=240.0;
 /// Longest animation that is read: a damaged time must not fill the memory.
 const LONGEST_SECS: f32 = 3600.0;
 
-/// Why a glTF file is no recording.
+/// Errors of reading a recording from a glTF file.
 #[derive(Debug, thiserror::Error)]
 pub enum GltfError {
     /// The file cannot be read.
-    #[error("{}: {source}; is it there, and glTF 2.0 with its buffers beside it? Else export it anew as .glb", path.display())]
+    #[error("{}: {source}; check that the file exists and is glTF 2.0 with its buffers beside it, or export it again as .glb", path.display())]
     File {
         /// The file.
         path: PathBuf,

@@ -77,7 +77,7 @@ pub(super) fn as_recorded(legs: &Legs, gait: Gait) -> Option<f64> {
     Some(-0.5 * squares - likelihood.half_ln_determinant)
 }
 
-/// Evidence for misplaced hip joints of somebody who walks plainly.
+/// Evidence for misplaced hip joints of a person who walks plainly.
 pub(super) fn misplaced(legs: &Legs) -> Option<f64> {
     let covariance = Gait::Plain.covariance(legs.strides());
     most_probable(legs, covariance).map(|fit| fit.evidence)

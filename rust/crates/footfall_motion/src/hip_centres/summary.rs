@@ -1,4 +1,4 @@
-//! A finding in one line, for whoever opened the recording.
+//! A finding in one line, for the person who opened the recording.
 
 use super::{HipCorrection, HipFinding, HipVerdict};
 use footfall_core::Skeleton;

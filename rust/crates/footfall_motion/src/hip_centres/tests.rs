@@ -113,7 +113,7 @@ fn a_skeleton_of_unknown_origin_is_corrected_only_on_strong_evidence() {
     let finding = find_hip_centres(&[&clear]);
     assert!(finding.verdict.correction().is_some());
     assert!(finding.probability.unwrap() > 0.9, "{finding:?}");
-    // The same knees could be those of somebody who walks a little bent.
+    // The same knees could be those of a person who walks a little bent.
     let doubtful = misplaced(walks(0.0, 6), [Vec2::new(0.012, -0.005); 2], 1.0);
     let finding = find_hip_centres(&[&doubtful]);
     assert_eq!(finding.verdict.correction(), None);

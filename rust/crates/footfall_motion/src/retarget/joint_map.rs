@@ -18,7 +18,7 @@ pub fn parse_joint_map(text: &str) -> Result<JointMap, RetargetError> {
         let Some(joint) = Joint::from_name(&key) else {
             let known = Joint::ALL.map(Joint::name).join(", ");
             return Err(RetargetError::Map(format!(
-                "{key} is no joint of the canonical body; the joints are {known}"
+                "{key} is not a joint of the canonical body; the joints are {known}"
             )));
         };
         let listed = match value {

@@ -24,13 +24,13 @@ pub struct RetargetReport {
     pub hip_centres: HipFinding,
 }
 
-/// Why a file cannot be retargeted.
+/// Errors of retargeting a file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RetargetError {
     /// The joints' names fit no map.
     #[error(
-        "no joint of the file is known to be {missing}; the closest map is \"{map}\"{doubts}; write a map with lines such as \
-         `{example} = \"name in the file\"` and give it with --map; the file's joints are {joints}",
+        "the file has no known joint for {missing}; the closest map is \"{map}\"{doubts}; write a map with lines such as \
+         `{example} = \"name in the file\"` and pass it as --map; the file's joints are {joints}",
         missing = missing.iter().map(|joint| joint.name()).collect::<Vec<_>>().join(", "),
         example = missing.first().map_or("Hips", |joint| joint.name()),
         joints = joints.join(", ")
@@ -40,7 +40,7 @@ pub enum RetargetError {
         missing: Vec<Joint>,
         /// The map that fits best.
         map: String,
-        /// Why joints that have bones of their names were left out, each with `; ` before it.
+        /// Reasons for leaving out joints with bones of their names, each preceded by `; `.
         doubts: String,
         /// All joints of the file.
         joints: Vec<String>,
@@ -62,13 +62,13 @@ pub enum RetargetError {
     },
     /// The numbers of the file are too large to place the body.
     #[error(
-        "frame {frame}: the body cannot be placed; its lengths or positions are beyond all measure"
+        "frame {frame}: the body cannot be placed; its lengths or positions are out of range; export the file again"
     )]
     NotFinite {
         /// The first such frame.
         frame: usize,
     },
     /// The rate asked for is no rate.
-    #[error("{0} frames per second is no frame rate; give a number above zero")]
+    #[error("{0} frames per second is not a frame rate; give a number above zero")]
     FrameRate(f64),
 }

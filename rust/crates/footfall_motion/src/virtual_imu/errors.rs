@@ -46,7 +46,7 @@ impl SensorNoise {
         }
     }
 
-    /// The same of a board that nobody calibrated, on a radio link: scales are off by 2 %, the clock by 0.1 %, one sample in fifty is lost, axes end at 4 g and at
+    /// The same of an uncalibrated board, on a radio link: scales are off by 2 %, the clock by 0.1 %, one sample in fifty is lost, axes end at 4 g and at
     /// 1000 °/s, as such boards are often set. The factor leaves the range alone.
     pub const fn uncalibrated(factor: f32) -> Self {
         Self {

@@ -63,7 +63,7 @@ impl Problem<'_> {
         (system, starts.map(DVector::from_column_slice).collect())
     }
 
-    /// The first value and gradient, with the share of the gain that foretells best.
+    /// The first value and gradient, with the share of the gain that predicts best.
     pub(super) fn begin(&self, point: &mut [f64], gradient: &mut [f64]) -> f64 {
         let parts = self.parts();
         let gain = point[parts.gain..parts.starts].to_vec();

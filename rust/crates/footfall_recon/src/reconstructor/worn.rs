@@ -1,4 +1,4 @@
-//! Wear of the sensors: their mountings, what they measure at rest, and what is wrong with them.
+//! Mountings of the sensors, their values at rest, and their problems.
 
 use super::Reconstructor;
 use crate::prepared::Prepared;
@@ -7,19 +7,19 @@ use crate::sensor::Sensor;
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Silence that is told, seconds.
+/// Silence after which it is reported, seconds.
 const SILENT_SECS: f32 = 1.0;
 
-/// Time in which the model explains little before it is told, seconds.
+/// Time of little explained motion after which it is reported, seconds.
 const UNEXPLAINED_SECS: f32 = 1.0;
 
 impl Reconstructor {
-    /// Sets the mounting of a sensor: `site_from_sensor`. The identity for `aligned` mounting, which is what a new reconstructor takes it for.
+    /// Sets the mounting of a sensor: `site_from_sensor`. The identity is the `aligned` mounting, which a new reconstructor assumes.
     pub fn set_mounting(&mut self, sensor: usize, site_from_sensor: Quat) {
         self.wear(sensor, Some(site_from_sensor));
     }
 
-    /// Forgets the mounting of a sensor: until it is set, its wearer is taken to stand.
+    /// Discards the mounting of a sensor: until it is set, the wearer is assumed to stand.
     pub fn forget_mounting(&mut self, sensor: usize) {
         self.wear(sensor, None);
     }
@@ -32,25 +32,25 @@ impl Reconstructor {
         }
     }
 
-    /// Begins anew with everything that follows from a row of samples.
+    /// Restarts everything that depends on a sequence of samples.
     pub(super) fn forget_samples(&mut self) {
         self.ground.forget_sensor_heading();
         self.travel.forget_samples();
     }
 
-    /// Sets what a sensor measures at rest: its angular rate, in its own axes, and the strength of gravity.
+    /// Sets a sensor's measurements at rest: its angular rate, in its own axes, and the strength of gravity.
     pub fn set_rest(&mut self, sensor: usize, rate_bias: Vec3, gravity_mps2: f32) {
         if let Some(sensor) = self.sensors.get_mut(sensor) {
             sensor.set_rest(rate_bias, gravity_mps2);
         }
     }
 
-    /// Length of the wearer's steps beside those of the people in the model: a sensor on a foot measures it as they walk, others leave it as it was set.
+    /// Returns the length of the wearer's steps relative to the people in the model. A foot sensor measures it; with other sensors it stays as set.
     pub const fn stride(&self) -> f32 {
         self.travel.stride()
     }
 
-    /// Sets the length of the wearer's steps beside those of the people in the model, 0.7 to 1.4.
+    /// Sets the length of the wearer's steps relative to the people in the model, 0.7 to 1.4.
     pub const fn set_stride(&mut self, factor: f32) {
         self.travel.set_stride(factor);
     }
@@ -63,21 +63,21 @@ impl Reconstructor {
         self.sensors.get(sensor)
     }
 
-    /// Says how many samples a second a sensor was promised to give, so that fewer or more are [told](Self::problem).
+    /// Sets the sample rate that a sensor should deliver; other rates are [reported](Self::problem).
     pub fn promise_rate(&mut self, sensor: usize, rate_hz: f64) {
         if let Some(sensor) = self.sensors.get_mut(sensor).filter(|_| rate_hz > 0.0) {
             sensor.promise_rate(rate_hz);
         }
     }
 
-    /// Sets what [`examine`](fn@crate::examine) found about how a sensor is worn, to be [told](Self::problem) until its mounting is set anew.
+    /// Sets the finding of [`examine`](fn@crate::examine) about the mounting, which is [reported](Self::problem) until the mounting is set again.
     pub fn set_finding(&mut self, sensor: usize, finding: Option<SensorProblem>) {
         if let Some(own) = self.findings.get_mut(sensor) {
             *own = finding;
         }
     }
 
-    /// Problem of a sensor, with what to do about it; `None` while all is well and for a sensor that the model has not.
+    /// Returns the problem of a sensor, with what to do about it; `None` if there is none or the model has no such sensor.
     pub fn problem(&self, sensor: usize) -> Option<SensorProblem> {
         let site = *self.prepared.model.sites.get(sensor)?;
         let own = &self.sensors[sensor];

@@ -1,4 +1,4 @@
-//! Bones of an engine, and how those of the joints hang together.
+//! Bones of an engine, and the links between the joints' bones.
 
 use super::BindingError;
 use crate::rest_body::RestBody;
@@ -7,45 +7,45 @@ use footfall_core::rotation::of_transform;
 use footfall_core::{JOINT_COUNT, Joint};
 use glam::{Affine3A, Quat, Vec3};
 
-/// Poses of a rig's bones as an engine holds them: each relative to the bone above it, by its index in the [`RestRig`].
+/// Poses of a rig's bones in an engine: each relative to its parent bone, by its index in the [`RestRig`].
 ///
-/// An engine that keeps rotation and position of a bone apart answers for them by itself, and saves taking a matrix to pieces.
+/// An engine that stores rotation and position separately should implement the optional methods, which avoids decomposing a matrix.
 pub trait Bones {
-    /// Position, rotation and scale of a bone.
+    /// Returns position, rotation and scale of a bone.
     fn transform(&self, bone: usize) -> Affine3A;
 
-    /// Rotation of a bone, of length 1.
+    /// Returns the rotation of a bone, of length 1.
     fn rotation(&self, bone: usize) -> Quat {
         of_transform(&self.transform(bone))
     }
 
-    /// Position of a bone.
+    /// Returns the position of a bone.
     fn position(&self, bone: usize) -> Vec3 {
         self.transform(bone).translation.into()
     }
 
-    /// Turns a bone.
+    /// Sets the rotation of a bone.
     fn set_rotation(&mut self, bone: usize, rotation: Quat);
 
-    /// Moves a bone.
+    /// Sets the position of a bone.
     fn set_position(&mut self, bone: usize, position: Vec3);
 }
 
-/// A bone that is a joint.
+/// Bone of a joint.
 #[derive(Clone, Debug)]
 pub(super) struct BoundBone {
     pub(super) bone: usize,
-    /// The joint that it is.
+    /// Joint of the bone.
     pub(super) joint: Joint,
-    /// The joint whose rotation it takes.
+    /// Joint whose rotation it takes.
     pub(super) turned_by: Joint,
-    /// Its rotation in the T-pose, in the axes of the ground.
+    /// Rotation in the T-pose, in the axes of the ground.
     pub(super) ground_from_bone: Quat,
-    /// Its own rotation in the rest pose.
+    /// Own rotation in the rest pose.
     pub(super) rest: Quat,
-    /// The bone above that is a joint too, as a position in the list.
+    /// Next bone above with a joint, as a position in the list.
     pub(super) parent: Option<usize>,
-    /// The bones between it and that parent, highest first; above the hips, all.
+    /// Bones between it and that parent, highest first; above the hips, all.
     pub(super) links: Vec<usize>,
 }
 
@@ -99,14 +99,15 @@ pub(super) fn bind(
     Ok(bound)
 }
 
-/// A rotation turned on by the bones between two joints.
+/// Applies to a rotation the bones between two joints.
 pub(super) fn turned_by_links(bones: &impl Bones, above: Quat, links: &[usize]) -> Quat {
     links
         .iter()
         .fold(above, |above, link| above * bones.rotation(*link))
 }
 
-/// Size of the second transform by the first, when they are the same up to that and to what a walk through a large world does to single precision.
+/// Returns the scale of the second transform relative to the first; `None` if they differ in more than scale and the single-precision error of a large
+/// world.
 pub fn relative_size(measured: &Affine3A, now: &Affine3A) -> Option<f32> {
     let length = measured.matrix3.x_axis.length().max(f32::MIN_POSITIVE);
     let scale = now.matrix3.x_axis.length() / length;

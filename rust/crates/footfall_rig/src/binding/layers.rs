@@ -1,4 +1,4 @@
-//! Layers: bones that take the gait's pose, and bones that keep that of other animation.
+//! Layers: bones with the gait's pose, and bones with the pose of other animation.
 
 use super::bones::turned_by_links;
 use super::{Bones, RigBinding};
@@ -9,18 +9,18 @@ use glam::Quat;
 /// Share of the gait in each part of the body: 0 none, 1 all. Hips and legs take all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerWeights {
-    /// Of the spine.
+    /// Weight of the spine.
     pub spine: f32,
-    /// Of neck and head.
+    /// Weight of neck and head.
     pub head: f32,
-    /// Of the left arm, from the shoulder on.
+    /// Weight of the left arm, from the shoulder on.
     pub left_arm: f32,
-    /// Of the right arm.
+    /// Weight of the right arm.
     pub right_arm: f32,
 }
 
 impl LayerWeights {
-    /// All of the body is the gait's.
+    /// Gait in all parts of the body.
     fn is_gait(&self) -> bool {
         [self.spine, self.head, self.left_arm, self.right_arm]
             .iter()
@@ -38,10 +38,10 @@ impl LayerWeights {
     }
 }
 
-/// A part of the body that is posed as one.
+/// Part of the body with one weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
-    /// With the hips.
+    /// Moves with the hips.
     Legs,
     Spine,
     Head,
@@ -70,10 +70,10 @@ impl Part {
 type Rotations = [Quat; JOINT_COUNT];
 
 impl RigBinding {
-    /// As [`write`](Self::write), but parts of the body keep the pose that the rig has, as much as the weights say.
+    /// Writes a pose as [`write`](Self::write), but parts of the body keep the rig's pose by their weights.
     ///
-    /// Arms hang from the chest as the animation has them. Spine and head begin with the direction that the animation gives them in the
-    /// character's space, whatever the hips and the chest below them do: else every step would shake what is aimed at and looked at.
+    /// Arms follow the chest, posed by the animation. Spine and head start from the animation's orientation relative to the
+    /// character, whatever the hips and the chest below them do; otherwise every step would shake an aim or a gaze.
     pub fn write_layered(&mut self, bones: &mut impl Bones, pose: &Pose, weights: &LayerWeights) {
         if weights.is_gait() {
             self.write(bones, pose);
@@ -109,7 +109,7 @@ impl RigBinding {
         }
     }
 
-    /// Pose of the rig: each bone's own rotation, and for hips, spine and head the rotation on the ground.
+    /// Returns the pose of the rig: each bone's own rotation, and for hips, spine and head the rotation on the ground.
     fn animated(&self, bones: &impl Bones) -> (Rotations, Rotations) {
         let mut own = [Quat::IDENTITY; JOINT_COUNT];
         let mut directions = own;
@@ -131,7 +131,7 @@ impl RigBinding {
         (own, directions)
     }
 
-    /// Returns whether a bone is the lowest of the spine or of the head.
+    /// Returns true for the lowest bone of the spine or of the head.
     fn begins_part(&self, index: usize) -> bool {
         let part = Part::of(self.bones[index].joint);
         let below = self.bones[index].parent;
@@ -140,9 +140,9 @@ impl RigBinding {
     }
 }
 
-/// A blend by way of the rest pose: always the same way, however far the two are apart.
+/// Blends by way of the rest pose: always on the same path, however far the two are apart.
 ///
-/// The shortest way from an arm that is raised to one that hangs changes sides from one frame to the next.
+/// The shortest path from a raised arm to a hanging one changes sides from frame to frame.
 fn blend_about(rest: Quat, from: Quat, to: Quat, weight: f32) -> Quat {
     if weight <= 0.0 {
         return from;

@@ -1,4 +1,4 @@
-//! Reading of a rig as a pose of the body.
+//! Reading of a body's pose from a rig.
 
 use super::bones::turned_by_links;
 use super::{Bones, RigBinding, is_leg};
@@ -7,12 +7,12 @@ use footfall_core::{JOINT_COUNT, Joint, Pose};
 use glam::Quat;
 
 impl RigBinding {
-    /// Reads how the bones of hips and legs are posed, on the ground; other joints of `pose` stay as they are.
+    /// Reads the pose of the bones of hips and legs, on the ground; other joints of `pose` stay as they are.
     pub fn read_legs(&self, bones: &impl Bones, pose: &mut Pose) {
         self.read_where(bones, pose, is_leg);
     }
 
-    /// Reads how all bones are posed, on the ground. A joint without a bone moves with the one below it.
+    /// Reads the pose of all bones, on the ground. A joint without a bone moves with the joint below it.
     pub fn read(&self, bones: &impl Bones, pose: &mut Pose) {
         self.read_where(bones, pose, |_| true);
     }

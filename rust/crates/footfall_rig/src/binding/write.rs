@@ -1,4 +1,4 @@
-//! Writing of a pose of the body to the bones of a rig.
+//! Writing of a body's pose to the bones of a rig.
 
 use super::bones::{BoundBone, turned_by_links};
 use super::{Bones, RigBinding, is_leg};
@@ -8,17 +8,17 @@ use footfall_synth::CrowdPose;
 use glam::Quat;
 
 impl RigBinding {
-    /// Writes hips and legs of a pose, given on the ground, to the bones; all others keep the pose that they have.
+    /// Writes hips and legs of a pose, given on the ground, to the bones; all others keep their pose.
     pub fn write_legs(&mut self, bones: &mut impl Bones, pose: &Pose) {
         self.write_where(bones, pose, is_leg);
     }
 
-    /// Writes a pose, given on the ground, to the bones. Bones that are no joints keep the pose that they have.
+    /// Writes a pose, given on the ground, to the bones. Bones without a joint keep their pose.
     pub fn write(&mut self, bones: &mut impl Bones, pose: &Pose) {
         self.write_where(bones, pose, |_| true);
     }
 
-    /// Writes a pose of which every joint is known on the ground.
+    /// Writes a pose in which every joint is given on the ground.
     pub fn write_joints(&mut self, bones: &mut impl Bones, pose: &CrowdPose) {
         for joint in Joint::ALL {
             self.model_pose.rotations[joint.index()] = pose.rotation(joint);
@@ -32,7 +32,7 @@ impl RigBinding {
         self.write_model(bones, wanted);
     }
 
-    /// Puts the hips in their place. Returns the rotation of what is above them on the ground.
+    /// Places the hips. Returns the rotation of the bone above them on the ground.
     pub(super) fn write_hips(&self, bones: &mut impl Bones, hips: &BoundBone) -> Quat {
         let above = self.above_hips(bones, &hips.links);
         let place = self.model_pose.position(Joint::Hips);

@@ -111,7 +111,7 @@ impl Library {
             };
             if ui
                 .small_button(label)
-                .on_hover_text("Ticked recordings are what Train and Design use")
+                .on_hover_text("Train and Design use the ticked recordings")
                 .clicked()
             {
                 for path in shown {

@@ -90,7 +90,7 @@ impl EvaluateView {
                 });
             if ui
                 .button("Index…")
-                .on_hover_text("Table of the recordings: columns path, category, style, subject")
+                .on_hover_text("Index of the recordings: columns path, category, style, subject")
                 .clicked()
             {
                 shell.ask(Purpose::EvaluateIndex, "");
@@ -99,7 +99,7 @@ impl EvaluateView {
             if self.request.kind == EvaluateKind::Style {
                 if ui
                     .button("Synthesised…")
-                    .on_hover_text("Table of walks that were made, with the same names of styles")
+                    .on_hover_text("Index of synthesised walks, with the same style names")
                     .clicked()
                 {
                     shell.ask(Purpose::EvaluateSynthesised, "");
@@ -169,7 +169,7 @@ impl EvaluateView {
 
     fn start(&mut self, ui: &Ui, shell: &mut Shell) {
         if self.request.index.as_os_str().is_empty() {
-            shell.complain("choose the table of the recordings first".to_owned());
+            shell.complain("choose the index of the recordings first".to_owned());
             return;
         }
         self.request.conditions = self

@@ -109,8 +109,7 @@ impl LabelsView {
         };
         let Some(path) = motion.path.clone() else {
             shell.complain(
-                "this motion was made here and has no file yet; export it as BVH and open that"
-                    .to_owned(),
+                "this motion has no file yet; export it as BVH and open that file".to_owned(),
             );
             return false;
         };
@@ -129,7 +128,7 @@ impl LabelsView {
         };
         shell.library.update(&path, Ok(facts));
         shell.say(format!(
-            "{} written; training takes these contacts from now on",
+            "{} written; training uses these contacts from now on",
             file.display()
         ));
         true
@@ -213,8 +212,7 @@ impl LabelsView {
             match (kept.stances(frames), &mut self.labels) {
                 (Some(stances), Some(labels)) => labels.replace(stances),
                 _ => shell.complain(
-                    "the recording has changed since; the corrections do not fit it any more"
-                        .to_owned(),
+                    "the recording has changed; the corrections no longer fit it".to_owned(),
                 ),
             }
         } else if forgets {
@@ -254,7 +252,7 @@ impl LabelsView {
                         Some(id) => self.timeline.selected = Some(id),
                         None => {
                             notice = Some(format!(
-                                "the {} foot already stands at frame {frame}, or next to it",
+                                "the {} foot already stands at or next to frame {frame}",
                                 side.name()
                             ));
                         }
@@ -269,7 +267,7 @@ impl LabelsView {
                 labels.remove(id);
             }
             let detected = ui.button("As detected");
-            if detected.on_hover_text("Forget all corrections").clicked() {
+            if detected.on_hover_text("Discard all corrections").clicked() {
                 labels.replace(
                     Side::BOTH.map(|side| motion.recording.detected.foot(side).stances.clone()),
                 );

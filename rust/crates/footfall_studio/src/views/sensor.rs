@@ -94,7 +94,10 @@ impl SensorView {
             if let Some((path, recorder)) = &mut self.recorder
                 && let Err(error) = recorder.push(*sample)
             {
-                failed = Some(format!("{}: {error}; is the disk full?", path.display()));
+                failed = Some(format!(
+                    "{}: {error}; check the free disk space",
+                    path.display()
+                ));
             }
         }
         if let Some(error) = failed {

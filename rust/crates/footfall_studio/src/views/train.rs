@@ -241,14 +241,12 @@ impl TrainView {
     fn adapt(&mut self, ui: &Ui, shell: &mut Shell, base: Option<&Arc<GaitModel>>) {
         let name = self.name.trim().to_owned();
         if name.is_empty() {
-            shell.complain(
-                "a style without a name cannot be told from others; give it one".to_owned(),
-            );
+            shell.complain("a style needs a name; enter one".to_owned());
             return;
         }
         let Some(base) = base.cloned() else {
             shell.complain(
-                "choose the model to start from, such as addons/footfall/models/locomotion.footfall"
+                "choose the base model, such as addons/footfall/models/locomotion.footfall"
                     .to_owned(),
             );
             return;

@@ -4,34 +4,34 @@
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ReplicaError {
     /// It has another length than such messages have.
-    #[error("{0} bytes are no update of a walker; send what `WalkSender` makes")]
+    #[error("{0} bytes are not a walker's update; send what `WalkSender` returns")]
     Length(usize),
     /// Another version of Footfall wrote it.
-    #[error("the peer sends format {0}, this build reads {expected}; give both the same version of Footfall", expected = super::update::FORMAT)]
+    #[error("the peer sends format {0}, this build reads {expected}; use the same version of Footfall on both", expected = super::update::FORMAT)]
     Format(u8),
     /// An identity's bytes cannot be decoded, or a number in it makes no sense.
-    #[error("not a walker's identity; send what `WalkSender` makes")]
+    #[error("the bytes are not a walker's identity; send what `WalkSender` returns")]
     Identity,
     /// The peer walks by another model.
-    #[error("the peer walks by another model; give both the same model file")]
+    #[error("the peer uses another model; use the same model file on both")]
     OtherModel,
     /// It belongs to another walker, or to this one before it was somebody else.
-    #[error("the update belongs to another walker; wait for the identity that it goes with")]
+    #[error("the update belongs to another walker; wait for its identity")]
     OtherWalker,
     /// A newer one was heard before.
-    #[error("the update is older than one that was heard before; it is passed over")]
+    #[error("the update is older than a previous one and was dropped")]
     Old,
     /// So many come that the rest is passed over.
-    #[error("the peer sends more often than {0} times a second; set a longer interval there")]
+    #[error("the peer sends more than {0} updates a second; set a longer interval there")]
     Flood(u32),
     /// Nobody gets there by walking in the time since the last one.
     #[error(
-        "the peer says it has come {0:.1} m farther, which is more than people run; after a jump through the level it sends an identity first"
+        "the peer's walker moved by {0:.1} m, farther than people run; after a teleport, send an identity first"
     )]
     TooFar(f32),
     /// The place does not fit into an update.
     #[error(
-        "the walker is {0:.0} m from the origin, more than an update can say; send places from nearer by"
+        "the walker is {0:.0} m from the origin, out of an update's range; send places relative to a nearer origin"
     )]
     OutOfRange(f32),
     /// Walks of switching models are not replicated.

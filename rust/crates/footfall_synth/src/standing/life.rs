@@ -114,7 +114,7 @@ impl Life {
         self.amount <= 0.0 || self.moment.share <= 0.0
     }
 
-    /// Moves the pose of somebody who stands still to where life has it at a moment. `level` is the rotation under which the walker faces +Z.
+    /// Moves the pose of a still standing person to that of the standing motion at a time. `level` is the rotation under which the walker faces +Z.
     pub(crate) fn move_pose(&self, moment: &Moment, level: Quat, pose: &mut Pose) {
         let share = self.amount * moment.share;
         if share.abs() <= 0.0 {

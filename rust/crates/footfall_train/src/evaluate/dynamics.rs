@@ -1,4 +1,4 @@
-//! Two systems that switch against one that does not, by category: how well both foretell recordings.
+//! Two systems that switch against one that does not, by category: how well both predict recordings.
 
 use crate::dynamics::{DynamicsComparison, DynamicsConfig, compare_dynamics};
 use crate::error::TrainError;
@@ -44,7 +44,7 @@ pub struct DynamicsEvaluation {
     pub comparisons: Vec<DynamicsComparison>,
 }
 
-/// Fits two switching systems and a single one to every recording, and compares how well they foretell it.
+/// Fits two switching systems and a single one to every recording, and compares how well they predict it.
 ///
 /// # Errors
 /// [`TrainError::Fit`] names a recording with a pose that is not finite.

@@ -1,6 +1,6 @@
-//! Why walks cannot be judged.
+//! Errors of evaluating walks.
 
-/// Why walks cannot be judged.
+/// Errors of evaluating walks.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EvaluateError {
     /// A class without a sample.
@@ -11,7 +11,7 @@ pub enum EvaluateError {
     },
     /// Fewer samples than a spread can be estimated from.
     #[error(
-        "{samples} samples of {classes} classes are too few to estimate a spread; add recordings"
+        "{samples} samples of {classes} classes are too few to estimate a covariance; add recordings"
     )]
     TooFewSamples {
         /// Number found.
@@ -21,11 +21,13 @@ pub enum EvaluateError {
     },
     /// Features that cannot be used.
     #[error(
-        "features are not finite, or samples differ in how many they have; check the recordings for broken frames"
+        "features are not finite, or their number differs between samples; check the recordings for invalid frames"
     )]
     Features,
     /// A pose that is no pose.
-    #[error("style {style}: frame {frame} of a recording is not finite; capture or write it anew")]
+    #[error(
+        "style {style}: frame {frame} of a recording is not finite; capture or export it again"
+    )]
     NotFinite {
         /// The style.
         style: String,
@@ -33,11 +35,11 @@ pub enum EvaluateError {
         frame: usize,
     },
     /// The covariance has no inverse.
-    #[error("the features depend on each other, so their covariance has no inverse; shrink it")]
+    #[error("the features are linearly dependent, so their covariance has no inverse; shrink it")]
     Singular,
     /// Nothing to tell apart.
     #[error(
-        "the real recordings show {found} style with strides, and recognition needs two; widen --where"
+        "the real recordings show {found} style with strides, recognition needs two; widen --where"
     )]
     OneStyle {
         /// Number of styles: none or one.
@@ -52,7 +54,7 @@ pub enum EvaluateError {
         reason: String,
     },
     /// A synthesised style that no real recording shows.
-    #[error("style {style} of the synthesised recordings is in no real one; the real styles are {}", known.join(", "))]
+    #[error("no real recording shows style {style} of the synthesised ones; the real styles are {}", known.join(", "))]
     UnknownStyle {
         /// The style.
         style: String,
@@ -61,12 +63,12 @@ pub enum EvaluateError {
     },
     /// Synthesised recordings without a stride.
     #[error(
-        "the synthesised recordings hold no two steps in a row; synthesise walks of at least four steps"
+        "the synthesised recordings have no two consecutive steps; synthesise walks of at least four steps"
     )]
     NoSynthesisedStride,
     /// Too few walkers to learn from some and judge others.
     #[error(
-        "{kind}: {found} walkers show a stride, and {least} are needed: some to learn from, others to judge"
+        "{kind}: {found} walkers show a stride, {least} are needed for training and evaluation; add recordings"
     )]
     TooFewWalkers {
         /// `captured` or `generated`.

@@ -29,7 +29,7 @@ const REVERSED_COS: f32 = -0.7;
 /// Half the length of a turn, seconds: the walker goes one way this long before the slowest moment and the other way this long after it.
 const TURNING_SECS: f64 = 0.6;
 
-/// Somebody who stands longer in between stops and starts, seconds.
+/// Time of standing in between that separates a stop from a start, seconds.
 const LONGEST_PAUSE_SECS: f64 = 0.25;
 
 /// Motion of the hips.

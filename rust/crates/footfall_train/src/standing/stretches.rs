@@ -11,11 +11,11 @@ use glam::{Vec2, Vec3};
 const MOST_FOOT_SPEED_MPS: f32 = 0.05;
 const FOOT_CUT_OFF_HZ: f64 = 2.0;
 
-/// Knees and elbows of somebody who stands at ease bend no more, radians.
+/// Knees and elbows of a person who stands at ease bend no more, radians.
 const MOST_KNEE: f32 = 0.35;
 const MOST_ELBOW: f32 = 1.05;
 
-/// Ankles of somebody who stands are no farther apart over the ground, leg lengths.
+/// Ankles of a standing person are no farther apart over the ground, leg lengths.
 const MOST_STRIDE: f32 = 0.42;
 
 /// Coming to a stand and leaving it are no part of standing, seconds at either end; what is left must last.

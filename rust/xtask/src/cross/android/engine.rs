@@ -14,7 +14,7 @@ const COPY: &str = "org.apache.maven.plugins:maven-dependency-plugin:3.8.1:copy"
 /// Finds the engine's libraries in the cache, or fetches them.
 ///
 /// # Errors
-/// When there is no Maven, or the engine is not to be had.
+/// When there is no Maven, or the engine is not available.
 pub(crate) fn provision() -> Result<PathBuf> {
     fetch::once("godot-android", ARTEFACT, |folder| {
         let maven = paths::on_path(&["mvn"]).context(

@@ -34,7 +34,7 @@ pub(super) fn run(
 ) -> Result<()> {
     let corpus = args.knees.read_corpus(index, &args.conditions)?;
     fs::create_dir_all(folder)
-        .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
     let mut report = Report {
         index: folder.join("index.csv"),
         style: sheet.name.clone(),
@@ -107,7 +107,7 @@ pub(super) fn run(
     }
     if let (true, Some(first)) = (report.clips.is_empty(), report.skipped.first()) {
         bail!(
-            "none of the chosen recordings can be used; the first: {}",
+            "none of the selected recordings can be used; the first: {}",
             first.reason
         );
     }
@@ -131,7 +131,7 @@ pub(super) fn run(
         report.clips.len(),
         if report.steps < args.steps as usize {
             format!(
-                ", fewer than the {} that were asked for: no more recordings",
+                ", fewer than the requested {}: no more recordings",
                 args.steps
             )
         } else {

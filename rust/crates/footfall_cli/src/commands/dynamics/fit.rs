@@ -7,10 +7,10 @@ use footfall_train::dynamics::{DynamicsConfig, FittedDynamics, fit_dynamics};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Fit two systems that switch when a foot lands
+/// Fit a switching model: two linear systems that switch when a foot lands
 ///
-/// A gait of a few hundred numbers: the pose's strongest components, put out by one linear system while the left foot
-/// carries the body and by another while the right does. Best fitted to the walks of one person.
+/// The model describes a gait by a few hundred numbers: one linear system generates the pose's strongest components while the left foot
+/// carries the body, another while the right foot does. Fit it to the walks of one person.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  \
     footfall dynamics fit --corpus index.csv --where subject=cmu_35 --where category=neutral_walk -o gait.footdyn")]
@@ -22,7 +22,7 @@ pub(crate) struct FitArgs {
     output: PathBuf,
     #[command(flatten)]
     size: SizeArgs,
-    /// Description of the data for the model's provenance, in your words; the conditions when absent
+    /// Description of the data for the model's provenance [default: the conditions]
     #[arg(long, value_name = "TEXT")]
     describe: Option<String>,
     /// Print one JSON object on stdout
@@ -48,7 +48,7 @@ impl SizeArgs {
     pub(in crate::commands) fn config(self) -> Result<DynamicsConfig> {
         ensure!(
             (20.0..=240.0).contains(&self.fps),
-            "systems at {} frames per second cannot be fitted; give --fps a number from 20 to 240",
+            "cannot fit systems at {} frames per second; set --fps to 20 to 240",
             self.fps
         );
         Ok(DynamicsConfig {

@@ -7,10 +7,10 @@ use footfall_motion::switches::detect_switches;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Find when the legs change roles, from hip and knee angles alone
+/// Detect the times at which the legs change roles, from hip and knee angles only
 ///
-/// No height, speed or ground is looked at. Frames and times refer to the file as given, frame 0 included; `foot` is the one
-/// that lands. A recording in which nobody walks has no switches.
+/// Heights, speeds and the ground are not used. Frames and times refer to the input file, frame 0 included; `foot` is the foot
+/// that lands. A recording without a walk has no switches.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall dynamics switches walk.bvh\n  \

@@ -9,7 +9,7 @@ use footfall_train::read_model_file;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Make a walk from a switching model
+/// Generate a walk from a switching model
 ///
 /// The same model, seed and settings give the same bytes.
 #[derive(Debug, clap::Args)]
@@ -34,7 +34,7 @@ pub(crate) fn run(args: &DynamicsSynthArgs) -> Result<()> {
     args.walk.check(&[&args.model])?;
     ensure!(
         (0.1..=7200.0).contains(&args.seconds),
-        "a walk of {} seconds cannot be written; give --seconds a number from 0.1 to 7200",
+        "cannot write a walk of {} seconds; set --seconds to 0.1 to 7200",
         args.seconds
     );
     let model = read_model_file(&args.model, DynamicsModel::from_bytes)?;

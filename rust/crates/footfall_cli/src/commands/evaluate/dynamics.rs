@@ -9,10 +9,10 @@ use footfall_train::evaluate::dynamics::{DynamicsReport, evaluate_dynamics};
 use plotters::prelude::*;
 use std::path::PathBuf;
 
-/// Two switching systems against one linear system of the same order
+/// Compare a switching model with one linear system of the same order
 ///
-/// Fits both to every recording and compares how well they foretell it: one frame ahead, and left to themselves from the initial
-/// state (of every segment, or of the recording). Errors are root mean squares over the spread of the component weights.
+/// Fits both to every recording and compares their predictions: one frame ahead, and in free simulation from the initial
+/// state (of every segment, or of the recording). Errors are root mean squares relative to the spread of the component weights.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  \
     footfall evaluate dynamics --corpus index.csv --where category=neutral_walk --plot errors.svg")]
@@ -21,7 +21,7 @@ pub(crate) struct DynamicsArgs {
     corpus: CorpusArgs,
     #[command(flatten)]
     size: SizeArgs,
-    /// Picture of the first recording's errors over time
+    /// SVG of the first recording's errors over time
     #[arg(long, value_name = "ERRORS.svg")]
     plot: Option<PathBuf>,
     /// Print one JSON object on stdout
@@ -38,7 +38,7 @@ fn evaluate(args: &DynamicsArgs) -> Result<DynamicsReport> {
         let first = evaluation
             .comparisons
             .first()
-            .context("no recording has enough steps to be drawn")?;
+            .context("no recording has enough steps for the plot")?;
         output::write_atomic(path, plot(first)?.as_bytes())?;
     }
     Ok(evaluation.report)
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &DynamicsArgs) -> Result<()> {
 /// Categories in a line each.
 fn table(report: &DynamicsReport) -> String {
     let mut lines = vec![
-        "Error over spread: one frame ahead, and left to itself".to_owned(),
+        "Error over spread: one frame ahead, and in free simulation".to_owned(),
         format!(
             "{:24} {:>10}  {:>9} {:>7} {:>6}  {:>9} {:>7} {:>6}",
             "category",
@@ -95,7 +95,7 @@ fn plot(comparison: &DynamicsComparison) -> Result<String> {
         let (switching, single) = (&comparison.switching, &comparison.single);
         let panels = [
             ("one frame ahead", &switching.one_step, &single.one_step),
-            ("left to itself", &switching.simulated, &single.simulated),
+            ("free simulation", &switching.simulated, &single.simulated),
         ];
         for (area, (title, switching, single)) in area.split_evenly((2, 1)).iter().zip(panels) {
             let secs = |frame: usize| frame as f64 / comparison.frame_rate_hz;

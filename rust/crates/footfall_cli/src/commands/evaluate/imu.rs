@@ -19,48 +19,48 @@ use footfall_train::read_model_file;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Bodies from one or two sensors against the recorded ones
+/// Compare bodies reconstructed from one or two sensors with the recorded ones
 ///
 /// Every recording is reconstructed by models that have not seen it: one trained on all other recordings, one on those of other
-/// subjects. Mean distance of the joints, hips and heading brought together, over the frames in which the body moves: live, as a game
-/// shows it, and whole, with what comes later in the recording. Beside them are trivial answers: one pose for all (constant), the average course of the phase
-/// that the body truly is in (average), and the nearest of the model's poses (nearest), which a perfect tracker would show; and r, the mean
-/// correlation, live, of the joints' coordinates that vary by more than a centimetre. Categories are the index's.
+/// subjects. Distances are means over the joints with hips and heading aligned, over the frames in which the body moves: live, as in a
+/// game, and whole, with later samples. For comparison there are trivial answers: one pose for all frames (constant), the average of the true phase
+/// (average), and the nearest of the model's poses (nearest), which a perfect tracker would show. r is the mean
+/// live correlation of the joints' coordinates that vary by more than a centimetre. Categories are those of the index.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall evaluate imu --corpus index.csv --where 'path=cmu/*'\n  \
     footfall evaluate imu --corpus index.csv --where 'path=cmu/*' --site right_thigh --json\n  \
     footfall evaluate imu --corpus index.csv --where 'path=bandai/*' --model right_foot.footimu")]
 pub(crate) struct ImuArgs {
-    /// Table of the recordings
+    /// Index of the recordings
     #[arg(long, value_name = "INDEX.csv")]
     corpus: PathBuf,
-    /// Condition on a column, for example `category=running`; may repeat
+    /// Condition on a column, for example `category=running`; repeatable
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
     #[command(flatten)]
     knees: KneesArgs,
-    /// Site of the sensor, twice for two sensors; the foot, foot and hand, and the sites of the paper's figure 10 one by one when absent
+    /// Site of the sensor; twice for two sensors [default: the foot, foot and hand, and each site of the paper's figure 10]
     #[arg(long = "site", value_parser = parse_site)]
     sites: Vec<Site>,
     #[command(flatten)]
     kept: KeptArgs,
-    /// Judge this model on the recordings instead of training any; choose recordings of people that it has not seen
+    /// Evaluate this model instead of training any; select recordings of people that it has not seen
     #[arg(long, value_name = "BODY.footimu", conflicts_with_all = ["sites", "strangers", "transitions", "no_mirror", "frames", "learn_strapped"])]
     model: Option<PathBuf>,
-    /// Condition on the recordings that are judged; models are trained on the others, too; may repeat
+    /// Condition on the recordings to evaluate; models train on the others, too; repeatable
     #[arg(long = "judge", value_name = "COLUMN=VALUE")]
     judged: Vec<Where>,
-    /// Leave out whole people only: no model that has seen other recordings of the same one
+    /// Leave out whole people only: skip models that have seen other recordings of the same person
     #[arg(long)]
     strangers: bool,
-    /// Simulated sensor that bodies are reconstructed from
+    /// Simulated sensor
     #[arg(long, value_enum, default_value_t)]
     device: DeviceArg,
-    /// Part of the method as published, for comparison; comma-separated, may repeat
+    /// Part of the method to use as published, for comparison; comma-separated, repeatable
     #[arg(long, value_enum, value_delimiter = ',', value_name = "PART")]
     as_published: Vec<PartArg>,
-    /// Show how suddenly bodies move where one motion gives way to another, instead of how close they come: eight changes of each kind, of people left out
+    /// Show the accelerations at transitions between motions instead of distances: eight transitions of each kind, of people left out
     #[arg(long)]
     transitions: bool,
     /// Print one JSON object on stdout
@@ -76,7 +76,7 @@ enum DeviceArg {
     Board,
     /// A phone's browser: 60 samples a second, rounded to 0.1 m/s² and 0.1 °/s
     Phone,
-    /// A board that nobody calibrated, on a strap that gives, up to 5 cm off the site: scales off by 2 %, one sample in fifty lost, axes that end at 4 g and 1000 °/s
+    /// An uncalibrated board on a loose strap, up to 5 cm off the site: scales off by 2 %, 2 % of samples lost, axes that end at 4 g and 1000 °/s
     Strapped,
 }
 
@@ -95,7 +95,7 @@ impl DeviceArg {
 enum PartArg {
     /// All of them
     All,
-    /// Equal transitions: frames are kept, followed or skipped, phases left at any time
+    /// Equal transitions: a frame is kept, followed or skipped, and phases end at any time
     Transitions,
     /// A Gaussian for each phase, refined by its segments, with every frame in full
     Gaussians,

@@ -10,16 +10,16 @@ use std::path::PathBuf;
 /// Arguments that name them.
 #[derive(Debug, clap::Args)]
 pub(super) struct JudgedArgs {
-    /// The model that is judged
+    /// Model to evaluate
     #[arg(long, value_name = "WALK.footfall")]
     pub(super) model: PathBuf,
-    /// A style to wear and its weight, 1 when absent; may repeat
+    /// Style and its weight, 1 by default; repeatable
     #[arg(long = "style", value_name = "STYLE.footstyle[:WEIGHT]")]
     styles: Vec<StyleArg>,
-    /// Table of the captured recordings; its column `subject` names the people
+    /// Index of the captured recordings; its column `subject` names the people
     #[arg(long, value_name = "INDEX.csv")]
     pub(super) corpus: PathBuf,
-    /// Condition on a column, for example `category=neutral_walk`; may repeat
+    /// Condition on a column, for example `category=neutral_walk`; repeatable
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
     #[command(flatten)]

@@ -19,15 +19,15 @@ use report::Report;
 use speeds::Speeds;
 use std::sync::Arc;
 
-/// Generated walks or runs beside captured ones
+/// Compare generated walks or runs with captured ones
 ///
-/// Two classifiers learn which strides were captured, from some people and some seeds, and judge others. Motion above 6 Hz, where
-/// markers are noisy, does not count. What people score in the generator's place stands beside the verdict, for they differ from each
-/// other, too. Then come the measures that say where a difference lies: speed, cadence, flight, slip of standing and of landing feet,
+/// Two classifiers learn to recognise captured strides from some people and seeds, and are tested on others. Motion above 6 Hz, where
+/// markers are noisy, is ignored. The score of captured people in the generator's place is the reference, since people differ from each
+/// other as well. Further measures locate differences: speed, cadence, flight, slip of standing and landing feet,
 /// detail of 3 to 6 Hz by part of the body, surge, limp and bob of the hips, knees and feet.
 ///
-/// A run is two steps in a row or more with flight, found by the fall of the hips, at an even speed and nearly straight. Captured and
-/// generated runs are found by the same rule.
+/// A run is two or more consecutive steps with flight, detected by the fall of the hips, at an even speed and nearly straight. The same
+/// rule applies to captured and generated runs.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall evaluate naturalness --model walk.footfall --corpus index.csv --where category=neutral_walk --where 'path=cmu/*'\n  \
@@ -36,13 +36,13 @@ use std::sync::Arc;
 pub(crate) struct NaturalnessArgs {
     #[command(flatten)]
     judged: JudgedArgs,
-    /// Gait that is judged
+    /// Gait to evaluate
     #[arg(long, value_enum, default_value_t)]
     gait: GaitArg,
-    /// Speeds of the captured walks or runs that are judged, m/s; all for walks and 2.5:4.5 for runs when absent
+    /// Speeds of the captured walks or runs to use, m/s [default: all for walks, 2.5:4.5 for runs]
     #[arg(long, value_name = "LEAST:GREATEST")]
     speeds: Option<Speeds>,
-    /// Number of generated walks, each at the mean speed of one of the recordings
+    /// Number of generated walks, each at the mean speed of one recording
     #[arg(long, default_value_t = 48, value_parser = clap::value_parser!(u32).range(8..=1000))]
     seeds: u32,
     /// Steps of each generated walk
@@ -110,7 +110,7 @@ fn evaluate(args: &NaturalnessArgs) -> Result<Report> {
     if speeds.is_empty() {
         let within = chosen.map_or_else(String::new, |speeds| format!(" at {speeds} m/s"));
         bail!(
-            "{}: the chosen recordings show no {} of two steps{within}; widen --where or --speeds",
+            "{}: the selected recordings show no {} of two steps{within}; widen --where or --speeds",
             args.judged.corpus.display(),
             args.gait.gait().name(),
         );

@@ -27,11 +27,11 @@ const REST: (f32, f32) = (0.25, 0.03);
 /// A sample, and up in the sensor's axes there.
 type Truth = (usize, Vec3);
 
-/// Errors of the vertical by this project's filter, VQF and a gyroscope alone, live
+/// Compare the vertical of this project's filter, VQF and a gyroscope alone, live
 ///
-/// On motion, sensors are simulated at a site, with the noise and bias of a consumer's sensor, at the recording's own rate: the angle between the found
-/// vertical and the true one, in every frame but those of the first second. On real sensors (column `path` of the index, an IMU .csv) nobody knows the truth but at
-/// rest: the angle between the vertical that was found in the first sample of a rest, when the filter has come through a swing, and the mean specific
+/// Motion: sensors are simulated at a site, with the noise and bias of a consumer sensor, at the recording's own rate. The error is the angle between the estimated
+/// and the true vertical, in every frame after the first second. Real sensors (column `path` of the index, an IMU .csv): the truth is known only at
+/// rest. The error is the angle between the vertical estimated in the first sample of a rest, after a swing, and the mean specific
 /// force of that rest.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
@@ -39,13 +39,13 @@ type Truth = (usize, Vec3);
     footfall evaluate orientation --sensors sensors.csv")]
 #[group(id = "recordings", required = true, multiple = true, args = ["corpus", "sensors"])]
 pub(crate) struct OrientationArgs {
-    /// Table of the recordings of motion
+    /// Index of the motion recordings
     #[arg(long, value_name = "INDEX.csv")]
     corpus: Option<PathBuf>,
-    /// Table of the recordings of real sensors
+    /// Index of the recordings of real sensors
     #[arg(long, value_name = "SENSORS.csv")]
     sensors: Option<PathBuf>,
-    /// Condition on a column of the corpus, for example `category=neutral_walk`; may repeat
+    /// Condition on a column of the corpus, for example `category=neutral_walk`; repeatable
     #[arg(long = "where", value_name = "COLUMN=VALUE", requires = "corpus")]
     conditions: Vec<Where>,
     /// Site of the simulated sensors

@@ -1,4 +1,4 @@
-//! `footfall evaluate response`: how quickly does a walker obey, beside how quickly people change?
+//! `footfall evaluate response`: response times of walkers and of people.
 
 mod course;
 mod report;
@@ -15,11 +15,11 @@ use report::{Report, Take};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Times that a walker takes to obey, beside those of people
+/// Measure the response times of a walker, and of people
 ///
-/// Hips low-passed at 4 Hz: seconds from the moment of asking until they have 80 % of what was asked for, or stand, and the same by the clock of the
-/// motion alone, from standing or 80 % of the speed before. Of takes, every start, stop and reversal that their hips make. And the hips' greatest
-/// accelerations (99.9 %), unfiltered.
+/// With hips low-passed at 4 Hz: seconds from the request until the walker has 80 % of the requested speed, or stands; and the same from the beginning of the
+/// motion, that is from standing or 80 % of the speed before. For captured takes: every start, stop and reversal of the hips. Also the greatest
+/// accelerations of the hips (99.9 %), unfiltered.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  \
     footfall evaluate response --model locomotion.footfall take1.bvh take2.bvh")]
@@ -27,10 +27,10 @@ pub(crate) struct ResponseArgs {
     /// The model
     #[arg(long, value_name = "GAIT.footfall")]
     model: PathBuf,
-    /// Captured takes to stand beside it
+    /// Captured takes for comparison
     #[arg(value_name = "TAKE.bvh")]
     takes: Vec<PathBuf>,
-    /// Number of walkers, each asked at several moments of their stride
+    /// Number of walkers; each gets the request at several phases of its stride
     #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
     seeds: u32,
     #[command(flatten)]

@@ -14,21 +14,21 @@ use rayon::prelude::*;
 use report::{HeldOut, Report};
 use std::sync::Arc;
 
-/// Generated standing beside captured
+/// Compare generated standing with captured standing
 ///
-/// Sway of hips and head in place and speed, root mean squares by band and part of the body, knees, and the greatest correlation with an
-/// earlier while, over windows of 20 seconds in which people stand at ease on planted feet; and the same for the still pose. With
-/// `--leave-one-out` every person is compared with a model of the others, beside what the others score in its place.
+/// Measures the sway of hips and head in place and speed, root mean squares by band and part of the body, knees, and the greatest correlation with an
+/// earlier time, over windows of 20 seconds in which people stand at ease on planted feet; and the same for the still pose. With
+/// `--leave-one-out`, every person is compared with a model of the others, and with the mean of the others as a reference.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  \
     footfall evaluate standing --model walk.footfall --corpus index.csv --where category=idle --leave-one-out")]
 pub(crate) struct StandingArgs {
     #[command(flatten)]
     judged: JudgedArgs,
-    /// Number of people that are generated
+    /// Number of generated people
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(2..=1000))]
     seeds: u32,
-    /// Seconds that each stands
+    /// Seconds for which each one stands
     #[arg(long, default_value_t = 100, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(30..=3600))]
     seconds: u32,
     /// Compare every person with a model of the others
@@ -39,7 +39,7 @@ pub(crate) struct StandingArgs {
     json: bool,
 }
 
-/// Somebody who stands.
+/// Standing person.
 pub(super) struct Person {
     pub(super) name: String,
     pub(super) measures: StandingMeasures,
@@ -58,7 +58,7 @@ fn evaluate(args: &StandingArgs) -> Result<Report> {
     let captured = people(&clips);
     if captured.is_empty() {
         bail!(
-            "{}: nobody stands at ease for 20 seconds in the chosen recordings; widen --where",
+            "{}: in the selected recordings nobody stands at ease for 20 seconds; widen --where",
             args.judged.corpus.display()
         );
     }

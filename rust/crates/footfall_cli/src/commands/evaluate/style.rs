@@ -11,11 +11,11 @@ use footfall_train::evaluate::style_report::StyleReport;
 use footfall_train::evaluate::{Split, evaluate_styles};
 use table::tables;
 
-/// Recognition, resemblance and naturalness of styles
+/// Measure recognition, resemblance and naturalness of styles
 ///
 /// A classifier learns the styles of real strides (two steps each; mean, deviation and range of every joint's swing, speed,
-/// cadence, widths; linear discriminant with shrunk covariance). It names the style of real strides that it has not seen and of
-/// the synthesised ones. Without --synthesised, real recordings are judged against each other: what nature itself scores.
+/// cadence, widths; linear discriminant with shrunk covariance). It then classifies real strides that it has not seen and
+/// synthesised strides. Without --synthesised, real recordings are compared with each other as a reference.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall evaluate style --real index.csv --where category=styled_walk\n  \
@@ -25,7 +25,7 @@ pub(crate) struct StyleArgs {
     corpora: CorpusPair,
     #[command(flatten)]
     knees: KneesArgs,
-    /// Split that keeps real strides unseen: each take in turn, or each half of every recording; takes when every style has two
+    /// Split that keeps real strides unseen: each take in turn, or each half of every recording [default: takes if every style has two]
     #[arg(long, value_enum)]
     split: Option<SplitArg>,
     /// Print one JSON object on stdout
@@ -35,7 +35,7 @@ pub(crate) struct StyleArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum SplitArg {
-    /// Each take in turn is unseen; harder, for people vary from take to take
+    /// Each take in turn is unseen; harder, because people vary from take to take
     Take,
     /// Each half of every recording in turn is unseen
     Half,

@@ -7,10 +7,10 @@ use anyhow::{Context as _, Result};
 use footfall_train::evaluate::training::{DEFAULT_RATE_HZ, TrainingReport, evaluate_training};
 use std::fmt::Write as _;
 
-/// Walker-adaptive training against plain training
+/// Compare walker-adaptive training with plain training
 ///
-/// Trains with and without a linear transform per walker, on all walkers and with each walker in turn unseen, and scores the unseen
-/// walker's recordings, each under the transform that the walker's other recordings tell.
+/// Trains with and without a linear transform per walker, on all walkers and with each walker in turn unseen. Scores the unseen
+/// walker's recordings, each under the transform estimated from the walker's other recordings.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  \
     footfall evaluate training --corpus index.csv --where category=neutral_walk --where 'path=cmu/*'")]

@@ -9,9 +9,9 @@ use footfall_imu::strides::measure_strides;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Find the gait events and stride lengths of a foot that wears a sensor
+/// Detect gait events and stride lengths from a foot sensor
 ///
-/// The mounting does not matter. Times are the recording's. A stride goes from the middle of one stance to the middle of the next.
+/// The sensor may be mounted in any orientation. Times are the recording's. A stride goes from the middle of one stance to the middle of the next.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  \
     footfall imu events imu.csv --site right_foot --json > events.json")]
@@ -19,7 +19,7 @@ pub(crate) struct EventsArgs {
     /// The recording of the sensor
     #[arg(value_name = "IMU.csv")]
     input: PathBuf,
-    /// The foot that wears it
+    /// Foot that wears the sensor
     #[arg(long, value_parser = parse_site)]
     site: Site,
     /// Print one JSON object on stdout
@@ -50,7 +50,7 @@ struct Stride {
 pub(crate) fn run(args: &EventsArgs) -> Result<()> {
     ensure!(
         args.site.is_foot(),
-        "events are found from a sensor on a foot; {} is none: give --site right_foot or left_foot",
+        "events need a sensor on a foot, not {}; pass --site right_foot or left_foot",
         args.site.name()
     );
     let foot = args.site.side().map_or("left", Side::name);

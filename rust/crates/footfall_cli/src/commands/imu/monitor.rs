@@ -17,9 +17,9 @@ use watch::{Report, Watch};
 /// Samples are taken from the ports so often.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
 
-/// See what arrives from sensors: rates, gaps, axes, and what is wrong
+/// Show the samples of sensors: rates, gaps, axes, and problems
 ///
-/// One line a second for each device, until Ctrl-C or --seconds. Of a serial port the protocol and the rate are found by listening.
+/// Prints one line per second and device, until Ctrl-C or --seconds. Protocol and rate of a serial port are detected by listening.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall imu monitor --ports\n  \
@@ -29,10 +29,10 @@ const LOOK_EVERY: Duration = Duration::from_millis(10);
 pub(crate) struct MonitorArgs {
     #[command(flatten)]
     source: SourceArgs,
-    /// List the serial ports of this machine and stop
+    /// List the serial ports of this machine and exit
     #[arg(long, conflicts_with = "source")]
     ports: bool,
-    /// Stop after so long
+    /// Seconds after which to stop
     #[arg(long, value_name = "SECONDS")]
     seconds: Option<f64>,
     /// Write the samples of the first device to a recording
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &MonitorArgs) -> Result<()> {
     let seconds = args.seconds.unwrap_or(f64::INFINITY);
     ensure!(
         seconds > 0.0,
-        "nothing can be watched for {seconds} seconds; give --seconds a number above 0"
+        "cannot monitor for {seconds} seconds; set --seconds above 0"
     );
     let source = Source::open(&args.source)?;
     let mut recorder = match &args.record {
@@ -87,10 +87,7 @@ pub(crate) fn run(args: &MonitorArgs) -> Result<()> {
 /// The last line: what to do, when nothing came.
 fn verdict(report: &Report) -> String {
     if report.devices.is_empty() {
-        return format!(
-            "nothing was heard in {:.0} s: {}",
-            report.seconds, report.message
-        );
+        return format!("no samples in {:.0} s: {}", report.seconds, report.message);
     }
     let samples: u64 = report.devices.iter().map(|device| device.samples).sum();
     let lost: u64 = report.devices.iter().map(|device| device.lost).sum();
@@ -110,7 +107,7 @@ fn list_ports(json: bool) -> Result<()> {
         return output::print_json(&serde_json::json!({ "ports": listed }));
     }
     if ports.is_empty() {
-        return output::print_text("there is no serial port; plug the sensor in");
+        return output::print_text("there is no serial port; plug in the sensor");
     }
     let line = |port: &footfall_imu::live::serial::port::PortInfo| {
         format!("{}  {}", port.name, port.description)

@@ -20,10 +20,10 @@ use worn::{ProblemReport, WornSensors};
 const UNEXPLAINED: f32 = 0.1;
 const MOST_UNEXPLAINED: f64 = 0.1;
 
-/// Reconstruct the motion of a body from what one or two sensors on it measured
+/// Reconstruct the motion of a body from recordings of one or two sensors
 ///
-/// Frame 0 is at the time of the first sample, at the origin, facing +Z. What comes later in the recording helps with what comes
-/// before; --live shows what a game sees, which cannot know.
+/// Frame 0 is at the time of the first sample, at the origin, facing +Z. Later samples improve earlier frames;
+/// --live shows the result of a game, which cannot know them.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall imu reconstruct --model body.footimu --imu imu.csv -o out.bvh\n  \
@@ -40,22 +40,22 @@ pub(crate) struct ReconstructArgs {
     /// Mounting of the sensors
     #[arg(long, value_enum, default_value_t = MountingArg::Auto)]
     mounting: MountingArg,
-    /// Calibration of wearer and sensors that an earlier run saved, in place of finding it out
+    /// Calibration of wearer and sensors from an earlier run, used instead of calibrating
     #[arg(long, value_name = "ME.footcal", conflicts_with = "mounting")]
     calibration: Option<PathBuf>,
-    /// Keep how the sensors are worn, what they measure at rest and how long the wearer's steps are
+    /// Output file for the calibration: mounting of the sensors, their values at rest, length of the wearer's steps
     #[arg(long, value_name = "ME.footcal")]
     save_calibration: Option<PathBuf>,
-    /// Samples a second that the sensors were to give, to be warned of others
+    /// Sample rate that the sensors should deliver; warns about other rates
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
-    /// Use nothing of the future: what a game shows at each moment
+    /// Use no later samples: the result at each moment of a game
     #[arg(long)]
     live: bool,
     /// Frames per second of the output; the model's when absent
     #[arg(long)]
     fps: Option<f64>,
-    /// File to write
+    /// Output file
     #[arg(short, long, value_name = "OUT.bvh")]
     output: PathBuf,
     /// Print one JSON object on stdout
@@ -173,7 +173,7 @@ pub(crate) fn run(args: &ReconstructArgs) -> Result<()> {
     let unexplained_s = unexplained.count() as f64 / prepared.model().frame_rate_hz;
     if unexplained_s > MOST_UNEXPLAINED * recordings[0].duration_secs() {
         output::note(&format!(
-            "warning: the model explains {unexplained_s:.1} s so little that the body stands there; check that the sensor sits at {} and how it is mounted, or train with recordings of what is done",
+            "warning: the model explains too little of {unexplained_s:.1} s, in which the body stands; check that the sensor is at {} and its mounting, or train on recordings of this motion",
             sites.join(", ")
         ));
     }

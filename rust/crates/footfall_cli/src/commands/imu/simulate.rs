@@ -11,7 +11,7 @@ use glam::{EulerRot, Quat};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Measure what a sensor on a recorded body would have
+/// Simulate the measurements of a sensor on a recorded body
 ///
 /// Times are the recording's; frames before its motion (an artificial T-pose) are left out.
 #[derive(Debug, clap::Args)]
@@ -28,22 +28,22 @@ pub(crate) struct SimulateArgs {
     /// Samples per second
     #[arg(long, default_value_t = 100.0)]
     rate: f64,
-    /// Errors of the sensor: 0 for none, 1 for a phone's or hobby board's
+    /// Errors of the sensor: 0 none, 1 as of a phone or hobby board
     #[arg(long, default_value_t = 0.0)]
     noise: f32,
-    /// Make them those of a board that nobody calibrated: scales, clock, lost samples and a range of 4 g and 1000 °/s as well
+    /// Simulate an uncalibrated board: errors of scales and clock, lost samples, and a range of 4 g and 1000 °/s as well
     #[arg(long, requires = "noise")]
     uncalibrated: bool,
-    /// Looseness of the strap: 0 for a sensor that is one with the body, 1 for one up to 5 cm off the site that swings at 8 Hz
+    /// Looseness of the strap: 0 fixed to the body, 1 up to 5 cm off the site and swinging at 8 Hz
     #[arg(long, default_value_t = 0.0)]
     strap: f32,
     /// Seed of the errors and of the place on the strap
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Rotation of the sensor against the site's axes: degrees about x, then y, then z of the site
+    /// Rotation of the sensor relative to the site's axes: degrees about x, then y, then z of the site
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_angles, default_value = "0,0,0", allow_hyphen_values = true)]
     mounting: Angles,
-    /// File to write
+    /// Output file
     #[arg(short, long, value_name = "IMU.csv")]
     output: PathBuf,
     #[command(flatten)]
@@ -64,7 +64,7 @@ fn parse_angles(text: &str) -> Result<Angles, String> {
         .collect();
     match numbers.try_into() {
         Ok(degrees) => Ok(Angles(<[f32; 3]>::map(degrees, f32::to_radians))),
-        Err(_) => Err("give three numbers with commas, for example 90,0,30".to_owned()),
+        Err(_) => Err("give three numbers separated by commas, for example 90,0,30".to_owned()),
     }
 }
 
@@ -82,17 +82,17 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<()> {
     output::refuse_overwrite(&[&args.input], &args.output)?;
     ensure!(
         (1.0..=2000.0).contains(&args.rate),
-        "a sensor of {} samples a second cannot be simulated; give --rate a number from 1 to 2000",
+        "cannot simulate a sensor of {} samples a second; set --rate to 1 to 2000",
         args.rate
     );
     ensure!(
         (0.0..=100.0).contains(&args.noise),
-        "--noise {} is no factor of a sensor's errors; give a number from 0 to 100",
+        "--noise {} is out of range; give a factor from 0 to 100",
         args.noise
     );
     ensure!(
         (0.0..=10.0).contains(&args.strap),
-        "--strap {} is no looseness of a strap; give a number from 0 to 10",
+        "--strap {} is out of range; give a looseness from 0 to 10",
         args.strap
     );
     let noise = if args.uncalibrated {

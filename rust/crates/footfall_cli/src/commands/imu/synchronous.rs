@@ -47,7 +47,9 @@ pub(super) fn recordings(
     };
     let all: Result<Vec<ImuRecording>, String> = sites.iter().zip(&paths).map(read).collect();
     Ok(all.unwrap_or_else(|reason| {
-        output::note(&format!("warning: simulates the sensor, for {reason}"));
+        output::note(&format!(
+            "warning: a simulated sensor is used instead: {reason}"
+        ));
         Vec::new()
     }))
 }

@@ -10,11 +10,11 @@ use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Learn what a sensor on a body means for the whole body
+/// Train a sensor model: from the measurements of one or two sensors to the whole body
 ///
-/// Every recording is cut into phases, with what a sensor at the site would have measured in each frame. Give --site twice for
-/// two sensors. What real sensors measured at the same time takes the place of what they would have where the table names it in
-/// columns like `imu_right_foot`; it may begin earlier and end later, on any clock, worn anyhow.
+/// Every recording is cut into phases, each frame with the measurements of a simulated sensor at the site. Give --site twice for
+/// two sensors. Columns of the index such as `imu_right_foot` name recordings of real sensors, which replace the simulated ones;
+/// these may begin earlier and end later, on any clock, in any mounting.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     footfall imu train --corpus index.csv --where 'path=cmu/*' --site right_foot -o body.footimu\n  \
@@ -27,7 +27,7 @@ pub(crate) struct ImuTrainArgs {
     /// File to write the model to
     #[arg(short, long, value_name = "BODY.footimu")]
     output: PathBuf,
-    /// Description of the data for the model's provenance, in your words; the conditions when absent
+    /// Description of the data for the model's provenance [default: the conditions]
     #[arg(long, value_name = "TEXT")]
     describe: Option<String>,
     /// Print one JSON object on stdout
@@ -54,10 +54,10 @@ pub(in crate::commands) struct KeptArgs {
     /// Leave out the recordings' mirror images
     #[arg(long)]
     no_mirror: bool,
-    /// Keep this many frames at most: the cycles of movement that stand best for all others
+    /// Maximum number of frames to keep: the cycles of movement that best represent all others
     #[arg(long, value_name = "N")]
     frames: Option<usize>,
-    /// Learn from simulated sensors of a board that nobody calibrated, on a strap that gives, instead of ideal ones
+    /// Train on simulated sensors of an uncalibrated board on a loose strap instead of ideal ones
     #[arg(long)]
     learn_strapped: bool,
 }

@@ -99,9 +99,7 @@ pub(super) fn inspect(path: &Path, options: &RetargetOptions) -> Result<MotionFa
         cycle_frames: report.cycle_frames,
         warnings: report
             .cycle_frames
-            .map(|_| {
-                "one loop: a style made of it alone is thin, every step of it alike".to_owned()
-            })
+            .map(|_| "one loop: a style made of it alone is thin, with equal steps".to_owned())
             .into_iter()
             .collect(),
         hip_joints: HipFacts::of(&motion.report.hip_centres),
@@ -164,7 +162,7 @@ impl MotionFacts {
         if self.in_place {
             lines.push(fact(
                 "in place",
-                "yes; its way is that of the standing feet",
+                "yes; its travel is that of the standing feet",
             ));
         }
         if let Some(frames) = self.cycle_frames {

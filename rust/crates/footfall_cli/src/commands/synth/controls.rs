@@ -48,13 +48,13 @@ fn parse(text: &str) -> Result<Table> {
     for name in &header {
         ensure!(
             COLUMNS.contains(&name),
-            "unknown column '{name}'; a table of controls has {}",
+            "unknown column '{name}'; the columns of a table of controls are {}",
             COLUMNS.join(", ")
         );
     }
     ensure!(
         header.iter().any(|name| name == COLUMNS[0]),
-        "no column time_s: when does each row begin?"
+        "there is no column time_s; add the time at which each row begins"
     );
     let mut moves: Vec<Move> = Vec::new();
     let mut uses = BTreeMap::new();
@@ -72,7 +72,7 @@ fn parse(text: &str) -> Result<Table> {
             }
             let value: f32 = text
                 .parse()
-                .with_context(|| format!("line {line}: {name} '{text}' is no number"))?;
+                .with_context(|| format!("line {line}: {name} '{text}' is not a number"))?;
             ensure!(
                 value.is_finite(),
                 "line {line}: {name} {value} is not finite"
@@ -83,7 +83,7 @@ fn parse(text: &str) -> Result<Table> {
         let earlier = moves.last().map_or(0.0, |last| last.time_secs);
         ensure!(
             time_secs >= earlier && time_secs <= LONGEST_SECS,
-            "line {line}: time_s {time_secs} does not follow {earlier}, or lies beyond {LONGEST_SECS} s; rows go forwards in time"
+            "line {line}: time_s {time_secs} does not follow {earlier}, or exceeds {LONGEST_SECS} s; sort the rows by time"
         );
         for name in ["crouch", "jump_m"] {
             if number(name)? > 0.0 {
@@ -103,7 +103,7 @@ fn parse(text: &str) -> Result<Table> {
         });
     }
     let Some(last) = moves.last() else {
-        bail!("no rows: give at least one");
+        bail!("the table has no rows; give at least one");
     };
     Ok(Table {
         seconds: last.time_secs + LAST_SECS,
@@ -124,7 +124,7 @@ impl Table {
             .filter_map(|(name, _)| {
                 let line = self.uses.get(name)?;
                 Some(format!(
-                    "line {line}: the model knows no {name}; it goes on as if it were 0 (`footfall train --jumping` and `--crouching` teach it)"
+                    "line {line}: the model has no {name}, 0 is used; train it with `footfall train --jumping` and `--crouching`"
                 ))
             })
             .collect()
@@ -136,7 +136,7 @@ fn gait(text: &str, line: u64) -> Result<GaitChoice> {
         "" | "auto" => Ok(GaitChoice::Auto),
         "walk" => Ok(GaitChoice::Walk),
         "run" => Ok(GaitChoice::Run),
-        other => bail!("line {line}: gait '{other}' is none of auto, walk and run"),
+        other => bail!("line {line}: gait '{other}' is unknown; write auto, walk or run"),
     }
 }
 

@@ -31,7 +31,7 @@ impl Moves {
         if let Some(corpus) = &self.jumping {
             let learned = jumping::learn(&clips(corpus)).with_context(|| {
                 format!(
-                    "{}: nobody jumps off both feet three times, out of standing, in what --jumping chooses; widen it",
+                    "{}: the recordings of --jumping show fewer than three two-footed jumps out of standing; widen it",
                     args.corpus.index.display()
                 )
             })?;
@@ -40,7 +40,7 @@ impl Moves {
         if let Some(corpus) = &self.crouching {
             let learned = crouching::learn(&clips(corpus)).with_context(|| {
                 format!(
-                    "{}: nobody goes both upright and crouched for some seconds in what --crouching chooses; widen it",
+                    "{}: in the recordings of --crouching nobody walks both upright and crouched for several seconds; widen it",
                     args.corpus.index.display()
                 )
             })?;

@@ -123,7 +123,7 @@ fn calibrations_that_do_not_fit_say_what_to_do() {
         |model: &str, file: &str| reconstruct(folder, model, "imu.csv", &["--calibration", file]);
     with(&thigh, CALIBRATION)
         .fails_with(&[CALIBRATION, "for right_foot, the model for right_thigh"]);
-    with(&foot, "imu.csv").fails_with(&["imu.csv", "no calibration"]);
+    with(&foot, "imu.csv").fails_with(&["imu.csv", "not a sensor calibration"]);
     with(&foot, "none.footcal").fails_with(&["none.footcal"]);
     let mut bytes = fs::read(folder.join(CALIBRATION)).expect("a calibration");
     let last = bytes.len() - 6;

@@ -57,7 +57,7 @@ fn what_cannot_be_used_is_named() {
         text(|force, rate| (force / 9.806_65, rate)),
     )
     .unwrap();
-    reconstruct("g.csv").fails_with(&["g.csv", "in g", "9.80665"]);
+    reconstruct("g.csv").fails_with(&["g.csv", "unit is g", "9.80665"]);
     fs::write(
         folder.join("degrees.csv"),
         text(|force, rate| (force, rate.to_degrees())),

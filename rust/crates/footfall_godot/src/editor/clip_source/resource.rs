@@ -16,13 +16,13 @@ const RESET: &str = "RESET";
 pub(super) fn load(file: &GString) -> Result<Gd<Resource>, String> {
     if !file.begins_with("res://") && !file.begins_with("uid://") {
         return Err(format!(
-            "{file}: put it into the project first, so that Godot imports it."
+            "{file} is not in the project. Copy it into the project, so that Godot imports it."
         ));
     }
     let mut loader = ResourceLoader::singleton();
     if !loader.exists(file) {
         return Err(format!(
-            "{file} is not there, or Godot has not imported it. Choose a .bvh, .glb, .gltf or .fbx file, a scene or an animation."
+            "{file} does not exist, or Godot has not imported it. Choose a .bvh, .glb, .gltf or .fbx file, a scene or an animation."
         ));
     }
     loader
@@ -74,7 +74,7 @@ fn of_character(root: &Gd<Node>, label: &str) -> Result<Vec<Clip>, String> {
     let skeleton = first_below::<Skeleton3D>(root, "Skeleton3D")
         .ok_or_else(|| format!("{label} has no Skeleton3D. Choose the scene of a character."))?;
     let player = first_below::<AnimationPlayer>(root, "AnimationPlayer").ok_or_else(|| {
-        format!("{label} has no AnimationPlayer. Choose a scene with the character's animations, or add them by themselves.")
+        format!("{label} has no AnimationPlayer. Choose a scene with the character's animations, or add the animations alone.")
     })?;
     let names = player.get_animation_list();
     let named = names.as_slice().iter().filter_map(|name| {
@@ -84,7 +84,7 @@ fn of_character(root: &Gd<Node>, label: &str) -> Result<Vec<Clip>, String> {
     let clips: Vec<Clip> = sampled(named, label, &skeleton).collect();
     if clips.is_empty() {
         return Err(format!(
-            "No animation of {label} turns bones of its Skeleton3D. Export the character with its animations."
+            "No animation of {label} rotates bones of its Skeleton3D. Export the character with its animations."
         ));
     }
     Ok(clips)
@@ -114,7 +114,7 @@ fn of_animation(
 ) -> Result<Clip, String> {
     let skeleton = skeleton_of(animation, &label, skeletons)?;
     let motion = sampler::sample(animation, skeleton)
-        .ok_or_else(|| format!("{label} turns no bones. Choose an animation that walks."))?;
+        .ok_or_else(|| format!("{label} rotates no bones. Choose an animation that walks."))?;
     Ok(Clip::Sampled { label, motion })
 }
 
@@ -126,7 +126,7 @@ fn skeleton_of<'a>(
 ) -> Result<&'a Gd<Skeleton3D>, String> {
     if skeletons.is_empty() {
         return Err(format!(
-            "{label} does not say how its bones rest. Open the scene of its character (in a script: set `skeleton`), or choose the character's file."
+            "{label} has no rest poses of its bones. Open the scene of its character (in a script: set `skeleton`), or choose the character's file."
         ));
     }
     let mut found = (0, None);
@@ -138,7 +138,7 @@ fn skeleton_of<'a>(
     }
     found.1.ok_or_else(|| {
         format!(
-            "{label} turns no bone of the skeleton {}. Give the skeleton that it was made for.",
+            "{label} rotates no bone of the skeleton {}. Give the skeleton that it was made for.",
             skeletons[0].get_name()
         )
     })

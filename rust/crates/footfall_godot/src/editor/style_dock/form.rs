@@ -52,14 +52,14 @@ impl Form {
         files.set_custom_minimum_size(Vector2::new(0.0, 60.0));
         files.set_v_size_flags(control::SizeFlags::EXPAND_FILL);
         files.set_tooltip_text(
-            "BVH files of someone who walks in the style, or walk animations of characters (glTF, or whatever Godot imported). Six to twelve steps are enough",
+            "BVH files of a walk in the style, or walk animations of characters (glTF, or any format that Godot imports). Six to twelve steps are enough",
         );
         rows.add_child(&files);
         let add = button(
             "Add\u{2026}",
-            "Choose BVH and glTF files, in the project or anywhere else, or scenes and animations of the project",
+            "Choose BVH and glTF files in any folder, or scenes and animations of the project",
         );
-        let remove = button("Remove", "Remove the recording that is selected, or all");
+        let remove = button("Remove", "Remove the selected recording, or all of them");
         rows.add_child(&row(&[&add.clone().upcast(), &remove.clone().upcast()]));
 
         let mut rows = VBoxContainer::new_alloc();
@@ -67,7 +67,7 @@ impl Form {
         let mut base = EditorResourcePicker::new_alloc();
         base.set_base_type("GaitModel");
         base.set_tooltip_text(
-            "The walk that is adapted. Walkers that wear the style must have it as their model",
+            "The walk to adapt. Walkers that use the style must have it as their model",
         );
         named(&mut rows, "Base", &base.clone().upcast());
         let mut name = LineEdit::new_alloc();
@@ -77,7 +77,7 @@ impl Form {
         steps.set_min(2.0);
         steps.set_max(100.0);
         steps.set_value(12.0);
-        steps.set_tooltip_text("How many steps are taken from the recordings at most");
+        steps.set_tooltip_text("Maximum number of steps to use from the recordings");
         named(&mut rows, "Steps", &steps.clone().upcast());
         let mut file = LineEdit::new_alloc();
         file.set_placeholder("res://styles/proud.footstyle");
@@ -87,7 +87,7 @@ impl Form {
             "Make Style",
             "Adapt the base to the recordings, in the background",
         );
-        let cancel = button("Cancel", "Stop; nothing is written then");
+        let cancel = button("Cancel", "Stop without writing a file");
         rows.add_child(&row(&[&make.clone().upcast(), &cancel.clone().upcast()]));
         let mut progress = ProgressBar::new_alloc();
         progress.set_visible(false);
@@ -103,7 +103,7 @@ impl Form {
         rows.add_child(&view);
         let give = button(
             "Give to Selected Walker",
-            "Add the style to the GaitGenerator3D that is selected in the scene, with a weight of 1",
+            "Add the style to the GaitGenerator3D selected in the scene, with a weight of 1",
         );
         rows.add_child(&give);
 

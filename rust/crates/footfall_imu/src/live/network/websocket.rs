@@ -37,11 +37,11 @@ pub fn follow(server: &str) -> Link {
 
 fn connect(server: &str) -> Result<WebSocket<TcpStream>, String> {
     let told = |error: &dyn core::fmt::Display| {
-        format!("{server} does not answer as SensorServer does: {error}")
+        format!("{server} does not answer like SensorServer: {error}")
     };
     let mut addresses = server.to_socket_addrs().map_err(|error| {
         format!(
-            "{server} is no address ({error}); give the one that SensorServer shows, such as 192.168.1.5:8080"
+            "{server} is not an address ({error}); give the address that SensorServer shows, such as 192.168.1.5:8080"
         )
     })?;
     let address = addresses.find(|address| is_local(address.ip()));
@@ -79,7 +79,7 @@ fn receive(
             {
                 continue;
             }
-            Err(error) => return format!("{server} has gone: {error}"),
+            Err(error) => return format!("the connection to {server} was lost: {error}"),
         };
         let Message::Text(text) = message else {
             continue;

@@ -37,7 +37,7 @@ pub(super) fn load_or_make(folder: &Path, own: IpAddr) -> Result<Certificate, St
     {
         return Ok(Certificate { certificate, key });
     }
-    let made = make(own).map_err(|error| format!("no certificate can be made: {error}"))?;
+    let made = make(own).map_err(|error| format!("cannot create a certificate: {error}"))?;
     let keep = || -> io::Result<()> {
         fs::create_dir_all(folder)?;
         write_private(&key_path, &made.key)?;
@@ -45,7 +45,7 @@ pub(super) fn load_or_make(folder: &Path, own: IpAddr) -> Result<Certificate, St
     };
     keep().map_err(|error| {
         format!(
-            "{}: the certificate cannot be kept ({error}); check that the folder may be written",
+            "{}: cannot save the certificate ({error}); check the folder's write permission",
             folder.display()
         )
     })?;

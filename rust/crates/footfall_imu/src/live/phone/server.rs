@@ -64,7 +64,7 @@ pub(super) async fn serve(
     if let Ok(address) = listener.local_addr() {
         link.set_address(address);
         let waiting = if own.is_loopback() {
-            "this machine is in no local network, so no phone can reach it".to_owned()
+            "this machine has no local network address, so no phone can reach it".to_owned()
         } else {
             format!("waiting for a phone on TCP port {}", address.port())
         };
@@ -96,7 +96,7 @@ fn tls_config(
     let kept = certificate::load_or_make(&config.folder, own)?;
     let broken = |error: &dyn core::fmt::Display| {
         format!(
-            "{}: the certificate is broken ({error}); delete the folder",
+            "{}: the certificate is damaged ({error}); delete the folder",
             config.folder.display()
         )
     };
@@ -126,7 +126,7 @@ async fn guard(
     if !is_local(from.ip()) {
         return (
             StatusCode::FORBIDDEN,
-            "This game is played on its own network.",
+            "This game accepts phones on its own network only.",
         )
             .into_response();
     }
@@ -136,7 +136,7 @@ async fn guard(
             tokio::time::sleep(WRONG_CODE_DELAY).await;
             return (
                 StatusCode::FORBIDDEN,
-                "This code is of no player; scan the one that the game shows now.",
+                "This code is not valid any more. Scan the code that the game shows now.",
             )
                 .into_response();
         };

@@ -91,18 +91,18 @@ impl Slots {
                 .heard_secs
                 .is_some_and(|heard| now - heard < KEPT_SECS)
             {
-                return Err("another phone drives this player; close its page first");
+                return Err("Another phone drives this player. Close its page first.");
             }
             page.clone_into(&mut phone.page);
         }
         phone.heard_secs = Some(now);
         let Some(device) = &mut phone.device else {
-            return Err("the game has no place for this phone");
+            return Err("The game has no free place for this phone.");
         };
         if !parse(message, |reading| device.push(reading, now)) {
             device.rejected();
             link.count_garbage(1);
-            return Err("the page and the game do not fit together; load the page again");
+            return Err("The page does not match the game. Reload the page.");
         }
         link.set_state(LinkState::Receiving);
         Ok(device.device().status())

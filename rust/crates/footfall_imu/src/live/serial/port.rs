@@ -95,8 +95,7 @@ pub fn listen(config: SerialConfig) -> Link {
 fn open(config: &SerialConfig) -> Result<(String, Box<dyn SerialPort>), String> {
     let name = if config.port.is_empty() {
         let usb = ports().into_iter().find(|port| port.is_usb);
-        usb.ok_or("no sensor is plugged in: there is no serial port on USB")?
-            .name
+        usb.ok_or("no serial port on USB; plug in a sensor")?.name
     } else {
         config.port.clone()
     };
@@ -106,12 +105,12 @@ fn open(config: &SerialConfig) -> Result<(String, Box<dyn SerialPort>), String> 
         .open();
     port.map(|port| (name.clone(), port)).map_err(|error| match error.kind() {
         ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => {
-            format!("{name}: there is no such port; plug the sensor in, or choose another")
+            format!("there is no port {name}; plug in the sensor, or choose another port")
         }
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => {
-            format!("{name}: this user may not open it; on Linux add the user to the group 'dialout' and log in again")
+            format!("this user may not open {name}; on Linux, add the user to the group 'dialout' and log in again")
         }
-        _ => format!("{name}: {error}; another program may hold it"),
+        _ => format!("{name}: {error}; another program may use it"),
     })
 }
 
@@ -145,7 +144,7 @@ impl Session<'_> {
             *device = self.link.add(&self.name, format.name());
         }
         let Some(device) = device else {
-            return format!("{}: too many kinds of devices were heard here", self.name);
+            return format!("{}: too many kinds of devices at this port", self.name);
         };
         if let Some(caveat) = format.caveat() {
             device.set_fault(caveat);
@@ -166,10 +165,7 @@ impl Session<'_> {
                 heard_secs = now;
                 device.heard(now);
             } else if now - heard_secs > LOST_SECS {
-                return format!(
-                    "{}: nothing more is heard that can be understood",
-                    self.name
-                );
+                return format!("{}: no readable data any more", self.name);
             }
         }
         String::new()
@@ -212,12 +208,12 @@ impl Session<'_> {
         }
         Err(if bytes == 0 {
             format!(
-                "{}: nothing comes; check that the sensor is on and streams",
+                "{}: no data; check that the sensor is on and streams",
                 self.name
             )
         } else {
             format!(
-                "{}: {bytes} bytes came, in no known form at any rate; set the format and the baud rate",
+                "{}: {bytes} bytes in no known format at any baud rate; set the format and the baud rate",
                 self.name
             )
         })

@@ -42,7 +42,7 @@ impl TextFormat {
         let named = |columns: &String| Columns::of_header(columns).is_some();
         match &self.columns {
             Some(columns) if !named(columns) => Err(format!(
-                "the columns '{columns}' do not name all six axes; give them as in t,ax,ay,az,gx,gy,gz"
+                "the columns '{columns}' do not name all six axes; write them like t,ax,ay,az,gx,gy,gz"
             )),
             _ => Ok(()),
         }

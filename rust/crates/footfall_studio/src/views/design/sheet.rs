@@ -234,8 +234,7 @@ impl SheetPage {
         ui.horizontal(|ui| {
             ui.label("Name");
             ui.add(TextEdit::singleline(&mut self.sheet.name).desired_width(110.0));
-            ui.label("Seed")
-                .on_hover_text("Which chance irregular steps draw");
+            ui.label("Seed").on_hover_text("Seed of irregular steps");
             if ui.add(DragValue::new(&mut self.seed)).changed() {
                 self.designed = None;
             }
@@ -247,7 +246,7 @@ impl SheetPage {
             }
             let is_free = self.style_job.is_none();
             let make = ui.add_enabled(is_free, eframe::egui::Button::new("Make the style"));
-            let hint = format!("Designs the chosen recordings until there are {STEPS} steps, and adapts the base model to them");
+            let hint = format!("Applies the sheet to the selected recordings until there are {STEPS} steps, and adapts the base model to them");
             if make.on_hover_text(hint).clicked() {
                 self.make(ui.ctx(), shell);
             }
@@ -373,7 +372,7 @@ fn style_of(
         }
     }
     if styled.is_empty() {
-        return Err(problem.unwrap_or_else(|| "no recording of a walk is chosen".to_owned()));
+        return Err(problem.unwrap_or_else(|| "no recording of a walk is selected".to_owned()));
     }
     adapt_to(base, &styled, sheet.name.trim(), STEPS, reporter).map(|adapted| adapted.style)
 }

@@ -67,7 +67,7 @@ impl LiveBody {
             .and_then(|model| {
                 if model.sites.len() != 1 {
                     return Err(format!(
-                        "{}: the model is for {} sensors; the studio hears one at a time",
+                        "{}: the model is for {} sensors; the studio connects one at a time",
                         path.display(),
                         model.sites.len()
                     ));
@@ -261,7 +261,7 @@ impl LiveBody {
             }
             if ui
                 .button("Face ahead")
-                .on_hover_text("The way the body faces now is ahead")
+                .on_hover_text("Take the body's current direction as straight ahead")
                 .clicked()
                 && let Some(reconstructor) = &mut self.reconstructor
             {

@@ -135,7 +135,7 @@ impl SourceChoice {
             Kind::Http => http::listen(self.port),
             Kind::WebSocket if self.server.trim().is_empty() => {
                 return Err(
-                    "give the address that the app shows, such as 192.168.1.20:8080".to_owned(),
+                    "enter the address that the app shows, such as 192.168.1.20:8080".to_owned(),
                 );
             }
             Kind::WebSocket => websocket::follow(self.server.trim()),

@@ -1,4 +1,4 @@
-//! Why contacts cannot be judged.
+//! Errors of evaluating contacts.
 
 use crate::ReadModelError;
 use core::fmt::Display;
@@ -6,7 +6,7 @@ use footfall_imu::csv::ImuCsvError;
 use footfall_motion::corpus::CorpusError;
 use std::path::{Path, PathBuf};
 
-/// Why contacts cannot be judged.
+/// Errors of evaluating contacts.
 #[derive(Debug, thiserror::Error)]
 pub enum ContactsError {
     /// A recording, a file of events or a model that cannot be used.

@@ -135,7 +135,7 @@ fn worn_foot(row: &IndexRow, index: &Path, events: &[Event]) -> Result<Side, Con
     });
     side.ok_or_else(|| {
         let reason = format!(
-            "it is not told which foot wears the sensor; write left or right into a column \"{FOOT_COLUMN}\""
+            "the foot of the sensor is unknown; write left or right into a column \"{FOOT_COLUMN}\""
         );
         lack(index, row, reason)
     })
@@ -152,7 +152,7 @@ fn read_events(path: &Path) -> Result<Vec<Event>, ContactsError> {
     })?;
     if events.events.is_empty() || !events.events.iter().all(|event| event.time_s.is_finite()) {
         return Err(fault(
-            "there are no events; give those of the reference".to_owned(),
+            "there are no events; add the reference events".to_owned(),
         ));
     }
     Ok(events.events)

@@ -17,7 +17,7 @@ pub enum Device {
     Board,
     /// A phone's browser: 60 samples a second, rounded to 0.1 m/s² and 0.1 °/s.
     Phone,
-    /// A board that nobody calibrated, on a strap that gives ([`VirtualImuConfig::strapped`]).
+    /// Uncalibrated board, on a loose strap ([`VirtualImuConfig::strapped`]).
     Strapped,
 }
 

@@ -14,7 +14,7 @@ pub(super) fn table(report: &ContactsReport) -> String {
     lines.extend(ablation_table(&report.ablation));
     lines.extend([
         format!(
-            "Contacts within {} ms; bias and spread of found less known, ms",
+            "Contacts within {} ms; bias and spread of found minus known, ms",
             report.tolerance_ms
         ),
         format!(
@@ -61,7 +61,7 @@ fn people_table(people: &People, tolerance_ms: f64) -> Vec<String> {
     };
     let mut lines = vec![
         format!(
-            "People: contacts against Zeni et al. 2008 within 50 ms; switches against contacts within {tolerance_ms} ms; median of found less known, ms"
+            "People: contacts against Zeni et al. 2008 within 50 ms; switches against contacts within {tolerance_ms} ms; median of found minus known, ms"
         ),
         format!(
             "{:28} {:>19}  {:>19}  {:>19}",

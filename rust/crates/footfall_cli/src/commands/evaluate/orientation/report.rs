@@ -63,7 +63,7 @@ impl Report {
         let mut text = String::new();
         for (title, categories) in [
             ("Simulated sensors, every frame", &self.simulated),
-            ("Real sensors, as they come to rest", &self.real),
+            ("Real sensors, at the beginning of a rest", &self.real),
         ] {
             if categories.is_empty() {
                 continue;

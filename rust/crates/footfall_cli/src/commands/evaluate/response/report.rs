@@ -58,7 +58,7 @@ impl Report {
     /// The table that people read.
     pub(super) fn table(&self) -> String {
         let mut text = String::from(
-            "generated               from being asked, s   of the motion, s   speed, m/s   hips, m/s² (99.9 %)\n                         median    worst      median    worst\n",
+            "generated               from the request, s   of the motion, s   speed, m/s   hips, m/s² (99.9 %)\n                         median    worst      median    worst\n",
         );
         for row in &self.generated {
             let pair = |pair: Option<[f64; 2]>| match pair {
@@ -67,7 +67,7 @@ impl Report {
             };
             let never = match row.never {
                 0 => String::new(),
-                never => format!("  {never} of {} never came to it", row.walkers),
+                never => format!("  {never} of {} never reached it", row.walkers),
             };
             let _written = writeln!(
                 text,

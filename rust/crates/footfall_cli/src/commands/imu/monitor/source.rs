@@ -13,40 +13,40 @@ use std::time::Duration;
 #[derive(Debug, clap::Args)]
 #[group(id = "source")]
 pub(super) struct SourceArgs {
-    /// A serial port by its name, or `auto` for the first one on USB
+    /// Serial port, or `auto` for the first one on USB
     #[arg(long, value_name = "PORT", group = "one")]
     serial: Option<String>,
-    /// Datagrams at this UDP port: owoTrack and SlimeVR trackers (6969), ZIG SIM, GyrOSC, SensaGram, HyperIMU
+    /// UDP port for owoTrack and SlimeVR trackers (6969), ZIG SIM, GyrOSC, SensaGram, HyperIMU
     #[arg(long, value_name = "PORT", group = "one")]
     udp: Option<u16>,
-    /// Sensor Logger's HTTP push to this TCP port
+    /// TCP port for Sensor Logger's HTTP push
     #[arg(long, value_name = "PORT", group = "one")]
     http: Option<u16>,
-    /// The SensorServer app at this address
+    /// Address of the SensorServer app
     #[arg(long, value_name = "HOST:PORT", group = "one")]
     websocket: Option<String>,
-    /// A phone's browser: shows a code to scan
+    /// Use a phone's browser: shows a code to scan
     #[arg(long, group = "one")]
     phone: bool,
     /// TCP port of the page for phones
     #[arg(long, value_name = "PORT", default_value_t = phone::DEFAULT_PORT, requires = "phone")]
     phone_port: u16,
-    /// Baud rate of the serial port [default: found by listening]
+    /// Baud rate of the serial port [default: detected]
     #[arg(long, value_name = "RATE", requires = "serial")]
     baud: Option<u32>,
-    /// Protocol of the serial device [default: found by listening]
+    /// Protocol of the serial device [default: detected]
     #[arg(long, value_parser = parse_format, requires = "serial")]
     format: Option<SerialFormat>,
-    /// Columns of lines of numbers, such as t,ax,ay,az,gx,gy,gz [default: told by a header, or this order]
+    /// Columns of lines of numbers, such as t,ax,ay,az,gx,gy,gz [default: from a header, or this order]
     #[arg(long)]
     columns: Option<String>,
-    /// Unit of time in lines: s, ms or us [default: told by a header, or guessed]
+    /// Unit of time in lines: s, ms or us [default: from a header, or guessed]
     #[arg(long, value_parser = |name: &str| parse_unit(name, &TimeUnit::NAMES))]
     time_unit: Option<TimeUnit>,
-    /// Unit of specific force in lines: mps2, g, mg or counts [default: told by a header, or guessed]
+    /// Unit of specific force in lines: mps2, g, mg or counts [default: from a header, or guessed]
     #[arg(long, value_parser = |name: &str| parse_unit(name, &ForceUnit::NAMES))]
     force_unit: Option<ForceUnit>,
-    /// Unit of angular rate in lines: radps, dps or counts [default: told by a header, or the one that goes with the force's]
+    /// Unit of angular rate in lines: radps, dps or counts [default: from a header, or to match the force's unit]
     #[arg(long, value_parser = |name: &str| parse_unit(name, &RateUnit::NAMES))]
     rate_unit: Option<RateUnit>,
 }
@@ -57,7 +57,7 @@ fn parse_format(name: &str) -> Result<SerialFormat, String> {
             .into_iter()
             .map(SerialFormat::name)
             .collect();
-        format!("no format is called so; there are {}", names.join(", "))
+        format!("unknown format; the formats are {}", names.join(", "))
     })
 }
 
@@ -65,7 +65,7 @@ fn parse_unit<U: Copy>(name: &str, units: &[(&str, U)]) -> Result<U, String> {
     let found = units.iter().find(|(own, _)| *own == name);
     found.map(|(_, unit)| *unit).ok_or_else(|| {
         let names: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
-        format!("no unit is called so; there are {}", names.join(", "))
+        format!("unknown unit; the units are {}", names.join(", "))
     })
 }
 
@@ -111,7 +111,7 @@ impl Source {
             return Self::open_phone(args.phone_port);
         }
         bail!(
-            "no source is given; give --serial, --udp, --http, --websocket or --phone, or list serial ports with --ports"
+            "no source; pass --serial, --udp, --http, --websocket or --phone, or list serial ports with --ports"
         )
     }
 
@@ -123,7 +123,7 @@ impl Source {
             players: 1,
             folder: folder.join("footfall").join("phone"),
         })
-        .context("no code for the phone can be made")?;
+        .context("cannot create the code for the phone")?;
         // The address holds the port, which is known once the server listens.
         while matches!(server.link().state(), LinkState::Opening(_)) {
             std::thread::sleep(Duration::from_millis(10));
@@ -136,7 +136,7 @@ impl Source {
             output::note(&drawn(&code));
         }
         output::note(&format!(
-            "scan the code with a phone on this network, or open {url}\nthe browser warns of the certificate, which this machine signed itself: go on"
+            "scan the code with a phone on this network, or open {url}\nthe browser warns of the certificate, which this machine signed itself: proceed"
         ));
         Ok(Self::Phone(server))
     }

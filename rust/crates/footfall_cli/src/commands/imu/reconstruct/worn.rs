@@ -70,7 +70,7 @@ impl WornSensors {
                 .with_context(|| path.display().to_string())?;
             if calibrated.certainty < CERTAIN {
                 output::note(&format!(
-                    "warning: {}: the mounting is only {:.0} % certain; record more steps, or give --mounting aligned",
+                    "warning: {}: the mounting is only {:.0} % certain; record more steps, or pass --mounting aligned",
                     path.display(),
                     100.0 * calibrated.certainty
                 ));
