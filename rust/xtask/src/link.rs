@@ -101,7 +101,7 @@ mod tests {
             link(&project, Path::new("../addons"), &addons)
                 .unwrap_err()
                 .to_string()
-                .contains("in the way")
+                .contains("blocks the link")
         );
         fs::remove_dir_all(folder).unwrap();
     }

@@ -35,6 +35,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A distant walker can walk in steps that all walkers of the same style share ([`CrowdWalker::sharing`]): it then has a [`SharedPose`], which a renderer draws from a texture of poses.
+//!
 //! # Whole crowds
 //!
 //! A [`Crowd`] also directs its walkers. A [`CrowdRecipe`] holds what they are made of, on threads of its own; [`CrowdSettings`] set their differences. A

@@ -183,7 +183,7 @@ fn work_that_is_cancelled_says_so_and_shows_nothing() {
     click(&mut window, "Cancel");
     settle(&mut window);
     let message = window.state().message().unwrap();
-    assert!(message.contains("cancelled"), "{message}");
+    assert!(message.contains("stopped"), "{message}");
     assert!(window.query_by_label("Export CSV…").is_none());
 }
 
