@@ -45,7 +45,7 @@ pub struct SharedPose {
     pub pose: u32,
     /// Weight of the second one.
     pub blend: f32,
-    /// The two of the speed that is left lie so many poses beyond them, times [`STEP_POSES`](super::STEP_POSES).
+    /// The two of the speed that is left lie beyond them by this number of steps, of nine poses each.
     pub beside: i8,
     /// Their weight: a number of 64ths below 1.
     pub leaving: f32,
