@@ -13,6 +13,7 @@ mod members;
 mod motion;
 mod neighbours;
 mod pick;
+mod replica;
 mod roster;
 mod save;
 mod tiers;
@@ -28,6 +29,8 @@ use maker::Maker;
 use members::Coming;
 pub use motion::{FETCHED, GROUPS};
 use neighbours::Neighbours;
+use replica::Following;
+pub use replica::{CrowdMessage, CrowdReplicaError, CrowdSender, STEP_BYTES};
 pub use roster::Roster;
 pub use save::{CrowdStateError, SavedCrowd};
 use std::collections::VecDeque;
@@ -100,6 +103,8 @@ pub struct Crowd {
     tickets: u64,
     /// Walkers who have names and no rows yet, in the order in which they came.
     coming: VecDeque<Coming>,
+    /// Another machine's crowd that this one follows.
+    following: Option<Following>,
 }
 
 impl Crowd {
@@ -127,6 +132,7 @@ impl Crowd {
             made: 0,
             tickets: 0,
             coming: VecDeque::new(),
+            following: None,
         }
     }
 

@@ -6,6 +6,7 @@
 
 mod feet;
 mod frames;
+mod led;
 mod repeat;
 mod rest;
 mod workshop;
@@ -26,6 +27,7 @@ use footfall_ik::Plant;
 use frames::CrowdFrames;
 pub use frames::CrowdPose;
 use glam::Vec2;
+pub use led::{LedAim, LedBeginning, LedStep};
 use repeat::{Base, Before};
 use rest::{Rest, RestBench, leave};
 use std::sync::Arc;
@@ -44,6 +46,8 @@ pub struct CrowdWalker {
     /// Identity of the walker: weights of the model's walker components.
     walker: [f64; MAX_COMPONENTS],
     chance_position: u64,
+    /// Strides that chance has drawn.
+    strides: u32,
     draws: Box<[StepDraw; WINDOW]>,
     /// Origin of the next step, all but its request. Boxed like the draws: most frames need neither.
     next: Box<Origin>,
@@ -109,6 +113,7 @@ impl CrowdWalker {
             blend: Arc::clone(&worn.blend),
             walker: *planner.walker(),
             chance_position: 0,
+            strides: 0,
             draws: Box::new(walker.draws().clone()),
             next: Box::new(walker.next_origin(request)),
             shape,
@@ -132,17 +137,22 @@ impl CrowdWalker {
         if let Some(life) = made.life.as_mut().filter(|_| standing) {
             life.stand();
         }
-        made.take_over(workshop);
-        let frames = made.shape.timing.frames as f32;
-        made.position = if standing {
-            frames
+        let share = if standing {
+            1.0
         } else {
-            (2.0 * config.phase.rem_euclid(1.0)).fract() * frames
+            (2.0 * config.phase.rem_euclid(1.0)).fract()
         };
-        made.landing = made.landing_of_step();
-        made.plan_from_start = made.plan_from_character();
-        made.live(0.0, workshop);
+        made.settle(share, workshop);
         Ok(made)
+    }
+
+    /// Takes over its first step, in the middle of it.
+    fn settle(&mut self, share: f32, workshop: &mut Workshop) {
+        self.take_over(workshop);
+        self.position = share * self.shape.timing.frames as f32;
+        self.landing = self.landing_of_step();
+        self.plan_from_start = self.plan_from_character();
+        self.live(0.0, workshop);
     }
 
     /// Sets how much it moves as it stands, as of [`GaitGenerator::set_standing_motion`](crate::GaitGenerator::set_standing_motion). Shows within a second.
@@ -170,20 +180,33 @@ impl CrowdWalker {
 
     /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before and for the first rest.
     pub fn step(&mut self, dt_secs: f32, controls: Controls, workshop: &mut Workshop) {
+        self.pass(dt_secs, workshop, |walker, workshop| {
+            let rests = walker.comes_to_rest() && controls.is_standing();
+            if !rests && !walker.repeat_step(controls) {
+                walker.next_step(controls, None, workshop);
+            }
+            !rests
+        });
+    }
+
+    /// Lets time pass; `go_on` goes on to the next step, or returns false for one who rests.
+    fn pass(
+        &mut self,
+        dt_secs: f32,
+        workshop: &mut Workshop,
+        mut go_on: impl FnMut(&mut Self, &mut Workshop) -> bool,
+    ) {
         self.footstep = None;
         if dt_secs > 0.0 {
             self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
         }
         while self.position >= self.shape.timing.frames as f32 {
             let frames = self.shape.timing.frames as f32;
-            if self.shape.amplitude.to < 1.0 && controls.is_standing() {
+            if !go_on(self, workshop) {
                 self.position = frames;
                 break;
             }
             self.position -= frames;
-            if !self.repeat_step(controls) {
-                self.next_step(controls, workshop);
-            }
         }
         if dt_secs > 0.0 {
             self.live(dt_secs.min(MAX_DT_SECS), workshop);
@@ -203,7 +226,12 @@ impl CrowdWalker {
 
     /// Returns whether it has come to a stand and rests.
     pub fn is_standing(&self) -> bool {
-        self.shape.amplitude.to < 1.0 && self.position >= self.shape.timing.frames as f32
+        self.comes_to_rest() && self.position >= self.shape.timing.frames as f32
+    }
+
+    /// Returns whether its current step ends in a stand.
+    pub fn comes_to_rest(&self) -> bool {
+        self.shape.amplitude.to < 1.0
     }
 
     /// Share of its stride that is behind it: 0 when the left foot lands, 0.5 when the right one does.
@@ -249,7 +277,8 @@ impl CrowdWalker {
         }
     }
 
-    fn next_step(&mut self, controls: Controls, workshop: &mut Workshop) {
+    /// Works out the next step; a led one is another walker's.
+    fn next_step(&mut self, controls: Controls, led: Option<&LedStep>, workshop: &mut Workshop) {
         let end = self.end();
         let styled = Arc::clone(&self.styled.0);
         let worn = &styled.worn;
@@ -279,9 +308,15 @@ impl CrowdWalker {
             self.walker,
         );
         planner.resume(self.chance_position, &*self.draws);
+        planner.count_strides(self.strides);
         let mut draws = (*self.draws).clone();
         draws.rotate_left(1);
-        draws[WINDOW - 1] = planner.draw(leading);
+        match led {
+            Some(led) if led.number != self.number().wrapping_add(1) => {
+                self.redraw(led.number, planner, &mut draws);
+            }
+            _ => draws[WINDOW - 1] = planner.draw(leading),
+        }
         let blends = [&self.blend, blend];
         // The model gave a trajectory when the walker was made, so it gives one now.
         if walker
@@ -289,6 +324,9 @@ impl CrowdWalker {
             .is_err()
         {
             return;
+        }
+        if let Some(led) = led {
+            led.aim.take(&self.plan_from_start, walker, bench);
         }
         let done = core::mem::take(&mut self.frames);
         let before = self.before.take();
@@ -311,6 +349,7 @@ impl CrowdWalker {
     /// Keeps the step that was just worked out.
     fn take_over(&mut self, workshop: &mut Workshop) {
         self.chance_position = workshop.planner.chance_position();
+        self.strides = workshop.planner.strides();
         self.arrival = workshop.walker.stage().arrival;
         let timing = self.shape.ground_timing();
         let stage = &workshop.walker.stage().frames[..=timing.frames];

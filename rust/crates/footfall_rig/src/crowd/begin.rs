@@ -59,7 +59,7 @@ impl Crowd {
         let agent = &mut self.agents[place];
         agent.outfit.clone_from(&outfit);
         // Who is not made yet is dressed when it comes.
-        let Some(walker) = &mut agent.walker else {
+        let Some(walker) = agent.own_walker() else {
             return;
         };
         if let Some(styled) = self.kit.as_ref().and_then(|kit| kit.known(&outfit)) {
@@ -99,7 +99,7 @@ impl Crowd {
                 walker.set_detail(Detail::Quarter);
                 agent.begin(walker, *time_secs);
                 began.push(roster.name(place));
-            } else if let Some(walker) = &mut agent.walker {
+            } else if let Some(walker) = agent.own_walker() {
                 walker.wear(&made.styled);
             }
             if agent.outfit != outfit {

@@ -87,6 +87,11 @@ impl Maker {
         maker
     }
 
+    /// What walkers are made of.
+    pub(super) fn recipe(&self) -> &CrowdRecipe {
+        &self.shared.recipe
+    }
+
     /// Number of styles.
     pub(super) fn styles(&self) -> usize {
         self.shared.recipe.styles.len()

@@ -196,7 +196,7 @@ impl Crowd {
     }
 
     /// Gives every one of the first so many places its row.
-    fn make_room(&mut self, places: usize) {
+    pub(super) fn make_room(&mut self, places: usize) {
         let places = places.max(self.agents.len());
         self.agents.resize_with(places, Agent::absent);
         self.tiers.resize(places, Tier::Far);

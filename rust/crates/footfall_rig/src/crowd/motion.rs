@@ -49,10 +49,12 @@ impl Crowd {
             repeats,
             standing_motion,
             time_secs,
+            following,
             ..
         } = self;
         let (workshops, neighbours, way) = (&kit.workshops, &*neighbours, &*way);
-        let (repeats, now_secs) = (*repeats, *time_secs);
+        let (following, now_secs) = (following.as_ref(), *time_secs);
+        let repeats = *repeats && following.is_none();
         let standing_motion = *standing_motion;
         let chunks = agents
             .par_chunks_mut(CHUNK)
@@ -75,7 +77,13 @@ impl Crowd {
                     moving.for_each(|index| agents[index].fetch());
                 }
                 let (agent, tier, drawn) = (&mut agents[index], &tiers[index], &mut drawn[index]);
-                let Some(walker) = agent.walker.as_mut().filter(|_| moves(index, *tier)) else {
+                if !moves(index, *tier) {
+                    continue;
+                }
+                if let Some(following) = following {
+                    agent.begin_led(following, now_secs, &mut workshop);
+                }
+                let Some(walker) = &mut agent.walker else {
                     continue;
                 };
                 walker.set_detail(match tier {
@@ -87,6 +95,12 @@ impl Crowd {
                 walker.set_standing_motion(standing_motion);
                 let secs = (now_secs - agent.clock_secs) as f32;
                 agent.clock_secs = now_secs;
+                let (from, heading) = (agent.place, agent.heading);
+                if let Some(following) = following {
+                    agent.follow(secs, following, &mut workshop);
+                    *drawn = agent.drawn(from, heading);
+                    continue;
+                }
                 if agent.is_about_to_step(secs) {
                     way.lead(agent);
                     let stops = matches!(way, Way::Told);
@@ -96,7 +110,6 @@ impl Crowd {
                         agent.decide(core::iter::empty(), stops);
                     }
                 }
-                let (from, heading) = (agent.place, agent.heading);
                 agent.advance(secs, &mut workshop);
                 *drawn = agent.drawn(from, heading);
             }
