@@ -11,6 +11,7 @@ mod making;
 mod members;
 mod navigation;
 mod others;
+mod replica;
 mod scene;
 
 use crate::gait_model::GaitModel;
@@ -21,6 +22,7 @@ use footfall_rig::crowd::Crowd;
 use godot::classes::{Engine, INode3D, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
 use others::Others;
+use replica::Replica;
 use scene::CrowdScene;
 
 /// Warning where there is no character.
@@ -202,6 +204,11 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_material)]
     material: Option<Gd<ShaderMaterial>>,
 
+    /// If `true`, the crowd is another peer's of a multiplayer game: walkers come, go and step as `hear_message()` tells, by the same ids; `count`, `behaviour` and what
+    /// scripts ask of walkers do nothing. Set back to `false` it goes on by itself with those who are there. `controller/crowd_synchronizer.tscn` sets it.
+    #[var(get = get_follows, set = set_follows)]
+    follows: PhantomVar<bool>,
+
     /// The add-on's own walk, where `model` is empty.
     fallback: Fallback<GaitModel>,
     walkers: Option<Crowd>,
@@ -209,6 +216,7 @@ pub(crate) struct GaitCrowd3D {
     mesh: Option<CrowdMesh>,
     scene: Option<CrowdScene>,
     others: Others,
+    replica: Replica,
     /// True when walkers were sent over the navigation map.
     sends: bool,
     /// Row of the walker who is looked at next, lest it leaves the map.
@@ -270,6 +278,10 @@ impl GaitCrowd3D {
     #[signal]
     fn agents_ready(agents: PackedInt32Array);
 
+    /// A message about the crowd that this one follows was refused, for this reason: see `hear_message()`.
+    #[signal]
+    fn message_refused(reason: GString);
+
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
         self.model = shipped::instead_of_new(model, shipped::WALK, |model| model.bind().is_new());
@@ -304,7 +316,11 @@ impl GaitCrowd3D {
             );
         }
         self.count = count.clamp(0, MOST_AGENTS);
-        if let Some(walkers) = &mut self.walkers {
+        if let Some(walkers) = self
+            .walkers
+            .as_mut()
+            .filter(|walkers| !walkers.is_following())
+        {
             let places = walkers.set_count(self.count as usize);
             self.left(&places);
         }
@@ -385,6 +401,7 @@ impl GaitCrowd3D {
             scene.free();
         }
         self.walkers = None;
+        self.replica.renew();
         self.mesh = None;
         self.problem = None;
     }

@@ -178,6 +178,11 @@ impl Crowd {
         self.frame
     }
 
+    /// Time that has passed, seconds.
+    pub fn time_secs(&self) -> f64 {
+        self.time_secs
+    }
+
     /// Ways that walkers take by themselves.
     pub fn way(&self) -> &Way {
         &self.way

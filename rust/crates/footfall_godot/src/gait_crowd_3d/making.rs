@@ -154,7 +154,11 @@ impl GaitCrowd3D {
             body: mesh.body.clone(),
         };
         let mut walkers = Crowd::new(recipe, way, settings);
-        walkers.set_count(self.count as usize);
+        if self.replica.follows {
+            walkers.follow();
+        } else {
+            walkers.set_count(self.count as usize);
+        }
         Ok((walkers, mesh))
     }
 }

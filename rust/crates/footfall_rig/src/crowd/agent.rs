@@ -262,7 +262,9 @@ impl Agent {
     /// Lets time pass.
     pub(super) fn advance(&mut self, dt_secs: f32, workshop: &mut Workshop) {
         let controls = self.controls;
-        self.travel(dt_secs, |walker, secs| walker.step(secs, controls, workshop));
+        self.travel(dt_secs, |walker, secs| {
+            walker.step(secs, controls, workshop)
+        });
     }
 
     /// Goes where its walk takes it, which is to step through this time of its own.

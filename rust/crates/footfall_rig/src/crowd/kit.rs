@@ -29,7 +29,10 @@ impl Outfit {
 
     /// One that was told in parts.
     pub(super) fn of_parts(parts: &[i8]) -> Self {
-        let weights: Vec<f32> = parts.iter().map(|part| f32::from(*part) / WEIGHT_PARTS).collect();
+        let weights: Vec<f32> = parts
+            .iter()
+            .map(|part| f32::from(*part) / WEIGHT_PARTS)
+            .collect();
         Self::of(&weights)
     }
 

@@ -177,10 +177,7 @@ impl CrowdWalker {
         let mut draws = (*self.draws).clone();
         draws[0] = self.draw_of(at.number.wrapping_sub(1), planner);
         self.redraw(at.number, planner, &mut draws);
-        if walker
-            .start(planner, blend, draws, request, bench)
-            .is_err()
-        {
+        if walker.start(planner, blend, draws, request, bench).is_err() {
             return;
         }
         self.blend = Arc::clone(blend);

@@ -105,7 +105,9 @@ impl GaitGenerator {
     /// where it stands.
     pub(super) fn start_from_aim(&self, rests: bool) -> GroundTransform {
         let source = self.steps.source();
-        source.stage().aim(&self.plan_from_start, self.shape(), rests)
+        source
+            .stage()
+            .aim(&self.plan_from_start, self.shape(), rests)
     }
 
     /// Starts over at the origin, in the middle of a step; whether it could.

@@ -15,9 +15,9 @@ use footfall_synth::{GeneratorConfig, GroundTransform};
 /// Bytes that are heard in a second: those of the largest crowd, told everything.
 const MOST_BYTES_A_SECOND: u32 = 8_000_000;
 
-/// Steps are taken so much later than the quickest message would allow, seconds: one that is lost is told again after a tenth, and who is far away from the sender's camera is
+/// Steps are taken so much later than the quickest message would allow, seconds: one that is lost is told again after a tenth and two, and who is far away from the sender's camera is
 /// seen to step a few frames late.
-const LATER_SECS: f64 = 0.2;
+const LATER_SECS: f64 = 0.3;
 
 /// Without a message for so long everybody stands, seconds.
 const SILENCE_SECS: f64 = 3.0;
@@ -95,6 +95,12 @@ impl Crowd {
         self.following.is_some()
     }
 
+    /// Returns true when it follows another one and has heard who is in it.
+    pub fn is_introduced(&self) -> bool {
+        self.following
+            .is_some_and(|following| following.session.is_some())
+    }
+
     /// Hears a message of the crowd that it follows; other crowds hear nothing. Returns the places of those who left.
     ///
     /// # Errors
@@ -132,7 +138,10 @@ impl Crowd {
         for step in steps.iter().map(ToldStep::unpack) {
             let row = step.row as usize;
             let (_, turn) = ToldStep::row_and_turn(self.roster.name(row));
-            let led = self.agents.get_mut(row).and_then(|agent| agent.led.as_mut());
+            let led = self
+                .agents
+                .get_mut(row)
+                .and_then(|agent| agent.led.as_mut());
             // Of somebody who is not introduced yet, or has left.
             if let Some(led) = led.filter(|_| turn == step.turn) {
                 led.hear(&step, sent_secs);

@@ -169,7 +169,9 @@ impl Led {
             due = Some(*next);
             self.take();
         }
-        let resting = self.last.filter(|last| last.rests && self.first().is_none());
+        let resting = self
+            .last
+            .filter(|last| last.rests && self.first().is_none());
         due.filter(|due| now.late_secs(due) < OVER_SECS).or(resting)
     }
 
@@ -228,7 +230,9 @@ impl Led {
                 return Some(next.step(next.number, now));
             }
         }
-        let resting = self.last.filter(|last| last.rests && self.first().is_none())?;
+        let resting = self
+            .last
+            .filter(|last| last.rests && self.first().is_none())?;
         let aim = now.start.local(&resting.aim);
         let own = walker.start_from_character();
         let turn = wrap_angle(aim.heading - own.heading);
@@ -268,7 +272,9 @@ impl Led {
 
     /// Returns true when a walker is too far from where it should be to walk there.
     fn loses(&self, walker: &CrowdWalker, now: &Now<'_>) -> bool {
-        let late = self.first().is_some_and(|next| now.late_secs(next) > LOST_SECS);
+        let late = self
+            .first()
+            .is_some_and(|next| now.late_secs(next) > LOST_SECS);
         let off = if walker.is_standing() {
             let rests = self.last.filter(|last| last.rests);
             rests.map(|last| (last.aim, walker.start_from_character()))

@@ -114,7 +114,10 @@ impl CrowdSender {
         let dt_secs = if dt_secs > 0.0 { dt_secs.min(1.0) } else { 0.0 };
         self.frame += 1;
         self.since_secs += dt_secs;
-        let (more, most) = (bytes_per_second as f32 * dt_secs, bytes_per_second as f32 * SAVED_SECS);
+        let (more, most) = (
+            bytes_per_second as f32 * dt_secs,
+            bytes_per_second as f32 * SAVED_SECS,
+        );
         let most = most.max(MOST_BYTES as f32);
         self.left = (self.left + more).min(most);
         for peer in &mut self.peers {
@@ -189,9 +192,7 @@ impl CrowdSender {
                 continue;
             }
             row.pass(dt_secs);
-            if crowd.moved(index)
-                && let Some(step) = crowd.agents()[index].told(row.name, crowd.time_secs)
-            {
+            if let Some(step) = crowd.agents()[index].told(row.name, crowd.time_secs) {
                 row.look_at(&step);
             }
         }

@@ -13,8 +13,8 @@ const DRIFT_M: f32 = 0.02;
 const REST_M: f32 = 0.2;
 const RESTING_MPS: f32 = 0.0001;
 
-/// Share of what is told that gets lost.
-const LOSS: f32 = 0.05;
+/// Share of what is told that gets lost, with a margin: steps in which much changes are told three times.
+const LOSS: f32 = 0.1;
 /// The same is told again no sooner: what delays or loses one packet does so to the next, seconds.
 pub(super) const AGAIN_SECS: f32 = 0.1;
 /// Errors below this are not worth telling, metres.

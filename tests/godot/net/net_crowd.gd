@@ -1,0 +1,65 @@
+class_name NetCrowd
+extends GaitCrowd3D
+## A crowd of a multiplayer game: the host walks it, all others show the same.
+
+const SYNCHRONIZER: PackedScene = preload("res://addons/footfall/controller/crowd_synchronizer.tscn")
+## Walkers of the host. Guests would have more of their own.
+const WALKERS := 12
+
+var lies := false
+## Time since the crowd is known, seconds, and the fastest that anybody went from one frame to the next, m/s.
+var secs := 0.0
+var fastest := 0.0
+
+var _synchronizer: Node
+var _before: Dictionary[int, Vector3] = {}
+
+
+func make(hosts: bool) -> void:
+	model = load(Walker.MODEL)
+	character = Skinned.scene()
+	count = WALKERS if hosts else 3 * WALKERS
+	area = Vector2(24, 24)
+	position = Vector3(-30, 0, 10)
+	footsteps.connect(_tell)
+	message_refused.connect(func(reason: String) -> void: print("REFUSED crowd %s" % reason))
+	_synchronizer = SYNCHRONIZER.instantiate()
+	add_child(_synchronizer)
+	_synchronizer.stranger_refused.connect(func(peer: int) -> void: print("STRANGER %d" % peer))
+
+
+func _process(delta: float) -> void:
+	if not follows or is_introduced():
+		secs += delta
+	_measure(delta)
+	if lies and secs > 1.0:
+		var noise := PackedByteArray()
+		for at: int in randi() % 60:
+			noise.append(randi() % 256)
+		for peer: int in multiplayer.get_peers():
+			# The server passes it on to those who are not its own neighbours.
+			_synchronizer._step.rpc_id(peer, noise)
+
+
+func _tell(agents: PackedInt32Array, feet: PackedByteArray, places: PackedVector3Array) -> void:
+	var made := "SHOWN" if follows else "MADE"
+	for index: int in agents.size():
+		var foot := Walker.FEET[feet[index]]
+		var place := places[index]
+		print("%s crowd_%d %s %.4f %.4f %.3f" % [made, agents[index], foot, place.x, place.z, secs])
+
+
+func _measure(delta: float) -> void:
+	var now: Dictionary[int, Vector3] = {}
+	var agents := get_agents()
+	var places := get_positions()
+	var tiers := get_tiers()
+	for index: int in agents.size():
+		# Who is far away moves once in four frames, and who is not shown yet has no place.
+		if tiers[index] < 2 and places[index].is_finite():
+			now[agents[index]] = places[index]
+	if secs > 2.0 and delta > 0.0:
+		for agent: int in now:
+			if _before.has(agent):
+				fastest = maxf(fastest, now[agent].distance_to(_before[agent]) / delta)
+	_before = now
