@@ -73,7 +73,7 @@
 //! here.set_count(20);
 //! here.repeats = false;
 //! let mut sender = CrowdSender::new(1);
-//! sender.join(2, &here);
+//! sender.join(2);
 //!
 //! // There: the same, by another's will.
 //! let mut there = Crowd::new(recipe, Way::Told, CrowdSettings::default());

@@ -389,6 +389,16 @@ impl GaitCrowd3D {
     }
 
     #[func]
+    fn get_follows(&self) -> bool {
+        self.replica.follows
+    }
+
+    #[func]
+    fn set_follows(&mut self, follows: bool) {
+        self.let_follow(follows);
+    }
+
+    #[func]
     fn set_material(&mut self, material: Option<Gd<ShaderMaterial>>) {
         self.material = material;
         self.restart();

@@ -52,8 +52,8 @@ impl GaitCrowd3D {
         if !self.replica.peers.contains(&peer) {
             self.replica.peers.push(peer);
         }
-        if let (Some(sender), Some(walkers)) = (&mut self.replica.sender, &self.walkers) {
-            sender.join(peer, walkers);
+        if let Some(sender) = &mut self.replica.sender {
+            sender.join(peer);
         }
     }
 
@@ -93,7 +93,7 @@ impl GaitCrowd3D {
             // Another one than that of a crowd, or of a server, before.
             let mut sender = CrowdSender::new(randi() as u16);
             for peer in peers {
-                sender.join(*peer, walkers);
+                sender.join(*peer);
             }
             *taken_secs = now_secs;
             sender
@@ -107,7 +107,7 @@ impl GaitCrowd3D {
             vdict! {
                 "peer" => message.to.unwrap_or(0),
                 "reliable" => message.reliable,
-                "bytes" => bytes,
+                "bytes" => &bytes,
             }
         });
         messages.collect()
@@ -133,14 +133,11 @@ impl GaitCrowd3D {
         let walkers = self.walkers.as_ref();
         walkers.is_some_and(|walkers| walkers.is_introduced())
     }
+}
 
-    #[func]
-    fn get_follows(&self) -> bool {
-        self.replica.follows
-    }
-
-    #[func]
-    fn set_follows(&mut self, follows: bool) {
+impl GaitCrowd3D {
+    /// Follows another peer's crowd from now on, or no more.
+    pub(super) fn let_follow(&mut self, follows: bool) {
         if follows == self.replica.follows {
             return;
         }
@@ -154,9 +151,7 @@ impl GaitCrowd3D {
             }
         }
     }
-}
 
-impl GaitCrowd3D {
     /// Returns true, and warns, where walkers come from another peer alone.
     pub(super) fn is_others(&self) -> bool {
         if self.replica.follows {

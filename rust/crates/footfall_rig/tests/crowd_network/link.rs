@@ -106,7 +106,7 @@ impl Link {
     }
 
     pub(crate) fn join(&mut self) {
-        self.sender.join(GUEST, &self.here);
+        self.sender.join(GUEST);
     }
 
     /// Lets a frame pass here and there.
@@ -172,7 +172,7 @@ impl Link {
             for print in shown.iter().filter(|print| print.secs > from_secs) {
                 let near = made.iter().filter(|other| {
                     let late = print.secs - other.secs;
-                    other.side == print.side && (0.0..1.2).contains(&late)
+                    other.side == print.side && (-0.3..2.0).contains(&late)
                 });
                 let near = near.map(|other| other.place.distance(print.place));
                 all.push(near.fold(f32::INFINITY, f32::min));

@@ -133,11 +133,11 @@ fn what_is_off_after_an_outage_is_walked_off() {
     link.walk(1.5);
     link.loss = 0.05;
     let back = link.secs;
-    link.walk(12.0);
+    link.walk(24.0);
     let [.., worst] = link.shares(back - 1.0);
     assert!(worst > 2.0 * SAME_PLACE_M, "nobody was off: {worst} m");
     assert!(link.fastest_mps < FASTEST_MPS, "{} m/s", link.fastest_mps);
-    let [.., nearly_all, worst] = link.shares(back + 6.0);
+    let [.., nearly_all, worst] = link.shares(back + 14.0);
     assert!(nearly_all < SAME_PLACE_M, "{nearly_all} m, {worst} at most");
 }
 
@@ -150,12 +150,10 @@ fn a_small_budget_is_kept_and_shared_by_who_needs_it() {
     link.walk(40.0);
     let [steps, people] = link.sent;
     assert!(steps < 41 * 4000, "{steps} bytes about steps");
-    assert!(people < 120 * 60, "{people} bytes about people");
-    let [median, .., worst] = link.shares(10.0);
-    assert!(
-        median < SAME_PLACE_M && worst < 1.0,
-        "{median} m, {worst} at most"
-    );
+    assert!(people < 120 * 45, "{people} bytes about people");
+    let [median, most, ..] = link.shares(10.0);
+    assert!(median < SAME_PLACE_M, "{median} m in the median");
+    assert!(most < 0.5, "{most} m for 99 %");
     assert!(link.fastest_mps < FASTEST_MPS, "{} m/s", link.fastest_mps);
 }
 

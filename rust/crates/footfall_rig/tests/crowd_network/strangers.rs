@@ -127,7 +127,7 @@ fn a_crowd_that_was_made_anew_takes_the_place_of_the_one_before() {
     link.here.repeats = false;
     link.here.set_count(5);
     link.sender = CrowdSender::new(2);
-    link.sender.join(GUEST, &link.here);
+    link.sender.join(GUEST);
     link.walk(2.0);
     assert_eq!(places(&link.there).len(), 5);
     let off = link.shares(link.secs - 0.5);

@@ -18,7 +18,7 @@ const MOST_HASTE: f64 = 0.12;
 const IN_TIME_SECS: f64 = 0.4;
 
 /// A walk that is farther from its place or later than this begins anew there, metres and seconds.
-const LOST_M: f32 = 1.5;
+const LOST_M: f32 = 3.0;
 const LOST_SECS: f64 = 1.5;
 
 /// A step is no longer begun so long after it was due, for its walker is in the next one, seconds.
@@ -31,6 +31,14 @@ const OFF_SECS: f32 = 0.4;
 
 /// Turning that is hardly any: asked of whoever is to step on the spot, rad/s.
 const ON_THE_SPOT_RADPS: f32 = 0.06;
+
+/// Of several steps of which nothing is told each turns by this share of the one before: nobody turns for long.
+const TURNS_ON: f32 = 0.5;
+
+/// A walk that faces elsewhere by more than a step corrects turns towards it, radians, by so much at most, rad/s, and slows down for it. Steps last about so long, seconds.
+const ASTRAY_RAD: f32 = 0.6;
+const TURNS_BACK_RADPS: f32 = 1.3;
+const STEP_SECS: f32 = 0.55;
 
 /// A step, as it was told.
 #[derive(Clone, Copy, Debug)]
@@ -190,7 +198,7 @@ impl Led {
             }
             self.made = self.take();
             if steps == 0 {
-                return Some(next.step(natural, now));
+                return Some(next.step(natural, walker, now));
             }
             // It came too late to be taken: what the walker is off by now, the next step makes good.
             if steps == -1
@@ -199,6 +207,9 @@ impl Led {
                 let aim = now.start.local(&next.aim);
                 moved = LedAim::Moved(aim.global(&own.local(&GroundTransform::default())));
             }
+        }
+        if let Some(made) = self.made.as_mut().filter(|made| made.number != number) {
+            made.controls.turn_rate_radps *= TURNS_ON;
         }
         let stands = now.is_silent || self.last.is_some_and(|last| last.rests);
         Some(LedStep {
@@ -227,7 +238,7 @@ impl Led {
             if !next.controls.is_standing() {
                 self.rested_secs = 0.0;
                 // Whoever stands can go off with either foot.
-                return Some(next.step(next.number, now));
+                return Some(next.step(next.number, walker, now));
             }
         }
         let resting = self
@@ -293,11 +304,18 @@ impl Led {
 
 impl Planning {
     /// The step as it is taken, by another number where feet ask for that.
-    fn step(&self, number: u16, now: &Now<'_>) -> LedStep {
+    fn step(&self, number: u16, walker: &CrowdWalker, now: &Now<'_>) -> LedStep {
         let aim = now.start.local(&self.aim);
+        let mut controls = self.controls;
+        let turn = wrap_angle(aim.heading - walker.start_from_character().heading);
+        let off = turn - STEP_SECS * controls.turn_rate_radps;
+        if off.abs() > ASTRAY_RAD && !controls.is_standing() {
+            controls.turn_rate_radps += off.clamp(-TURNS_BACK_RADPS, TURNS_BACK_RADPS);
+            controls.speed_mps *= (1.2 - off.abs()).clamp(0.25, 1.0);
+        }
         LedStep {
             number,
-            controls: self.controls,
+            controls,
             aim: if self.rests {
                 LedAim::Rest(aim)
             } else {

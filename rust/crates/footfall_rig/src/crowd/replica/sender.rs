@@ -71,8 +71,8 @@ impl CrowdSender {
         }
     }
 
-    /// Tells a peer everything from now on: first who is there, at the pace of the budget, some 50 bytes each. Who asks again is told again, once a second.
-    pub fn join(&mut self, peer: i32, crowd: &Crowd) {
+    /// Tells a peer everything from now on: first who is there, at the pace of the budget, some 40 bytes each. Who asks again is told again, once a second.
+    pub fn join(&mut self, peer: i32) {
         let at = self.peers.iter().position(|other| other.number == peer);
         let at = at.unwrap_or_else(|| {
             self.peers.push(Peer {
@@ -89,7 +89,10 @@ impl CrowdSender {
             peer.asked_secs = 0.0;
             peer.is_new = true;
             peer.unknown.clear();
-            peer.unknown.extend(crowd.names());
+            // Others are noticed with the next step.
+            let known = self.rows.iter().map(|row| row.name);
+            peer.unknown
+                .extend(known.filter(|name| *name != Untold::NOBODY.name));
         }
     }
 
