@@ -85,13 +85,14 @@ func _join() -> void:
 		_crowd.tell_peer(multiplayer.get_remote_sender_id())
 
 
+# A message of no bytes comes without an argument.
 @rpc("any_peer", "call_remote", "reliable")
-func _introduce(message: PackedByteArray) -> void:
+func _introduce(message := PackedByteArray()) -> void:
 	_hear(message)
 
 
 @rpc("any_peer", "call_remote", "unreliable")
-func _step(message: PackedByteArray) -> void:
+func _step(message := PackedByteArray()) -> void:
 	_hear(message)
 
 

@@ -46,6 +46,7 @@ namespace Footfall
             public static readonly StringName RepeatFar = "repeat_far";
             public static readonly StringName Culling = "culling";
             public static readonly StringName Material = "material";
+            public static readonly StringName Follows = "follows";
         }
 
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
@@ -55,6 +56,7 @@ namespace Footfall
             public static readonly StringName Advance = "advance";
             public static readonly StringName ClearAgents = "clear_agents";
             public static readonly StringName FindNearest = "find_nearest";
+            public static readonly StringName ForgetPeer = "forget_peer";
             public static readonly StringName GetAgentCount = "get_agent_count";
             public static readonly StringName GetAgentNode = "get_agent_node";
             public static readonly StringName GetAgentOf = "get_agent_of";
@@ -66,7 +68,10 @@ namespace Footfall
             public static readonly StringName GetSizes = "get_sizes";
             public static readonly StringName GetState = "get_state";
             public static readonly StringName GetTiers = "get_tiers";
+            public static readonly StringName GetToldPeers = "get_told_peers";
             public static readonly StringName HasAgent = "has_agent";
+            public static readonly StringName HearMessage = "hear_message";
+            public static readonly StringName IsIntroduced = "is_introduced";
             public static readonly StringName IsMaking = "is_making";
             public static readonly StringName Pick = "pick";
             public static readonly StringName RemoveAgents = "remove_agents";
@@ -78,6 +83,8 @@ namespace Footfall
             public static readonly StringName SetTargets = "set_targets";
             public static readonly StringName SetTints = "set_tints";
             public static readonly StringName SetTurnRates = "set_turn_rates";
+            public static readonly StringName TakeMessages = "take_messages";
+            public static readonly StringName TellPeer = "tell_peer";
         }
 
         /// <summary>Names in the engine, for <c>ToSignal</c>, tweens and the like.</summary>
@@ -85,6 +92,7 @@ namespace Footfall
         {
             public static readonly StringName AgentsReady = "agents_ready";
             public static readonly StringName Footsteps = "footsteps";
+            public static readonly StringName MessageRefused = "message_refused";
         }
 
         /// <summary>Makes a new <c>GaitCrowd3D</c> in the engine.</summary>
@@ -291,6 +299,13 @@ namespace Footfall
             set => Native.Set(PropertyName.Material, value);
         }
 
+        /// <summary>If <c>true</c>, the crowd is another peer's of a multiplayer game: walkers come, go and step as <see cref="HearMessage"/> tells, by the same ids; <see cref="Count"/>, <see cref="Behaviour"/> and what scripts ask of walkers do nothing. Set back to <c>false</c> it goes on by itself with those who are there. <c>controller/crowd_synchronizer.tscn</c> sets it.</summary>
+        public bool Follows
+        {
+            get => Native.Get(PropertyName.Follows).AsBool();
+            set => Native.Set(PropertyName.Follows, value);
+        }
+
         /// <summary>Walkers were made and began to walk in the last frame: their ids. Making many takes a while, on other threads; <see cref="IsMaking"/> tells whether there are more to come.</summary>
         /// <value>Handlers take <c>agents</c>.</value>
         public event Action<int[]> AgentsReady
@@ -307,6 +322,14 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.Footsteps, Callable.From(value));
         }
 
+        /// <summary>A message about the crowd that this one follows was refused, for this reason: see <see cref="HearMessage"/>.</summary>
+        /// <value>Handlers take <c>reason</c>.</value>
+        public event Action<string> MessageRefused
+        {
+            add => Native.Connect(SignalName.MessageRefused, Callable.From(value));
+            remove => Native.Disconnect(SignalName.MessageRefused, Callable.From(value));
+        }
+
         /// <summary>Adds walkers at these places, facing these headings (radians about +Y from +Z; none are 0), in this node's space. Returns their ids, in the same order, without those for whom there was no finite place; none when the crowd cannot be made.</summary>
         /// <remarks>They have their ids at once and appear as soon as they are made, on other threads: see <see cref="AgentsReady"/>. Five hundred a frame join the arrays, so that adding many holds no frame. Whoever reads or sets something of walkers before has all of them join in that call, and finds them where they were put.</remarks>
         public int[] AddAgents(Vector3[] positions, float[] headings) => Native.Call(MethodName.AddAgents, positions, headings).AsInt32Array();
@@ -319,6 +342,9 @@ namespace Footfall
 
         /// <summary>The id of the walker that is nearest to a point of global space, at most <c>max_distance</c> away, or -1.</summary>
         public int FindNearest(Vector3 position, double maxDistance = double.PositiveInfinity) => Native.Call(MethodName.FindNearest, position, maxDistance).AsInt32();
+
+        /// <summary>Tells a peer no more.</summary>
+        public void ForgetPeer(int peer) => Native.Call(MethodName.ForgetPeer, peer);
 
         /// <summary>Number of walkers, with those who are still being made.</summary>
         public long GetAgentCount() => Native.Call(MethodName.GetAgentCount).AsInt64();
@@ -354,8 +380,17 @@ namespace Footfall
         /// <summary>Tiers of walkers: 0 as a whole scene, 1 with a new pose in every frame, 2 as one far away, or one that is not made yet. Shapes and ids as of <see cref="GetPositions"/>; 2 for an id that nobody has.</summary>
         public byte[] GetTiers(int[] agents) => Native.Call(MethodName.GetTiers, agents).AsByteArray();
 
+        /// <summary>The peers that are told this crowd.</summary>
+        public int[] GetToldPeers() => Native.Call(MethodName.GetToldPeers).AsInt32Array();
+
         /// <summary>Returns whether a walker has this id.</summary>
         public bool HasAgent(int agent) => Native.Call(MethodName.HasAgent, agent).AsBool();
+
+        /// <summary>Hears a message of the crowd that this one follows. One that makes no sense is refused: nothing changes, and <see cref="MessageRefused"/> says why, every five seconds at most.</summary>
+        public void HearMessage(byte[] bytes) => Native.Call(MethodName.HearMessage, bytes);
+
+        /// <summary>Returns whether the crowd follows another peer's and has heard who is in it.</summary>
+        public bool IsIntroduced() => Native.Call(MethodName.IsIntroduced).AsBool();
 
         /// <summary>Returns whether walkers are still being made.</summary>
         public bool IsMaking() => Native.Call(MethodName.IsMaking).AsBool();
@@ -390,5 +425,13 @@ namespace Footfall
 
         /// <summary>Sets how fast walkers turn, in radians per second, positive to their left; they give up their goals. For <see cref="Behaviour"/> scripted. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
         public void SetTurnRates(float[] turnRates, int[] agents) => Native.Call(MethodName.SetTurnRates, turnRates, agents);
+
+        /// <summary>The messages about this crowd since the last call, to be sent in this order: dictionaries of <c>peer</c> (<c>int</c>, 0 for all that are told), <c>reliable</c> (<c>bool</c>) and <c>bytes</c> (<c>PackedByteArray</c>, at most 1200). Call it in every frame.</summary>
+        /// <remarks>At most <c>bytes_per_second</c> of them say how walkers step, those first of whom others would err most, and as many introduce walkers to each peer that has come. 100 a walker tell everything as often as lossy networks need. Of a crowd that follows another one there is nothing to tell.</remarks>
+        public Godot.Collections.Array<Godot.Collections.Dictionary> TakeMessages(long bytesPerSecond) => Native.Call(MethodName.TakeMessages, bytesPerSecond).AsGodotArray<Godot.Collections.Dictionary>();
+
+        /// <summary>Tells another peer of a multiplayer game this crowd from now on: who is in it, and every step. <see cref="TakeMessages"/> has what is to be sent. Called again it tells everything again, once a second. <c>controller/crowd_synchronizer.tscn</c> does all this.</summary>
+        /// <remarks>While anybody is told, walkers far away do not repeat steps: 5,000 walkers take a third of a core.</remarks>
+        public void TellPeer(int peer) => Native.Call(MethodName.TellPeer, peer);
     }
 }

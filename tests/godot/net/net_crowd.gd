@@ -1,5 +1,5 @@
 class_name NetCrowd
-extends GaitCrowd3D
+extends Node
 ## A crowd of a multiplayer game: the host walks it, all others show the same.
 
 const SYNCHRONIZER: PackedScene = preload("res://addons/footfall/controller/crowd_synchronizer.tscn")
@@ -11,25 +11,28 @@ var lies := false
 var secs := 0.0
 var fastest := 0.0
 
+var _crowd := GaitCrowd3D.new()
 var _synchronizer: Node
 var _before: Dictionary[int, Vector3] = {}
 
 
 func make(hosts: bool) -> void:
-	model = load(Walker.MODEL)
-	character = Skinned.scene()
-	count = WALKERS if hosts else 3 * WALKERS
-	area = Vector2(24, 24)
-	position = Vector3(-30, 0, 10)
-	footsteps.connect(_tell)
-	message_refused.connect(func(reason: String) -> void: print("REFUSED crowd %s" % reason))
+	_crowd.model = load(Walker.MODEL)
+	_crowd.character = Skinned.scene()
+	_crowd.count = WALKERS if hosts else 3 * WALKERS
+	_crowd.area = Vector2(24, 24)
+	_crowd.position = Vector3(-30, 0, 10)
+	_crowd.footsteps.connect(_tell)
+	_crowd.message_refused.connect(func(reason: String) -> void: print("REFUSED crowd %s" % reason))
 	_synchronizer = SYNCHRONIZER.instantiate()
-	add_child(_synchronizer)
+	_crowd.add_child(_synchronizer)
+	_crowd.name = "Walkers"
+	add_child(_crowd)
 	_synchronizer.stranger_refused.connect(func(peer: int) -> void: print("STRANGER %d" % peer))
 
 
 func _process(delta: float) -> void:
-	if not follows or is_introduced():
+	if not _crowd.follows or _crowd.is_introduced():
 		secs += delta
 	_measure(delta)
 	if lies and secs > 1.0:
@@ -42,7 +45,7 @@ func _process(delta: float) -> void:
 
 
 func _tell(agents: PackedInt32Array, feet: PackedByteArray, places: PackedVector3Array) -> void:
-	var made := "SHOWN" if follows else "MADE"
+	var made := "SHOWN" if _crowd.follows else "MADE"
 	for index: int in agents.size():
 		var foot := Walker.FEET[feet[index]]
 		var place := places[index]
@@ -51,9 +54,9 @@ func _tell(agents: PackedInt32Array, feet: PackedByteArray, places: PackedVector
 
 func _measure(delta: float) -> void:
 	var now: Dictionary[int, Vector3] = {}
-	var agents := get_agents()
-	var places := get_positions()
-	var tiers := get_tiers()
+	var agents := _crowd.get_agents()
+	var places := _crowd.get_positions()
+	var tiers := _crowd.get_tiers()
 	for index: int in agents.size():
 		# Who is far away moves once in four frames, and who is not shown yet has no place.
 		if tiers[index] < 2 and places[index].is_finite():
