@@ -2,6 +2,7 @@
 
 mod actors;
 mod batch;
+mod behaviour;
 mod bounds;
 mod crowd_mesh;
 mod flock;
@@ -17,6 +18,7 @@ mod scene;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use crate::shipped::{self, Fallback};
+use behaviour::{CrowdBehaviour, FASTEST_MPS, MOST_AGENTS};
 use crowd_mesh::CrowdMesh;
 use footfall_rig::crowd::Crowd;
 use godot::classes::{Engine, INode3D, Node3D, PackedScene, ShaderMaterial};
@@ -27,23 +29,6 @@ use scene::CrowdScene;
 
 /// Warning where there is no character.
 const NO_CHARACTER: &str = "No character. Load a scene with a humanoid character into Character, for example an imported .glb.";
-
-/// More walkers than this are refused.
-const MOST_AGENTS: i64 = footfall_rig::crowd::MOST_AGENTS as i64;
-
-/// Nobody walks or runs faster, m/s.
-const FASTEST_MPS: f32 = 6.0;
-
-/// Behaviours of walkers by themselves.
-#[derive(GodotConvert, Var, Export, Default, Clone, Copy, Debug, PartialEq)]
-#[godot(via = i64)]
-pub(crate) enum CrowdBehaviour {
-    #[default]
-    Wander = 0,
-    Path = 1,
-    Scripted = 2,
-    Navigate = 3,
-}
 
 /// Walks thousands of characters: each in its own style, speed, size and phase, from steps of its own.
 ///
@@ -316,11 +301,7 @@ impl GaitCrowd3D {
             );
         }
         self.count = count.clamp(0, MOST_AGENTS);
-        if let Some(walkers) = self
-            .walkers
-            .as_mut()
-            .filter(|walkers| !walkers.is_following())
-        {
+        if let Some(walkers) = &mut self.walkers {
             let places = walkers.set_count(self.count as usize);
             self.left(&places);
         }
@@ -415,10 +396,4 @@ impl GaitCrowd3D {
         self.mesh = None;
         self.problem = None;
     }
-}
-
-/// A colour as instances have it.
-fn linear(colour: Color) -> [f32; 4] {
-    let colour = colour.srgb_to_linear();
-    [colour.r, colour.g, colour.b, colour.a]
 }

@@ -1,8 +1,9 @@
 //! One frame of a crowd: time passes, everybody is drawn, and signals are emitted.
 
+use super::behaviour::MOST_AGENTS;
 use super::navigation::Navigation;
 use super::scene::{CrowdScene, Look};
-use super::{GaitCrowd3D, MOST_AGENTS, ground};
+use super::{GaitCrowd3D, ground};
 use crate::convert;
 use footfall_rig::crowd::{Crowd, Limits};
 use godot::classes::{Engine, Node3D};

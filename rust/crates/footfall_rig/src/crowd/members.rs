@@ -25,8 +25,11 @@ pub(super) struct Coming {
 
 impl Crowd {
     /// Makes the crowd's own walkers, those that no script added, so many. Who is too much leaves, the last first; returns their
-    /// places.
+    /// places. Of a crowd that [follows](Self::follow) another one that says how many there are.
     pub fn set_count(&mut self, count: usize) -> Vec<usize> {
+        if self.is_following() {
+            return Vec::new();
+        }
         self.come_in(usize::MAX);
         let own = |place: &u32| self.agents[*place as usize].counted;
         let there = self
