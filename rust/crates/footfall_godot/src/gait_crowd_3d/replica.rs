@@ -43,7 +43,7 @@ impl Replica {
 
 #[godot_api(secondary)]
 impl GaitCrowd3D {
-    /// Tells another peer of a multiplayer game this crowd from now on: who is in it, and every step. `take_messages()` has what is to be sent. Called again it tells
+    /// Has another peer of a multiplayer game told of this crowd from now on: who is in it, and every step. `take_messages()` has what is to be sent. Called again it tells
     /// everything again, once a second. `controller/crowd_synchronizer.tscn` does all this.
     ///
     /// While anybody is told, walkers far away do not repeat steps: 5,000 walkers take a third of a core.
@@ -57,7 +57,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Tells a peer no more.
+    /// Has a peer told no more.
     #[func]
     fn forget_peer(&mut self, peer: i32) {
         self.replica.peers.retain(|other| *other != peer);

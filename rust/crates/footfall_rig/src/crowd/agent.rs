@@ -104,7 +104,7 @@ pub struct Agent {
     chance: u64,
     pub(super) walked: GroundTransform,
     pub(super) controls: Controls,
-    /// What is known of the walker of another machine whose steps it takes.
+    /// Knowledge of the walker of another machine whose steps it takes.
     pub(super) led: Option<Box<Led>>,
 }
 
@@ -263,7 +263,7 @@ impl Agent {
     pub(super) fn advance(&mut self, dt_secs: f32, workshop: &mut Workshop) {
         let controls = self.controls;
         self.travel(dt_secs, |walker, secs| {
-            walker.step(secs, controls, workshop)
+            walker.step(secs, controls, workshop);
         });
     }
 

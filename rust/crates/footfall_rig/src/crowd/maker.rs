@@ -87,7 +87,7 @@ impl Maker {
         maker
     }
 
-    /// What walkers are made of.
+    /// Recipe of the walkers.
     pub(super) fn recipe(&self) -> &CrowdRecipe {
         &self.shared.recipe
     }

@@ -4,7 +4,7 @@ use footfall_core::Side;
 use footfall_model::GaitModel;
 use footfall_rig::crowd::{Crowd, CrowdMessage, CrowdRecipe, CrowdSender, CrowdSettings, Way};
 use glam::{Vec2, Vec3};
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
@@ -42,7 +42,7 @@ pub(crate) struct Print {
     pub(crate) place: Vec3,
 }
 
-pub(crate) type Prints = HashMap<i32, Vec<Print>>;
+pub(crate) type Prints = BTreeMap<i32, Vec<Print>>;
 
 fn note(prints: &mut Prints, crowd: &Crowd, secs: f32) {
     for (row, side, place) in crowd.landed() {
@@ -190,7 +190,7 @@ impl Link {
 }
 
 /// Places of those who are shown, by name.
-pub(crate) fn places(crowd: &Crowd) -> HashMap<i32, Vec3> {
+pub(crate) fn places(crowd: &Crowd) -> BTreeMap<i32, Vec3> {
     let rows = crowd.roster().order().iter().map(|row| *row as usize);
     rows.filter(|row| crowd.agents()[*row].is_made())
         .map(|row| (crowd.roster().name(row), crowd.agents()[row].place))

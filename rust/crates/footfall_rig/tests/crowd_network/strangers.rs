@@ -1,4 +1,4 @@
-//! What no honest peer sends.
+//! Messages that no honest peer sends.
 
 use crate::link::{GUEST, Link, places, wander};
 use footfall_model::{GaitModel, GaitStyle};

@@ -16,13 +16,13 @@ use std::sync::Arc;
 /// Aim of a led step. Places are of the foot that lands, under the walker's heading when the step is over, and seen from where the walk began.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LedAim {
-    /// Where it leads by itself.
+    /// Place where it leads by itself.
     None,
     /// There.
     Place(GroundTransform),
     /// Itself, rather than its foot, to there: it comes to rest.
     Rest(GroundTransform),
-    /// Where this takes the place where it leads by itself: the one before led elsewhere by as much.
+    /// Place to which this takes the one where it leads by itself: the one before led elsewhere by as much.
     Moved(GroundTransform),
 }
 
@@ -33,7 +33,7 @@ pub struct LedStep {
     pub number: u16,
     /// Controls that it obeys.
     pub controls: Controls,
-    /// Where it leads. One step goes at most 0.2 m and 20° out of its way.
+    /// Place where it leads. One step goes at most 0.2 m and 20° out of its way.
     pub aim: LedAim,
 }
 
@@ -124,7 +124,7 @@ impl CrowdWalker {
     }
 
     /// Lets time pass as [`step`](Self::step) does, through the steps that `next` gives: it is asked when one is over, and answers nothing while the walker is to rest.
-    /// Who [does not rest](Self::comes_to_rest) has to be given a step.
+    /// One that does not [come to rest](Self::comes_to_rest) has to be given a step.
     pub fn step_led(
         &mut self,
         dt_secs: f32,

@@ -22,7 +22,7 @@ const LATER_SECS: f64 = 0.3;
 /// Without a message for so long everybody stands, seconds.
 const SILENCE_SECS: f64 = 3.0;
 
-/// What a crowd knows of the one that it follows.
+/// Knowledge of a crowd about the one that it follows.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::crowd) struct Following {
     session: Option<u16>,

@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 const INTERVAL_SECS: f32 = 1.0 / 30.0;
 const SILENT_SECS: f32 = 0.2;
 
-/// What was not sent is saved up for so long, seconds.
+/// Bytes that were not sent are saved up for so long, seconds.
 const SAVED_SECS: f32 = 0.25;
 
 /// Whoever asks again to be told everything waits so long, seconds.
@@ -21,8 +21,11 @@ const ASKED_SECS: f32 = 1.0;
 /// Looks are looked at anew in every so many frames.
 const LOOKS_EVERY: usize = 32;
 
-/// Length of what is before the steps in a message, and before people.
+/// Length of a message about steps before the first of them.
 const STEPS_AT: usize = HEAD_BYTES + 2;
+
+/// Names in a message about those who left.
+const NAMES: usize = (MOST_BYTES - HEAD_BYTES) / 4;
 
 /// A peer that is told.
 #[derive(Debug)]
@@ -71,7 +74,7 @@ impl CrowdSender {
         }
     }
 
-    /// Tells a peer everything from now on: first who is there, at the pace of the budget, some 40 bytes each. Who asks again is told again, once a second.
+    /// Has a peer told everything from now on: first who is there, at the pace of the budget, some 40 bytes each. Who asks again is told again, once a second.
     pub fn join(&mut self, peer: i32) {
         let at = self.peers.iter().position(|other| other.number == peer);
         let at = at.unwrap_or_else(|| {
@@ -96,7 +99,7 @@ impl CrowdSender {
         }
     }
 
-    /// Tells a peer no more.
+    /// Has a peer told no more.
     pub fn leave(&mut self, peer: i32) {
         self.peers.retain(|other| other.number != peer);
     }
@@ -181,7 +184,6 @@ impl CrowdSender {
                 peer.unknown.push_back(name);
             }
         }
-        const NAMES: usize = (MOST_BYTES - HEAD_BYTES) / 4;
         for names in left.chunks(NAMES) {
             let names = names.iter().flat_map(|name| name.to_le_bytes());
             self.message(None, Kind::Left).extend(names);
@@ -230,7 +232,7 @@ impl CrowdSender {
         self.peers = peers;
     }
 
-    /// Tells steps, as many as the budget allows, the most worthwhile first.
+    /// Writes of steps, as many as the budget allows, the most worthwhile first.
     fn tell_steps(&mut self, crowd: &Crowd) {
         let mut order = core::mem::take(&mut self.order);
         order.clear();

@@ -1,4 +1,4 @@
-//! What peers of a walker still have to be told: how far they would err without.
+//! News of a walker that peers still have to be told: how far they would err without.
 
 use super::step::ToldStep;
 use footfall_synth::Controls;
