@@ -5,15 +5,18 @@ extends Node
 const SYNCHRONIZER: PackedScene = preload("res://addons/footfall/controller/crowd_synchronizer.tscn")
 ## Walkers of the host. Guests would have more of their own.
 const WALKERS := 12
+## Time between two looks at how far they have come, seconds: who is far away moves once in four frames.
+const EACH_SECS := 0.25
 
 var lies := false
-## Time since the crowd is known, seconds, and the fastest that anybody went from one frame to the next, m/s.
+## Time since the crowd is known, seconds, and the fastest that anybody went, m/s.
 var secs := 0.0
 var fastest := 0.0
 
 var _crowd := GaitCrowd3D.new()
 var _synchronizer: Node
 var _before: Dictionary[int, Vector3] = {}
+var _since := 0.0
 
 
 func make(hosts: bool) -> void:
@@ -53,16 +56,17 @@ func _tell(agents: PackedInt32Array, feet: PackedByteArray, places: PackedVector
 
 
 func _measure(delta: float) -> void:
+	_since += delta
+	if _since < EACH_SECS:
+		return
 	var now: Dictionary[int, Vector3] = {}
 	var agents := _crowd.get_agents()
 	var places := _crowd.get_positions()
-	var tiers := _crowd.get_tiers()
 	for index: int in agents.size():
-		# Who is far away moves once in four frames, and who is not shown yet has no place.
-		if tiers[index] < 2 and places[index].is_finite():
-			now[agents[index]] = places[index]
-	if secs > 2.0 and delta > 0.0:
+		now[agents[index]] = places[index]
+	if secs > 2.0:
 		for agent: int in now:
 			if _before.has(agent):
-				fastest = maxf(fastest, now[agent].distance_to(_before[agent]) / delta)
+				fastest = maxf(fastest, now[agent].distance_to(_before[agent]) / _since)
 	_before = now
+	_since = 0.0
