@@ -114,6 +114,11 @@ fn who_comes_and_leaves_does_so_there_and_keeps_its_name() {
         link.walk(2.0);
         assert_eq!(names(&link.here), names(&link.there));
     }
+    // Nobody takes the places of these.
+    link.here.leave(&[1, 6, 11]);
+    link.walk(1.0);
+    assert_eq!(names(&link.here), names(&link.there));
+    assert_eq!(places(&link.there).len(), 23);
     // Somebody grows and puts on a red coat.
     let agent = &mut link.here.agents_mut()[3];
     (agent.size, agent.tint) = (1.25, [1.0, 0.0, 0.0, 1.0]);
