@@ -46,7 +46,7 @@ impl GaitCrowd3D {
     /// Has another peer of a multiplayer game told of this crowd from now on: who is in it, and every step. `take_messages()` has what is to be sent. Called again it tells
     /// everything again, once a second. `controller/crowd_synchronizer.tscn` does all this.
     ///
-    /// While anybody is told, walkers far away do not repeat steps: 5,000 walkers take a third of a core.
+    /// While anybody is told, walkers far away do not repeat steps: 5,000 walkers take two fifths of a core.
     #[func]
     fn tell_peer(&mut self, peer: i32) {
         if !self.replica.peers.contains(&peer) {
