@@ -431,7 +431,7 @@ namespace Footfall
         public Godot.Collections.Array<Godot.Collections.Dictionary> TakeMessages(long bytesPerSecond) => Native.Call(MethodName.TakeMessages, bytesPerSecond).AsGodotArray<Godot.Collections.Dictionary>();
 
         /// <summary>Tells another peer of a multiplayer game this crowd from now on: who is in it, and every step. <see cref="TakeMessages"/> has what is to be sent. Called again it tells everything again, once a second. <c>controller/crowd_synchronizer.tscn</c> does all this.</summary>
-        /// <remarks>While anybody is told, walkers far away do not repeat steps: 5,000 walkers take two fifths of a core.</remarks>
+        /// <remarks>While anybody is told, walkers far away do not repeat steps: 5,000 walkers take a third of a core.</remarks>
         public void TellPeer(int peer) => Native.Call(MethodName.TellPeer, peer);
     }
 }

@@ -262,21 +262,45 @@ fn overhang(terrain: &Relief, sole: &Frame, points: [Vec3; 3]) -> f32 {
     heel.distance(tip) * hanging.count() as f32 / (PARTS + 1) as f32
 }
 
-/// Distance of a point to the nearest way out of the ground, up or along the way; 0 outside.
+/// Distance of a point to the nearest way out of the ground: up, to the side, or to the side and then up what is left there; 0 outside.
 fn depth(terrain: &Relief, point: Vec3) -> f32 {
-    let down = |place: Vec3| terrain.at(place).position.y - point.y;
+    let down = |place: Vec3| (terrain.at(place).position.y - point.y).max(0.0);
     let below = down(point);
     if below <= INSIDE_M {
-        return below.max(0.0);
+        return below;
     }
-    let near = (1..=10).map(|step| 0.01 * step as f32);
-    let out = near.into_iter().find(|out| {
-        [Vec3::Z, -Vec3::Z, Vec3::X, -Vec3::X]
-            .iter()
-            .any(|way| down(point + *way * *out) <= 0.0)
-    });
-    below.min(out.unwrap_or(below))
+    let ways = [Vec3::Z, -Vec3::Z, Vec3::X, -Vec3::X];
+    let aside = (1..=10).map(|step| 0.01 * step as f32);
+    let out = aside.flat_map(|aside| ways.map(|way| aside.hypot(down(point + way * aside))));
+    out.fold(below, f32::min)
 }
 
 /// Adults, a child and somebody tall: sizes of the body.
 pub const BODIES: [f32; 3] = [0.68, 1.0, 1.13];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_as_deep_as_its_shortest_way_out() {
+        let way = Way::Stairs {
+            rise: 0.17,
+            run: 0.29,
+        };
+        let ground = Relief::still(move |x, z| way.height(x, z));
+        for ([y, z], deep) in [
+            ([0.171, 0.1], 0.0),
+            ([0.16, 0.1], 0.01),
+            // In the riser ahead, and in both that and the tread.
+            ([0.18, 0.305], 0.02),
+            ([0.169, 0.2903], 0.001),
+            ([0.14, 0.32], 0.05),
+            ([0.1, 0.43], 0.24),
+        ] {
+            let found = depth(&ground, Vec3::new(0.0, y, z));
+            assert!((found - deep).abs() < 0.011, "{found} m at {y}, {z}");
+            assert_eq!(found > INSIDE_M, deep > INSIDE_M, "{found} m at {y}, {z}");
+        }
+    }
+}

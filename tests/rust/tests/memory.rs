@@ -3,7 +3,9 @@
 
 use footfall_core::Pose;
 use footfall_model::{DynamicsModel, GaitModel, GaitStyle};
-use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, StyleSpace};
+use footfall_synth::{
+    Controls, CrowdWalker, Detail, GaitGenerator, GeneratorConfig, StyleSpace, StyledBody, Workshop,
+};
 use footfall_tests::data::repository;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -132,4 +134,39 @@ fn a_walker_more_of_a_switching_model_costs_little_memory() {
             "{bytes} bytes a walker"
         );
     }
+}
+
+/// Bytes of a crowd's walkers, each: with steps of their own, in shared ones, and near again.
+#[test]
+fn walkers_far_away_keep_nothing_of_their_own() {
+    const CROWD: u64 = 1500;
+    let path = repository().join("addons/footfall/models/locomotion.footfall");
+    let model = Arc::new(GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap());
+    let space = Arc::new(StyleSpace::new(&model, &[]).unwrap());
+    let styled = StyledBody::new(&space, &[], &model.skeleton).unwrap();
+    let before = held();
+    let mut workshop = Workshop::new(&styled);
+    let walkers = (0..CROWD).map(|seed| CrowdWalker::sharing(&styled, &config(seed)));
+    let mut walkers: Vec<CrowdWalker> = walkers.collect();
+    let mut bytes = [false, true, false, true].map(|repeats| {
+        for walker in &mut walkers {
+            walker.set_repeating(repeats);
+            walker.set_detail(Detail::Quarter);
+            for _ in 0..150 {
+                let controls = Controls {
+                    speed_mps: 1.2,
+                    ..Controls::STAND
+                };
+                walker.step(1.0 / 60.0, controls, &mut workshop);
+            }
+        }
+        (held() - before) / CROWD.cast_signed() as isize
+    });
+    drop(workshop);
+    bytes[3] = (held() - before) / CROWD.cast_signed() as isize;
+    println!("bytes near, far, near and far, without what is kept for others: {bytes:?}");
+    let [near, _, again, far] = bytes;
+    assert!((3000..14_000).contains(&near), "{near} bytes near");
+    assert!(again < near + 200, "own steps are given on: {again} bytes");
+    assert!((100..250).contains(&far), "{far} bytes far away");
 }

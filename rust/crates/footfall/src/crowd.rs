@@ -110,4 +110,4 @@ pub use footfall_rig::crowd::{
     Agent, Crowd, CrowdRecipe, CrowdSettings, CrowdStateError, Drawn, FETCHED, GROUPS, Goal,
     Limits, MOST_AGENTS, Path, Roster, SavedCrowd, Tier, Way,
 };
-pub use footfall_synth::{CrowdPose, CrowdWalker, StyledBody, Workshop};
+pub use footfall_synth::{CrowdPose, CrowdWalker, SharedPose, StyledBody, Workshop};

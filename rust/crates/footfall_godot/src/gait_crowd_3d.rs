@@ -14,6 +14,7 @@ mod navigation;
 mod others;
 mod replica;
 mod scene;
+mod shared_flock;
 
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
@@ -37,10 +38,10 @@ const NO_CHARACTER: &str = "No character. Load a scene with a humanoid character
 ///
 /// Walkers are drawn by their distance from the camera. The nearest are whole scenes, with everything that hangs from them,
 /// such as a `FootPlacement3D`. The next are instances of one mesh whose poses are streamed to the graphics processor, new in every
-/// frame; those farther away get a new pose in every few frames, blended in between, and repeat their last two steps. Counts and
+/// frame; those farther away move in every few frames, are drawn in between, and walk in steps that they share. Counts and
 /// distances are settable.
 ///
-/// Equal seeds, sizes and time steps give equal crowds, as long as the camera moves equally too: who is far away repeats steps.
+/// Equal seeds, sizes and time steps give equal crowds, as long as the camera moves equally too: who is far away shares steps.
 #[derive(GodotClass)]
 #[class(tool, init, base = Node3D)]
 #[expect(
@@ -173,7 +174,7 @@ pub(crate) struct GaitCrowd3D {
     #[init(val = 60.0)]
     near_distance: f64,
 
-    /// If `true`, walkers beyond that repeat their last two steps instead of taking new ones.
+    /// If `true`, walkers beyond that walk in steps that all in the same style share instead of their own, and cost a kilobyte of memory each. Each has the speed that it would have, but no gait of its own.
     #[export]
     #[init(val = true)]
     repeat_far: bool,

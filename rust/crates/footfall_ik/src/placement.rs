@@ -26,7 +26,7 @@ mod told;
 mod wall;
 
 use crate::leg::{FootTarget, Leg};
-use crate::rocker::{RockerFoot, foot_heading, foot_pitch, settled_pitch};
+use crate::rocker::{RockerFoot, foot_attitude, settled_pitch};
 use carry::Moment;
 pub use config::{PlacementConfig, PlacementInput};
 pub use contact::ContactThresholds;
@@ -241,8 +241,7 @@ impl FootPlacer {
             let index = side.index();
             let rocker = &self.rockers[index];
             let foot = self.foot_of(side, pose);
-            let heading = foot_heading(foot.foot);
-            let mut pitch = foot_pitch(foot.foot);
+            let (heading, mut pitch) = foot_attitude(foot.foot);
             let plant = rocker.plant_under(foot.ankle, heading, pitch);
             let contact = if let Some(contacts) = input.contacts {
                 contacts[index]

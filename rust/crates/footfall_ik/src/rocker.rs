@@ -263,6 +263,14 @@ pub fn foot_heading(rotation: Quat) -> f32 {
     forward.x.atan2(forward.z)
 }
 
+/// Heading and pitch of a foot whose toes may point straight down, where its forward axis has no heading: by its sideways axis.
+pub(crate) fn foot_attitude(rotation: Quat) -> (f32, f32) {
+    let left = rotation * Vec3::X;
+    let heading = (-left.z).atan2(left.x);
+    let forward = from_heading(-heading) * rotation * Vec3::Z;
+    (heading, (-forward.y).atan2(forward.z))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -361,6 +369,21 @@ mod tests {
         assert!(solve_leg(&skeleton, Side::Left, &target, &mut pose, &mut model) < 1e-4);
         let tip = model.point(Joint::LeftToes, skeleton.foot(Side::Left).toe_tip);
         assert!(tip.y.abs() < 1e-4, "{tip}");
+    }
+
+    #[test]
+    fn a_foot_that_swings_past_straight_down_keeps_its_heading() {
+        let mut before = None;
+        for step in 0..=100 {
+            let pitch = 0.02 * step as f32;
+            let rolled = Quat::from_rotation_x(pitch) * Quat::from_rotation_z(0.05);
+            let (heading, found) = foot_attitude(from_heading(0.4) * rolled);
+            assert!((heading - 0.4).abs() < 0.06, "{heading} at {pitch}");
+            assert!((found - pitch).abs() < 0.01, "{found} at {pitch}");
+            let turned = before.map_or(0.0, |before: f32| (heading - before).abs());
+            assert!(turned < 0.002, "turned by {turned} at {pitch}");
+            before = Some(heading);
+        }
     }
 
     #[test]

@@ -27,6 +27,7 @@ pub use kit::CrowdRecipe;
 use kit::Kit;
 use maker::Maker;
 use members::Coming;
+use motion::Stir;
 pub use motion::{FETCHED, GROUPS};
 use neighbours::Neighbours;
 use replica::Following;
@@ -39,7 +40,7 @@ use tiers::Chooser;
 pub use tiers::{Limits, Tier};
 pub use way::{Path, Way};
 
-/// Most walkers of a crowd: the steps of more alone would take gigabytes.
+/// Most walkers of a crowd: names hold no more places.
 pub const MOST_AGENTS: u32 = 100_000;
 
 /// Settings by which walkers differ.
@@ -81,6 +82,9 @@ pub struct Crowd {
     agents: Vec<Agent>,
     tiers: Vec<Tier>,
     drawn: Vec<Drawn>,
+    stirs: Vec<Stir>,
+    /// Everybody as others see them; nowhere who is not made.
+    seen: Vec<Passerby>,
     roster: Roster,
     began: Vec<i32>,
     frame: u64,
@@ -92,7 +96,7 @@ pub struct Crowd {
     others: Vec<Passerby>,
     way: Way,
     chooser: Chooser,
-    /// True when walkers far away repeat their last two steps instead of taking new ones.
+    /// True when walkers far away walk in steps that they share instead of taking their own. Those of a crowd that follows never do; those of one that is [told](CrowdSender) must not.
     pub repeats: bool,
     /// Amount of motion of those who stand: 0 rests in a still pose, 1 moves as people do.
     pub standing_motion: f32,
@@ -114,6 +118,8 @@ impl Crowd {
             agents: Vec::new(),
             tiers: Vec::new(),
             drawn: Vec::new(),
+            stirs: Vec::new(),
+            seen: Vec::new(),
             roster: Roster::default(),
             began: Vec::new(),
             // So that nobody's pose seems to have been written just now.

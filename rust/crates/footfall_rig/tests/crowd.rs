@@ -246,3 +246,65 @@ fn the_nearest_are_drawn_best_and_all_have_poses() {
     let mut pose = footfall_synth::CrowdPose::default();
     assert!(crowd.agents().iter().all(|agent| agent.pose(&mut pose)));
 }
+
+/// A crowd that a camera passes: walkers come near and go away again.
+fn passed_by(seed: u64) -> Crowd {
+    let recipe = CrowdRecipe {
+        model: Arc::clone(&MODEL),
+        styles: Vec::new(),
+        space: None,
+        body: MODEL.skeleton.clone(),
+    };
+    let half = Vec2::splat(20.0);
+    let settings = CrowdSettings {
+        seed,
+        ..CrowdSettings::default()
+    };
+    let mut crowd = Crowd::new(recipe, Way::Wander { half }, settings);
+    crowd.set_count(60);
+    for second in 0..8_u8 {
+        walk(&mut crowd, 1.0, |_| {});
+        crowd.choose_tiers(Vec3::X * (5.0 * f32::from(second) - 20.0), &LIMITS);
+    }
+    crowd
+}
+
+#[test]
+fn equal_crowds_stay_equal_as_walkers_come_near_and_go_away() {
+    let [first, second, other] = [1, 1, 2].map(passed_by);
+    assert_eq!(places(&first), places(&second));
+    assert_ne!(places(&first), places(&other));
+    let alone = (0..60).filter(|row| first.is_alone(*row)).count();
+    assert!((1..=12).contains(&alone), "{alone} take steps of their own");
+    for (row, tier) in first.tiers().iter().enumerate() {
+        let near = *tier != Tier::Far;
+        assert!(near || first.is_alone(row) != first.shares(row));
+    }
+}
+
+#[test]
+fn whoever_comes_near_or_goes_away_does_not_jump() {
+    let mut crowd = crowd(Way::Told);
+    crowd.add([(Vec3::ZERO, 0.0)].into_iter());
+    walk(&mut crowd, 0.1, |_| {});
+    crowd.agents_mut()[0].turn(0.1);
+    let mut pose = footfall_synth::CrowdPose::default();
+    let mut before: Option<Vec3> = None;
+    let mut moved = 0.0_f32;
+    for second in 0..12_u8 {
+        // Near for a second and a half, then as long far away; those far away move in every fourth frame.
+        let far = second % 3 == 2;
+        crowd.choose_tiers(Vec3::X * if far { 500.0 } else { 0.0 }, &LIMITS);
+        walk(&mut crowd, 1.0, |crowd| {
+            let agent = &crowd.agents()[0];
+            assert!(agent.pose(&mut pose));
+            let turn = glam::Quat::from_rotation_y(agent.heading);
+            let hand = pose.position(footfall_core::Joint::LeftHand) * agent.size;
+            let hand = agent.place + turn * hand;
+            moved = moved.max(before.map_or(0.0, |before| hand.distance(before)));
+            before = Some(hand);
+        });
+    }
+    // Four frames of a hand that swings at 3 m/s.
+    assert!(moved < 0.2, "a hand moves by {moved} m");
+}

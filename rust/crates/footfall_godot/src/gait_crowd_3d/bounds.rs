@@ -5,6 +5,7 @@ use glam::Vec3;
 use godot::builtin::Aabb;
 
 /// A box around places.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     low: Vec3,
     high: Vec3,
@@ -23,6 +24,12 @@ impl Bounds {
     pub(super) fn add(&mut self, place: Vec3) {
         self.low = self.low.min(place);
         self.high = self.high.max(place);
+    }
+
+    /// Takes in what another one is around.
+    pub(super) fn join(&mut self, other: &Self) {
+        self.low = self.low.min(other.low);
+        self.high = self.high.max(other.high);
     }
 
     /// Around the bodies of who stands there.

@@ -96,6 +96,11 @@ impl Flock {
         })
     }
 
+    /// Index of the buffer that is written next.
+    pub(super) const fn turn(&self) -> usize {
+        self.turn[0]
+    }
+
     /// The poses, [`POSE_BYTES`] each, to be written anew; what they were two uploads ago is in them.
     pub(super) fn poses(&mut self) -> &mut [u8] {
         self.poses[self.turn[0]].as_mut_slice()
@@ -165,12 +170,13 @@ pub(super) fn write_pose(pose: &CrowdPose, turned_by: &[Joint; JOINT_COUNT], out
     }
 }
 
-/// Writes an instance: where it stands, its tint, the slot of its pose, and the way from there to the pose in the next slot.
+/// Writes an instance: where it stands, its tint, the slot of its pose, the way from there to the pose in the next slot, and the speed that it leaves: so many
+/// [steps of poses](footfall_synth::SharedPose::beside) beside that slot, and its weight.
 pub(super) fn write_instance(
     place: Vec3,
     heading: f32,
     drawn: &Drawn,
-    (slot, blend): (usize, f32),
+    (slot, blend, leaving): (usize, f32, f32),
     out: &mut [f32],
 ) {
     let turn = glam::Mat3::from_quat(Quat::from_rotation_y(heading)) * drawn.size;
@@ -181,5 +187,5 @@ pub(super) fn write_instance(
     out[12..16].copy_from_slice(&drawn.tint);
     // The Compatibility renderer keeps half floats, which are exact up to 2048.
     let (low, high) = (slot % 1024, slot / 1024);
-    out[16..20].copy_from_slice(&[low as f32, high as f32, blend, 0.0]);
+    out[16..20].copy_from_slice(&[low as f32, high as f32, blend, leaving]);
 }

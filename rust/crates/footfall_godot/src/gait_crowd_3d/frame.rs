@@ -28,10 +28,10 @@ impl GaitCrowd3D {
         let (Some(mut walkers), scene) = (self.walkers.take(), self.scene.take()) else {
             return;
         };
-        // Steps that are told are each drawn anew.
-        walkers.repeats = repeat_far && !self.replica.is_told();
-        self.replica.pass(dt_secs);
         let leads = !walkers.is_following();
+        // Shared steps cannot be told.
+        walkers.repeats = repeat_far && leads && !self.replica.is_told();
+        self.replica.pass(dt_secs);
         walkers.standing_motion = standing_motion;
         let is_navigated = walkers.way().is_navigated();
         if leads
@@ -122,13 +122,14 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Arguments of the signal `footsteps`, if any feet landed; nothing in the editor.
+    /// Arguments of the signal `footsteps`, if any feet landed and anybody listens; nothing in the editor.
     fn landed(
         &self,
         walkers: &Crowd,
     ) -> Option<(PackedInt32Array, PackedByteArray, PackedVector3Array)> {
         walkers.landed().next()?;
-        if Engine::singleton().is_editor_hint() {
+        let is_heard = self.base().has_connections("footsteps");
+        if !is_heard || Engine::singleton().is_editor_hint() {
             return None;
         }
         let world = self.base().get_global_transform();

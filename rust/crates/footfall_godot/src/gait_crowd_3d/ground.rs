@@ -26,11 +26,10 @@ pub(super) fn find(walkers: &mut Crowd, host: &Gd<Node3D>, mask: u32) {
     let mut rays = PhysicsGround::new(mask, 0.0, &Array::new());
     let mut ground = rays.now(space);
     for index in 0..walkers.agents().len() {
-        let moved = walkers.moved(index);
-        let agent = &mut walkers.agents_mut()[index];
-        if !moved || !agent.has_landed() {
+        if !walkers.has_landed(index) {
             continue;
         }
+        let agent = &mut walkers.agents_mut()[index];
         // A little ahead, where it will be in the middle of the step.
         let velocity = agent.velocity();
         let ahead = agent.place + 0.25 * Vec3::new(velocity.x, 0.0, velocity.y);

@@ -1,7 +1,7 @@
 //! A crowd over a network: told to other peers, or following another peer's.
 
 use super::GaitCrowd3D;
-use footfall_rig::crowd::{CrowdReplicaError, CrowdSender};
+use footfall_rig::crowd::{Crowd, CrowdReplicaError, CrowdSender};
 use godot::global::randi;
 use godot::prelude::*;
 
@@ -46,7 +46,7 @@ impl GaitCrowd3D {
     /// Has another peer of a multiplayer game told of this crowd from now on: who is in it, and every step. `take_messages()` has what is to be sent. Called again it tells
     /// everything again, once a second. `controller/crowd_synchronizer.tscn` does all this.
     ///
-    /// While anybody is told, walkers far away do not repeat steps: 5,000 walkers take two fifths of a core.
+    /// While anybody is told, walkers far away share no steps: 5,000 walkers take two fifths of a core.
     #[func]
     fn tell_peer(&mut self, peer: i32) {
         if !self.replica.peers.contains(&peer) {
@@ -131,7 +131,7 @@ impl GaitCrowd3D {
     #[func]
     fn is_introduced(&self) -> bool {
         let walkers = self.walkers.as_ref();
-        walkers.is_some_and(|walkers| walkers.is_introduced())
+        walkers.is_some_and(Crowd::is_introduced)
     }
 }
 

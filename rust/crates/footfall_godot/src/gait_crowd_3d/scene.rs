@@ -4,9 +4,10 @@ use super::actors::Actors;
 use super::bounds::Bounds;
 use super::crowd_mesh::CrowdMesh;
 use super::flock::{Flock, INSTANCE_NUMBERS, POSE_BYTES, write_instance, write_pose};
+use super::shared_flock::SharedFlock;
 use crate::convert;
 use footfall_core::{JOINT_COUNT, Joint};
-use footfall_rig::crowd::{Agent, Crowd, FETCHED, GROUPS, Limits, Tier};
+use footfall_rig::crowd::{Crowd, FETCHED, GROUPS, Limits, Tier};
 use footfall_synth::CrowdPose;
 use glam::{Vec3, Vec4};
 use godot::classes::{Node, Node3D, PackedScene, ShaderMaterial};
@@ -32,6 +33,7 @@ pub(super) struct CrowdScene {
     mesh: CrowdMesh,
     near: Flock,
     far: Vec<Flock>,
+    shared: SharedFlock,
     actors: Actors,
     /// Frames that were drawn.
     drawn: u64,
@@ -57,6 +59,7 @@ impl CrowdScene {
             far: (0..GROUPS)
                 .map(|_| far(host, &mesh, 1, look))
                 .collect::<Option<Vec<_>>>()?,
+            shared: SharedFlock::new(host, &mesh, look)?,
             actors: Actors::default(),
             mesh,
             drawn: 0,
@@ -148,6 +151,7 @@ impl CrowdScene {
         }
         self.draw_near(walkers, &planes);
         self.draw_far(walkers, &planes);
+        self.shared.draw(walkers, &planes, (host, &self.mesh, look));
         self.planes = planes;
         self.actors.pose(walkers.agents());
     }
@@ -156,6 +160,7 @@ impl CrowdScene {
     pub(super) fn free(mut self) {
         self.actors.clear();
         self.near.free();
+        self.shared.free();
         for flock in self.far {
             flock.free();
         }
@@ -184,7 +189,8 @@ impl CrowdScene {
             let wanted = match tier {
                 Tier::Full => !self.actors.plays(index),
                 Tier::Near => true,
-                Tier::Far => false,
+                // Until nothing is left of the steps of its own.
+                Tier::Far => walkers.repeats && walkers.is_alone(index as usize),
             };
             if wanted && self.shown.len() < room && is_seen(drawn.places[1], planes) {
                 self.shown.push(index);
@@ -219,7 +225,7 @@ impl CrowdScene {
             .for_each(|(slot, (out, index))| {
                 let drawn = &drawn[*index as usize];
                 let (place, heading) = drawn.at(1.0);
-                write_instance(place, heading, drawn, (slot, 0.0), out);
+                write_instance(place, heading, drawn, (slot, 0.0, 0.0), out);
             });
         let mut bounds = Bounds::default();
         for index in shown {
@@ -231,7 +237,7 @@ impl CrowdScene {
     /// Everybody far away: the group that has just moved gets the poses where it was and where it is, and is drawn on its way from
     /// the one to the other.
     fn draw_far(&mut self, walkers: &Crowd, planes: &[Vec4]) {
-        let (agents, tiers, drawn) = (walkers.agents(), walkers.tiers(), walkers.drawn());
+        let (tiers, drawn) = (walkers.tiers(), walkers.drawn());
         let frame = walkers.frame();
         let turned_by = &self.mesh.turned_by;
         for (group, flock) in self.far.iter_mut().enumerate() {
@@ -241,7 +247,7 @@ impl CrowdScene {
             if since == 0 || unwritten {
                 write_far(flock, group, walkers, turned_by, planes, &self.ticks);
                 for index in (group..drawn.len()).step_by(GROUPS).take(flock.room) {
-                    if is_far(tiers[index], &agents[index], planes) {
+                    if is_far(walkers, index, planes) {
                         self.ticks[index] = frame;
                     }
                 }
@@ -254,7 +260,8 @@ impl CrowdScene {
             let mut rows = flock.instances().chunks_exact_mut(INSTANCE_NUMBERS);
             let members = (group..drawn.len()).step_by(GROUPS).take(room);
             for (slot, index) in members.enumerate() {
-                if tiers[index] != Tier::Far || frame - self.ticks[index] >= GROUPS as u64 {
+                let is_far = tiers[index] == Tier::Far && walkers.is_alone(index);
+                if !is_far || frame - self.ticks[index] >= GROUPS as u64 {
                     continue;
                 }
                 let Some(out) = rows.next() else {
@@ -263,7 +270,7 @@ impl CrowdScene {
                 let drawn = &drawn[index];
                 let (place, heading) = drawn.at(share);
                 bounds.add(place);
-                write_instance(place, heading, drawn, (2 * slot, share), out);
+                write_instance(place, heading, drawn, (2 * slot, share, 0.0), out);
                 count += 1;
             }
             flock.upload_instances(count, bounds.aabb());
@@ -280,7 +287,7 @@ fn write_far(
     planes: &[Vec4],
     ticks: &[u64],
 ) {
-    let (agents, tiers, frame) = (walkers.agents(), walkers.tiers(), walkers.frame());
+    let (agents, frame) = (walkers.agents(), walkers.frame());
     let (poses, last) = flock.poses_and_last();
     poses
         .par_chunks_mut(2 * POSE_BYTES)
@@ -292,7 +299,7 @@ fn write_far(
             let Some(agent) = agents.get(index) else {
                 return;
             };
-            if !is_far(tiers[index], agent, planes) {
+            if !is_far(walkers, index, planes) {
                 return;
             }
             let mut pose = CrowdPose::default();
@@ -307,16 +314,25 @@ fn write_far(
         });
 }
 
-/// Returns whether a walker is there, far away and seen.
-fn is_far(tier: Tier, agent: &Agent, planes: &[Vec4]) -> bool {
-    tier == Tier::Far && agent.is_made() && is_seen(agent.place, planes)
+/// Returns whether a walker is there, far away, in steps of its own, and seen.
+fn is_far(walkers: &Crowd, index: usize, planes: &[Vec4]) -> bool {
+    walkers.tiers()[index] == Tier::Far
+        && walkers.is_alone(index)
+        && !walkers.repeats
+        && is_seen(walkers.drawn()[index].places[1], planes)
 }
 
 /// Room for walkers whose pose is new in every frame, and for each group of those far away.
 fn rooms(walkers: &Crowd, limits: &Limits) -> (usize, usize) {
     let places = walkers.agents().len();
-    let near = places.min(limits.counts[0] + limits.counts[1]);
-    (near.max(1), places.div_ceil(GROUPS).max(1))
+    // All of them may go away at once, and others come.
+    let near = places.min(2 * (limits.counts[0] + limits.counts[1]));
+    let far = if walkers.repeats {
+        0
+    } else {
+        places.div_ceil(GROUPS)
+    };
+    (near.max(1), far.max(1))
 }
 
 fn near(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &Look) -> Option<Flock> {
@@ -340,7 +356,7 @@ fn add_planes(camera: &Gd<godot::classes::Camera3D>, host: &Gd<Node3D>, planes: 
     }));
 }
 
-fn is_seen(place: Vec3, planes: &[Vec4]) -> bool {
+pub(super) fn is_seen(place: Vec3, planes: &[Vec4]) -> bool {
     let middle = place + Vec3::Y * 0.9;
     planes
         .iter()

@@ -4,6 +4,7 @@ use crate::leg::FootTarget;
 use crate::placement::foot::{Animated, Foot, Scene};
 use crate::placement::swing::LATE_RISE_M;
 use crate::placement::terrain::Terrain;
+use crate::placement::wall::SUNK_M;
 use crate::rocker::RockerFoot;
 use footfall_core::ease::smooth_step;
 use glam::Vec3;
@@ -63,17 +64,21 @@ impl Foot {
             points = points.map(|point| point + aside);
             under = points.map(|point| scene.ground(point));
         }
+        let middle = points.iter().sum::<Vec3>() / RIM as f32;
         let mut short = 0.0_f32;
-        let mut inside = 0.0_f32;
+        let mut touched = 0.0_f32;
         for ((point, under), free) in points.iter().zip(under).zip(rim(&animated.foot)) {
             // No more room than the animation leaves over its own floor.
             let room = free.y.clamp(0.0, GUARD_M);
             let Some((height, normal)) = under else {
                 continue;
             };
-            if height - point.y > inside && !scene.beside(*point, TOUCH_M) {
-                inside = height - point.y;
+            let mut over = height - point.y - TOUCH_M;
+            if over > 0.0 {
+                // A wall that it touches from the side is not above it.
+                over = over.min(scene.depth_beside(*point, middle, TOUCH_M) - SUNK_M);
             }
+            touched = touched.max(over);
             let before = if back == Vec3::ZERO {
                 Some(height)
             } else {
@@ -93,7 +98,8 @@ impl Foot {
             .min(scene.config.max_step_m);
         self.guard
             .follow(short, GUARD_HALF_LIFE_SECS, scene.dt_secs);
-        let touched = inside.min(scene.config.max_step_m) - TOUCH_M;
-        target.ankle.y += (share * self.guard.value).max(touched).max(0.0);
+        let touched = touched.min(scene.config.max_step_m);
+        self.guard.lift_to(touched);
+        target.ankle.y += (share * self.guard.value).max(touched);
     }
 }

@@ -28,6 +28,13 @@ impl Follower {
             velocity: 0.0,
         };
     }
+
+    /// Is no lower than `value`, and comes down from there.
+    pub(crate) fn lift_to(&mut self, value: f32) {
+        if self.value < value {
+            self.jump(value);
+        }
+    }
 }
 
 /// A height that goes where it is to be without a jerk.

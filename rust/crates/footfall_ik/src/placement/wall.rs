@@ -12,6 +12,10 @@ const STEP_M: f32 = 0.01;
 const HALVINGS: usize = 4;
 /// Time constant with which the foot goes it, seconds.
 const PUSH_SECS: f32 = 0.02;
+/// A point that is no deeper in the ground than this is out of the wall: toes that roll off a tread sink into it by less.
+pub(super) const SUNK_M: f32 = 0.005;
+/// Cosine of the angle to the sole's middle from which on a way leads inwards.
+const INWARDS: f32 = 0.25;
 /// Shorter remainders of it count as none, metres.
 const NOTHING_M: f32 = 1e-4;
 /// Ways out, in the axes of the floor.
@@ -47,10 +51,14 @@ impl Foot {
 }
 
 impl<T: Terrain> Scene<'_, T> {
-    /// Returns true when a point that is below the ground is no farther than this from a wall that it could leave it through.
-    pub(super) fn beside(&mut self, point: Vec3, distance_m: f32) -> bool {
-        WAYS.into_iter()
-            .any(|way| self.is_free(point + way * distance_m))
+    /// Least depth below the ground of a point of a sole that goes so far to any side on which the sole's middle is; at most 0 where it comes out of it.
+    /// Walls that it would leave on the other sides are under the sole.
+    pub(super) fn depth_beside(&mut self, point: Vec3, middle: Vec3, distance_m: f32) -> f32 {
+        let inwards = (middle - point).with_y(0.0).normalize_or_zero();
+        let inwards = WAYS.into_iter().filter(|way| way.dot(inwards) > INWARDS);
+        inwards.fold(f32::MAX, |least, way| {
+            least.min(self.depth(point + way * distance_m))
+        })
     }
 
     /// Returns the shortest way to the side on which a point that is below the ground comes out of it; `None` where it is longer than `most_m`.
@@ -77,9 +85,72 @@ impl<T: Terrain> Scene<'_, T> {
         shortest
     }
 
-    /// Returns true when a point is above the ground, or there is none.
+    /// Returns true when a point is above the ground or hardly below it, or there is none.
     fn is_free(&mut self, point: Vec3) -> bool {
+        self.depth(point) <= SUNK_M
+    }
+
+    /// Depth of a point below the ground, negative above it and where there is none.
+    fn depth(&mut self, point: Vec3) -> f32 {
         self.ground(point)
-            .is_none_or(|(height, _)| height <= point.y)
+            .map_or(f32::MIN, |(height, _)| height - point.y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::placement::{Frame, Ground, PlacementConfig};
+
+    /// A riser of 17 cm across the way at z = 0.
+    fn riser(from: Vec3, way: Vec3) -> Option<Ground> {
+        let height = if from.z < 0.0 { 0.0 } else { 0.17 };
+        let position = from.with_y(height);
+        (from.y + way.y..=from.y)
+            .contains(&height)
+            .then_some(Ground {
+                position,
+                normal: Vec3::Y,
+                support: 0,
+            })
+    }
+
+    fn before_riser<R>(
+        ask: impl FnOnce(&mut Scene<'_, fn(Vec3, Vec3) -> Option<Ground>>) -> R,
+    ) -> R {
+        ask(&mut Scene {
+            terrain: &mut (riser as fn(Vec3, Vec3) -> Option<Ground>),
+            world_from_floor: Frame::IDENTITY,
+            config: &PlacementConfig::default(),
+            soles_m: [0.0; 2],
+            dt_secs: 1.0 / 60.0,
+        })
+    }
+
+    #[test]
+    fn toes_a_hair_in_a_riser_and_below_their_tread_are_no_deeper_than_that() {
+        let toes = Vec3::new(0.0, -0.001, 0.0003);
+        let depth = |toes: Vec3, middle: f32| {
+            before_riser(|scene| scene.depth_beside(toes, Vec3::Z * middle, 0.015))
+        };
+        let touching = depth(toes, -0.1);
+        assert!((touching - 0.001).abs() < 1e-6, "{touching}");
+        // Farther in, nothing beside them is lower, nor does a heel leave through an edge that its sole lies across.
+        for [z, middle] in [[0.03, -0.1], [0.0003, 0.1]] {
+            let within = depth(toes.with_z(z), middle);
+            assert!((within - 0.171).abs() < 1e-6, "{within}");
+        }
+    }
+
+    #[test]
+    fn toes_below_their_tread_come_out_of_a_riser_the_way_they_went_in() {
+        for sunk in [0.0, 0.001] {
+            let toes = Vec3::new(0.0, -sunk, 0.03);
+            let out = before_riser(|scene| scene.way_out(toes, MOST_PUSH_M));
+            let out = out.unwrap_or_default();
+            assert!((out.z + 0.03).abs() < 0.001 && out.x == 0.0, "{out}");
+        }
+        let within = before_riser(|scene| scene.way_out(Vec3::Z * 0.1, MOST_PUSH_M));
+        assert_eq!(within, None);
     }
 }

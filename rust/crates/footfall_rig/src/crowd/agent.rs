@@ -3,18 +3,19 @@
 use super::avoidance::Wayfarer;
 use super::goal::{Goal, Guidance};
 use super::kit::Outfit;
+use super::motion::Steps;
 use super::replica::Led;
 use footfall_core::Side;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_ik::placement::{Frame, Landing};
-use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, Workshop};
+use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, SharedPose, Workshop};
 use glam::{Vec2, Vec3};
 
 /// Whoever comes to a goal slows down to this speed, m/s, by so much for each metre that is left.
 const ARRIVING_MPS: f32 = 0.5;
 const ARRIVING_RATE: f32 = 0.8;
-/// A decision shows after so many seconds, for the next step is planned already and the last one takes its time.
-const AHEAD_SECS: f32 = 1.0;
+/// Whoever is to stop goes on for so long, seconds: half of it in the step that comes to a stand, and half a step that others would take before they decide again.
+const AHEAD_SECS: f32 = 0.7;
 /// Room that a walker needs to turn round in an arc, metres.
 const ARC_M: f32 = 2.0;
 /// Whoever is so near to a goal makes no step towards it, metres.
@@ -39,6 +40,14 @@ pub struct Passerby {
     pub velocity: Vec2,
 }
 
+impl Passerby {
+    /// Nobody.
+    pub(super) const NOWHERE: Self = Self {
+        place: Vec2::NAN,
+        velocity: Vec2::ZERO,
+    };
+}
+
 /// Places of a walker for drawing: where it was when it moved last but one, and where it is.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Drawn {
@@ -46,6 +55,8 @@ pub struct Drawn {
     pub places: [Vec3; 2],
     /// Its headings there. The second is within half a turn of the first.
     pub headings: [f32; 2],
+    /// Time between them, seconds.
+    pub secs: f32,
     /// Its height against that of the character.
     pub size: f32,
     /// Its tint: red, green, blue and opacity.
@@ -66,8 +77,8 @@ impl Drawn {
 /// One walker in the space of the crowd: +Y up.
 #[derive(Debug)]
 pub struct Agent {
-    /// Its walk, in memory that the thread that made it asked for; none before it is made, and for places that nobody has.
-    pub(super) walker: Option<Box<CrowdWalker>>,
+    /// Its walk; none before it is made, and for places that nobody has.
+    pub(super) walker: Option<CrowdWalker>,
     /// Number that distinguishes it from others who had its place or will have it.
     pub(super) ticket: u64,
     /// True when it is one of the node's `count`, not one that a script added.
@@ -145,7 +156,7 @@ impl Agent {
     }
 
     /// Begins to walk, at this time of the crowd.
-    pub(super) fn begin(&mut self, walker: Box<CrowdWalker>, now_secs: f64) {
+    pub(super) fn begin(&mut self, walker: CrowdWalker, now_secs: f64) {
         if let Some(led) = &mut self.led {
             led.wait(walker);
             return;
@@ -158,13 +169,13 @@ impl Agent {
     /// Its walk, even where it has not begun.
     pub(super) fn own_walker(&mut self) -> Option<&mut CrowdWalker> {
         let waiting = self.led.as_mut().and_then(|led| led.waiting());
-        self.walker.as_deref_mut().or(waiting)
+        self.walker.as_mut().or(waiting)
     }
 
     /// Share of its stride that is behind it: 0 when its left foot lands, 0.5 when its right foot does.
     pub fn phase(&self) -> f32 {
         let walker = self.walker.as_ref();
-        walker.map_or(self.start_phase, |walker| walker.phase())
+        walker.map_or(self.start_phase, CrowdWalker::phase)
     }
 
     /// Returns whether it walks: it was made, and has begun.
@@ -185,7 +196,7 @@ impl Agent {
     /// Feet that bear on the ground.
     pub fn feet_in_contact(&self) -> [bool; 2] {
         let walker = self.walker.as_ref();
-        walker.map_or([true; 2], |walker| walker.feet_in_contact())
+        walker.map_or([true; 2], CrowdWalker::feet_in_contact)
     }
 
     /// The next landing of each foot in the space of the character, for a body of its size: a large one takes longer for its steps.
@@ -209,7 +220,7 @@ impl Agent {
     }
 
     /// Decides what to do next; what it decides is taken up with the next step. It slows down for its last goal if it `stops` there.
-    pub(super) fn decide<'a>(&mut self, others: impl Iterator<Item = &'a Passerby>, stops: bool) {
+    pub(super) fn decide(&mut self, others: &[Passerby], stops: bool) {
         let mut speed = self.speed_mps;
         let turn = match self.goal {
             Goal::Turn(rate) => rate,
@@ -219,7 +230,7 @@ impl Agent {
                 let left = if last && far < THERE_M {
                     0.0
                 } else if last && stops {
-                    (far - AHEAD_SECS * self.velocity.length()).max(0.0)
+                    (far - AHEAD_SECS * self.present_mps()).max(0.0)
                 } else {
                     f32::INFINITY
                 };
@@ -236,7 +247,10 @@ impl Agent {
                     speed_mps: self.speed_mps,
                     room_rad,
                 };
-                if let Some(detour) = wayfarer.detour(others) {
+                // Who makes no step goes round nobody.
+                if left > 0.0
+                    && let Some(detour) = wayfarer.detour(others.iter())
+                {
                     off += detour.aside;
                     speed *= detour.speed;
                 }
@@ -257,6 +271,12 @@ impl Agent {
             turn_rate_radps: turn * froude,
             ..Controls::STAND
         };
+    }
+
+    /// Speed at the end of the step that it is in, m/s: the measured one lags behind.
+    fn present_mps(&self) -> f32 {
+        let asked = self.controls.speed_mps * self.size.sqrt();
+        asked.min(self.velocity.length())
     }
 
     /// Lets time pass.
@@ -296,11 +316,12 @@ impl Agent {
     }
 
     /// Places for drawing, after it moved from there.
-    pub(super) fn drawn(&self, from: Vec3, from_heading: f32) -> Drawn {
+    pub(super) fn drawn(&self, from: Vec3, from_heading: f32, secs: f32) -> Drawn {
         let turned = wrap_angle(self.heading - from_heading);
         Drawn {
             places: [from, self.place],
             headings: [from_heading, from_heading + turned],
+            secs,
             size: self.size,
             tint: self.tint,
         }
@@ -340,10 +361,36 @@ impl Agent {
         }
     }
 
+    /// Has memory bring what [`shared_pose`](Self::shared_pose) reads.
+    pub fn fetch_shared(&self) {
+        core::hint::black_box((self.size, self.is_made()));
+    }
+
     /// Has memory bring what [`pose`](Self::pose) reads.
     pub fn fetch_pose(&self) {
         if let Some(walker) = &self.walker {
             walker.fetch_pose();
+        }
+    }
+
+    /// Its pose so many seconds ago among those that all who wear the same share, and the number of what it wears; `None` while it takes steps of its own.
+    pub fn shared_pose(&self, ago_secs: f32) -> Option<(u32, SharedPose)> {
+        let walker = self.walker.as_ref()?;
+        walker.shared_pose(ago_secs / self.size.sqrt())
+    }
+
+    /// Returns whether it walks in steps of its own: only they can be told.
+    pub(super) fn takes_own_steps(&self) -> bool {
+        let walker = self.walker.as_ref();
+        walker.is_some_and(|walker| !walker.is_sharing())
+    }
+
+    /// Steps that show in its pose.
+    pub(super) fn steps(&self) -> Steps {
+        match &self.walker {
+            None => Steps::None,
+            Some(walker) if walker.has_own_steps() => Steps::Own,
+            Some(_) => Steps::Shared,
         }
     }
 

@@ -71,10 +71,17 @@ impl Wayfarer {
             .into_iter()
             .filter(|aside| (-right..=left).contains(aside))
         {
+            // Nobody in the way makes a detour cheaper.
+            if detour_cost(aside, 1.0) >= best.0 {
+                continue;
+            }
             let direction = direction(self.heading + self.off + aside);
             for speed in SPEEDS {
-                let velocity = direction * (speed * self.speed_mps);
-                let cost = detour_cost(aside, speed) + near.cost(velocity);
+                let detour = detour_cost(aside, speed);
+                if detour >= best.0 {
+                    break;
+                }
+                let cost = detour + near.cost(direction * (speed * self.speed_mps));
                 if cost < best.0 {
                     best = (cost, Some(Detour { aside, speed }));
                 }
@@ -95,46 +102,61 @@ fn detour_cost(aside: f32, speed: f32) -> f32 {
     TURNING * turned * turned + SLOWING * (1.0 - speed)
 }
 
-/// The others that matter: how urgent they are, where from here, and how fast.
+/// The others that matter: how urgent they are, where from here, and how fast. Number by number, so that all of them are judged at once.
 #[derive(Debug, Default)]
 struct Near {
-    others: [(f32, Vec2, Vec2); MOST_OTHERS],
+    urgency: [f32; MOST_OTHERS],
+    way: [[f32; MOST_OTHERS]; 2],
+    velocity: [[f32; MOST_OTHERS]; 2],
     len: usize,
 }
 
 impl Near {
     /// Takes somebody in, in the place of who is least urgent if there are too many.
     fn take(&mut self, urgency: f32, way: Vec2, velocity: Vec2) {
-        let entry = (urgency, way, velocity);
-        if self.len < MOST_OTHERS {
-            self.others[self.len] = entry;
+        let index = if self.len < MOST_OTHERS {
             self.len += 1;
-            return;
-        }
-        let least = self.others.iter_mut().min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some(least) = least.filter(|least| least.0 < urgency) {
-            *least = entry;
+            self.len - 1
+        } else {
+            let all = self.urgency.iter().enumerate();
+            let least = all.min_by(|a, b| a.1.total_cmp(b.1));
+            let Some((index, _)) = least.filter(|least| *least.1 < urgency) else {
+                return;
+            };
+            index
+        };
+        self.urgency[index] = urgency;
+        for (axis, (way, velocity)) in way
+            .to_array()
+            .into_iter()
+            .zip(velocity.to_array())
+            .enumerate()
+        {
+            self.way[axis][index] = way;
+            self.velocity[axis][index] = velocity;
         }
     }
 
     /// Cost of meeting them at this velocity.
     fn cost(&self, velocity: Vec2) -> f32 {
-        let others = self.others[..self.len].iter();
-        others
-            .map(|(_, way, other)| meeting_cost(*way, velocity - *other))
-            .sum()
+        let mut costs = [0.0; MOST_OTHERS];
+        for (index, cost) in costs.iter_mut().enumerate() {
+            let way = Vec2::new(self.way[0][index], self.way[1][index]);
+            let other = Vec2::new(self.velocity[0][index], self.velocity[1][index]);
+            *cost = meeting_cost(way, velocity - other);
+        }
+        costs[..self.len].iter().sum()
     }
 }
 
-/// Cost of approaching somebody who is there at this velocity.
+/// Cost of approaching somebody who is there at this velocity. Without branches, so that several are judged at once.
+#[inline]
 fn meeting_cost(way: Vec2, approach: Vec2) -> f32 {
-    let secs = (way.dot(approach) / approach.length_squared().max(1e-3)).clamp(0.0, FORESIGHT_SECS);
+    let secs = way.dot(approach) / approach.length_squared().max(1e-3);
+    let secs = secs.clamp(0.0, FORESIGHT_SECS);
     let nearest = (way - approach * secs).length();
-    if nearest >= PERSONAL_M {
-        return 0.0;
-    }
     let soon = 1.0 - secs / FORESIGHT_SECS;
-    let close = ((PERSONAL_M - nearest) / (PERSONAL_M - BODIES_M)).min(1.0);
+    let close = ((PERSONAL_M - nearest) / (PERSONAL_M - BODIES_M)).clamp(0.0, 1.0);
     let touching = (1.0 - nearest / BODIES_M).max(0.0);
     soon * (CLOSENESS * close + TOUCHING * touching)
 }

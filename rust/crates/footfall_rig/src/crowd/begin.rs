@@ -70,6 +70,7 @@ impl Crowd {
                 ticket: agent.ticket,
                 outfit,
                 config: None,
+                alone: false,
             };
             self.maker.take(core::iter::once(order));
         }
@@ -81,6 +82,8 @@ impl Crowd {
             agents,
             roster,
             began,
+            seen,
+            stirs,
             time_secs,
             ..
         } = self;
@@ -98,6 +101,10 @@ impl Crowd {
             if let Some(mut walker) = made.walker {
                 walker.set_detail(Detail::Quarter);
                 agent.begin(walker, *time_secs);
+                if agent.is_made() {
+                    seen[place] = agent.seen();
+                    stirs[place].steps = agent.steps();
+                }
                 began.push(roster.name(place));
             } else if let Some(walker) = agent.own_walker() {
                 walker.wear(&made.styled);

@@ -112,7 +112,27 @@ impl Kit {
         // A mixture that gives no walk is not worn.
         let styled = StyledBody::new(&self.space, &outfit.weights(), body)
             .unwrap_or_else(|_| self.plain.clone());
-        self.worn().entry(outfit.clone()).or_insert(styled).clone()
+        let mut worn = self.worn();
+        let number = worn.len() as u32;
+        let numbered = || styled.numbered(number);
+        worn.entry(outfit.clone()).or_insert_with(numbered).clone()
+    }
+
+    /// Number of mixtures.
+    pub(super) fn count(&self) -> usize {
+        self.worn().len()
+    }
+
+    /// Mixtures by their numbers: those from this one on.
+    pub(super) fn numbered_from(&self, number: u32) -> Vec<StyledBody> {
+        let worn = self.worn();
+        let mut fresh: Vec<StyledBody> = worn
+            .values()
+            .filter(|styled| styled.number() >= number)
+            .cloned()
+            .collect();
+        fresh.sort_by_key(StyledBody::number);
+        fresh
     }
 
     fn worn(&self) -> MutexGuard<'_, HashMap<Outfit, StyledBody>> {

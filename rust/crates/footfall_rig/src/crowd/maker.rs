@@ -22,6 +22,8 @@ pub(super) struct Order {
     pub(super) outfit: Outfit,
     /// Settings of its walk; none for a walker that is there and only dressed.
     pub(super) config: Option<GeneratorConfig>,
+    /// True for one who takes steps of its own from the first one on, some milliseconds of work.
+    pub(super) alone: bool,
 }
 
 /// An order that was carried out.
@@ -29,18 +31,14 @@ pub(super) struct Order {
 pub(super) struct Made {
     pub(super) order: Order,
     pub(super) styled: StyledBody,
-    pub(super) walker: Option<Box<CrowdWalker>>,
+    pub(super) walker: Option<CrowdWalker>,
 }
 
 #[derive(Debug, Default)]
 struct Queue {
     orders: VecDeque<Order>,
     /// Walkers who left: ten thousand of them take longer to be forgotten than a frame lasts.
-    #[expect(
-        clippy::vec_box,
-        reason = "handed on as they are: to unbox them takes the time that is to be saved"
-    )]
-    left: Vec<Box<CrowdWalker>>,
+    left: Vec<CrowdWalker>,
     /// Threads that will look here again.
     working: usize,
 }
@@ -125,11 +123,7 @@ impl Maker {
     }
 
     /// Forgets walkers who left.
-    #[expect(
-        clippy::vec_box,
-        reason = "handed on as they are: to unbox them takes the time that is to be saved"
-    )]
-    pub(super) fn forget(&mut self, left: Vec<Box<CrowdWalker>>) {
+    pub(super) fn forget(&mut self, left: Vec<CrowdWalker>) {
         if left.len() <= FEW {
             return;
         }
@@ -220,7 +214,7 @@ impl Shared {
             locked(&self.queue).working -= 1;
             return;
         };
-        let mut workshop = Workshop::new(&kit.plain);
+        let mut workshop = None;
         loop {
             let mut queue = locked(&self.queue);
             let left = core::mem::take(&mut queue.left);
@@ -234,7 +228,9 @@ impl Shared {
                 return;
             };
             drop(queue);
-            let made = make(kit, order, &mut workshop);
+            let made = make(kit, order, || {
+                workshop.get_or_insert_with(|| Workshop::new(&kit.plain))
+            });
             locked(&self.made).push_back(made);
         }
     }
@@ -248,18 +244,23 @@ impl Shared {
             let Some(order) = locked(&self.queue).orders.pop_front() else {
                 break;
             };
-            let made = make(kit, order, &mut locked(&kit.workshops[0]));
+            let mut workshop = locked(&kit.workshops[0]);
+            let made = make(kit, order, || &mut workshop);
+            drop(workshop);
             locked(&self.made).push_back(made);
         }
     }
 }
 
-fn make(kit: &Kit, order: Order, workshop: &mut Workshop) -> Made {
+fn make<'a>(kit: &Kit, order: Order, workshop: impl FnOnce() -> &'a mut Workshop) -> Made {
     let styled = kit.tailor(&order.outfit);
-    let walker = order.config.and_then(|config| {
+    let walker = order.config.as_ref().and_then(|config| {
+        if !order.alone {
+            // It takes steps of its own where it is seen to.
+            return Some(CrowdWalker::sharing(&styled, config));
+        }
         // A walker is of the plain walk when it begins, and dresses with its first step.
-        let walker = CrowdWalker::new(&kit.plain, &config, false, workshop);
-        let mut walker = Box::new(walker.ok()?);
+        let mut walker = CrowdWalker::new(&kit.plain, config, false, workshop()).ok()?;
         walker.wear(&styled);
         Some(walker)
     });

@@ -1,10 +1,11 @@
 //! Walkers who come and go, and the row of each.
 
 use super::Crowd;
-use super::agent::{Agent, Drawn, WHITE};
+use super::agent::{Agent, Drawn, Passerby, WHITE};
 use super::goal::Goal;
 use super::kit::Outfit;
 use super::maker::Order;
+use super::motion::Stir;
 use super::save::{self, SavedAgent, SavedCrowd};
 use super::tiers::Tier;
 use super::way::Way;
@@ -167,6 +168,8 @@ impl Crowd {
             left.extend(agent.walker);
             self.tiers[*place] = Tier::Far;
             self.drawn[*place] = Drawn::default();
+            self.stirs[*place] = Stir::default();
+            self.seen[*place] = Passerby::NOWHERE;
         }
         self.maker.forget(left);
     }
@@ -196,6 +199,8 @@ impl Crowd {
         self.agents.reserve(more);
         self.tiers.reserve(more);
         self.drawn.reserve(more);
+        self.stirs.reserve(more);
+        self.seen.reserve(more);
     }
 
     /// Gives every one of the first so many places its row.
@@ -204,6 +209,8 @@ impl Crowd {
         self.agents.resize_with(places, Agent::absent);
         self.tiers.resize(places, Tier::Far);
         self.drawn.resize(places, Drawn::default());
+        self.stirs.resize(places, Stir::default());
+        self.seen.resize(places, Passerby::NOWHERE);
     }
 
     /// Adds one walker; returns its place, and the order to make it.
@@ -265,7 +272,7 @@ impl Crowd {
             });
             agent.outfit = Outfit::of(&saved.weights[..saved.weights.len().min(styles)]);
         }
-        self.drawn[place] = agent.drawn(start, heading);
+        self.drawn[place] = agent.drawn(start, heading, 0.0);
         let order = Order {
             place,
             ticket: self.tickets,
@@ -275,6 +282,7 @@ impl Crowd {
                 phase,
                 variation: 1.0,
             }),
+            alone: !self.repeats,
         };
         self.agents[place] = agent;
         order

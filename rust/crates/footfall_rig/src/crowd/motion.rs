@@ -1,11 +1,11 @@
 //! Everybody in a crowd, moved on many threads at once.
 
 use super::Crowd;
-use super::agent::Agent;
+use super::neighbours::Sight;
 use super::tiers::Tier;
 use super::way::Way;
 use footfall_core::Side;
-use footfall_synth::Detail;
+use footfall_synth::{Detail, StyledBody};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::PoisonError;
@@ -19,12 +19,34 @@ pub const GROUPS: usize = 4;
 /// Interval at which neighbours are found anew, in frames.
 const NEIGHBOURS_EVERY: u64 = 4;
 
+/// Steps of a walker.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Steps {
+    /// It is not made.
+    #[default]
+    None,
+    /// Its pose is one that others have, too.
+    Shared,
+    /// It takes steps of its own, or shows something of them still.
+    Own,
+}
+
+/// Memory of a row's last frame: everybody's lies together, for most rows are not looked at in a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stir {
+    /// True for one who moved.
+    moved: bool,
+    /// True for one whose foot landed.
+    landed: bool,
+    pub(super) steps: Steps,
+}
+
 impl Crowd {
     /// Lets time pass for everybody.
     pub fn advance(&mut self, dt_secs: f32, avoidance: bool) {
         if dt_secs <= 0.0 {
-            for agent in &mut self.agents {
-                agent.landed = None;
+            for stir in &mut self.stirs {
+                stir.landed = false;
             }
             return;
         }
@@ -35,15 +57,16 @@ impl Crowd {
             return;
         };
         if avoidance && frame.is_multiple_of(NEIGHBOURS_EVERY) {
-            let there = self.agents.iter().filter(|agent| agent.walker.is_some());
             let others = self.others.iter().copied();
             self.neighbours
-                .rebuild(there.map(Agent::seen).chain(others));
+                .rebuild(self.seen.iter().copied().chain(others));
         }
         let Self {
             agents,
             tiers,
             drawn,
+            stirs,
+            seen,
             neighbours,
             way,
             repeats,
@@ -60,24 +83,30 @@ impl Crowd {
             .par_chunks_mut(CHUNK)
             .zip(tiers.par_chunks(CHUNK))
             .zip(drawn.par_chunks_mut(CHUNK))
+            .zip(stirs.par_chunks_mut(CHUNK))
+            .zip(seen.par_chunks_mut(CHUNK))
             .enumerate();
-        chunks.for_each(|(chunk, ((agents, tiers), drawn))| {
+        chunks.for_each(|(chunk, ((((agents, tiers), drawn), stirs), seen))| {
             let thread = rayon::current_thread_index().map_or(0, |index| index + 1);
             let workshop = &workshops[thread.min(workshops.len() - 1)];
             let mut workshop = workshop.lock().unwrap_or_else(PoisonError::into_inner);
-            let moves = |index: usize, tier: Tier| {
+            let mut sight = Sight::default();
+            for (index, (stir, tier)) in stirs.iter_mut().zip(tiers).enumerate() {
                 // Those far away move in their group's frame, for all frames since the last one.
                 let group = (chunk * CHUNK + index) % GROUPS;
-                tier != Tier::Far || frame % GROUPS as u64 == group as u64
-            };
+                let late = *tier == Tier::Far && !(repeats && stir.steps == Steps::Own);
+                stir.moved = !late || frame % GROUPS as u64 == group as u64;
+                stir.landed = false;
+            }
             for index in 0..agents.len() {
                 if index.is_multiple_of(FETCHED) {
                     let together = index..agents.len().min(index + FETCHED);
-                    let moving = together.filter(|index| moves(*index, tiers[*index]));
+                    let moving = together.filter(|index| stirs[*index].moved);
                     moving.for_each(|index| agents[index].fetch());
                 }
                 let (agent, tier, drawn) = (&mut agents[index], &tiers[index], &mut drawn[index]);
-                if !moves(index, *tier) {
+                let stir = &mut stirs[index];
+                if !stir.moved {
                     continue;
                 }
                 if let Some(following) = following {
@@ -98,36 +127,83 @@ impl Crowd {
                 let (from, heading) = (agent.place, agent.heading);
                 if let Some(following) = following {
                     agent.follow(secs, following, &mut workshop);
-                    *drawn = agent.drawn(from, heading);
-                    continue;
-                }
-                if agent.is_about_to_step(secs) {
-                    way.lead(agent);
-                    let stops = matches!(way, Way::Told);
-                    if avoidance {
-                        agent.decide(neighbours.around(agent.level()), stops);
-                    } else {
-                        agent.decide(core::iter::empty(), stops);
+                } else {
+                    if agent.is_about_to_step(secs) {
+                        way.lead(agent);
+                        let stops = matches!(way, Way::Told);
+                        if avoidance {
+                            let seen = neighbours.around(agent.level(), &mut sight);
+                            agent.decide(seen, stops);
+                        } else {
+                            agent.decide(&[], stops);
+                        }
                     }
+                    agent.advance(secs, &mut workshop);
                 }
-                agent.advance(secs, &mut workshop);
-                *drawn = agent.drawn(from, heading);
+                *drawn = agent.drawn(from, heading, secs);
+                stir.landed = agent.has_landed();
+                stir.steps = agent.steps();
+                seen[index] = agent.seen();
             }
         });
     }
 
     /// Returns whether a walker moved in the last frame.
     pub fn moved(&self, index: usize) -> bool {
-        self.tiers.get(index) != Some(&Tier::Far)
-            || self.frame % GROUPS as u64 == (index % GROUPS) as u64
+        self.stirs.get(index).is_some_and(|stir| stir.moved)
+    }
+
+    /// Returns whether a walker's [pose](super::Agent::shared_pose) is one that others have, too.
+    pub fn shares(&self, index: usize) -> bool {
+        self.takes(index, Steps::Shared)
+    }
+
+    /// Returns whether a walker takes steps of its own, or its pose comes from one still. One who is far away and [repeats](Self::repeats) moves in every frame for so long, less than a second.
+    pub fn is_alone(&self, index: usize) -> bool {
+        self.takes(index, Steps::Own)
+    }
+
+    fn takes(&self, index: usize, steps: Steps) -> bool {
+        let stir = self.stirs.get(index);
+        stir.is_some_and(|stir| stir.steps == steps)
+    }
+
+    /// Number of mixtures of styles that walkers wear or wore.
+    pub fn worn(&self) -> usize {
+        self.kit.as_ref().map_or(0, |kit| kit.count())
+    }
+
+    /// These mixtures by their numbers: those from one on.
+    pub fn worn_from(&self, number: u32) -> Vec<StyledBody> {
+        let kit = self.kit.as_ref();
+        kit.map(|kit| kit.numbered_from(number)).unwrap_or_default()
+    }
+
+    /// Returns whether a foot of a walker landed in the last frame.
+    pub fn has_landed(&self, index: usize) -> bool {
+        self.stirs.get(index).is_some_and(|stir| stir.landed)
     }
 
     /// Landings in the last frame: walker, foot and place.
     pub fn landed(&self) -> impl Iterator<Item = (usize, Side, Vec3)> {
-        let agents = self.agents.iter().enumerate();
-        agents.filter_map(|(index, agent)| {
-            let (side, place) = agent.landed.filter(|_| self.moved(index))?;
+        let stirs = self.stirs.iter().enumerate();
+        let landed = stirs.filter(|(_, stir)| stir.landed);
+        landed.filter_map(|(index, _)| {
+            let (side, place) = self.agents[index].landed?;
             Some((index, side, place))
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::agent::{Agent, Drawn, Passerby};
+    use super::*;
+
+    #[test]
+    fn a_row_takes_less_than_half_a_kilobyte() {
+        let seen = 2 * size_of::<Passerby>();
+        let row = size_of::<Agent>() + size_of::<Drawn>() + size_of::<Stir>() + seen;
+        assert!(row + size_of::<Tier>() < 512, "{row} bytes");
     }
 }

@@ -3,79 +3,143 @@
 use super::agent::{Passerby, SIGHT_M};
 use glam::{IVec2, Vec2};
 
-/// Walkers by the cell that they are in; a cell is as wide as one sees.
+/// Side of a cell, metres.
+const CELL_M: f32 = 1.5;
+/// About so many are in sight at most: in a dense crowd people see no farther than those who are nearest, for they hide the others.
+const MOST_IN_SIGHT: f32 = 48.0;
+/// No more than these are looked at where a crowd is denser than around it.
+const MOST_LOOKED_AT: usize = 128;
+/// Everybody so near is seen however many there are, metres.
+const LEAST_SIGHT_M: f32 = 1.5;
+
+/// So many buckets at least: where there are few, strangers share them.
+const LEAST_BUCKETS: usize = 4096;
+/// Factor between rows of cells: cells that follow each other in a row follow each other in memory, too, and rows that are near to each other never lie in the same.
+const ROW: u32 = 0x9e37_79b1;
+
+/// Room for who can be seen from a place.
+#[derive(Debug)]
+pub(super) struct Sight([Passerby; MOST_LOOKED_AT]);
+
+impl Default for Sight {
+    fn default() -> Self {
+        Self([Passerby::default(); MOST_LOOKED_AT])
+    }
+}
+
+/// Walkers in the order of the cells that they are in.
 #[derive(Debug, Default)]
 pub(super) struct Neighbours {
     seen: Vec<Passerby>,
-    /// Walkers in the order of their buckets.
-    order: Vec<u32>,
-    /// Index in `order` at which each bucket begins; one more than buckets.
+    /// Index in `seen` at which each bucket begins; one more than buckets.
     starts: Vec<u32>,
 }
 
 impl Neighbours {
-    /// Takes everybody in. Allocates only when there are more than ever.
-    pub(super) fn rebuild(&mut self, everybody: impl Iterator<Item = Passerby>) {
-        self.seen.clear();
-        self.seen.extend(everybody);
-        let buckets = self.seen.len().next_power_of_two().max(16);
+    /// Takes everybody in whose place is finite. Allocates only when there are more than ever.
+    pub(super) fn rebuild(&mut self, everybody: impl Iterator<Item = Passerby> + Clone) {
+        let there = everybody.filter(|seen| seen.place.is_finite());
+        let count = there.clone().count();
+        let buckets = (2 * count).next_power_of_two().max(LEAST_BUCKETS);
         self.starts.clear();
         self.starts.resize(buckets + 1, 0);
-        for seen in &self.seen {
-            self.starts[bucket(cell(seen.place), buckets) + 1] += 1;
+        for seen in there.clone() {
+            self.starts[bucket(cell(seen.place), buckets)] += 1;
         }
-        for index in 0..buckets {
-            self.starts[index + 1] += self.starts[index];
+        let mut end = 0;
+        for start in &mut self.starts {
+            end += *start;
+            *start = end;
         }
-        self.order.clear();
-        self.order.resize(self.seen.len(), 0);
-        // Filled from the back, so that `starts` ends where it began.
-        for (index, seen) in self.seen.iter().enumerate().rev() {
-            let end = &mut self.starts[bucket(cell(seen.place), buckets) + 1];
-            *end -= 1;
-            self.order[*end as usize] = index as u32;
+        self.seen.clear();
+        self.seen.resize(count, Passerby::default());
+        // Each bucket is filled from its end, so that `starts` comes to say where it begins.
+        for seen in there {
+            let start = &mut self.starts[bucket(cell(seen.place), buckets)];
+            *start -= 1;
+            self.seen[*start as usize] = seen;
         }
-        self.starts.rotate_left(1);
-        self.starts[buckets] = self.seen.len() as u32;
     }
 
-    /// Everybody in the cells around a place, and by chance a few from elsewhere.
-    pub(super) fn around(&self, place: Vec2) -> impl Iterator<Item = &Passerby> {
-        let buckets = self.starts.len().saturating_sub(1).max(1);
+    /// Everybody who can be seen from a place: the nearest ones, as far as they can be seen between each other.
+    pub(super) fn around<'a>(&self, place: Vec2, found: &'a mut Sight) -> &'a [Passerby] {
         let middle = cell(place);
-        (-1..=1)
-            .flat_map(move |x| (-1..=1).map(move |y| bucket(middle + IVec2::new(x, y), buckets)))
-            .flat_map(|bucket| {
-                let from = self.starts.get(bucket).copied().unwrap_or(0) as usize;
-                let to = self.starts.get(bucket + 1).copied().unwrap_or(0) as usize;
-                self.order[from..to.max(from)].iter()
-            })
-            .map(|index| &self.seen[*index as usize])
+        let near = rows(middle, 1).flat_map(|row| self.strip(row, 1));
+        let near: usize = near.map(<[Passerby]>::len).sum();
+        let density = near as f32 / (9.0 * CELL_M * CELL_M);
+        let sight = (MOST_IN_SIGHT / (core::f32::consts::PI * density.max(1e-3))).sqrt();
+        let sight = sight.clamp(LEAST_SIGHT_M, SIGHT_M);
+        let cells = (sight / CELL_M).ceil() as i32;
+        let mut count = 0;
+        for row in rows(middle, cells) {
+            for seen in self.strip(row, cells).into_iter().flatten() {
+                // Strangers may lie in the same memory.
+                if seen.place.distance_squared(place) < sight * sight {
+                    let Some(room) = found.0.get_mut(count) else {
+                        break;
+                    };
+                    *room = *seen;
+                    count += 1;
+                }
+            }
+        }
+        &found.0[..count]
     }
+
+    /// Everybody who lies in memory where a row of cells does, so many to both sides of one: in two parts where that goes over its end.
+    fn strip(&self, middle: IVec2, cells: i32) -> [&[Passerby]; 2] {
+        let buckets = self.starts.len().saturating_sub(1);
+        if buckets == 0 {
+            return [&[]; 2];
+        }
+        let between = |first: usize, end: usize| {
+            &self.seen[self.starts[first] as usize..self.starts[end] as usize]
+        };
+        let first = bucket(middle - cells * IVec2::X, buckets);
+        let end = first + 2 * cells as usize + 1;
+        [
+            between(first, end.min(buckets)),
+            between(0, end.saturating_sub(buckets)),
+        ]
+    }
+}
+
+/// The cells in the middle of the rows that are so many away at most, the nearest first.
+fn rows(middle: IVec2, cells: i32) -> impl Iterator<Item = IVec2> {
+    (0..=2 * cells).map(move |row| {
+        let off = if row % 2 == 0 {
+            row / 2
+        } else {
+            -(row + 1) / 2
+        };
+        middle + off * IVec2::Y
+    })
 }
 
 fn cell(place: Vec2) -> IVec2 {
-    (place / SIGHT_M).floor().as_ivec2()
+    (place / CELL_M).floor().as_ivec2()
 }
 
 fn bucket(cell: IVec2, buckets: usize) -> usize {
-    // Two large primes, as is usual for grids that are hashed.
-    let hash = cell.x.wrapping_mul(73_856_093) ^ cell.y.wrapping_mul(19_349_663);
-    hash.cast_unsigned() as usize & (buckets - 1)
+    let row = cell.y.cast_unsigned().wrapping_mul(ROW);
+    cell.x.cast_unsigned().wrapping_add(row) as usize & (buckets - 1)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn everybody_near_is_found() {
-        let places: Vec<Vec2> = (0..500)
+    /// People strewn evenly, so many on a square metre.
+    fn strewn(density: f32) -> Vec<Vec2> {
+        (0..4000)
             .map(|index| {
-                let angle = index as f32 * 2.4;
-                Vec2::from_angle(angle) * (index as f32).sqrt() * 1.5
+                let radius = (index as f32 / (core::f32::consts::PI * density)).sqrt();
+                Vec2::from_angle(index as f32 * 2.4) * radius
             })
-            .collect();
+            .collect()
+    }
+
+    fn neighbours(places: &[Vec2]) -> Neighbours {
         let mut neighbours = Neighbours::default();
         for _ in 0..2 {
             neighbours.rebuild(places.iter().map(|place| Passerby {
@@ -83,12 +147,40 @@ mod tests {
                 velocity: Vec2::ZERO,
             }));
         }
-        for place in &places {
-            let found: Vec<Vec2> = neighbours.around(*place).map(|seen| seen.place).collect();
+        neighbours
+    }
+
+    #[test]
+    fn everybody_near_is_found_once() {
+        let mut places = strewn(0.15);
+        places.push(Vec2::NAN);
+        let neighbours = neighbours(&places);
+        let mut sight = Sight::default();
+        places.pop();
+        for place in places.iter().step_by(7) {
+            let found = neighbours.around(*place, &mut sight);
+            let found: Vec<Vec2> = found.iter().map(|seen| seen.place).collect();
             for other in &places {
-                if other.distance(*place) < SIGHT_M {
-                    assert!(found.contains(other), "{other} is near {place}");
-                }
+                let times = found.iter().filter(|found| *found == other).count();
+                let near = other.distance(*place) < SIGHT_M;
+                assert_eq!(times, usize::from(near), "{other} seen from {place}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_denser_crowd_does_not_mean_that_more_are_looked_at() {
+        for density in [1.0, 3.0, 6.0, 12.0] {
+            let places = strewn(density);
+            let neighbours = neighbours(&places);
+            let mut sight = Sight::default();
+            for place in places[..200].iter().step_by(7) {
+                let found = neighbours.around(*place, &mut sight);
+                let count = found.len();
+                assert!((20..=MOST_LOOKED_AT).contains(&count), "{density}: {count}");
+                let nearest = places.iter().filter(|other| other.distance(*place) < 0.5);
+                let seen = |other: &Vec2| found.iter().any(|seen| seen.place == *other);
+                assert!(nearest.take(4).all(seen), "the nearest count");
             }
         }
     }

@@ -77,7 +77,8 @@ fn who_stops_and_goes_again_does_so_in_the_same_place() {
             let goal = Vec2::new(agent.place.x + aside, agent.place.z + 5.0);
             agent.go_to(goal);
         }
-        link.walk(16.0);
+        // Those who meet in the middle take longest.
+        link.walk(24.0);
         let (made, shown) = (places(&link.here), places(&link.there));
         for name in &names {
             let off = made[name].distance(shown[name]);
@@ -179,4 +180,22 @@ fn who_follows_no_more_goes_on_by_itself() {
         .iter()
         .filter(|(name, place)| place.distance(before[name]) > 0.3);
     assert!(went.count() > 5, "they stand");
+}
+
+#[test]
+fn who_shared_steps_before_it_is_told_takes_its_own_then_and_there() {
+    let mut link = Link::new(wander(), 30);
+    link.here.repeats = true;
+    link.walk(3.0);
+    assert!((0..30).all(|row| link.here.shares(row)), "own steps");
+    link.here.repeats = false;
+    link.join();
+    let joined = link.secs;
+    link.walk(6.0);
+    for crowd in [&link.here, &link.there] {
+        assert_eq!(places(crowd).len(), 30);
+        assert!((0..30).all(|row| crowd.is_alone(row)), "shared steps");
+    }
+    let [.., worst] = link.shares(joined + JOINED_SECS);
+    assert!(worst < SAME_PLACE_M, "{worst} m");
 }

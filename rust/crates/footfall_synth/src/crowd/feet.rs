@@ -1,6 +1,7 @@
 //! Feet of a crowd's walker: landings as they come, and those to come.
 
 use super::CrowdWalker;
+use super::own::OwnWalk;
 use crate::footing;
 use crate::footstep::Footstep;
 use footfall_ik::Plant;
@@ -13,33 +14,54 @@ impl CrowdWalker {
     }
 
     /// Next landing of the foot on its way, in the character's space as it is now, and the seconds until then. `None` for someone
-    /// who rests or repeats steps.
+    /// who rests or shares steps.
     pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
-        if self.is_standing() || self.odd || self.repeating {
-            return None;
-        }
-        let timing = &self.shape.timing;
-        let side = timing.leading.other();
-        let plant = self.next.planter.as_ref()?.plants[side.index()];
-        let footstep = Footstep::seen_from(&self.plan_from_character(), side, &plant);
-        Some((footstep, self.secs_to_next_step()))
+        let own = self.own.as_ref()?;
+        (self.stroll.is_none() && !self.repeating)
+            .then(|| own.next_footstep())
+            .flatten()
     }
 
     /// Next landing of each foot and the body's place then, for callers that put feet on real ground.
     pub fn landings(&self) -> [Option<Landing>; 2] {
-        let from = self.plan_from_character();
-        footing::landings(self.next_footstep(), &from, &self.arrival)
+        let Some(own) = self.own.as_ref().filter(|_| self.stroll.is_none()) else {
+            return [None; 2];
+        };
+        let from = own.plan_from_character();
+        footing::landings(self.next_footstep(), &from, &own.ending.arrival)
     }
 
     /// Returns whether the left and the right foot bear on the ground.
     pub fn feet_in_contact(&self) -> [bool; 2] {
-        let (frame, weight) = self.frame_at(self.position);
+        match (&self.stroll, &self.own) {
+            (Some(stroll), _) => stroll.contacts(self.styled.0.shared()),
+            (None, Some(own)) => own.contacts_at(own.position),
+            (None, None) => [true; 2],
+        }
+    }
+}
+
+impl OwnWalk {
+    fn next_footstep(&self) -> Option<(Footstep, f32)> {
+        if self.is_standing() {
+            return None;
+        }
+        let timing = &self.shape.timing;
+        let side = timing.leading.other();
+        let plant = self.ending.next.planter.as_ref()?.plants[side.index()];
+        let footstep = Footstep::seen_from(&self.plan_from_character(), side, &plant);
+        Some((footstep, self.secs_to_next_step()))
+    }
+
+    /// Contacts so many frames after the step began.
+    pub(super) fn contacts_at(&self, position: f32) -> [bool; 2] {
+        let (frame, weight) = self.frame_at(position);
         self.frames.places[frame + usize::from(weight >= 0.5)].contact
     }
 
     /// Plant of the leading foot of the step that was just worked out.
     pub(super) fn landing_of_step(&self) -> Option<Plant> {
-        let feet = self.next.planter.as_ref()?;
+        let feet = self.ending.next.planter.as_ref()?;
         Some(feet.plants[self.shape.timing.leading.index()])
     }
 

@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use multiversion::multiversion;
 
 const JOINT_NUMBERS: usize = CrowdPose::JOINT_NUMBERS;
-const POSE_NUMBERS: usize = JOINT_COUNT * JOINT_NUMBERS;
+pub(super) const POSE_NUMBERS: usize = JOINT_COUNT * JOINT_NUMBERS;
 
 /// Rotations and positions (metres) as whole numbers: to 0.03 mrad, and to a tenth of a millimetre within 3.2 m.
 const ROTATION_STEPS: f32 = 32_767.0;
@@ -36,6 +36,38 @@ impl CrowdPose {
     /// and 0.
     pub fn numbers(&self) -> &[f32; POSE_NUMBERS] {
         &self.0
+    }
+
+    /// Writes it in small numbers.
+    pub(super) fn shrink(&self, out: &mut [i16; POSE_NUMBERS]) {
+        shrink(&self.0, out);
+    }
+
+    /// This one, and as much of another one as this weight says, number by number.
+    pub(super) fn mixed(&self, other: &Self, weight: f32) -> Self {
+        let numbers = self.0.iter().zip(&other.0);
+        let mut out = Self::default();
+        for (out, (a, b)) in out.0.iter_mut().zip(numbers) {
+            *out = a + weight * (b - a);
+        }
+        out
+    }
+
+    /// Moves it by the difference of two others, number by number, as far as this weight says.
+    pub(super) fn shift(&mut self, from: &Self, to: &Self, weight: f32) {
+        for (out, (from, to)) in self.0.iter_mut().zip(from.0.iter().zip(&to.0)) {
+            *out += weight * (to - from);
+        }
+    }
+
+    /// Writes the blend of a pose in small numbers towards another one.
+    pub(super) fn blend(
+        &mut self,
+        now: &[i16; POSE_NUMBERS],
+        next: &[i16; POSE_NUMBERS],
+        weight: f32,
+    ) {
+        blend(now, next, weight, &mut self.0);
     }
 
     /// `character_from_joint` rotation.
@@ -109,6 +141,19 @@ impl CrowdFrames {
         }
     }
 
+    /// Stays in one place and pose.
+    pub(super) fn hold(&mut self, place: CrowdPlace, pose: &[i16; POSE_NUMBERS]) {
+        self.places.clear();
+        self.places.extend([place; 2]);
+        self.poses.clear();
+        self.poses.extend([*pose; 2]);
+    }
+
+    /// The last pose.
+    pub(super) fn last_pose(&self) -> Option<&[i16; POSE_NUMBERS]> {
+        self.poses.last()
+    }
+
     /// Number of frames.
     pub(super) fn len(&self) -> usize {
         self.places.len()
@@ -133,12 +178,7 @@ impl CrowdFrames {
 
     /// Writes the blend of a frame towards the one that follows.
     pub(super) fn blend(&self, frame: usize, weight: f32, out: &mut CrowdPose) {
-        blend(
-            &self.poses[frame],
-            &self.poses[frame + 1],
-            weight,
-            &mut out.0,
-        );
+        out.blend(&self.poses[frame], &self.poses[frame + 1], weight);
     }
 }
 

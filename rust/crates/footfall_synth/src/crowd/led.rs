@@ -1,10 +1,11 @@
 //! A crowd's walker that makes another's steps: one of the same seed, on another machine.
 
-use super::repeat::Base;
-use super::{CrowdWalker, Workshop, variation};
+use super::own::{Chance, OwnWalk, variation};
+use super::{CrowdWalker, Workshop};
 use crate::controls::Controls;
 use crate::footstep::Footstep;
 use crate::gait::{Gait, GaitChoice};
+use crate::generator::MAX_DT_SECS;
 use crate::plan::{Planner, StepDraw};
 use crate::standing::Amplitude;
 use crate::steps::Ask;
@@ -74,74 +75,126 @@ impl LedAim {
 }
 
 impl CrowdWalker {
-    /// Number of the current step: even ones begin with the left foot's contact. It wraps. Steps that are [repeated](Self::set_repeating) are not counted.
+    /// Returns whether it walks in steps that it shares with others, which cannot be told.
+    pub fn is_sharing(&self) -> bool {
+        self.stroll.is_some()
+    }
+
+    /// Number of its own current step: even ones begin with the left foot's contact. It wraps. Steps that are [shared](Self::set_repeating) are not counted.
     pub fn number(&self) -> u16 {
-        let right = self.shape.timing.leading == Side::Right;
-        let strides = self.strides as u16;
-        strides.wrapping_mul(2).wrapping_sub(u16::from(right))
+        self.own.as_ref().map_or(0, |own| own.number())
     }
 
     /// Position of its chance, with which a walker of the same seed goes on to draw the same steps.
     pub fn chance_position(&self) -> u64 {
-        self.chance_position
+        let own = self.own.as_ref().filter(|_| !self.is_sharing());
+        own.map_or(self.chance, |own| own.chance).position
     }
 
     /// Takes chance up where another walker of the same seed had it in the step of this number. Its draws become the same within a few strides.
     pub fn take_chance(&mut self, number: u16, chance_position: u64) {
-        self.strides = u32::from(number.div_ceil(2));
-        self.chance_position = chance_position;
+        self.chance = Chance {
+            position: chance_position,
+            strides: u32::from(number.div_ceil(2)),
+        };
+        if let Some(own) = &mut self.own {
+            own.chance = self.chance;
+        }
     }
 
-    /// The gait of the current step.
+    /// The gait of its own current step.
     pub fn gait(&self) -> Gait {
-        self.blend.gait
+        let own = self.own.as_ref();
+        own.map_or(Gait::Walk, |own| own.ending.blend.gait)
     }
 
-    /// Speed of the current step, m/s.
+    /// Speed of its own current step, m/s.
     pub fn speed_mps(&self) -> f32 {
-        self.velocity_mps.length()
+        let own = self.own.as_ref();
+        own.map_or(0.0, |own| own.ending.velocity_mps.length())
     }
 
-    /// Seconds since the current step began; for one who rests, since that was over, the length of the step.
-    pub fn secs_of_step(&self) -> f32 {
-        self.position / self.frame_rate_hz
+    /// Returns whether its own current step ends in a stand.
+    pub fn comes_to_rest(&self) -> bool {
+        self.own.as_ref().is_none_or(|own| own.comes_to_rest())
     }
 
     /// Place where the current step leads, seen from where the walk began: of the foot that lands, under the walker's heading when the step is over. `None` where no
-    /// foot lands, and for steps that are repeated.
+    /// foot lands, and for steps that are shared.
     pub fn start_from_aim(&self) -> Option<GroundTransform> {
-        if self.odd || self.repeating {
-            return None;
-        }
-        let landing = self.shape.timing.leading.other();
-        let plant = self.next.planter.as_ref()?.plants[landing.index()];
-        let end = self.plan_from_start.local(&self.end());
-        let foot = Footstep::seen_from(&self.plan_from_start, landing, &plant);
-        Some(GroundTransform {
-            position: foot.position,
-            ..end
-        })
+        let own = self.own.as_ref().filter(|_| !self.is_sharing())?;
+        own.start_from_aim()
     }
 
-    /// Lets time pass as [`step`](Self::step) does, through the steps that `next` gives: it is asked when one is over, and answers nothing while the walker is to rest.
-    /// One that does not [come to rest](Self::comes_to_rest) has to be given a step.
+    /// Lets time pass as [`step`](Self::step) does, through own steps that `next` gives: it is asked when one is over, and answers nothing while the walker is to rest.
+    /// One that does not [come to rest](Self::comes_to_rest) has to be given a step. One that [shares](Self::is_sharing) steps stays where it is: let it [begin](Self::begin_led).
     pub fn step_led(
         &mut self,
         dt_secs: f32,
         workshop: &mut Workshop,
         mut next: impl FnMut(&Self) -> Option<LedStep>,
     ) {
-        self.pass(dt_secs, workshop, |walker, workshop| {
-            let led = next(walker);
-            if let Some(led) = &led {
-                walker.next_step(led.controls, Some(led), workshop);
+        self.footstep = None;
+        if self.is_sharing() {
+            return;
+        }
+        let secs = dt_secs.min(MAX_DT_SECS);
+        if let Some(own) = &mut self.own {
+            own.pass(secs);
+        }
+        while self.own.as_ref().is_some_and(|own| own.is_over()) {
+            let led = next(self);
+            let Some(own) = &mut self.own else { break };
+            let Some(led) = led else {
+                own.stay();
+                break;
+            };
+            own.go_on(led.controls, Some(&led), workshop);
+        }
+        if let Some(own) = &mut self.own {
+            if secs > 0.0 {
+                own.live(secs, workshop);
             }
-            led.is_some()
-        });
+            self.footstep = own.footstep;
+            self.start_from_character = own.start_from_character();
+        }
     }
 
-    /// Starts over at the origin, facing +Z, in the middle of a step. The walker stays as it is where the model gives no trajectory.
+    /// Starts over at the origin, facing +Z, in the middle of a step of its own. The walker stays as it is where the model gives no trajectory.
     pub fn begin_led(&mut self, at: &LedBeginning, workshop: &mut Workshop) {
+        self.footstep = None;
+        if self.is_sharing() && self.go_alone(workshop).is_none() {
+            return;
+        }
+        if let Some(own) = &mut self.own
+            && own.begin_led(at, workshop).is_some()
+        {
+            self.start_from_character = GroundTransform::default();
+        }
+    }
+}
+
+impl OwnWalk {
+    /// Number of the current step.
+    pub(super) fn number(&self) -> u16 {
+        let right = self.shape.timing.leading == Side::Right;
+        let strides = self.chance.strides as u16;
+        strides.wrapping_mul(2).wrapping_sub(u16::from(right))
+    }
+
+    fn start_from_aim(&self) -> Option<GroundTransform> {
+        let landing = self.shape.timing.leading.other();
+        let plant = self.ending.next.planter.as_ref()?.plants[landing.index()];
+        let end = self.place_at(self.shape.timing.frames as f32);
+        let foot = Footstep::seen_from(&self.plan_from_start, landing, &plant);
+        Some(GroundTransform {
+            position: foot.position,
+            ..self.plan_from_start.local(&end)
+        })
+    }
+
+    /// Starts over at the origin in the middle of a step; `None` where the model gives no trajectory.
+    fn begin_led(&mut self, at: &LedBeginning, workshop: &mut Workshop) -> Option<()> {
         let styled = Arc::clone(&self.styled.0);
         let worn = &styled.worn;
         let ask = Ask {
@@ -172,22 +225,17 @@ impl CrowdWalker {
             variation(&self.config),
             self.walker,
         );
-        planner.resume(self.chance_position, &*self.draws);
-        planner.count_strides(self.strides);
-        let mut draws = (*self.draws).clone();
+        let mut draws = self.ending.draws.clone();
+        self.chance.resume(planner, &draws);
         draws[0] = self.draw_of(at.number.wrapping_sub(1), planner);
         self.redraw(at.number, planner, &mut draws);
-        if walker.start(planner, blend, draws, request, bench).is_err() {
-            return;
-        }
-        self.blend = Arc::clone(blend);
-        (*self.draws).clone_from(walker.draws());
-        *self.next = walker.next_origin(request);
+        walker.start(planner, blend, draws, request, bench).ok()?;
+        let ending = &mut *self.ending;
+        ending.blend = Arc::clone(blend);
+        ending.draws.clone_from(walker.draws());
+        ending.next = walker.next_origin(request);
+        ending.velocity_mps = velocity_mps;
         self.shape = *walker.step();
-        self.velocity_mps = velocity_mps;
-        self.base = Base::default();
-        self.before = None;
-        self.odd = false;
         self.footstep = None;
         self.plan_from_start = GroundTransform::default();
         if let Some(life) = self.life.as_mut().filter(|_| at.rests) {
@@ -199,7 +247,7 @@ impl CrowdWalker {
             at.share.clamp(0.0, 0.95)
         };
         self.settle(share, workshop);
-        self.start_from_character = GroundTransform::default();
+        Some(())
     }
 
     /// Draws the step of this number and the one after it, in place of the last two of a window.

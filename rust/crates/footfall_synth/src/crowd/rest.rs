@@ -14,7 +14,7 @@ const APART_SECS: f32 = 0.1;
 #[derive(Debug)]
 pub(super) struct Rest {
     /// The pose in which the walker came to a stand.
-    still: PlantedFrame,
+    pub(super) still: PlantedFrame,
     frames: CrowdFrames,
     /// When the poses begin in the walker's life, and how far apart they are, seconds; nothing before the first.
     begin_secs: f64,

@@ -1,6 +1,9 @@
 //! Resources that the walkers of a crowd share: styles on a body, and the buffers in which steps are worked out.
 
+use super::frames::CrowdPose;
+use super::own::OwnWalk;
 use super::rest::RestBench;
+use super::shared::SharedSteps;
 use crate::error::SynthError;
 use crate::plan::Planner;
 use crate::space::StyleSpace;
@@ -8,11 +11,14 @@ use crate::walker::Walker;
 use crate::workbench::Workbench;
 use crate::worn::Worn;
 use footfall_core::Skeleton;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+/// Own walks that nobody walks are kept for those who need one, so many.
+const SPARES: usize = 1024;
 
 /// A mixture of styles on a body, measured once for all walkers of a crowd that share it.
 #[derive(Clone, Debug)]
-pub struct StyledBody(pub(super) Arc<Styled>);
+pub struct StyledBody(pub(super) Arc<Styled>, pub(super) u32);
 
 /// The parts of a [`StyledBody`].
 #[derive(Debug)]
@@ -20,11 +26,12 @@ pub(super) struct Styled {
     pub(super) space: Arc<StyleSpace>,
     pub(super) skeleton: Skeleton,
     pub(super) worn: Worn,
+    shared: OnceLock<SharedSteps>,
 }
 
 impl StyledBody {
     /// Mixes the space's styles, weights as of [`GaitGenerator::set_style_weights`](crate::GaitGenerator::set_style_weights), and
-    /// measures how fast they walk on this body: about two milliseconds.
+    /// measures how fast they walk on this body, and works out the steps that walkers far away share: about ten milliseconds.
     ///
     /// # Errors
     /// [`SynthError`] when the model or the skeleton cannot be used.
@@ -37,11 +44,38 @@ impl StyledBody {
         let blend = space.blend(style_weights);
         let average = Planner::new(&blend.model, 0, 0.0);
         let worn = space.at_bench(|bench| Worn::measure(&average, skeleton, blend, bench))?;
-        Ok(Self(Arc::new(Styled {
+        let styled = Arc::new(Styled {
             space: Arc::clone(space),
             skeleton: skeleton.clone(),
             worn,
-        })))
+            shared: OnceLock::new(),
+        });
+        let made = Self(styled, 0);
+        let steps = SharedSteps::record(&made, &mut Workshop::new(&made))?;
+        made.0.shared.get_or_init(|| steps);
+        Ok(made)
+    }
+
+    /// The same under a number by which its walkers tell whose [poses](Self::shared_pose) they share.
+    #[must_use]
+    pub fn numbered(self, number: u32) -> Self {
+        Self(self.0, number)
+    }
+
+    /// The number that it was given.
+    pub const fn number(&self) -> u32 {
+        self.1
+    }
+
+    /// Number of the poses that its walkers far away share.
+    pub fn shared_poses(&self) -> usize {
+        self.0.shared().poses().len()
+    }
+
+    /// Writes a shared pose.
+    pub fn shared_pose(&self, pose: usize, out: &mut CrowdPose) {
+        let pose = &self.0.shared().poses()[pose];
+        out.blend(pose, pose, 0.0);
     }
 
     /// The body.
@@ -55,6 +89,13 @@ impl StyledBody {
     }
 }
 
+impl Styled {
+    /// Steps that walkers far away share.
+    pub(super) fn shared(&self) -> &SharedSteps {
+        self.shared.get_or_init(SharedSteps::default)
+    }
+}
+
 /// Working memory for steps, for walkers of one model on one body; one a thread.
 #[derive(Debug)]
 pub struct Workshop {
@@ -62,9 +103,22 @@ pub struct Workshop {
     pub(super) walker: Walker,
     pub(super) bench: Workbench,
     pub(super) rest: RestBench,
+    /// Own walks that nobody walks.
+    #[expect(
+        clippy::vec_box,
+        reason = "handed on from walker to walker as they are"
+    )]
+    pub(super) spares: Vec<Box<OwnWalk>>,
 }
 
 impl Workshop {
+    /// Keeps an own walk that nobody walks any more, as long as there is room.
+    pub(super) fn spare(&mut self, own: Option<Box<OwnWalk>>) {
+        if self.spares.len() < SPARES {
+            self.spares.extend(own);
+        }
+    }
+
     /// For walkers like this one.
     pub fn new(styled: &StyledBody) -> Self {
         let blend = &styled.0.worn.blend;
@@ -73,6 +127,7 @@ impl Workshop {
             walker: Walker::new(&styled.0.skeleton, blend),
             bench: Workbench::new(&blend.model),
             rest: RestBench::new(Planner::longest_step(&blend.model)),
+            spares: Vec::with_capacity(SPARES),
         }
     }
 }

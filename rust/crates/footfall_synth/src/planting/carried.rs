@@ -2,8 +2,6 @@
 
 use super::{Airborne, Lean};
 use crate::strafe::Strafe;
-use footfall_core::GroundTransform;
-use footfall_core::rotation::from_heading;
 use footfall_ik::Plant;
 use glam::{Vec2, Vec3};
 
@@ -28,27 +26,4 @@ pub(crate) struct PlanterState {
     pub(crate) airborne: Option<Airborne>,
     /// Lean of the trunk.
     pub(crate) lean: Lean,
-}
-
-impl PlanterState {
-    /// The same feet and hips for a walker who is at `to` instead of at `from`.
-    pub(crate) fn moved(&self, from: &GroundTransform, to: &GroundTransform) -> Self {
-        let turn = to.heading - from.heading;
-        let rotation = from_heading(turn);
-        let point = |point: Vec3| to.position + rotation * (point - from.position);
-        Self {
-            plants: self.plants.map(|plant| plant.moved(from, to)),
-            hips: point(self.hips),
-            hips_velocity: self.hips_velocity.map(|velocity| rotation * velocity),
-            heading: self.heading + turn,
-            turn_rate: self.turn_rate,
-            ground_position: point(self.ground_position),
-            ground_velocity: self.ground_velocity.map(|velocity| rotation * velocity),
-            stride: self.stride,
-            strafe: self.strafe,
-            balance: self.balance,
-            airborne: self.airborne.map(|foot| foot.moved(from, to)),
-            lean: self.lean,
-        }
-    }
 }

@@ -9,7 +9,6 @@ use super::swing::Swing;
 use super::{PlantedFrame, Planter, StepTiming, free_foot};
 use crate::gait::GRAVITY_MPS2;
 use crate::raw::RawFrame;
-use footfall_core::GroundTransform;
 use footfall_core::rotation::from_heading;
 use footfall_ik::FootTarget;
 use glam::Quat;
@@ -40,21 +39,6 @@ pub(crate) struct Airborne {
 }
 
 impl Airborne {
-    /// The same foot of a walker who is at `to` instead of at `from`.
-    pub(crate) fn moved(&self, from: &GroundTransform, to: &GroundTransform) -> Self {
-        let rotation = from_heading(to.heading - from.heading);
-        let moved = |foot: &FootTarget| FootTarget {
-            ankle: to.position + rotation * (foot.ankle - from.position),
-            foot: rotation * foot.foot,
-            toes: rotation * foot.toes,
-        };
-        Self {
-            now: moved(&self.now),
-            before: moved(&self.before),
-            frame_secs: self.frame_secs,
-        }
-    }
-
     /// Place of the foot so long ago.
     fn earlier(&self, secs: f32) -> FootTarget {
         let share = secs / self.frame_secs;

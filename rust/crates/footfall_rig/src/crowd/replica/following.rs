@@ -231,7 +231,7 @@ impl Crowd {
         person.dress(&mut agent);
         agent.outfit = person.outfit(self.maker.styles());
         agent.led = Some(Box::new(Led::new(step.number, person.chance_position)));
-        self.drawn[row] = agent.drawn(position, heading);
+        self.drawn[row] = agent.drawn(position, heading, 0.0);
         let order = Order {
             place: row,
             ticket: self.tickets,
@@ -241,6 +241,7 @@ impl Crowd {
                 phase: 0.0,
                 variation: 1.0,
             }),
+            alone: true,
         };
         self.agents[row] = agent;
         order

@@ -17,6 +17,9 @@ const ROOM: usize = 4;
 const MOST_HASTE: f64 = 0.12;
 const IN_TIME_SECS: f64 = 0.4;
 
+/// Steps so near to the current one tell whether that is in time: a walk that no news reached for long may be whole steps ahead or late.
+const NEAR_STEPS: u16 = 2;
+
 /// A walk that is farther from its place or later than this begins anew there, metres and seconds.
 const LOST_M: f32 = 3.0;
 const LOST_SECS: f64 = 1.5;
@@ -64,7 +67,7 @@ pub(in crate::crowd) struct Led {
     /// Number of a step, and the position of chance in it.
     chance: (u16, u64),
     /// The walker, until it knows where to begin.
-    walker: Option<Box<CrowdWalker>>,
+    walker: Option<CrowdWalker>,
     is_lost: bool,
     /// Since the walker came to rest, seconds.
     rested_secs: f32,
@@ -110,13 +113,13 @@ impl Led {
     }
 
     /// Waits with a walker until it knows where to begin.
-    pub(in crate::crowd) fn wait(&mut self, walker: Box<CrowdWalker>) {
+    pub(in crate::crowd) fn wait(&mut self, walker: CrowdWalker) {
         self.walker = Some(walker);
     }
 
     /// The walker that waits.
     pub(in crate::crowd) fn waiting(&mut self) -> Option<&mut CrowdWalker> {
-        self.walker.as_deref_mut()
+        self.walker.as_mut()
     }
 
     /// Returns true where the walker is to begin, or to begin anew.
@@ -267,17 +270,16 @@ impl Led {
         if walker.is_standing() {
             return 0.0;
         }
-        let number = walker.number();
-        let slower = f64::from(now.start.size.sqrt());
-        let late_secs = match (self.first(), &self.made) {
-            (Some(next), _) if next.number == number.wrapping_add(1) => {
-                now.late_secs(next) + slower * f64::from(walker.secs_to_next_step())
-            }
-            (_, Some(made)) if made.number == number => {
-                now.late_secs(made) - slower * f64::from(walker.secs_of_step())
-            }
-            _ => 0.0,
+        let passed_secs = walker.secs_of_step();
+        let step_secs = passed_secs + walker.secs_to_next_step();
+        let late_secs = |step: &Planning| {
+            let ahead = step.number.wrapping_sub(walker.number()).cast_signed();
+            let begins_secs = f32::from(ahead) * step_secs - passed_secs;
+            let own_secs = now.start.size.sqrt() * begins_secs;
+            (ahead.unsigned_abs() <= NEAR_STEPS).then(|| now.late_secs(step) + f64::from(own_secs))
         };
+        let mut known = [self.first(), self.made.as_ref()].into_iter().flatten();
+        let late_secs = known.find_map(late_secs).unwrap_or(0.0);
         (late_secs / IN_TIME_SECS).clamp(-MOST_HASTE, MOST_HASTE)
     }
 
@@ -342,9 +344,9 @@ impl Now<'_> {
 }
 
 impl Agent {
-    /// The step that it takes, or the place where it rests, for others; nothing before it is made, and while it repeats steps.
+    /// The step that it takes, or the place where it rests, for others; nothing before it is made, and while it shares steps.
     pub(super) fn told(&self, name: i32, now_secs: f64) -> Option<ToldStep> {
-        let walker = self.walker.as_ref()?;
+        let walker = self.walker.as_ref().filter(|_| self.takes_own_steps())?;
         let rests = walker.is_standing();
         let start_from_aim = if rests {
             walker.start_from_character()

@@ -4,6 +4,7 @@ use super::step::{STEP_BYTES, ToldStep};
 use crate::crowd::agent::Agent;
 use crate::crowd::kit::Outfit;
 use footfall_core::hash::fnv1a;
+use footfall_synth::CrowdWalker;
 use serde::{Deserialize, Serialize};
 
 /// Units of sizes, speeds and tints.
@@ -42,7 +43,7 @@ impl Person {
         Self {
             name: name.cast_unsigned(),
             seed: agent.seed,
-            chance_position: walker.map_or(0, |walker| walker.chance_position()),
+            chance_position: walker.map_or(0, CrowdWalker::chance_position),
             size: told(agent.size, SIZE_UNITS),
             speed: told(agent.speed_mps, SPEED_UNITS),
             tint: agent.tint.map(|part| told(part, TINT_UNITS)),

@@ -110,7 +110,7 @@ impl CrowdSender {
     }
 
     /// Makes this frame's [`messages`](Self::messages), after the crowd has moved: at most so many bytes a second about steps, and as many to each peer that has
-    /// people to be introduced to. Walkers must not [repeat](Crowd::repeats) steps.
+    /// people to be introduced to. Walkers must not [share](Crowd::repeats) steps; those who still do are introduced with their first own step.
     pub fn step(&mut self, dt_secs: f32, crowd: &Crowd, bytes_per_second: u32) {
         self.count = 0;
         if self.peers.is_empty() {
@@ -170,7 +170,7 @@ impl CrowdSender {
                 *row = Untold::NOBODY;
             }
             let due = index % LOOKS_EVERY == self.frame % LOOKS_EVERY;
-            if !agent.is_made() || !there || (same && !due) {
+            if !agent.takes_own_steps() || !there || (same && !due) {
                 continue;
             }
             let look = Person::look(agent);

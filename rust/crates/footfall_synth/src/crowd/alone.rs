@@ -1,0 +1,88 @@
+//! A walker who goes on alone from the end of a step that it shared.
+
+use super::frames::{CrowdFrames, CrowdPlace, POSE_NUMBERS};
+use super::own::{Chance, OwnWalk, variation};
+use super::rest::Rest;
+use super::shared::Shared;
+use super::workshop::StyledBody;
+use crate::detail::Detail;
+use crate::generator::GeneratorConfig;
+use crate::plan::{MAX_COMPONENTS, Planner};
+use crate::standing::{Life, Moment};
+use footfall_core::GroundTransform;
+use footfall_core::rotation::from_heading;
+
+impl OwnWalk {
+    /// Goes on alone from the end of a shared step at this place, as the walker of this seed; its chance goes on from there.
+    pub(super) fn go_on_from(
+        &mut self,
+        (styled, config): (&StyledBody, &GeneratorConfig),
+        (shared, pose): (&Shared, &[i16; POSE_NUMBERS]),
+        start_from_end: &GroundTransform,
+        (chance, rest_secs): (Chance, f32),
+    ) {
+        let fresh = Planner::new(&styled.0.worn.blend.model, config.seed, variation(config));
+        self.config = *config;
+        self.styled = styled.clone();
+        self.walker = *fresh.walker();
+        self.chance = chance.max(Chance::of(&fresh));
+        (*self.ending).clone_from(&shared.ending);
+        self.shape = shared.shape;
+        self.position = self.shape.timing.frames as f32;
+        let place = CrowdPlace {
+            place: shared.end,
+            contact: [true; 2],
+        };
+        self.frames.hold(place, pose);
+        self.landing = None;
+        self.footstep = None;
+        self.even = false;
+        // Where the shared step ends in its own plan is where the walker is.
+        let heading = shared.end.heading - start_from_end.heading;
+        self.plan_from_start = GroundTransform {
+            position: shared.end.position - from_heading(heading) * start_from_end.position,
+            heading,
+        };
+        if let Some((still, life)) = &shared.still {
+            match &mut self.rest {
+                Some(rest) => rest.begin(still),
+                none => *none = Some(Box::new(Rest::new(still))),
+            }
+            self.life = Some(life.clone());
+            if let Some(life) = &mut self.life {
+                life.moment = life.moment.after(rest_secs, true);
+            }
+        } else if let Some(life) = &mut self.life {
+            life.become_walker(config);
+            life.moment = Moment::default();
+        } else {
+            self.life = Life::new(&styled.0.space, &styled.0.skeleton, config);
+        }
+    }
+
+    /// A walker who is about to go on so.
+    pub(super) fn from_shared(
+        styled: &StyledBody,
+        config: &GeneratorConfig,
+        shared: &Shared,
+    ) -> Self {
+        Self {
+            config: *config,
+            styled: styled.clone(),
+            walker: [0.0; MAX_COMPONENTS],
+            chance: Chance::default(),
+            ending: Box::new(shared.ending.clone()),
+            shape: shared.shape,
+            detail: Detail::Quarter,
+            position: 0.0,
+            frame_rate_hz: styled.0.space.model().frame_rate_hz as f32,
+            frames: CrowdFrames::default(),
+            landing: None,
+            plan_from_start: GroundTransform::default(),
+            footstep: None,
+            life: None,
+            rest: None,
+            even: false,
+        }
+    }
+}

@@ -1,0 +1,416 @@
+//! A walker's own steps: as a generator of its seed makes them, kept in a few kilobytes.
+
+use super::frames::{CrowdFrames, CrowdPose};
+use super::led::LedStep;
+use super::rest::{Rest, RestBench, leave};
+use super::workshop::{StyledBody, Workshop};
+use crate::controls::Controls;
+use crate::detail::Detail;
+use crate::error::SynthError;
+use crate::footstep::Footstep;
+use crate::generator::{GeneratorConfig, check};
+use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape};
+use crate::space::Blend;
+use crate::stage::Arrival;
+use crate::standing::{Amplitude, Life};
+use crate::steps::Ask;
+use crate::walker::{Origin, WINDOW};
+use footfall_core::{GroundTransform, Side};
+use footfall_ik::Plant;
+use glam::Vec2;
+use std::sync::Arc;
+
+/// The end of a step: all that the next one comes from.
+#[derive(Clone, Debug)]
+pub(super) struct Ending {
+    /// The mixture of the step.
+    pub(super) blend: Arc<Blend>,
+    pub(super) draws: [StepDraw; WINDOW],
+    /// Origin of the next step, all but its request.
+    pub(super) next: Origin,
+    pub(super) velocity_mps: Vec2,
+    /// Place of the body when the step ends.
+    pub(super) arrival: Arrival,
+}
+
+/// Place in a walker's sequence of chance: its position, and the strides that were drawn until there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Chance {
+    pub(super) position: u64,
+    pub(super) strides: u32,
+}
+
+impl Chance {
+    /// The place at which a planner is.
+    pub(super) fn of(planner: &Planner) -> Self {
+        Self {
+            position: planner.chance_position(),
+            strides: planner.strides(),
+        }
+    }
+
+    /// Takes a planner there, after these steps.
+    pub(super) fn resume(self, planner: &mut Planner, last: &[StepDraw]) {
+        planner.resume(self.position, last);
+        planner.count_strides(self.strides);
+    }
+}
+
+/// Steps of one walker alone.
+#[derive(Debug)]
+pub(super) struct OwnWalk {
+    pub(super) config: GeneratorConfig,
+    pub(super) styled: StyledBody,
+    /// Identity of the walker: weights of the model's walker components.
+    pub(super) walker: [f64; MAX_COMPONENTS],
+    pub(super) chance: Chance,
+    /// Boxed, for most frames need nothing of it.
+    pub(super) ending: Box<Ending>,
+    pub(super) shape: StepShape,
+    pub(super) detail: Detail,
+    /// Frames since the step began.
+    pub(super) position: f32,
+    pub(super) frame_rate_hz: f32,
+    pub(super) frames: CrowdFrames,
+    /// Plant of the foot whose landing began the step.
+    pub(super) landing: Option<Plant>,
+    pub(super) plan_from_start: GroundTransform,
+    pub(super) footstep: Option<Footstep>,
+    /// Its life as it stands; nothing where the model stands still.
+    pub(super) life: Option<Life>,
+    /// Resting state; `None` before it first came to a stand.
+    pub(super) rest: Option<Box<Rest>>,
+    /// True for one whose steps are all the mean of those that it could take.
+    pub(super) even: bool,
+}
+
+impl OwnWalk {
+    /// A walker at the origin, facing +Z, walking already at the speed that suits it; or standing.
+    ///
+    /// # Errors
+    /// [`SynthError`] when a setting is not finite or the model gives no trajectory.
+    pub(super) fn new(
+        styled: &StyledBody,
+        config: &GeneratorConfig,
+        standing: bool,
+        workshop: &mut Workshop,
+    ) -> Result<Self, SynthError> {
+        let first = check(&styled.0.skeleton, config)?;
+        let worn = &styled.0.worn;
+        let Workshop {
+            planner,
+            walker,
+            bench,
+            ..
+        } = &mut *workshop;
+        *planner = Planner::new(&worn.blend.model, config.seed, variation(config));
+        let request = if standing {
+            worn.standing_request(Detail::Full)
+        } else {
+            worn.first_request(Detail::Full)
+        };
+        let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
+        walker.start(planner, &worn.blend, draws, request, bench)?;
+        let ending = Ending {
+            blend: Arc::clone(&worn.blend),
+            draws: walker.draws().clone(),
+            next: walker.next_origin(request),
+            velocity_mps: request.velocity_mps,
+            arrival: Arrival::default(),
+        };
+        let mut made = Self {
+            config: *config,
+            styled: styled.clone(),
+            walker: *planner.walker(),
+            chance: Chance::default(),
+            ending: Box::new(ending),
+            shape: *walker.step(),
+            detail: Detail::Full,
+            position: 0.0,
+            frame_rate_hz: styled.0.space.model().frame_rate_hz as f32,
+            frames: CrowdFrames::default(),
+            landing: None,
+            plan_from_start: GroundTransform::default(),
+            footstep: None,
+            life: Life::new(&styled.0.space, &styled.0.skeleton, config),
+            rest: None,
+            even: false,
+        };
+        if let Some(life) = made.life.as_mut().filter(|_| standing) {
+            life.stand();
+        }
+        let share = if standing {
+            1.0
+        } else {
+            (2.0 * config.phase.rem_euclid(1.0)).fract()
+        };
+        made.settle(share, workshop);
+        Ok(made)
+    }
+
+    /// Takes over its first step, in the middle of it.
+    pub(super) fn settle(&mut self, share: f32, workshop: &mut Workshop) {
+        self.take_over(workshop);
+        self.position = share * self.shape.timing.frames as f32;
+        self.landing = self.landing_of_step();
+        self.plan_from_start = self.plan_from_character();
+        self.live(0.0, workshop);
+    }
+
+    /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before and for the first rest. Where a step ends and none is wanted after it, `ends` says so and
+    /// it stays there: the time that is left over, seconds.
+    pub(super) fn step(
+        &mut self,
+        dt_secs: f32,
+        controls: Controls,
+        ends: bool,
+        workshop: &mut Workshop,
+    ) -> Option<f32> {
+        self.pass(dt_secs);
+        let mut left = None;
+        while self.is_over() {
+            if ends {
+                left = Some(self.stay());
+                break;
+            }
+            if self.comes_to_rest() && controls.is_standing() {
+                self.stay();
+                break;
+            }
+            self.go_on(controls, None, workshop);
+        }
+        if dt_secs > 0.0 {
+            self.live(dt_secs, workshop);
+        }
+        left
+    }
+
+    /// Lets time pass in its step, and beyond the end of that.
+    pub(super) fn pass(&mut self, dt_secs: f32) {
+        self.footstep = None;
+        if dt_secs > 0.0 {
+            self.position += dt_secs * self.frame_rate_hz;
+        }
+    }
+
+    /// Returns whether its step has ended.
+    pub(super) fn is_over(&self) -> bool {
+        self.position >= self.shape.timing.frames as f32
+    }
+
+    /// Stays where its step has ended; returns the time that has passed since, seconds.
+    pub(super) fn stay(&mut self) -> f32 {
+        let frames = self.shape.timing.frames as f32;
+        let left = (self.position - frames) / self.frame_rate_hz;
+        self.position = frames;
+        left
+    }
+
+    /// Goes on to the next step where one has ended; a led one is another walker's.
+    pub(super) fn go_on(
+        &mut self,
+        controls: Controls,
+        led: Option<&LedStep>,
+        workshop: &mut Workshop,
+    ) {
+        self.position -= self.shape.timing.frames as f32;
+        self.next_step(controls, led, workshop);
+    }
+
+    /// Seconds until the next step begins, 0 for someone who rests.
+    pub(super) fn secs_to_next_step(&self) -> f32 {
+        (self.shape.timing.frames as f32 - self.position).max(0.0) / self.frame_rate_hz
+    }
+
+    /// Seconds since the current step began; for one who rests, since that was over, the length of the step.
+    pub(super) fn secs_of_step(&self) -> f32 {
+        self.position / self.frame_rate_hz
+    }
+
+    /// Returns whether it has come to a stand and rests.
+    pub(super) fn is_standing(&self) -> bool {
+        self.comes_to_rest() && self.is_over()
+    }
+
+    /// Returns whether its step ends in a stand.
+    pub(super) fn comes_to_rest(&self) -> bool {
+        self.shape.amplitude.to < 1.0
+    }
+
+    /// Share of its stride that is behind it: 0 when the left foot lands, 0.5 when the right one does.
+    pub(super) fn phase(&self) -> f32 {
+        let share = (self.position / self.shape.timing.frames as f32).min(1.0);
+        let half = self.shape.timing.leading.index() as f32;
+        (0.5 * (half + share)).fract()
+    }
+
+    /// Has memory bring what [`pose`](Self::pose) reads.
+    pub(super) fn fetch_pose(&self) {
+        let (frame, _) = self.frame_at(self.position);
+        self.frames.fetch(frame);
+    }
+
+    /// The same for what a [`step`](Self::step) reads that stays within a step.
+    pub(super) fn fetch_place(&self) {
+        let (frame, _) = self.frame_at(self.position);
+        self.frames.fetch_place(frame);
+    }
+
+    /// Writes how it is posed in its own space.
+    pub(super) fn pose(&self, out: &mut CrowdPose) {
+        if let (Some(life), Some(rest)) = (&self.life, &self.rest)
+            && self.is_standing()
+            && rest.pose(&life.moment, out)
+        {
+            return;
+        }
+        let (frame, weight) = self.frame_at(self.position);
+        self.frames.blend(frame, weight, out);
+    }
+
+    /// Lets time pass for someone who stands, or has just begun to walk.
+    pub(super) fn live(&mut self, dt_secs: f32, workshop: &mut Workshop) {
+        let stands = self.is_standing();
+        let Some(life) = &mut self.life else { return };
+        life.step(dt_secs, stands);
+        if let Some(rest) = self.rest.as_mut().filter(|_| stands && !life.is_still()) {
+            let skeleton = &self.styled.0.skeleton;
+            rest.reach(life, self.detail, skeleton, &mut workshop.rest);
+        }
+    }
+
+    /// Works out the next step; a led one is another walker's.
+    pub(super) fn next_step(
+        &mut self,
+        controls: Controls,
+        led: Option<&LedStep>,
+        workshop: &mut Workshop,
+    ) {
+        let natural = self.number().wrapping_add(1);
+        let styled = Arc::clone(&self.styled.0);
+        let worn = &styled.worn;
+        let ask = Ask::after(&self.shape, controls, worn.fastest_mps(), self.detail);
+        let leading = self.shape.timing.leading;
+        let ending = &mut *self.ending;
+        let (request, gait) = worn.request(&ask, ending.blend.gait, &mut ending.velocity_mps);
+        let blend = worn.dress(gait);
+        let origin = Origin {
+            request,
+            ..ending.next.clone()
+        };
+        let Workshop {
+            planner,
+            walker,
+            bench,
+            ..
+        } = &mut *workshop;
+        let model = &ending.blend.model;
+        planner.become_walker(
+            model,
+            self.config.seed,
+            variation(&self.config),
+            self.walker,
+        );
+        self.chance.resume(planner, &ending.draws);
+        let mut draws = ending.draws.clone();
+        draws.rotate_left(1);
+        match led {
+            Some(led) if led.number != natural => self.redraw(led.number, planner, &mut draws),
+            _ if self.even => draws[WINDOW - 1] = Planner::mean_draw(leading),
+            _ => draws[WINDOW - 1] = planner.draw(leading),
+        }
+        let blends = [&self.ending.blend, blend];
+        // The model gave a trajectory when the walker was made, so it gives one now.
+        if walker
+            .restore(planner, blends, draws, origin, bench)
+            .is_err()
+        {
+            return;
+        }
+        if let Some(led) = led {
+            led.aim.take(&self.plan_from_start, walker, bench);
+        }
+        let ending = &mut *self.ending;
+        ending.blend = Arc::clone(blend);
+        ending.draws.clone_from(walker.draws());
+        ending.next = walker.next_origin(request);
+        self.shape = *walker.step();
+        self.take_over(workshop);
+        self.landing = self.landing_of_step();
+        self.footstep = self.footstep_at(self.landing);
+    }
+
+    /// Keeps the step that was just worked out.
+    fn take_over(&mut self, workshop: &mut Workshop) {
+        self.chance = Chance::of(&workshop.planner);
+        self.ending.arrival = workshop.walker.stage().arrival;
+        let timing = self.shape.ground_timing();
+        let stage = &workshop.walker.stage().frames[..=timing.frames];
+        let RestBench {
+            planted,
+            pose,
+            model_pose,
+        } = &mut workshop.rest;
+        let mut shown = stage;
+        if let Some(life) = &self.life {
+            if let (true, Some(last)) = (self.shape.amplitude.to < 1.0, stage.last()) {
+                match &mut self.rest {
+                    Some(rest) => rest.begin(last),
+                    none => *none = Some(Box::new(Rest::new(last))),
+                }
+            }
+            if !life.is_still() && self.shape.amplitude != Amplitude::STAND {
+                planted.clear();
+                planted.extend_from_slice(stage);
+                let apart = self.shape.detail.stride() as f32 / self.frame_rate_hz;
+                leave(life, planted, apart);
+                shown = planted;
+            }
+        }
+        self.frames
+            .set(shown, &self.styled.0.skeleton, pose, model_pose);
+    }
+
+    /// The frame before a time of the step, and the weight of the one after it.
+    pub(super) fn frame_at(&self, position: f32) -> (usize, f32) {
+        // A power of two, but for steps that were taken over from those that all share.
+        let each = self.shape.timing.frames as f32 / (self.frames.len() - 1) as f32;
+        let position = position / each;
+        let frame = (position.floor() as usize).min(self.frames.len() - 2);
+        (frame, position - frame as f32)
+    }
+
+    /// The foot that began its step.
+    pub(super) fn side(&self) -> Side {
+        self.shape.timing.leading
+    }
+
+    /// Speed at the end of its step, m/s; none for one that ends in a stand.
+    pub(super) fn speed_mps(&self) -> Option<f32> {
+        let walks = self.shape.amplitude.to >= 1.0;
+        walks.then(|| self.ending.velocity_mps.length())
+    }
+
+    /// Place and heading of the character, from where it began.
+    pub(super) fn start_from_character(&self) -> GroundTransform {
+        self.plan_from_start.local(&self.plan_from_character())
+    }
+
+    pub(super) fn plan_from_character(&self) -> GroundTransform {
+        self.place_at(self.position)
+    }
+
+    /// Place in the plan so many frames after the step began.
+    pub(super) fn place_at(&self, position: f32) -> GroundTransform {
+        let (frame, weight) = self.frame_at(position);
+        let [from, to] = [frame, frame + 1].map(|frame| self.frames.places[frame].place);
+        GroundTransform {
+            position: from.position.lerp(to.position, weight),
+            heading: from.heading + weight * (to.heading - from.heading),
+        }
+    }
+}
+
+pub(super) fn variation(config: &GeneratorConfig) -> f64 {
+    f64::from(config.variation.clamp(0.0, 2.0))
+}
