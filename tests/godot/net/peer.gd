@@ -2,7 +2,8 @@ extends Node3D
 ## One machine of a multiplayer game: hosts or joins, walks a character of its own, and shows those of the others.
 ##
 ## After `--`: `--host PORT` or `--join PORT`, `--name NAME`, `--secs SECONDS`, and `--lies` for a peer who does. It prints every footstep: `MADE` for its own
-## character, `SHOWN` for those of others, with the character's name, the foot, its place and the seconds since the character came.
+## character, `SHOWN` for those of others, with the character's name, the foot, its place and the seconds since the character came. The host also walks a crowd,
+## whose members are called `crowd_` and their id.
 
 ## Before it leaves, a peer's character comes to rest.
 const REST_SECS := 2.5
@@ -14,6 +15,7 @@ var _count := 0
 
 @onready var _spawner := MultiplayerSpawner.new()
 @onready var _walkers := Node3D.new()
+@onready var _crowd := NetCrowd.new()
 
 
 func _ready() -> void:
@@ -27,6 +29,10 @@ func _ready() -> void:
 	_spawner.spawn_function = _make
 	add_child(_spawner)
 	_spawner.spawn_path = ^"../Walkers"
+	_crowd.name = "Crowd"
+	_crowd.lies = _lies()
+	_crowd.make(_arguments.has("--host"))
+	add_child(_crowd)
 	var peer := ENetMultiplayerPeer.new()
 	if _arguments.has("--host"):
 		var failed := peer.create_server(_value("--host").to_int())
@@ -52,6 +58,8 @@ func _process(delta: float) -> void:
 	if _left <= 0.0:
 		for walker: NetWalker in _walkers.get_children():
 			print("END %s hips %.2f far %.2f secs %.2f" % [walker.title, walker.fastest, walker.farthest, walker.secs])
+		print("END crowd hips %.2f far 0 secs %.2f" % [_crowd.fastest, _crowd.secs])
+		_crowd.process_mode = Node.PROCESS_MODE_DISABLED
 		_walkers.process_mode = Node.PROCESS_MODE_DISABLED
 		multiplayer.multiplayer_peer.close()
 		get_tree().quit()

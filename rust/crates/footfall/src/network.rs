@@ -51,9 +51,56 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Messages of peers are checked: [`ReplicaError`] gives the reason for a refusal, and then nothing changes. A peer whose walker teleports sends an
+//! # Crowds
+//!
+//! A [`CrowdSender`] tells a whole [`Crowd`](crate::crowd::Crowd) to others: who is in it, reliably, and [`STEP_BYTES`] a walker and step, as many as a budget allows. There the
+//! crowd [follows](crate::crowd::Crowd::follow): walkers have the same names, and take the same steps a third of a second after they are heard of.
+//!
+//! ```
+//! use footfall::crowd::{Crowd, CrowdRecipe, CrowdSettings, Way};
+//! use footfall::glam::Vec2;
+//! use footfall::model::GaitModel;
+//! use footfall::network::CrowdSender;
+//! use std::sync::Arc;
+//!
+//! # std::env::set_current_dir("../../..")?;
+//! let model = Arc::new(GaitModel::from_bytes(&std::fs::read("addons/footfall/models/locomotion.footfall")?)?);
+//! let recipe = CrowdRecipe { body: model.skeleton.clone(), model, styles: Vec::new(), space: None };
+//! let wander = Way::Wander { half: Vec2::splat(20.0) };
+//!
+//! // Here: a crowd that wanders, and a peer who wants to see it.
+//! let mut here = Crowd::new(recipe.clone(), wander, CrowdSettings::default());
+//! here.set_count(20);
+//! here.repeats = false;
+//! let mut sender = CrowdSender::new(1);
+//! sender.join(2);
+//!
+//! // There: the same, by another's will.
+//! let mut there = Crowd::new(recipe, Way::Told, CrowdSettings::default());
+//! there.follow();
+//! for _ in 0..180 {
+//!     here.begin_all()?;
+//!     here.advance(1.0 / 60.0, true);
+//!     sender.step(1.0 / 60.0, &here, 64_000);
+//!     for message in sender.messages() {
+//!         // Sent to `message.to`, reliably where `message.reliable` says so.
+//!         there.hear(&message.bytes)?;
+//!     }
+//!     there.begin_all()?;
+//!     there.advance(1.0 / 60.0, true);
+//! }
+//! assert_eq!(here.names().count(), there.names().count());
+//! for (one, other) in here.agents().iter().zip(there.agents()) {
+//!     // As far behind as it is later.
+//!     assert!(one.place.distance(other.place) < 0.9, "{} {}", one.place, other.place);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Messages of peers are checked: [`ReplicaError`] and [`CrowdReplicaError`] give the reason for a refusal, and then nothing changes. A peer whose walker teleports sends an
 //! identity first; other moves faster than people run are refused.
 
+pub use footfall_rig::crowd::{CrowdMessage, CrowdReplicaError, CrowdSender, STEP_BYTES};
 pub use footfall_synth::replica::{
     Followed, ReplicaError, UPDATE_BYTES, WalkFollower, WalkIdentity, WalkSender,
 };

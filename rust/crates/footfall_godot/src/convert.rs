@@ -3,7 +3,7 @@
 pub(crate) use footfall_core::rotation::of_transform as rotation;
 use footfall_ik::placement::Frame;
 use glam::{Affine3A, Quat, Vec3};
-use godot::builtin::{Basis, Quaternion, Transform3D, Vector3};
+use godot::builtin::{Basis, Color, Quaternion, Transform3D, Vector3};
 
 /// A point or direction, Godot to glam.
 pub(crate) fn vec3(vector: Vector3) -> Vec3 {
@@ -98,4 +98,10 @@ pub(crate) fn count(count: usize) -> i32 {
 /// A number, or another where it is none.
 pub(crate) const fn finite_or(value: f64, otherwise: f64) -> f64 {
     if value.is_finite() { value } else { otherwise }
+}
+
+/// A colour as instances have it.
+pub(crate) fn linear(colour: Color) -> [f32; 4] {
+    let colour = colour.srgb_to_linear();
+    [colour.r, colour.g, colour.b, colour.a]
 }

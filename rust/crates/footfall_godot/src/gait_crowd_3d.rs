@@ -2,6 +2,7 @@
 
 mod actors;
 mod batch;
+mod behaviour;
 mod bounds;
 mod crowd_mesh;
 mod flock;
@@ -11,38 +12,24 @@ mod making;
 mod members;
 mod navigation;
 mod others;
+mod replica;
 mod scene;
 mod shared_flock;
 
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
 use crate::shipped::{self, Fallback};
+use behaviour::{CrowdBehaviour, FASTEST_MPS, MOST_AGENTS};
 use crowd_mesh::CrowdMesh;
 use footfall_rig::crowd::Crowd;
 use godot::classes::{Engine, INode3D, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
 use others::Others;
+use replica::Replica;
 use scene::CrowdScene;
 
 /// Warning where there is no character.
 const NO_CHARACTER: &str = "There is no character. Load a scene with a humanoid character into Character, for example an imported .glb.";
-
-/// More walkers than this are refused.
-const MOST_AGENTS: i64 = footfall_rig::crowd::MOST_AGENTS as i64;
-
-/// Nobody walks or runs faster, m/s.
-const FASTEST_MPS: f32 = 6.0;
-
-/// Behaviours of walkers by themselves.
-#[derive(GodotConvert, Var, Export, Default, Clone, Copy, Debug, PartialEq)]
-#[godot(via = i64)]
-pub(crate) enum CrowdBehaviour {
-    #[default]
-    Wander = 0,
-    Path = 1,
-    Scripted = 2,
-    Navigate = 3,
-}
 
 /// Walks thousands of characters, each with its own style, speed, size, phase and steps.
 ///
@@ -203,6 +190,11 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_material)]
     material: Option<Gd<ShaderMaterial>>,
 
+    /// If `true`, the crowd is another peer's of a multiplayer game: walkers come, go and step as `hear_message()` tells, by the same ids; `count`, `behaviour` and what
+    /// scripts ask of walkers do nothing. Set back to `false` it goes on by itself with those who are there. `controller/crowd_synchronizer.tscn` sets it.
+    #[var(get = get_follows, set = set_follows)]
+    follows: PhantomVar<bool>,
+
     /// The add-on's own walk, where `model` is empty.
     fallback: Fallback<GaitModel>,
     walkers: Option<Crowd>,
@@ -210,6 +202,7 @@ pub(crate) struct GaitCrowd3D {
     mesh: Option<CrowdMesh>,
     scene: Option<CrowdScene>,
     others: Others,
+    replica: Replica,
     /// True when walkers were sent over the navigation map.
     sends: bool,
     /// Row of the walker who is looked at next, lest it leaves the map.
@@ -270,6 +263,10 @@ impl GaitCrowd3D {
     /// `true` while more are pending.
     #[signal]
     fn agents_ready(agents: PackedInt32Array);
+
+    /// A message about the crowd that this one follows was refused, for this reason: see `hear_message()`.
+    #[signal]
+    fn message_refused(reason: GString);
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
@@ -374,6 +371,16 @@ impl GaitCrowd3D {
     }
 
     #[func]
+    fn get_follows(&self) -> bool {
+        self.replica.follows
+    }
+
+    #[func]
+    fn set_follows(&mut self, follows: bool) {
+        self.let_follow(follows);
+    }
+
+    #[func]
     fn set_material(&mut self, material: Option<Gd<ShaderMaterial>>) {
         self.material = material;
         self.restart();
@@ -386,13 +393,8 @@ impl GaitCrowd3D {
             scene.free();
         }
         self.walkers = None;
+        self.replica.renew();
         self.mesh = None;
         self.problem = None;
     }
-}
-
-/// A colour as instances have it.
-fn linear(colour: Color) -> [f32; 4] {
-    let colour = colour.srgb_to_linear();
-    [colour.r, colour.g, colour.b, colour.a]
 }

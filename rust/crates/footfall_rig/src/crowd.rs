@@ -13,6 +13,7 @@ mod members;
 mod motion;
 mod neighbours;
 mod pick;
+mod replica;
 mod roster;
 mod save;
 mod tiers;
@@ -29,6 +30,8 @@ use members::Coming;
 use motion::Stir;
 pub use motion::{FETCHED, GROUPS};
 use neighbours::Neighbours;
+use replica::Following;
+pub use replica::{CrowdMessage, CrowdReplicaError, CrowdSender, STEP_BYTES};
 pub use roster::Roster;
 pub use save::{CrowdStateError, SavedCrowd};
 use std::collections::VecDeque;
@@ -93,7 +96,7 @@ pub struct Crowd {
     others: Vec<Passerby>,
     way: Way,
     chooser: Chooser,
-    /// True when walkers far away walk in steps that they share instead of taking their own.
+    /// True when walkers far away walk in steps that they share instead of taking their own. Those of a crowd that follows never do; those of one that is [told](CrowdSender) must not.
     pub repeats: bool,
     /// Amount of motion of those who stand: 0 rests in a still pose, 1 moves as people do.
     pub standing_motion: f32,
@@ -104,6 +107,8 @@ pub struct Crowd {
     tickets: u64,
     /// Walkers who have names and no rows yet, in the order in which they came.
     coming: VecDeque<Coming>,
+    /// Another machine's crowd that this one follows.
+    following: Option<Following>,
 }
 
 impl Crowd {
@@ -133,6 +138,7 @@ impl Crowd {
             made: 0,
             tickets: 0,
             coming: VecDeque::new(),
+            following: None,
         }
     }
 
@@ -176,6 +182,11 @@ impl Crowd {
     /// Number of frames so far.
     pub fn frame(&self) -> u64 {
         self.frame
+    }
+
+    /// Time that has passed, seconds.
+    pub fn time_secs(&self) -> f64 {
+        self.time_secs
     }
 
     /// Ways that walkers take by themselves.

@@ -8,6 +8,7 @@
 mod alone;
 mod feet;
 mod frames;
+mod led;
 mod own;
 mod recorded;
 mod rest;
@@ -22,7 +23,8 @@ use crate::footstep::Footstep;
 use crate::generator::{GeneratorConfig, MAX_DT_SECS};
 use footfall_core::GroundTransform;
 pub use frames::CrowdPose;
-use own::OwnWalk;
+pub use led::{LedAim, LedBeginning, LedStep};
+use own::{Chance, OwnWalk};
 pub use stroll::SharedPose;
 use stroll::Stroll;
 pub use workshop::{StyledBody, Workshop};
@@ -45,7 +47,7 @@ pub struct CrowdWalker {
     detail: Detail,
     standing_motion: f32,
     /// Place in the sequence of chance from which its next own step goes on.
-    chance_position: u64,
+    chance: Chance,
     start_from_character: GroundTransform,
     footstep: Option<Footstep>,
 }
@@ -90,7 +92,7 @@ impl CrowdWalker {
             repeating: true,
             detail: Detail::Full,
             standing_motion: 1.0,
-            chance_position: 0,
+            chance: Chance::default(),
             start_from_character: GroundTransform::default(),
             footstep: None,
         }
@@ -161,7 +163,7 @@ impl CrowdWalker {
         let step = (own.side(), own.speed_mps());
         let steps = self.styled.0.shared();
         self.stroll = Some(Stroll::after(self.config.seed, &end, step, steps));
-        self.chance_position = own.chance_position;
+        self.chance = own.chance;
         Some(left)
     }
 
@@ -200,7 +202,7 @@ impl CrowdWalker {
             (&self.styled, &self.config),
             (shared, steps.last_pose(stroll.ending())),
             &stroll.place(steps),
-            (self.chance_position, stroll.rest_secs()),
+            (self.chance, stroll.rest_secs()),
         );
         own.detail = self.detail;
         if let Some(life) = &mut own.life {
@@ -222,6 +224,14 @@ impl CrowdWalker {
         match (&self.stroll, &self.own) {
             (Some(stroll), _) => stroll.secs_to_next_step(self.styled.0.shared()),
             (None, own) => own.as_ref().map_or(0.0, |own| own.secs_to_next_step()),
+        }
+    }
+
+    /// Seconds since the current step began; for one who rests, since that was over, the length of the step.
+    pub fn secs_of_step(&self) -> f32 {
+        match (&self.stroll, &self.own) {
+            (Some(stroll), _) => stroll.secs_of_step(self.styled.0.shared()),
+            (None, own) => own.as_ref().map_or(0.0, |own| own.secs_of_step()),
         }
     }
 

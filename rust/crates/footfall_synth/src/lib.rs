@@ -44,7 +44,9 @@ pub mod workload;
 mod worn;
 
 pub use controls::Controls;
-pub use crowd::{CrowdPose, CrowdWalker, SharedPose, StyledBody, Workshop};
+pub use crowd::{
+    CrowdPose, CrowdWalker, LedAim, LedBeginning, LedStep, SharedPose, StyledBody, Workshop,
+};
 pub use detail::Detail;
 pub use error::SynthError;
 pub use footfall_core::GroundTransform;

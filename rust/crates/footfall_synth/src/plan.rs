@@ -2,6 +2,7 @@
 
 mod offsets;
 mod planner;
+mod strides;
 
 use crate::detail::Detail;
 use crate::fine_motion::FineDraw;

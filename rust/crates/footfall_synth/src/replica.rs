@@ -18,6 +18,7 @@ mod queue;
 mod sender;
 mod update;
 
+pub use clock::ReplicaClock;
 pub use error::ReplicaError;
 pub use follower::{Followed, WalkFollower};
 pub use identity::WalkIdentity;

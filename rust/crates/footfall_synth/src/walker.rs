@@ -1,9 +1,11 @@
 //! One walker, step after step: planning, trajectory and planting in a row.
 
+mod aim;
 mod aside;
 mod origin;
 mod replan;
 
+pub(crate) use aim::Aim;
 pub(crate) use origin::{Origin, Request, TIE_LEN};
 
 use crate::error::SynthError;

@@ -9,6 +9,8 @@ const SAME_PLACE_M: f32 = 0.05;
 const CORRECTED_OF: usize = 20;
 /// So long after a character has come to a machine its steps agree, seconds.
 const JOINED_SECS: f32 = 2.0;
+/// Walkers of the host's crowd.
+const CROWD: usize = 12;
 /// Steps by which a character is judged at least.
 const LEAST_STEPS: usize = 8;
 /// Hips go no faster than this, m/s: those of a run, and a correction.
@@ -37,15 +39,21 @@ pub(super) fn judge(said: &[(&str, String)]) -> Result<String> {
     };
     let mut most: f32 = 0.0;
     let (mut count, mut others) = (0, 0);
-    for (walker, viewer) in [
+    let characters = [
         ("host", "early"),
         ("host", "late"),
         ("early", "host"),
         ("early", "late"),
         ("late", "host"),
         ("late", "early"),
-    ] {
-        let made = steps(of(walker)?, "MADE", walker);
+    ]
+    .map(|(walker, viewer)| (walker.to_owned(), walker, viewer));
+    let crowds = (0..CROWD).flat_map(|member| {
+        ["early", "late"].map(|viewer| (format!("crowd_{member}"), "host", viewer))
+    });
+    for (walker, maker, viewer) in characters.into_iter().chain(crowds) {
+        let walker = walker.as_str();
+        let made = steps(of(maker)?, "MADE", walker);
         let shown: Vec<_> = steps(of(viewer)?, "SHOWN", walker)
             .into_iter()
             .filter(|step| step.secs > JOINED_SECS)
@@ -82,6 +90,11 @@ pub(super) fn judge(said: &[(&str, String)]) -> Result<String> {
     }
     if !of("host")?.contains("REFUSED liar") {
         bail!("the host has believed the liar in everything");
+    }
+    for peer in ["host", "early", "late"] {
+        if !of(peer)?.contains("STRANGER ") {
+            bail!("`{peer}` has not noticed that the liar tells of a crowd that is not its own");
+        }
     }
     Ok(format!(
         "{count} footsteps on other machines, {:.0} mm from where they were made at most, but for {others}",
@@ -141,11 +154,19 @@ mod tests {
         let steps = (0..40).flat_map(|step| {
             let (x, secs) = (0.7 * step as f32, 0.5 * step as f32);
             let seen = others.map(|other| format!("SHOWN {other} left {} 0.0 {secs}", x + off));
+            let members = (0..CROWD).map(move |member| {
+                if name == "host" {
+                    format!("MADE crowd_{member} left {x} 2.0 {secs}")
+                } else {
+                    format!("SHOWN crowd_{member} left {} 2.0 {secs}", x + off)
+                }
+            });
             [format!("MADE {name} left {x} 0.0 {secs}")]
                 .into_iter()
                 .chain(seen)
+                .chain(members)
         });
-        let end = format!("END {name} hips 2.0 far 30.0 secs 20.0\n");
+        let end = format!("END {name} hips 2.0 far 30.0 secs 20.0\nSTRANGER 5\n");
         let mut said = steps.chain([end]).collect::<Vec<_>>().join("\n");
         if refused {
             said += "REFUSED liar too far\n";
@@ -166,6 +187,12 @@ mod tests {
         assert!(judge(&game(0.01, true)).unwrap().contains("10 mm"));
         assert!(judge(&game(0.2, true)).is_err(), "steps apart");
         assert!(judge(&game(0.01, false)).is_err(), "a liar who is believed");
+        let mut apart = game(0.01, true);
+        apart[2].1 = apart[2].1.replace("SHOWN crowd_7", "SHOWN crowd_99");
+        assert!(judge(&apart).is_err(), "a walker of the crowd is missing");
+        let mut deaf = game(0.01, true);
+        deaf[1].1 = deaf[1].1.replace("STRANGER 5", "");
+        assert!(judge(&deaf).is_err(), "a liar who tells of the crowd");
         let mut far = game(0.01, true);
         far[1].1 += "END liar hips 2.0 far 4000.0 secs 9.0\n";
         assert!(judge(&far).is_err(), "a liar far away");

@@ -1,7 +1,8 @@
 //! Questions and requests of scripts to walkers: many at once, in packed arrays.
 
+use super::GaitCrowd3D;
+use super::behaviour::FASTEST_MPS;
 use super::navigation::Navigation;
-use super::{GaitCrowd3D, linear};
 use crate::convert;
 use footfall_rig::crowd::Agent;
 use glam::Vec2;
@@ -81,7 +82,7 @@ impl GaitCrowd3D {
     ) {
         self.set_each(speeds.as_slice(), &agents, |agent, speed| {
             if speed.is_finite() {
-                agent.speed_mps = speed.clamp(0.0, super::FASTEST_MPS);
+                agent.speed_mps = speed.clamp(0.0, FASTEST_MPS);
             }
         });
     }
@@ -153,7 +154,7 @@ impl GaitCrowd3D {
         #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
     ) {
         self.set_each(colours.as_slice(), &agents, |agent, colour| {
-            agent.tint = linear(*colour);
+            agent.tint = convert::linear(*colour);
         });
     }
 

@@ -1,8 +1,9 @@
 //! One frame of a crowd: time passes, everybody is drawn, and signals are emitted.
 
+use super::behaviour::MOST_AGENTS;
 use super::navigation::Navigation;
 use super::scene::{CrowdScene, Look};
-use super::{GaitCrowd3D, MOST_AGENTS, ground};
+use super::{GaitCrowd3D, ground};
 use crate::convert;
 use footfall_rig::crowd::{Crowd, Limits};
 use godot::classes::{Engine, Node3D};
@@ -27,10 +28,14 @@ impl GaitCrowd3D {
         let (Some(mut walkers), scene) = (self.walkers.take(), self.scene.take()) else {
             return;
         };
-        walkers.repeats = repeat_far;
+        let leads = !walkers.is_following();
+        // Shared steps cannot be told.
+        walkers.repeats = repeat_far && leads && !self.replica.is_told();
+        self.replica.pass(dt_secs);
         walkers.standing_motion = standing_motion;
         let is_navigated = walkers.way().is_navigated();
-        if (is_navigated || self.sends)
+        if leads
+            && (is_navigated || self.sends)
             && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)
         {
             if is_navigated {
@@ -38,20 +43,25 @@ impl GaitCrowd3D {
             }
             self.kept = navigation.keep(&mut walkers, self.kept);
         }
-        if avoidance {
+        if avoidance && leads {
             self.others
                 .watch(&mut walkers, &host, &self.avoided_group, dt_secs);
         }
         walkers.advance(dt_secs, avoidance);
-        ground::find(&mut walkers, &host, mask);
+        if leads {
+            ground::find(&mut walkers, &host, mask);
+        }
+        let is_seen = self.base().is_visible_in_tree();
         let scene = scene.or_else(|| {
-            let mesh = self.mesh.clone()?;
+            let mesh = self.mesh.clone().filter(|_| is_seen)?;
             let _released = self.base_mut();
             CrowdScene::new(&host, mesh, &look)
         });
         let drawn = scene.map(|mut scene| {
             let _released = self.base_mut();
-            scene.draw(&mut walkers, &host, &limits, &look);
+            if is_seen {
+                scene.draw(&mut walkers, &host, &limits, &look);
+            }
             scene
         });
         let landed = self.landed(&walkers);

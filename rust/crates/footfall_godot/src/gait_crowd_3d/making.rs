@@ -1,7 +1,9 @@
 //! A crowd made of what its node was given.
 
+use super::behaviour::CrowdBehaviour;
 use super::crowd_mesh::CrowdMesh;
-use super::{CrowdBehaviour, GaitCrowd3D, NO_CHARACTER, linear};
+use super::{GaitCrowd3D, NO_CHARACTER};
+use crate::convert;
 use crate::gait_model::{self, NO_MODEL};
 use crate::gait_style;
 use crate::shipped;
@@ -137,7 +139,11 @@ impl GaitCrowd3D {
             let _released = self.base_mut();
             CrowdMesh::new(&character, &mut host)?
         };
-        let tints = self.colours.as_slice().iter().map(|colour| linear(*colour));
+        let tints = self
+            .colours
+            .as_slice()
+            .iter()
+            .map(|colour| convert::linear(*colour));
         let settings = CrowdSettings {
             seed: self.seed.cast_unsigned(),
             speeds_mps: [self.speed_range.x, self.speed_range.y],
@@ -154,7 +160,11 @@ impl GaitCrowd3D {
             body: mesh.body.clone(),
         };
         let mut walkers = Crowd::new(recipe, way, settings);
-        walkers.set_count(self.count as usize);
+        if self.replica.follows {
+            walkers.follow();
+        } else {
+            walkers.set_count(self.count as usize);
+        }
         Ok((walkers, mesh))
     }
 }

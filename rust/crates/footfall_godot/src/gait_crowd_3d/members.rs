@@ -24,6 +24,9 @@ impl GaitCrowd3D {
         positions: PackedVector3Array,
         #[opt(default = &PackedFloat32Array::new())] headings: PackedFloat32Array,
     ) -> PackedInt32Array {
+        if self.is_others() {
+            return PackedInt32Array::new();
+        }
         self.make();
         let Some(walkers) = &mut self.walkers else {
             return PackedInt32Array::new();
@@ -174,7 +177,7 @@ impl GaitCrowd3D {
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_state(&mut self, state: PackedByteArray) {
         match SavedCrowd::from_bytes(state.as_slice()) {
-            Ok(saved) if self.make_whole() => {
+            Ok(saved) if !self.is_others() && self.make_whole() => {
                 if let Some(walkers) = &mut self.walkers {
                     let everybody = walkers.clear();
                     walkers.restore(&saved);

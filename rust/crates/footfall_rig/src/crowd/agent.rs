@@ -3,6 +3,8 @@
 use super::avoidance::Wayfarer;
 use super::goal::{Goal, Guidance};
 use super::kit::Outfit;
+use super::motion::Steps;
+use super::replica::Led;
 use footfall_core::Side;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_ik::placement::{Frame, Landing};
@@ -111,8 +113,10 @@ pub struct Agent {
     /// The crowd's time until which it has walked, seconds.
     pub(super) clock_secs: f64,
     chance: u64,
-    walked: GroundTransform,
-    controls: Controls,
+    pub(super) walked: GroundTransform,
+    pub(super) controls: Controls,
+    /// Knowledge of the walker of another machine whose steps it takes.
+    pub(super) led: Option<Box<Led>>,
 }
 
 impl Agent {
@@ -142,6 +146,7 @@ impl Agent {
             clock_secs: 0.0,
             chance: seed,
             controls: Controls::STAND,
+            led: None,
         }
     }
 
@@ -152,9 +157,19 @@ impl Agent {
 
     /// Begins to walk, at this time of the crowd.
     pub(super) fn begin(&mut self, walker: CrowdWalker, now_secs: f64) {
+        if let Some(led) = &mut self.led {
+            led.wait(walker);
+            return;
+        }
         self.walked = walker.start_from_character();
         self.clock_secs = now_secs;
         self.walker = Some(walker);
+    }
+
+    /// Its walk, even where it has not begun.
+    pub(super) fn own_walker(&mut self) -> Option<&mut CrowdWalker> {
+        let waiting = self.led.as_mut().and_then(|led| led.waiting());
+        self.walker.as_mut().or(waiting)
     }
 
     /// Share of its stride that is behind it: 0 when its left foot lands, 0.5 when its right foot does.
@@ -266,11 +281,18 @@ impl Agent {
 
     /// Lets time pass.
     pub(super) fn advance(&mut self, dt_secs: f32, workshop: &mut Workshop) {
+        let controls = self.controls;
+        self.travel(dt_secs, |walker, secs| {
+            walker.step(secs, controls, workshop);
+        });
+    }
+
+    /// Goes where its walk takes it, which is to step through this time of its own.
+    pub(super) fn travel(&mut self, dt_secs: f32, step: impl FnOnce(&mut CrowdWalker, f32)) {
         let Some(walker) = &mut self.walker else {
             return;
         };
-        let own_secs = dt_secs / self.size.sqrt();
-        walker.step(own_secs, self.controls, workshop);
+        step(walker, dt_secs / self.size.sqrt());
         let now = walker.start_from_character();
         let back = from_heading(-self.walked.heading);
         let moved = back * (now.position - self.walked.position) * self.size;
@@ -357,9 +379,19 @@ impl Agent {
         walker.shared_pose(ago_secs / self.size.sqrt())
     }
 
-    pub(super) fn has_own_steps(&self) -> bool {
+    /// Returns whether it walks in steps of its own: only they can be told.
+    pub(super) fn takes_own_steps(&self) -> bool {
         let walker = self.walker.as_ref();
-        walker.is_some_and(CrowdWalker::has_own_steps)
+        walker.is_some_and(|walker| !walker.is_sharing())
+    }
+
+    /// Steps that show in its pose.
+    pub(super) fn steps(&self) -> Steps {
+        match &self.walker {
+            None => Steps::None,
+            Some(walker) if walker.has_own_steps() => Steps::Own,
+            Some(_) => Steps::Shared,
+        }
     }
 
     /// Writes its pose in the space of the character; returns whether there is one.

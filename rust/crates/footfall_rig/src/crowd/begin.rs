@@ -3,7 +3,6 @@
 use super::Crowd;
 use super::kit::Outfit;
 use super::maker::Order;
-use super::motion::Steps;
 use footfall_synth::{Detail, StyleSpace, SynthError};
 use std::sync::Arc;
 
@@ -60,7 +59,7 @@ impl Crowd {
         let agent = &mut self.agents[place];
         agent.outfit.clone_from(&outfit);
         // Who is not made yet is dressed when it comes.
-        let Some(walker) = &mut agent.walker else {
+        let Some(walker) = agent.own_walker() else {
             return;
         };
         if let Some(styled) = self.kit.as_ref().and_then(|kit| kit.known(&outfit)) {
@@ -71,6 +70,7 @@ impl Crowd {
                 ticket: agent.ticket,
                 outfit,
                 config: None,
+                alone: false,
             };
             self.maker.take(core::iter::once(order));
         }
@@ -101,10 +101,12 @@ impl Crowd {
             if let Some(mut walker) = made.walker {
                 walker.set_detail(Detail::Quarter);
                 agent.begin(walker, *time_secs);
-                seen[place] = agent.seen();
-                stirs[place].steps = Steps::Shared;
+                if agent.is_made() {
+                    seen[place] = agent.seen();
+                    stirs[place].steps = agent.steps();
+                }
                 began.push(roster.name(place));
-            } else if let Some(walker) = &mut agent.walker {
+            } else if let Some(walker) = agent.own_walker() {
                 walker.wear(&made.styled);
             }
             if agent.outfit != outfit {

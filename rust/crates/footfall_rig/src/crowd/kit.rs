@@ -27,6 +27,20 @@ impl Outfit {
         Self(parts)
     }
 
+    /// One that was told in parts.
+    pub(super) fn of_parts(parts: &[i8]) -> Self {
+        let weights: Vec<f32> = parts
+            .iter()
+            .map(|part| f32::from(*part) / WEIGHT_PARTS)
+            .collect();
+        Self::of(&weights)
+    }
+
+    /// Its parts.
+    pub(super) fn parts(&self) -> &[i8] {
+        &self.0
+    }
+
     /// One style alone.
     pub(super) fn of_one(style: usize, weight: f32) -> Self {
         let mut weights = vec![0.0; style + 1];

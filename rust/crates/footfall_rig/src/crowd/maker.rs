@@ -1,7 +1,7 @@
 //! Walkers made on threads of their own, so that no frame waits for them. Who is made when does not change who they are.
 
 use super::kit::{CrowdRecipe, Kit, Outfit};
-use footfall_synth::{CrowdWalker, GeneratorConfig, StyledBody, SynthError};
+use footfall_synth::{CrowdWalker, GeneratorConfig, StyledBody, SynthError, Workshop};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -22,6 +22,8 @@ pub(super) struct Order {
     pub(super) outfit: Outfit,
     /// Settings of its walk; none for a walker that is there and only dressed.
     pub(super) config: Option<GeneratorConfig>,
+    /// True for one who takes steps of its own from the first one on, some milliseconds of work.
+    pub(super) alone: bool,
 }
 
 /// An order that was carried out.
@@ -81,6 +83,11 @@ impl Maker {
         };
         maker.hire(1);
         maker
+    }
+
+    /// Recipe of the walkers.
+    pub(super) fn recipe(&self) -> &CrowdRecipe {
+        &self.shared.recipe
     }
 
     /// Number of styles.
@@ -207,6 +214,7 @@ impl Shared {
             locked(&self.queue).working -= 1;
             return;
         };
+        let mut workshop = None;
         loop {
             let mut queue = locked(&self.queue);
             let left = core::mem::take(&mut queue.left);
@@ -220,7 +228,9 @@ impl Shared {
                 return;
             };
             drop(queue);
-            let made = make(kit, order);
+            let made = make(kit, order, || {
+                workshop.get_or_insert_with(|| Workshop::new(&kit.plain))
+            });
             locked(&self.made).push_back(made);
         }
     }
@@ -234,17 +244,26 @@ impl Shared {
             let Some(order) = locked(&self.queue).orders.pop_front() else {
                 break;
             };
-            let made = make(kit, order);
+            let mut workshop = locked(&kit.workshops[0]);
+            let made = make(kit, order, || &mut workshop);
+            drop(workshop);
             locked(&self.made).push_back(made);
         }
     }
 }
 
-fn make(kit: &Kit, order: Order) -> Made {
+fn make<'a>(kit: &Kit, order: Order, workshop: impl FnOnce() -> &'a mut Workshop) -> Made {
     let styled = kit.tailor(&order.outfit);
-    let config = order.config.as_ref();
-    // It takes steps of its own where it is seen to.
-    let walker = config.map(|config| CrowdWalker::sharing(&styled, config));
+    let walker = order.config.as_ref().and_then(|config| {
+        if !order.alone {
+            // It takes steps of its own where it is seen to.
+            return Some(CrowdWalker::sharing(&styled, config));
+        }
+        // A walker is of the plain walk when it begins, and dresses with its first step.
+        let mut walker = CrowdWalker::new(&kit.plain, config, false, workshop()).ok()?;
+        walker.wear(&styled);
+        Some(walker)
+    });
     Made {
         order,
         styled,

@@ -26,8 +26,11 @@ pub(super) struct Coming {
 
 impl Crowd {
     /// Makes the crowd's own walkers, those that no script added, so many. Who is too much leaves, the last first; returns their
-    /// places.
+    /// places. Of a crowd that [follows](Self::follow) another one that says how many there are.
     pub fn set_count(&mut self, count: usize) -> Vec<usize> {
+        if self.is_following() {
+            return Vec::new();
+        }
         self.come_in(usize::MAX);
         let own = |place: &u32| self.agents[*place as usize].counted;
         let there = self
@@ -201,7 +204,7 @@ impl Crowd {
     }
 
     /// Gives every one of the first so many places its row.
-    fn make_room(&mut self, places: usize) {
+    pub(super) fn make_room(&mut self, places: usize) {
         let places = places.max(self.agents.len());
         self.agents.resize_with(places, Agent::absent);
         self.tiers.resize(places, Tier::Far);
@@ -279,6 +282,7 @@ impl Crowd {
                 phase,
                 variation: 1.0,
             }),
+            alone: !self.repeats,
         };
         self.agents[place] = agent;
         order

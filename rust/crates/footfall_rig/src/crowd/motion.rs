@@ -72,10 +72,12 @@ impl Crowd {
             repeats,
             standing_motion,
             time_secs,
+            following,
             ..
         } = self;
         let (workshops, neighbours, way) = (&kit.workshops, &*neighbours, &*way);
-        let (repeats, now_secs) = (*repeats, *time_secs);
+        let (following, now_secs) = (following.as_ref(), *time_secs);
+        let repeats = *repeats && following.is_none();
         let standing_motion = *standing_motion;
         let chunks = agents
             .par_chunks_mut(CHUNK)
@@ -104,7 +106,13 @@ impl Crowd {
                 }
                 let (agent, tier, drawn) = (&mut agents[index], &tiers[index], &mut drawn[index]);
                 let stir = &mut stirs[index];
-                let Some(walker) = agent.walker.as_mut().filter(|_| stir.moved) else {
+                if !stir.moved {
+                    continue;
+                }
+                if let Some(following) = following {
+                    agent.begin_led(following, now_secs, &mut workshop);
+                }
+                let Some(walker) = &mut agent.walker else {
                     continue;
                 };
                 walker.set_detail(match tier {
@@ -116,25 +124,25 @@ impl Crowd {
                 walker.set_standing_motion(standing_motion);
                 let secs = (now_secs - agent.clock_secs) as f32;
                 agent.clock_secs = now_secs;
-                if agent.is_about_to_step(secs) {
-                    way.lead(agent);
-                    let stops = matches!(way, Way::Told);
-                    if avoidance {
-                        let seen = neighbours.around(agent.level(), &mut sight);
-                        agent.decide(seen, stops);
-                    } else {
-                        agent.decide(&[], stops);
-                    }
-                }
                 let (from, heading) = (agent.place, agent.heading);
-                agent.advance(secs, &mut workshop);
+                if let Some(following) = following {
+                    agent.follow(secs, following, &mut workshop);
+                } else {
+                    if agent.is_about_to_step(secs) {
+                        way.lead(agent);
+                        let stops = matches!(way, Way::Told);
+                        if avoidance {
+                            let seen = neighbours.around(agent.level(), &mut sight);
+                            agent.decide(seen, stops);
+                        } else {
+                            agent.decide(&[], stops);
+                        }
+                    }
+                    agent.advance(secs, &mut workshop);
+                }
                 *drawn = agent.drawn(from, heading, secs);
                 stir.landed = agent.has_landed();
-                stir.steps = if agent.has_own_steps() {
-                    Steps::Own
-                } else {
-                    Steps::Shared
-                };
+                stir.steps = agent.steps();
                 seen[index] = agent.seen();
             }
         });

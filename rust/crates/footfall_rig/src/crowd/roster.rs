@@ -47,6 +47,24 @@ impl Roster {
         place as usize
     }
 
+    /// Gives somebody the place that a name says; that place is free. It may lie beyond all there were.
+    pub(super) fn enter_as(&mut self, name: i32) {
+        let Some((place, turn)) = parts(name) else {
+            return;
+        };
+        while self.turns.len() <= place {
+            self.free.push_back(self.turns.len() as u32);
+            self.turns.push(0);
+            self.taken.push(false);
+        }
+        // Who comes last mostly has the place that became free last.
+        let free = self.free.iter().rposition(|free| *free as usize == place);
+        free.and_then(|at| self.free.remove(at));
+        self.turns[place] = turn;
+        self.taken[place] = true;
+        self.order.push(place as u32);
+    }
+
     /// Takes the places of those who leave, all of whom are there.
     pub(super) fn leave(&mut self, places: &[usize]) {
         for place in places {
@@ -153,6 +171,20 @@ mod tests {
         assert_eq!(roster.order(), [0, 2, 4, 1]);
         assert_eq!(roster.place(-1), None);
         assert_eq!(roster.place(i32::MAX), None);
+    }
+
+    #[test]
+    fn who_has_a_name_already_gets_its_place() {
+        let mut roster = Roster::default();
+        let names = [3 << PLACE_BITS | 2, 0, 1 << PLACE_BITS | 4];
+        for name in names {
+            roster.enter_as(name);
+            assert_eq!(roster.place(name), Some(parts(name).unwrap().0));
+        }
+        assert_eq!(roster.order(), [2, 0, 4]);
+        assert_eq!(roster.place(2), None, "another turn");
+        assert_eq!([roster.enter(), roster.enter(), roster.enter()], [1, 3, 5]);
+        assert_eq!(Roster::restored(&roster.saved()), Some(roster));
     }
 
     #[test]

@@ -82,6 +82,14 @@ impl Path {
         )
     }
 
+    /// Way from its beginning to the place of it that is nearest to another, to a metre.
+    fn nearest(&self, place: Vec2) -> f32 {
+        let metres = (0..=self.length() as u32).map(|metre| metre as f32);
+        let far = |along: &f32| self.at(*along).0.distance_squared(place);
+        let nearest = metres.min_by(|a, b| far(a).total_cmp(&far(b)));
+        nearest.unwrap_or(0.0)
+    }
+
     /// The place beside it: positive to the left.
     pub fn beside(&self, along: f32, aside: f32) -> (Vec2, Vec2) {
         let (place, direction) = self.at(along);
@@ -95,6 +103,15 @@ impl Way {
     /// Returns whether walkers wait until the game finds ways for them.
     pub const fn is_navigated(&self) -> bool {
         matches!(self, Self::Navigate)
+    }
+
+    /// Takes up a walker that another machine has led.
+    pub(super) fn take_up(&self, agent: &mut Agent) {
+        match self {
+            Self::Told => agent.goal = Goal::Turn(0.0),
+            Self::Wander { .. } | Self::Navigate => agent.goal = Goal::Place(agent.level()),
+            Self::Path(path) => agent.progress_m = path.nearest(agent.level()),
+        }
     }
 
     /// Sets a walker's goal, if the crowd goes anywhere by itself.

@@ -1,7 +1,7 @@
 //! A walker who goes on alone from the end of a step that it shared.
 
 use super::frames::{CrowdFrames, CrowdPlace, POSE_NUMBERS};
-use super::own::{OwnWalk, variation};
+use super::own::{Chance, OwnWalk, variation};
 use super::rest::Rest;
 use super::shared::Shared;
 use super::workshop::StyledBody;
@@ -13,19 +13,19 @@ use footfall_core::GroundTransform;
 use footfall_core::rotation::from_heading;
 
 impl OwnWalk {
-    /// Goes on alone from the end of a shared step at this place, as the walker of this seed; its chance goes on from this position.
+    /// Goes on alone from the end of a shared step at this place, as the walker of this seed; its chance goes on from there.
     pub(super) fn go_on_from(
         &mut self,
         (styled, config): (&StyledBody, &GeneratorConfig),
         (shared, pose): (&Shared, &[i16; POSE_NUMBERS]),
         start_from_end: &GroundTransform,
-        (chance_position, rest_secs): (u64, f32),
+        (chance, rest_secs): (Chance, f32),
     ) {
         let fresh = Planner::new(&styled.0.worn.blend.model, config.seed, variation(config));
         self.config = *config;
         self.styled = styled.clone();
         self.walker = *fresh.walker();
-        self.chance_position = chance_position.max(fresh.chance_position());
+        self.chance = chance.max(Chance::of(&fresh));
         (*self.ending).clone_from(&shared.ending);
         self.shape = shared.shape;
         self.position = self.shape.timing.frames as f32;
@@ -70,7 +70,7 @@ impl OwnWalk {
             config: *config,
             styled: styled.clone(),
             walker: [0.0; MAX_COMPONENTS],
-            chance_position: 0,
+            chance: Chance::default(),
             ending: Box::new(shared.ending.clone()),
             shape: shared.shape,
             detail: Detail::Quarter,

@@ -1,6 +1,7 @@
 //! A walker's own steps: as a generator of its seed makes them, kept in a few kilobytes.
 
 use super::frames::{CrowdFrames, CrowdPose};
+use super::led::LedStep;
 use super::rest::{Rest, RestBench, leave};
 use super::workshop::{StyledBody, Workshop};
 use crate::controls::Controls;
@@ -32,6 +33,29 @@ pub(super) struct Ending {
     pub(super) arrival: Arrival,
 }
 
+/// Place in a walker's sequence of chance: its position, and the strides that were drawn until there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Chance {
+    pub(super) position: u64,
+    pub(super) strides: u32,
+}
+
+impl Chance {
+    /// The place at which a planner is.
+    pub(super) fn of(planner: &Planner) -> Self {
+        Self {
+            position: planner.chance_position(),
+            strides: planner.strides(),
+        }
+    }
+
+    /// Takes a planner there, after these steps.
+    pub(super) fn resume(self, planner: &mut Planner, last: &[StepDraw]) {
+        planner.resume(self.position, last);
+        planner.count_strides(self.strides);
+    }
+}
+
 /// Steps of one walker alone.
 #[derive(Debug)]
 pub(super) struct OwnWalk {
@@ -39,7 +63,7 @@ pub(super) struct OwnWalk {
     pub(super) styled: StyledBody,
     /// Identity of the walker: weights of the model's walker components.
     pub(super) walker: [f64; MAX_COMPONENTS],
-    pub(super) chance_position: u64,
+    pub(super) chance: Chance,
     /// Boxed, for most frames need nothing of it.
     pub(super) ending: Box<Ending>,
     pub(super) shape: StepShape,
@@ -98,7 +122,7 @@ impl OwnWalk {
             config: *config,
             styled: styled.clone(),
             walker: *planner.walker(),
-            chance_position: 0,
+            chance: Chance::default(),
             ending: Box::new(ending),
             shape: *walker.step(),
             detail: Detail::Full,
@@ -115,17 +139,22 @@ impl OwnWalk {
         if let Some(life) = made.life.as_mut().filter(|_| standing) {
             life.stand();
         }
-        made.take_over(workshop);
-        let frames = made.shape.timing.frames as f32;
-        made.position = if standing {
-            frames
+        let share = if standing {
+            1.0
         } else {
-            (2.0 * config.phase.rem_euclid(1.0)).fract() * frames
+            (2.0 * config.phase.rem_euclid(1.0)).fract()
         };
-        made.landing = made.landing_of_step();
-        made.plan_from_start = made.plan_from_character();
-        made.live(0.0, workshop);
+        made.settle(share, workshop);
         Ok(made)
+    }
+
+    /// Takes over its first step, in the middle of it.
+    pub(super) fn settle(&mut self, share: f32, workshop: &mut Workshop) {
+        self.take_over(workshop);
+        self.position = share * self.shape.timing.frames as f32;
+        self.landing = self.landing_of_step();
+        self.plan_from_start = self.plan_from_character();
+        self.live(0.0, workshop);
     }
 
     /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before and for the first rest. Where a step ends and none is wanted after it, `ends` says so and
@@ -137,24 +166,18 @@ impl OwnWalk {
         ends: bool,
         workshop: &mut Workshop,
     ) -> Option<f32> {
-        self.footstep = None;
-        if dt_secs > 0.0 {
-            self.position += dt_secs * self.frame_rate_hz;
-        }
+        self.pass(dt_secs);
         let mut left = None;
-        while self.position >= self.shape.timing.frames as f32 {
-            let frames = self.shape.timing.frames as f32;
+        while self.is_over() {
             if ends {
-                left = Some((self.position - frames) / self.frame_rate_hz);
-                self.position = frames;
+                left = Some(self.stay());
                 break;
             }
-            if self.shape.amplitude.to < 1.0 && controls.is_standing() {
-                self.position = frames;
+            if self.comes_to_rest() && controls.is_standing() {
+                self.stay();
                 break;
             }
-            self.position -= frames;
-            self.next_step(controls, workshop);
+            self.go_on(controls, None, workshop);
         }
         if dt_secs > 0.0 {
             self.live(dt_secs, workshop);
@@ -162,14 +185,56 @@ impl OwnWalk {
         left
     }
 
+    /// Lets time pass in its step, and beyond the end of that.
+    pub(super) fn pass(&mut self, dt_secs: f32) {
+        self.footstep = None;
+        if dt_secs > 0.0 {
+            self.position += dt_secs * self.frame_rate_hz;
+        }
+    }
+
+    /// Returns whether its step has ended.
+    pub(super) fn is_over(&self) -> bool {
+        self.position >= self.shape.timing.frames as f32
+    }
+
+    /// Stays where its step has ended; returns the time that has passed since, seconds.
+    pub(super) fn stay(&mut self) -> f32 {
+        let frames = self.shape.timing.frames as f32;
+        let left = (self.position - frames) / self.frame_rate_hz;
+        self.position = frames;
+        left
+    }
+
+    /// Goes on to the next step where one has ended; a led one is another walker's.
+    pub(super) fn go_on(
+        &mut self,
+        controls: Controls,
+        led: Option<&LedStep>,
+        workshop: &mut Workshop,
+    ) {
+        self.position -= self.shape.timing.frames as f32;
+        self.next_step(controls, led, workshop);
+    }
+
     /// Seconds until the next step begins, 0 for someone who rests.
     pub(super) fn secs_to_next_step(&self) -> f32 {
         (self.shape.timing.frames as f32 - self.position).max(0.0) / self.frame_rate_hz
     }
 
+    /// Seconds since the current step began; for one who rests, since that was over, the length of the step.
+    pub(super) fn secs_of_step(&self) -> f32 {
+        self.position / self.frame_rate_hz
+    }
+
     /// Returns whether it has come to a stand and rests.
     pub(super) fn is_standing(&self) -> bool {
-        self.shape.amplitude.to < 1.0 && self.position >= self.shape.timing.frames as f32
+        self.comes_to_rest() && self.is_over()
+    }
+
+    /// Returns whether its step ends in a stand.
+    pub(super) fn comes_to_rest(&self) -> bool {
+        self.shape.amplitude.to < 1.0
     }
 
     /// Share of its stride that is behind it: 0 when the left foot lands, 0.5 when the right one does.
@@ -214,7 +279,14 @@ impl OwnWalk {
         }
     }
 
-    pub(super) fn next_step(&mut self, controls: Controls, workshop: &mut Workshop) {
+    /// Works out the next step; a led one is another walker's.
+    pub(super) fn next_step(
+        &mut self,
+        controls: Controls,
+        led: Option<&LedStep>,
+        workshop: &mut Workshop,
+    ) {
+        let natural = self.number().wrapping_add(1);
         let styled = Arc::clone(&self.styled.0);
         let worn = &styled.worn;
         let ask = Ask::after(&self.shape, controls, worn.fastest_mps(), self.detail);
@@ -239,15 +311,15 @@ impl OwnWalk {
             variation(&self.config),
             self.walker,
         );
-        planner.resume(self.chance_position, &ending.draws);
+        self.chance.resume(planner, &ending.draws);
         let mut draws = ending.draws.clone();
         draws.rotate_left(1);
-        draws[WINDOW - 1] = if self.even {
-            Planner::mean_draw(leading)
-        } else {
-            planner.draw(leading)
-        };
-        let blends = [&ending.blend, blend];
+        match led {
+            Some(led) if led.number != natural => self.redraw(led.number, planner, &mut draws),
+            _ if self.even => draws[WINDOW - 1] = Planner::mean_draw(leading),
+            _ => draws[WINDOW - 1] = planner.draw(leading),
+        }
+        let blends = [&self.ending.blend, blend];
         // The model gave a trajectory when the walker was made, so it gives one now.
         if walker
             .restore(planner, blends, draws, origin, bench)
@@ -255,6 +327,10 @@ impl OwnWalk {
         {
             return;
         }
+        if let Some(led) = led {
+            led.aim.take(&self.plan_from_start, walker, bench);
+        }
+        let ending = &mut *self.ending;
         ending.blend = Arc::clone(blend);
         ending.draws.clone_from(walker.draws());
         ending.next = walker.next_origin(request);
@@ -266,7 +342,7 @@ impl OwnWalk {
 
     /// Keeps the step that was just worked out.
     fn take_over(&mut self, workshop: &mut Workshop) {
-        self.chance_position = workshop.planner.chance_position();
+        self.chance = Chance::of(&workshop.planner);
         self.ending.arrival = workshop.walker.stage().arrival;
         let timing = self.shape.ground_timing();
         let stage = &workshop.walker.stage().frames[..=timing.frames];

@@ -145,7 +145,7 @@ impl SharedSteps {
                 } else {
                     Detail::Quarter
                 };
-                walker.next_step(controls, workshop);
+                walker.next_step(controls, None, workshop);
                 if recorded {
                     let kind = Kind {
                         person,
@@ -168,9 +168,9 @@ impl SharedSteps {
         // From one stop to the next lies an odd number of steps.
         for steps in [2 * SETTLING, SETTLING + 2] {
             for _ in 0..steps {
-                walker.next_step(walks, workshop);
+                walker.next_step(walks, None, workshop);
             }
-            walker.next_step(Controls::STAND, workshop);
+            walker.next_step(Controls::STAND, None, workshop);
             let kind = Kind {
                 person,
                 side: walker.shape.timing.leading,

@@ -162,6 +162,10 @@ impl Stroll {
         (1.0 - self.share).max(0.0) * self.secs(steps)
     }
 
+    pub(super) fn secs_of_step(&self, steps: &SharedSteps) -> f32 {
+        self.share.min(1.0) * self.secs(steps)
+    }
+
     pub(super) fn phase(&self) -> f32 {
         (0.5 * (self.side.index() as f32 + self.share.min(1.0))).fract()
     }

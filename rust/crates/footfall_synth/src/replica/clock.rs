@@ -1,6 +1,7 @@
 //! The time at which what a sender did is done here: a little later than it is heard of, by as much as updates are late or get lost.
 
-use super::update::TICK_SECS;
+/// Unit of a sender's time, seconds.
+pub(super) const TICK_SECS: f64 = 0.004;
 
 /// Sender's clocks that run slower than ours are followed by so many seconds a second.
 const DRIFT: f64 = 0.01;
@@ -17,9 +18,14 @@ const LONGEST_SECS: f64 = 0.25;
 /// Weight of news.
 const NEWS: f64 = 0.05;
 
+/// After so long a silence any time is a later one, seconds: half of what the ticks count.
+pub(super) const HALF_ROUND_SECS: f64 = 120.0;
+
 /// Sender's time and ours.
+///
+/// A sender tells its time in [ticks](Self::ticks) of 4 ms, which wrap.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clock {
+pub struct ReplicaClock {
     heard: Option<Heard>,
     interval_secs: f64,
     lateness_secs: f64,
@@ -35,8 +41,15 @@ struct Heard {
     offset_secs: f64,
 }
 
-impl Clock {
-    pub(super) const fn new() -> Self {
+impl Default for ReplicaClock {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ReplicaClock {
+    /// One that has heard of nobody.
+    pub const fn new() -> Self {
         Self {
             heard: None,
             interval_secs: INTERVAL_SECS,
@@ -44,8 +57,13 @@ impl Clock {
         }
     }
 
-    /// An update comes at `now_secs` of our time; returns when it was sent, seconds of the sender's time.
-    pub(super) fn hear(&mut self, now_secs: f64, ticks: u16) -> f64 {
+    /// A sender's time in seconds as it is told.
+    pub fn ticks(secs: f64) -> u16 {
+        (secs / TICK_SECS) as u64 as u16
+    }
+
+    /// An update comes at `now_secs` of our time; returns when it was sent, seconds of the sender's time. One that is overtaken by later ones says nothing new of the time.
+    pub fn hear(&mut self, now_secs: f64, ticks: u16) -> f64 {
         let Some(last) = self.heard else {
             self.heard = Some(Heard {
                 ticks,
@@ -55,7 +73,11 @@ impl Clock {
             });
             return 0.0;
         };
-        let passed = f64::from(ticks.wrapping_sub(last.ticks)) * TICK_SECS;
+        let ahead = ticks.wrapping_sub(last.ticks);
+        if ahead.cast_signed() <= 0 && now_secs - last.at_secs < HALF_ROUND_SECS {
+            return last.sent_secs + f64::from(ahead.cast_signed()) * TICK_SECS;
+        }
+        let passed = f64::from(ahead) * TICK_SECS;
         let sent_secs = last.sent_secs + passed;
         let sample = now_secs - sent_secs;
         let drifted = last.offset_secs + DRIFT * (now_secs - last.at_secs).max(0.0);
@@ -83,7 +105,7 @@ impl Clock {
     }
 
     /// Our time at which something is done that the sender did at a time of its own.
-    pub(super) fn due_secs(&self, sent_secs: f64) -> f64 {
+    pub fn due_secs(&self, sent_secs: f64) -> f64 {
         let margin = INTERVALS * self.interval_secs + LATENESSES * self.lateness_secs;
         let [least, most] = MARGIN_SECS;
         let offset = self.heard.map_or(0.0, |heard| heard.offset_secs);
@@ -91,12 +113,12 @@ impl Clock {
     }
 
     /// Our time at which the quickest update tells what the sender does at a time of its own.
-    pub(super) fn quickest_secs(&self, sent_secs: f64) -> f64 {
+    pub fn quickest_secs(&self, sent_secs: f64) -> f64 {
         sent_secs + self.heard.map_or(0.0, |heard| heard.offset_secs)
     }
 
     /// Seconds of ours since the last update.
-    pub(super) fn silent_secs(&self, now_secs: f64) -> f64 {
+    pub fn silent_secs(&self, now_secs: f64) -> f64 {
         self.heard.map_or(0.0, |heard| now_secs - heard.at_secs)
     }
 }
@@ -107,7 +129,7 @@ mod tests {
 
     #[test]
     fn delay_is_that_of_the_quickest_update_and_a_margin() {
-        let mut clock = Clock::new();
+        let mut clock = ReplicaClock::new();
         let mut sent = 0.0;
         for n in 0..600_u32 {
             let late = f64::from(n % 5) * 0.01;
@@ -121,8 +143,17 @@ mod tests {
     }
 
     #[test]
+    fn what_is_overtaken_was_sent_before() {
+        let mut clock = ReplicaClock::new();
+        clock.hear(0.0, 100);
+        let sent = clock.hear(0.05, 112);
+        assert!((clock.hear(0.06, 109) - (sent - 3.0 * TICK_SECS)).abs() < 1e-9);
+        assert!((clock.hear(0.1, 124) - (sent + 12.0 * TICK_SECS)).abs() < 1e-9);
+    }
+
+    #[test]
     fn a_time_that_wraps_goes_on() {
-        let mut clock = Clock::new();
+        let mut clock = ReplicaClock::new();
         clock.hear(0.0, 65_530);
         let sent = clock.hear(0.05, 6);
         assert!((sent - 12.0 * TICK_SECS).abs() < 1e-9, "{sent}");

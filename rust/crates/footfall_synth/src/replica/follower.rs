@@ -2,14 +2,15 @@
 
 mod amended;
 
-use super::clock::Clock;
+use super::clock::ReplicaClock;
 use super::gate::Gate;
-use super::led::{Aim, Beginning};
+use super::led::Beginning;
 use super::queue::{Planning, Queue};
 use super::update::{Planned, WalkUpdate};
 use super::{ReplicaError, WalkIdentity};
 use crate::controls::Controls;
 use crate::generator::{GaitGenerator, MAX_DT_SECS};
+use crate::walker::Aim;
 use footfall_core::{GroundTransform, Pose};
 
 /// Walks go faster or slower by this share at most to keep their time, and by as much of it as makes good what they are late within this time, seconds.
@@ -51,7 +52,7 @@ pub enum Followed {
 #[derive(Clone, Debug)]
 pub struct WalkFollower {
     gate: Gate,
-    clock: Clock,
+    clock: ReplicaClock,
     queue: Queue,
     now_secs: f64,
     /// The last update.
@@ -74,7 +75,7 @@ impl WalkFollower {
     pub fn new(identity: &WalkIdentity) -> Self {
         Self {
             gate: Gate::new(identity.tag()),
-            clock: Clock::new(),
+            clock: ReplicaClock::new(),
             queue: Queue::default(),
             now_secs: 0.0,
             heard: None,

@@ -1,6 +1,7 @@
 //! Guard against what no honest peer sends: other walkers, the past, floods, and places that nobody walks to.
 
 use super::ReplicaError;
+use super::clock::HALF_ROUND_SECS;
 use super::update::WalkUpdate;
 use glam::Vec3;
 
@@ -16,9 +17,6 @@ const WAY_AFTER_SILENCE_M: f32 = 40.0;
 
 /// Share of that by which a sender knows that it will not be believed.
 const SURE: f32 = 0.8;
-
-/// After so long a silence any time is a later one, seconds: half of what the time counts.
-const SILENCE_SECS: f32 = 120.0;
 
 /// Identities that are taken in a second, and at once.
 const IDENTITIES_A_SECOND: f32 = 1.0;
@@ -158,7 +156,7 @@ impl Gate {
         }
         if let Some(last) = self.last_time
             && update.time.wrapping_sub(last).cast_signed() <= 0
-            && self.silent_secs < SILENCE_SECS
+            && f64::from(self.silent_secs) < HALF_ROUND_SECS
         {
             return Err(ReplicaError::Old);
         }

@@ -2,7 +2,6 @@
 
 use super::update::Planned;
 use crate::controls::Controls;
-use crate::footstep::Footstep;
 use crate::gait::{Gait, GaitChoice};
 use crate::generator::{GaitGenerator, GeneratorConfig};
 use crate::obeyed::Obeyed;
@@ -11,34 +10,9 @@ use crate::planting::Aside;
 use crate::standing::Amplitude;
 use crate::steps::{Ask, StepSource as _, Steps};
 use crate::styled::{StyledSteps, walker_of};
-use footfall_core::rotation::{from_heading, wrap_angle};
+use crate::walker::Aim;
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
-
-/// Strides are counted so far; then the count begins anew.
-const STRIDES: u32 = 0x7fff;
-
-/// Strides of chance that are drawn one by one to get to a later one; for more, and for earlier ones, chance begins anew.
-const STRIDES_AHEAD: u32 = 64;
-
-/// A step ends as planned when it ends so near, metres and radians.
-const SAME_PLACE_M: f32 = 0.002;
-const SAME_HEADING_RAD: f32 = 0.004;
-
-/// Way and turn that one step corrects at most, metres and radians.
-const MOST_ASIDE_M: f32 = 0.2;
-const MOST_TURN_RAD: f32 = 0.35;
-
-/// Trials in which a step is made to end where it should: a turn moves its end, too.
-const TRIALS: usize = 2;
-
-/// Aim of a step, seen from where the walk began.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Aim {
-    /// Place of the foot that lands, or of the walker who rests, under the walker's heading.
-    pub(super) place: GroundTransform,
-    pub(super) rests: bool,
-}
 
 /// A walk in the middle of a step.
 #[derive(Clone, Copy, Debug)]
@@ -65,26 +39,17 @@ impl StyledSteps {
 
     /// Takes chance to where it draws the step of this number; returns that.
     fn draw_of(&mut self, config: &GeneratorConfig, number: u16) -> StepDraw {
-        let stride = u32::from(number / 2);
-        let mut ahead = stride.wrapping_sub(self.planner.strides()) & STRIDES;
-        if ahead > STRIDES_AHEAD {
-            self.planner = walker_of(&self.space, config);
-            self.planner.wear(&self.worn.blend.model);
-            ahead = stride;
-        }
-        // Every stride begins with the left foot; the right one draws nothing new.
-        for _ in 0..ahead {
-            self.planner.draw(Side::Left);
-        }
-        let side = if number.is_multiple_of(2) {
-            Side::Left
-        } else {
-            Side::Right
-        };
-        StepDraw {
-            side,
-            ..self.planner.draw(Side::Right)
-        }
+        let Self {
+            planner,
+            space,
+            worn,
+            ..
+        } = self;
+        planner.draw_of(number, || {
+            let mut fresh = walker_of(space, config);
+            fresh.wear(&worn.blend.model);
+            fresh
+        })
     }
 
     /// Starts over in the step of this number; whether it could.
@@ -139,26 +104,10 @@ impl GaitGenerator {
     /// Place where the current step leads, from where the walk began: that of the foot that lands, under the walker's heading. That of a walker who rests is
     /// where it stands.
     pub(super) fn start_from_aim(&self, rests: bool) -> GroundTransform {
-        let end = self.start_from_end();
-        let landing = self.shape().timing.leading.other();
-        let plant = self.steps.source().stage().plant(landing);
-        match plant.filter(|_| !rests) {
-            Some(plant) => GroundTransform {
-                position: Footstep::seen_from(&self.plan_from_start, landing, plant).position,
-                ..end
-            },
-            None => end,
-        }
-    }
-
-    /// Place where the walker is at the end of the current step, from where the walk began.
-    fn start_from_end(&self) -> GroundTransform {
-        let last = self.shape().ground_timing().frames;
-        let frame = &self.steps.source().stage().frames[last];
-        self.plan_from_start.local(&GroundTransform {
-            position: frame.ground_position,
-            heading: frame.ground_heading,
-        })
+        let source = self.steps.source();
+        source
+            .stage()
+            .aim(&self.plan_from_start, self.shape(), rests)
     }
 
     /// Starts over at the origin, in the middle of a step; whether it could.
@@ -236,34 +185,15 @@ impl GaitGenerator {
 
     /// Way and turn from where the current step leads to where it should, seen from the start of the walk.
     pub(super) fn off(&self, aim: &Aim) -> Aside {
-        let own = self.start_from_aim(aim.rests);
-        Aside {
-            way: (aim.place.position - own.position).with_y(0.0),
-            turn: wrap_angle(aim.place.heading - own.heading),
-        }
+        aim.off(&self.start_from_aim(aim.rests))
     }
 
     /// Has the current step, which has just been planned, lead where it should, as far as one step can.
     pub(super) fn aim_at(&mut self, aim: &Aim) {
-        let first = self.off(aim).within(MOST_ASIDE_M, MOST_TURN_RAD);
-        let mut turn = first.turn;
-        let rotation = from_heading(self.plan_from_start.heading);
-        for _ in 0..TRIALS {
-            let off = self.off(aim).within(MOST_ASIDE_M, MOST_TURN_RAD);
-            let near = off.way.length() < SAME_PLACE_M && turn.abs() < SAME_HEADING_RAD;
-            let Some(steps) = self.styled_mut() else {
-                return;
-            };
-            let more = Aside {
-                way: rotation * off.way,
-                turn,
-            };
+        let plan_from_start = self.plan_from_start;
+        if let Some(steps) = self.styled_mut() {
             let (space, walker) = (Arc::clone(&steps.space), &mut steps.walker);
-            if near || !space.at_bench(|bench| walker.step_aside(more, bench)) {
-                return;
-            }
-            // Where the body turns to, it is after the first trial.
-            turn = 0.0;
+            space.at_bench(|bench| walker.aim_at(aim, &plan_from_start, bench));
         }
     }
 

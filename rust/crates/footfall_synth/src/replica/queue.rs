@@ -1,9 +1,9 @@
 //! Steps that were heard of and are still to be made.
 
-use super::led::Aim;
 use super::update::{Planned, WalkUpdate};
 use crate::controls::Controls;
 use crate::generator::GaitGenerator;
+use crate::walker::Aim;
 use footfall_core::GroundTransform;
 
 /// Steps that wait at most; the oldest gives way.

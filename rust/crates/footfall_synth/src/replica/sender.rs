@@ -1,8 +1,9 @@
 //! Messages of a walker to others.
 
+use super::clock::ReplicaClock;
 use super::gate::Way;
 use super::identity::tag;
-use super::update::{Planned, TICK_SECS, UPDATE_BYTES, WalkUpdate};
+use super::update::{Planned, UPDATE_BYTES, WalkUpdate};
 use super::{ReplicaError, WalkIdentity};
 use crate::controls::Controls;
 use crate::gait::{Gait, GaitChoice};
@@ -77,7 +78,7 @@ impl WalkSender {
         let aim = shared_from_start.global(&aim);
         let mut update = WalkUpdate {
             tag: 0,
-            time: (self.secs / TICK_SECS) as u64 as u16,
+            time: ReplicaClock::ticks(self.secs),
             planned: Planned::of(steps.number(), steps.passed()),
             age_frames: generator.position as u8,
             controls: controls(steps, generator),

@@ -29,9 +29,6 @@ pub const UPDATE_BYTES: usize = 24;
 /// Format that this build writes and reads.
 pub(super) const FORMAT: u8 = 1;
 
-/// Unit of the sender's time, seconds.
-pub(super) const TICK_SECS: f64 = 0.004;
-
 const RESTS: u8 = 1;
 const RUNS: u8 = 2;
 const STOPS: u8 = 4;

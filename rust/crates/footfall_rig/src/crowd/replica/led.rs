@@ -1,0 +1,482 @@
+//! A walker that takes the steps of another machine's.
+
+use super::following::Following;
+use super::step::ToldStep;
+use crate::crowd::agent::Agent;
+use footfall_core::rotation::{from_heading, wrap_angle};
+use footfall_synth::{
+    Controls, CrowdWalker, Gait, GaitChoice, GroundTransform, LedAim, LedBeginning, LedStep,
+    Workshop,
+};
+use glam::{Vec2, Vec3};
+
+/// Steps that wait at most; the oldest gives way.
+const ROOM: usize = 4;
+
+/// Walks go faster or slower by this share at most to keep their time, and by as much of it as makes good what they are late within this time, seconds.
+const MOST_HASTE: f64 = 0.12;
+const IN_TIME_SECS: f64 = 0.4;
+
+/// Steps so near to the current one tell whether that is in time: a walk that no news reached for long may be whole steps ahead or late.
+const NEAR_STEPS: u16 = 2;
+
+/// A walk that is farther from its place or later than this begins anew there, metres and seconds.
+const LOST_M: f32 = 3.0;
+const LOST_SECS: f64 = 1.5;
+
+/// A step is no longer begun so long after it was due, for its walker is in the next one, seconds.
+const OVER_SECS: f64 = 0.6;
+
+/// Whoever rests so far from the place steps over to it, metres and radians, after resting for so long, seconds.
+const OFF_M: f32 = 0.04;
+const OFF_RAD: f32 = 0.17;
+const OFF_SECS: f32 = 0.4;
+
+/// Turning that is hardly any: asked of whoever is to step on the spot, rad/s.
+const ON_THE_SPOT_RADPS: f32 = 0.06;
+
+/// Of several steps of which nothing is told each turns by this share of the one before: nobody turns for long.
+const TURNS_ON: f32 = 0.5;
+
+/// A walk that faces elsewhere by more than a step corrects turns towards it, radians, by so much at most, rad/s, and slows down for it. Steps last about so long, seconds.
+const ASTRAY_RAD: f32 = 0.6;
+const TURNS_BACK_RADPS: f32 = 1.3;
+const STEP_SECS: f32 = 0.55;
+
+/// A step, as it was told.
+#[derive(Clone, Copy, Debug)]
+struct Planning {
+    number: u16,
+    /// The sender's time when it began, seconds.
+    at_secs: f64,
+    controls: Controls,
+    rests: bool,
+    /// Place where it leads, or the walker rests, in the crowd's space.
+    aim: GroundTransform,
+}
+
+/// Knowledge of another machine's walker.
+#[derive(Debug)]
+pub(in crate::crowd) struct Led {
+    /// Steps that are not taken yet, the first one first.
+    steps: [Option<Planning>; ROOM],
+    /// The one that was heard last, which may have been taken.
+    last: Option<Planning>,
+    /// The one that is taken.
+    made: Option<Planning>,
+    /// Number of a step, and the position of chance in it.
+    chance: (u16, u64),
+    /// The walker, until it knows where to begin.
+    walker: Option<CrowdWalker>,
+    is_lost: bool,
+    /// Since the walker came to rest, seconds.
+    rested_secs: f32,
+}
+
+/// A walk's place in the space of its crowd.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    crowd_from_start: GroundTransform,
+    size: f32,
+}
+
+impl Start {
+    /// A place of the crowd's space, as it is seen from where the walk began.
+    fn local(&self, place: &GroundTransform) -> GroundTransform {
+        let seen = self.crowd_from_start.local(place);
+        GroundTransform {
+            position: seen.position / self.size,
+            ..seen
+        }
+    }
+
+    fn global(&self, seen: &GroundTransform) -> GroundTransform {
+        self.crowd_from_start.global(&GroundTransform {
+            position: seen.position * self.size,
+            ..*seen
+        })
+    }
+}
+
+impl Led {
+    /// Somebody who is not made yet, and has chance there in the step of this number.
+    pub(super) fn new(number: u16, chance_position: u64) -> Self {
+        Self {
+            steps: [None; ROOM],
+            last: None,
+            made: None,
+            chance: (number, chance_position),
+            walker: None,
+            is_lost: false,
+            rested_secs: 0.0,
+        }
+    }
+
+    /// Waits with a walker until it knows where to begin.
+    pub(in crate::crowd) fn wait(&mut self, walker: CrowdWalker) {
+        self.walker = Some(walker);
+    }
+
+    /// The walker that waits.
+    pub(in crate::crowd) fn waiting(&mut self) -> Option<&mut CrowdWalker> {
+        self.walker.as_mut()
+    }
+
+    /// Returns true where the walker is to begin, or to begin anew.
+    pub(in crate::crowd) const fn is_waiting(&self) -> bool {
+        self.walker.is_some() || self.is_lost
+    }
+
+    /// Hears of a step, as it was sent at this time of the sender's.
+    pub(super) fn hear(&mut self, step: &ToldStep, sent_secs: f64) {
+        let planning = Planning {
+            number: step.number,
+            at_secs: sent_secs - f64::from(step.age_secs),
+            controls: step.controls,
+            rests: step.rests,
+            aim: step.aim,
+        };
+        let Some(last) = self.last else {
+            self.push(planning);
+            return;
+        };
+        if planning.at_secs < last.at_secs && planning.number != last.number {
+            // Overtaken by later ones.
+            return;
+        }
+        if planning.number != last.number {
+            self.push(planning);
+        } else if planning.rests && !last.rests {
+            // The step is over; who has not taken it comes to rest there at once.
+            self.last = Some(planning);
+        }
+    }
+
+    fn push(&mut self, planning: Planning) {
+        self.last = Some(planning);
+        if self.steps[ROOM - 1].is_some() {
+            self.take();
+        }
+        if let Some(free) = self.steps.iter_mut().find(|step| step.is_none()) {
+            *free = Some(planning);
+        }
+    }
+
+    /// The step that waits longest.
+    const fn first(&self) -> Option<&Planning> {
+        self.steps[0].as_ref()
+    }
+
+    fn take(&mut self) -> Option<Planning> {
+        let taken = self.steps[0].take();
+        self.steps.rotate_left(1);
+        taken
+    }
+
+    /// The latest step that is due and not over.
+    fn due(&mut self, now: &Now<'_>) -> Option<Planning> {
+        let mut due = None;
+        while let Some(next) = self.first().filter(|next| now.late_secs(next) >= 0.0) {
+            due = Some(*next);
+            self.take();
+        }
+        let resting = self
+            .last
+            .filter(|last| last.rests && self.first().is_none());
+        due.filter(|due| now.late_secs(due) < OVER_SECS).or(resting)
+    }
+
+    /// The step that follows when the current one is over.
+    fn next(&mut self, walker: &CrowdWalker, now: &Now<'_>) -> Option<LedStep> {
+        let number = walker.number();
+        let natural = number.wrapping_add(1);
+        if walker.comes_to_rest() {
+            return self.leave_rest(walker, now);
+        }
+        let mut moved = LedAim::None;
+        while let Some(next) = self.first().copied() {
+            let steps = next.number.wrapping_sub(natural).cast_signed();
+            if steps > 0 {
+                break;
+            }
+            self.made = self.take();
+            if steps == 0 {
+                return Some(next.step(natural, walker, now));
+            }
+            // It came too late to be taken: what the walker is off by now, the next step makes good.
+            if steps == -1
+                && let Some(own) = walker.start_from_aim()
+            {
+                let aim = now.start.local(&next.aim);
+                moved = LedAim::Moved(aim.global(&own.local(&GroundTransform::default())));
+            }
+        }
+        if let Some(made) = self.made.as_mut().filter(|made| made.number != number) {
+            made.controls.turn_rate_radps *= TURNS_ON;
+        }
+        let stands = now.is_silent || self.last.is_some_and(|last| last.rests);
+        Some(LedStep {
+            number: natural,
+            controls: if stands && self.first().is_none() {
+                Controls::STAND
+            } else {
+                self.made.map_or(Controls::STAND, |made| made.controls)
+            },
+            aim: match self.last {
+                Some(last) if last.rests && self.first().is_none() => {
+                    LedAim::Rest(now.start.local(&last.aim))
+                }
+                _ => moved,
+            },
+        })
+    }
+
+    /// The step with which a walker leaves its rest, if it is time.
+    fn leave_rest(&mut self, walker: &CrowdWalker, now: &Now<'_>) -> Option<LedStep> {
+        let natural = walker.number().wrapping_add(1);
+        self.rested_secs += now.dt_secs;
+        while let Some(next) = self.first().filter(|next| now.late_secs(next) >= 0.0) {
+            let next = *next;
+            self.made = self.take();
+            if !next.controls.is_standing() {
+                self.rested_secs = 0.0;
+                // Whoever stands can go off with either foot.
+                return Some(next.step(next.number, walker, now));
+            }
+        }
+        let resting = self
+            .last
+            .filter(|last| last.rests && self.first().is_none())?;
+        let aim = now.start.local(&resting.aim);
+        let own = walker.start_from_character();
+        let turn = wrap_angle(aim.heading - own.heading);
+        let far = (aim.position - own.position).with_y(0.0).length();
+        if (far < OFF_M && turn.abs() < OFF_RAD) || self.rested_secs < OFF_SECS {
+            return None;
+        }
+        self.rested_secs = 0.0;
+        Some(LedStep {
+            number: natural,
+            controls: Controls {
+                turn_rate_radps: ON_THE_SPOT_RADPS.copysign(turn),
+                ..Controls::STAND
+            },
+            aim: LedAim::Rest(aim),
+        })
+    }
+
+    /// Share by which the walk has to go faster to be in time.
+    fn haste(&self, walker: &CrowdWalker, now: &Now<'_>) -> f64 {
+        if walker.is_standing() {
+            return 0.0;
+        }
+        let passed_secs = walker.secs_of_step();
+        let step_secs = passed_secs + walker.secs_to_next_step();
+        let late_secs = |step: &Planning| {
+            let ahead = step.number.wrapping_sub(walker.number()).cast_signed();
+            let begins_secs = f32::from(ahead) * step_secs - passed_secs;
+            let own_secs = now.start.size.sqrt() * begins_secs;
+            (ahead.unsigned_abs() <= NEAR_STEPS).then(|| now.late_secs(step) + f64::from(own_secs))
+        };
+        let mut known = [self.first(), self.made.as_ref()].into_iter().flatten();
+        let late_secs = known.find_map(late_secs).unwrap_or(0.0);
+        (late_secs / IN_TIME_SECS).clamp(-MOST_HASTE, MOST_HASTE)
+    }
+
+    /// Returns true when a walker is too far from where it should be to walk there.
+    fn loses(&self, walker: &CrowdWalker, now: &Now<'_>) -> bool {
+        let late = self
+            .first()
+            .is_some_and(|next| now.late_secs(next) > LOST_SECS);
+        let off = if walker.is_standing() {
+            let rests = self.last.filter(|last| last.rests);
+            rests.map(|last| (last.aim, walker.start_from_character()))
+        } else {
+            let made = self.made.filter(|made| made.number == walker.number());
+            made.zip(walker.start_from_aim())
+                .map(|(made, own)| (made.aim, own))
+        };
+        let off = off.map_or(0.0, |(aim, own)| {
+            let off = aim.position - now.start.global(&own).position;
+            off.with_y(0.0).length()
+        });
+        late || off > LOST_M
+    }
+}
+
+impl Planning {
+    /// The step as it is taken, by another number where feet ask for that.
+    fn step(&self, number: u16, walker: &CrowdWalker, now: &Now<'_>) -> LedStep {
+        let aim = now.start.local(&self.aim);
+        let mut controls = self.controls;
+        let turn = wrap_angle(aim.heading - walker.start_from_character().heading);
+        let off = turn - STEP_SECS * controls.turn_rate_radps;
+        if off.abs() > ASTRAY_RAD && !controls.is_standing() {
+            controls.turn_rate_radps += off.clamp(-TURNS_BACK_RADPS, TURNS_BACK_RADPS);
+            controls.speed_mps *= (1.2 - off.abs()).clamp(0.25, 1.0);
+        }
+        LedStep {
+            number,
+            controls,
+            aim: if self.rests {
+                LedAim::Rest(aim)
+            } else {
+                LedAim::Place(aim)
+            },
+        }
+    }
+}
+
+/// The moment in which a walker is led.
+struct Now<'a> {
+    secs: f64,
+    dt_secs: f32,
+    following: &'a Following,
+    is_silent: bool,
+    start: Start,
+}
+
+impl Now<'_> {
+    /// Seconds since a step was due.
+    fn late_secs(&self, step: &Planning) -> f64 {
+        self.secs - self.following.due_secs(step.at_secs)
+    }
+}
+
+impl Agent {
+    /// The step that it takes, or the place where it rests, for others; nothing before it is made, and while it shares steps.
+    pub(super) fn told(&self, name: i32, now_secs: f64) -> Option<ToldStep> {
+        let walker = self.walker.as_ref().filter(|_| self.takes_own_steps())?;
+        let rests = walker.is_standing();
+        let start_from_aim = if rests {
+            walker.start_from_character()
+        } else {
+            walker.start_from_aim()?
+        };
+        let aim = self.start().global(&start_from_aim);
+        let secs = walker.secs_of_step() * self.size.sqrt();
+        let stops = walker.comes_to_rest();
+        let turn_rate_radps = self.controls.turn_rate_radps;
+        let (row, turn) = ToldStep::row_and_turn(name);
+        Some(ToldStep {
+            row,
+            turn,
+            number: walker.number(),
+            age_secs: secs + (now_secs - self.clock_secs) as f32,
+            controls: if stops {
+                Controls::STAND
+            } else {
+                Controls {
+                    speed_mps: walker.speed_mps(),
+                    turn_rate_radps,
+                    gait: match walker.gait() {
+                        Gait::Walk => GaitChoice::Walk,
+                        Gait::Run => GaitChoice::Run,
+                    },
+                    ..Controls::STAND
+                }
+            },
+            rests,
+            aim: GroundTransform {
+                position: aim.position.with_y(self.ground_m),
+                ..aim
+            },
+        })
+    }
+
+    /// Begins to walk where it should, if it is led, waits, and knows where.
+    pub(in crate::crowd) fn begin_led(
+        &mut self,
+        following: &Following,
+        now_secs: f64,
+        workshop: &mut Workshop,
+    ) {
+        if !self.led.as_ref().is_some_and(|led| led.is_waiting()) {
+            return;
+        }
+        let now = self.now(following, now_secs, 0.0);
+        let Some(led) = &mut self.led else { return };
+        let lost = led.is_lost;
+        let Some(due) = led.due(&now) else { return };
+        let Some(mut walker) = led.walker.take().or(self.walker.take()) else {
+            return;
+        };
+        if !lost {
+            let (number, chance_position) = led.chance;
+            walker.take_chance(number, chance_position);
+        }
+        led.is_lost = false;
+        led.made = Some(due);
+        let secs = now.late_secs(&due) as f32 / self.size.sqrt();
+        let of_step = walker.secs_of_step() + walker.secs_to_next_step();
+        walker.begin_led(
+            &LedBeginning {
+                number: due.number,
+                share: secs / of_step,
+                controls: due.controls,
+                rests: due.rests || due.controls.is_standing(),
+            },
+            workshop,
+        );
+        let own = walker.start_from_aim().filter(|_| !due.rests);
+        let own = own.unwrap_or_default();
+        let start_from_aim = own.local(&GroundTransform::default());
+        let place = due.aim.global(&GroundTransform {
+            position: start_from_aim.position * self.size,
+            ..start_from_aim
+        });
+        self.ground_m = due.aim.position.y;
+        self.place = place.position.with_y(self.ground_m);
+        self.heading = place.heading;
+        self.walker = Some(walker);
+        self.walked = GroundTransform::default();
+        self.velocity = Vec2::ZERO;
+        self.clock_secs = now_secs;
+    }
+
+    /// Lets time pass in the steps of another machine's walker.
+    pub(in crate::crowd) fn follow(
+        &mut self,
+        dt_secs: f32,
+        following: &Following,
+        workshop: &mut Workshop,
+    ) {
+        let now = self.now(following, self.clock_secs, dt_secs);
+        let Some(mut led) = self.led.take() else {
+            return;
+        };
+        self.travel(dt_secs, |walker, secs| {
+            let pace = 1.0 + led.haste(walker, &now) as f32;
+            walker.step_led(secs * pace, workshop, |walker| led.next(walker, &now));
+            led.is_lost = led.loses(walker, &now);
+        });
+        if let Some(made) = led.made {
+            self.controls = made.controls;
+            self.ground_m = made.aim.position.y;
+        }
+        self.led = Some(led);
+    }
+
+    fn now<'a>(&self, following: &'a Following, secs: f64, dt_secs: f32) -> Now<'a> {
+        Now {
+            secs,
+            dt_secs,
+            following,
+            is_silent: following.is_silent(secs),
+            start: self.start(),
+        }
+    }
+
+    /// Place of its walk in the crowd's space.
+    fn start(&self) -> Start {
+        let heading = self.heading - self.walked.heading;
+        let from_start = from_heading(heading) * (self.walked.position * self.size);
+        Start {
+            crowd_from_start: GroundTransform {
+                position: (self.place - from_start) * Vec3::new(1.0, 0.0, 1.0),
+                heading,
+            },
+            size: self.size,
+        }
+    }
+}

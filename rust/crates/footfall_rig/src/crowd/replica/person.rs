@@ -1,0 +1,89 @@
+//! The form in which a walker is introduced: who it is, how it looks, and the step that it is in.
+
+use super::step::{STEP_BYTES, ToldStep};
+use crate::crowd::agent::Agent;
+use crate::crowd::kit::Outfit;
+use footfall_core::hash::fnv1a;
+use footfall_synth::CrowdWalker;
+use serde::{Deserialize, Serialize};
+
+/// Units of sizes, speeds and tints.
+const SIZE_UNITS: f32 = 4096.0;
+const SPEED_UNITS: f32 = 1000.0;
+const TINT_UNITS: f32 = 4096.0;
+
+/// Sizes of walkers.
+const SIZES: core::ops::Range<f32> = 0.05..16.0;
+
+/// Styles of one walker.
+const MOST_STYLES: usize = 64;
+
+/// A walker as it is introduced.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Person {
+    name: u32,
+    pub(super) seed: u64,
+    /// Position of its chance in the step that it is in.
+    pub(super) chance_position: u64,
+    size: u16,
+    speed: u16,
+    tint: [u16; 4],
+    outfit: Vec<i8>,
+    step: [u8; STEP_BYTES],
+}
+
+fn told(number: f32, units: f32) -> u16 {
+    (number * units).round() as u16
+}
+
+impl Person {
+    /// The walker of this name, in a step that was packed.
+    pub(super) fn of(name: i32, agent: &Agent, step: [u8; STEP_BYTES]) -> Self {
+        let walker = agent.walker.as_ref();
+        Self {
+            name: name.cast_unsigned(),
+            seed: agent.seed,
+            chance_position: walker.map_or(0, CrowdWalker::chance_position),
+            size: told(agent.size, SIZE_UNITS),
+            speed: told(agent.speed_mps, SPEED_UNITS),
+            tint: agent.tint.map(|part| told(part, TINT_UNITS)),
+            outfit: agent.outfit.parts().to_vec(),
+            step,
+        }
+    }
+
+    /// A number that is another when it is introduced as another, or looks otherwise.
+    pub(super) fn look(agent: &Agent) -> u64 {
+        let numbers = agent.tint.iter().chain([&agent.size]);
+        let numbers = numbers.flat_map(|number| number.to_bits().to_le_bytes());
+        let seed = agent.seed.to_le_bytes();
+        let parts = agent.outfit.parts().iter().map(|part| part.cast_unsigned());
+        fnv1a(seed.into_iter().chain(numbers).chain(parts))
+    }
+
+    /// Its name and the step that it is in, if it can be.
+    pub(super) fn checked(&self) -> Option<(i32, ToldStep)> {
+        let name = i32::try_from(self.name).ok()?;
+        let step = ToldStep::unpack(&self.step);
+        let sensible = SIZES.contains(&self.size())
+            && self.outfit.len() <= MOST_STYLES
+            && (step.row, step.turn) == ToldStep::row_and_turn(name);
+        sensible.then_some((name, step))
+    }
+
+    fn size(&self) -> f32 {
+        f32::from(self.size) / SIZE_UNITS
+    }
+
+    /// Weights of the styles that it wears, of so many.
+    pub(super) fn outfit(&self, styles: usize) -> Outfit {
+        Outfit::of_parts(&self.outfit[..self.outfit.len().min(styles)])
+    }
+
+    /// Makes a walker look so.
+    pub(super) fn dress(&self, agent: &mut Agent) {
+        agent.size = self.size();
+        agent.speed_mps = f32::from(self.speed) / SPEED_UNITS;
+        agent.tint = self.tint.map(|part| f32::from(part) / TINT_UNITS);
+    }
+}
