@@ -53,8 +53,8 @@
 //!
 //! # Crowds
 //!
-//! A [`CrowdSender`] tells a whole [`Crowd`](crate::crowd::Crowd) to others: who is in it, reliably, and [`STEP_BYTES`] a walker and step, as many as a budget allows. There the
-//! crowd [follows](crate::crowd::Crowd::follow): walkers have the same names, and take the same steps a third of a second after they are heard of.
+//! A [`CrowdSender`] sends a whole [`Crowd`](crate::crowd::Crowd) to other peers as [`CrowdMessage`]s: its walkers, reliably, and [`STEP_BYTES`] for each walker and step, as many as a budget
+//! allows. There, the crowd [follows](crate::crowd::Crowd::follow): its walkers have the same names, and take the same steps a third of a second after the messages arrive.
 //!
 //! ```
 //! use footfall::crowd::{Crowd, CrowdRecipe, CrowdSettings, Way};
@@ -68,14 +68,14 @@
 //! let recipe = CrowdRecipe { body: model.skeleton.clone(), model, styles: Vec::new(), space: None };
 //! let wander = Way::Wander { half: Vec2::splat(20.0) };
 //!
-//! // Here: a crowd that wanders, and a peer who wants to see it.
+//! // Here: a crowd that wanders, and a peer that shows it.
 //! let mut here = Crowd::new(recipe.clone(), wander, CrowdSettings::default());
 //! here.set_count(20);
 //! here.repeats = false;
 //! let mut sender = CrowdSender::new(1);
 //! sender.join(2);
 //!
-//! // There: the same, by another's will.
+//! // There: the crowd that follows.
 //! let mut there = Crowd::new(recipe, Way::Told, CrowdSettings::default());
 //! there.follow();
 //! for _ in 0..180 {
@@ -91,7 +91,7 @@
 //! }
 //! assert_eq!(here.names().count(), there.names().count());
 //! for (one, other) in here.agents().iter().zip(there.agents()) {
-//!     // As far behind as it is later.
+//!     // Steps are shown later, so that walkers are behind by their way in that time.
 //!     assert!(one.place.distance(other.place) < 0.9, "{} {}", one.place, other.place);
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
