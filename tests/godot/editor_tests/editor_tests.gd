@@ -79,7 +79,7 @@ func _test_dock(dock: Node) -> void:
 	_check(dock.call(&"is_working"), "it works in the background")
 	dock.call(&"cancel")
 	await _until(func() -> bool: return not dock.call(&"is_working"), "cancelling")
-	_check(dock.call(&"get_message").contains("cancelled"), "it says that it was cancelled: " + dock.call(&"get_message"))
+	_check(dock.call(&"get_message").contains("stopped"), "it says that it was cancelled: " + dock.call(&"get_message"))
 	_check(not FileAccess.file_exists(STYLE), "nothing was written")
 
 	dock.call(&"make")
