@@ -6,12 +6,14 @@
 //!
 //! Places are those of the crowd's own space, which all machines put in the same place.
 
+mod agent;
 mod error;
 mod following;
 mod led;
 mod message;
 mod person;
 mod sender;
+mod start;
 mod step;
 mod untold;
 

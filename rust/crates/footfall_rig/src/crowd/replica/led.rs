@@ -1,14 +1,10 @@
 //! A walker that takes the steps of another machine's.
 
 use super::following::Following;
+use super::start::Start;
 use super::step::ToldStep;
-use crate::crowd::agent::Agent;
-use footfall_core::rotation::{from_heading, wrap_angle};
-use footfall_synth::{
-    Controls, CrowdWalker, Gait, GaitChoice, GroundTransform, LedAim, LedBeginning, LedStep,
-    Workshop,
-};
-use glam::{Vec2, Vec3};
+use footfall_core::rotation::wrap_angle;
+use footfall_synth::{Controls, CrowdWalker, GroundTransform, LedAim, LedStep};
 
 /// Steps that wait at most; the oldest gives way.
 const ROOM: usize = 4;
@@ -45,14 +41,14 @@ const STEP_SECS: f32 = 0.55;
 
 /// A step, as it was told.
 #[derive(Clone, Copy, Debug)]
-struct Planning {
-    number: u16,
+pub(super) struct Planning {
+    pub(super) number: u16,
     /// The sender's time when it began, seconds.
     at_secs: f64,
-    controls: Controls,
-    rests: bool,
+    pub(super) controls: Controls,
+    pub(super) rests: bool,
     /// Place where it leads, or the walker rests, in the crowd's space.
-    aim: GroundTransform,
+    pub(super) aim: GroundTransform,
 }
 
 /// Knowledge of another machine's walker.
@@ -63,39 +59,14 @@ pub(in crate::crowd) struct Led {
     /// The one that was heard last, which may have been taken.
     last: Option<Planning>,
     /// The one that is taken.
-    made: Option<Planning>,
+    pub(super) made: Option<Planning>,
     /// Number of a step, and the position of chance in it.
-    chance: (u16, u64),
+    pub(super) chance: (u16, u64),
     /// The walker, until it knows where to begin.
-    walker: Option<CrowdWalker>,
-    is_lost: bool,
+    pub(super) walker: Option<CrowdWalker>,
+    pub(super) is_lost: bool,
     /// Since the walker came to rest, seconds.
     rested_secs: f32,
-}
-
-/// A walk's place in the space of its crowd.
-#[derive(Clone, Copy, Debug)]
-struct Start {
-    crowd_from_start: GroundTransform,
-    size: f32,
-}
-
-impl Start {
-    /// A place of the crowd's space, as it is seen from where the walk began.
-    fn local(&self, place: &GroundTransform) -> GroundTransform {
-        let seen = self.crowd_from_start.local(place);
-        GroundTransform {
-            position: seen.position / self.size,
-            ..seen
-        }
-    }
-
-    fn global(&self, seen: &GroundTransform) -> GroundTransform {
-        self.crowd_from_start.global(&GroundTransform {
-            position: seen.position * self.size,
-            ..*seen
-        })
-    }
 }
 
 impl Led {
@@ -174,7 +145,7 @@ impl Led {
     }
 
     /// The latest step that is due and not over.
-    fn due(&mut self, now: &Now<'_>) -> Option<Planning> {
+    pub(super) fn due(&mut self, now: &Now<'_>) -> Option<Planning> {
         let mut due = None;
         while let Some(next) = self.first().filter(|next| now.late_secs(next) >= 0.0) {
             due = Some(*next);
@@ -187,7 +158,7 @@ impl Led {
     }
 
     /// The step that follows when the current one is over.
-    fn next(&mut self, walker: &CrowdWalker, now: &Now<'_>) -> Option<LedStep> {
+    pub(super) fn next(&mut self, walker: &CrowdWalker, now: &Now<'_>) -> Option<LedStep> {
         let number = walker.number();
         let natural = number.wrapping_add(1);
         if walker.comes_to_rest() {
@@ -266,7 +237,7 @@ impl Led {
     }
 
     /// Share by which the walk has to go faster to be in time.
-    fn haste(&self, walker: &CrowdWalker, now: &Now<'_>) -> f64 {
+    pub(super) fn haste(&self, walker: &CrowdWalker, now: &Now<'_>) -> f64 {
         if walker.is_standing() {
             return 0.0;
         }
@@ -284,7 +255,7 @@ impl Led {
     }
 
     /// Returns true when a walker is too far from where it should be to walk there.
-    fn loses(&self, walker: &CrowdWalker, now: &Now<'_>) -> bool {
+    pub(super) fn loses(&self, walker: &CrowdWalker, now: &Now<'_>) -> bool {
         let late = self
             .first()
             .is_some_and(|next| now.late_secs(next) > LOST_SECS);
@@ -328,155 +299,17 @@ impl Planning {
 }
 
 /// The moment in which a walker is led.
-struct Now<'a> {
-    secs: f64,
-    dt_secs: f32,
-    following: &'a Following,
-    is_silent: bool,
-    start: Start,
+pub(super) struct Now<'a> {
+    pub(super) secs: f64,
+    pub(super) dt_secs: f32,
+    pub(super) following: &'a Following,
+    pub(super) is_silent: bool,
+    pub(super) start: Start,
 }
 
 impl Now<'_> {
     /// Seconds since a step was due.
-    fn late_secs(&self, step: &Planning) -> f64 {
+    pub(super) fn late_secs(&self, step: &Planning) -> f64 {
         self.secs - self.following.due_secs(step.at_secs)
-    }
-}
-
-impl Agent {
-    /// The step that it takes, or the place where it rests, for others; nothing before it is made, and while it shares steps.
-    pub(super) fn told(&self, name: i32, now_secs: f64) -> Option<ToldStep> {
-        let walker = self.walker.as_ref().filter(|_| self.takes_own_steps())?;
-        let rests = walker.is_standing();
-        let start_from_aim = if rests {
-            walker.start_from_character()
-        } else {
-            walker.start_from_aim()?
-        };
-        let aim = self.start().global(&start_from_aim);
-        let secs = walker.secs_of_step() * self.size.sqrt();
-        let stops = walker.comes_to_rest();
-        let turn_rate_radps = self.controls.turn_rate_radps;
-        let (row, turn) = ToldStep::row_and_turn(name);
-        Some(ToldStep {
-            row,
-            turn,
-            number: walker.number(),
-            age_secs: secs + (now_secs - self.clock_secs) as f32,
-            controls: if stops {
-                Controls::STAND
-            } else {
-                Controls {
-                    speed_mps: walker.speed_mps(),
-                    turn_rate_radps,
-                    gait: match walker.gait() {
-                        Gait::Walk => GaitChoice::Walk,
-                        Gait::Run => GaitChoice::Run,
-                    },
-                    ..Controls::STAND
-                }
-            },
-            rests,
-            aim: GroundTransform {
-                position: aim.position.with_y(self.ground_m),
-                ..aim
-            },
-        })
-    }
-
-    /// Begins to walk where it should, if it is led, waits, and knows where.
-    pub(in crate::crowd) fn begin_led(
-        &mut self,
-        following: &Following,
-        now_secs: f64,
-        workshop: &mut Workshop,
-    ) {
-        if !self.led.as_ref().is_some_and(|led| led.is_waiting()) {
-            return;
-        }
-        let now = self.now(following, now_secs, 0.0);
-        let Some(led) = &mut self.led else { return };
-        let lost = led.is_lost;
-        let Some(due) = led.due(&now) else { return };
-        let Some(mut walker) = led.walker.take().or(self.walker.take()) else {
-            return;
-        };
-        if !lost {
-            let (number, chance_position) = led.chance;
-            walker.take_chance(number, chance_position);
-        }
-        led.is_lost = false;
-        led.made = Some(due);
-        let secs = now.late_secs(&due) as f32 / self.size.sqrt();
-        let of_step = walker.secs_of_step() + walker.secs_to_next_step();
-        walker.begin_led(
-            &LedBeginning {
-                number: due.number,
-                share: secs / of_step,
-                controls: due.controls,
-                rests: due.rests || due.controls.is_standing(),
-            },
-            workshop,
-        );
-        let own = walker.start_from_aim().filter(|_| !due.rests);
-        let own = own.unwrap_or_default();
-        let start_from_aim = own.local(&GroundTransform::default());
-        let place = due.aim.global(&GroundTransform {
-            position: start_from_aim.position * self.size,
-            ..start_from_aim
-        });
-        self.ground_m = due.aim.position.y;
-        self.place = place.position.with_y(self.ground_m);
-        self.heading = place.heading;
-        self.walker = Some(walker);
-        self.walked = GroundTransform::default();
-        self.velocity = Vec2::ZERO;
-        self.clock_secs = now_secs;
-    }
-
-    /// Lets time pass in the steps of another machine's walker.
-    pub(in crate::crowd) fn follow(
-        &mut self,
-        dt_secs: f32,
-        following: &Following,
-        workshop: &mut Workshop,
-    ) {
-        let now = self.now(following, self.clock_secs, dt_secs);
-        let Some(mut led) = self.led.take() else {
-            return;
-        };
-        self.travel(dt_secs, |walker, secs| {
-            let pace = 1.0 + led.haste(walker, &now) as f32;
-            walker.step_led(secs * pace, workshop, |walker| led.next(walker, &now));
-            led.is_lost = led.loses(walker, &now);
-        });
-        if let Some(made) = led.made {
-            self.controls = made.controls;
-            self.ground_m = made.aim.position.y;
-        }
-        self.led = Some(led);
-    }
-
-    fn now<'a>(&self, following: &'a Following, secs: f64, dt_secs: f32) -> Now<'a> {
-        Now {
-            secs,
-            dt_secs,
-            following,
-            is_silent: following.is_silent(secs),
-            start: self.start(),
-        }
-    }
-
-    /// Place of its walk in the crowd's space.
-    fn start(&self) -> Start {
-        let heading = self.heading - self.walked.heading;
-        let from_start = from_heading(heading) * (self.walked.position * self.size);
-        Start {
-            crowd_from_start: GroundTransform {
-                position: (self.place - from_start) * Vec3::new(1.0, 0.0, 1.0),
-                heading,
-            },
-            size: self.size,
-        }
     }
 }

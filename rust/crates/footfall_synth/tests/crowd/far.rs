@@ -1,41 +1,9 @@
 //! Walkers of a crowd far away, who share steps: as fast as those near by, without jumps, on feet that stay.
 
-#![expect(clippy::unwrap_used, reason = "tests may fail")]
-#![expect(clippy::disallowed_methods, reason = "the shipped walk is a file")]
-
-use footfall_core::{Joint, Skeleton};
-use footfall_model::GaitModel;
-use footfall_synth::{
-    Controls, CrowdPose, CrowdWalker, GeneratorConfig, StyleSpace, StyledBody, Workshop,
-};
+use super::{DT, config, styled};
+use footfall_core::Joint;
+use footfall_synth::{Controls, CrowdPose, CrowdWalker, StyledBody, Workshop};
 use glam::Vec3;
-use std::sync::{Arc, OnceLock};
-
-const DT: f32 = 1.0 / 60.0;
-
-fn space() -> &'static Arc<StyleSpace> {
-    static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
-    SPACE.get_or_init(|| {
-        let path = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../../addons/footfall/models/locomotion.footfall"
-        );
-        let model = GaitModel::from_bytes(&std::fs::read(path).unwrap()).unwrap();
-        Arc::new(StyleSpace::new(&Arc::new(model), &[]).unwrap())
-    })
-}
-
-fn styled() -> StyledBody {
-    StyledBody::new(space(), &[], &Skeleton::standard()).unwrap()
-}
-
-fn config(seed: u64, phase: f32, variation: f32) -> GeneratorConfig {
-    GeneratorConfig {
-        seed,
-        phase,
-        variation,
-    }
-}
 
 /// The way and the mean speed of a walker, after it has settled, who shares steps or takes its own.
 fn mean_speed(seed: u64, speed_mps: f32, shares: bool, workshop: &mut Workshop) -> f32 {

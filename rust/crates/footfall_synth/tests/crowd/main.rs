@@ -3,6 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 #![expect(clippy::disallowed_methods, reason = "the shipped walk is a file")]
 
+mod far;
+
 use core::f32::consts::TAU;
 use footfall_core::{Joint, ModelPose, Pose, Skeleton, forward_kinematics};
 use footfall_model::GaitModel;
@@ -13,9 +15,9 @@ use footfall_synth::{
 use glam::Vec3;
 use std::sync::{Arc, OnceLock};
 
-const DT: f32 = 1.0 / 60.0;
+pub(crate) const DT: f32 = 1.0 / 60.0;
 
-fn space() -> &'static Arc<StyleSpace> {
+pub(crate) fn space() -> &'static Arc<StyleSpace> {
     static SPACE: OnceLock<Arc<StyleSpace>> = OnceLock::new();
     SPACE.get_or_init(|| {
         let path = concat!(
@@ -27,11 +29,11 @@ fn space() -> &'static Arc<StyleSpace> {
     })
 }
 
-fn styled() -> StyledBody {
+pub(crate) fn styled() -> StyledBody {
     StyledBody::new(space(), &[], &Skeleton::standard()).unwrap()
 }
 
-fn config(seed: u64, phase: f32, variation: f32) -> GeneratorConfig {
+pub(crate) fn config(seed: u64, phase: f32, variation: f32) -> GeneratorConfig {
     GeneratorConfig {
         seed,
         phase,
