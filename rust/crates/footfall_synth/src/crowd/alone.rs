@@ -1,6 +1,6 @@
 //! A walker who goes on alone from the end of a step that it shared.
 
-use super::frames::{CrowdFrames, CrowdPlace, POSE_NUMBERS};
+use super::frames::{CrowdPlace, POSE_NUMBERS};
 use super::own::{Chance, OwnWalk, variation};
 use super::rest::Rest;
 use super::shared::Shared;
@@ -66,23 +66,10 @@ impl OwnWalk {
         config: &GeneratorConfig,
         shared: &Shared,
     ) -> Self {
+        let step = (shared.ending.clone(), shared.shape);
         Self {
-            config: *config,
-            styled: styled.clone(),
-            walker: [0.0; MAX_COMPONENTS],
-            chance: Chance::default(),
-            ending: Box::new(shared.ending.clone()),
-            shape: shared.shape,
             detail: Detail::Quarter,
-            position: 0.0,
-            frame_rate_hz: styled.0.space.model().frame_rate_hz as f32,
-            frames: CrowdFrames::default(),
-            landing: None,
-            plan_from_start: GroundTransform::default(),
-            footstep: None,
-            life: None,
-            rest: None,
-            even: false,
+            ..Self::before(styled, config, [0.0; MAX_COMPONENTS], step)
         }
     }
 }

@@ -119,22 +119,8 @@ impl OwnWalk {
             arrival: Arrival::default(),
         };
         let mut made = Self {
-            config: *config,
-            styled: styled.clone(),
-            walker: *planner.walker(),
-            chance: Chance::default(),
-            ending: Box::new(ending),
-            shape: *walker.step(),
-            detail: Detail::Full,
-            position: 0.0,
-            frame_rate_hz: styled.0.space.model().frame_rate_hz as f32,
-            frames: CrowdFrames::default(),
-            landing: None,
-            plan_from_start: GroundTransform::default(),
-            footstep: None,
             life: Life::new(&styled.0.space, &styled.0.skeleton, config),
-            rest: None,
-            even: false,
+            ..Self::before(styled, config, *planner.walker(), (ending, *walker.step()))
         };
         if let Some(life) = made.life.as_mut().filter(|_| standing) {
             life.stand();
@@ -146,6 +132,33 @@ impl OwnWalk {
         };
         made.settle(share, workshop);
         Ok(made)
+    }
+
+    /// A walker whose first step is still to be taken over: one of this shape, which ends so.
+    pub(super) fn before(
+        styled: &StyledBody,
+        config: &GeneratorConfig,
+        walker: [f64; MAX_COMPONENTS],
+        (ending, shape): (Ending, StepShape),
+    ) -> Self {
+        Self {
+            config: *config,
+            styled: styled.clone(),
+            walker,
+            chance: Chance::default(),
+            ending: Box::new(ending),
+            shape,
+            detail: Detail::Full,
+            position: 0.0,
+            frame_rate_hz: styled.0.space.model().frame_rate_hz as f32,
+            frames: CrowdFrames::default(),
+            landing: None,
+            plan_from_start: GroundTransform::default(),
+            footstep: None,
+            life: None,
+            rest: None,
+            even: false,
+        }
     }
 
     /// Takes over its first step, in the middle of it.
