@@ -14,6 +14,10 @@ const HALVINGS: usize = 4;
 const PUSH_SECS: f32 = 0.02;
 /// A point that is no deeper in the ground than this is out of the wall: toes that roll off a tread sink into it by less.
 pub(super) const SUNK_M: f32 = 0.005;
+/// Ways by which a point is farther inside than it may be, metres, and the depth that each metre of it counts as: a foot that goes back into a riser by
+/// millimetres, faster than it is pushed out of it, is not thrown over it.
+const FARTHER_M: [f32; 4] = [0.0, 0.0015, 0.003, 0.005];
+const FARTHER_DEPTH: f32 = 8.0;
 /// Cosine of the angle to the sole's middle from which on a way leads inwards.
 const INWARDS: f32 = 0.25;
 /// Shorter remainders of it count as none, metres.
@@ -51,13 +55,16 @@ impl Foot {
 }
 
 impl<T: Terrain> Scene<'_, T> {
-    /// Least depth below the ground of a point of a sole that goes so far to any side on which the sole's middle is; at most 0 where it comes out of it.
-    /// Walls that it would leave on the other sides are under the sole.
+    /// Least depth below the ground of a point of a sole that goes so far to any side on which the sole's middle is; at most 0 where it comes out of it. It may go
+    /// a little farther than that, which counts as [`FARTHER_DEPTH`] has it. Walls that it would leave on the other sides are under the sole.
     pub(super) fn depth_beside(&mut self, point: Vec3, middle: Vec3, distance_m: f32) -> f32 {
         let inwards = (middle - point).with_y(0.0).normalize_or_zero();
         let inwards = WAYS.into_iter().filter(|way| way.dot(inwards) > INWARDS);
         inwards.fold(f32::MAX, |least, way| {
-            least.min(self.depth(point + way * distance_m))
+            FARTHER_M.into_iter().fold(least, |least, farther| {
+                let depth = self.depth(point + way * (distance_m + farther));
+                least.min(depth.max(0.0) + FARTHER_DEPTH * farther)
+            })
         })
     }
 
@@ -135,6 +142,9 @@ mod tests {
         };
         let touching = depth(toes, -0.1);
         assert!((touching - 0.001).abs() < 1e-6, "{touching}");
+        // A little farther in than they may be, they lift a little.
+        let grazing = depth(toes.with_z(0.0165), -0.1);
+        assert!((0.01..0.03).contains(&grazing), "{grazing}");
         // Farther in, nothing beside them is lower, nor does a heel leave through an edge that its sole lies across.
         for [z, middle] in [[0.03, -0.1], [0.0003, 0.1]] {
             let within = depth(toes.with_z(z), middle);
