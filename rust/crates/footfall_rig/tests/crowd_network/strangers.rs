@@ -130,7 +130,8 @@ fn a_crowd_that_was_made_anew_takes_the_place_of_the_one_before() {
     link.sender.join(GUEST);
     link.walk(2.0);
     assert_eq!(places(&link.there).len(), 5);
-    let off = link.shares(link.secs - 0.5);
+    link.walk(1.0);
+    let off = link.shares(link.secs - 1.0);
     assert!(off[3] < 0.05, "{off:?}");
 }
 

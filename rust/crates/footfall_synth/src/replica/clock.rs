@@ -6,8 +6,8 @@ pub(super) const TICK_SECS: f64 = 0.004;
 /// Sender's clocks that run slower than ours are followed by so many seconds a second.
 const DRIFT: f64 = 0.01;
 
-/// Steps are made later than the quickest update comes by so many intervals between updates, so that two may be lost; and so many times what updates are late.
-const INTERVALS: f64 = 2.2;
+/// Steps are made later than the quickest update comes by so many intervals between updates, so that three may be lost; and so many times what updates are late.
+const INTERVALS: f64 = 3.2;
 const LATENESSES: f64 = 1.5;
 const MARGIN_SECS: [f64; 2] = [0.03, 0.5];
 

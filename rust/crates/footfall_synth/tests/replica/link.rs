@@ -251,18 +251,39 @@ pub(crate) fn farthest(frames: &[Frame], joint: Joint) -> f32 {
         .fold(0.0, f32::max)
 }
 
-/// The fastest that a foot moves in the mean of one stance, m/s: in every frame the slower of heel, ball and toe tip. Single frames say less where machines do not keep
-/// the model's rate: between two of its frames a foot that rolls from the heel to the ball moves by up to a millimetre, with or without a network.
-pub(crate) fn slip(frames: &[Frame], dt_secs: f32) -> f32 {
+/// Way of the slowest of heel, ball and toe tip from one frame to another, metres.
+fn slide(then: &Frame, now: &Frame, side: Side) -> f32 {
     let skeleton = Skeleton::standard();
-    let sole = |frame: &Frame, side: Side| {
-        let foot = skeleton.foot(side);
+    let foot = skeleton.foot(side);
+    let sole = |frame: &Frame| {
         [
             frame.model.point(side.foot(), foot.heel),
             frame.model.point(side.toes(), foot.ball),
             frame.model.point(side.toes(), foot.toe_tip),
         ]
     };
+    let [then, now] = [then, now].map(sole);
+    let ways = then.iter().zip(&now).map(|(then, now)| then.distance(*now));
+    ways.fold(f32::INFINITY, f32::min)
+}
+
+/// The farthest that a foot slides that stood when the walk began here, from there to the end of the stance, metres. Of such a stance there may be no more than a
+/// few frames in which it rolls off: [`slip`] says little of them.
+pub(crate) fn slid_at_join(frames: &[Frame]) -> f32 {
+    let begun = frames.iter().position(|frame| frame.anew).unwrap();
+    let slides = Side::BOTH.map(|side| {
+        let pairs = frames[begun..].windows(2);
+        let stance = pairs.take_while(|pair| pair.iter().all(|f| f.contact[side.index()]));
+        stance
+            .map(|pair| slide(&pair[0], &pair[1], side))
+            .sum::<f32>()
+    });
+    slides[0].max(slides[1])
+}
+
+/// The fastest that a foot moves in the mean of one stance, m/s: in every frame the slower of heel, ball and toe tip. Single frames say less where machines do not keep
+/// the model's rate: between two of its frames a foot that rolls from the heel to the ball moves by up to a millimetre, with or without a network.
+pub(crate) fn slip(frames: &[Frame], dt_secs: f32) -> f32 {
     let mut most: f32 = 0.0;
     for side in Side::BOTH {
         let stands =
@@ -272,11 +293,7 @@ pub(crate) fn slip(frames: &[Frame], dt_secs: f32) -> f32 {
             if !stands(stance[0]) || stance.len() < 6 {
                 continue;
             }
-            let moved = stance.iter().map(|pair| {
-                let [then, now] = [&pair[0], &pair[1]].map(|frame| sole(frame, side));
-                let moved = then.iter().zip(&now).map(|(then, now)| then.distance(*now));
-                moved.fold(f32::INFINITY, f32::min)
-            });
+            let moved = stance.iter().map(|pair| slide(&pair[0], &pair[1], side));
             most = most.max(moved.sum::<f32>() / (stance.len() as f32 * dt_secs));
         }
     }
