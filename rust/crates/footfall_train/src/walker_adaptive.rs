@@ -4,13 +4,15 @@
 //! offset per feature and walker, shared by the feature's time differences. What it takes out comes back as variation between
 //! walkers ([`crate::differences`]). A diagonal is what the ten or twenty steps of one walker can tell.
 
+mod average_swing;
+
 use crate::average::{AverageWalk, EmConfig};
 use crate::error::TrainError;
-use crate::normalise::{spread, without_walker};
+use crate::normalise::without_walker;
 use crate::progress::Progress;
 use crate::sequence::Sequence;
+use average_swing::keep_average;
 use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT};
-use footfall_prob::gaussian::GaussianStats;
 use footfall_prob::hsmm::HsmmStats;
 
 /// Number of turns that transforms and average walk take.
@@ -189,6 +191,7 @@ pub(crate) fn train(
     let mut transforms = Vec::with_capacity(walkers);
     for _ in 0..ROUNDS {
         transforms.clear();
+        let mut shown = Vec::with_capacity(walkers);
         for walker in 0..walkers {
             let of_walker = |sequences: &[Sequence]| -> Vec<Sequence> {
                 let own = sequences.iter().filter(|s| s.walker == walker);
@@ -196,8 +199,9 @@ pub(crate) fn train(
             };
             let seen = walk.expect(&of_walker(&aligned), &of_walker(corpus))?;
             transforms.push(WalkerTransform::estimate(&walk, &seen));
+            shown.push(seen);
         }
-        keep_average(corpus, &mut transforms);
+        keep_average(&walk, &shown, &mut transforms);
         aligned = corpus
             .iter()
             .map(|sequence| transforms[sequence.walker].apply(sequence))
@@ -218,38 +222,6 @@ pub(crate) fn train(
         transforms,
         log_likelihoods,
     })
-}
-
-/// Moves all transforms alike so that the average walker stands and swings as the walkers do on average: any walker could
-/// serve as the common one, and the likelihood does not say which.
-fn keep_average(corpus: &[Sequence], transforms: &mut [WalkerTransform]) {
-    let mut recorded = vec![GaussianStats::new(FEATURE_COUNT); transforms.len()];
-    for sequence in corpus {
-        for observation in sequence.observations.chunks_exact(OBSERVATION_COUNT) {
-            recorded[sequence.walker].add(&observation[..FEATURE_COUNT], 1.0);
-        }
-    }
-    let known: Vec<usize> = (0..transforms.len())
-        .filter(|walker| recorded[*walker].weight() > 0.0)
-        .collect();
-    let count = known.len().max(1) as f64;
-    let spreads: Vec<Vec<f64>> = recorded.iter().map(spread).collect();
-    let average = |of: &dyn Fn(usize) -> f64| known.iter().map(|w| of(*w)).sum::<f64>() / count;
-    let (mut scale, mut offset) = (vec![1.0; FEATURE_COUNT], vec![0.0; FEATURE_COUNT]);
-    for feature in 0..FEATURE_COUNT {
-        let mean = average(&|w| recorded[w].mean()[feature]);
-        let moved = average(&|w| {
-            transforms[w].scale[feature] * recorded[w].mean()[feature]
-                + transforms[w].offset[feature]
-        });
-        let swing = average(&|w| spreads[w][feature]);
-        let moved_swing = average(&|w| transforms[w].scale[feature] * spreads[w][feature]);
-        scale[feature] = swing / moved_swing;
-        offset[feature] = mean - scale[feature] * moved;
-    }
-    for transform in transforms {
-        transform.then(&scale, &offset);
-    }
 }
 
 #[cfg(test)]

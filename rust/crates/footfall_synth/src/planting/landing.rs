@@ -20,6 +20,9 @@ const MOST_TURN: f32 = 0.2;
 /// Hips that fall faster than this, m/s, land on a leg that is less straight by this share of it, by m/s: it has to bend at once.
 const EASY_FALL_MPS: f32 = 0.2;
 const LANDING_BY_FALL: f32 = 0.03;
+/// Hips that fall faster than runners' do, m/s, land on a knee that gives: less straight by this share, by m/s.
+const HARD_FALL_MPS: f32 = 1.3;
+const LANDING_BY_HARD_FALL: f32 = 0.012;
 
 impl Planter {
     /// Plant of the trailing foot at the end of the step.
@@ -64,7 +67,8 @@ impl Planter {
         let strafe = &self.state.strafe;
         let backwards = (-strafe.forwardness).max(0.0);
         let fall = self.state.hips_velocity.map_or(0.0, |velocity| -velocity.y);
-        let bent = LANDING_BY_FALL * (fall - EASY_FALL_MPS).clamp(0.0, EASY_FALL_MPS);
+        let bent = LANDING_BY_FALL * (fall - EASY_FALL_MPS).clamp(0.0, EASY_FALL_MPS)
+            + LANDING_BY_HARD_FALL * (fall - HARD_FALL_MPS).max(0.0);
         LANDING_EXTENSION + LANDING_FORWARDS * strafe.uprightness()
             - LANDING_BACKWARDS * backwards
             - bent

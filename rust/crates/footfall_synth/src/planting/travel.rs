@@ -66,7 +66,7 @@ impl Planter {
             }
         }
         self.drift(timing, out);
-        self.even(timing, course.change, out);
+        self.even(timing, course, out);
         self.thrust(timing, course, out);
         course.aside.lead(timing, out);
         if course.keeps_lengths {

@@ -6,6 +6,10 @@ use super::orientation::Orientations;
 use footfall_core::Joint;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 
+/// Factor on what the hips lack. Without it the energy of the third differences of generated pelvises is a quarter below that of CMU's neutral walkers, and 0.74 of
+/// their detail repeats from stride to stride, where it is 0.67 in people: the mean of walkers whose edges differ is duller than each.
+pub(super) const HIPS_FACTOR: f64 = 1.35;
+
 /// Factors by which the axes together make each joint as lively as captured ones are, beyond what its trajectories do: by the energy of second differences between
 /// points, for what a joint does slowly is told by its steps' means, and an axis has one spectrum for all joints that it moves.
 pub(super) fn strengths(
@@ -29,8 +33,13 @@ pub(super) fn strengths(
                     .sum()
             };
             let kept = 0.5 * (energy(number) + energy(mirrored));
+            let factor = if number / 3 == Joint::Hips.index() {
+                HIPS_FACTOR
+            } else {
+                1.0
+            };
             if kept > 0.0 {
-                (missing / kept).sqrt()
+                factor * (missing / kept).sqrt()
             } else {
                 0.0
             }
