@@ -12,9 +12,9 @@ use footfall_core::rotation::from_heading;
 const RISING_EXTENSION: f32 = 0.9965;
 const RISING_SOFTNESS: f32 = 0.0014;
 
-/// A leg that leaves the ground begins to bend so long before, seconds, and is shorter by this share by then: its knee would snap.
-const LEAVING_BEND: f32 = 0.004;
-const LEAVING_SECS: f32 = 0.035;
+/// A leg that leaves the ground begins to bend so long before, seconds, and its knee is bent by twice this more by then, radians: it would snap.
+const LEAVING_BEND: f32 = 0.055;
+const LEAVING_SECS: f32 = 0.05;
 
 /// No leg counts as stretched farther, as a multiple of that: its exponential stays a number.
 const MOST_BEYOND: f32 = 50.0;
@@ -51,12 +51,14 @@ impl Planter {
             let leaves = side != timing.leading && !timing.rests;
             for (index, (raw, frame)) in raw.iter_mut().zip(frames).enumerate() {
                 let left_secs = (last - index) as f32 * self.frame_secs;
-                let bend = if leaves {
-                    LEAVING_BEND * smooth_step(1.0 - left_secs / LEAVING_SECS)
+                // The cosine of half the knee's bend is what is left of the leg's length.
+                let most = if leaves {
+                    let left = (1.0 - left_secs / LEAVING_SECS).max(0.0);
+                    (RISING_EXTENSION.acos() + LEAVING_BEND * left * left).cos()
                 } else {
-                    0.0
+                    RISING_EXTENSION
                 };
-                let rise = self.heel_rise(side, RISING_EXTENSION - bend, raw, frame);
+                let rise = self.heel_rise(side, most, raw, frame);
                 let before = core::mem::replace(&mut raw.legs[side.index()].rise, rise);
                 if rise == 0.0 && before > 0.0 {
                     self.stand_risen(side, raw);

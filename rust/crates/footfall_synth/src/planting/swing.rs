@@ -17,7 +17,7 @@ const CLEARANCE_SOFTNESS_M: f32 = 0.004;
 const SETTLE_RATE: f32 = 8.0;
 
 /// A foot that walks and one that runs lands at most this fast, m/s: people brake their swing before the heel strikes.
-const MOST_LANDING_MPS: [f32; 2] = [1.0, 2.2];
+const MOST_LANDING_MPS: [f32; 2] = [1.2, 2.2];
 
 /// Part of the swing by which a foot is free of how it stood.
 const FREED_BY: f32 = 0.3;
