@@ -24,6 +24,8 @@
 //! Limits: standing, tight turns, walking backwards, hops and jumps are beyond it.
 
 mod angles;
+mod beside;
+mod legs;
 mod residual;
 
 use crate::steps::{LONGEST_STEP_SECS, SHORTEST_STEP_SECS, Step, Walk};
@@ -35,18 +37,13 @@ use residual::Residual;
 /// Frames per second at which angles are looked at, those of the paper.
 pub const ANGLE_RATE_HZ: f64 = 60.0;
 
-/// Time by which a foot lands after the moment halfway between its ankle farthest ahead and its knee straightest, seconds.
-///
-/// Chosen on the kinematic contacts of all CMU and Bandai people; a few milliseconds more or less agree as well.
-const LANDING_SECS: f64 = 0.011;
-
-/// Reach of the search for the residual from where the hips are farthest apart, frames at [`ANGLE_RATE_HZ`].
+/// Reach of the search for the residual from where the ankles are farthest apart, frames at [`ANGLE_RATE_HZ`].
 const RESIDUAL_REACH: f64 = 12.0;
 
 /// Rule that places a switch within the half cycle that holds it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Landing {
-    /// Nothing: the hips are farthest apart.
+    /// Nothing: the ankles are farthest apart.
     HalfCycle,
     /// The projection residual, averaged over the clip's steps, is greatest.
     Residual,
@@ -77,6 +74,42 @@ impl Landing {
     }
 }
 
+/// Rule and limits of the detector. Times were chosen on all people of the CMU, Bandai and O3DE recordings, each counting once;
+/// `footfall evaluate contacts --leave-one-out` chooses the first two anew without each of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwitchConfig {
+    /// Rule that places a switch.
+    pub landing: Landing,
+    /// Time by which a leg lands ahead after the moment halfway between its ankle farthest ahead and its knee straightest, seconds, when
+    /// the knee bent by 60° in the swing.
+    pub landing_secs: f64,
+    /// Time by which it lands later for each radian that the knee bent more, seconds: faster shanks are stretched earlier.
+    pub bend_secs_per_rad: f64,
+    /// Time by which a leg lands behind before its ankle is farthest behind, seconds: toes first.
+    pub behind_secs: f64,
+}
+
+impl Default for SwitchConfig {
+    fn default() -> Self {
+        Self {
+            landing: Landing::default(),
+            landing_secs: 0.006,
+            bend_secs_per_rad: 0.012,
+            behind_secs: 0.027,
+        }
+    }
+}
+
+impl SwitchConfig {
+    /// The same limits with a rule of one's own choice.
+    pub fn by(landing: Landing) -> Self {
+        Self {
+            landing,
+            ..Self::default()
+        }
+    }
+}
+
 /// A change of roles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Switch {
@@ -102,31 +135,25 @@ impl Switch {
 /// # Errors
 /// [`ProbError::NotFinite`] when a pose is not finite.
 pub fn detect_switches(clip: &Clip, first_frame: usize) -> Result<Vec<Switch>, ProbError> {
-    detect_switches_by(clip, first_frame, Landing::default())
+    detect_switches_by(clip, first_frame, &SwitchConfig::default())
 }
 
-/// The same with a landing of one's own choice.
+/// The same with limits of one's own choice.
 ///
 /// # Errors
 /// As [`detect_switches`].
 pub fn detect_switches_by(
     clip: &Clip,
     first_frame: usize,
-    landing: Landing,
+    config: &SwitchConfig,
 ) -> Result<Vec<Switch>, ProbError> {
     check_finite_legs(clip, first_frame)?;
     let angles = LegAngles::of(clip, first_frame);
-    let residual = match landing {
+    let residual = match config.landing {
         Landing::HalfCycle | Landing::Legs => None,
         Landing::Residual | Landing::LegsAndResidual => Residual::of(&angles)?,
     };
-    Ok(place(
-        clip,
-        first_frame,
-        &angles,
-        residual.as_ref(),
-        landing,
-    ))
+    Ok(place(clip, first_frame, &angles, residual.as_ref(), config))
 }
 
 /// The switches, and the residual to be shown beside them; none of it for a clip that is too short.
@@ -140,7 +167,7 @@ pub fn analyse_switches(
     check_finite_legs(clip, first_frame)?;
     let angles = LegAngles::of(clip, first_frame);
     let residual = Residual::of(&angles)?;
-    let switches = place(clip, first_frame, &angles, None, Landing::default());
+    let switches = place(clip, first_frame, &angles, None, &SwitchConfig::default());
     let shown = residual.map(|residual| SwitchResidual {
         first_secs: first_frame as f64 / clip.frame_rate_hz + residual.first as f64 / ANGLE_RATE_HZ,
         rate_hz: ANGLE_RATE_HZ,
@@ -149,32 +176,30 @@ pub fn analyse_switches(
     Ok((switches, shown))
 }
 
-/// The switches of the half cycles, each in the first frame of the clip that shows it.
+/// The switches of all swings, each in the first frame of the clip that shows it.
 fn place(
     clip: &Clip,
     first_frame: usize,
     angles: &LegAngles,
     residual: Option<&Residual>,
-    landing: Landing,
+    config: &SwitchConfig,
 ) -> Vec<Switch> {
-    let steps = angles.half_cycles();
-    let at_half_cycles = || steps.iter().map(|step| step.frame as f64).collect();
-    let by_legs = || {
-        let stretched = angles.stretched_ahead(&steps).into_iter();
-        stretched
-            .map(|frame| frame + LANDING_SECS * ANGLE_RATE_HZ)
-            .collect()
+    let (by_legs, reach) = match config.landing {
+        Landing::HalfCycle => (false, 0.0),
+        Landing::Residual => (false, RESIDUAL_REACH),
+        Landing::Legs => (true, 0.0),
+        Landing::LegsAndResidual => (true, 1.0),
     };
-    let (frames, reach): (Vec<f64>, f64) = match landing {
-        Landing::HalfCycle => (at_half_cycles(), 0.0),
-        Landing::Residual => (at_half_cycles(), RESIDUAL_REACH),
-        Landing::Legs => (by_legs(), 0.0),
-        Landing::LegsAndResidual => (by_legs(), 1.0),
-    };
-    let moments: Vec<(f64, Side)> = frames
+    let moments: Vec<(f64, Side)> = legs::landings(angles, config)
         .into_iter()
-        .zip(&steps)
-        .map(|(frame, step)| (frame, step.side))
+        .map(|landed| {
+            let frame = if by_legs {
+                landed.by_legs
+            } else {
+                landed.half_cycle
+            };
+            (frame, landed.side)
+        })
         .collect();
     let shift = residual.map_or(0.0, |residual| residual.peak(&moments, reach));
     let last = clip.poses.len().saturating_sub(1);

@@ -1,12 +1,12 @@
 //! Contacts and switches person by person.
 
+use super::switch_limits::{self, SwitchLimits};
 use super::{Agreement, ContactsError};
 use crate::averages::mean;
 use footfall_core::{EventKind, GaitEvent, Side};
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
 use footfall_motion::published_events::PublishedEvents;
 use footfall_motion::recording::Recording;
-use footfall_motion::switches::Landing;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -45,6 +45,9 @@ pub struct Person {
     /// Limits that were chosen on the other people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limits: Option<Limits>,
+    /// Times of switches that were chosen on the other people.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub switch_limits: Option<SwitchLimits>,
 }
 
 type People = BTreeMap<String, Person>;
@@ -85,14 +88,10 @@ pub(super) fn judge(
             }
         }
     }
-    for clip in clips {
-        let person = people.entry(clip.row.subject().to_owned()).or_default();
-        person
-            .switches
-            .add_switches(clip, Landing::default(), tolerance_ms)?;
-    }
-    for person in people.values_mut() {
-        person.switches.summarise();
+    for (name, (limits, switches)) in switch_limits::judge(clips, tolerance_ms, leave_one_out)? {
+        let person = people.entry(name).or_default();
+        person.switches = switches;
+        person.switch_limits = limits;
     }
     Ok(people)
 }
