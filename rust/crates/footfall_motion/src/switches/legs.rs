@@ -59,10 +59,8 @@ pub(super) struct Legs {
 pub(super) fn landings(angles: &LegAngles, config: &SwitchConfig) -> Vec<Landed> {
     let legs = Legs::of(angles);
     let cycles = angles.half_cycles();
-    let before = core::iter::once(None).chain(cycles.iter().map(Some));
-    let mut landings: Vec<Landed> = before
-        .zip(&cycles)
-        .filter_map(|(before, cycle)| legs.of_half_cycle(before, cycle, config))
+    let mut landings: Vec<Landed> = (0..cycles.len())
+        .filter_map(|index| legs.of_half_cycle(&cycles, index, config))
         .collect();
     beside::add_to(&mut landings, &legs);
     landings.sort_by(|a, b| a.by_legs.total_cmp(&b.by_legs));
@@ -94,30 +92,38 @@ impl Legs {
     /// The landing at the end of a half cycle. `None` if neither leg is lifted on the way there: somebody sways.
     ///
     /// The lifted leg swings. Where that is the leg ahead it lands ahead; else the body walks backwards, and the other leg lands behind.
+    /// The first half cycle goes the way of the second.
     fn of_half_cycle(
         &self,
-        before: Option<&HalfCycle>,
-        cycle: &HalfCycle,
+        cycles: &[HalfCycle],
+        index: usize,
         config: &SwitchConfig,
     ) -> Option<Landed> {
-        let walked = before.filter(|before| {
-            before.side != cycle.side && cycle.frame - before.frame <= LONGEST_HALF_CYCLE
-        });
-        let lift = walked.map(|before| self.mean_lift(cycle.side, before.frame, cycle.frame));
+        let HalfCycle { frame, side } = cycles[index];
         let least = LEAST_LIFT_M * self.size;
-        let (side, by_legs) = match lift {
-            Some(lift) if lift < -least => {
-                let side = cycle.side.other();
-                (side, self.behind(side, cycle.frame, config))
-            }
-            Some(lift) if lift < least => return None,
-            _ => (cycle.side, self.ahead(cycle.side, cycle.frame, config)),
+        let lift = self.lift_into(cycles, index);
+        if lift.is_some_and(|lift| lift.abs() < least) {
+            return None;
+        }
+        let lift = lift.or_else(|| self.lift_into(cycles, index + 1));
+        let (side, by_legs) = if lift.is_some_and(|lift| lift < -least) {
+            (side.other(), self.behind(side.other(), frame, config))
+        } else {
+            (side, self.ahead(side, frame, config))
         };
         Some(Landed {
             side,
-            half_cycle: cycle.frame as f64,
+            half_cycle: frame as f64,
             by_legs,
         })
+    }
+
+    /// Mean height of the leg ahead above the other on the way into a half cycle, if it follows one of the same walk.
+    fn lift_into(&self, cycles: &[HalfCycle], index: usize) -> Option<f64> {
+        let cycle = cycles.get(index)?;
+        let before = cycles.get(index.checked_sub(1)?)?;
+        let walked = before.side != cycle.side && cycle.frame - before.frame <= LONGEST_HALF_CYCLE;
+        walked.then(|| self.mean_lift(cycle.side, before.frame, cycle.frame))
     }
 
     /// Height of an ankle above the other in the middle half of these frames.

@@ -7,6 +7,7 @@ mod ablation;
 mod agreement;
 mod bodies;
 mod error;
+mod left_out;
 mod people;
 mod sensors;
 mod switch_limits;

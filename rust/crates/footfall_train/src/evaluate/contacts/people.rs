@@ -1,5 +1,6 @@
 //! Contacts and switches person by person.
 
+use super::left_out::best_without;
 use super::switch_limits::{self, SwitchLimits};
 use super::{Agreement, ContactsError};
 use crate::averages::mean;
@@ -78,9 +79,8 @@ pub(super) fn judge(
     let mut people = trials[0].1.clone();
     if leave_one_out {
         for (name, person) in &mut people {
-            let best = trials.iter().rev().max_by(|a, b| {
-                let [a, b] = [a, b].map(|(_, people)| score_without(people, name));
-                a.total_cmp(&b)
+            let best = best_without(&trials, name, |person| {
+                vec![&person.initial_contact, &person.terminal_contact]
             });
             if let Some((limits, judged)) = best {
                 *person = judged[name].clone();
@@ -146,12 +146,4 @@ pub fn mean_and_worst_f1<'a>(agreements: impl Iterator<Item = &'a Agreement>) ->
     let f1: Vec<f64> = telling.map(|agreement| agreement.f1).collect();
     let worst = f1.iter().copied().reduce(f64::min)?;
     Some([mean(&f1), worst])
-}
-
-/// The F1 of all people but one, each counting once.
-fn score_without(people: &People, left_out: &str) -> f64 {
-    let others = people.iter().filter(|(name, _)| *name != left_out);
-    let agreements =
-        others.flat_map(|(_, person)| [&person.initial_contact, &person.terminal_contact]);
-    mean_and_worst_f1(agreements).map_or(0.0, |[mean, _]| mean)
 }

@@ -1,6 +1,6 @@
 //! Switches person by person, under limits that were chosen on the other people.
 
-use super::people::mean_and_worst_f1;
+use super::left_out::best_without;
 use super::{Agreement, ContactsError};
 use footfall_motion::recording::Recording;
 use footfall_motion::switches::SwitchConfig;
@@ -43,10 +43,7 @@ pub(super) fn judge(
     }
     let names: Vec<String> = trials[0].1.keys().cloned().collect();
     let judged = names.into_iter().map(|name| {
-        let best = trials.iter().rev().max_by(|a, b| {
-            let [a, b] = [a, b].map(|(_, people)| score_without(people, &name));
-            a.total_cmp(&b)
-        });
+        let best = best_without(&trials, &name, |switches| vec![switches]);
         let (limits, people) = best.unwrap_or(&trials[0]);
         let agreement = people[&name].clone();
         (name, (leave_one_out.then_some(*limits), agreement))
@@ -71,12 +68,6 @@ fn with_limits(
     }
     people.values_mut().for_each(Agreement::summarise);
     Ok(people)
-}
-
-/// The mean F1 of all people but one, each counting once.
-fn score_without(people: &People, left_out: &str) -> f64 {
-    let others = people.iter().filter(|(name, _)| *name != left_out);
-    mean_and_worst_f1(others.map(|(_, agreement)| agreement)).map_or(0.0, |[mean, _]| mean)
 }
 
 #[cfg(test)]
