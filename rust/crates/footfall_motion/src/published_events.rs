@@ -140,3 +140,34 @@ fn extremes(signal: &[f32], reach: usize) -> Vec<usize> {
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use footfall_core::{Pose, Skeleton};
+
+    /// Hips that go on at 1.5 m/s and bob three times a second with this share of gravity, at 60 Hz.
+    fn bobbing(share: f32) -> Clip {
+        let turn = core::f32::consts::TAU * 3.0;
+        let poses = (0..300).map(|frame| {
+            let secs = frame as f32 / 60.0;
+            let bob = share * 9.81 / (turn * turn) * (turn * secs).cos();
+            Pose {
+                root_position: Vec3::new(0.0, 0.9 + bob, 1.5 * secs),
+                ..Pose::default()
+            }
+        });
+        Clip {
+            skeleton: Skeleton::standard(),
+            frame_rate_hz: 60.0,
+            poses: poses.collect(),
+        }
+    }
+
+    #[test]
+    fn events_of_who_falls_freely_are_not_trusted() {
+        let steady = |share: f32| PublishedEvents::of(&bobbing(share), 0).is_steady;
+        assert!(steady(0.4)[60..240].iter().all(|steady| *steady));
+        assert!(steady(1.2)[60..240].iter().all(|steady| !steady));
+    }
+}
