@@ -254,13 +254,18 @@ pub struct SwitchResidual {
     pub legs: [Vec<f64>; 2],
 }
 
-/// The frames in which each foot certainly bears on the ground: from its switch until the other foot's. When it leaves the
-/// ground after that, switches do not tell.
+/// The frames in which each foot certainly bears on the ground: from its switch until the last one of the other foot before its own next. When it
+/// leaves the ground after that, switches do not tell.
 pub fn stances(switches: &[Switch], frames: usize) -> [Vec<FrameSpan>; 2] {
     let mut stances = [Vec::new(), Vec::new()];
     for (index, switch) in switches.iter().enumerate() {
-        let next = switches.get(index + 1);
-        let last = next.map_or(frames.saturating_sub(1), |next| next.frame);
+        let later = &switches[index + 1..];
+        let others = later.iter().take_while(|next| next.side != switch.side);
+        let last = if later.is_empty() {
+            frames.saturating_sub(1)
+        } else {
+            others.last().map_or(switch.frame, |next| next.frame)
+        };
         stances[switch.side.index()].push(FrameSpan {
             first: switch.frame,
             last: last.max(switch.frame),

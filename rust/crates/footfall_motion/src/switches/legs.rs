@@ -23,8 +23,8 @@ const WALKING_BEND_RAD: f64 = 1.047;
 /// Standard deviation of the window under which heights of the ankles are compared, frames.
 const LIFT_SMOOTHING: f64 = 1.5;
 
-/// A leg that swings lifts its ankle at least this much above the other's, on average over the middle of the half cycle, metres on the canonical body. Of 2952 half
-/// cycles of forward walks and runs one in a hundred lifts it less than 40 mm.
+/// A leg that swings lifts its ankle at least this much above the other's, on average over the middle of the half cycle, metres on the
+/// canonical body. Of 2952 half cycles of forward walks and runs one in a hundred lifts it less than 40 mm.
 const LEAST_LIFT_M: f64 = 0.01;
 
 /// A half cycle is one of the same walk as the one before when it is no longer, frames.

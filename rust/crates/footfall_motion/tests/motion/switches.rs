@@ -1,8 +1,8 @@
 //! Switches of walkers whose steps are known.
 
 use crate::common::walker::{Gait, STANCE, STRIDE_SECS, bend_leg, first_landing, walker};
-use footfall_core::{Clip, Pose, Side, Skeleton};
-use footfall_motion::switches::{Switch, detect_switches};
+use footfall_core::{Clip, FrameSpan, Pose, Side, Skeleton};
+use footfall_motion::switches::{Switch, detect_switches, stances};
 use glam::Vec3;
 
 const RATE_HZ: f64 = 60.0;
@@ -115,4 +115,25 @@ fn a_body_of_any_size_has_the_same_steps() {
     };
     assert_eq!(of(0.5), of(1.0));
     assert_eq!(of(2.0), of(1.0));
+}
+
+#[test]
+fn who_steps_twice_with_one_foot_stands_on_the_other() {
+    let switches = [
+        (10, Side::Left),
+        (40, Side::Right),
+        (70, Side::Right),
+        (100, Side::Left),
+    ]
+    .map(|(frame, side)| Switch { frame, side });
+    let spans = |spans: &[[usize; 2]]| -> Vec<FrameSpan> {
+        let span = |[first, last]: &[usize; 2]| FrameSpan {
+            first: *first,
+            last: *last,
+        };
+        spans.iter().map(span).collect()
+    };
+    let [left, right] = stances(&switches, 200);
+    assert_eq!(left, spans(&[[10, 70], [100, 199]]));
+    assert_eq!(right, spans(&[[40, 40], [70, 100]]));
 }
