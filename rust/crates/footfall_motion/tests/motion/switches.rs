@@ -1,6 +1,6 @@
 //! Switches of walkers whose steps are known.
 
-use crate::common::walker::{Gait, STANCE, STRIDE_SECS, bend_leg, first_landing, walker};
+use crate::common::walker::{STANCE, STRIDE_SECS, bend_leg, first_landing, walker};
 use footfall_core::{Clip, FrameSpan, Pose, Side, Skeleton};
 use footfall_motion::switches::{Switch, detect_switches, stances};
 use glam::Vec3;
@@ -102,19 +102,6 @@ fn who_sways_over_feet_apart_does_not_step() {
     // Feet half a step apart that change places without one above the other: a body that sways, no steps.
     let clip = stands(|secs| [0.2 * (core::f32::consts::TAU * secs).sin(), 0.0]);
     assert!(switches_of(&clip).len() <= 1, "{:?}", switches_of(&clip));
-}
-
-#[test]
-fn a_body_of_any_size_has_the_same_steps() {
-    let of = |size: f32| {
-        let gait = Gait {
-            size,
-            ..Gait::PLAIN
-        };
-        switches_of(&gait.clip(RATE_HZ, 360))
-    };
-    assert_eq!(of(0.5), of(1.0));
-    assert_eq!(of(2.0), of(1.0));
 }
 
 #[test]
