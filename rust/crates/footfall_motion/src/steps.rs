@@ -5,6 +5,7 @@
 
 mod running;
 
+pub(crate) use running::free_falls;
 pub use running::running_parts;
 
 use crate::contacts::Contacts;

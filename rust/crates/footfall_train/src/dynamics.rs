@@ -18,7 +18,7 @@ use footfall_core::Side;
 use footfall_model::{DynamicsModel, FEATURE_COUNT, OBSERVATION_COUNT, Provenance, Regime};
 use footfall_motion::recording::Recording;
 use footfall_motion::steps::Walk;
-use footfall_motion::switches::{Landing, detect_switches_by, walks};
+use footfall_motion::switches::{Landing, SwitchConfig, detect_switches_by, walks};
 use footfall_prob::subspace::{
     AffineSystem, IdentifyConfig, Refinement, identify, initial_states, refine,
 };
@@ -265,7 +265,7 @@ fn switch_walks(recording: &Recording) -> Result<Vec<Walk>, TrainError> {
     let (clip, first) = (recording.clip(), recording.first_frame());
     let rate = clip.frame_rate_hz;
     // A model is cut where the dynamics change, within a frame of the landing.
-    let switches = detect_switches_by(clip, first, Landing::LegsAndResidual)?;
+    let switches = detect_switches_by(clip, first, &SwitchConfig::by(Landing::LegsAndResidual))?;
     let mut walks = walks(&switches, rate);
     for step in walks.iter_mut().flat_map(|walk| &mut walk.steps) {
         let mut kinematic = recording.walks.iter().flat_map(|walk| &walk.steps);

@@ -155,6 +155,10 @@ fn switching_predicts_better_than_a_single_system_on_our_own_walks() {
             assert!(person[kind]["f1"].as_f64().unwrap() > 0.9, "{report}");
         }
         assert!(person["limits"]["toe_speed_off"].is_number(), "{report}");
+        assert!(
+            person["switch_limits"]["landing_secs"].is_number(),
+            "{report}"
+        );
     }
     let f1 = |landing: &str| report["ablation"][landing]["all"]["f1"].as_f64().unwrap();
     assert!(f1("half cycles, legs") > f1("half cycles"), "{report}");

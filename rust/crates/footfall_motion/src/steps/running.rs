@@ -65,13 +65,12 @@ fn velocity(clip: &Clip, step: &Step) -> Vec3 {
 /// The last frame before the body falls, if it does so until the step ends.
 pub(super) fn take_off(clip: &Clip, first: usize, end: usize) -> Option<usize> {
     let rate = clip.frame_rate_hz;
-    let reach = ((FIT_SECS * rate).round() as usize).max(1);
+    let reach = fit_reach(rate);
     let middle = first.midpoint(end);
     if middle < reach || end + reach >= clip.poses.len() {
         return None;
     }
-    let falls =
-        |frame: &usize| vertical_acceleration(clip, *frame, reach) < -FALLING_SHARE * GRAVITY_MPS2;
+    let falls = |frame: &usize| falls_freely(clip, *frame, reach);
     // The foot that lands brakes the fall a little before its initial contact is seen.
     let ends = (middle..=end).rev().find(falls)?;
     let begins = (middle..=ends).rev().take_while(falls).last()?;
@@ -79,6 +78,25 @@ pub(super) fn take_off(clip: &Clip, first: usize, end: usize) -> Option<usize> {
     let long_enough = until_landing && (ends + 1 - begins) as f64 >= LEAST_FALL_SECS * rate;
     let no_jump = ((end - begins) as f64) < LONGEST_FLIGHT_SHARE * (end - first) as f64;
     (long_enough && no_jump).then(|| begins.saturating_sub(1).max(first + 1))
+}
+
+/// Frame by frame, true where nothing bears the body.
+pub(crate) fn free_falls(clip: &Clip) -> Vec<bool> {
+    let (frames, reach) = (clip.poses.len(), fit_reach(clip.frame_rate_hz));
+    (0..frames)
+        .map(|frame| {
+            (reach..frames.saturating_sub(reach)).contains(&frame)
+                && falls_freely(clip, frame, reach)
+        })
+        .collect()
+}
+
+fn fit_reach(frame_rate_hz: f64) -> usize {
+    ((FIT_SECS * frame_rate_hz).round() as usize).max(1)
+}
+
+fn falls_freely(clip: &Clip, frame: usize, reach: usize) -> bool {
+    vertical_acceleration(clip, frame, reach) < -FALLING_SHARE * GRAVITY_MPS2
 }
 
 /// Of the hips, m/s²: twice the curvature of the parabola fitted by least squares to the heights of `reach` frames on either side.

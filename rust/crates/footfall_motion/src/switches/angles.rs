@@ -1,4 +1,4 @@
-//! Hip and knee angles, the half cycles in them, and where they put the ankles.
+//! Hip and knee angles, where they put the ankles, and the half cycles in them.
 
 use super::ANGLE_RATE_HZ;
 use footfall_core::rotation::log_map;
@@ -11,24 +11,17 @@ pub(super) const CHANNELS: usize = 4;
 /// A half cycle is at least so long, frames.
 const LEAST_HALF_CYCLE: usize = 8;
 
-/// And its hips swing at least this share of the usual way apart: less is standing.
-const LEAST_SWING: f64 = 0.35;
+/// And its ankles swing at least this share of the usual way apart: less is standing.
+const LEAST_SWING: f64 = 0.25;
 
-/// And at least so far, radians.
-const LEAST_SWING_RAD: f64 = 0.08;
+/// And at least so far on the canonical body, metres.
+const LEAST_SWING_M: f64 = 0.1;
+
+/// Height of the leg of the canonical body, metres.
+const CANONICAL_LEG_M: f64 = 0.84;
 
 /// Standard deviation of the window under which half cycles are looked for, frames.
 const CYCLE_SMOOTHING: f64 = 2.0;
-
-/// The same for the extremes of ankle and knee.
-const LEG_SMOOTHING: f64 = 1.0;
-
-/// The ankle is farthest ahead within so many frames of where the hips are farthest apart.
-const ANKLE_REACH: usize = 12;
-
-/// The landing knee is straightest from so many frames before until so many after that. A straight knee at other times is that of a
-/// leg that stands.
-const KNEE_REACH: [usize; 2] = [5, 3];
 
 /// Sagittal angles of hips and knees, radians, at [`ANGLE_RATE_HZ`].
 pub(super) struct LegAngles {
@@ -41,7 +34,7 @@ pub(super) struct LegAngles {
 /// A half cycle: one leg is ahead.
 #[derive(Clone, Copy)]
 pub(super) struct HalfCycle {
-    /// The frame in which the thighs are farthest apart.
+    /// The frame in which the ankles are farthest apart.
     pub(super) frame: usize,
     /// The leg that is ahead.
     pub(super) side: Side,
@@ -72,25 +65,42 @@ impl LegAngles {
         }
     }
 
-    /// Angle of the right thigh behind the left one: positive when the left leg is ahead.
-    fn lead(&self, frame: usize) -> f64 {
-        self.frames[frame][1] - self.frames[frame][0]
-    }
-
-    /// Distance of the ankle ahead of its hip in the plane of the angles, metres.
-    fn ankle_ahead(&self, frame: usize, side: Side) -> f64 {
-        let angles = self.frames[frame];
-        let (hip, knee) = (angles[side.index()], angles[2 + side.index()]);
+    /// Distance of an ankle ahead of its hip in the plane of the angles, metres, and its height above it.
+    pub(super) fn ankle(&self, frame: usize, side: Side) -> [f64; 2] {
+        let (hip, knee) = (self.frames[frame][side.index()], self.knee(frame, side));
         let [thigh, shank] = self.bones[side.index()];
-        -(thigh * hip.sin() + shank * (hip + knee).sin())
+        [
+            -(thigh * hip.sin() + shank * (hip + knee).sin()),
+            -(thigh * hip.cos() + shank * (hip + knee).cos()),
+        ]
     }
 
-    /// The runs of frames in which one leg is ahead, each where it is farthest ahead.
+    /// Bend of a knee, radians.
+    pub(super) fn knee(&self, frame: usize, side: Side) -> f64 {
+        self.frames[frame][2 + side.index()]
+    }
+
+    /// Size of the body: 1 for the canonical one, in proportion to which are lengths and speeds.
+    pub(super) fn size(&self) -> f64 {
+        let length = 0.5 * self.bones.as_flattened().iter().sum::<f64>();
+        (length / CANONICAL_LEG_M).max(f64::MIN_POSITIVE)
+    }
+
+    /// Distance of the left ankle ahead of the right one, metres, and its height above it.
+    pub(super) fn between_ankles(&self, frame: usize) -> [f64; 2] {
+        let [left, right] = Side::BOTH.map(|side| self.ankle(frame, side));
+        [left[0] - right[0], left[1] - right[1]]
+    }
+
+    /// A signal over all frames under a Gaussian window.
+    pub(super) fn smoothed(&self, deviation: f64, signal: impl Fn(usize) -> f64) -> Vec<f64> {
+        let values: Vec<f64> = (0..self.frames.len()).map(signal).collect();
+        smoothed(&values, deviation)
+    }
+
+    /// The runs of frames in which one ankle is ahead, each where it is farthest ahead.
     pub(super) fn half_cycles(&self) -> Vec<HalfCycle> {
-        let leads: Vec<f64> = (0..self.frames.len())
-            .map(|frame| self.lead(frame))
-            .collect();
-        let leads = smoothed(&leads, CYCLE_SMOOTHING);
+        let leads = self.smoothed(CYCLE_SMOOTHING, |frame| self.between_ankles(frame)[0]);
         let mut runs: Vec<(usize, usize)> = Vec::new();
         for frame in 0..leads.len() {
             match runs.last_mut() {
@@ -112,7 +122,7 @@ impl LegAngles {
             })
             .collect();
         let swings: Vec<f64> = peaks.iter().map(|peak| leads[*peak].abs()).collect();
-        let least = (LEAST_SWING * median(&swings)).max(LEAST_SWING_RAD);
+        let least = (LEAST_SWING * median(&swings)).max(LEAST_SWING_M * self.size());
         // A leg that is still moving ahead when the clip ends has not landed in it.
         let seen = |frame: &usize| *frame > 0 && frame + 1 < leads.len();
         peaks
@@ -129,32 +139,10 @@ impl LegAngles {
             })
             .collect()
     }
-
-    /// When each half cycle's leg is stretched ahead, in frames: halfway between its ankle farthest ahead and its knee straightest.
-    pub(super) fn stretched_ahead(&self, steps: &[HalfCycle]) -> Vec<f64> {
-        let legs = Side::BOTH.map(|side| {
-            let over = |signal: &dyn Fn(usize) -> f64| {
-                let values: Vec<f64> = (0..self.frames.len()).map(signal).collect();
-                smoothed(&values, LEG_SMOOTHING)
-            };
-            let ahead = over(&|frame| self.ankle_ahead(frame, side));
-            let straight = over(&|frame| -self.frames[frame][2 + side.index()]);
-            (ahead, straight)
-        });
-        steps
-            .iter()
-            .map(|step| {
-                let (ahead, straight) = &legs[step.side.index()];
-                let farthest = greatest(ahead, step.frame, [ANKLE_REACH; 2]);
-                let straightest = greatest(straight, farthest.round() as usize, KNEE_REACH);
-                0.5 * (farthest + straightest)
-            })
-            .collect()
-    }
 }
 
 /// Place of a signal's maximum within a window around a frame, interpolated by a parabola.
-fn greatest(signal: &[f64], around: usize, [before, after]: [usize; 2]) -> f64 {
+pub(super) fn greatest(signal: &[f64], around: usize, [before, after]: [usize; 2]) -> f64 {
     let first = around.saturating_sub(before);
     let last = (around + after).min(signal.len() - 1);
     let at = (first..=last).fold(first, |best, frame| {

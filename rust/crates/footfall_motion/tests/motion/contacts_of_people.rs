@@ -15,7 +15,7 @@ use footfall_motion::corpus::{Corpus, Where};
 use footfall_motion::published_events::PublishedEvents;
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::{RetargetOptions, retarget};
-use footfall_motion::switches::{Landing, detect_switches_by};
+use footfall_motion::switches::{Landing, SwitchConfig, detect_switches_by};
 use std::collections::BTreeMap;
 
 /// A little more than 50 ms, for times are those of frames.
@@ -245,7 +245,9 @@ fn switches_of_every_person_are_the_contacts() {
         for clip in &corpus.clips {
             let motion = &clip.retargeted;
             let rate = motion.clip.frame_rate_hz;
-            let switches = detect_switches_by(&motion.clip, motion.first_frame, landing).unwrap();
+            let switches =
+                detect_switches_by(&motion.clip, motion.first_frame, &SwitchConfig::by(landing))
+                    .unwrap();
             let switches: Vec<GaitEvent> = switches.iter().map(|switch| switch.event()).collect();
             let (known, inside) = (detected(clip), inside(clip, 0.1));
             let person = people.entry(clip.row.subject().to_owned()).or_default();

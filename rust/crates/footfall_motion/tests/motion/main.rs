@@ -9,3 +9,4 @@ mod directions;
 mod hip_centres;
 mod people;
 mod retarget;
+mod switches;

@@ -7,17 +7,20 @@ mod ablation;
 mod agreement;
 mod bodies;
 mod error;
+mod left_out;
 mod people;
 mod sensors;
+mod switch_limits;
 
 pub use ablation::Ablated;
 pub use agreement::Agreement;
 pub use error::ContactsError;
 pub use people::{Limits, Person, mean_and_worst_f1};
+pub use switch_limits::SwitchLimits;
 
 use bodies::Bodies;
 use footfall_motion::recording::Recording;
-use footfall_motion::switches::Landing;
+use footfall_motion::switches::SwitchConfig;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -33,7 +36,7 @@ pub struct ContactsRequest<'a> {
     pub model: Option<&'a Path>,
     /// Largest difference at which switches, and events of sensors, count as the same as others, milliseconds.
     pub tolerance_ms: f64,
-    /// True when the detector's limits are chosen on the other people for each person who is judged.
+    /// True when the limits of both detectors are chosen on the other people for each person who is judged.
     pub leave_one_out: bool,
     /// True when switches are also judged without the parts that place them.
     pub ablate: bool,
@@ -80,7 +83,7 @@ pub fn evaluate_contacts(request: &ContactsRequest<'_>) -> Result<ContactsReport
     for recording in recordings {
         let agreement = categories.entry(recording.row.category().to_owned());
         let agreement = agreement.or_default();
-        agreement.add_switches(recording, Landing::default(), tolerance_ms)?;
+        agreement.add_switches(recording, &SwitchConfig::default(), tolerance_ms)?;
     }
     categories.values_mut().for_each(Agreement::summarise);
     Ok(ContactsReport {

@@ -37,7 +37,7 @@ pub(crate) struct ContactsArgs {
     /// Condition on a column of the corpus, for example `category=neutral_walk`; repeatable
     #[arg(long = "where", value_name = "COLUMN=VALUE", requires = "corpus")]
     conditions: Vec<Where>,
-    /// Choose the detector's limits for each person on the other people
+    /// Choose the limits of both detectors for each person on the other people
     #[arg(long, requires = "corpus")]
     leave_one_out: bool,
     /// Add switches without the parts that place them, and with the projection residual

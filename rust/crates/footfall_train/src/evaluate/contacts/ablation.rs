@@ -4,7 +4,7 @@ use super::people::LEAST_EVENTS;
 use super::{Agreement, ContactsError};
 use crate::averages::mean;
 use footfall_motion::recording::Recording;
-use footfall_motion::switches::Landing;
+use footfall_motion::switches::{Landing, SwitchConfig};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -28,12 +28,13 @@ pub(super) fn ablate(
 ) -> Result<BTreeMap<&'static str, Ablated>, ContactsError> {
     let mut ablation = BTreeMap::new();
     for landing in Landing::ALL {
+        let config = SwitchConfig::by(landing);
         let mut all = Agreement::default();
         let mut people: BTreeMap<&str, Agreement> = BTreeMap::new();
         for clip in clips {
-            all.add_switches(clip, landing, tolerance_ms)?;
+            all.add_switches(clip, &config, tolerance_ms)?;
             let person = people.entry(clip.row.subject()).or_default();
-            person.add_switches(clip, landing, tolerance_ms)?;
+            person.add_switches(clip, &config, tolerance_ms)?;
         }
         all.summarise();
         let f1: Vec<(f64, &str)> = people

@@ -3,7 +3,7 @@
 use super::ContactsError;
 use footfall_core::{EventKind, Side};
 use footfall_motion::recording::Recording;
-use footfall_motion::switches::{Landing, detect_switches_by};
+use footfall_motion::switches::{SwitchConfig, detect_switches_by};
 use footfall_prob::switching::median;
 use serde::Serialize;
 
@@ -38,7 +38,7 @@ impl Agreement {
     pub(super) fn add_switches(
         &mut self,
         recording: &Recording,
-        landing: Landing,
+        config: &SwitchConfig,
         tolerance_ms: f64,
     ) -> Result<(), ContactsError> {
         let motion = &recording.retargeted;
@@ -46,7 +46,7 @@ impl Agreement {
         let secs = |frame: usize| frame as f64 / rate;
         let (first, last) = (secs(motion.first_frame), secs(motion.clip.poses.len() - 1));
         let inside = |time: &f64| (first + EDGE_SECS..=last - EDGE_SECS).contains(time);
-        let switches = detect_switches_by(&motion.clip, motion.first_frame, landing)
+        let switches = detect_switches_by(&motion.clip, motion.first_frame, config)
             .map_err(|error| ContactsError::file(&recording.row.path, error))?;
         let events = recording.contacts.events();
         self.recordings += 1;

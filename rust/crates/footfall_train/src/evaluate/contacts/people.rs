@@ -1,12 +1,13 @@
 //! Contacts and switches person by person.
 
+use super::left_out::best_without;
+use super::switch_limits::{self, SwitchLimits};
 use super::{Agreement, ContactsError};
 use crate::averages::mean;
 use footfall_core::{EventKind, GaitEvent, Side};
 use footfall_motion::contacts::{ContactConfig, detect_contacts};
 use footfall_motion::published_events::PublishedEvents;
 use footfall_motion::recording::Recording;
-use footfall_motion::switches::Landing;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -45,6 +46,9 @@ pub struct Person {
     /// Limits that were chosen on the other people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limits: Option<Limits>,
+    /// Times of switches that were chosen on the other people.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub switch_limits: Option<SwitchLimits>,
 }
 
 type People = BTreeMap<String, Person>;
@@ -75,9 +79,8 @@ pub(super) fn judge(
     let mut people = trials[0].1.clone();
     if leave_one_out {
         for (name, person) in &mut people {
-            let best = trials.iter().rev().max_by(|a, b| {
-                let [a, b] = [a, b].map(|(_, people)| score_without(people, name));
-                a.total_cmp(&b)
+            let best = best_without(&trials, name, |person| {
+                vec![&person.initial_contact, &person.terminal_contact]
             });
             if let Some((limits, judged)) = best {
                 *person = judged[name].clone();
@@ -85,14 +88,10 @@ pub(super) fn judge(
             }
         }
     }
-    for clip in clips {
-        let person = people.entry(clip.row.subject().to_owned()).or_default();
-        person
-            .switches
-            .add_switches(clip, Landing::default(), tolerance_ms)?;
-    }
-    for person in people.values_mut() {
-        person.switches.summarise();
+    for (name, (limits, switches)) in switch_limits::judge(clips, tolerance_ms, leave_one_out)? {
+        let person = people.entry(name).or_default();
+        person.switches = switches;
+        person.switch_limits = limits;
     }
     Ok(people)
 }
@@ -147,12 +146,4 @@ pub fn mean_and_worst_f1<'a>(agreements: impl Iterator<Item = &'a Agreement>) ->
     let f1: Vec<f64> = telling.map(|agreement| agreement.f1).collect();
     let worst = f1.iter().copied().reduce(f64::min)?;
     Some([mean(&f1), worst])
-}
-
-/// The F1 of all people but one, each counting once.
-fn score_without(people: &People, left_out: &str) -> f64 {
-    let others = people.iter().filter(|(name, _)| *name != left_out);
-    let agreements =
-        others.flat_map(|(_, person)| [&person.initial_contact, &person.terminal_contact]);
-    mean_and_worst_f1(agreements).map_or(0.0, |[mean, _]| mean)
 }

@@ -80,8 +80,15 @@ fn people_table(people: &People, tolerance_ms: f64) -> Vec<String> {
                 limits.heel_speed_on, limits.toe_speed_off
             )
         });
+        let switch_limits = person.switch_limits.map_or_else(String::new, |limits| {
+            format!(
+                ", switches {:+.0} ms and {:.0} a radian",
+                1000.0 * limits.landing_secs,
+                1000.0 * limits.bend_secs_per_rad
+            )
+        });
         lines.push(format!(
-            "{name:28} {}  {}  {}{limits}",
+            "{name:28} {}  {}  {}{limits}{switch_limits}",
             cells(&person.initial_contact),
             cells(&person.terminal_contact),
             cells(&person.switches)
