@@ -28,7 +28,7 @@
 //!
 //! Of the O3DE takes those of walks and their stops and turns have 0.87 to 0.96, runs with pivots 0.82, crouched walks 0.69, turns on the spot 0.48.
 //!
-//! Limits: hops and jumps are beyond it, dances too, and and a foot that shifts by a hand's breadth in a turn is often missed.
+//! Limits: hops and jumps are beyond it, dances too, and a foot that shifts by a hand's breadth in a turn is often missed.
 
 mod angles;
 mod beside;
