@@ -10,10 +10,10 @@ const HEIGHT_M := 1.75
 const RADIUS_M := 0.2
 const AWAY := Vector3(0, -50, 0)
 
-var _bodies: Array[AnimatableBody3D] = []
+@export var crowd: GaitCrowd3D
+@export var player: GaitCharacter3D
 
-@onready var _crowd: GaitCrowd3D = %Crowd
-@onready var _player: GaitCharacter3D = %Player
+var _bodies: Array[AnimatableBody3D] = []
 
 
 func _ready() -> void:
@@ -22,6 +22,7 @@ func _ready() -> void:
 	shape.radius = RADIUS_M
 	for index: int in MOST:
 		var body := AnimatableBody3D.new()
+		body.top_level = true
 		body.sync_to_physics = false
 		body.collision_layer = LAYER
 		body.collision_mask = 0
@@ -31,15 +32,15 @@ func _ready() -> void:
 		body.position = AWAY
 		add_child(body)
 		_bodies.append(body)
-	_player.collision_mask |= LAYER
+	player.collision_mask |= LAYER
 
 
 func _physics_process(_delta: float) -> void:
 	# Nobody pushes the player: who comes so near by itself that bodies touch has none.
-	var touching := RADIUS_M + (_player.get_node(^"Shape").shape as CapsuleShape3D).radius
+	var touching := RADIUS_M + (player.get_node(^"Shape").shape as CapsuleShape3D).radius
 	var used := 0
-	for place: Vector3 in _crowd.get_positions():
-		var far := place.distance_to(_player.global_position)
+	for place: Vector3 in crowd.get_positions():
+		var far := place.distance_to(player.global_position)
 		if used < MOST and far < REACH_M and far > touching:
 			_bodies[used].position = place + Vector3.UP * 0.5 * HEIGHT_M
 			used += 1
