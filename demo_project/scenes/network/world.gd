@@ -127,7 +127,7 @@ func _make(data: Dictionary) -> Node:
 		player.get_node(^"Camera").free()
 		player.get_node(^"TouchStick").free()
 	player.ready.connect(func() -> void:
-		Paint.apply(player, data.colour)
+		Paint.apply(player.gait.get_skeleton(), data.colour)
 		player.gait.replica_refused.connect(func(reason: String) -> void: told.emit(reason)))
 	return player
 

@@ -13,7 +13,9 @@ const AWAY := Vector3(0, -50, 0)
 @export var crowd: GaitCrowd3D
 @export var player: GaitCharacter3D
 
-var _bodies: Array[AnimatableBody3D] = []
+var _free: Array[AnimatableBody3D] = []
+## Somebody nearby → the body. It stays the same: one that changed hands would hit the player on its way.
+var _bodies: Dictionary[int, AnimatableBody3D] = {}
 
 
 func _ready() -> void:
@@ -24,25 +26,40 @@ func _ready() -> void:
 		var body := AnimatableBody3D.new()
 		body.top_level = true
 		body.sync_to_physics = false
-		body.collision_layer = LAYER
+		body.collision_layer = 0
 		body.collision_mask = 0
 		var collision := CollisionShape3D.new()
 		collision.shape = shape
 		body.add_child(collision)
 		body.position = AWAY
 		add_child(body)
-		_bodies.append(body)
+		_free.append(body)
 	player.collision_mask |= LAYER
 
 
 func _physics_process(_delta: float) -> void:
-	# Nobody pushes the player: who comes so near by itself that bodies touch has none.
+	# Nobody pushes the player: who comes so near by itself that bodies touch goes through.
 	var touching := RADIUS_M + (player.get_node(^"Shape").shape as CapsuleShape3D).radius
-	var used := 0
-	for place: Vector3 in crowd.get_positions():
-		var far := place.distance_to(player.global_position)
-		if used < MOST and far < REACH_M and far > touching:
-			_bodies[used].position = place + Vector3.UP * 0.5 * HEIGHT_M
-			used += 1
-	for index: int in range(used, MOST):
-		_bodies[index].position = AWAY
+	var people := crowd.get_agents()
+	var places := crowd.get_positions()
+	var nearby: Dictionary[int, AnimatableBody3D] = {}
+	for index: int in people.size():
+		var far := places[index].distance_to(player.global_position)
+		if far > REACH_M:
+			continue
+		var body: AnimatableBody3D = _bodies.get(people[index])
+		if body == null:
+			if _free.is_empty():
+				continue
+			body = _free.pop_back()
+		else:
+			# It has come here from where it was in the frame before.
+			body.collision_layer = LAYER if far > touching else 0
+			_bodies.erase(people[index])
+		body.position = places[index] + Vector3.UP * 0.5 * HEIGHT_M
+		nearby[people[index]] = body
+	for person: int in _bodies:
+		var body := _bodies[person]
+		body.collision_layer = 0
+		_free.append(body)
+	_bodies = nearby
