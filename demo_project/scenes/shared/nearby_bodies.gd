@@ -8,6 +8,8 @@ const MOST := 8
 const REACH_M := 3.0
 const HEIGHT_M := 1.75
 const RADIUS_M := 0.2
+## Whoever walks into the player has no body from this near on, metres: farther than anybody comes in a frame.
+const GAP_M := 0.1
 const AWAY := Vector3(0, -50, 0)
 
 @export var crowd: GaitCrowd3D
@@ -38,7 +40,6 @@ func _ready() -> void:
 
 
 func _physics_process(_delta: float) -> void:
-	# Nobody pushes the player: who comes so near by itself that bodies touch goes through.
 	var touching := RADIUS_M + (player.get_node(^"Shape").shape as CapsuleShape3D).radius
 	var people := crowd.get_agents()
 	var places := crowd.get_positions()
@@ -54,7 +55,7 @@ func _physics_process(_delta: float) -> void:
 			body = _free.pop_back()
 		else:
 			# It has come here from where it was in the frame before.
-			body.collision_layer = LAYER if far > touching else 0
+			body.collision_layer = LAYER if far > touching + (0.0 if _walks_to(places[index]) else GAP_M) else 0
 			_bodies.erase(people[index])
 		body.position = places[index] + Vector3.UP * 0.5 * HEIGHT_M
 		nearby[people[index]] = body
@@ -63,3 +64,8 @@ func _physics_process(_delta: float) -> void:
 		body.collision_layer = 0
 		_free.append(body)
 	_bodies = nearby
+
+
+## Returns whether the player walks towards somebody. Whoever comes to a player who does not goes through, and pushes nobody.
+func _walks_to(place: Vector3) -> bool:
+	return player.velocity.dot(place - player.global_position) > 0.0
