@@ -171,26 +171,26 @@ pub(super) fn write_pose(pose: &CrowdPose, turned_by: &[Joint; JOINT_COUNT], out
 }
 
 /// Returns whether the renderer blends colours as they are shown, without turning them into light before: the Compatibility renderer does.
-pub(super) fn draws_as_shown() -> bool {
+pub(super) fn draws_in_srgb() -> bool {
     RenderingServer::singleton().get_current_rendering_method() == "gl_compatibility"
 }
 
 /// Part of a colour as it is shown (sRGB), from that of light, within 0.2 %, without a power for every walker.
-fn shown_part(light: f32) -> f32 {
+fn srgb_part(light: f32) -> f32 {
     let root = light.max(0.0).sqrt();
     let fourth = root.sqrt();
     let eighth = fourth.sqrt();
-    0.662_002_7 * root + 0.684_122_06 * fourth - 0.323_583_6 * eighth - 0.022_541_147 * light
+    0.662_002_7 * root + 0.684_122_1 * fourth - 0.323_583_6 * eighth - 0.022_541_147 * light
 }
 
-/// Writes an instance: where it stands, its tint, [as shown](draws_as_shown) or of light, the slot of its pose, the way from there to the pose in the next slot, and the speed that it leaves: so many
+/// Writes an instance: where it stands, its tint, linear or [in sRGB](draws_in_srgb), the slot of its pose, the way from there to the pose in the next slot, and the speed that it leaves: so many
 /// [steps of poses](footfall_synth::SharedPose::beside) beside that slot, and its weight.
 pub(super) fn write_instance(
     place: Vec3,
     heading: f32,
     drawn: &Drawn,
     (slot, blend, leaving): (usize, f32, f32),
-    as_shown: bool,
+    in_srgb: bool,
     out: &mut [f32],
 ) {
     let turn = glam::Mat3::from_quat(Quat::from_rotation_y(heading)) * drawn.size;
@@ -199,9 +199,9 @@ pub(super) fn write_instance(
         out[4 * row + 3] = place[row];
     }
     out[12..16].copy_from_slice(&drawn.tint);
-    if as_shown {
+    if in_srgb {
         for part in &mut out[12..15] {
-            *part = shown_part(*part);
+            *part = srgb_part(*part);
         }
     }
     // The Compatibility renderer keeps half floats, which are exact up to 2048.

@@ -4,7 +4,7 @@ use super::actors::Actors;
 use super::bounds::Bounds;
 use super::crowd_mesh::CrowdMesh;
 use super::flock::{
-    Flock, INSTANCE_NUMBERS, POSE_BYTES, draws_as_shown, write_instance, write_pose,
+    Flock, INSTANCE_NUMBERS, POSE_BYTES, draws_in_srgb, write_instance, write_pose,
 };
 use super::shared_flock::SharedFlock;
 use crate::convert;
@@ -51,8 +51,8 @@ pub(super) struct CrowdScene {
     unwritten: [bool; GROUPS],
     /// True when walkers are waiting for a whole scene.
     lacking: bool,
-    /// True where instances have their colours as they are shown.
-    as_shown: bool,
+    /// True where instances have their colours in sRGB.
+    in_srgb: bool,
 }
 
 impl CrowdScene {
@@ -73,7 +73,7 @@ impl CrowdScene {
             ticks: Vec::new(),
             unwritten: [true; GROUPS],
             lacking: false,
-            as_shown: draws_as_shown(),
+            in_srgb: draws_in_srgb(),
         })
     }
 
@@ -203,7 +203,7 @@ impl CrowdScene {
         }
         let shown = &self.shown;
         let turned_by = &self.mesh.turned_by;
-        let as_shown = self.as_shown;
+        let in_srgb = self.in_srgb;
         self.near
             .poses()
             .par_chunks_mut(FETCHED * POSE_BYTES)
@@ -231,7 +231,7 @@ impl CrowdScene {
             .for_each(|(slot, (out, index))| {
                 let drawn = &drawn[*index as usize];
                 let (place, heading) = drawn.at(1.0);
-                write_instance(place, heading, drawn, (slot, 0.0, 0.0), as_shown, out);
+                write_instance(place, heading, drawn, (slot, 0.0, 0.0), in_srgb, out);
             });
         let mut bounds = Bounds::default();
         for index in shown {
@@ -277,7 +277,7 @@ impl CrowdScene {
                 let (place, heading) = drawn.at(share);
                 bounds.add(place);
                 let at = (2 * slot, share, 0.0);
-                write_instance(place, heading, drawn, at, self.as_shown, out);
+                write_instance(place, heading, drawn, at, self.in_srgb, out);
                 count += 1;
             }
             flock.upload_instances(count, bounds.aabb());

@@ -3,7 +3,7 @@
 use super::bounds::Bounds;
 use super::crowd_mesh::CrowdMesh;
 use super::flock::{
-    Flock, INSTANCE_NUMBERS, POSE_BYTES, draws_as_shown, write_instance, write_pose,
+    Flock, INSTANCE_NUMBERS, POSE_BYTES, draws_in_srgb, write_instance, write_pose,
 };
 use super::scene::{Look, is_seen};
 use footfall_core::{JOINT_COUNT, Joint};
@@ -38,15 +38,15 @@ pub(super) struct SharedFlock {
     /// Mixtures that were written into each of the two buffers.
     written: [usize; 2],
     parts: Vec<Part>,
-    /// True where instances have their colours as they are shown.
-    as_shown: bool,
+    /// True where instances have their colours in sRGB.
+    in_srgb: bool,
 }
 
 /// A frame's settings, the same for all instances.
 struct Shown<'a> {
     walkers: &'a Crowd,
     firsts: &'a [usize],
-    as_shown: bool,
+    in_srgb: bool,
 }
 
 impl SharedFlock {
@@ -60,7 +60,7 @@ impl SharedFlock {
             taken: 0,
             written: [0; 2],
             parts: Vec::new(),
-            as_shown: draws_as_shown(),
+            in_srgb: draws_in_srgb(),
         })
     }
 
@@ -146,7 +146,7 @@ impl SharedFlock {
         let shown = Shown {
             walkers,
             firsts: &self.firsts,
-            as_shown: self.as_shown,
+            in_srgb: self.in_srgb,
         };
         shown.write_all(&self.parts, self.flock.instances());
         let mut bounds = Bounds::default();
@@ -206,7 +206,7 @@ impl Shown<'_> {
         };
         let slot = first + pose.pose as usize;
         let at = (slot, pose.blend, leaving);
-        write_instance(place, heading, drawn, at, self.as_shown, out);
+        write_instance(place, heading, drawn, at, self.in_srgb, out);
     }
 }
 
