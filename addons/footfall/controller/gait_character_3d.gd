@@ -122,14 +122,17 @@ var _air_secs := 0.0
 @onready var _camera: Node = get_node_or_null(^"Camera")
 
 
+func _enter_tree() -> void:
+	if Engine.is_editor_hint() or is_multiplayer_authority():
+		return
+	# Another peer's character: nobody steers it here, or looks with its eyes. Once its camera were in the tree, the view would be that camera's.
+	player_controlled = false
+	for path: NodePath in [^"Camera", ^"TouchStick"]:
+		if has_node(path):
+			get_node(path).free()
+
+
 func _ready() -> void:
-	if not Engine.is_editor_hint() and not is_multiplayer_authority():
-		# Another peer's character: nobody looks with its eyes here, or steers it.
-		player_controlled = false
-		for path: NodePath in [^"Camera", ^"TouchStick"]:
-			if has_node(path):
-				get_node(path).free()
-		_camera = null
 	_wear()
 
 

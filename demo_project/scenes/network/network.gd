@@ -1,14 +1,31 @@
 extends Node3D
 ## Two machines, one crowd: host a game or join one, and everybody makes the same steps everywhere.
 ##
-## Without a user the scene is both: a host who walks in circles, and beside it a guest's machine that shows the same.
+## Without a user the scene is both: a host who walks in circles, and beside it a guest's machine that shows the same people.
 
 const PORT_OF_CHECK := 24_681
 ## The guest's machine shows the host's character so far behind at most, metres: as far as it walks until that is heard of.
 const BEHIND := 0.6
+## The player goes no farther in a frame, metres, whoever comes in the way.
+const IN_A_FRAME := 0.1
+## Place of the guest's machine beside the host's.
+const BESIDE := Vector3(26, 0, 0)
+## Footsteps of the crowd are at the same place on both machines within this, metres, from so long after the guest has come, seconds.
+const SAME_PLACE := 0.05
+const JOINED_SECS := 2.0
+## Of so many footsteps one may be elsewhere: frames of a check do not wait for the network, and whoever is heard of late is corrected.
+const CORRECTED_OF := 20
 
 var _guest: NetworkWorld
 var _shown := 0
+var _checked_secs := 0.0
+var _before := Vector3.INF
+var _thrown := 0.0
+## Footsteps of the host's crowd: walker and foot → places.
+var _made: Dictionary[Vector2i, PackedVector3Array] = {}
+## Footsteps that the guest's machine has shown of it, and how many of them the host's crowd has not made.
+var _shown_of_crowd := 0
+var _made_up := 0
 
 @onready var _world: NetworkWorld = $World
 @onready var _camera: Camera3D = $Stage/Camera
@@ -28,24 +45,29 @@ func _ready() -> void:
 		_be_both()
 
 
-func _physics_process(_delta: float) -> void:
+func _physics_process(delta: float) -> void:
+	_checked_secs += delta
 	if _guest == null or _world.own_player() == null:
 		return
 	var player := _world.own_player()
+	if _before.is_finite():
+		_thrown = maxf(_thrown, player.global_position.distance_to(_before))
+	_before = player.global_position
 	player.autopilot = player.global_basis.z.rotated(Vector3.UP, 0.2)
-	_camera.target_position = player.global_position + Vector3(2.0, 0.8, 0.0)
+	_camera.target_position = player.global_position + Vector3.UP * 0.8
 
 
 func close_ups() -> Dictionary[String, Array]:
 	var at := _world.own_player().global_position + Vector3.UP * 0.9
 	return {
-		"both": [at + Vector3.RIGHT * 2.0, 10.0, 14.0, 6.0],
-		"side": [at, 90.0, 6.0, 3.4],
+		"both": [0.5 * BESIDE, 0.0, 32.0, 40.0],
+		"host": [at, 10.0, 14.0, 9.0],
+		"guest": [at + BESIDE, 10.0, 14.0, 9.0],
 	}
 
 
 func begin_check() -> void:
-	pass
+	_checked_secs = 0.0
 
 
 func problems(frames: int) -> PackedStringArray:
@@ -59,18 +81,28 @@ func problems(frames: int) -> PackedStringArray:
 		found.append("the host's character is %.2f m from where the guest's machine shows it" % behind)
 	if _shown < frames / 60.0 - 2.0:
 		found.append("the guest's machine has shown %d of its footsteps in %d frames" % [_shown, frames])
+	if _thrown > IN_A_FRAME:
+		found.append("somebody has thrown the host's character by %.2f m" % _thrown)
+	var people := _people_of(_world)
+	if people.is_empty() or people != _people_of(_guest):
+		found.append("the guest's machine has other people than the host: %s, not %s" % [_people_of(_guest), people])
+	if _made_up * CORRECTED_OF > _shown_of_crowd or _shown_of_crowd < people.size() * (frames / 60.0 - JOINED_SECS - 1.0):
+		found.append("of %d footsteps that the guest's machine has shown of %d people, %d were never made" % [_shown_of_crowd, people.size(), _made_up])
 	return found
 
 
 func is_getting_ready() -> bool:
-	return _guest != null and _guest.player_of(1) == null
+	if _guest == null:
+		return false
+	var making := _world.crowd.is_making() or _guest.crowd.is_making()
+	return making or _guest.player_of(1) == null or _guest.crowd.get_agents().size() < _world.crowd.count
 
 
 ## A host and a guest beside it, neither with a player.
 func _be_both() -> void:
 	_guest = (load("res://scenes/network/world.tscn") as PackedScene).instantiate()
 	_guest.name = "Guest"
-	_guest.position.x = 4.0
+	_guest.position = BESIDE
 	_guest.played = false
 	_world.played = false
 	add_child(_guest)
@@ -78,9 +110,36 @@ func _be_both() -> void:
 		player.ready.connect(func() -> void:
 			if player.name == "1":
 				(player as GaitCharacter3D).gait.footstep.connect(func(_foot: StringName, _at: Vector3) -> void: _shown += 1)))
+	_world.crowd.footsteps.connect(_keep)
+	_guest.crowd.footsteps.connect(_compare)
 	_camera.make_current()
 	if _world.host(PORT_OF_CHECK) and _guest.join("127.0.0.1", PORT_OF_CHECK):
 		_offer(false)
+
+
+## Ids of a machine's people, in order.
+func _people_of(machine: NetworkWorld) -> PackedInt32Array:
+	var people := machine.crowd.get_agents()
+	people.sort()
+	return people
+
+
+func _keep(people: PackedInt32Array, feet: PackedByteArray, places: PackedVector3Array) -> void:
+	for index: int in people.size():
+		var key := Vector2i(people[index], feet[index])
+		var before: PackedVector3Array = _made.get_or_add(key, PackedVector3Array())
+		before.append(places[index])
+		_made[key] = before
+
+
+func _compare(people: PackedInt32Array, feet: PackedByteArray, places: PackedVector3Array) -> void:
+	if _checked_secs < JOINED_SECS:
+		return
+	for index: int in people.size():
+		_shown_of_crowd += 1
+		var place := places[index] - BESIDE
+		var made: PackedVector3Array = _made.get(Vector2i(people[index], feet[index]), PackedVector3Array())
+		_made_up += int(not Array(made).any(func(other: Vector3) -> bool: return other.distance_to(place) < SAME_PLACE))
 
 
 func _offer(free: bool) -> void:

@@ -1,6 +1,6 @@
 class_name NetworkWorld
 extends Node3D
-## One machine's part of a multiplayer game: it hosts or joins, and has a character for everybody who plays.
+## One machine's part of a multiplayer game: it hosts or joins, and has a character for everybody who plays, and a crowd that all see alike.
 ##
 ## It has a multiplayer interface of its own, so that a scene may hold several: a host and its guests on one screen.
 
@@ -15,12 +15,15 @@ const COLOURS: PackedColorArray = [Color(0.85, 0.36, 0.26), Color(0.24, 0.5, 0.7
 ## Distance of the places at which players come.
 const APART := 1.6
 const MOST_GUESTS := 16
+## The crowd's people walk round those of this group.
+const PLAYERS := &"players"
 
 ## If [code]true[/code], the own character has a camera and listens to the keyboard.
 @export var played := true
 
 var _count := 0
 
+@onready var crowd: GaitCrowd3D = $Crowd
 @onready var _players: Node3D = $Players
 @onready var _spawner: MultiplayerSpawner = $Spawner
 
@@ -110,15 +113,21 @@ func _make(data: Dictionary) -> Node:
 	player.name = str(data.peer)
 	player.position = data.place
 	player.character_scene = MANNEQUIN
+	player.add_to_group(PLAYERS)
 	player.add_child(SYNCHRONIZER.instantiate())
 	# Of the character and all that is in it by now.
 	player.set_multiplayer_authority(data.peer)
 	player.player_controlled = played
+	if data.peer == multiplayer.get_unique_id():
+		var bodies := NearbyBodies.new()
+		bodies.crowd = crowd
+		bodies.player = player
+		player.add_child(bodies)
 	if not played:
 		player.get_node(^"Camera").free()
 		player.get_node(^"TouchStick").free()
 	player.ready.connect(func() -> void:
-		Paint.apply(player, data.colour)
+		Paint.apply(player.gait.get_skeleton(), data.colour)
 		player.gait.replica_refused.connect(func(reason: String) -> void: told.emit(reason)))
 	return player
 

@@ -307,6 +307,19 @@ func test_it_faces_its_way_and_where_the_camera_looks_while_aiming() -> void:
 	check(way.x > 0.5 and absf(way.z) < 0.2 * way.x, "and goes sideways: %s" % way)
 
 
+func test_who_comes_from_another_peer_leaves_the_view_to_the_player() -> void:
+	# The level's own, as before anybody plays.
+	add_child(Camera3D.new())
+	var camera := _character().get_node(^"Camera/Lens")
+	check_equal(get_viewport().get_camera_3d(), camera, "the player's own camera shows the game")
+	var other: GaitCharacter3D = CONTROLLER.instantiate()
+	other.character_scene = Skinned.scene()
+	other.set_multiplayer_authority(2)
+	add_child(other)
+	check_equal(get_viewport().get_camera_3d(), camera, "and does so when somebody has joined")
+	check(not other.player_controlled, "whom nobody steers here")
+
+
 func test_capsules_fit_their_bodies() -> void:
 	var bodies: Array[GaitCharacter3D] = []
 	var capsules: Array[float] = []

@@ -3,7 +3,9 @@
 use super::actors::Actors;
 use super::bounds::Bounds;
 use super::crowd_mesh::CrowdMesh;
-use super::flock::{Flock, INSTANCE_NUMBERS, POSE_BYTES, write_instance, write_pose};
+use super::flock::{
+    Flock, INSTANCE_NUMBERS, POSE_BYTES, draws_in_srgb, write_instance, write_pose,
+};
 use super::shared_flock::SharedFlock;
 use crate::convert;
 use footfall_core::{JOINT_COUNT, Joint};
@@ -49,6 +51,8 @@ pub(super) struct CrowdScene {
     unwritten: [bool; GROUPS],
     /// True when walkers are waiting for a whole scene.
     lacking: bool,
+    /// True where instances have their colours in sRGB.
+    in_srgb: bool,
 }
 
 impl CrowdScene {
@@ -69,6 +73,7 @@ impl CrowdScene {
             ticks: Vec::new(),
             unwritten: [true; GROUPS],
             lacking: false,
+            in_srgb: draws_in_srgb(),
         })
     }
 
@@ -198,6 +203,7 @@ impl CrowdScene {
         }
         let shown = &self.shown;
         let turned_by = &self.mesh.turned_by;
+        let in_srgb = self.in_srgb;
         self.near
             .poses()
             .par_chunks_mut(FETCHED * POSE_BYTES)
@@ -225,7 +231,7 @@ impl CrowdScene {
             .for_each(|(slot, (out, index))| {
                 let drawn = &drawn[*index as usize];
                 let (place, heading) = drawn.at(1.0);
-                write_instance(place, heading, drawn, (slot, 0.0, 0.0), out);
+                write_instance(place, heading, drawn, (slot, 0.0, 0.0), in_srgb, out);
             });
         let mut bounds = Bounds::default();
         for index in shown {
@@ -270,7 +276,8 @@ impl CrowdScene {
                 let drawn = &drawn[index];
                 let (place, heading) = drawn.at(share);
                 bounds.add(place);
-                write_instance(place, heading, drawn, (2 * slot, share, 0.0), out);
+                let at = (2 * slot, share, 0.0);
+                write_instance(place, heading, drawn, at, self.in_srgb, out);
                 count += 1;
             }
             flock.upload_instances(count, bounds.aabb());

@@ -2,7 +2,9 @@
 
 use super::bounds::Bounds;
 use super::crowd_mesh::CrowdMesh;
-use super::flock::{Flock, INSTANCE_NUMBERS, POSE_BYTES, write_instance, write_pose};
+use super::flock::{
+    Flock, INSTANCE_NUMBERS, POSE_BYTES, draws_in_srgb, write_instance, write_pose,
+};
 use super::scene::{Look, is_seen};
 use footfall_core::{JOINT_COUNT, Joint};
 use footfall_rig::crowd::{Crowd, FETCHED, GROUPS, Tier};
@@ -36,12 +38,15 @@ pub(super) struct SharedFlock {
     /// Mixtures that were written into each of the two buffers.
     written: [usize; 2],
     parts: Vec<Part>,
+    /// True where instances have their colours in sRGB.
+    in_srgb: bool,
 }
 
 /// A frame's settings, the same for all instances.
 struct Shown<'a> {
     walkers: &'a Crowd,
     firsts: &'a [usize],
+    in_srgb: bool,
 }
 
 impl SharedFlock {
@@ -55,6 +60,7 @@ impl SharedFlock {
             taken: 0,
             written: [0; 2],
             parts: Vec::new(),
+            in_srgb: draws_in_srgb(),
         })
     }
 
@@ -140,6 +146,7 @@ impl SharedFlock {
         let shown = Shown {
             walkers,
             firsts: &self.firsts,
+            in_srgb: self.in_srgb,
         };
         shown.write_all(&self.parts, self.flock.instances());
         let mut bounds = Bounds::default();
@@ -198,7 +205,8 @@ impl Shown<'_> {
             0.0
         };
         let slot = first + pose.pose as usize;
-        write_instance(place, heading, drawn, (slot, pose.blend, leaving), out);
+        let at = (slot, pose.blend, leaving);
+        write_instance(place, heading, drawn, at, self.in_srgb, out);
     }
 }
 

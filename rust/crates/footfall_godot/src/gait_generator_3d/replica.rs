@@ -11,6 +11,8 @@ use godot::prelude::*;
 
 /// Refusals are told no more often than this, seconds.
 const QUIET_SECS: f32 = 5.0;
+/// Updates come before the identity that they belong to, as after a teleport, for so long at most, seconds: identities are sent again where they are lost.
+const EARLY_SECS: f32 = 2.0;
 
 /// Walk's part in a multiplayer game.
 #[derive(Debug, Default)]
@@ -21,6 +23,8 @@ pub(super) struct Replica {
     /// Refusal that waits to be told, and the time until another is, seconds.
     untold: Cell<Option<ReplicaError>>,
     quiet_secs: Cell<f32>,
+    /// Time since an update belonged to the walker, seconds.
+    strange_secs: f32,
 }
 
 /// Walker of another peer.
@@ -96,8 +100,10 @@ impl GaitGenerator3D {
             return;
         };
         match led.follower.hear(state.as_slice(), &session.generator) {
+            Ok(()) => self.replica.strange_secs = 0.0,
             // Networks turn the order of packets round.
-            Ok(()) | Err(ReplicaError::Old) => {}
+            Err(ReplicaError::Old) => {}
+            Err(ReplicaError::OtherWalker) if self.replica.strange_secs < EARLY_SECS => {}
             Err(error) => self.replica.refuse(error),
         }
     }
@@ -176,6 +182,7 @@ impl GaitGenerator3D {
         session.generator.set_style_weights(weights);
         self.replica.sender.get_mut().step(dt_secs as f32);
         *self.replica.quiet_secs.get_mut() -= dt_secs as f32;
+        self.replica.strange_secs += dt_secs as f32;
         let Some(led) = self.replica.led.as_mut().filter(|led| led.fits.is_none()) else {
             return;
         };
