@@ -99,7 +99,7 @@ fn styles_on_the_mixing_pad() {
 #[test]
 fn tables_and_charts_of_an_evaluation() {
     let world = World::new();
-    let mut window = world.evaluation_window();
+    let mut window = world.evaluation_window(2);
     let conditions = window.get_by_role(Role::TextInput);
     conditions.focus();
     conditions.type_text("category=styled_walk");

@@ -178,7 +178,8 @@ fn a_style_is_made_from_recordings_and_saved() {
 #[test]
 fn work_that_is_cancelled_says_so_and_shows_nothing() {
     let world = World::new();
-    let mut window = world.evaluation_window();
+    // So many that a busy machine is not done before the click.
+    let mut window = world.evaluation_window(10);
     click(&mut window, "Run the evaluation");
     click(&mut window, "Cancel");
     settle(&mut window);

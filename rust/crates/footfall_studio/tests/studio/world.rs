@@ -78,14 +78,14 @@ impl World {
     }
 
     /// Walks in three styles, two each, and the index of them.
-    fn styled_walks(&self) -> PathBuf {
+    fn styled_walks(&self, takes: u64) -> PathBuf {
         let base = base();
         let mut index = "path,category,style,subject\n".to_owned();
         for name in ["proud", "sad", "drunk"] {
             let bytes = std::fs::read(shipped(&format!("{name}.footstyle"))).unwrap();
             let style = GaitStyle::from_bytes(&bytes).unwrap();
             let styled = Arc::new(base.styled(&[(&style, 1.0)]).unwrap());
-            for take in 1..=2 {
+            for take in 1..=takes {
                 let file = format!("{name}_{take}.bvh");
                 write_walk(
                     &styled,
@@ -103,9 +103,9 @@ impl World {
         path
     }
 
-    /// A window that is ready to evaluate walks in three styles.
-    pub(crate) fn evaluation_window(&self) -> Window {
-        let index = self.styled_walks();
+    /// A window that is ready to evaluate so many walks in each of three styles.
+    pub(crate) fn evaluation_window(&self, takes: u64) -> Window {
+        let index = self.styled_walks(takes);
         let mut window = self.window(&[]);
         click(&mut window, "Evaluate");
         click(&mut window, "Index…");
