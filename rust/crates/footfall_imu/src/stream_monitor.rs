@@ -86,6 +86,11 @@ impl StreamMonitor {
             .or_else(|| self.rails.fault())
     }
 
+    /// Returns true while an axis keeps one value in motion: it may be [stuck](StreamFault::StuckAxis), and samples say little of how the sensor is worn.
+    pub fn suspects_axes(&self) -> bool {
+        self.axes.are_suspected()
+    }
+
     /// Returns the faults of a whole recording, with the times between which each was reported, in the order of their begin.
     pub fn faults_of(recording: &ImuRecording, promised_hz: Option<f64>) -> Vec<FaultSpan> {
         let mut monitor = Self::new(promised_hz);

@@ -51,7 +51,9 @@ impl Watch {
     /// Takes a sample in the sensor's axes and, where the mounting is known, in the site's.
     pub(crate) fn push(&mut self, sample: &ImuSample, worn: Option<&ImuSample>) {
         self.stream.push(*sample);
-        if let Some(worn) = worn.filter(|worn| worn.is_finite()) {
+        // Who walks with an axis that is stuck seems to ride until the fault is certain.
+        let worn = worn.filter(|worn| worn.is_finite() && !self.stream.suspects_axes());
+        if let Some(worn) = worn {
             self.wear.push(worn);
         }
     }
@@ -146,5 +148,47 @@ fn note(problems: &mut Vec<ProblemSpan>, time_secs: f64, problem: SensorProblem)
             end_secs: time_secs,
             problem,
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f32::consts::TAU;
+
+    #[test]
+    fn whoever_walks_with_a_stuck_axis_does_not_ride() {
+        let told = |stuck: bool| {
+            let mut watch = Watch::new(Vec3::Y, Some(100.0));
+            let mut told = Vec::new();
+            for n in 0..600_u32 {
+                let secs = f64::from(n) * 0.01;
+                let walks = n >= 200;
+                let phase = TAU * 1.8 * secs as f32;
+                let swing = if walks { phase.sin() } else { 0.0 };
+                let turns = if walks && stuck { 0.25 } else { 3.0 * swing };
+                let [yaw, roll] = [0.15 * phase.sin(), 0.15 * phase.cos()];
+                let sample = ImuSample {
+                    time_secs: secs,
+                    force: Vec3::new(yaw, 9.8 + 4.0 * swing.abs(), roll),
+                    rate: Vec3::new(turns, yaw, roll),
+                };
+                watch.push(&sample, Some(&sample));
+                let kind = watch.problem();
+                if told.last() != Some(&kind) {
+                    told.push(kind);
+                }
+            }
+            told
+        };
+        assert_eq!(told(false), [None]);
+        let problems = told(true);
+        let [
+            None,
+            Some(SensorProblem::Stream(StreamFault::StuckAxis { .. })),
+        ] = problems[..]
+        else {
+            panic!("{problems:?}");
+        };
     }
 }

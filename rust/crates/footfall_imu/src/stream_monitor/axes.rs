@@ -12,6 +12,9 @@ const MOVES_MPS2: f32 = 1.5;
 /// Movement over which an axis that keeps one value is stuck, seconds.
 const SAME_SECS: f32 = 1.5;
 
+/// Movement over which an axis that keeps one value may be stuck, seconds: an axis that works changes with every sample or two.
+const SUSPECTED_SECS: f32 = 0.1;
+
 /// Movement over which axes are compared, seconds.
 const COMPARED_SECS: f32 = 3.0;
 
@@ -104,6 +107,11 @@ impl StuckAxes {
                 self.dead = Some((3 * kind + n, own[n].first + own[n].sum / secs));
             }
         }
+    }
+
+    /// Returns true while an axis may be stuck, or is.
+    pub(super) fn are_suspected(&self) -> bool {
+        self.axes.iter().any(|axis| axis.same_secs > SUSPECTED_SECS)
     }
 
     pub(super) fn fault(&self) -> Option<StreamFault> {
