@@ -144,15 +144,8 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
     if stands {
         return stand(args, &model, styles);
     }
-    let mut warnings = Vec::new();
-    let [slowest, fastest] = model.speed_range();
-    if let Some(speed) = args.walk.speed
-        && !(slowest - 1e-3..=fastest + 1e-3).contains(&f64::from(speed))
-    {
-        warnings.push(format!(
-            "{speed} m/s is beyond the recorded walks ({slowest:.2} to {fastest:.2} m/s): the walk is extrapolated"
-        ));
-    }
+    let speed = args.walk.speed;
+    let warnings = speed.and_then(|speed| beyond_recordings(&model, args.gait, speed));
     let config = WalkConfig {
         steps: args.steps as usize,
         seed: args.walk.seed,
@@ -166,7 +159,34 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
     };
     let walk = synthesize(&model, &model.skeleton, &config)
         .with_context(|| args.model.display().to_string())?;
-    report(args, args.steps, &walk, styles, warnings)
+    report(
+        args,
+        args.steps,
+        &walk,
+        styles,
+        warnings.into_iter().collect(),
+    )
+}
+
+/// Returns a warning where nobody walked, or ran if the model runs and the gait may be that, as fast or as slowly as this.
+fn beyond_recordings(model: &GaitModel, gait: GaitArg, speed_mps: f32) -> Option<String> {
+    let running = model.running.as_deref();
+    let runs = running.filter(|_| gait != GaitArg::Walk);
+    let walks = (gait != GaitArg::Run || runs.is_none()).then_some(model);
+    let ranges = [("walks", walks), ("runs", runs)];
+    let mut recorded = Vec::new();
+    for (name, model) in ranges {
+        let Some(model) = model else { continue };
+        let [slowest, fastest] = model.speed_range();
+        if (slowest - 1e-3..=fastest + 1e-3).contains(&f64::from(speed_mps)) {
+            return None;
+        }
+        recorded.push(format!("{name} ({slowest:.2} to {fastest:.2} m/s)"));
+    }
+    Some(format!(
+        "{speed_mps} m/s is beyond the recorded {}: the motion is extrapolated",
+        recorded.join(" and ")
+    ))
 }
 
 /// Somebody who does what a table says.

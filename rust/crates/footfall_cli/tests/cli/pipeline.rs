@@ -126,6 +126,35 @@ fn equal_seeds_give_equal_bytes_and_others_do_not() {
 }
 
 #[test]
+fn a_speed_that_nobody_walked_or_ran_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = repository().join("addons/footfall/models/locomotion.footfall");
+    let warned = |gait: &str, speed: &str| {
+        let model = model.to_str().unwrap();
+        let arguments = ["synth", "--model", model, "--steps", "4", "-o", "out.bvh"];
+        let more = ["--gait", gait, "--speed", speed, "--json"];
+        let report = footfall(folder.path(), &[&arguments[..], &more].concat()).json();
+        let warnings = report["warnings"].as_array().unwrap();
+        let first = warnings.first().map(|warning| warning.as_str().unwrap());
+        first.unwrap_or_default().to_owned()
+    };
+    for (gait, speed) in [("auto", "1.3"), ("auto", "3.2"), ("run", "3.2")] {
+        assert_eq!(warned(gait, speed), "", "{gait} at {speed} m/s");
+    }
+    let walk = warned("walk", "3.2");
+    assert!(
+        walk.contains("recorded walks") && !walk.contains("runs"),
+        "{walk}"
+    );
+    let fast = warned("auto", "5.5");
+    assert!(
+        fast.contains("recorded walks") && fast.contains("and runs"),
+        "{fast}"
+    );
+    assert!(warned("run", "1.0").contains("recorded runs"));
+}
+
+#[test]
 fn contacts_have_the_contract_s_shape_and_agree_with_the_generator() {
     let folder = tempfile::tempdir().unwrap();
     let model = repository().join("tests/model_versions/v1.footfall");
