@@ -1,5 +1,5 @@
 extends TestCase
-## Opens a game that was made with an earlier add-on, as its files were saved then: nothing complains, no value is lost, and everybody walks.
+## Opens a game with the properties and methods of an earlier add-on: nothing complains, no value is lost, and everybody walks.
 
 const GAME := "res://old_game/game.tscn"
 const SENSORS: PackedStringArray = ["phone_imu", "serial_imu", "network_imu", "replay_imu"]
@@ -42,7 +42,7 @@ func test_an_old_game_keeps_its_values_and_walks() -> void:
 	var walked := 0
 	for index: int in people.size():
 		walked += int(game.crowd.get_positions()[index].distance_to(people[index]) > 1.0)
-	# Who turns at an end of the path may be where it was.
+	# A walker that turns round at the end of its path may end near its start.
 	check(walked >= 10, "%d of %d walk in the crowd" % [walked, people.size()])
 	check(&"left" in game.footsteps and &"right" in game.footsteps, "its script hears of both feet")
 	check(game.planned > 3 and game.planted > 3 and game.steps_of_crowd > people.size(), "and of what else happens")

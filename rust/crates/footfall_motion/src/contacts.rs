@@ -34,7 +34,8 @@ mod signals;
 
 use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Side};
 use hysteresis::{Gate, close_gaps, drop_short, gate};
-use signals::{FootSignals, body_size, swing_speeds};
+pub(crate) use signals::body_size;
+use signals::{FootSignals, swing_speeds};
 
 /// Limits of the detector. Heights are above the level at which the point itself rests within 0.6 s, on a body whose leg is 0.84 m long
 /// (in proportion on others); speeds are shares of the speed at which feet swing within half a second.

@@ -21,7 +21,7 @@ const SWING_PEAK_SECS: f32 = 0.05;
 const SWING_SHARE: f32 = 0.93;
 
 /// Size of a clip's body: 1 for the canonical one.
-pub(super) fn body_size(clip: &Clip) -> f32 {
+pub(crate) fn body_size(clip: &Clip) -> f32 {
     (clip.skeleton.mean_leg_length() / CANONICAL_LEG_M).max(f32::MIN_POSITIVE)
 }
 

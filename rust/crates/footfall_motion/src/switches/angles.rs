@@ -1,6 +1,7 @@
 //! Hip and knee angles, where they put the ankles, and the half cycles in them.
 
 use super::ANGLE_RATE_HZ;
+use crate::contacts::body_size;
 use footfall_core::rotation::log_map;
 use footfall_core::{Clip, Side};
 use footfall_prob::switching::median;
@@ -17,9 +18,6 @@ const LEAST_SWING: f64 = 0.25;
 /// And at least so far on the canonical body, metres.
 const LEAST_SWING_M: f64 = 0.1;
 
-/// Height of the leg of the canonical body, metres.
-const CANONICAL_LEG_M: f64 = 0.84;
-
 /// Standard deviation of the window under which half cycles are looked for, frames.
 const CYCLE_SMOOTHING: f64 = 2.0;
 
@@ -29,6 +27,8 @@ pub(super) struct LegAngles {
     pub(super) frames: Vec<[f64; CHANNELS]>,
     /// Lengths of left and right thigh and shank, metres.
     bones: [[f64; 2]; 2],
+    /// Size of the body: 1 for the canonical one.
+    pub(super) size: f64,
 }
 
 /// A half cycle: one leg is ahead.
@@ -58,6 +58,7 @@ impl LegAngles {
         });
         Self {
             frames: frames.collect(),
+            size: f64::from(body_size(clip)),
             bones: Side::BOTH.map(|side| {
                 [side.lower_leg(), side.foot()]
                     .map(|joint| f64::from(clip.skeleton.offset(joint).length()))
@@ -78,12 +79,6 @@ impl LegAngles {
     /// Bend of a knee, radians.
     pub(super) fn knee(&self, frame: usize, side: Side) -> f64 {
         self.frames[frame][2 + side.index()]
-    }
-
-    /// Size of the body: 1 for the canonical one, in proportion to which are lengths and speeds.
-    pub(super) fn size(&self) -> f64 {
-        let length = 0.5 * self.bones.as_flattened().iter().sum::<f64>();
-        (length / CANONICAL_LEG_M).max(f64::MIN_POSITIVE)
     }
 
     /// Distance of the left ankle ahead of the right one, metres, and its height above it.
@@ -122,7 +117,7 @@ impl LegAngles {
             })
             .collect();
         let swings: Vec<f64> = peaks.iter().map(|peak| leads[*peak].abs()).collect();
-        let least = (LEAST_SWING * median(&swings)).max(LEAST_SWING_M * self.size());
+        let least = (LEAST_SWING * median(&swings)).max(LEAST_SWING_M * self.size);
         // A leg that is still moving ahead when the clip ends has not landed in it.
         let seen = |frame: &usize| *frame > 0 && frame + 1 < leads.len();
         peaks

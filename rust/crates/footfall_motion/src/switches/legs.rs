@@ -85,7 +85,7 @@ impl Legs {
                 .map(|side| angles.smoothed(SMOOTHING, |frame| -angles.knee(frame, side))),
             speed: speed.collect(),
             lift: between(LIFT_SMOOTHING, 1),
-            size: angles.size(),
+            size: angles.size,
         }
     }
 

@@ -94,9 +94,7 @@ impl Planter {
             *hips += along * (weight * (evened - ahead(*hips, frame)));
         }
     }
-}
 
-impl Planter {
     /// Share of people's harmonics in those of a step: none in a run, in a step that ends standing, backwards or to the side.
     fn people_s(&self, timing: &StepTiming, course: Course) -> f32 {
         if timing.take_off.is_some() || timing.airborne || timing.rests {
