@@ -12,5 +12,6 @@ namespace Footfall
         Full = 0,
         Half = 1,
         Quarter = 2,
+        Auto = 3,
     }
 }

@@ -49,6 +49,7 @@ namespace Footfall
         public static class MethodName
         {
             public static readonly StringName Bake = "bake";
+            public static readonly StringName GetCurrentDetail = "get_current_detail";
             public static readonly StringName GetCurrentGait = "get_current_gait";
             public static readonly StringName GetEffectiveSeed = "get_effective_seed";
             public static readonly StringName GetProblems = "get_problems";
@@ -228,7 +229,7 @@ namespace Footfall
         }
 
         /// <summary>Resolution of the walk: every frame of the model, every second (half) or every fourth (quarter).</summary>
-        /// <remarks>Lower it for characters far from the camera. The walk is the same, but feet slip slightly between frames. Changes apply with the next step.</remarks>
+        /// <remarks>Lower it for characters far from the camera. The walk is the same, but feet slip slightly between frames. Auto chooses by the character's height in the viewport of the current camera: full from 150 pixels, half from 40, quarter below, and full without a camera; <see cref="GetCurrentDetail"/> returns its choice. Changes apply with the next step.</remarks>
         public GaitDetail Detail
         {
             get => (GaitDetail)Native.Get(PropertyName.Detail).AsInt64();
@@ -349,6 +350,9 @@ namespace Footfall
         /// <para>Baking takes some tens of milliseconds per clip. The node does not change.</para>
         /// </remarks>
         public AnimationLibrary Bake(double seconds, string[] styles, float[] speeds) => (AnimationLibrary)Native.Call(MethodName.Bake, seconds, styles, speeds).AsGodotObject();
+
+        /// <summary>Returns the detail that the next step will have: <see cref="Detail"/>, or the choice of Auto.</summary>
+        public GaitDetail GetCurrentDetail() => (GaitDetail)Native.Call(MethodName.GetCurrentDetail).AsInt64();
 
         /// <summary>Returns the gait of the current step: <c>walk</c> or <c>run</c>.</summary>
         public StringName GetCurrentGait() => Native.Call(MethodName.GetCurrentGait).AsStringName();

@@ -131,17 +131,3 @@ func test_a_state_that_is_none_is_refused_and_the_walk_goes_on() -> void:
 	var from := walker.global_position
 	walker.walk(60)
 	check(walker.global_position.distance_to(from) > 0.5, "it walks on")
-
-
-func test_less_detail_is_the_same_walk() -> void:
-	var way := []
-	for detail: int in [0, 1, 2]:
-		var walker := _walker([], [])
-		check_equal(walker.gait.detail, 0, "full detail is the default")
-		walker.gait.detail = detail
-		walker.walk(300, func() -> void:
-			check_near(walker.joint("Hips").y, 0.92, 0.12, "hips at detail %d" % detail))
-		way.append(walker.global_position.z)
-		walker.free()
-	check_near(way[1], way[0], 0.06 * way[0], "half detail goes as far")
-	check_near(way[2], way[0], 0.06 * way[0], "quarter detail goes as far")

@@ -30,7 +30,7 @@
 //! assert!(footprints.len() >= 7 && heading > 1.5 && position.x > 1.0);
 //!
 //! walker.set_style_weights(&[0.0]); // From the next step on it is not sad,
-//! walker.set_detail(Detail::Half); // and far away: every second frame is placed on the ground.
+//! walker.set_detail(Detail::Full.for_height(100.0)); // and 100 pixels tall: every second frame is placed on the ground.
 //! for _ in 0..180 {
 //!     walker.step(1.0 / 60.0, &Controls::STAND, &mut pose);
 //! }

@@ -31,7 +31,7 @@ use crate::root_motion::RootMotion;
 use crate::shipped::{self, Fallback};
 use crate::walk_source::WalkSource;
 use absence::{Absent, Pending};
-use detail::GaitDetail;
+use detail::{AutoDetail, GaitDetail};
 use gait_choice::GaitMode;
 use glam::Vec3;
 use godot::classes::{BoneMap, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
@@ -176,7 +176,8 @@ pub(crate) struct GaitGenerator3D {
 
     /// Resolution of the walk: every frame of the model, every second (half) or every fourth (quarter).
     ///
-    /// Lower it for characters far from the camera. The walk is the same, but feet slip slightly between frames. Changes apply with
+    /// Lower it for characters far from the camera. The walk is the same, but feet slip slightly between frames. Auto chooses by the character's height in the
+    /// viewport of the current camera: full from 150 pixels, half from 40, quarter below, and full without a camera; `get_current_detail()` returns its choice. Changes apply with
     /// the next step.
     #[export]
     detail: GaitDetail,
@@ -240,6 +241,7 @@ pub(crate) struct GaitGenerator3D {
     #[init(val = 1.0)]
     slowed: f32,
     replica: Replica,
+    auto_detail: AutoDetail,
     base: Base<SkeletonModifier3D>,
 }
 

@@ -42,6 +42,7 @@ mod physics_ground;
 mod replay_imu_source;
 mod report;
 mod root_motion;
+mod screen_size;
 mod serial_imu_source;
 mod shipped;
 mod skeleton_binding;

@@ -111,6 +111,11 @@ impl Traveller {
         self.scale
     }
 
+    /// The node that is the character.
+    pub(crate) const fn character(&self) -> &Gd<Node3D> {
+        &self.character
+    }
+
     /// The skeleton that is posed.
     pub(crate) fn skeleton(&self) -> InstanceId {
         self.binding.skeleton()

@@ -1,5 +1,8 @@
-//! Detail of a walk.
+//! Detail of a walk: chosen by the user, or by the character's size on screen.
 
+use super::GaitGenerator3D;
+use super::session::Session;
+use crate::screen_size::pixels_per_metre;
 use footfall_synth::Detail;
 use godot::prelude::*;
 
@@ -11,14 +14,51 @@ pub(crate) enum GaitDetail {
     Full = 0,
     Half = 1,
     Quarter = 2,
+    Auto = 3,
 }
 
-impl From<GaitDetail> for Detail {
-    fn from(detail: GaitDetail) -> Self {
-        match detail {
-            GaitDetail::Full => Self::Full,
-            GaitDetail::Half => Self::Half,
-            GaitDetail::Quarter => Self::Quarter,
+/// Time between two looks at the screen, seconds. Steps, with which detail changes, take longer.
+const LOOK_SECS: f64 = 0.25;
+
+/// Height of a standing body over that of its hips.
+const BODY_OVER_HIPS: f32 = 1.8;
+
+/// Detail by size on screen.
+#[derive(Debug, Default)]
+pub(super) struct AutoDetail {
+    chosen: Detail,
+    /// Until the next look.
+    wait_secs: f64,
+}
+
+impl GaitGenerator3D {
+    /// Looks at the screen from time to time, and returns the detail of the next step.
+    pub(super) fn choose_detail(&mut self, session: &Session, delta_secs: f64) -> Detail {
+        let auto = &mut self.auto_detail;
+        auto.wait_secs -= delta_secs;
+        if matches!(self.detail, GaitDetail::Auto) && auto.wait_secs <= 0.0 {
+            auto.wait_secs = LOOK_SECS;
+            let (character, hips) = (session.traveller.character(), session.hip_height());
+            // Without a camera, as on a server, scripts may still read the poses.
+            let pixels = pixels_per_metre(character, character.get_global_position())
+                .map_or(f32::INFINITY, |metre| metre * BODY_OVER_HIPS * hips);
+            auto.chosen = auto.chosen.for_height(pixels);
+        }
+        match self.detail {
+            GaitDetail::Full => Detail::Full,
+            GaitDetail::Half => Detail::Half,
+            GaitDetail::Quarter => Detail::Quarter,
+            GaitDetail::Auto => self.auto_detail.chosen,
+        }
+    }
+
+    /// The detail that is set, or the choice of Auto.
+    pub(super) const fn current_detail(&self) -> GaitDetail {
+        match (self.detail, self.auto_detail.chosen) {
+            (GaitDetail::Auto, Detail::Full) => GaitDetail::Full,
+            (GaitDetail::Auto, Detail::Half) => GaitDetail::Half,
+            (GaitDetail::Auto, Detail::Quarter) => GaitDetail::Quarter,
+            (detail, _) => detail,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Methods of the node for scripts.
 
 use super::GaitGenerator3D;
+use super::detail::GaitDetail;
 use super::gait_choice::name_of;
 use crate::root_motion::{advance_of, frame_clock};
 use footfall_core::Side;
@@ -39,6 +40,12 @@ impl GaitGenerator3D {
     fn get_current_gait(&self) -> StringName {
         let session = self.session.as_ref();
         name_of(session.map_or(Gait::Walk, |session| session.generator.gait()))
+    }
+
+    /// Returns the detail that the next step will have: `detail`, or the choice of Auto.
+    #[func]
+    fn get_current_detail(&self) -> GaitDetail {
+        self.current_detail()
     }
 
     /// Returns `true` if any part of the foot, `left` or `right`, is on the ground.

@@ -154,6 +154,11 @@ impl Session {
         self.shown.seen_from(&place, self.traveller.scale())
     }
 
+    /// Height of the hips above the floor in the rest pose, metres of the world.
+    pub(super) fn hip_height(&self) -> f32 {
+        self.traveller.binding.body.hip_height() * self.traveller.scale()
+    }
+
     /// Controls in metres of the body as it was measured.
     fn in_own_metres(&self, mut controls: Controls) -> Controls {
         controls.speed_mps /= self.traveller.scale();

@@ -112,7 +112,8 @@ impl GaitGenerator3D {
         let travels = self.root_motion && !in_editor;
         let weights = self.layer_weights();
         self.pass_replica(&mut session, dt_secs);
-        session.generator.set_detail(self.detail.into());
+        let detail = self.choose_detail(&session, delta);
+        session.generator.set_detail(detail);
         session
             .generator
             .set_standing_motion(self.standing_motion as f32);
