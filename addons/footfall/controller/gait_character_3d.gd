@@ -219,20 +219,20 @@ func _wished() -> Vector3:
 func _view_heading() -> float:
 	var camera := get_viewport().get_camera_3d()
 	if camera == null:
-		return rotation.y + PI
+		return global_rotation.y + PI
 	return atan2(camera.global_basis.z.x, camera.global_basis.z.z)
 
 
 func _steer() -> void:
 	var walks := _wish.length() >= 0.1
-	var way := wrapf(atan2(_wish.x, _wish.z) - rotation.y, -PI, PI)
+	var way := wrapf(atan2(_wish.x, _wish.z) - global_rotation.y, -PI, PI)
 	var hurries := player_controlled and GaitInput.is_pressed(&"hurry")
 	gait.speed = _wish.length() * (hurry_speed if hurries else walk_speed) if walks else 0.0
 	gait.direction = 0.0
 	if aims or (player_controlled and GaitInput.is_pressed(&"aim")):
 		# It faces where the camera looks, and goes sideways and backwards.
 		gait.direction = way if walks else 0.0
-		_turn_by(_view_heading() + PI - rotation.y)
+		_turn_by(_view_heading() + PI - global_rotation.y)
 	elif walks:
 		_turn_by(way)
 		gait.speed *= clampf(remap(absf(way), SLOW_FROM, SLOWEST_FROM, 1.0, SLOWEST_SHARE), SLOWEST_SHARE, 1.0)

@@ -97,10 +97,11 @@ func sensor() -> Dictionary:
 func told() -> String:
 	if _source is DeviceImuSource:
 		return "" if DeviceImuSource.is_available() else "This device delivers no motion: it has no sensors, or the project settings turn them off."
-	return _sentence(_source.get_message())
+	return sentence(_source.get_message())
 
 
-func _sentence(message: String) -> String:
+## A message as a sentence of its own.
+static func sentence(message: String) -> String:
 	return message.left(1).to_upper() + message.substr(1)
 
 
@@ -114,7 +115,7 @@ func show_state(driven: ImuReconstructor3D) -> void:
 	else:
 		%Figures.text = "nothing is heard yet"
 	var connection := told()
-	%Message.text = connection if connection != "" or not heard else _sentence(driven.get_sensor_message())
+	%Message.text = connection if connection != "" or not heard else sentence(driven.get_sensor_message())
 	%Message.visible = %Message.text != ""
 	var step := driven.get_calibration_step()
 	%Step.text = driven.get_calibration_message()

@@ -12,9 +12,12 @@ const RUNNERS := 5
 const FRAMES_OF_CHECK := 900
 ## The player stands there at first.
 const START := Vector3(0, 0, 14.5)
+const VIEW := Vector3(deg_to_rad(-9.0), 0.0, 0.0)
 ## Begin of a check, and the place to which the player goes when nobody plays.
 const FOOT_OF_STAIR := Vector3(0.8, 0, -7.0)
 const TERRACE := Vector3(1.5, TownPlan.RISE, -15.5)
+## Where a character that a sensor steers begins, with a free way ahead.
+const BESIDE_START := Vector3(-17.0, 0, -9.0)
 ## Nobody may be deeper in a wall, metres: half a body's breadth.
 const MOST_DEPTH := 0.25
 const TOUR_SECS := TownTour.SECS
@@ -24,6 +27,7 @@ var _starts := PackedVector3Array()
 var _deepest := 0.0
 var _deepest_at := Vector3.ZERO
 var _tour := TownTour.new()
+var _pocket: TownPocketCheck
 
 @onready var _player: GaitCharacter3D = %Player
 @onready var _crowd: GaitCrowd3D = %Crowd
@@ -39,8 +43,11 @@ func _ready() -> void:
 	%Ways.bake()
 	_crowd.colours = COLOURS
 	%Menu.pressed.connect(_open_menu)
+	($World as NetworkWorld).came.connect(_become)
+	%Doors.closed.connect(func() -> void: get_tree().reload_current_scene())
+	%Doors.take(_player)
 	_player.teleport(Transform3D(Basis(Vector3.UP, PI), START))
-	($Player/Camera as SpringArm3D).rotation = Vector3(deg_to_rad(-9.0), 0.0, 0.0)
+	(_player.get_node(^"Camera") as SpringArm3D).rotation = VIEW
 	_bring_people()
 
 
@@ -100,6 +107,9 @@ func begin_check() -> void:
 	_player.autopilot = Vector3.FORWARD
 	_starts = _crowd.get_positions()
 	_checks = true
+	_pocket = TownPocketCheck.new()
+	_pocket.position = BESIDE_START
+	add_child(_pocket)
 
 
 func problems(frames: int) -> PackedStringArray:
@@ -112,9 +122,21 @@ func problems(frames: int) -> PackedStringArray:
 		found.append("%d of %d people went anywhere in %d frames" % [went, _starts.size(), frames])
 	if _deepest > MOST_DEPTH:
 		found.append("somebody was %.2f m deep in a wall, at %s" % [_deepest, _deepest_at])
+	found.append_array(_pocket.problems())
 	if _player.global_position.y < TownPlan.RISE - 0.1:
 		found.append("the player did not get up the stair: it is at %s" % _player.global_position)
 	return found
+
+
+## Goes on as the character that a game with others has made.
+func _become(player: GaitCharacter3D) -> void:
+	$Bodies.queue_free()
+	_player.queue_free()
+	_player = player
+	var camera: SpringArm3D = player.get_node(^"Camera")
+	camera.rotation = VIEW
+	camera.set(&"mouse_look", 1)
+	%Doors.take(player)
 
 
 func _open_menu() -> void:

@@ -96,7 +96,8 @@ func come(count: int, runners: int) -> void:
 
 func _process(delta: float) -> void:
 	_frame += 1
-	if people.is_empty():
+	# The host of a game with others walks the people of all.
+	if people.is_empty() or _crowd.follows:
 		return
 	var places := _crowd.get_positions()
 	var headings := _crowd.get_headings()

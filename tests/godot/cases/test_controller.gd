@@ -307,6 +307,25 @@ func test_it_faces_its_way_and_where_the_camera_looks_while_aiming() -> void:
 	check(way.x > 0.5 and absf(way.z) < 0.2 * way.x, "and goes sideways: %s" % way)
 
 
+func test_directions_are_global_below_a_turned_node() -> void:
+	_floor()
+	var character := _character()
+	character.reparent(_turned(2.0), false)
+	character.autopilot = Vector3.RIGHT
+	await _frames(180)
+	var went := character.global_position
+	check(went.x > 1.5, "it goes to +X: it is at %s" % went)
+	check_below(absf(went.z), 0.5 * went.x, "the way aside")
+	check(character.global_basis.z.x > 0.95, "it faces its way")
+
+
+func _turned(angle: float) -> Node3D:
+	var node := Node3D.new()
+	node.rotation.y = angle
+	add_child(node)
+	return node
+
+
 func test_who_comes_from_another_peer_leaves_the_view_to_the_player() -> void:
 	# The level's own, as before anybody plays.
 	add_child(Camera3D.new())

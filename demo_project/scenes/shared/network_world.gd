@@ -6,6 +6,10 @@ extends Node3D
 
 ## News of hosting, joining and the others, for the player.
 signal told(text: String)
+## This machine's own character has come.
+signal came(player: GaitCharacter3D)
+## The host has left, and the game has ended.
+signal ended
 
 const DEFAULT_PORT := 24_680
 const PLAYER: PackedScene = preload("res://addons/footfall/controller/gait_character_3d.tscn")
@@ -15,8 +19,6 @@ const COLOURS: PackedColorArray = [Color(0.85, 0.36, 0.26), Color(0.24, 0.5, 0.7
 ## Distance of the places at which players come.
 const APART := 1.6
 const MOST_GUESTS := 16
-## The crowd's people walk round those of this group.
-const PLAYERS := &"players"
 
 ## If [code]true[/code], the own character has a camera and listens to the keyboard.
 @export var played := true
@@ -45,7 +47,9 @@ func _ready() -> void:
 	multiplayer.connection_failed.connect(func() -> void: told.emit("No answer. Check that Host is pressed there and that UDP port %d is open." % DEFAULT_PORT))
 	multiplayer.server_disconnected.connect(func() -> void:
 		leave()
-		told.emit("The host has left. Host a game yourself, or join another."))
+		told.emit("The host has left. Host a game yourself, or join another.")
+		# Its listeners may free this node, whose network is in the middle of a message.
+		ended.emit.call_deferred())
 
 
 ## Opens a game for others to join. Returns whether it could.
@@ -113,7 +117,8 @@ func _make(data: Dictionary) -> Node:
 	player.name = str(data.peer)
 	player.position = data.place
 	player.character_scene = MANNEQUIN
-	player.add_to_group(PLAYERS)
+	# The crowd's people walk round it.
+	player.add_to_group(crowd.avoided_group)
 	player.add_child(SYNCHRONIZER.instantiate())
 	# Of the character and all that is in it by now.
 	player.set_multiplayer_authority(data.peer)
@@ -128,7 +133,9 @@ func _make(data: Dictionary) -> Node:
 		player.get_node(^"TouchStick").free()
 	player.ready.connect(func() -> void:
 		Paint.apply(player.gait.get_skeleton(), data.colour)
-		player.gait.replica_refused.connect(func(reason: String) -> void: told.emit(reason)))
+		player.gait.replica_refused.connect(func(reason: String) -> void: told.emit(reason))
+		if player == own_player():
+			came.emit(player))
 	return player
 
 

@@ -3,20 +3,18 @@ extends RefCounted
 ## An inertial sensor in the game's world: what one would measure that moves as it is told.
 
 const GRAVITY_MPS2 := 9.80665
-## Place of a sensor on a foot, metres ahead of and below the ankle.
-const ON_THE_FOOT := Vector3(0.0, -0.01, 0.07)
 
 var _places: Array[Vector3] = []
 var _turns: Array[Quaternion] = []
 var _time := 0.0
 
 
-## Takes a frame of a foot that wears the sensor, turned so against it, and gives what `move` gives.
-func move_with_foot(skeleton: Skeleton3D, foot: int, delta: float, worn := Quaternion.IDENTITY) -> Array:
-	var bone := skeleton.global_transform * skeleton.get_bone_global_pose(foot)
+## Takes a frame of a bone that wears the sensor at a place, metres from the joint in the T-pose, turned so against it, and gives what `move` gives.
+func move_with(skeleton: Skeleton3D, bone: int, place: Vector3, worn: Quaternion, delta: float) -> Array:
+	var now := skeleton.global_transform * skeleton.get_bone_global_pose(bone)
 	# Turned as in the T-pose, the sensor's axes are the body's.
-	var turn := (bone.basis * skeleton.get_bone_global_rest(foot).basis.inverse()).get_rotation_quaternion()
-	return move(bone.origin + turn * ON_THE_FOOT, turn * worn, delta)
+	var turn := (now.basis * skeleton.get_bone_global_rest(bone).basis.inverse()).get_rotation_quaternion()
+	return move(now.origin + turn * place, turn * worn, delta)
 
 
 ## Takes where the sensor is now, and gives what it measured a frame ago, [time, specific force, angular rate], or nothing at first.
