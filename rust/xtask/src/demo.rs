@@ -1,9 +1,11 @@
 //! `cargo demo`: builds the add-on and opens the demo, or leaves pictures of it where there is no display.
 
-use crate::{contact_sheet, display, engine_run, godot, library, link, open, paths, process};
+use crate::display::{self, Display};
+use crate::{contact_sheet, engine_run, godot, library, link, open, paths, process};
 use anyhow::{Context as _, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
 /// The demo's scenes by topic.
@@ -33,44 +35,87 @@ pub(crate) const SCENES: [(&str, &str); 12] = [
 /// # Errors
 /// When a part cannot be built or had, or the demo leaves no pictures.
 pub(crate) fn command() -> Result<()> {
-    library::build(&library::Options::default())?;
-    let engine = godot::provision()?;
-    eprintln!("Godot {}", engine.version);
-    link::ensure()?;
-    let display = display::ensure()?;
-    let project = paths::repository_root().join("demo_project");
-    let folder = paths::target_folder().join("demo");
-    import(&engine, &project, "demo")?;
-    if !display.is_virtual() {
+    let stage = Stage::build("demo")?;
+    eprintln!("Godot {}", stage.engine.version);
+    if !stage.display.is_virtual() {
         eprintln!("the demo runs in a window; close the window to end");
-        return process::run(&mut open::on(&engine, &display, &project));
+        return process::run(&mut stage.godot());
     }
+    let folder = paths::target_folder().join("demo");
     paths::make_empty(&folder)?;
     eprintln!("no display: rendering pictures in software …");
     for (topic, scene) in SCENES {
         let folder = folder.join(topic);
-        fs::create_dir_all(&folder)
-            .with_context(|| format!("cannot create {}", folder.display()))?;
-        let mut command = open::on(&engine, &display, &project);
-        // Time in the scene runs by frames, however long one takes to draw.
-        command
-            .args([scene, "--fixed-fps", "60", "--", "--pictures"])
-            .arg(&folder);
-        let log = folder.join("godot.log");
-        engine_run::judged(&mut command, &log)?;
-        let pictures = contact_sheet::pictures(&folder)?;
-        if pictures.is_empty() {
-            bail!(
-                "the scene rendered no pictures; Godot's output is in {}",
-                log.display()
-            );
-        }
+        let pictures = stage.photograph(scene, &[], &folder)?;
         let sheet = folder.join("contact_sheet.png");
         contact_sheet::write(&pictures, &sheet)?;
         eprintln!("{} pictures in {}", pictures.len(), folder.display());
         println!("{}", sheet.display());
     }
     Ok(())
+}
+
+/// The demo project, built and imported, and a display to show it on.
+pub(crate) struct Stage {
+    engine: godot::Engine,
+    display: Display,
+    project: PathBuf,
+}
+
+impl Stage {
+    /// Builds the add-on and has Godot import the demo; its log has a name.
+    ///
+    /// # Errors
+    /// When a part cannot be built or had.
+    pub(crate) fn build(name: &str) -> Result<Self> {
+        library::build(&library::Options::default())?;
+        let engine = godot::provision()?;
+        link::ensure()?;
+        let display = display::ensure()?;
+        let project = paths::repository_root().join("demo_project");
+        import(&engine, &project, name)?;
+        Ok(Self {
+            engine,
+            display,
+            project,
+        })
+    }
+
+    /// Godot with the demo.
+    pub(crate) fn godot(&self) -> Command {
+        open::on(&self.engine, &self.display, &self.project)
+    }
+
+    /// Lets a scene take pictures of itself; `options` are the engine's.
+    ///
+    /// # Errors
+    /// When the scene fails, or leaves no pictures.
+    pub(crate) fn photograph(
+        &self,
+        scene: &str,
+        options: &[&str],
+        folder: &Path,
+    ) -> Result<Vec<PathBuf>> {
+        fs::create_dir_all(folder)
+            .with_context(|| format!("cannot create {}", folder.display()))?;
+        let mut command = self.godot();
+        // Time in the scene runs by frames, however long one takes to draw.
+        command
+            .args([scene, "--fixed-fps", "60"])
+            .args(options)
+            .args(["--", "--pictures"])
+            .arg(folder);
+        let log = folder.join("godot.log");
+        engine_run::judged(&mut command, &log)?;
+        let pictures = contact_sheet::pictures(folder)?;
+        if pictures.is_empty() {
+            bail!(
+                "the scene rendered no pictures; Godot's output is in {}",
+                log.display()
+            );
+        }
+        Ok(pictures)
+    }
 }
 
 /// Projects that this run has imported: that takes three seconds each time, and nothing changes them in between.

@@ -1,6 +1,7 @@
 //! `cargo xtask film`: the moving picture that the README opens with.
 
-use crate::{contact_sheet, demo, display, engine_run, godot, library, link, open, paths};
+use crate::demo::Stage;
+use crate::{contact_sheet, engine_run, paths};
 use anyhow::{Context as _, Result, bail};
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use image::imageops::{self, FilterType};
@@ -24,15 +25,10 @@ const QUANTISED_AT: i32 = 10;
 /// # Errors
 /// When a part cannot be built or had, the scene fails, or the film cannot be written.
 pub(crate) fn command() -> Result<()> {
-    library::build(&library::Options::default())?;
-    let engine = godot::provision()?;
-    link::ensure()?;
-    let display = display::ensure()?;
-    let project = paths::repository_root().join("demo_project");
+    let stage = Stage::build("film")?;
     let folder = paths::target_folder().join("film");
-    demo::import(&engine, &project, "film")?;
     paths::make_empty(&folder)?;
-    let mut command = open::on(&engine, &display, &project);
+    let mut command = stage.godot();
     command
         .args([SCENE, "--fixed-fps", "60", "--resolution", "960x540"])
         .args(["--", "--film"])

@@ -37,6 +37,7 @@ mod newcomer;
 mod open;
 mod package;
 mod paths;
+mod pictures;
 mod platforms;
 mod process;
 mod progress;
@@ -111,8 +112,10 @@ enum Command {
     },
     /// Build everything and open the demo; without a display, render pictures of it.
     Demo,
-    /// Film the tour of the third-person scene for the README.
+    /// Film the tour of the town for the README.
     Film,
+    /// Render the pictures of the README and of the store's entry.
+    Pictures,
     /// Build and test the Bevy example, and render pictures of it.
     Bevy,
     /// Export the demo as a game for this machine into `rust/target/export`, and start it once without a window.
@@ -176,6 +179,7 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Verify { steps } => verify::command(steps),
         Command::Demo => demo::command(),
         Command::Film => film::command(),
+        Command::Pictures => pictures::command(),
         Command::Bevy => bevy::command(),
         Command::Export { shipped } => export::command(*shipped),
         Command::Bench { keep } => bench::command(*keep),

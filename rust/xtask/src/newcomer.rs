@@ -4,6 +4,7 @@ use crate::godot::Engine;
 use crate::{addon, engine_run, export, godot, open, paths, skipped};
 use anyhow::{Context as _, Result, bail};
 use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -11,6 +12,9 @@ use std::process::Command;
 const DONE: &str = "NEWCOMER OK";
 /// Line that the editor prints when the add-on works that was unzipped while it ran.
 const DONE_IN_EDITOR: &str = "RUNNING EDITOR OK";
+/// Lines of a project's settings that enable the add-on's plugin.
+const PLUGIN_ENABLED: &str =
+    "\n[editor_plugins]\n\nenabled=PackedStringArray(\"res://addons/footfall/plugin.cfg\")\n";
 /// Folder of the project's checks and of the plugin of the running editor.
 const SOURCES: &str = "tests/newcomer";
 
@@ -38,6 +42,7 @@ pub(crate) fn check() -> Result<()> {
         Newcomer::exports_first,
         Newcomer::brings_an_old_project,
         Newcomer::unzips_into_a_running_editor,
+        Newcomer::has_half_an_addon,
     ];
     for check in checks {
         check(&newcomer)?;
@@ -111,6 +116,41 @@ impl Newcomer {
         self.says(&mut editor, "running_editor", DONE_IN_EDITOR)
     }
 
+    /// Whoever has no library reads which one is missing, whoever has no models reads it at the node, and whoever has files of two versions in the editor.
+    fn has_half_an_addon(&self) -> Result<()> {
+        let project = self.project("no_library")?;
+        fs::remove_dir_all(project.join("addons/footfall/bin"))?;
+        let mut settings = fs::OpenOptions::new()
+            .append(true)
+            .open(project.join("project.godot"))?;
+        settings.write_all(PLUGIN_ENABLED.as_bytes())?;
+        self.complains(
+            self.godot(&project).args(["--editor", "--quit"]),
+            "no_library",
+            "is missing. Unzip the add-on again, or build the library",
+        )?;
+        let project = self.project("no_models")?;
+        fs::remove_dir_all(project.join("addons/footfall/models"))?;
+        self.complains(
+            self.godot(&project).args(["--fixed-fps", "60"]),
+            "no_models",
+            "models/locomotion.footfall, is missing. Unzip the add-on again, or load",
+        )?;
+        let project = self.project("two_versions")?;
+        let plugin = project.join("addons/footfall/plugin.cfg");
+        let (version, other) = ("version=\"", "version=\"9.");
+        fs::write(
+            &plugin,
+            fs::read_to_string(&plugin)?.replace(version, other),
+        )?;
+        self.complains(
+            self.godot(&project)
+                .args(["--editor", "--quit-after", "120"]),
+            "two_versions",
+            "Footfall: its files are of version 9.",
+        )
+    }
+
     /// The newcomer's project with the add-on in it, as nobody has opened it yet.
     fn project(&self, name: &str) -> Result<PathBuf> {
         let project = self.work.join(name);
@@ -150,6 +190,16 @@ impl Newcomer {
         let said = self.quiet(command, name)?;
         if !said.contains(wanted) {
             bail!("it did not say {wanted}: {}", self.log(name).display());
+        }
+        Ok(())
+    }
+
+    /// Runs Godot, which must say what is wrong, whatever else it says.
+    fn complains(&self, command: &mut Command, name: &str, wanted: &str) -> Result<()> {
+        eprintln!("{name} …");
+        let (_, said) = engine_run::started(command, &self.log(name))?;
+        if !said.contains(wanted) {
+            bail!("it did not say \"{wanted}\": {}", self.log(name).display());
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ mod class_reference;
 mod clip_source;
 mod gait_style_maker;
 pub(crate) mod headless;
+mod installation;
 mod leftovers;
 mod plugin;
 mod preview_bar;

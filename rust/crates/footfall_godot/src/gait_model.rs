@@ -14,7 +14,7 @@ use std::sync::{Arc, Weak};
 pub(crate) const NO_STYLES: &str = "A switching model (.footdyn) has no styles and walks without them. Clear Styles, or load a .footfall file into Model.";
 
 /// Warning where there is no model.
-pub(crate) const NO_MODEL: &str = "There is no gait model, and the add-on's own, models/locomotion.footfall, is missing. Load a .footfall file into Model.";
+pub(crate) const NO_MODEL: &str = "There is no gait model, and the add-on's own, models/locomotion.footfall, is missing. Unzip the add-on again, or load a .footfall file into Model.";
 
 /// Gait model learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
 /// (`.footdyn`, made by `footfall dynamics fit`).

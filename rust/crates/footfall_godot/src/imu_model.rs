@@ -8,7 +8,7 @@ use godot::prelude::*;
 use std::sync::Arc;
 
 /// Warning where there is no model.
-pub(crate) const NO_MODEL: &str = "There is no sensor model, and the add-on's own, models/right_foot.footimu, is missing. Load a .footimu file into Model.";
+pub(crate) const NO_MODEL: &str = "There is no sensor model, and the add-on's own, models/right_foot.footimu, is missing. Unzip the add-on again, or load a .footimu file into Model.";
 
 /// Sensor model that maps one or two inertial sensors on a body to the whole body (`.footimu`, made by `footfall imu train`).
 ///

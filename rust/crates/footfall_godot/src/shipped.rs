@@ -14,19 +14,24 @@ const EXTENSION: &str = "/footfall.gdextension";
 /// Usual folder of the add-on.
 const USUAL_FOLDER: &str = "res://addons/footfall";
 
-/// Path of a shipped model: beside the extension, in whatever folder that was put.
+/// Path of a shipped model.
 pub(crate) fn path(name: &str) -> GString {
+    GString::from(&format!("{}/models/{name}", folder()))
+}
+
+/// Folder of the add-on: that of the extension, wherever it was put.
+pub(crate) fn folder() -> String {
     let extensions = GDExtensionManager::singleton().get_loaded_extensions();
     let found = extensions
         .as_slice()
         .iter()
         .map(GString::to_string)
         .find(|file| file.ends_with(EXTENSION));
-    let folder = found
+    found
         .as_deref()
         .and_then(|file| file.strip_suffix(EXTENSION))
-        .unwrap_or(USUAL_FOLDER);
-    GString::from(&format!("{folder}/models/{name}"))
+        .unwrap_or(USUAL_FOLDER)
+        .to_owned()
 }
 
 /// A model, or nothing where it was removed or left out of the export.

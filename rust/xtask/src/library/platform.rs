@@ -50,6 +50,17 @@ impl Platform {
         })
     }
 
+    /// Argument by which the platform's linker follows a script as well, where it knows scripts.
+    pub(super) fn link_argument(&self, script: &Path) -> Option<String> {
+        let script = script.display();
+        match self.folder.split('-').next() {
+            Some("linux") => Some(format!("-Wl,-T,{script}")),
+            // There `rust-lld` is called itself.
+            Some("android") => Some(format!("-T{script}")),
+            _ => None,
+        }
+    }
+
     /// Cargo's name of the library.
     pub(super) fn built(&self) -> String {
         format!("{}footfall_godot.{}", self.prefix, self.suffix)

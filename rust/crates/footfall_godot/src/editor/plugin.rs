@@ -1,5 +1,6 @@
 //! Plugin that Godot starts by itself as soon as the library is loaded in the editor.
 
+use super::installation;
 use super::leftovers::{self, FootfallExportPlugin};
 use super::preview_bar::FootfallPreviewInspector;
 use super::style_dock::FootfallStyleDock;
@@ -54,6 +55,7 @@ impl IEditorPlugin for FootfallEditorPlugin {
             return;
         };
         self.base_mut().set_process(false);
+        installation::check();
         // An editor that ran when the add-on was unzipped went through the project before it knew the library: our files were nothing to it.
         if files
             .get_file_type(&shipped::path(shipped::WALK))
