@@ -46,6 +46,13 @@ func _process(_delta: float) -> void:
 	_camera.target_position = walkers[0].global_position + Vector3(-1.7, 0.85, -0.5 * AHEAD_M)
 
 
+func close_ups() -> Dictionary[String, Array]:
+	var views := super()
+	# From beside the row's last walker: the others stand in each other's way.
+	views["side"][0] = walkers[-1].global_position + Vector3.UP * 0.9
+	return views
+
+
 func _add_walker(title: String, place: Vector3, colour: Color) -> GaitGenerator3D:
 	var gait := add_walker(title, place, colour)
 	gait.speed = SPEED
