@@ -131,8 +131,12 @@ impl Newcomer {
         )?;
         let project = self.project("no_models")?;
         fs::remove_dir_all(project.join("addons/footfall/models"))?;
+        let log = self.log("no_models_import");
+        engine_run::started(self.godot(&project).arg("--import"), &log)?;
         self.complains(
-            self.godot(&project).args(["--fixed-fps", "60"]),
+            self.godot(&project)
+                .args(["--fixed-fps", "60", "--quit-after", "3000"])
+                .arg("res://without_model.tscn"),
             "no_models",
             "models/locomotion.footfall, is missing. Unzip the add-on again, or load",
         )?;
