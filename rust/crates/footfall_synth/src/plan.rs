@@ -230,10 +230,15 @@ impl StepPlan<f32> {
             passed += *state;
             *state = (to - from).max(1);
         }
+        let frames: usize = self.state_frames.iter().sum();
+        // A high leap out of a slow step lasts longer than the ground has room for in full detail.
+        let detail = Detail::Full.holding(frames);
+        let whole = detail.whole_frames(frames);
+        self.state_frames[STATES_PER_STEP - 1] += whole - frames;
+        self.shape.detail = detail;
         let timing = &mut self.shape.timing;
-        timing.frames = self.state_frames.iter().sum();
-        timing.terminal = warped(timing.terminal).clamp(1, timing.frames - 2);
-        timing.take_off = Some(warped(take_off).clamp(2, timing.frames - 1));
-        self.shape.detail = Detail::Full;
+        timing.frames = whole;
+        timing.terminal = warped(timing.terminal).clamp(1, whole - 2);
+        timing.take_off = Some(warped(take_off).clamp(2, whole - 1));
     }
 }

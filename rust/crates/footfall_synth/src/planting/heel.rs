@@ -3,10 +3,12 @@
 
 use super::support::MAX_STANCE_EXTENSION;
 use super::{PlantedFrame, Planter, StepTiming};
-use crate::raw::RawFrame;
+use crate::raw::{RawFrame, RawLeg};
 use footfall_core::Side;
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::from_heading;
+use footfall_ik::{Plant, RockerFoot};
+use glam::Quat;
 
 /// Fraction of the straight leg beyond which the heel rises instead, and over how much more it comes to do so.
 const RISING_EXTENSION: f32 = 0.9965;
@@ -45,81 +47,81 @@ impl Planter {
             (timing.leading, Some(leading)),
             (timing.leading.other(), trailing),
         ];
+        // The cosine of half the knee's bend is what is left of the leg's length.
+        let half_bend = RISING_EXTENSION.acos();
         for (side, last) in stances {
             let Some(last) = last else { continue };
             let raw = &mut raw[..=last];
+            let plant = self.plant(side);
+            let level = from_heading(plant.heading);
+            let stance = Stance {
+                foot: &self.feet[side.index()],
+                plant,
+                from_level: level.inverse(),
+                length: self.leg_lengths[side.index()],
+            };
             let leaves = side != timing.leading && !timing.rests;
+            let unbent = if leaves {
+                half_bend.cos()
+            } else {
+                RISING_EXTENSION
+            };
+            self.stand(side, raw, |leg| (leg.rise > 0.0).then_some(leg.pitch));
+            let mut any = false;
             for (index, (raw, frame)) in raw.iter_mut().zip(frames).enumerate() {
                 let left_secs = (last - index) as f32 * self.frame_secs;
-                // The cosine of half the knee's bend is what is left of the leg's length.
-                let most = if leaves {
-                    let left = (1.0 - left_secs / LEAVING_SECS).max(0.0);
-                    (RISING_EXTENSION.acos() + LEAVING_BEND * left * left).cos()
+                let most = if leaves && left_secs < LEAVING_SECS {
+                    let left = 1.0 - left_secs / LEAVING_SECS;
+                    (half_bend + LEAVING_BEND * left * left).cos()
                 } else {
-                    RISING_EXTENSION
+                    unbent
                 };
-                let rise = self.heel_rise(side, most, raw, frame);
-                let before = core::mem::replace(&mut raw.legs[side.index()].rise, rise);
-                if rise == 0.0 && before > 0.0 {
-                    self.stand_risen(side, raw);
-                }
+                let leg = &mut raw.legs[side.index()];
+                leg.rise = stance.rise(leg, frame, most);
+                any |= leg.rise > 0.0;
             }
-            smooth(raw, side);
-            for raw in raw
-                .iter_mut()
-                .filter(|raw| raw.legs[side.index()].rise > 0.0)
-            {
-                self.stand_risen(side, raw);
+            if any {
+                smooth(raw, side);
+                let risen = |leg: &RawLeg| (leg.rise > 0.0).then_some(leg.pitch + leg.rise);
+                self.stand(side, raw, risen);
             }
         }
     }
+}
 
-    /// Returns by how much a heel has to be higher than generated for its leg not to be beyond this share of its length, radians.
-    fn heel_rise(
-        &self,
-        side: Side,
-        most_extension: f32,
-        raw: &RawFrame,
-        frame: &PlantedFrame,
-    ) -> f32 {
-        let leg = &raw.legs[side.index()];
-        let foot = &self.feet[side.index()];
-        let plant = self.plant(side);
-        let level = from_heading(plant.heading);
-        let risen = leg.rise > 0.0;
-        let ankle = if risen {
-            foot.stand_level(plant, level, leg.pitch).ankle
-        } else {
-            leg.target.ankle
-        };
-        let length = self.leg_lengths[side.index()];
+/// A foot on its plant, and the length of its leg.
+struct Stance<'a> {
+    foot: &'a RockerFoot,
+    plant: &'a Plant,
+    /// The rotation into the axes of the plant.
+    from_level: Quat,
+    length: f32,
+}
+
+impl Stance<'_> {
+    /// Returns by how much the heel of a foot that stands as generated has to be higher for its leg not to be beyond this share of its length, radians.
+    fn rise(&self, leg: &RawLeg, frame: &PlantedFrame, most_extension: f32) -> f32 {
+        let ankle = leg.target.ankle;
         let hip = frame.pose.root_position + frame.level * leg.hip;
-        let extension = hip.distance(ankle) / length;
+        let extension = hip.distance(ankle) / self.length;
         let beyond = ((extension - most_extension) / RISING_SOFTNESS).min(MOST_BEYOND);
         if beyond < -MOST_SHORT || leg.pitch < 0.0 {
             return 0.0;
         }
-        let ahead = (frame.level.inverse() * (ankle - hip)).z / (AHEAD * length);
+        let ahead = (frame.level.inverse() * (ankle - hip)).z / (AHEAD * self.length);
         let share = smooth_step(1.0 - ahead);
         if share <= 0.0 {
             return 0.0;
         }
         let mut wanted = extension - share * RISING_SOFTNESS * beyond.exp().ln_1p();
-        if risen {
+        if leg.rise > 0.0 {
             // The hips have come down to what a leg with its heel up reaches, and no lower.
             wanted = wanted.min(MAX_STANCE_EXTENSION);
         }
-        let from_plant = level.inverse() * (hip - plant.flat_ankle);
-        let pitch = foot.pitch_within_reach(from_plant, wanted * length, leg.pitch);
+        let from_plant = self.from_level * (hip - self.plant.flat_ankle);
+        let reach = wanted * self.length;
+        let pitch = self.foot.pitch_within_reach(from_plant, reach, leg.pitch);
         (pitch - leg.pitch).clamp(0.0, MOST_RISE)
-    }
-
-    /// Stands a foot on its plant with its heel as high as it is to be.
-    fn stand_risen(&self, side: Side, raw: &mut RawFrame) {
-        let leg = &mut raw.legs[side.index()];
-        let plant = self.plant(side);
-        let level = from_heading(plant.heading);
-        leg.target = self.feet[side.index()].stand_level(plant, level, leg.pitch + leg.rise);
     }
 }
 
@@ -128,7 +130,7 @@ fn smooth(raw: &mut [RawFrame], side: Side) {
     let side = side.index();
     let last = raw.len() - 1;
     // Rises of the frames before, as they were.
-    let mut before = [0.0; SMOOTHED.len() - 1];
+    let mut before = [0.0; 2];
     for index in 0..raw.len() {
         let own = raw[index].legs[side].rise;
         let reach = index.min(last - index).min(before.len());
@@ -144,7 +146,6 @@ fn smooth(raw: &mut [RawFrame], side: Side) {
         } else {
             own.max(sum / weights)
         };
-        before.rotate_right(1);
-        before[0] = own;
+        before = [own, before[0]];
     }
 }
