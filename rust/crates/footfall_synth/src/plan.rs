@@ -135,10 +135,15 @@ impl StepShape {
         }
     }
 
+    /// Frames that are put on the ground, without the first of the next step.
+    pub(crate) const fn ground_frames(&self) -> usize {
+        self.timing.frames >> self.detail as u32
+    }
+
     /// The timing in frames that are put on the ground.
     pub(crate) fn ground_timing(&self) -> StepTiming {
         let stride = self.detail.stride();
-        let frames = self.timing.frames / stride;
+        let frames = self.ground_frames();
         StepTiming {
             frames,
             terminal: (self.timing.terminal / stride).clamp(1, frames - 2),
