@@ -89,7 +89,7 @@ impl RockerFoot {
         self.stand_level(plant, from_heading(plant.heading), pitch)
     }
 
-    /// As [`stand`](Self::stand), with the rotation of the plant's heading at hand.
+    /// As [`stand`](Self::stand), with the rotation of the plant's heading about +Y at hand.
     pub fn stand_level(&self, plant: &Plant, level: Quat, pitch: f32) -> FootTarget {
         self.stand_many(plant, level, f32x8::splat(pitch)).lane(0)
     }
@@ -103,11 +103,12 @@ impl RockerFoot {
         let about_heel = Vec3x8::splat(self.heel) - pitched(foot, self.heel);
         let tip = Vec3x8::splat(self.toe_joint + self.toe_tip);
         let about_toes = tip - pitched(toes, self.toe_tip) - pitched(foot, self.toe_joint);
-        let level = Quatx8::splat(level);
+        let level = Level::of(level);
         FootTargetx8 {
-            ankle: Vec3x8::splat(plant.flat_ankle) + level * about_toes.or(about_heel, heel_up),
-            foot: level * foot,
-            toes: level * toes.or(foot, heel_up),
+            ankle: Vec3x8::splat(plant.flat_ankle)
+                + level.turn(about_toes.or(about_heel, heel_up)),
+            foot: level.turn_pitched(foot),
+            toes: level.turn_pitched(toes.or(foot, heel_up)),
         }
     }
 
@@ -211,6 +212,44 @@ impl RockerFoot {
     /// The ground under the ankle of a flat foot: where a footprint is drawn.
     pub fn footprint(plant: &Plant) -> Vec3 {
         Vec3::new(plant.flat_ankle.x, 0.0, plant.flat_ankle.z)
+    }
+}
+
+/// A rotation about +Y: products with it are what they are with any rotation, without what is multiplied by zero.
+#[derive(Clone, Copy)]
+struct Level {
+    y: f32x8,
+    w: f32x8,
+}
+
+impl Level {
+    fn of(rotation: Quat) -> Self {
+        Self {
+            y: f32x8::splat(rotation.y),
+            w: f32x8::splat(rotation.w),
+        }
+    }
+
+    fn turn(self, vector: Vec3x8) -> Vec3x8 {
+        let Vec3x8 { x, y, z } = vector;
+        let [turned_x, turned_z] = [self.y * z, -(self.y * x)];
+        let [twice_x, twice_z] = [turned_x + turned_x, turned_z + turned_z];
+        Vec3x8 {
+            x: x + twice_x * self.w + self.y * twice_z,
+            y,
+            z: z + twice_z * self.w - self.y * twice_x,
+        }
+    }
+
+    /// After rotations about +X.
+    fn turn_pitched(self, rotation_x: Quatx8) -> Quatx8 {
+        let Quatx8 { x, w, .. } = rotation_x;
+        Quatx8 {
+            x: x * self.w,
+            y: self.y * w,
+            z: -(self.y * x),
+            w: self.w * w,
+        }
     }
 }
 

@@ -326,9 +326,10 @@ impl Planter {
             };
             let lanes = f32x8::new(pitches.map(|pitch| pitch.unwrap_or(any)));
             let stances = self.feet[side.index()].stand_many(plant, level, lanes);
-            for (lane, frame) in frames.iter_mut().enumerate() {
-                if pitches[lane].is_some() {
-                    frame.legs[side.index()].target = stances.lane(lane);
+            let stances = stances.lanes().into_iter().zip(pitches);
+            for (frame, (stance, pitch)) in frames.iter_mut().zip(stances) {
+                if pitch.is_some() {
+                    frame.legs[side.index()].target = stance;
                 }
             }
         }
@@ -363,8 +364,9 @@ impl Planter {
             let ankle = target.ankle - hip;
             let yielded = ankle * yielding(ankle.length(), extensions);
             target.ankle = hip + ankle + (yielded - ankle) * swing.freed(index);
-            for lane in 0..LANES.min(end - index) {
-                raw[index + lane].legs[side].target = target.lane(lane);
+            let frames = &mut raw[index..end.min(index + LANES)];
+            for (frame, target) in frames.iter_mut().zip(target.lanes()) {
+                frame.legs[side].target = target;
             }
         }
     }
