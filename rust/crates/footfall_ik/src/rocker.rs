@@ -112,23 +112,25 @@ impl RockerFoot {
         }
     }
 
-    /// The least pitch from `least` on, heel up with flat toes, at which the ankle is no farther than `reach` from a point `from_plant`, seen from the
-    /// plant's flat ankle and in the axes of its heading; the pitch that comes nearest to it, where none does.
-    pub fn pitch_within_reach(&self, from_plant: Vec3, reach: f32, least: f32) -> f32 {
+    /// The least pitches from `least` on, heel up with flat toes, at which the ankle is no farther than `reach` from a point `from_plant`, seen from the
+    /// plant's flat ankle and in the axes of its heading; the pitches that come nearest to it, where none does.
+    pub fn pitches_within_reach(&self, from_plant: Vec3x8, reach: f32x8, least: f32x8) -> f32x8 {
         let joint = self.toe_joint;
-        let away = from_plant - joint;
+        let away = from_plant - Vec3x8::splat(joint);
         // The squared distance is that of both from the toe joint, and twice cosine · cos(pitch) + sine · sin(pitch).
         let cosine = away.y * joint.y + away.z * joint.z;
         let sine = away.z * joint.y - away.y * joint.z;
-        let squares = away.length_squared() + joint.length_squared();
-        let wanted = 0.5 * (reach * reach - squares) - away.x * joint.x;
-        let (nearest, most) = (
-            (-sine).atan2(-cosine),
-            cosine.hypot(sine).max(f32::MIN_POSITIVE),
-        );
-        let before = (-wanted / most).clamp(-1.0, 1.0).acos();
-        let highest = MAX_TOE_FLEXION.max(least);
-        (nearest - before).clamp(least, highest)
+        let squares = away.length_squared() + f32x8::splat(joint.length_squared());
+        let wanted = (reach * reach - squares) * 0.5 - away.x * joint.x;
+        let most = (cosine * cosine + sine * sine).sqrt();
+        let most = most.fast_max(f32x8::splat(f32::MIN_POSITIVE));
+        let before = (-wanted / most)
+            .fast_max(-f32x8::ONE)
+            .fast_min(f32x8::ONE)
+            .acos();
+        let nearest = (-sine).atan2(-cosine);
+        let highest = least.fast_max(f32x8::splat(MAX_TOE_FLEXION));
+        (nearest - before).fast_max(least).fast_min(highest)
     }
 
     /// Displacement of the ankle at this pitch from its place over the flat foot, for a foot that points to +Z.
@@ -369,7 +371,11 @@ mod tests {
             let reach_at = |pitch: f32| rocker.roll(pitch).distance(hip);
             for share in [0.5, 0.97, 0.99, 1.0, 1.1] {
                 let reach = share * reach_at(least);
-                let found = rocker.pitch_within_reach(hip, reach, least);
+                let [from_plant, eight] = [Vec3x8::splat(hip), f32x8::splat(reach)];
+                let least_of_eight = f32x8::splat(least);
+                let found = rocker
+                    .pitches_within_reach(from_plant, eight, least_of_eight)
+                    .as_array()[0];
                 let pitches = (0..=trials)
                     .map(|trial| least + (MAX_TOE_FLEXION - least) * trial as f32 / trials as f32);
                 let within = pitches

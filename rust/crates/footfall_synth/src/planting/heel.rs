@@ -5,7 +5,7 @@ use super::support::MAX_STANCE_EXTENSION;
 use super::{PlantedFrame, Planter, StepTiming};
 use crate::raw::{RawFrame, RawLeg};
 use footfall_core::Side;
-use footfall_core::ease::smooth_step;
+use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8, smooth_step};
 use footfall_core::rotation::from_heading;
 use footfall_ik::{Plant, RockerFoot};
 use glam::Quat;
@@ -61,24 +61,39 @@ impl Planter {
                 length: self.leg_lengths[side.index()],
             };
             let leaves = side != timing.leading && !timing.rests;
-            let unbent = if leaves {
-                half_bend.cos()
-            } else {
-                RISING_EXTENSION
-            };
-            self.stand(side, raw, |leg| (leg.rise > 0.0).then_some(leg.pitch));
-            let mut any = false;
-            for (index, (raw, frame)) in raw.iter_mut().zip(frames).enumerate() {
-                let left_secs = (last - index) as f32 * self.frame_secs;
-                let most = if leaves && left_secs < LEAVING_SECS {
+            let most_extension = |index: usize| {
+                let left_secs = last.saturating_sub(index) as f32 * self.frame_secs;
+                if leaves && left_secs < LEAVING_SECS {
                     let left = 1.0 - left_secs / LEAVING_SECS;
                     (half_bend + LEAVING_BEND * left * left).cos()
                 } else {
-                    unbent
+                    RISING_EXTENSION
+                }
+            };
+            self.stand(side, raw, |leg| (leg.rise > 0.0).then_some(leg.pitch));
+            let mut any = false;
+            let blocks = raw.chunks_mut(LANES).zip(frames.chunks(LANES));
+            for (block, (raw, frames)) in blocks.enumerate() {
+                let at = |lane: usize| lane.min(raw.len() - 1);
+                let leg = |lane: usize| &raw[at(lane)].legs[side.index()];
+                let of_legs = |value: &dyn Fn(&RawLeg) -> f32| {
+                    f32x8::new(core::array::from_fn(|lane| value(leg(lane))))
                 };
-                let leg = &mut raw.legs[side.index()];
-                leg.rise = stance.rise(leg, frame, most);
-                any |= leg.rise > 0.0;
+                let level = Quatx8::gather(|lane| frames[at(lane)].level);
+                let hips = Vec3x8::gather(|lane| frames[at(lane)].pose.root_position);
+                let legs = Legs {
+                    level,
+                    hip: hips + level * Vec3x8::gather(|lane| leg(lane).hip),
+                    ankle: Vec3x8::gather(|lane| leg(lane).target.ankle),
+                    pitch: of_legs(&|leg| leg.pitch),
+                    rise: of_legs(&|leg| leg.rise),
+                };
+                let most = core::array::from_fn(|lane| most_extension(block * LANES + lane));
+                let rises = stance.rises(&legs, f32x8::new(most));
+                any |= rises.simd_gt(f32x8::ZERO).any();
+                for (raw, rise) in raw.iter_mut().zip(rises.to_array()) {
+                    raw.legs[side.index()].rise = rise;
+                }
             }
             if any {
                 smooth(raw, side);
@@ -98,30 +113,47 @@ struct Stance<'a> {
     length: f32,
 }
 
+/// The leg in eight frames, its foot as generated.
+struct Legs {
+    level: Quatx8,
+    /// Place of the hip joint.
+    hip: Vec3x8,
+    ankle: Vec3x8,
+    pitch: f32x8,
+    /// By how much the heel was raised before.
+    rise: f32x8,
+}
+
 impl Stance<'_> {
-    /// Returns by how much the heel of a foot that stands as generated has to be higher for its leg not to be beyond this share of its length, radians.
-    fn rise(&self, leg: &RawLeg, frame: &PlantedFrame, most_extension: f32) -> f32 {
-        let ankle = leg.target.ankle;
-        let hip = frame.pose.root_position + frame.level * leg.hip;
-        let extension = hip.distance(ankle) / self.length;
-        let beyond = ((extension - most_extension) / RISING_SOFTNESS).min(MOST_BEYOND);
-        if beyond < -MOST_SHORT || leg.pitch < 0.0 {
-            return 0.0;
+    /// Returns by how much heels have to be higher than generated for their legs not to be beyond these shares of their length, radians.
+    fn rises(&self, legs: &Legs, most_extension: f32x8) -> f32x8 {
+        let reach = legs.ankle - legs.hip;
+        let extension = reach.length() * self.length.recip();
+        let beyond = (extension - most_extension) * RISING_SOFTNESS.recip();
+        let ahead = (legs.level.conjugate() * reach).z * (AHEAD * self.length).recip();
+        let share = smooth_step(f32x8::ONE - ahead);
+        let some = beyond.simd_ge(f32x8::splat(-MOST_SHORT))
+            & legs.pitch.simd_ge(f32x8::ZERO)
+            & share.simd_gt(f32x8::ZERO);
+        if some.none() {
+            return f32x8::ZERO;
         }
-        let ahead = (frame.level.inverse() * (ankle - hip)).z / (AHEAD * self.length);
-        let share = smooth_step(1.0 - ahead);
-        if share <= 0.0 {
-            return 0.0;
-        }
-        let mut wanted = extension - share * RISING_SOFTNESS * beyond.exp().ln_1p();
-        if leg.rise > 0.0 {
-            // The hips have come down to what a leg with its heel up reaches, and no lower.
-            wanted = wanted.min(MAX_STANCE_EXTENSION);
-        }
-        let from_plant = self.from_level * (hip - self.plant.flat_ankle);
+        let beyond = beyond.fast_min(f32x8::splat(MOST_BEYOND));
+        let less = (f32x8::ONE + beyond.exp()).ln();
+        let wanted = extension - share * RISING_SOFTNESS * less;
+        // The hips have come down to what a leg with its heel up reaches, and no lower.
+        let most = wanted.fast_min(f32x8::splat(MAX_STANCE_EXTENSION));
+        let wanted = legs.rise.simd_gt(f32x8::ZERO).bitselect(most, wanted);
+        let plant = Vec3x8::splat(self.plant.flat_ankle);
+        let from_plant = Quatx8::splat(self.from_level) * (legs.hip - plant);
         let reach = wanted * self.length;
-        let pitch = self.foot.pitch_within_reach(from_plant, reach, leg.pitch);
-        (pitch - leg.pitch).clamp(0.0, MOST_RISE)
+        let pitch = self
+            .foot
+            .pitches_within_reach(from_plant, reach, legs.pitch);
+        let rise = (pitch - legs.pitch)
+            .fast_max(f32x8::ZERO)
+            .fast_min(f32x8::splat(MOST_RISE));
+        some.bitselect(rise, f32x8::ZERO)
     }
 }
 
