@@ -77,13 +77,14 @@ impl Pose {
     pub fn interpolate_near(&self, other: &Self, weight: f32, out: &mut Self) {
         out.root_position = self.root_position.lerp(other.root_position, weight);
         let pairs = self.rotations.iter().zip(&other.rotations);
-        let mut shortest = f32::INFINITY;
+        // A flag waits less for the joint before than a minimum does.
+        let mut short = false;
         for (blend, (rotation, target)) in out.rotations.iter_mut().zip(pairs.clone()) {
             let squared;
             (*blend, squared) = blend_near(*rotation, *target, weight);
-            shortest = shortest.min(squared);
+            short |= squared < LEAST_SQUARED_LENGTH;
         }
-        if shortest < LEAST_SQUARED_LENGTH {
+        if short {
             // Seldom: the same rotation can be written with either sign, and frames far apart show quick swings.
             for (blend, (rotation, target)) in out.rotations.iter_mut().zip(pairs) {
                 *blend = rotation.lerp(*target, weight);
