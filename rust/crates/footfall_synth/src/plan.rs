@@ -176,6 +176,17 @@ impl<R: Real> StepPlan<R> {
             fine: FineDraw::default(),
         }
     }
+
+    /// State that a frame of the step is in.
+    fn state_at(&self, frame: usize) -> usize {
+        let mut end = 0;
+        let ends = self.state_frames.iter().map(|frames| {
+            end += frames;
+            end
+        });
+        let last = STATES_PER_STEP - 1;
+        ends.take(last).take_while(|end| *end <= frame).count()
+    }
 }
 
 impl StepPlan<f32> {
