@@ -171,7 +171,8 @@ impl FineBench {
     /// Adds the prepared step's motion to the features of the frame at part `s` of it. Scales are those before the step and after it.
     pub(crate) fn add(&self, s: f32, scales: [&Scale; 2], features: &mut [f32]) {
         let at = s * FINE_POINTS as f32;
-        let cell = (at.floor() as usize).min(FINE_POINTS - 1);
+        // A cast rounds towards zero, and a part is not below it.
+        let cell = (at as usize).min(FINE_POINTS - 1);
         let weights = catmull_rom(at - cell as f32);
         let knots = &self.knots[cell * FEATURE_COUNT..][..4 * FEATURE_COUNT];
         add_between(features, knots, weights, scales, smooth_step(s));
