@@ -105,8 +105,7 @@ impl RockerFoot {
         let about_toes = tip - pitched(toes, self.toe_tip) - pitched(foot, self.toe_joint);
         let level = Level::of(level);
         FootTargetx8 {
-            ankle: Vec3x8::splat(plant.flat_ankle)
-                + level.turn(about_toes.or(about_heel, heel_up)),
+            ankle: Vec3x8::splat(plant.flat_ankle) + level.turn(about_toes.or(about_heel, heel_up)),
             foot: level.turn_pitched(foot),
             toes: level.turn_pitched(toes.or(foot, heel_up)),
         }

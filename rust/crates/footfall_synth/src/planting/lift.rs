@@ -272,7 +272,12 @@ mod tests {
     fn smoothed_by(values: &mut [f64], fixed: usize, stiffness: f64) {
         let weights = vec![1.0; values.len()];
         let mut factors = [Factors::default(); MOST_FRAMES];
-        smooth(values, &System::new(&weights, stiffness), fixed, &mut factors);
+        smooth(
+            values,
+            &System::new(&weights, stiffness),
+            fixed,
+            &mut factors,
+        );
     }
 
     /// The slope of a sum of squares is zero at its minimum.

@@ -139,8 +139,7 @@ impl State {
         planner.resume(self.chance_position, &draws);
         planner.count_strides(led.strides);
         // A walker that goes back a little, as in games that predict, is measured already.
-        let known =
-            planner.is_same_walker(&steps.planner) && Arc::ptr_eq(&next, &steps.worn.blend);
+        let known = planner.is_same_walker(&steps.planner) && Arc::ptr_eq(&next, &steps.worn.blend);
         space.at_bench(|bench| {
             let worn = if known {
                 None
@@ -156,7 +155,9 @@ impl State {
                     walker
                 };
             } else {
-                steps.walker.restore(&mut planner, blends, draws, origin, bench)?;
+                steps
+                    .walker
+                    .restore(&mut planner, blends, draws, origin, bench)?;
             }
             if let Some(worn) = worn {
                 steps.worn = worn;
