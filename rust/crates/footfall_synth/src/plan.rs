@@ -4,7 +4,7 @@ mod offsets;
 mod planner;
 mod strides;
 
-use crate::detail::Detail;
+use crate::detail::{Detail, MOST_GROUND_FRAMES};
 use crate::fine_motion::FineDraw;
 use crate::gait::{GRAVITY_MPS2, Gait};
 use crate::planting::StepTiming;
@@ -232,7 +232,13 @@ impl StepPlan<f32> {
         };
         let rise = (rise_m - LEAP_GAINS_M[before as usize]).clamp(LEAST_LEAP_M, MOST_LEAP_M);
         let flight = 2.0 * (2.0 * f64::from(rise / GRAVITY_MPS2)).sqrt() * frame_rate_hz;
-        let stance = (take_off as f64).max(LEAP_STANCE_SECS * frame_rate_hz);
+        let least = LEAP_STANCE_SECS * frame_rate_hz;
+        let mut stance = (take_off as f64).max(least);
+        if stance + flight > MOST_GROUND_FRAMES as f64 {
+            // Out of a slow step: nobody pushes off for so long, and parabolas need full detail.
+            let room = (MOST_GROUND_FRAMES - STATES_PER_STEP) as f64 - flight;
+            stance = stance.min(room).max(least);
+        }
         let frames = self.shape.timing.frames;
         // The same step, slower before the take-off and slower still after it.
         let warped = |frame: usize| {
@@ -247,7 +253,6 @@ impl StepPlan<f32> {
             *state = (to - from).max(1);
         }
         let frames: usize = self.state_frames.iter().sum();
-        // A high leap out of a slow step lasts longer than the ground has room for in full detail.
         let detail = Detail::Full.holding(frames);
         let whole = detail.whole_frames(frames);
         self.state_frames[STATES_PER_STEP - 1] += whole - frames;
