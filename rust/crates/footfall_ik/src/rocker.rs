@@ -370,11 +370,12 @@ mod tests {
             let reach_at = |pitch: f32| rocker.roll(pitch).distance(hip);
             for share in [0.5, 0.97, 0.99, 1.0, 1.1] {
                 let reach = share * reach_at(least);
-                let [from_plant, eight] = [Vec3x8::splat(hip), f32x8::splat(reach)];
-                let least_of_eight = f32x8::splat(least);
-                let found = rocker
-                    .pitches_within_reach(from_plant, eight, least_of_eight)
-                    .as_array()[0];
+                let found = rocker.pitches_within_reach(
+                    Vec3x8::splat(hip),
+                    f32x8::splat(reach),
+                    f32x8::splat(least),
+                );
+                let found = found.as_array()[0];
                 let pitches = (0..=trials)
                     .map(|trial| least + (MAX_TOE_FLEXION - least) * trial as f32 / trials as f32);
                 let within = pitches
