@@ -3,12 +3,14 @@
 use core::ops::{Add, Mul, Sub};
 
 /// From 0 at 0 to 1 at 1, level at both ends and beyond.
+#[inline]
 pub fn smooth_step(s: f32) -> f32 {
     let s = s.clamp(0.0, 1.0);
     s * s * (3.0 - 2.0 * s)
 }
 
 /// The smaller of two numbers, rounded off where they are nearer than a few times `softness`.
+#[inline]
 #[expect(
     clippy::imprecise_flops,
     reason = "a nanometre is exact enough, and ln_1p takes three times as long"

@@ -24,6 +24,7 @@ impl GroundTransform {
 
     /// Returns a place of the space that this one is in, as it is seen from here.
     #[must_use]
+    #[inline]
     pub fn local(&self, place: &Self) -> Self {
         Self {
             position: from_heading(-self.heading) * (place.position - self.position),

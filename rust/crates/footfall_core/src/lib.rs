@@ -29,7 +29,7 @@ pub use contact::{EventKind, FrameSpan, GaitEvent};
 pub use ground::GroundTransform;
 pub use joint::{JOINT_COUNT, Joint, Side};
 pub use phase::{PhaseKind, PhaseStart};
-pub use pose::{ModelPose, Pose, forward_kinematics};
+pub use pose::{ModelPose, Pose, forward_kinematics, forward_kinematics_of};
 pub use rig::Rig;
 pub use site::Site;
 pub use skeleton::{FootShape, Skeleton, SkeletonError};

@@ -77,13 +77,14 @@ impl Pose {
     pub fn interpolate_near(&self, other: &Self, weight: f32, out: &mut Self) {
         out.root_position = self.root_position.lerp(other.root_position, weight);
         let pairs = self.rotations.iter().zip(&other.rotations);
-        let mut shortest = f32::INFINITY;
+        // A flag waits less for the joint before than a minimum does.
+        let mut short = false;
         for (blend, (rotation, target)) in out.rotations.iter_mut().zip(pairs.clone()) {
             let squared;
             (*blend, squared) = blend_near(*rotation, *target, weight);
-            shortest = shortest.min(squared);
+            short |= squared < LEAST_SQUARED_LENGTH;
         }
-        if shortest < LEAST_SQUARED_LENGTH {
+        if short {
             // Seldom: the same rotation can be written with either sign, and frames far apart show quick swings.
             for (blend, (rotation, target)) in out.rotations.iter_mut().zip(pairs) {
                 *blend = rotation.lerp(*target, weight);
@@ -140,22 +141,45 @@ impl ModelPose {
 
 /// Turns local rotations into positions and rotations in model space.
 pub fn forward_kinematics(skeleton: &Skeleton, pose: &Pose, out: &mut ModelPose) {
-    for joint in Joint::ALL {
-        let index = joint.index();
-        match joint.parent() {
-            None => {
-                out.positions[index] = pose.root_position;
-                out.rotations[index] = pose.rotations[index];
-            }
-            Some(parent) => {
-                let parent_rotation = out.rotations[parent.index()];
-                out.positions[index] =
-                    out.positions[parent.index()] + parent_rotation * skeleton.offsets[index];
-                out.rotations[index] = (parent_rotation * pose.rotations[index]).normalize();
-            }
+    forward_kinematics_of(
+        skeleton,
+        core::array::from_ref(pose),
+        core::array::from_mut(out),
+    );
+}
+
+/// [`forward_kinematics`] of several poses. A joint waits for its parent, so four poses take little more time than one.
+pub fn forward_kinematics_of<const N: usize>(
+    skeleton: &Skeleton,
+    poses: &[Pose; N],
+    out: &mut [ModelPose; N],
+) {
+    for (pose, out) in poses.iter().zip(&mut *out) {
+        out.positions[0] = pose.root_position;
+        out.rotations[0] = pose.rotations[0];
+    }
+    for index in 1..JOINT_COUNT {
+        let (parent, offset) = (PARENTS[index], skeleton.offsets[index]);
+        for (pose, out) in poses.iter().zip(&mut *out) {
+            let parent_rotation = out.rotations[parent];
+            out.positions[index] = out.positions[parent] + parent_rotation * offset;
+            out.rotations[index] = (parent_rotation * pose.rotations[index]).normalize();
         }
     }
 }
+
+/// Indices of the joints' parents, which come first; that of the hips is its own.
+const PARENTS: [usize; JOINT_COUNT] = {
+    let mut parents = [0; JOINT_COUNT];
+    let mut index = 0;
+    while index < JOINT_COUNT {
+        if let Some(parent) = Joint::ALL[index].parent() {
+            parents[index] = parent.index();
+        }
+        index += 1;
+    }
+    parents
+};
 
 #[cfg(test)]
 mod tests {

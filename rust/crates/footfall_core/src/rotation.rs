@@ -135,12 +135,20 @@ pub fn heading(world_from_body: Quat) -> f32 {
 }
 
 /// The rotation about +Y by `heading` radians.
+#[inline]
 pub fn from_heading(heading: f32) -> Quat {
     Quat::from_rotation_y(heading)
 }
 
+/// Angles that are nearer to 0 are in (-π, π], however they are rounded.
+const NEARLY_PI: f32 = 3.14;
+
 /// The same angle in (-π, π].
+#[inline]
 pub fn wrap_angle(angle: f32) -> f32 {
+    if angle.abs() < NEARLY_PI {
+        return angle;
+    }
     let wrapped = angle - TAU * (angle / TAU).round();
     if wrapped <= -PI {
         wrapped + TAU

@@ -131,8 +131,8 @@ impl Leg {
                 },
             });
             for (joint, rotations) in self.joints().into_iter().zip(&solved.local) {
-                for (lane, frame) in frames.iter_mut().enumerate() {
-                    frame.as_mut().rotations[joint.index()] = rotations.lane(lane);
+                for (frame, rotation) in frames.iter_mut().zip(rotations.lanes()) {
+                    frame.as_mut().rotations[joint.index()] = rotation;
                 }
             }
         }

@@ -89,7 +89,7 @@ impl RockerFoot {
         self.stand_level(plant, from_heading(plant.heading), pitch)
     }
 
-    /// As [`stand`](Self::stand), with the rotation of the plant's heading at hand.
+    /// As [`stand`](Self::stand), with the rotation of the plant's heading about +Y at hand.
     pub fn stand_level(&self, plant: &Plant, level: Quat, pitch: f32) -> FootTarget {
         self.stand_many(plant, level, f32x8::splat(pitch)).lane(0)
     }
@@ -103,31 +103,33 @@ impl RockerFoot {
         let about_heel = Vec3x8::splat(self.heel) - pitched(foot, self.heel);
         let tip = Vec3x8::splat(self.toe_joint + self.toe_tip);
         let about_toes = tip - pitched(toes, self.toe_tip) - pitched(foot, self.toe_joint);
-        let level = Quatx8::splat(level);
+        let level = Level::of(level);
         FootTargetx8 {
-            ankle: Vec3x8::splat(plant.flat_ankle) + level * about_toes.or(about_heel, heel_up),
-            foot: level * foot,
-            toes: level * toes.or(foot, heel_up),
+            ankle: Vec3x8::splat(plant.flat_ankle) + level.turn(about_toes.or(about_heel, heel_up)),
+            foot: level.turn_pitched(foot),
+            toes: level.turn_pitched(toes.or(foot, heel_up)),
         }
     }
 
-    /// The least pitch from `least` on, heel up with flat toes, at which the ankle is no farther than `reach` from a point `from_plant`, seen from the
-    /// plant's flat ankle and in the axes of its heading; the pitch that comes nearest to it, where none does.
-    pub fn pitch_within_reach(&self, from_plant: Vec3, reach: f32, least: f32) -> f32 {
+    /// The least pitches from `least` on, heel up with flat toes, at which the ankle is no farther than `reach` from a point `from_plant`, seen from the
+    /// plant's flat ankle and in the axes of its heading; the pitches that come nearest to it, where none does.
+    pub fn pitches_within_reach(&self, from_plant: Vec3x8, reach: f32x8, least: f32x8) -> f32x8 {
         let joint = self.toe_joint;
-        let away = from_plant - joint;
+        let away = from_plant - Vec3x8::splat(joint);
         // The squared distance is that of both from the toe joint, and twice cosine · cos(pitch) + sine · sin(pitch).
         let cosine = away.y * joint.y + away.z * joint.z;
         let sine = away.z * joint.y - away.y * joint.z;
-        let squares = away.length_squared() + joint.length_squared();
-        let wanted = 0.5 * (reach * reach - squares) - away.x * joint.x;
-        let (nearest, most) = (
-            (-sine).atan2(-cosine),
-            cosine.hypot(sine).max(f32::MIN_POSITIVE),
-        );
-        let before = (-wanted / most).clamp(-1.0, 1.0).acos();
-        let highest = MAX_TOE_FLEXION.max(least);
-        (nearest - before).clamp(least, highest)
+        let squares = away.length_squared() + f32x8::splat(joint.length_squared());
+        let wanted = (reach * reach - squares) * 0.5 - away.x * joint.x;
+        let most = (cosine * cosine + sine * sine).sqrt();
+        let most = most.fast_max(f32x8::splat(f32::MIN_POSITIVE));
+        let before = (-wanted / most)
+            .fast_max(-f32x8::ONE)
+            .fast_min(f32x8::ONE)
+            .acos();
+        let nearest = (-sine).atan2(-cosine);
+        let highest = least.fast_max(f32x8::splat(MAX_TOE_FLEXION));
+        (nearest - before).fast_max(least).fast_min(highest)
     }
 
     /// Displacement of the ankle at this pitch from its place over the flat foot, for a foot that points to +Z.
@@ -211,6 +213,44 @@ impl RockerFoot {
     /// The ground under the ankle of a flat foot: where a footprint is drawn.
     pub fn footprint(plant: &Plant) -> Vec3 {
         Vec3::new(plant.flat_ankle.x, 0.0, plant.flat_ankle.z)
+    }
+}
+
+/// A rotation about +Y: products with it are what they are with any rotation, without what is multiplied by zero.
+#[derive(Clone, Copy)]
+struct Level {
+    y: f32x8,
+    w: f32x8,
+}
+
+impl Level {
+    fn of(rotation: Quat) -> Self {
+        Self {
+            y: f32x8::splat(rotation.y),
+            w: f32x8::splat(rotation.w),
+        }
+    }
+
+    fn turn(self, vector: Vec3x8) -> Vec3x8 {
+        let Vec3x8 { x, y, z } = vector;
+        let [turned_x, turned_z] = [self.y * z, -(self.y * x)];
+        let [twice_x, twice_z] = [turned_x + turned_x, turned_z + turned_z];
+        Vec3x8 {
+            x: x + twice_x * self.w + self.y * twice_z,
+            y,
+            z: z + twice_z * self.w - self.y * twice_x,
+        }
+    }
+
+    /// After rotations about +X.
+    fn turn_pitched(self, rotation_x: Quatx8) -> Quatx8 {
+        let Quatx8 { x, w, .. } = rotation_x;
+        Quatx8 {
+            x: x * self.w,
+            y: self.y * w,
+            z: -(self.y * x),
+            w: self.w * w,
+        }
     }
 }
 
@@ -330,7 +370,12 @@ mod tests {
             let reach_at = |pitch: f32| rocker.roll(pitch).distance(hip);
             for share in [0.5, 0.97, 0.99, 1.0, 1.1] {
                 let reach = share * reach_at(least);
-                let found = rocker.pitch_within_reach(hip, reach, least);
+                let found = rocker.pitches_within_reach(
+                    Vec3x8::splat(hip),
+                    f32x8::splat(reach),
+                    f32x8::splat(least),
+                );
+                let found = found.as_array()[0];
                 let pitches = (0..=trials)
                     .map(|trial| least + (MAX_TOE_FLEXION - least) * trial as f32 / trials as f32);
                 let within = pitches

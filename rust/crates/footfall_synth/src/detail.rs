@@ -27,7 +27,7 @@ const LEAST_GROUND_FRAMES: usize = 4;
 
 /// The same at most, as far as coarser detail keeps to it: every walker has room for so many. Longer steps are slow ones, between whose
 /// frames little moves.
-const MOST_GROUND_FRAMES: usize = 64;
+pub(crate) const MOST_GROUND_FRAMES: usize = 64;
 
 impl Detail {
     /// All, finest first.

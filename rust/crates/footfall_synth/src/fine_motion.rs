@@ -34,7 +34,8 @@ pub(crate) struct FineTables {
     tables: [Vec<Vec<f32>>; 2],
     /// For each tap the weights of all directions.
     kernels: [[f32; MAX_FINE_DIRECTIONS]; FINE_TAPS],
-    directions: Vec<Vec<f32>>,
+    /// Four at a time, the last filled up with zeros.
+    directions: Vec<[[f32; FEATURE_COUNT]; 4]>,
 }
 
 /// Facts of a step from which its fine motion follows.
@@ -77,11 +78,10 @@ impl FineTables {
             };
             all.clone().map(knots).collect()
         });
-        let narrow = |row: &Vec<f64>| row.iter().map(|value| *value as f32).collect();
         Some(Self {
             tables,
             kernels: by_tap(&fine.chance.kernels),
-            directions: fine.chance.directions.iter().map(narrow).collect(),
+            directions: in_fours(&fine.chance.directions),
         })
     }
 
@@ -130,7 +130,7 @@ fn number_of(draw: &StepDraw, components: usize) -> u64 {
 }
 
 /// The finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every bit depends on every bit.
-pub(crate) fn mixed(number: u64) -> u64 {
+pub(crate) const fn mixed(number: u64) -> u64 {
     let mut bits = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -159,24 +159,20 @@ impl FineBench {
         if steps.iter().all(|step| step.strength <= 0.0) {
             return;
         }
-        let directions = tables.directions.len();
         for (index, source) in self.sources.iter_mut().enumerate() {
             // Counted from the first point of the step before.
             let point = index + FINE_POINTS - 1 - FINE_REACH;
             let own = &steps[point / FINE_POINTS];
-            fill(source, own, point % FINE_POINTS, directions);
+            fill(source, own, point % FINE_POINTS);
         }
-        for (knot, row) in self.knots.chunks_exact_mut(FEATURE_COUNT).enumerate() {
-            let along = weighted_sum(&self.sources[knot..], &tables.kernels);
-            let pairs = tables.directions.iter().zip(along);
-            add_all(row, pairs.map(|(row, weight)| (row.as_slice(), weight)));
-        }
+        add_noise(&mut self.knots, &self.sources, tables);
     }
 
     /// Adds the prepared step's motion to the features of the frame at part `s` of it. Scales are those before the step and after it.
     pub(crate) fn add(&self, s: f32, scales: [&Scale; 2], features: &mut [f32]) {
         let at = s * FINE_POINTS as f32;
-        let cell = (at.floor() as usize).min(FINE_POINTS - 1);
+        // A cast rounds towards zero, and a part is not below it.
+        let cell = (at as usize).min(FINE_POINTS - 1);
         let weights = catmull_rom(at - cell as f32);
         let knots = &self.knots[cell * FEATURE_COUNT..][..4 * FEATURE_COUNT];
         add_between(features, knots, weights, scales, smooth_step(s));
@@ -210,36 +206,62 @@ fn by_tap(kernels: &[Vec<f64>]) -> [[f32; MAX_FINE_DIRECTIONS]; FINE_TAPS] {
     })
 }
 
-/// The weighted sum of the first sources.
+/// Directions four at a time, the last filled up with zeros.
+fn in_fours(directions: &[Vec<f64>]) -> Vec<[[f32; FEATURE_COUNT]; 4]> {
+    let row = |row: Option<&Vec<f64>>| {
+        core::array::from_fn(|feature| row.map_or(0.0, |row| row[feature] as f32))
+    };
+    let fours = directions.chunks(4);
+    fours
+        .map(|four| core::array::from_fn(|index| row(four.get(index))))
+        .collect()
+}
+
+/// Adds to each knot the directions by the weighted sums of the sources around it.
 #[multiversion(targets("x86_64+avx2", "aarch64+neon"))]
-fn weighted_sum(
-    sources: &[[f32; MAX_FINE_DIRECTIONS]],
-    kernels: &[[f32; MAX_FINE_DIRECTIONS]; FINE_TAPS],
-) -> [f32; MAX_FINE_DIRECTIONS] {
-    let mut sums = [0.0; MAX_FINE_DIRECTIONS];
-    for (source, weights) in sources.iter().zip(kernels) {
-        for ((sum, value), weight) in sums.iter_mut().zip(source).zip(weights) {
-            *sum += weight * value;
+fn add_noise(knots: &mut [f32], sources: &[[f32; MAX_FINE_DIRECTIONS]], tables: &FineTables) {
+    for (knot, row) in knots.chunks_exact_mut(FEATURE_COUNT).enumerate() {
+        let mut along = [0.0; MAX_FINE_DIRECTIONS];
+        for (source, weights) in sources[knot..].iter().zip(&tables.kernels) {
+            for ((sum, value), weight) in along.iter_mut().zip(source).zip(weights) {
+                *sum += weight * value;
+            }
+        }
+        for ([a, b, c, d], weights) in tables.directions.iter().zip(along.as_chunks().0) {
+            let [wa, wb, wc, wd] = *weights;
+            f32::add_rows_inline(row, [(a, wa), (b, wb), (c, wc), (d, wd)]);
         }
     }
-    sums
 }
 
 /// Independent numbers of variance 1 at a point of a step.
-fn fill(source: &mut [f32], step: &FineDraw, point: usize, directions: usize) {
+fn fill(source: &mut [f32; MAX_FINE_DIRECTIONS], step: &FineDraw, point: usize) {
     // Evenly spread over an interval: sums of many of them are normal all the same.
     let width = step.strength * 12.0_f32.sqrt();
-    for (index, values) in source[..directions.next_multiple_of(AT_ONCE)]
-        .chunks_exact_mut(AT_ONCE)
-        .enumerate()
-    {
-        let bits = mixed(step.number ^ mixed((point * MAX_FINE_DIRECTIONS + index) as u64));
-        for (part, value) in values.iter_mut().enumerate() {
-            let sixteen = (bits >> (16 * part)) as u16;
-            *value = width * ((f32::from(sixteen) + 0.5) / 65536.0 - 0.5);
-        }
+    let mut sixteens = [0_u16; MAX_FINE_DIRECTIONS];
+    for (values, key) in sixteens.as_chunks_mut().0.iter_mut().zip(KEYS[point]) {
+        let bits = mixed(step.number ^ key);
+        *values = [bits, bits >> 16, bits >> 32, bits >> 48].map(|bits| bits as u16);
+    }
+    for (value, sixteen) in source.iter_mut().zip(sixteens) {
+        *value = width * ((f32::from(sixteen) + 0.5) / 65536.0 - 0.5);
     }
 }
+
+/// Keys of the numbers that come out of the generator for a point.
+const KEYS: [[u64; MAX_FINE_DIRECTIONS / AT_ONCE]; FINE_POINTS] = {
+    let mut keys = [[0; MAX_FINE_DIRECTIONS / AT_ONCE]; FINE_POINTS];
+    let mut point = 0;
+    while point < FINE_POINTS {
+        let mut index = 0;
+        while index < MAX_FINE_DIRECTIONS / AT_ONCE {
+            keys[point][index] = mixed((point * MAX_FINE_DIRECTIONS + index) as u64);
+            index += 1;
+        }
+        point += 1;
+    }
+    keys
+};
 
 /// Adds weighted rows, four at a time.
 fn add_all<'a>(sums: &mut [f32], rows: impl Iterator<Item = (&'a [f32], f32)>) {
@@ -283,7 +305,7 @@ mod tests {
         let mut kernel = vec![0.0; FINE_TAPS];
         kernel[FINE_REACH - 1] = 0.6;
         kernel[FINE_REACH] = 0.8;
-        let direction = |first: usize, value: f32| {
+        let direction = |first: usize, value: f64| {
             let mut row = vec![0.0; FEATURE_COUNT];
             row[first] = value;
             row[first + 1] = -value;
@@ -292,7 +314,7 @@ mod tests {
         FineTables {
             tables: [0.0, 1.0].map(|side| vec![wave(side)]),
             kernels: by_tap(&[kernel.clone(), kernel]),
-            directions: vec![direction(0, 0.5), direction(10, 0.25)],
+            directions: in_fours(&[direction(0, 0.5), direction(10, 0.25)]),
         }
     }
 

@@ -228,8 +228,9 @@ impl GaitGenerator {
 
     /// Writes the current pose, with all motion above the steps; `dt_secs` have passed.
     pub(crate) fn show(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
-        let plan_from_character = self.plan_from_character();
-        let (frame, next, weight) = self.frames();
+        let between = self.frames();
+        let plan_from_character = ground_between(between);
+        let (frame, next, weight) = between;
         let (facing, _) = blend_near(frame.plan_from_ground, next.plan_from_ground, weight);
         let character_from_plan = facing.conjugate();
         // Between two frames a foot stands only if it does in both.
@@ -363,19 +364,24 @@ impl GaitGenerator {
     fn frames(&self) -> (&PlantedFrame, &PlantedFrame, f32) {
         let frames = &self.steps.source().stage().frames;
         let step = self.shape();
-        let last = step.ground_timing().frames - 1;
+        let last = step.ground_frames() - 1;
         let position = self.position / step.detail.stride() as f32;
-        let first = (position.floor() as usize).min(last);
+        // A cast rounds towards zero, and a position is not below it.
+        let first = (position as usize).min(last);
         let weight = position - first as f32;
         (&frames[first], &frames[first + 1], weight)
     }
 
     pub(crate) fn plan_from_character(&self) -> GroundTransform {
-        let (frame, next, weight) = self.frames();
-        GroundTransform {
-            position: frame.ground_position.lerp(next.ground_position, weight),
-            heading: frame.ground_heading + weight * (next.ground_heading - frame.ground_heading),
-        }
+        ground_between(self.frames())
+    }
+}
+
+/// Returns the place of the walker between two frames, with the weight of the later one.
+fn ground_between((frame, next, weight): (&PlantedFrame, &PlantedFrame, f32)) -> GroundTransform {
+    GroundTransform {
+        position: frame.ground_position.lerp(next.ground_position, weight),
+        heading: frame.ground_heading + weight * (next.ground_heading - frame.ground_heading),
     }
 }
 

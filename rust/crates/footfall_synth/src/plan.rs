@@ -4,7 +4,7 @@ mod offsets;
 mod planner;
 mod strides;
 
-use crate::detail::Detail;
+use crate::detail::{Detail, MOST_GROUND_FRAMES};
 use crate::fine_motion::FineDraw;
 use crate::gait::{GRAVITY_MPS2, Gait};
 use crate::planting::StepTiming;
@@ -135,10 +135,15 @@ impl StepShape {
         }
     }
 
+    /// Frames that are put on the ground, without the first of the next step.
+    pub(crate) const fn ground_frames(&self) -> usize {
+        self.timing.frames >> self.detail as u32
+    }
+
     /// The timing in frames that are put on the ground.
     pub(crate) fn ground_timing(&self) -> StepTiming {
         let stride = self.detail.stride();
-        let frames = self.timing.frames / stride;
+        let frames = self.ground_frames();
         StepTiming {
             frames,
             terminal: (self.timing.terminal / stride).clamp(1, frames - 2),
@@ -170,6 +175,17 @@ impl<R: Real> StepPlan<R> {
             means: vec![R::default(); STEP_MEANS],
             fine: FineDraw::default(),
         }
+    }
+
+    /// State that a frame of the step is in.
+    fn state_at(&self, frame: usize) -> usize {
+        let mut end = 0;
+        let ends = self.state_frames.iter().map(|frames| {
+            end += frames;
+            end
+        });
+        let last = STATES_PER_STEP - 1;
+        ends.take(last).take_while(|end| *end <= frame).count()
     }
 }
 
@@ -216,7 +232,13 @@ impl StepPlan<f32> {
         };
         let rise = (rise_m - LEAP_GAINS_M[before as usize]).clamp(LEAST_LEAP_M, MOST_LEAP_M);
         let flight = 2.0 * (2.0 * f64::from(rise / GRAVITY_MPS2)).sqrt() * frame_rate_hz;
-        let stance = (take_off as f64).max(LEAP_STANCE_SECS * frame_rate_hz);
+        let least = LEAP_STANCE_SECS * frame_rate_hz;
+        let mut stance = (take_off as f64).max(least);
+        if stance + flight > MOST_GROUND_FRAMES as f64 {
+            // Out of a slow step: nobody pushes off for so long, and parabolas need full detail.
+            let room = (MOST_GROUND_FRAMES - STATES_PER_STEP) as f64 - flight;
+            stance = stance.min(room).max(least);
+        }
         let frames = self.shape.timing.frames;
         // The same step, slower before the take-off and slower still after it.
         let warped = |frame: usize| {
@@ -230,10 +252,14 @@ impl StepPlan<f32> {
             passed += *state;
             *state = (to - from).max(1);
         }
+        let frames: usize = self.state_frames.iter().sum();
+        let detail = Detail::Full.holding(frames);
+        let whole = detail.whole_frames(frames);
+        self.state_frames[STATES_PER_STEP - 1] += whole - frames;
+        self.shape.detail = detail;
         let timing = &mut self.shape.timing;
-        timing.frames = self.state_frames.iter().sum();
-        timing.terminal = warped(timing.terminal).clamp(1, timing.frames - 2);
-        timing.take_off = Some(warped(take_off).clamp(2, timing.frames - 1));
-        self.shape.detail = Detail::Full;
+        timing.frames = whole;
+        timing.terminal = warped(timing.terminal).clamp(1, whole - 2);
+        timing.take_off = Some(warped(take_off).clamp(2, whole - 1));
     }
 }

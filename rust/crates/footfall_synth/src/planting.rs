@@ -25,7 +25,7 @@ mod timing;
 mod travel;
 mod urge;
 
-use crate::raw::RawFrame;
+use crate::raw::{RawFrame, RawLeg};
 use crate::strafe::{Strafe, Turner};
 pub(crate) use aside::Aside;
 pub(crate) use carried::PlanterState;
@@ -308,14 +308,28 @@ impl Planter {
         ];
         for (side, last) in stances {
             let Some(last) = last else { continue };
-            let plant = self.plant(side);
-            let level = from_heading(plant.heading);
-            for frames in raw[..=last].chunks_mut(LANES) {
-                let leg = |lane: usize| &frames[lane.min(frames.len() - 1)].legs[side.index()];
-                let pitch = f32x8::new(core::array::from_fn(|lane| leg(lane).pitch));
-                let stances = self.feet[side.index()].stand_many(plant, level, pitch);
-                for (lane, frame) in frames.iter_mut().enumerate() {
-                    frame.legs[side.index()].target = stances.lane(lane);
+            self.stand(side, &mut raw[..=last], |leg| Some(leg.pitch));
+        }
+    }
+
+    /// Stands a foot on its plant, under the plant's heading, in those frames in which `pitch` gives it a pitch.
+    fn stand(&self, side: Side, raw: &mut [RawFrame], pitch: impl Fn(&RawLeg) -> Option<f32>) {
+        let plant = self.plant(side);
+        let level = from_heading(plant.heading);
+        for frames in raw.chunks_mut(LANES) {
+            let mut pitches = [None; LANES];
+            for (lane, frame) in pitches.iter_mut().zip(&*frames) {
+                *lane = pitch(&frame.legs[side.index()]);
+            }
+            let Some(any) = pitches.iter().find_map(|pitch| *pitch) else {
+                continue;
+            };
+            let lanes = f32x8::new(pitches.map(|pitch| pitch.unwrap_or(any)));
+            let stances = self.feet[side.index()].stand_many(plant, level, lanes);
+            let stances = stances.lanes().into_iter().zip(pitches);
+            for (frame, (stance, pitch)) in frames.iter_mut().zip(stances) {
+                if pitch.is_some() {
+                    frame.legs[side.index()].target = stance;
                 }
             }
         }
@@ -350,8 +364,9 @@ impl Planter {
             let ankle = target.ankle - hip;
             let yielded = ankle * yielding(ankle.length(), extensions);
             target.ankle = hip + ankle + (yielded - ankle) * swing.freed(index);
-            for lane in 0..LANES.min(end - index) {
-                raw[index + lane].legs[side].target = target.lane(lane);
+            let frames = &mut raw[index..end.min(index + LANES)];
+            for (frame, target) in frames.iter_mut().zip(target.lanes()) {
+                frame.legs[side].target = target;
             }
         }
     }

@@ -117,11 +117,12 @@ impl RawFrame {
                 let free_pitch = foot_pitches(foot);
                 // A shorter stride lands flatter and pushes off less.
                 let pitch = settled_pitch(free_pitch * scale.fast_min(f32x8::ONE));
+                let foot = foot.lanes();
                 for (lane, frame) in frames.iter_mut().enumerate() {
                     let leg = &mut frame.legs[side.index()];
                     leg.hip = hip.lane(lane);
                     leg.ankle = ankle.lane(lane);
-                    leg.foot = foot.lane(lane);
+                    leg.foot = foot[lane];
                     leg.rise = 0.0;
                     leg.free_pitch = free_pitch.as_array()[lane];
                     leg.pitch = pitch.as_array()[lane];

@@ -123,7 +123,7 @@ impl Stage {
 
     /// Travel of the hips over the ground in the step that was put there.
     pub(crate) fn travel(&self, shape: &StepShape) -> Vec3 {
-        let last = shape.ground_timing().frames;
+        let last = shape.ground_frames();
         let [from, to] = [0, last].map(|frame| self.frames[frame].pose.root_position);
         (to - from) * Vec3::new(1.0, 0.0, 1.0)
     }

@@ -274,7 +274,7 @@ impl GaitGenerator {
         match &mut self.steps {
             Steps::Styled(steps) => {
                 let more = (&running, &quick, moving.leap_m, balance, &led);
-                **steps = state.styled(steps, more, &self.skeleton, &config)?;
+                state.take_up(steps, more, &self.skeleton, &config)?;
             }
             Steps::Switching(steps) => {
                 state.resume(steps, (quick.lean(), balance.into()), &config)?;

@@ -65,26 +65,6 @@ impl StyledSteps {
         })
     }
 
-    /// State after the walker was restored.
-    pub(crate) fn resumed(
-        space: &Arc<StyleSpace>,
-        planner: Planner,
-        walker: Walker,
-        worn: Worn,
-        velocity_mps: Vec2,
-        obeyed: Obeyed,
-    ) -> Self {
-        Self {
-            space: Arc::clone(space),
-            planner,
-            walker,
-            worn,
-            retired: None,
-            velocity_mps,
-            obeyed,
-        }
-    }
-
     /// The mixture that the next step wears.
     pub(crate) fn worn(&self) -> &Blend {
         &self.worn.blend

@@ -20,7 +20,7 @@ use crate::standing::Amplitude;
 use crate::steps::Stretches;
 use crate::workbench::Workbench;
 use footfall_core::{Side, Skeleton, StepPosition};
-use footfall_model::{FEATURE_COUNT, STATES_PER_STEP};
+use footfall_model::FEATURE_COUNT;
 use glam::Vec2;
 use std::sync::Arc;
 
@@ -30,9 +30,6 @@ pub(crate) const WINDOW: usize = 3;
 
 /// Frames that tie a window to the one before: the longest dynamic window couples no more.
 pub(crate) const TIE: usize = 4;
-
-/// The state of a step in which its last frames are at the earliest: each lasts a frame at least.
-const TIE_FROM_STATE: usize = STATES_PER_STEP - TIE;
 
 /// No fine motion.
 const NO_SCALE: Scale = [0.0; FEATURE_COUNT];
@@ -221,10 +218,10 @@ impl Walker {
         self.draws = draws;
         planner.wear(&blend_before.model);
         // Of the step before only the last frames count.
-        planner.realise_from(
+        planner.realise_end(
             &self.draws[0],
             origin.manner_before,
-            TIE_FROM_STATE,
+            TIE,
             &blend_before.statistics,
             &mut self.plans[0],
         );

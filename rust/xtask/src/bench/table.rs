@@ -15,7 +15,7 @@ use Beside::{Limit, Peer};
 /// A line: what is measured, its unit, the figure, and what stands beside it.
 struct Line(&'static str, &'static str, &'static str, Beside);
 
-const LINES: [Line; 11] = [
+const LINES: [Line; 14] = [
     Line(
         "MLPG trajectory of 1,000 frames, f64, per frame",
         "µs",
@@ -27,6 +27,24 @@ const LINES: [Line; 11] = [
         "µs",
         "kernels.walker_us_per_frame",
         Limit(0.5, "goal"),
+    ),
+    Line(
+        "One runner at 3 m/s, per frame",
+        "µs",
+        "kernels.runner_us_per_frame",
+        Limit(0.6, "goal"),
+    ),
+    Line(
+        "State of one walker, saved",
+        "µs",
+        "kernels.walker_state_us",
+        Limit(20.0, "goal"),
+    ),
+    Line(
+        "State of one walker, restored",
+        "µs",
+        "kernels.walker_restore_us",
+        Limit(20.0, "goal"),
     ),
     Line(
         "Switching model, fit of ten segments",

@@ -65,6 +65,11 @@ struct Report {
     walker_us_per_frame: f64,
     /// The longest call of those, in the best repetition.
     walker_worst_us: f64,
+    /// The same at 3 m/s; none of a model that only walks.
+    runner_us_per_frame: Option<f64>,
+    /// One `GaitGenerator::state`, and one `restore` of it by the same walker.
+    walker_state_us: f64,
+    walker_restore_us: f64,
     forward_kinematics_us: f64,
     /// Ten segments of a switching model: identified in closed form, windows and initial states tried; and with refinement.
     dynamics_fit_ms: f64,
@@ -110,6 +115,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
     let mut bodies: Vec<imu::ReconstructorBench> = bodies
         .map(|(frames, _)| imu::ReconstructorBench::new(&gait, *frames))
         .collect::<Result<_>>()?;
+    let mut runner = runtime::WalkerBench::running(&model)?;
     let mut walker = runtime::WalkerBench::new(model)?;
     let dynamics = dynamics::DynamicsBench::new()?;
     let mut switching = dynamics.switching()?;
@@ -131,6 +137,12 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         let walked = walker.walk();
         best.walker.take(walked.mean);
         best.walker_worst.take(walked.worst);
+        if let Some(runner) = &mut runner {
+            best.runner.take(runner.walk().mean);
+        }
+        let saved = walker.save()?;
+        best.walker_state.take(saved.state);
+        best.walker_restore.take(saved.restore);
         best.kinematics.take(walker.forward_kinematics());
         best.fit.take(time(|| dynamics.fit(0))?);
         best.refined_fit.take(time(|| dynamics.fit_refined())?);
@@ -174,6 +186,9 @@ pub(crate) fn run(args: &BenchArgs) -> Result<()> {
         hsmm_us_per_frame: best.hsmm.0 / hsmm.frames() as f64,
         walker_us_per_frame: best.walker.0,
         walker_worst_us: best.walker_worst.0,
+        runner_us_per_frame: runner.map(|_| best.runner.0),
+        walker_state_us: best.walker_state.0,
+        walker_restore_us: best.walker_restore.0,
         forward_kinematics_us: best.kinematics.0,
         dynamics_fit_ms: 1e-3 * best.fit.0,
         dynamics_refined_fit_ms: 1e-3 * best.refined_fit.0,
@@ -225,6 +240,14 @@ impl Report {
             format!(
                 "one walker                                 {:9.4} µs a frame, {:.1} µs at worst",
                 self.walker_us_per_frame, self.walker_worst_us
+            ),
+            self.runner_us_per_frame.map_or_else(
+                || "one runner                                 the model only walks".to_owned(),
+                |us| format!("one runner                                 {us:9.4} µs a frame"),
+            ),
+            format!(
+                "a walker's state, saved and restored        {:9.4} µs, {:.1} µs",
+                self.walker_state_us, self.walker_restore_us
             ),
             format!(
                 "forward kinematics, 22 joints              {:9.4} µs",
@@ -308,6 +331,9 @@ struct Best {
     hsmm: Least,
     walker: Least,
     walker_worst: Least,
+    runner: Least,
+    walker_state: Least,
+    walker_restore: Least,
     kinematics: Least,
     fit: Least,
     refined_fit: Least,

@@ -301,6 +301,8 @@ fn the_benchmark_times_every_kernel_and_agrees_with_its_peers() {
         "ratio",
         "hsmm_us_per_frame",
         "walker_us_per_frame",
+        "walker_state_us",
+        "walker_restore_us",
         "forward_kinematics_us",
     ] {
         assert!(report[name].as_f64().unwrap() > 0.0, "{name}: {report}");

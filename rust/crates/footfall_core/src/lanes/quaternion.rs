@@ -4,6 +4,7 @@ use super::{LANES, Vec3x8, f32x8};
 use crate::rotation::{self, MAX_SQUARED_HALF_ANGLE, half_angle};
 use core::ops::Mul;
 use glam::Quat;
+use wide::f32x4;
 
 /// Eight rotations: unit quaternions.
 #[derive(Clone, Copy, Debug)]
@@ -46,16 +47,36 @@ impl Quatx8 {
     /// The rotation of each lane.
     #[inline]
     pub fn gather(of_lane: impl Fn(usize) -> Quat) -> Self {
-        let [mut x, mut y, mut z, mut w] = [[0.0; LANES]; 4];
-        for lane in 0..LANES {
-            [x[lane], y[lane], z[lane], w[lane]] = of_lane(lane).to_array();
-        }
+        let four = |first: usize| {
+            let rotation = |lane: usize| f32x4::new(of_lane(first + lane).to_array());
+            f32x4::transpose(core::array::from_fn(rotation)).map(f32x4::to_array)
+        };
+        let (low, high) = (four(0), four(LANES / 2));
+        let component = |index: usize| {
+            let [[a, b, c, d], [e, f, g, h]] = [low[index], high[index]];
+            f32x8::new([a, b, c, d, e, f, g, h])
+        };
         Self {
-            x: f32x8::new(x),
-            y: f32x8::new(y),
-            z: f32x8::new(z),
-            w: f32x8::new(w),
+            x: component(0),
+            y: component(1),
+            z: component(2),
+            w: component(3),
         }
+    }
+
+    /// The rotations of all lanes.
+    #[inline]
+    pub fn lanes(&self) -> [Quat; LANES] {
+        let components = [&self.x, &self.y, &self.z, &self.w].map(f32x8::as_array);
+        let four = |first: usize| {
+            let component = |values: &[f32; LANES]| {
+                f32x4::new(core::array::from_fn(|lane| values[first + lane]))
+            };
+            let rows = f32x4::transpose(components.map(component));
+            rows.map(|rotation| Quat::from_array(rotation.to_array()))
+        };
+        let [[a, b, c, d], [e, f, g, h]] = [four(0), four(LANES / 2)];
+        [a, b, c, d, e, f, g, h]
     }
 
     /// A quaternion of a vector part and a real part.

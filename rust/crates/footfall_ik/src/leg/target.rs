@@ -1,6 +1,6 @@
 //! Targets of feet.
 
-use footfall_core::lanes::{Quatx8, Vec3x8};
+use footfall_core::lanes::{LANES, Quatx8, Vec3x8};
 use glam::{Quat, Vec3};
 
 /// Target of a foot.
@@ -33,6 +33,17 @@ impl FootTargetx8 {
             foot: Quatx8::splat(target.foot),
             toes: Quatx8::splat(target.toes),
         }
+    }
+
+    /// The targets of all frames.
+    #[inline]
+    pub fn lanes(&self) -> [FootTarget; LANES] {
+        let (foot, toes) = (self.foot.lanes(), self.toes.lanes());
+        core::array::from_fn(|lane| FootTarget {
+            ankle: self.ankle.lane(lane),
+            foot: foot[lane],
+            toes: toes[lane],
+        })
     }
 
     /// The target of one frame.

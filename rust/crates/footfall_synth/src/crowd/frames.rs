@@ -2,7 +2,7 @@
 
 use crate::planting::PlantedFrame;
 use footfall_core::{
-    GroundTransform, JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics,
+    GroundTransform, JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics_of,
 };
 use glam::{Quat, Vec3};
 use multiversion::multiversion;
@@ -90,6 +90,16 @@ pub(super) struct CrowdPlace {
     pub(super) contact: [bool; 2],
 }
 
+/// Frames that are taken over together.
+const TOGETHER: usize = 4;
+
+/// Working memory of [`CrowdFrames::set`].
+#[derive(Debug, Default)]
+pub(super) struct FramesBench {
+    poses: [Pose; TOGETHER],
+    model_poses: [ModelPose; TOGETHER],
+}
+
 /// A step: one entry a frame in both lists. They are apart because each frame of a game needs a place, and not every one a pose.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CrowdFrames {
@@ -98,46 +108,51 @@ pub(super) struct CrowdFrames {
 }
 
 impl CrowdFrames {
-    /// Takes over frames on the ground; `pose` and `model` are room to work in.
+    /// Takes over frames on the ground.
     pub(super) fn set(
         &mut self,
         frames: &[PlantedFrame],
         skeleton: &Skeleton,
-        pose: &mut Pose,
-        model: &mut ModelPose,
+        bench: &mut FramesBench,
     ) {
         self.places.resize(frames.len(), CrowdPlace::default());
         self.poses.resize(frames.len(), [0; POSE_NUMBERS]);
+        let FramesBench { poses, model_poses } = bench;
         let mut before = [Quat::IDENTITY; JOINT_COUNT];
-        let kept = self.places.iter_mut().zip(&mut self.poses);
-        for (frame, (place, numbers)) in frames.iter().zip(kept) {
-            place.place = GroundTransform {
-                position: frame.ground_position,
-                heading: frame.ground_heading,
-            };
-            place.contact = frame.contact;
-            let character_from_plan = frame.plan_from_ground.conjugate();
-            let on_plan = frame.pose.root_position - place.place.position;
-            pose.rotations = frame.pose.rotations;
-            pose.root_position = character_from_plan * on_plan;
-            let hips = &mut pose.rotations[Joint::Hips.index()];
-            *hips = (character_from_plan * *hips).normalize();
-            forward_kinematics(skeleton, pose, model);
-            let joints = model.rotations.iter().zip(&model.positions);
-            let mut values = CrowdPose::default();
-            let rows = values.0.chunks_exact_mut(JOINT_NUMBERS);
-            for ((row, (rotation, position)), before) in rows.zip(joints).zip(&mut before) {
-                // Of the two quaternions of a rotation the one near to the last: frames can be blended number by number.
-                let sign = if rotation.dot(*before) < 0.0 {
-                    -1.0
-                } else {
-                    1.0
+        let places = self.places.chunks_mut(TOGETHER);
+        let kept = places.zip(self.poses.chunks_mut(TOGETHER));
+        for (frames, (places, kept)) in frames.chunks(TOGETHER).zip(kept) {
+            for ((frame, place), pose) in frames.iter().zip(places).zip(&mut *poses) {
+                place.place = GroundTransform {
+                    position: frame.ground_position,
+                    heading: frame.ground_heading,
                 };
-                *before = *rotation * sign;
-                row[..4].copy_from_slice(&before.to_array());
-                row[4..7].copy_from_slice(&position.to_array());
+                place.contact = frame.contact;
+                let character_from_plan = frame.plan_from_ground.conjugate();
+                let on_plan = frame.pose.root_position - place.place.position;
+                pose.rotations = frame.pose.rotations;
+                pose.root_position = character_from_plan * on_plan;
+                let hips = &mut pose.rotations[Joint::Hips.index()];
+                *hips = (character_from_plan * *hips).normalize();
             }
-            shrink(&values.0, numbers);
+            forward_kinematics_of(skeleton, poses, model_poses);
+            for (model, numbers) in model_poses.iter().zip(kept) {
+                let joints = model.rotations.iter().zip(&model.positions);
+                let mut values = CrowdPose::default();
+                let rows = values.0.chunks_exact_mut(JOINT_NUMBERS);
+                for ((row, (rotation, position)), before) in rows.zip(joints).zip(&mut before) {
+                    // Of the two quaternions of a rotation the one near to the last: frames can be blended number by number.
+                    let sign = if rotation.dot(*before) < 0.0 {
+                        -1.0
+                    } else {
+                        1.0
+                    };
+                    *before = *rotation * sign;
+                    row[..4].copy_from_slice(&before.to_array());
+                    row[4..7].copy_from_slice(&position.to_array());
+                }
+                shrink(&values.0, numbers);
+            }
         }
     }
 

@@ -359,11 +359,7 @@ impl OwnWalk {
         self.ending.arrival = workshop.walker.stage().arrival;
         let timing = self.shape.ground_timing();
         let stage = &workshop.walker.stage().frames[..=timing.frames];
-        let RestBench {
-            planted,
-            pose,
-            model_pose,
-        } = &mut workshop.rest;
+        let RestBench { planted, frames } = &mut workshop.rest;
         let mut shown = stage;
         if let Some(life) = &self.life {
             if let (true, Some(last)) = (self.shape.amplitude.to < 1.0, stage.last()) {
@@ -380,8 +376,7 @@ impl OwnWalk {
                 shown = planted;
             }
         }
-        self.frames
-            .set(shown, &self.styled.0.skeleton, pose, model_pose);
+        self.frames.set(shown, &self.styled.0.skeleton, frames);
     }
 
     /// The frame before a time of the step, and the weight of the one after it.

@@ -1,10 +1,10 @@
 //! A crowd's walker at rest: a moment of standing at a time, worked out ahead.
 
-use super::frames::{CrowdFrames, CrowdPose};
+use super::frames::{CrowdFrames, CrowdPose, FramesBench};
 use crate::detail::Detail;
 use crate::planting::PlantedFrame;
 use crate::standing::{Life, Moment};
-use footfall_core::{ModelPose, Pose, Skeleton};
+use footfall_core::Skeleton;
 
 /// Poses that are worked out ahead, and how far apart they are in full detail, seconds.
 const AHEAD: usize = 8;
@@ -25,8 +25,7 @@ pub(super) struct Rest {
 #[derive(Debug)]
 pub(super) struct RestBench {
     pub(super) planted: Vec<PlantedFrame>,
-    pub(super) pose: Pose,
-    pub(super) model_pose: ModelPose,
+    pub(super) frames: FramesBench,
 }
 
 impl RestBench {
@@ -34,8 +33,7 @@ impl RestBench {
     pub(super) fn new(longest: usize) -> Self {
         Self {
             planted: Vec::with_capacity(Detail::ground_room(longest) + 1),
-            pose: Pose::default(),
-            model_pose: ModelPose::default(),
+            frames: FramesBench::default(),
         }
     }
 }
@@ -75,12 +73,8 @@ impl Rest {
             let moment = life.moment.after(f32::from(index) * apart_secs, true);
             life.move_pose(&moment, frame.plan_from_ground, &mut frame.pose);
         }
-        let RestBench {
-            planted,
-            pose,
-            model_pose,
-        } = bench;
-        self.frames.set(planted, skeleton, pose, model_pose);
+        let RestBench { planted, frames } = bench;
+        self.frames.set(planted, skeleton, frames);
         self.begin_secs = life.moment.secs;
         self.apart_secs = Some(apart_secs);
     }

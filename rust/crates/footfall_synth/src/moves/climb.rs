@@ -39,6 +39,9 @@ impl ClimbMoment {
     }
 
     pub(super) fn step(&mut self, secs: f32) {
+        if *self == Self::default() {
+            return;
+        }
         let share = if self.grade > 0.0 { UPHILL } else { DOWNHILL };
         let wanted = share * self.grade.atan();
         let (away, speed) = settled(self.lean - wanted, self.speed, RATE, secs);

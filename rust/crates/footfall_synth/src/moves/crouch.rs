@@ -31,6 +31,9 @@ pub(super) struct Crouch {
 impl CrouchMoment {
     /// So much later, for one who is asked for this amount.
     fn after(self, secs: f32, asked: f32) -> Self {
+        if asked <= 0.0 && self == Self::default() {
+            return self;
+        }
         let (away, speed) = settled(self.amount - asked, self.speed, RATE, secs);
         let later = Self {
             amount: asked + away,

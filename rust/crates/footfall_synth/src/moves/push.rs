@@ -54,6 +54,9 @@ impl PushMoment {
     }
 
     pub(super) fn step(&mut self, secs: f32) {
+        if *self == Self::default() {
+            return;
+        }
         self.velocity *= (-FADING * secs).exp();
         if self.velocity.length() < 0.1 * STEPPED_MPS {
             self.velocity = Vec2::ZERO;

@@ -75,21 +75,33 @@ impl<'a> Offsets<'a> {
 pub(crate) trait Sum: Real {
     /// Adds four weighted rows.
     fn add_rows(sums: &mut [Self], rows: [(&[Self], Self); 4]);
+
+    /// As [`add_rows`](Self::add_rows), for functions that are compiled for several instruction sets themselves.
+    fn add_rows_inline(sums: &mut [Self], rows: [(&[Self], Self); 4]);
 }
 
 macro_rules! sum {
     ($real:ty, $add_rows:ident) => {
         #[multiversion(targets("x86_64+avx2"))]
         fn $add_rows(sums: &mut [$real], rows: [(&[$real], $real); 4]) {
-            let [(a, wa), (b, wb), (c, wc), (d, wd)] = rows;
-            for (sum, (((a, b), c), d)) in sums.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
-                *sum += (wa * a + wb * b) + (wc * c + wd * d);
-            }
+            <$real>::add_rows_inline(sums, rows);
         }
 
         impl Sum for $real {
             fn add_rows(sums: &mut [Self], rows: [(&[Self], Self); 4]) {
                 $add_rows(sums, rows);
+            }
+
+            #[inline(always)]
+            #[expect(
+                clippy::inline_always,
+                reason = "only what is inlined into the dispatched functions is compiled for their instruction sets"
+            )]
+            fn add_rows_inline(sums: &mut [Self], rows: [(&[Self], Self); 4]) {
+                let [(a, wa), (b, wb), (c, wc), (d, wd)] = rows;
+                for (sum, (((a, b), c), d)) in sums.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
+                    *sum += (wa * a + wb * b) + (wc * c + wd * d);
+                }
             }
         }
     };

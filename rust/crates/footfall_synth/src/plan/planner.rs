@@ -151,15 +151,15 @@ impl Planner {
         statistics: &Statistics<R>,
         plan: &mut StepPlan<R>,
     ) {
-        self.realise_from(draw, manner, 0, statistics, plan);
+        self.realise_end(draw, manner, usize::MAX, statistics, plan);
     }
 
-    /// Works out how a drawn step ends: its frames, but the means of the states from this one on only.
-    pub(crate) fn realise_from<R: Sum>(
+    /// Works out how a drawn step ends: its shape, but only the means of the states that its last frames are in, so many.
+    pub(crate) fn realise_end<R: Sum>(
         &self,
         draw: &StepDraw,
         manner: Manner,
-        from_state: usize,
+        last_frames: usize,
         statistics: &Statistics<R>,
         plan: &mut StepPlan<R>,
     ) {
@@ -188,8 +188,6 @@ impl Planner {
             offsets.add(Part::Step(index), &component[side], weight);
         }
 
-        let within = from_state * OBSERVATION_COUNT..STEP_MEANS;
-        offsets.add_means(statistics, draw.side, within, &mut plan.means);
         let step = &model.steps[side];
         let mut elapsed = 0.0;
         let mut passed = 0;
@@ -206,6 +204,9 @@ impl Planner {
         let detail = detail.holding(passed);
         let whole = detail.whole_frames(passed);
         plan.state_frames[STATES_PER_STEP - 1] += whole - passed;
+        let from_state = plan.state_at(whole.saturating_sub(last_frames));
+        let within = from_state * OBSERVATION_COUNT..STEP_MEANS;
+        offsets.add_means(statistics, draw.side, within, &mut plan.means);
         let terminal = step.other_terminal + offsets.other_terminal();
         plan.shape = StepShape::of_walk(draw.side, whole, terminal, pace.stride, detail);
         plan.fine = FineDraw::new(model, &self.walker, draw, self.variation);

@@ -3,10 +3,12 @@
 
 use super::support::MAX_STANCE_EXTENSION;
 use super::{PlantedFrame, Planter, StepTiming};
-use crate::raw::RawFrame;
+use crate::raw::{RawFrame, RawLeg};
 use footfall_core::Side;
-use footfall_core::ease::smooth_step;
+use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8, smooth_step};
 use footfall_core::rotation::from_heading;
+use footfall_ik::{Plant, RockerFoot};
+use glam::Quat;
 
 /// Fraction of the straight leg beyond which the heel rises instead, and over how much more it comes to do so.
 const RISING_EXTENSION: f32 = 0.9965;
@@ -45,81 +47,113 @@ impl Planter {
             (timing.leading, Some(leading)),
             (timing.leading.other(), trailing),
         ];
+        // The cosine of half the knee's bend is what is left of the leg's length.
+        let half_bend = RISING_EXTENSION.acos();
         for (side, last) in stances {
             let Some(last) = last else { continue };
             let raw = &mut raw[..=last];
+            let plant = self.plant(side);
+            let level = from_heading(plant.heading);
+            let stance = Stance {
+                foot: &self.feet[side.index()],
+                plant,
+                from_level: level.inverse(),
+                length: self.leg_lengths[side.index()],
+            };
             let leaves = side != timing.leading && !timing.rests;
-            for (index, (raw, frame)) in raw.iter_mut().zip(frames).enumerate() {
-                let left_secs = (last - index) as f32 * self.frame_secs;
-                // The cosine of half the knee's bend is what is left of the leg's length.
-                let most = if leaves {
-                    let left = (1.0 - left_secs / LEAVING_SECS).max(0.0);
-                    (RISING_EXTENSION.acos() + LEAVING_BEND * left * left).cos()
+            let most_extension = |index: usize| {
+                let left_secs = last.saturating_sub(index) as f32 * self.frame_secs;
+                if leaves && left_secs < LEAVING_SECS {
+                    let left = 1.0 - left_secs / LEAVING_SECS;
+                    (half_bend + LEAVING_BEND * left * left).cos()
                 } else {
                     RISING_EXTENSION
+                }
+            };
+            self.stand(side, raw, |leg| (leg.rise > 0.0).then_some(leg.pitch));
+            let mut any = false;
+            let blocks = raw.chunks_mut(LANES).zip(frames.chunks(LANES));
+            for (block, (raw, frames)) in blocks.enumerate() {
+                let at = |lane: usize| lane.min(raw.len() - 1);
+                let leg = |lane: usize| &raw[at(lane)].legs[side.index()];
+                let of_legs = |value: &dyn Fn(&RawLeg) -> f32| {
+                    f32x8::new(core::array::from_fn(|lane| value(leg(lane))))
                 };
-                let rise = self.heel_rise(side, most, raw, frame);
-                let before = core::mem::replace(&mut raw.legs[side.index()].rise, rise);
-                if rise == 0.0 && before > 0.0 {
-                    self.stand_risen(side, raw);
+                let level = Quatx8::gather(|lane| frames[at(lane)].level);
+                let hips = Vec3x8::gather(|lane| frames[at(lane)].pose.root_position);
+                let legs = Legs {
+                    level,
+                    hip: hips + level * Vec3x8::gather(|lane| leg(lane).hip),
+                    ankle: Vec3x8::gather(|lane| leg(lane).target.ankle),
+                    pitch: of_legs(&|leg| leg.pitch),
+                    rise: of_legs(&|leg| leg.rise),
+                };
+                let most = core::array::from_fn(|lane| most_extension(block * LANES + lane));
+                let rises = stance.rises(&legs, f32x8::new(most));
+                any |= rises.simd_gt(f32x8::ZERO).any();
+                for (raw, rise) in raw.iter_mut().zip(rises.to_array()) {
+                    raw.legs[side.index()].rise = rise;
                 }
             }
-            smooth(raw, side);
-            for raw in raw
-                .iter_mut()
-                .filter(|raw| raw.legs[side.index()].rise > 0.0)
-            {
-                self.stand_risen(side, raw);
+            if any {
+                smooth(raw, side);
+                let risen = |leg: &RawLeg| (leg.rise > 0.0).then_some(leg.pitch + leg.rise);
+                self.stand(side, raw, risen);
             }
         }
     }
+}
 
-    /// Returns by how much a heel has to be higher than generated for its leg not to be beyond this share of its length, radians.
-    fn heel_rise(
-        &self,
-        side: Side,
-        most_extension: f32,
-        raw: &RawFrame,
-        frame: &PlantedFrame,
-    ) -> f32 {
-        let leg = &raw.legs[side.index()];
-        let foot = &self.feet[side.index()];
-        let plant = self.plant(side);
-        let level = from_heading(plant.heading);
-        let risen = leg.rise > 0.0;
-        let ankle = if risen {
-            foot.stand_level(plant, level, leg.pitch).ankle
-        } else {
-            leg.target.ankle
-        };
-        let length = self.leg_lengths[side.index()];
-        let hip = frame.pose.root_position + frame.level * leg.hip;
-        let extension = hip.distance(ankle) / length;
-        let beyond = ((extension - most_extension) / RISING_SOFTNESS).min(MOST_BEYOND);
-        if beyond < -MOST_SHORT || leg.pitch < 0.0 {
-            return 0.0;
-        }
-        let ahead = (frame.level.inverse() * (ankle - hip)).z / (AHEAD * length);
-        let share = smooth_step(1.0 - ahead);
-        if share <= 0.0 {
-            return 0.0;
-        }
-        let mut wanted = extension - share * RISING_SOFTNESS * beyond.exp().ln_1p();
-        if risen {
-            // The hips have come down to what a leg with its heel up reaches, and no lower.
-            wanted = wanted.min(MAX_STANCE_EXTENSION);
-        }
-        let from_plant = level.inverse() * (hip - plant.flat_ankle);
-        let pitch = foot.pitch_within_reach(from_plant, wanted * length, leg.pitch);
-        (pitch - leg.pitch).clamp(0.0, MOST_RISE)
-    }
+/// A foot on its plant, and the length of its leg.
+struct Stance<'a> {
+    foot: &'a RockerFoot,
+    plant: &'a Plant,
+    /// The rotation into the axes of the plant.
+    from_level: Quat,
+    length: f32,
+}
 
-    /// Stands a foot on its plant with its heel as high as it is to be.
-    fn stand_risen(&self, side: Side, raw: &mut RawFrame) {
-        let leg = &mut raw.legs[side.index()];
-        let plant = self.plant(side);
-        let level = from_heading(plant.heading);
-        leg.target = self.feet[side.index()].stand_level(plant, level, leg.pitch + leg.rise);
+/// The leg in eight frames, its foot as generated.
+struct Legs {
+    level: Quatx8,
+    /// Place of the hip joint.
+    hip: Vec3x8,
+    ankle: Vec3x8,
+    pitch: f32x8,
+    /// By how much the heel was raised before.
+    rise: f32x8,
+}
+
+impl Stance<'_> {
+    /// Returns by how much heels have to be higher than generated for their legs not to be beyond these shares of their length, radians.
+    fn rises(&self, legs: &Legs, most_extension: f32x8) -> f32x8 {
+        let reach = legs.ankle - legs.hip;
+        let extension = reach.length() * self.length.recip();
+        let beyond = (extension - most_extension) * RISING_SOFTNESS.recip();
+        let ahead = (legs.level.conjugate() * reach).z * (AHEAD * self.length).recip();
+        let share = smooth_step(f32x8::ONE - ahead);
+        let some = beyond.simd_ge(f32x8::splat(-MOST_SHORT))
+            & legs.pitch.simd_ge(f32x8::ZERO)
+            & share.simd_gt(f32x8::ZERO);
+        if some.none() {
+            return f32x8::ZERO;
+        }
+        let beyond = beyond.fast_min(f32x8::splat(MOST_BEYOND));
+        let less = (f32x8::ONE + beyond.exp()).ln();
+        let wanted = extension - share * RISING_SOFTNESS * less;
+        // The hips have come down to what a leg with its heel up reaches, and no lower.
+        let most = wanted.fast_min(f32x8::splat(MAX_STANCE_EXTENSION));
+        let wanted = legs.rise.simd_gt(f32x8::ZERO).bitselect(most, wanted);
+        let plant = Vec3x8::splat(self.plant.flat_ankle);
+        let from_plant = Quatx8::splat(self.from_level) * (legs.hip - plant);
+        let reach = wanted * self.length;
+        let pitch = self
+            .foot
+            .pitches_within_reach(from_plant, reach, legs.pitch);
+        let rise = (pitch - legs.pitch)
+            .fast_max(f32x8::ZERO)
+            .fast_min(f32x8::splat(MOST_RISE));
+        some.bitselect(rise, f32x8::ZERO)
     }
 }
 
@@ -128,7 +162,7 @@ fn smooth(raw: &mut [RawFrame], side: Side) {
     let side = side.index();
     let last = raw.len() - 1;
     // Rises of the frames before, as they were.
-    let mut before = [0.0; SMOOTHED.len() - 1];
+    let mut before = [0.0; 2];
     for index in 0..raw.len() {
         let own = raw[index].legs[side].rise;
         let reach = index.min(last - index).min(before.len());
@@ -144,7 +178,6 @@ fn smooth(raw: &mut [RawFrame], side: Side) {
         } else {
             own.max(sum / weights)
         };
-        before.rotate_right(1);
-        before[0] = own;
+        before = [own, before[0]];
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{PlantedFrame, Planter, StepTiming};
 use crate::raw::RawFrame;
+use core::ops::RangeInclusive;
 
 /// Changes of the hips' height that last shorter are smoothed out, seconds.
 const SMOOTHED_SECS: f32 = 0.035;
@@ -39,12 +40,12 @@ impl Planter {
         // A leg that has just been planned anew may be at its end already.
         let most = self.bearing_limit(&raw[1], timing, 1, &frames[1]) - begin;
         let rise = rise.map(|velocity| f64::from(velocity.y * self.frame_secs).min(most.max(0.0)));
-        let mut heights = asked.smoothed(begin, rise);
+        asked.smooth(begin, rise);
         for weight in REACH_WEIGHTS {
             let mut beyond = false;
             for (index, frame) in frames.iter().enumerate() {
                 let limit = self.bearing_limit(&raw[index], timing, index, frame);
-                if heights[index] > limit + REACHED_M {
+                if asked.smoothed[index] > limit + REACHED_M {
                     beyond = true;
                     asked.set(index, asked.heights[index].min(limit), weight);
                 }
@@ -52,9 +53,9 @@ impl Planter {
             if !beyond {
                 break;
             }
-            heights = asked.smoothed(begin, rise);
+            asked.smooth(begin, rise);
         }
-        for (height, frame) in heights.iter().zip(frames) {
+        for (height, frame) in asked.smoothed.iter().zip(frames) {
             frame.pose.root_position.y = *height as f32;
         }
     }
@@ -91,6 +92,9 @@ impl Planter {
 struct Asked {
     heights: [f64; MOST_FRAMES],
     weights: [f64; MOST_FRAMES],
+    /// Those heights, smooth.
+    smoothed: [f64; MOST_FRAMES],
+    factors: [Factors; MOST_FRAMES],
     /// The last frame of the step, the one about which it is mirrored, and how many there are in all.
     last: usize,
     turn: usize,
@@ -109,6 +113,8 @@ impl Asked {
         (last >= BAND && count <= MOST_FRAMES).then(|| Self {
             heights: [0.0; MOST_FRAMES],
             weights: [0.0; MOST_FRAMES],
+            smoothed: [0.0; MOST_FRAMES],
+            factors: [Factors::default(); MOST_FRAMES],
             last,
             turn,
             count,
@@ -127,29 +133,37 @@ impl Asked {
         }
     }
 
-    /// Smooth heights, the first of them given and, if that is known, how much higher the second is.
-    fn smoothed(&self, begin: f64, rise: Option<f64>) -> [f64; MOST_FRAMES] {
-        let mut heights = self.heights;
+    /// Smooths the heights, the first of them given and, if that is known, how much higher the second is.
+    fn smooth(&mut self, begin: f64, rise: Option<f64>) {
+        let heights = &mut self.smoothed[..self.count];
+        heights.copy_from_slice(&self.heights[..self.count]);
         heights[0] = begin;
         if let Some(rise) = rise {
             heights[1] = begin + rise;
         }
         let fixed = if rise.is_some() { 2 } else { 1 };
-        let (heights_asked, weights) = (&mut heights[..self.count], &self.weights[..self.count]);
-        smooth(heights_asked, weights, fixed, self.stiffness);
-        heights
+        let system = System::new(&self.weights[..self.count], self.stiffness);
+        smooth(heights, &system, fixed, &mut self.factors);
     }
 }
 
+/// A row of the decomposition.
+#[derive(Clone, Copy, Default)]
+struct Factors {
+    diagonal: f64,
+    /// What of the unknown so many rows before is in this one.
+    below: [f64; BAND],
+}
+
 /// Changes values, all but the first `fixed`, to those that are nearest to them in the weighted sum of squares, where every squared
-/// jerk counts `stiffness` times. There are more values than [`BAND`], and no more than [`MOST_FRAMES`].
+/// jerk counts as much as the system's stiffness. There are more values than [`BAND`], and no more than there is room for `factors`.
 ///
 /// Whittaker's smoother (On a new method of graduation, 1923): a symmetric system with [`BAND`] bands on either side of its diagonal,
 /// solved by a square-root-free Cholesky decomposition.
-fn smooth(values: &mut [f64], weights: &[f64], fixed: usize, stiffness: f64) {
+fn smooth(values: &mut [f64], system: &System<'_>, fixed: usize, factors: &mut [Factors]) {
     let count = values.len();
-    let system = System { weights, stiffness };
-    for (value, weight) in values.iter_mut().zip(weights).skip(fixed) {
+    let factors = &mut factors[..count];
+    for (value, weight) in values.iter_mut().zip(system.weights).skip(fixed) {
         *value *= weight;
     }
     for row in fixed..count.min(fixed + BAND) {
@@ -157,53 +171,93 @@ fn smooth(values: &mut [f64], weights: &[f64], fixed: usize, stiffness: f64) {
             values[row] -= system.entry(row - aside, aside) * values[row - aside];
         }
     }
-    let mut diagonal = [0.0; MOST_FRAMES];
-    // What of the unknown so many rows before is in a row, times its diagonal while the row is worked out.
-    let mut below = [[0.0; BAND]; MOST_FRAMES];
-    for row in fixed..count {
-        let before = BAND.min(row - fixed);
-        let mut factors = [0.0; BAND];
-        let mut pivot = system.entry(row, 0);
-        for aside in (1..=before).rev() {
-            let column = row - aside;
-            let mut scaled = system.entry(column, aside);
-            for far in aside + 1..=before {
-                scaled -= factors[far - 1] * diagonal[row - far] * below[column][far - aside - 1];
-            }
-            let factor = scaled / diagonal[column];
-            factors[aside - 1] = factor;
-            pivot -= factor * scaled;
-            values[row] -= factor * values[column];
-        }
-        diagonal[row] = pivot;
-        below[row] = factors;
+    let whole = (fixed + BAND).min(count);
+    for row in fixed..whole {
+        eliminate(values, system, factors, row, row - fixed);
+    }
+    // The compiler unrolls what has a length that it knows.
+    for row in whole..count {
+        eliminate(values, system, factors, row, BAND);
     }
     for row in (fixed..count).rev() {
-        values[row] /= diagonal[row];
-        for aside in 1..=BAND.min(count - 1 - row) {
-            values[row] -= below[row + aside][aside - 1] * values[row + aside];
+        let mut value = values[row] / factors[row].diagonal;
+        let after = values[row + 1..].iter().zip(&factors[row + 1..]);
+        for (aside, (next, factors)) in after.take(BAND).enumerate() {
+            value -= factors.below[aside] * next;
         }
+        values[row] = value;
     }
+}
+
+/// Eliminates the unknowns of so many rows before from a row.
+#[inline(always)]
+#[expect(
+    clippy::inline_always,
+    reason = "only where it is inlined is the number of rows known"
+)]
+fn eliminate(
+    values: &mut [f64],
+    system: &System<'_>,
+    factors: &mut [Factors],
+    row: usize,
+    before: usize,
+) {
+    let mut below = [0.0; BAND];
+    let mut pivot = system.entry(row, 0);
+    let mut value = values[row];
+    for aside in (1..=before).rev() {
+        let column = row - aside;
+        let mut scaled = system.entry(column, aside);
+        for far in aside + 1..=before {
+            let further = &factors[row - far];
+            scaled -= below[far - 1] * further.diagonal * factors[column].below[far - aside - 1];
+        }
+        let factor = scaled / factors[column].diagonal;
+        below[aside - 1] = factor;
+        pivot -= factor * scaled;
+        value -= factor * values[column];
+    }
+    values[row] = value;
+    factors[row] = Factors {
+        diagonal: pivot,
+        below,
+    };
 }
 
 /// The smoother's system of equations.
 struct System<'a> {
     weights: &'a [f64],
     stiffness: f64,
+    /// Entries so far to the right of the diagonal in rows that have all jerks, without the rows' own weights.
+    inner: [f64; BAND + 1],
 }
 
-impl System<'_> {
-    /// The entry so far to the right of the diagonal.
-    fn entry(&self, row: usize, aside: usize) -> f64 {
-        let first = (row + aside).saturating_sub(BAND);
-        let last = row.min(self.weights.len() - 1 - BAND);
-        let mut sum = 0.0;
-        for jerk in first..=last {
-            sum += JERK[row - jerk] * JERK[row + aside - jerk];
+impl<'a> System<'a> {
+    fn new(weights: &'a [f64], stiffness: f64) -> Self {
+        let inner = core::array::from_fn(|aside| stiffness * overlap(aside, aside..=BAND));
+        Self {
+            weights,
+            stiffness,
+            inner,
         }
-        let own = if aside == 0 { self.weights[row] } else { 0.0 };
-        own + self.stiffness * sum
     }
+
+    /// The entry so far to the right of the diagonal.
+    #[inline]
+    fn entry(&self, row: usize, aside: usize) -> f64 {
+        let own = if aside == 0 { self.weights[row] } else { 0.0 };
+        let last = self.weights.len() - 1 - BAND;
+        if row + aside >= BAND && row <= last {
+            return own + self.inner[aside];
+        }
+        let first = (row + aside).saturating_sub(BAND);
+        own + self.stiffness * overlap(aside, row + aside - row.min(last)..=row + aside - first)
+    }
+}
+
+/// Sum of the products of two jerks' coefficients, so many frames apart: those of the first within these.
+fn overlap(aside: usize, within: RangeInclusive<usize>) -> f64 {
+    within.map(|index| JERK[index] * JERK[index - aside]).sum()
 }
 
 #[cfg(test)]
@@ -215,13 +269,24 @@ mod tests {
         (0..count).map(value).collect()
     }
 
+    fn smoothed_by(values: &mut [f64], fixed: usize, stiffness: f64) {
+        let weights = vec![1.0; values.len()];
+        let mut factors = [Factors::default(); MOST_FRAMES];
+        smooth(
+            values,
+            &System::new(&weights, stiffness),
+            fixed,
+            &mut factors,
+        );
+    }
+
     /// The slope of a sum of squares is zero at its minimum.
     #[test]
     fn nothing_else_is_nearer_and_smoother() {
         for (count, fixed, weight) in [(4, 1, 2.0), (5, 2, 3e3), (9, 0, 0.5), (40, 2, 729.0)] {
             let given = wavy(count);
             let mut smoothed = given.clone();
-            smooth(&mut smoothed, &vec![1.0; count], fixed, weight);
+            smoothed_by(&mut smoothed, fixed, weight);
             assert_eq!(smoothed[..fixed], given[..fixed]);
             let mut slopes: Vec<f64> = smoothed.iter().zip(&given).map(|(s, g)| s - g).collect();
             for (first, at) in smoothed.windows(JERK.len()).enumerate() {
@@ -244,13 +309,13 @@ mod tests {
     fn what_has_no_jerk_stays_and_a_corner_is_rounded() {
         let parabola: Vec<f64> = (0..30).map(|at| 0.01 * f64::from(at * at)).collect();
         let mut smoothed = parabola.clone();
-        smooth(&mut smoothed, &[1.0; 30], 2, 1e4);
+        smoothed_by(&mut smoothed, 2, 1e4);
         for (smoothed, given) in smoothed.iter().zip(&parabola) {
             assert!((smoothed - given).abs() < 1e-8);
         }
         let corner: Vec<f64> = (0..31).map(|at| f64::from((at - 15_i32).abs())).collect();
         let mut smoothed = corner.clone();
-        smooth(&mut smoothed, &[1.0; 31], 2, 729.0);
+        smoothed_by(&mut smoothed, 2, 729.0);
         let bend = |values: &[f64]| {
             let bends = values.windows(3).map(|at| at[0] - 2.0 * at[1] + at[2]);
             bends.fold(0.0, |most: f64, bend| most.max(bend.abs()))

@@ -57,12 +57,15 @@ impl Planter {
             let facing = f32x8::splat(facing_before) + part * (facing - facing_before);
             let plan_from_ground = level * Quatx8::from_rotation_y(-facing);
             let hips_rotation = (level * Quatx8::gather(|lane| raw[at(lane)].hips)).normalize();
+            let rotations = [level, plan_from_ground, hips_rotation].map(|all| all.lanes());
             for (lane, frame) in frames.iter_mut().enumerate() {
-                frame.level = level.lane(lane);
+                let [level, plan_from_ground, hips_rotation] =
+                    rotations.each_ref().map(|all| all[lane]);
+                frame.level = level;
                 frame.ground_heading = frame.heading - facing.as_array()[lane];
-                frame.plan_from_ground = plan_from_ground.lane(lane);
+                frame.plan_from_ground = plan_from_ground;
                 frame.pose.root_position = hips.lane(lane);
-                frame.pose.rotations[Joint::Hips.index()] = hips_rotation.lane(lane);
+                frame.pose.rotations[Joint::Hips.index()] = hips_rotation;
             }
         }
         self.drift(timing, out);

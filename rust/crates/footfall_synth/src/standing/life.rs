@@ -42,6 +42,9 @@ pub(crate) struct Life {
 impl Moment {
     /// So much later, for one who stands all the while, or walks.
     pub(crate) fn after(self, secs: f32, stands: bool) -> Self {
+        if !stands && [self.share, self.speed] == [0.0; 2] {
+            return self;
+        }
         let (target, rate) = if stands {
             (1.0, RISE_RATE)
         } else {

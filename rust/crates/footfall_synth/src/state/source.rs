@@ -54,15 +54,15 @@ impl Source {
 }
 
 impl State {
-    /// The styled steps that go on from here.
-    pub(super) fn styled(
+    /// Takes styled steps up from here; they stay as they are where that fails.
+    pub(super) fn take_up(
         &self,
-        current: &StyledSteps,
+        steps: &mut StyledSteps,
         (running, quick, leap_m, balance, led): (&Running, &Quick, Option<f32>, [f32; 2], &Led),
         skeleton: &Skeleton,
         config: &GeneratorConfig,
-    ) -> Result<StyledSteps, StateError> {
-        let space = &current.space;
+    ) -> Result<(), StateError> {
+        let space = Arc::clone(&steps.space);
         if self.model != space.fingerprint() {
             return Err(StateError::OtherModel);
         }
@@ -133,33 +133,41 @@ impl State {
         if tie.len() == TIE_LEN {
             origin.tie.copy_from_slice(tie);
         }
-        let mut planner = walker_of(space, config);
+        let mut planner = walker_of(&space, config);
         let [before, now, next] = weights.each_ref().map(|w| space.blend(w));
         let [gait_before, gait] = running.gaits();
         planner.resume(self.chance_position, &draws);
         planner.count_strides(led.strides);
-        let mut walker = Walker::new(skeleton, &now);
         // A walker that goes back a little, as in games that predict, is measured already.
-        let known =
-            planner.is_same_walker(&current.planner) && Arc::ptr_eq(&next, &current.worn.blend);
-        let worn = space.at_bench(|bench| {
+        let known = planner.is_same_walker(&steps.planner) && Arc::ptr_eq(&next, &steps.worn.blend);
+        space.at_bench(|bench| {
             let worn = if known {
-                current.worn.clone()
+                None
             } else {
-                Worn::measure(&planner, skeleton, next, bench)?
+                Some(Worn::measure(&planner, skeleton, next, bench)?)
             };
             let blends = [before.of_gait(gait_before), now.of_gait(gait)];
-            walker.restore(&mut planner, blends, draws, origin, bench)?;
-            Ok::<_, SynthError>(worn)
+            if origin.planter.is_none() {
+                // The first step of all may fail, so it is tried on somebody else.
+                steps.walker = {
+                    let mut walker = Walker::new(skeleton, &now);
+                    walker.restore(&mut planner, blends, draws, origin, bench)?;
+                    walker
+                };
+            } else {
+                steps
+                    .walker
+                    .restore(&mut planner, blends, draws, origin, bench)?;
+            }
+            if let Some(worn) = worn {
+                steps.worn = worn;
+            }
+            Ok::<_, SynthError>(())
         })?;
-        Ok(StyledSteps::resumed(
-            space,
-            planner,
-            walker,
-            worn,
-            self.velocity_mps.into(),
-            quick.obeyed(),
-        ))
+        steps.planner = planner;
+        steps.velocity_mps = self.velocity_mps.into();
+        steps.obeyed = quick.obeyed();
+        Ok(())
     }
 
     /// Takes switching steps up from here.

@@ -51,7 +51,7 @@ impl Stage {
         shape: &StepShape,
         rests: bool,
     ) -> GroundTransform {
-        let frame = &self.frames[shape.ground_timing().frames];
+        let frame = &self.frames[shape.ground_frames()];
         let end = plan_from_start.local(&GroundTransform {
             position: frame.ground_position,
             heading: frame.ground_heading,

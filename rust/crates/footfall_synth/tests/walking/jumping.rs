@@ -166,6 +166,19 @@ fn walkers_and_runners_leap() {
     }
 }
 
+/// The slow step that sets out would become a leap that is longer than the ground has room for.
+#[test]
+fn who_has_just_set_out_leaps() {
+    let skeleton = Skeleton::standard();
+    for (seed, asked) in [(0, 0.4), (1, 0.45), (2, 0.4), (3, 0.45)] {
+        let mut generator = stander(seed);
+        run(&mut generator, &skeleton, &walking(0.9), 30);
+        assert!(generator.jump(asked));
+        let (frames, _) = run(&mut generator, &skeleton, &walking(0.9), 200);
+        assert_ballistic(&frames);
+    }
+}
+
 #[test]
 fn who_goes_sideways_stands_first_and_goes_on_after_it() {
     let skeleton = Skeleton::standard();

@@ -11,6 +11,10 @@ use std::sync::Arc;
 /// About a hundred steps.
 const FRAMES: usize = 3500;
 const KINEMATICS_RUNS: usize = 10_000;
+const STATE_RUNS: usize = 200;
+
+/// Speed of a run, m/s.
+const RUN_MPS: f32 = 3.0;
 
 const CONFIG: GeneratorConfig = GeneratorConfig {
     seed: 1,
@@ -27,6 +31,12 @@ pub(super) struct WalkerBench {
     pose: Pose,
 }
 
+/// Times of saving a walker's state and of restoring it, microseconds.
+pub(super) struct Saved {
+    pub(super) state: f64,
+    pub(super) restore: f64,
+}
+
 /// Times of one walk, microseconds.
 pub(super) struct Walked {
     pub(super) mean: f64,
@@ -35,9 +45,20 @@ pub(super) struct Walked {
 
 impl WalkerBench {
     pub(super) fn new(model: GaitModel) -> Result<Self> {
+        let speed = model.speed.reference_mps as f32;
+        Self::at(speed, model)
+    }
+
+    /// A runner; none of a model that only walks.
+    pub(super) fn running(model: &GaitModel) -> Result<Option<Self>> {
+        let runs = model.running.is_some();
+        runs.then(|| Self::at(RUN_MPS, model.clone())).transpose()
+    }
+
+    fn at(speed_mps: f32, model: GaitModel) -> Result<Self> {
         let skeleton = model.skeleton.clone();
         let controls = Controls {
-            speed_mps: model.speed.reference_mps as f32,
+            speed_mps,
             turn_rate_radps: 0.1,
             ..Controls::STAND
         };
@@ -92,6 +113,24 @@ impl WalkerBench {
         self.generator
             .step(self.dt_secs, &self.controls, &mut self.pose);
         black_box(&self.pose);
+    }
+
+    /// A state as games that predict need it: saved, and restored by the same walker.
+    pub(super) fn save(&mut self) -> Result<Saved> {
+        let begun = now();
+        for _ in 0..STATE_RUNS {
+            black_box(self.generator.state());
+        }
+        let state = microseconds(begun.elapsed()) / STATE_RUNS as f64;
+        let saved = self.generator.state();
+        let begun = now();
+        for _ in 0..STATE_RUNS {
+            self.generator
+                .restore(black_box(&saved))
+                .context("a walker refuses its own state")?;
+        }
+        let restore = microseconds(begun.elapsed()) / STATE_RUNS as f64;
+        Ok(Saved { state, restore })
     }
 
     /// Microseconds of one pass.
