@@ -5,8 +5,8 @@ const MODEL := preload("res://addons/footfall/models/locomotion.footfall")
 const DT := 1.0 / 60.0
 const SIZE := Vector2i(1280, 720)
 const FOV := 60.0
-## Height of the test figure, and of a walker with as many pixels, metres away.
-const HEIGHT := 1.8
+## Height of the test figure, metres.
+const HEIGHT := 1.735
 
 var _viewport: SubViewport
 var _camera: Camera3D
