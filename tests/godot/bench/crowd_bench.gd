@@ -26,12 +26,6 @@ func _ready() -> void:
 	add_child(camera)
 	camera.look_at_from_position(Vector3(0, 6, -60), Vector3.ZERO)
 	camera.make_current()
-	if "--only-skeletons" in arguments:
-		var f := {}
-		await _skeleton_tier(f)
-		print("BENCH ", f)
-		get_tree().quit()
-		return
 	var figures := {"instances": _instances, "skeletons": _skeletons, "threads": OS.get_processor_count()}
 	var tiers := await _crowd(func(crowd: GaitCrowd3D) -> void: crowd.full_count = 0)
 	figures["tiers_ms"] = tiers
@@ -118,7 +112,7 @@ func _making(figures: Dictionary) -> void:
 	var before := _at_process(func() -> void: clock[0] = Time.get_ticks_usec())
 	add_child(crowd)
 	var after := _at_process(func() -> void: times.append((Time.get_ticks_usec() - clock[0]) / 1000.0))
-	for frame: int in (1000 if "--long" in OS.get_cmdline_user_args() else 60):
+	for frame: int in 200:
 		await get_tree().process_frame
 	figures["start_longest_ms"] = _longest(times)
 	times.clear()
@@ -222,7 +216,7 @@ func _skeleton_tier(figures: Dictionary) -> void:
 ## Microseconds of a call, once a frame: the least of many, which nothing else slowed down.
 func _least_us(what: Callable) -> float:
 	var least := INF
-	for frame: int in (1000 if "--long" in OS.get_cmdline_user_args() else 60):
+	for frame: int in 200:
 		await get_tree().process_frame
 		var begin := Time.get_ticks_usec()
 		what.call()

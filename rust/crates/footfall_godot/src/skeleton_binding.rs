@@ -119,7 +119,8 @@ impl SkeletonBinding {
 
     /// Writes a pose of a crowd's walker: [`RigBinding::write_joints`].
     pub(crate) fn write_joints(&mut self, skeleton: &Gd<Skeleton3D>, pose: &CrowdPose) {
-        self.rig.write_joints(&mut Posed(&mut skeleton.clone()), pose);
+        self.rig
+            .write_joints(&mut Posed(&mut skeleton.clone()), pose);
     }
 
     /// Writes a pose in layers: [`RigBinding::write_layered`].
