@@ -4,14 +4,14 @@ use super::machine::Machine;
 use super::table::{LINES, Reading};
 use std::fmt::Write as _;
 
-/// Sizes in pixels: of the picture, of its head, of a row and of a bar; where bars have factors of a hundredth, of 1, and of a hundred.
-const WIDTH: f64 = 960.0;
+/// Sizes in pixels: of the picture, of its head, of a row and of a bar; where bars end at most to the left, where they begin, and where they end at most to the right.
+const WIDTH: f64 = 1100.0;
 const HEAD: f64 = 74.0;
 const ROW: f64 = 34.0;
 const BAR: f64 = 18.0;
-const LEFT: f64 = 400.0;
-const EVEN: f64 = 500.0;
-const RIGHT: f64 = 700.0;
+const LEFT: f64 = 500.0;
+const EVEN: f64 = 600.0;
+const RIGHT: f64 = 800.0;
 /// Factor at the right end.
 const MOST: f64 = 100.0;
 /// Colours of a bar that is better than its reference, and of one that is not.
