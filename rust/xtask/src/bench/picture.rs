@@ -2,9 +2,8 @@
 
 use super::machine::Machine;
 use super::table::{LINES, Reading};
-use std::fmt::Write as _;
 
-/// Sizes in pixels: of the picture, of its head, of a row and of a bar; where bars end at most to the left, where they begin, and where they end at most to the right.
+/// Sizes in pixels: the picture's width, the heights of its head, a row and a bar; then the ends of the longest bars, and the beginning of all.
 const WIDTH: f64 = 1100.0;
 const HEAD: f64 = 74.0;
 const ROW: f64 = 34.0;
@@ -25,44 +24,47 @@ pub(super) fn svg(machine: &Machine) -> String {
         .filter_map(|line| Some((line.title(), line.reading(machine)?)))
         .collect();
     let height = HEAD + ROW * readings.len() as f64 + 12.0;
-    let mut out = format!(
+    let head = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n\
          <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"#fff\"/>\n\
          <text x=\"16\" y=\"26\" font-size=\"15\" font-weight=\"bold\">{}</text>\n\
          <text x=\"16\" y=\"46\" fill=\"#666\">Bars to the right: times faster than the reference (logarithmic). Bars to the left: slower.</text>\n",
         escaped(&machine.title())
     );
-    let bottom = height - 12.0;
-    for (factor, label) in [(1.0, "1"), (10.0, "10"), (MOST, "100 times")] {
-        let x = place(factor);
-        let _ = writeln!(
-            out,
-            "<path d=\"M{x:.1} {HEAD}V{bottom}\" stroke=\"#ccc\"/><text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#666\">{label}</text>",
-            HEAD - 6.0
-        );
-    }
-    for (index, (title, reading)) in readings.iter().enumerate() {
-        let top = HEAD + ROW * index as f64 + 0.5 * (ROW - BAR);
-        let end = place(reading.factor());
-        let colour = if reading.factor() >= 1.0 {
-            BETTER
-        } else {
-            WORSE
-        };
-        let text = top + 0.5 * BAR + 4.0;
-        let _ = writeln!(
-            out,
-            "<text x=\"16\" y=\"{text:.1}\">{}</text>\
-             <rect x=\"{:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{BAR}\" fill=\"{colour}\"/>\
-             <text x=\"{:.1}\" y=\"{text:.1}\">{}</text>",
-            escaped(title),
-            end.min(EVEN),
-            (end - EVEN).abs().max(1.0),
-            RIGHT + 12.0,
-            escaped(&reading.short())
-        );
-    }
-    out + "</svg>\n"
+    let marks = [(1.0, "1"), (10.0, "10"), (MOST, "100 times")];
+    let marks = marks.map(|(factor, label)| {
+        format!(
+            "<path d=\"M{x:.1} {HEAD}V{:.1}\" stroke=\"#ccc\"/><text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#666\">{label}</text>\n",
+            height - 12.0,
+            HEAD - 6.0,
+            x = place(factor),
+        )
+    });
+    let rows = readings.iter().enumerate();
+    let rows = rows.map(|(index, (title, reading))| row(index, title, reading));
+    head + &marks.concat() + &rows.collect::<String>() + "</svg>\n"
+}
+
+/// One line of the table: its title, its bar and its figures.
+fn row(index: usize, title: &str, reading: &Reading) -> String {
+    let top = HEAD + ROW * index as f64 + 0.5 * (ROW - BAR);
+    let end = place(reading.factor());
+    let colour = if reading.factor() >= 1.0 {
+        BETTER
+    } else {
+        WORSE
+    };
+    format!(
+        "<text x=\"16\" y=\"{text:.1}\">{}</text>\
+         <rect x=\"{:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{BAR}\" fill=\"{colour}\"/>\
+         <text x=\"{:.1}\" y=\"{text:.1}\">{}</text>\n",
+        escaped(title),
+        end.min(EVEN),
+        (end - EVEN).abs().max(1.0),
+        RIGHT + 12.0,
+        escaped(&reading.short()),
+        text = top + 0.5 * BAR + 4.0,
+    )
 }
 
 /// Place of a factor across the picture; beyond the ends at the ends.

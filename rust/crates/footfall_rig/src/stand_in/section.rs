@@ -9,6 +9,9 @@ use glam::{Mat3, Vec2, Vec3};
 const DIRECTIONS: usize = 8;
 /// Places at which the surface is cut for a ring, in shares of the way to the next ring: what is thick between two rings counts as much as what is at them.
 const CUTS: [f32; 5] = [-0.45, -0.2, 0.0, 0.2, 0.45];
+/// Factor on the width of rings. A tube is thinner than what it stands for where it bends, and where that bulges between two rings: without the factor, the
+/// mannequin's stand-in covers 94 % of its pixels.
+pub(super) const FULLER: f32 = 1.06;
 /// A tube shorter than this has no direction, metres.
 const SHORTEST_M: f32 = 1e-3;
 
@@ -147,7 +150,7 @@ impl Across {
     /// The corners of a ring, whose normals look along the axis as well by so much.
     fn ring(&self, section: &Section, at: f32, along: f32) -> [Corner; SIDES] {
         let to_world = self.to_local.transpose();
-        let half = section.half.max(Vec2::splat(1e-3));
+        let half = FULLER * section.half.max(Vec2::splat(1e-3));
         let signs = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
         signs.map(|(wide, deep)| {
             let sign = Vec2::new(wide, deep);

@@ -97,7 +97,7 @@ fn a_tube_looks_as_wide_as_what_it_stands_for() {
             .distance(middle[(index + 1) % SIDES].place)
     };
     let outline: f32 = (0..SIDES).map(side).sum();
-    let round = core::f32::consts::TAU * RADIUS_M;
+    let round = core::f32::consts::TAU * RADIUS_M * section::FULLER;
     assert!(
         (outline / round - 1.0).abs() < 0.03,
         "{outline} for {round}"
