@@ -102,7 +102,7 @@ func _balls(skeleton: Skeleton3D) -> ArrayMesh:
 	return tool.commit()
 
 
-## What is drawn with the character's mesh (0) and with its stand-in (1): nodes with instances.
+## Nodes with instances: drawn with the character's mesh (0) and with its stand-in (1).
 func _drawn() -> Array[Array]:
 	var found: Array[Array] = [[], []]
 	for child: Node in _crowd.get_children(true):

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 /// Rows that one thread looks through at a time.
 const ROWS: usize = 4096;
 
-/// Who is small.
+/// Flags of small walkers.
 #[derive(Default)]
 pub(super) struct Sizes {
     small: Vec<bool>,

@@ -100,7 +100,7 @@ struct Across {
     to_local: Mat3,
 }
 
-/// What a ring goes around: the middle of it, and half of its sides.
+/// Middle and half sides of what a ring goes around.
 #[derive(Clone, Copy)]
 struct Section {
     middle: Vec2,

@@ -24,13 +24,13 @@ pub(super) struct Shape {
 /// Place of a ring along its axis.
 #[derive(Clone, Copy)]
 pub(super) enum Station {
-    /// Where the surface begins.
+    /// Beginning of the surface.
     Begin,
     /// At a joint.
     At(Joint),
     /// At a share of the way from a joint to the surface's end.
     Beyond(Joint, f32),
-    /// Where the surface ends.
+    /// End of the surface.
     End,
 }
 
