@@ -9,7 +9,7 @@ namespace Footfall
     /// <summary>Walks thousands of characters, each with its own style, speed, size, phase and steps.</summary>
     /// <remarks>
     /// <para>Set its <see cref="Model"/>, its <see cref="Character"/> (a scene with a humanoid skeleton) and the number of walkers, <see cref="Count"/>. Walkers wander over an area, follow a <c>Path3D</c>, or do what a script sets, and avoid each other.</para>
-    /// <para>The distance from the camera determines how walkers are drawn. The nearest are full scenes with all their nodes, such as a <see cref="FootPlacement3D"/>. The next are instances of one mesh with poses streamed to the GPU, new in every frame. More distant ones update every few frames, are blended in between, and walk in shared steps. Numbers and distances are settings.</para>
+    /// <para>The distance from the camera determines how walkers are drawn. The nearest are full scenes with all their nodes, such as a <see cref="FootPlacement3D"/>. The next are instances of one mesh with poses streamed to the GPU, new in every frame. More distant ones update every few frames, are blended in between, and walk in shared steps. Those who are only a few pixels high are drawn as stand-ins of few triangles. Numbers and distances are settings.</para>
     /// <para>Equal seeds, sizes and time steps give equal crowds, if the camera moves equally: distant walkers share steps.</para>
     /// </remarks>
     public class GaitCrowd3D : FootfallObject
@@ -44,6 +44,7 @@ namespace Footfall
             public static readonly StringName NearCount = "near_count";
             public static readonly StringName NearDistance = "near_distance";
             public static readonly StringName RepeatFar = "repeat_far";
+            public static readonly StringName StandInPixels = "stand_in_pixels";
             public static readonly StringName Culling = "culling";
             public static readonly StringName Material = "material";
             public static readonly StringName Follows = "follows";
@@ -283,6 +284,13 @@ namespace Footfall
         {
             get => Native.Get(PropertyName.RepeatFar).AsBool();
             set => Native.Set(PropertyName.RepeatFar, value);
+        }
+
+        /// <summary>Height on screen below which walkers are drawn as stand-ins: about 150 triangles around the same body, in the same steps and colours, made of the character's mesh. 0 turns stand-ins off. Walkers with a <see cref="Material"/> of your own keep their mesh.</summary>
+        public double StandInPixels
+        {
+            get => Native.Get(PropertyName.StandInPixels).AsDouble();
+            set => Native.Set(PropertyName.StandInPixels, value);
         }
 
         /// <summary>If <c>true</c>, walkers outside the camera's view get no poses.</summary>

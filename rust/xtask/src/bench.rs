@@ -1,6 +1,7 @@
 //! `cargo xtask bench`: kernels and crowds on this machine, beside their peers and limits, in one table with all machines that were kept.
 
 mod machine;
+mod picture;
 mod table;
 
 use crate::{bench_crowd, paths, process};
@@ -8,16 +9,17 @@ use anyhow::{Context as _, Result};
 use machine::Machine;
 use serde_json::Value;
 use std::fs;
+use std::path::{Path, PathBuf};
 
-/// Folder of the kept measurements, one file a machine, and the page that shows them.
-const KEPT: &str = "rust/benchmarks";
+/// Page that shows the kept measurements, and their folder beside it: a measurement and a picture of each machine.
 const PAGE: &str = "rust/BENCHMARKS.md";
+const FOLDER: &str = "benchmarks";
 
 /// Walkers that crowds are measured with, and whole skeletons.
 const INSTANCES: u32 = 10_000;
 const SKELETONS: u32 = 1500;
 
-/// Measures, and prints the table of this machine. With `keep` the measurement joins those of other machines, and the page is written anew.
+/// Measures, prints the table of this machine and leaves it as a picture. With `keep` the measurement joins those of other machines, and the page is written anew.
 ///
 /// # Errors
 /// When something cannot be built, measured, read or written.
@@ -27,19 +29,45 @@ pub(crate) fn command(keep: bool) -> Result<()> {
         .context("the figures of crowds are no JSON")?;
     let machine = Machine::here(kernels, crowds);
     print!("{}", table::text(&machine));
-    if !keep {
-        return Ok(());
+    if keep {
+        let text = serde_json::to_string_pretty(&machine)? + "\n";
+        write(&folder().join(machine.file_name("json")), &text)?;
+        return page();
     }
-    let root = paths::repository_root();
-    let folder = root.join(KEPT);
-    fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
-    let file = folder.join(machine.file_name());
-    let text = serde_json::to_string_pretty(&machine)? + "\n";
-    fs::write(&file, text).with_context(|| format!("cannot write {}", file.display()))?;
-    let page = root.join(PAGE);
-    fs::write(&page, table::page(&machine::kept(&folder)?))
-        .with_context(|| format!("cannot write {}", page.display()))?;
-    eprintln!("{} and {}", file.display(), page.display());
+    write(
+        &paths::target_folder().join("bench.svg"),
+        &picture::svg(&machine),
+    )
+}
+
+/// Writes the page of all machines that were kept, and a picture of each.
+///
+/// # Errors
+/// When a measurement cannot be read, or a file not be written.
+pub(crate) fn page() -> Result<()> {
+    let machines = machine::kept(&folder())?;
+    for machine in &machines {
+        let file = folder().join(machine.file_name("svg"));
+        write(&file, &picture::svg(machine))?;
+    }
+    write(
+        &paths::repository_root().join(PAGE),
+        &table::page(&machines),
+    )
+}
+
+fn folder() -> PathBuf {
+    paths::repository_root().join(PAGE).with_file_name(FOLDER)
+}
+
+/// Writes a file and says where.
+fn write(file: &Path, text: &str) -> Result<()> {
+    if let Some(folder) = file.parent() {
+        fs::create_dir_all(folder)
+            .with_context(|| format!("cannot create {}", folder.display()))?;
+    }
+    fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
+    eprintln!("{}", file.display());
     Ok(())
 }
 

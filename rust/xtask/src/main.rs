@@ -129,6 +129,9 @@ enum Command {
         /// Keep the measurement in `rust/benchmarks` and update `rust/BENCHMARKS.md`.
         #[arg(long)]
         keep: bool,
+        /// Measure nothing; write `rust/BENCHMARKS.md` and its pictures anew from what was kept.
+        #[arg(long, conflicts_with = "keep")]
+        page: bool,
     },
     /// Measure crowds in headless Godot; prints one JSON object, times in ms and µs.
     BenchCrowd {
@@ -182,7 +185,8 @@ fn run(command: &Command) -> anyhow::Result<()> {
         Command::Pictures => pictures::command(),
         Command::Bevy => bevy::command(),
         Command::Export { shipped } => export::command(*shipped),
-        Command::Bench { keep } => bench::command(*keep),
+        Command::Bench { page: true, .. } => bench::page(),
+        Command::Bench { keep, .. } => bench::command(*keep),
         Command::BenchCrowd {
             instances,
             skeletons,

@@ -8,13 +8,17 @@ mod crowd_mesh;
 mod flock;
 mod frame;
 mod ground;
+mod instances;
 mod making;
 mod members;
 mod navigation;
 mod others;
+mod paint;
 mod replica;
 mod scene;
 mod shared_flock;
+mod sizes;
+mod stand_in_mesh;
 
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
@@ -38,8 +42,8 @@ const NO_CHARACTER: &str = "There is no character. Load a scene with a humanoid 
 ///
 /// The distance from the camera determines how walkers are drawn. The nearest are full scenes with all their nodes,
 /// such as a `FootPlacement3D`. The next are instances of one mesh with poses streamed to the GPU, new in every
-/// frame. More distant ones update every few frames, are blended in between, and walk in shared steps. Numbers and
-/// distances are settings.
+/// frame. More distant ones update every few frames, are blended in between, and walk in shared steps. Those who are only a few pixels high
+/// are drawn as stand-ins of few triangles. Numbers and distances are settings.
 ///
 /// Equal seeds, sizes and time steps give equal crowds, if the camera moves equally: distant walkers share steps.
 #[derive(GodotClass)]
@@ -178,6 +182,12 @@ pub(crate) struct GaitCrowd3D {
     #[export]
     #[init(val = true)]
     repeat_far: bool,
+
+    /// Height on screen below which walkers are drawn as stand-ins: about 150 triangles around the same body, in the same steps and colours, made of the
+    /// character's mesh. 0 turns stand-ins off. Walkers with a `material` of your own keep their mesh.
+    #[export(range = (0.0, 200.0, 1.0, or_greater, suffix = "px"))]
+    #[init(val = 24.0)]
+    stand_in_pixels: f64,
 
     /// If `true`, walkers outside the camera's view get no poses.
     #[export]

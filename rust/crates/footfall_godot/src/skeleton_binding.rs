@@ -109,17 +109,18 @@ impl SkeletonBinding {
 
     /// Writes hips and legs of a pose: [`RigBinding::write_legs`].
     pub(crate) fn write_legs(&mut self, skeleton: &Gd<Skeleton3D>, pose: &Pose) {
-        self.rig.write_legs(&mut Posed::of(skeleton), pose);
+        self.rig.write_legs(&mut Posed(&mut skeleton.clone()), pose);
     }
 
     /// Writes a pose: [`RigBinding::write`].
     pub(crate) fn write(&mut self, skeleton: &Gd<Skeleton3D>, pose: &Pose) {
-        self.rig.write(&mut Posed::of(skeleton), pose);
+        self.rig.write(&mut Posed(&mut skeleton.clone()), pose);
     }
 
     /// Writes a pose of a crowd's walker: [`RigBinding::write_joints`].
     pub(crate) fn write_joints(&mut self, skeleton: &Gd<Skeleton3D>, pose: &CrowdPose) {
-        self.rig.write_joints(&mut Posed::of(skeleton), pose);
+        self.rig
+            .write_joints(&mut Posed(&mut skeleton.clone()), pose);
     }
 
     /// Writes a pose in layers: [`RigBinding::write_layered`].
@@ -130,17 +131,17 @@ impl SkeletonBinding {
         weights: &LayerWeights,
     ) {
         self.rig
-            .write_layered(&mut Posed::of(skeleton), pose, weights);
+            .write_layered(&mut Posed(&mut skeleton.clone()), pose, weights);
     }
 
     /// Reads hips and legs of the pose that the skeleton has: [`RigBinding::read_legs`].
     pub(crate) fn read_legs(&self, skeleton: &Gd<Skeleton3D>, pose: &mut Pose) {
-        self.rig.read_legs(&Posed::of(skeleton), pose);
+        self.rig.read_legs(&Posed(&mut skeleton.clone()), pose);
     }
 
     /// Reads the pose that the skeleton has: [`RigBinding::read`].
     pub(crate) fn read(&self, skeleton: &Gd<Skeleton3D>, pose: &mut Pose) {
-        self.rig.read(&Posed::of(skeleton), pose);
+        self.rig.read(&Posed(&mut skeleton.clone()), pose);
     }
 }
 
@@ -167,16 +168,11 @@ impl BindingKey {
     }
 }
 
-/// The poses of a skeleton's bones.
-struct Posed(Gd<Skeleton3D>);
+/// The poses of a skeleton's bones. It borrows what the `Gd` points to: the `Gd` itself looks up its class and asks whether the object lives at every
+/// call, which takes as long as the call.
+struct Posed<'a>(&'a mut Skeleton3D);
 
-impl Posed {
-    fn of(skeleton: &Gd<Skeleton3D>) -> Self {
-        Self(skeleton.clone())
-    }
-}
-
-impl Bones for Posed {
+impl Bones for Posed<'_> {
     fn rotation(&self, bone: usize) -> Quat {
         convert::quat(self.0.get_bone_pose_rotation(convert::count(bone)))
     }

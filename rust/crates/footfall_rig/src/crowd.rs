@@ -6,6 +6,7 @@
 mod agent;
 mod avoidance;
 mod begin;
+mod eyesight;
 mod goal;
 mod kit;
 mod maker;
@@ -20,6 +21,7 @@ mod tiers;
 mod way;
 
 pub use agent::{Agent, Drawn, Passerby};
+pub use eyesight::Eyesight;
 use footfall_core::{ModelPose, Pose, Skeleton};
 use glam::{Vec2, Vec3};
 pub use goal::Goal;

@@ -37,8 +37,13 @@ impl Machine {
         }
     }
 
-    /// Name of the file in which the machine is kept: its processor in letters and digits, and its threads.
-    pub(super) fn file_name(&self) -> String {
+    /// Name for people.
+    pub(super) fn title(&self) -> String {
+        format!("{}, {} threads", self.processor, self.threads)
+    }
+
+    /// Name of a file about the machine: its processor in letters and digits, its threads, and an extension.
+    pub(super) fn file_name(&self, extension: &str) -> String {
         let words = self
             .processor
             .split(|letter: char| !letter.is_ascii_alphanumeric());
@@ -46,17 +51,18 @@ impl Machine {
             .filter(|word| !word.is_empty())
             .map(str::to_lowercase)
             .collect();
-        format!("{}_{}_threads.json", words.join("_"), self.threads)
+        format!("{}_{}_threads.{extension}", words.join("_"), self.threads)
     }
 
-    /// A figure of a report, by the report's and its own name.
+    /// A time of a report, by the report's and its own name. Nothing takes no time.
     pub(super) fn figure(&self, name: &str) -> Option<f64> {
         let (report, name) = name.split_once('.')?;
-        match report {
-            "kernels" => self.kernels.get(name)?.as_f64(),
-            "crowds" => self.crowds.get(name)?.as_f64(),
-            _ => None,
-        }
+        let report = match report {
+            "kernels" => &self.kernels,
+            "crowds" => &self.crowds,
+            _ => return None,
+        };
+        report.get(name)?.as_f64().filter(|time| *time > 0.0)
     }
 }
 

@@ -13,9 +13,9 @@ enum Beside {
 use Beside::{Limit, Peer};
 
 /// A line: what is measured, its unit, the figure, and what stands beside it.
-struct Line(&'static str, &'static str, &'static str, Beside);
+pub(super) struct Line(&'static str, &'static str, &'static str, Beside);
 
-const LINES: [Line; 14] = [
+pub(super) const LINES: [Line; 15] = [
     Line(
         "MLPG trajectory of 1,000 frames, f64, per frame",
         "µs",
@@ -89,6 +89,12 @@ const LINES: [Line; 14] = [
         Limit(16.7, "a frame at 60 Hz"),
     ),
     Line(
+        "Whole skeleton of a crowd beyond the engine's own cost, per frame",
+        "µs",
+        "crowds.skeleton_us_per_walker",
+        Limit(2.5, "goal"),
+    ),
+    Line(
         "Call that adds 10,000 walkers",
         "ms",
         "crowds.add_agents_ms",
@@ -102,28 +108,74 @@ const LINES: [Line; 14] = [
     ),
 ];
 
+/// A line as one machine has it.
+pub(super) struct Reading {
+    unit: &'static str,
+    own: f64,
+    /// Name of what stands beside it.
+    label: &'static str,
+    other: f64,
+}
+
 impl Line {
+    pub(super) fn title(&self) -> &'static str {
+        self.0
+    }
+
+    /// The figure and what stands beside it, if both were measured.
+    pub(super) fn reading(&self, machine: &Machine) -> Option<Reading> {
+        let Self(_, unit, name, beside) = self;
+        let (label, other) = match beside {
+            Peer(label, name) => (*label, machine.figure(name)?),
+            Limit(limit, label) => (*label, *limit),
+        };
+        let own = machine.figure(name)?;
+        Some(Reading {
+            unit,
+            own,
+            label,
+            other,
+        })
+    }
+
     /// The figure, and what stands beside it with the factor between both.
     fn cells(&self, machine: &Machine) -> [String; 2] {
-        let Self(_, unit, name, beside) = self;
-        let Some(own) = machine.figure(name) else {
-            return ["-", "-"].map(str::to_owned);
-        };
-        let (label, other) = match beside {
-            Peer(label, name) => (*label, machine.figure(name)),
-            Limit(limit, label) => (*label, Some(*limit)),
-        };
-        let beside = other.map_or_else(
-            || "-".to_owned(),
-            |other| {
-                format!(
-                    "{} {unit} ({label}), {:.1} times",
-                    rounded(other),
-                    other / own
-                )
+        self.reading(machine).map_or_else(
+            || ["-", "-"].map(str::to_owned),
+            |reading| {
+                let Reading {
+                    unit,
+                    own,
+                    label,
+                    other,
+                } = &reading;
+                let factor = reading.factor();
+                [
+                    format!("{} {unit}", rounded(*own)),
+                    format!("{} {unit} ({label}), {factor:.1} times", rounded(*other)),
+                ]
             },
-        );
-        [format!("{} {unit}", rounded(own)), beside]
+        )
+    }
+}
+
+impl Reading {
+    /// Number of times that the measurement goes into what stands beside it: above 1 it is better.
+    pub(super) fn factor(&self) -> f64 {
+        self.other / self.own
+    }
+
+    /// Both figures in a few words.
+    pub(super) fn short(&self) -> String {
+        let Self {
+            unit,
+            own,
+            label,
+            other,
+        } = self;
+        let label = label.split(';').next().unwrap_or_default();
+        let [own, other] = [own, other].map(|value| rounded(*value));
+        format!("{own} {unit}; {label} {other} {unit}")
     }
 }
 
@@ -135,10 +187,7 @@ fn rounded(value: f64) -> String {
 
 /// The table of one machine for the terminal.
 pub(super) fn text(machine: &Machine) -> String {
-    let head = format!(
-        "{}, {} threads, {}\n",
-        machine.processor, machine.threads, machine.platform
-    );
+    let head = format!("{}, {}\n", machine.title(), machine.platform);
     let lines = LINES.iter().map(|line| {
         let [own, beside] = line.cells(machine);
         format!("{:64} {own:>12}   {beside}\n", line.0)
@@ -153,16 +202,17 @@ pub(super) fn page(machines: &[Machine]) -> String {
         `cargo xtask bench` prints the table for your machine; `cargo xtask bench --keep` adds your machine to this page.\n\
         On machines with other load, trust ratios more than times.\n";
     let tables = machines.iter().map(|machine| {
+        let title = machine.title();
         let lines = LINES.iter().map(|line| {
             let [own, beside] = line.cells(machine);
             format!("| {} | {own} | {beside} |\n", line.0)
         });
         format!(
-            "\n## {}, {} threads\n\n{}, Footfall {}.\n\n| | measured | reference |\n| --- | --- | --- |\n{}",
-            machine.processor,
-            machine.threads,
+            "\n## {title}\n\n{}, Footfall {}.\n\n![{title}: factors between measurements and references]({}/{})\n\n| | measured | reference |\n| --- | --- | --- |\n{}",
             machine.platform,
             machine.version,
+            super::FOLDER,
+            machine.file_name("svg"),
             lines.collect::<String>()
         )
     });
@@ -184,8 +234,11 @@ mod tests {
 
     #[test]
     fn a_line_says_how_often_it_goes_into_its_peer_or_limit() {
-        let machine = machine();
-        assert_eq!(machine.file_name(), "test_r_cpu_2_0ghz_2_threads.json");
+        let mut machine = machine();
+        assert_eq!(
+            machine.file_name("json"),
+            "test_r_cpu_2_0ghz_2_threads.json"
+        );
         assert_eq!(
             LINES[0].cells(&machine),
             ["0.250 µs", "9.00 µs (jbonsai), 36.0 times"]
@@ -195,6 +248,8 @@ mod tests {
             ["1.00 µs", "0.500 µs (goal), 0.5 times"]
         );
         assert_eq!(LINES[2].cells(&machine), ["-", "-"]);
+        machine.crowds = json!({"all_fresh_ms": 5.5, "skeleton_us_per_walker": -0.01});
+        assert_eq!(LINES[9].cells(&machine), ["-", "-"]);
         let page = page(&[machine]);
         assert!(page.contains(
             "| Crowd of 10,000, all new poses, per frame | 5.50 ms | 6.00 ms (goal), 1.1 times |"

@@ -6,11 +6,12 @@ use crate::foot_placement_3d::FootPlacement3D;
 use crate::gait_generator_3d::GaitGenerator3D;
 use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::rotation::from_heading;
-use footfall_rig::crowd::{Agent, Tier};
+use footfall_rig::crowd::{Agent, FETCHED, Tier};
 use footfall_synth::CrowdPose;
 use godot::classes::node::ProcessMode;
 use godot::classes::{BaseMaterial3D, MeshInstance3D, Node, Node3D, PackedScene, Skeleton3D};
 use godot::prelude::*;
+use rayon::prelude::*;
 
 /// One scene.
 struct Actor {
@@ -29,6 +30,9 @@ pub(super) struct Actors {
     all: Vec<Actor>,
     /// True for walkers that a scene plays.
     playing: Vec<bool>,
+    /// The walkers whose scenes are posed, and their poses, kept for their memory.
+    walkers: Vec<u32>,
+    poses: Vec<CrowdPose>,
     broken: bool,
 }
 
@@ -129,19 +133,32 @@ impl Actors {
         actor.plays.map(|walker| walker as usize)
     }
 
-    /// Poses every scene as the walker that it plays.
+    /// Poses every scene as the walker that it plays: works out the poses on many threads, and hands them to the engine one after the other.
     pub(super) fn pose(&mut self, agents: &[Agent]) {
-        let mut pose = CrowdPose::default();
-        for actor in &mut self.all {
-            let agent = actor.plays.and_then(|index| agents.get(index as usize));
-            let Some(agent) = agent.filter(|agent| agent.pose(&mut pose)) else {
-                continue;
-            };
+        let is_made = |walker: &u32| agents.get(*walker as usize).is_some_and(Agent::is_made);
+        let played = |actor: &Actor| actor.plays.filter(is_made);
+        self.walkers.clear();
+        self.walkers.extend(self.all.iter().filter_map(played));
+        self.poses.resize(self.walkers.len(), CrowdPose::default());
+        self.poses
+            .par_chunks_mut(FETCHED)
+            .zip(self.walkers.par_chunks(FETCHED))
+            .for_each(|(poses, walkers)| {
+                for walker in walkers {
+                    agents[*walker as usize].fetch_pose();
+                }
+                for (pose, walker) in poses.iter_mut().zip(walkers) {
+                    agents[*walker as usize].pose(pose);
+                }
+            });
+        let actors = self.all.iter_mut().filter(|actor| played(actor).is_some());
+        for ((actor, walker), pose) in actors.zip(&self.walkers).zip(&self.poses) {
+            let agent = &agents[*walker as usize];
             let turn = Basis::from_quaternion(convert::quaternion(from_heading(agent.heading)));
             let scaled = turn.scaled(Vector3::splat(agent.size));
             let place = Transform3D::new(scaled, convert::vector3(agent.place));
             actor.node.set_transform(place);
-            actor.binding.write_joints(&actor.skeleton, &pose);
+            actor.binding.write_joints(&actor.skeleton, pose);
             if let Some(placement) = &mut actor.placement {
                 let (contacts, landings) = (agent.feet_in_contact(), agent.landings());
                 placement.bind_mut().feed(contacts, landings);

@@ -1,5 +1,6 @@
 //! A character's meshes as a crowd draws them: in the T-pose, with joints and weights where a shader finds them.
 
+use super::stand_in_mesh::StandInMesh;
 use crate::bones;
 use crate::convert;
 use crate::skeleton_binding::SkeletonBinding;
@@ -14,13 +15,15 @@ use godot::obj::{EngineBitfield as _, EngineEnum as _};
 use godot::prelude::*;
 
 /// Joints that move one vertex.
-const INFLUENCES: usize = 4;
+pub(super) const INFLUENCES: usize = 4;
 
 /// Character of a crowd: its mesh and its body.
 #[derive(Clone)]
 pub(super) struct CrowdMesh {
     /// For walkers whose pose is new in every frame, and for those far away.
     pub(super) meshes: [Gd<ArrayMesh>; 2],
+    /// For walkers of whom only some pixels are seen.
+    pub(super) stand_in: Option<StandInMesh>,
     pub(super) body: Skeleton,
     /// Positions of the joints in the T-pose.
     pub(super) rest: [Vec3; JOINT_COUNT],
@@ -105,6 +108,7 @@ impl CrowdMesh {
         });
         let t_pose = ModelPose::of(&binding.body, &Pose::rest(&binding.body));
         Ok(Self {
+            stand_in: StandInMesh::of(&meshes[1], &t_pose.positions),
             meshes,
             rest: t_pose.positions,
             turned_by: binding.turned_by(),
@@ -151,14 +155,19 @@ fn add_surfaces(
             continue;
         };
         let index = mesh.get_surface_count();
-        mesh.add_surface_from_arrays_ex(PrimitiveType::TRIANGLES, &arrays)
-            .flags(custom_format())
-            .done();
+        add_surface(mesh, &arrays);
         let material = instance.get_active_material(surface);
         if let Some(material) = crowd_material(material) {
             mesh.surface_set_material(index, &material);
         }
     }
+}
+
+/// Adds a surface with joints and weights in its custom channels.
+pub(super) fn add_surface(mesh: &mut Gd<ArrayMesh>, arrays: &VarArray) {
+    mesh.add_surface_from_arrays_ex(PrimitiveType::TRIANGLES, arrays)
+        .flags(custom_format())
+        .done();
 }
 
 /// Four floats in each custom channel. The Compatibility renderer of Godot 4.6 reads only part of four bytes.
@@ -262,7 +271,7 @@ fn strongest(by_joint: &[f32; JOINT_COUNT]) -> ([f32; INFLUENCES], [f32; INFLUEN
 }
 
 /// The crowd's shader with what a character's own material says.
-fn crowd_material(own: Option<Gd<Material>>) -> Option<Gd<ShaderMaterial>> {
+pub(super) fn crowd_material(own: Option<Gd<Material>>) -> Option<Gd<ShaderMaterial>> {
     let shader =
         try_load::<godot::classes::Shader>("res://addons/footfall/shaders/crowd.gdshader").ok()?;
     let mut material = ShaderMaterial::new_gd();

@@ -22,6 +22,7 @@ impl GaitCrowd3D {
             character: self.character.clone(),
             material: self.material.clone(),
             culls: self.culling,
+            stand_in_px: convert::finite_or(self.stand_in_pixels, 0.0) as f32,
             most_made: if waits { usize::MAX } else { 1 },
         };
         let host = self.to_gd().upcast::<Node3D>();

@@ -1,12 +1,11 @@
 //! Visible part of a crowd.
 
 use super::actors::Actors;
-use super::bounds::Bounds;
 use super::crowd_mesh::CrowdMesh;
-use super::flock::{
-    Flock, INSTANCE_NUMBERS, POSE_BYTES, draws_in_srgb, write_instance, write_pose,
-};
+use super::flock::{Flock, POSE_BYTES, write_pose};
+use super::instances::{draws_in_srgb, write_instance};
 use super::shared_flock::SharedFlock;
+use super::sizes::{Sizes, eyesight};
 use crate::convert;
 use footfall_core::{JOINT_COUNT, Joint};
 use footfall_rig::crowd::{Crowd, FETCHED, GROUPS, Limits, Tier};
@@ -26,6 +25,8 @@ pub(super) struct Look {
     pub(super) character: Option<Gd<PackedScene>>,
     pub(super) material: Option<Gd<ShaderMaterial>>,
     pub(super) culls: bool,
+    /// Height on screen below which a stand-in shows a walker, pixels.
+    pub(super) stand_in_px: f32,
     /// Whole scenes that are made in one frame at most, and flocks that get more room: each takes the engine a millisecond or more.
     pub(super) most_made: usize,
 }
@@ -43,8 +44,9 @@ pub(super) struct CrowdScene {
     frame: u64,
     /// The sides of what the camera sees, kept for its memory.
     planes: Vec<Vec4>,
-    /// The walkers in each instance of the near flock, and in each of a far one.
-    shown: Vec<u32>,
+    /// The walkers in each instance of a flock: those with the character's mesh, and those with its stand-in.
+    shown: [Vec<u32>; 2],
+    sizes: Sizes,
     /// When each walker's pose among those far away was written last, counted in frames.
     ticks: Vec<u64>,
     /// Groups of those far away of whom no poses are written yet.
@@ -69,7 +71,8 @@ impl CrowdScene {
             drawn: 0,
             frame: 0,
             planes: Vec::new(),
-            shown: Vec::new(),
+            shown: [Vec::new(), Vec::new()],
+            sizes: Sizes::default(),
             ticks: Vec::new(),
             unwritten: [true; GROUPS],
             lacking: false,
@@ -81,7 +84,9 @@ impl CrowdScene {
     fn fit(&mut self, host: &Gd<Node3D>, walkers: &Crowd, limits: &Limits, look: &Look) {
         let (room, each) = rooms(walkers, limits);
         let places = walkers.agents().len();
-        self.shown.reserve(room.saturating_sub(self.shown.len()));
+        for shown in &mut self.shown {
+            shown.reserve(room.saturating_sub(shown.len()));
+        }
         self.ticks.resize(places, 0);
         let mut left = look.most_made;
         if room > self.near.room
@@ -149,6 +154,12 @@ impl CrowdScene {
         } else if self.lacking {
             self.lend(walkers, host, look);
         }
+        // Only the crowd's own shader shows the colours of stand-ins.
+        let stand_in = self.mesh.stand_in.as_ref();
+        let view = stand_in
+            .filter(|_| look.material.is_none())
+            .and_then(|mesh| eyesight(camera.as_ref()?, host, mesh.height_m, look.stand_in_px));
+        self.sizes.look(walkers, view.as_ref());
         let mut planes = core::mem::take(&mut self.planes);
         planes.clear();
         if let Some(camera) = camera.filter(|_| look.culls) {
@@ -156,7 +167,9 @@ impl CrowdScene {
         }
         self.draw_near(walkers, &planes);
         self.draw_far(walkers, &planes);
-        self.shared.draw(walkers, &planes, (host, &self.mesh, look));
+        let small = self.sizes.small();
+        self.shared
+            .draw(walkers, (&planes, small), (host, &self.mesh, look));
         self.planes = planes;
         self.actors.pose(walkers.agents());
     }
@@ -187,8 +200,11 @@ impl CrowdScene {
     /// Everybody with a new pose in every frame, and those for whom there was no scene.
     fn draw_near(&mut self, walkers: &Crowd, planes: &[Vec4]) {
         let (agents, tiers, drawn) = (walkers.agents(), walkers.tiers(), walkers.drawn());
-        self.shown.clear();
-        let room = self.near.poses().len() / POSE_BYTES;
+        for shown in &mut self.shown {
+            shown.clear();
+        }
+        let mut left = self.near.poses().len() / POSE_BYTES;
+        let small = self.sizes.small();
         for (index, (drawn, tier)) in drawn.iter().zip(tiers).enumerate() {
             let index = index as u32;
             let wanted = match tier {
@@ -197,47 +213,40 @@ impl CrowdScene {
                 // Until nothing is left of the steps of its own.
                 Tier::Far => walkers.repeats && walkers.is_alone(index as usize),
             };
-            if wanted && self.shown.len() < room && is_seen(drawn.places[1], planes) {
-                self.shown.push(index);
+            if wanted && left > 0 && is_seen(drawn.places[1], planes) {
+                self.shown[usize::from(small[index as usize])].push(index);
+                left -= 1;
             }
         }
-        let shown = &self.shown;
+        let [whole, stand_ins] = &self.shown;
+        let first = whole.len() * POSE_BYTES;
         let turned_by = &self.mesh.turned_by;
         let in_srgb = self.in_srgb;
-        self.near
-            .poses()
-            .par_chunks_mut(FETCHED * POSE_BYTES)
-            .zip(shown.par_chunks(FETCHED))
-            .with_min_len(8)
-            .for_each(|(out, shown)| {
-                for index in shown {
-                    agents[*index as usize].fetch_pose();
-                }
-                let mut pose = CrowdPose::default();
-                for (out, index) in out.chunks_exact_mut(POSE_BYTES).zip(shown) {
-                    agents[*index as usize].pose(&mut pose);
-                    write_pose(&pose, turned_by, out);
-                }
-            });
-        if !shown.is_empty() {
+        let (of_whole, of_stand_ins) = self.near.poses().split_at_mut(first);
+        for (out, shown) in [(of_whole, whole), (of_stand_ins, stand_ins)] {
+            out.par_chunks_mut(FETCHED * POSE_BYTES)
+                .zip(shown.par_chunks(FETCHED))
+                .with_min_len(8)
+                .for_each(|(out, shown)| {
+                    for index in shown {
+                        agents[*index as usize].fetch_pose();
+                    }
+                    let mut pose = CrowdPose::default();
+                    for (out, index) in out.chunks_exact_mut(POSE_BYTES).zip(shown) {
+                        agents[*index as usize].pose(&mut pose);
+                        write_pose(&pose, turned_by, out);
+                    }
+                });
+        }
+        if !whole.is_empty() || !stand_ins.is_empty() {
             self.near.upload_poses();
         }
-        self.near
-            .instances()
-            .par_chunks_mut(INSTANCE_NUMBERS)
-            .zip(shown)
-            .enumerate()
-            .with_min_len(256)
-            .for_each(|(slot, (out, index))| {
-                let drawn = &drawn[*index as usize];
-                let (place, heading) = drawn.at(1.0);
-                write_instance(place, heading, drawn, (slot, 0.0, 0.0), in_srgb, out);
-            });
-        let mut bounds = Bounds::default();
-        for index in shown {
-            bounds.add(drawn[*index as usize].places[1]);
-        }
-        self.near.upload_instances(shown.len(), bounds.aabb());
+        self.near.show([whole, stand_ins], |slot, row, out| {
+            let drawn = &drawn[row as usize];
+            let (place, heading) = drawn.at(1.0);
+            write_instance(place, heading, drawn, (slot, 0.0, 0.0), in_srgb, out);
+            place
+        });
     }
 
     /// Everybody far away: the group that has just moved gets the poses where it was and where it is, and is drawn on its way from
@@ -246,6 +255,7 @@ impl CrowdScene {
         let (tiers, drawn) = (walkers.tiers(), walkers.drawn());
         let frame = walkers.frame();
         let turned_by = &self.mesh.turned_by;
+        let (small, in_srgb) = (self.sizes.small(), self.in_srgb);
         for (group, flock) in self.far.iter_mut().enumerate() {
             let since = (frame + GROUPS as u64 - group as u64) % GROUPS as u64;
             // At first all are, so that a crowd whose time stands still is seen.
@@ -260,27 +270,23 @@ impl CrowdScene {
                 flock.upload_poses();
             }
             let share = (since + 1) as f32 / GROUPS as f32;
-            let mut bounds = Bounds::default();
-            let mut count = 0;
-            let room = flock.room;
-            let mut rows = flock.instances().chunks_exact_mut(INSTANCE_NUMBERS);
-            let members = (group..drawn.len()).step_by(GROUPS).take(room);
-            for (slot, index) in members.enumerate() {
-                let is_far = tiers[index] == Tier::Far && walkers.is_alone(index);
-                if !is_far || frame - self.ticks[index] >= GROUPS as u64 {
-                    continue;
-                }
-                let Some(out) = rows.next() else {
-                    break;
-                };
-                let drawn = &drawn[index];
-                let (place, heading) = drawn.at(share);
-                bounds.add(place);
-                let at = (2 * slot, share, 0.0);
-                write_instance(place, heading, drawn, at, self.in_srgb, out);
-                count += 1;
+            for shown in &mut self.shown {
+                shown.clear();
             }
-            flock.upload_instances(count, bounds.aabb());
+            for index in (group..drawn.len()).step_by(GROUPS).take(flock.room) {
+                let is_far = tiers[index] == Tier::Far && walkers.is_alone(index);
+                if is_far && frame - self.ticks[index] < GROUPS as u64 {
+                    self.shown[usize::from(small[index])].push(index as u32);
+                }
+            }
+            let [whole, stand_ins] = &self.shown;
+            flock.show([whole, stand_ins], |_, row, out| {
+                let drawn = &drawn[row as usize];
+                let (place, heading) = drawn.at(share);
+                let at = (2 * (row as usize / GROUPS), share, 0.0);
+                write_instance(place, heading, drawn, at, in_srgb, out);
+                place
+            });
         }
     }
 }

@@ -2,9 +2,8 @@
 
 use super::bounds::Bounds;
 use super::crowd_mesh::CrowdMesh;
-use super::flock::{
-    Flock, INSTANCE_NUMBERS, POSE_BYTES, draws_in_srgb, write_instance, write_pose,
-};
+use super::flock::{Flock, POSE_BYTES, write_pose};
+use super::instances::{INSTANCE_NUMBERS, draws_in_srgb, write_instance};
 use super::scene::{Look, is_seen};
 use footfall_core::{JOINT_COUNT, Joint};
 use footfall_rig::crowd::{Crowd, FETCHED, GROUPS, Tier};
@@ -19,7 +18,7 @@ const ROWS: usize = 1024;
 /// Room grows by half.
 const GROWTH: (usize, usize) = (3, 2);
 
-/// Those of so many rows who are drawn.
+/// Those of so many rows who are drawn with the same mesh.
 #[derive(Debug, Clone)]
 struct Part {
     shown: Vec<u32>,
@@ -37,7 +36,8 @@ pub(super) struct SharedFlock {
     taken: usize,
     /// Mixtures that were written into each of the two buffers.
     written: [usize; 2],
-    parts: Vec<Part>,
+    /// With the character's mesh, and with its stand-in.
+    parts: Vec<[Part; 2]>,
     /// True where instances have their colours in sRGB.
     in_srgb: bool,
 }
@@ -53,7 +53,7 @@ impl SharedFlock {
     /// Without room for anybody yet.
     pub(super) fn new(host: &Gd<Node3D>, mesh: &CrowdMesh, look: &Look) -> Option<Self> {
         Some(Self {
-            flock: flock(host, mesh, 1, 1, look)?,
+            flock: flock(host, mesh, 1, look)?,
             poses: 1,
             bodies: Vec::new(),
             firsts: Vec::new(),
@@ -71,7 +71,7 @@ impl SharedFlock {
             shown: Vec::with_capacity(ROWS),
             bounds: Bounds::default(),
         };
-        self.parts.resize(rows.div_ceil(ROWS), part);
+        self.parts.resize(rows.div_ceil(ROWS), [part.clone(), part]);
         if walkers.worn() > self.bodies.len() {
             for body in walkers.worn_from(self.bodies.len() as u32) {
                 self.firsts.push(self.taken);
@@ -79,16 +79,9 @@ impl SharedFlock {
                 self.bodies.push(body);
             }
         }
-        let grown = |room: usize, wanted: usize| {
-            if wanted > room {
-                wanted.max(room * GROWTH.0 / GROWTH.1)
-            } else {
-                room
-            }
-        };
-        let (room, poses) = (grown(self.flock.room, rows), grown(self.poses, self.taken));
-        if (room > self.flock.room || poses > self.poses)
-            && let Some(made) = flock(host, mesh, room, poses, look)
+        let poses = self.taken.max(self.poses * GROWTH.0 / GROWTH.1);
+        if self.taken > self.poses
+            && let Some(made) = flock(host, mesh, poses, look)
         {
             core::mem::replace(&mut self.flock, made).free();
             self.poses = poses;
@@ -118,26 +111,28 @@ impl SharedFlock {
         self.flock.upload_poses();
     }
 
-    /// Draws everybody who shares poses and is seen.
+    /// Draws everybody who shares poses and is seen, those who are small with the stand-in.
     pub(super) fn draw(
         &mut self,
         walkers: &Crowd,
-        planes: &[Vec4],
+        (planes, small): (&[Vec4], &[bool]),
         (host, mesh, look): (&Gd<Node3D>, &CrowdMesh, &Look),
     ) {
         self.fit(walkers, host, mesh, look);
         let (tiers, drawn) = (walkers.tiers(), walkers.drawn());
-        let room = self.flock.room;
         self.parts
             .par_iter_mut()
             .enumerate()
             .for_each(|(part, out)| {
-                out.shown.clear();
-                out.bounds = Bounds::default();
-                let rows = part * ROWS..drawn.len().min(room).min((part + 1) * ROWS);
+                for out in &mut *out {
+                    out.shown.clear();
+                    out.bounds = Bounds::default();
+                }
+                let rows = part * ROWS..drawn.len().min((part + 1) * ROWS);
                 for row in rows {
                     let place = drawn[row].places[1];
                     if tiers[row] == Tier::Far && walkers.shares(row) && is_seen(place, planes) {
+                        let out = &mut out[usize::from(small[row])];
                         out.shown.push(row as u32);
                         out.bounds.add(place);
                     }
@@ -148,13 +143,19 @@ impl SharedFlock {
             firsts: &self.firsts,
             in_srgb: self.in_srgb,
         };
-        shown.write_all(&self.parts, self.flock.instances());
-        let mut bounds = Bounds::default();
-        for part in &self.parts {
-            bounds.join(&part.bounds);
+        for (kind, instances) in self.flock.instances().iter_mut().enumerate() {
+            let Some(instances) = instances else {
+                continue;
+            };
+            let parts = self.parts.iter().map(|part| &part[kind]);
+            let count = parts.clone().map(|part| part.shown.len()).sum();
+            let mut bounds = Bounds::default();
+            for part in parts {
+                bounds.join(&part.bounds);
+            }
+            shown.write_all((&self.parts, kind), instances.numbers(count));
+            instances.upload(count, bounds.aabb());
         }
-        let count = self.parts.iter().map(|part| part.shown.len()).sum();
-        self.flock.upload_instances(count, bounds.aabb());
     }
 
     /// Removes what was drawn.
@@ -165,10 +166,10 @@ impl SharedFlock {
 
 impl Shown<'_> {
     /// Writes the instances of these parts one after the other, on as many threads as there are.
-    fn write_all(&self, parts: &[Part], out: &mut [f32]) {
+    fn write_all(&self, (parts, kind): (&[[Part; 2]], usize), out: &mut [f32]) {
         if let [part] = parts {
             let out = out.chunks_mut(FETCHED * INSTANCE_NUMBERS);
-            for (rows, out) in part.shown.chunks(FETCHED).zip(out) {
+            for (rows, out) in part[kind].shown.chunks(FETCHED).zip(out) {
                 for row in rows {
                     self.walkers.agents()[*row as usize].fetch_shared();
                 }
@@ -179,12 +180,12 @@ impl Shown<'_> {
             return;
         }
         let (first, second) = parts.split_at(parts.len() / 2);
-        let count: usize = first.iter().map(|part| part.shown.len()).sum();
+        let count: usize = first.iter().map(|part| part[kind].shown.len()).sum();
         let (left, right) = out.split_at_mut(count * INSTANCE_NUMBERS);
         if !parts.is_empty() {
             rayon::join(
-                || self.write_all(first, left),
-                || self.write_all(second, right),
+                || self.write_all((first, kind), left),
+                || self.write_all((second, kind), right),
             );
         }
     }
@@ -210,13 +211,7 @@ impl Shown<'_> {
     }
 }
 
-fn flock(
-    host: &Gd<Node3D>,
-    mesh: &CrowdMesh,
-    room: usize,
-    poses: usize,
-    look: &Look,
-) -> Option<Flock> {
+fn flock(host: &Gd<Node3D>, mesh: &CrowdMesh, poses: usize, look: &Look) -> Option<Flock> {
     let node = host.clone().upcast::<Node>();
-    Flock::new(&node, mesh, 1, room, poses, look.material.as_ref())
+    Flock::new(&node, mesh, 1, poses, poses, look.material.as_ref())
 }

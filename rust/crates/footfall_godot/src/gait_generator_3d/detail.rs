@@ -2,7 +2,7 @@
 
 use super::GaitGenerator3D;
 use super::session::Session;
-use crate::screen_size::pixels_per_metre;
+use crate::screen_size::ScreenScale;
 use footfall_synth::Detail;
 use godot::prelude::*;
 
@@ -38,10 +38,18 @@ impl GaitGenerator3D {
         auto.wait_secs -= delta_secs;
         if matches!(self.detail, GaitDetail::Auto) && auto.wait_secs <= 0.0 {
             auto.wait_secs = LOOK_SECS;
-            let (character, hips) = (session.traveller.character(), session.hip_height());
+            let character = session.traveller.character();
+            let metre = character
+                .get_viewport()
+                .and_then(|viewport| viewport.get_camera_3d())
+                .and_then(|camera| {
+                    let away = camera.get_global_position() - character.get_global_position();
+                    Some(ScreenScale::of(&camera)?.metre_at(away.length()))
+                });
             // Without a camera, as on a server, scripts may still read the poses.
-            let pixels = pixels_per_metre(character, character.get_global_position())
-                .map_or(f32::INFINITY, |metre| metre * BODY_OVER_HIPS * hips);
+            let pixels = metre.map_or(f32::INFINITY, |metre| {
+                metre * BODY_OVER_HIPS * session.hip_height()
+            });
             auto.chosen = auto.chosen.for_height(pixels);
         }
         match self.detail {
