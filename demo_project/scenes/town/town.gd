@@ -16,7 +16,7 @@ const VIEW := Vector3(deg_to_rad(-9.0), 0.0, 0.0)
 ## Begin of a check, and the place to which the player goes when nobody plays.
 const FOOT_OF_STAIR := Vector3(0.8, 0, -7.0)
 const TERRACE := Vector3(1.5, TownPlan.RISE, -15.5)
-## Where a character that a sensor steers begins, with a free way ahead.
+## Start of a character that a sensor steers, with a free way ahead.
 const BESIDE_START := Vector3(-17.0, 0, -9.0)
 ## Nobody may be deeper in a wall, metres: half a body's breadth.
 const MOST_DEPTH := 0.25

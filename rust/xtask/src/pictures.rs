@@ -25,7 +25,7 @@ const README: [(&str, &str, &str); 11] = [
     ("switching.png", "switching", "hero_three_quarter.png"),
 ];
 /// Picture of a store's list, at its full size, and where it comes from.
-const THUMBNAIL: (&str, &str, &str) = ("store/thumbnail.png", "town", "hero_terrace.png");
+const THUMBNAIL: (&str, &str, &str) = ("rust/store/thumbnail.png", "town", "hero_terrace.png");
 
 /// Renders the pictures.
 ///
