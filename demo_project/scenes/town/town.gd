@@ -91,7 +91,7 @@ func tour(seconds: float) -> void:
 func close_ups() -> Dictionary[String, Array]:
 	($Stage/Camera as Camera3D).make_current()
 	return {
-		"square": [Vector3(0, 1.2, 0), 28.0, 22.0, 16.0],
+		"square": [Vector3(0, 2.5, -4), 22.0, 22.0, 26.0],
 		"terrace": [Vector3(0, 1.0, 2.0), 165.0, 11.0, 18.0],
 		"player": [_player.global_position + Vector3.UP * 0.9, 60.0, 8.0, 4.5],
 	}

@@ -21,11 +21,11 @@ const README: [(&str, &str, &str); 11] = [
     ("third_person.png", "third_person", "hero_behind.png"),
     ("own_character.png", "own_character", "hero_side.png"),
     ("sensor.png", "sensor", "hero_three_quarter.png"),
-    ("live_sensor.png", "live_sensor", "frame_0015.png"),
+    ("live_sensor.png", "live_sensor", "frame_0008.png"),
     ("switching.png", "switching", "hero_three_quarter.png"),
 ];
 /// Picture of a store's list, at its full size, and where it comes from.
-const THUMBNAIL: (&str, &str, &str) = ("rust/store/thumbnail.png", "town", "hero_terrace.png");
+const THUMBNAIL: (&str, &str, &str) = ("rust/store/thumbnail.png", "town", "hero_square.png");
 
 /// Renders the pictures.
 ///
