@@ -151,7 +151,7 @@ impl Asked {
 #[derive(Clone, Copy, Default)]
 struct Factors {
     diagonal: f64,
-    /// What of the unknown so many rows before is in this one.
+    /// Shares of the unknowns so many rows before that are in this one.
     below: [f64; BAND],
 }
 
