@@ -141,7 +141,7 @@ pub fn from_heading(heading: f32) -> Quat {
 }
 
 /// Angles that are nearer to 0 are in (-π, π], however they are rounded.
-const NEARLY_PI: f32 = 3.14;
+const NEARLY_PI: f32 = 0.999 * PI;
 
 /// The same angle in (-π, π].
 #[inline]

@@ -92,11 +92,8 @@ macro_rules! sum {
                 $add_rows(sums, rows);
             }
 
+            // Only what is inlined into a dispatched function is compiled for its instruction set.
             #[inline(always)]
-            #[expect(
-                clippy::inline_always,
-                reason = "only what is inlined into the dispatched functions is compiled for their instruction sets"
-            )]
             fn add_rows_inline(sums: &mut [Self], rows: [(&[Self], Self); 4]) {
                 let [(a, wa), (b, wb), (c, wc), (d, wd)] = rows;
                 for (sum, (((a, b), c), d)) in sums.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {

@@ -151,7 +151,7 @@ impl Asked {
 #[derive(Clone, Copy, Default)]
 struct Factors {
     diagonal: f64,
-    /// Factors of the unknowns so many rows before in this one.
+    /// Shares of the unknowns so many rows before that are in this one.
     below: [f64; BAND],
 }
 

@@ -42,7 +42,11 @@ pub(crate) struct Life {
 impl Moment {
     /// So much later, for one who stands all the while, or walks.
     pub(crate) fn after(self, secs: f32, stands: bool) -> Self {
-        if !stands && [self.share, self.speed] == [0.0; 2] {
+        let nothing = Self {
+            secs: self.secs,
+            ..Self::default()
+        };
+        if !stands && self == nothing {
             return self;
         }
         let (target, rate) = if stands {
@@ -58,10 +62,7 @@ impl Moment {
         };
         if !stands && later.share < LEAST_SHARE {
             // Who walks does not grow older.
-            return Self {
-                secs: self.secs,
-                ..Self::default()
-            };
+            return nothing;
         }
         later
     }
