@@ -6,6 +6,7 @@ mod interpolation;
 
 use crate::kernels::{add, distances, weigh};
 use crate::prepared::Prepared;
+use crate::stride_phase::{PHASE_COUNT, PHASE_DEVIATION, StridePhase};
 use footfall_core::Behaviour;
 use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
 use std::sync::Arc;
@@ -23,6 +24,10 @@ pub struct TrackerConfig {
     pub exit: f32,
     /// Weight of a frame of the sensors: successive frames are alike, and would count several times over, and so would two sensors on one body.
     pub evidence: f32,
+    /// Weight of the phase of the stride beside the numbers of the sensors; 0 ignores it.
+    pub stride: f32,
+    /// Share of the evidence that counts while strides repeat: what a stranger's sensor measures differently is then the same over and over.
+    pub repeated: f32,
     /// Squared distance a sensor, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
     /// where none explains it the body goes on as it did.
     pub farthest: f32,
@@ -44,6 +49,8 @@ impl Default for TrackerConfig {
             keep_subject: 0.7,
             exit: 0.01,
             evidence: 0.5,
+            stride: 1.0,
+            repeated: 0.3,
             farthest: 25.0,
             round_frames: 24,
             interpolated: 20,
@@ -61,6 +68,8 @@ pub struct Measurement {
     pub values: [f32; MAX_WIDTH],
     /// Weights of the numbers, 0 to 1.
     pub weights: [f32; MAX_WIDTH],
+    /// Phase of the stride of the first foot with a sensor.
+    pub stride: StridePhase,
 }
 
 /// Probabilities after a frame.
@@ -173,6 +182,16 @@ impl Tracker {
         };
         self.keep(weighed);
         self.weigh_segments();
+    }
+
+    /// Goes on by a frame in which the phase of the stride counts by as much as the body is known to walk or run; weighs it so in `sensor`.
+    pub(crate) fn step_striding(&mut self, sensor: Option<&mut Measurement>) {
+        let strides = self.strides();
+        let sensor = sensor.map(|sensor| {
+            sensor.stride.weight *= strides;
+            &*sensor
+        });
+        self.step(sensor);
     }
 
     /// Moves probability that leaves the segments at their ends to the phases it enters.
@@ -305,7 +324,7 @@ impl Tracker {
     fn update(&mut self, sensor: &Measurement) -> f32 {
         let limit = LEAST_SHARE / self.prepared.frames as f32;
         let nearest = self.measure(sensor, limit);
-        let factor = self.factor();
+        let factor = self.factor(sensor);
         let sum = weigh(
             &self.predicted,
             &self.distance,
@@ -319,8 +338,27 @@ impl Tracker {
     }
 
     /// Factor from a squared distance of all sensors to the logarithm of a probability.
-    fn factor(&self) -> f32 {
-        -0.5 * self.config.evidence / self.prepared.model.sites.len() as f32
+    fn factor(&self, sensor: &Measurement) -> f32 {
+        -0.5 * self.config.evidence * self.counted(sensor) / self.prepared.model.sites.len() as f32
+    }
+
+    /// Share of a measurement that counts.
+    fn counted(&self, sensor: &Measurement) -> f32 {
+        1.0 - self.stride_weight(sensor) * (1.0 - self.config.repeated)
+    }
+
+    /// Weight of the phase of the stride.
+    fn stride_weight(&self, sensor: &Measurement) -> f32 {
+        if self.prepared.has_strides() {
+            self.config.stride * sensor.stride.weight
+        } else {
+            0.0
+        }
+    }
+
+    /// Probability that the body walks or runs.
+    pub(crate) const fn strides(&self) -> f32 {
+        self.behaviours[Behaviour::Walk.index()] + self.behaviours[Behaviour::Run.index()]
     }
 
     /// Squared distance of all sensors beyond which a frame counts as no farther.
@@ -335,13 +373,22 @@ impl Tracker {
             phases.distances(&self.prepared, sensor, &mut self.distance);
             return self.distance.iter().copied().fold(farthest, f32::min);
         }
-        let (mut measured, mut weights) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
+        const MOST: usize = MAX_WIDTH + PHASE_COUNT;
+        let (mut measured, mut weights) = ([0.0; MOST], [0.0; MOST]);
         let deviations = &self.prepared.model.deviations;
         for (n, deviation) in deviations.iter().enumerate() {
             measured[n] = sensor.values[n] / deviation;
             weights[n] = sensor.weights[n];
         }
-        let width = deviations.len();
+        let mut width = deviations.len();
+        if self.prepared.has_strides() {
+            // Its evidence counts in full.
+            let weight = self.stride_weight(sensor) / self.counted(sensor);
+            for value in sensor.stride.values {
+                (measured[width], weights[width]) = (value / PHASE_DEVIATION, weight);
+                width += 1;
+            }
+        }
         let nearest = distances(
             &self.prepared.sensor,
             &measured[..width],
