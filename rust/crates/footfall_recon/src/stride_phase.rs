@@ -238,9 +238,10 @@ mod tests {
         }
     }
 
-    /// A walk of these phases, each of so many frames, one after the other.
-    fn walk(kinds: &[(PhaseStart, Side)], segments: &[(u16, u16)]) -> ImuModel {
-        let frames: usize = segments.iter().map(|(_, n)| usize::from(*n)).sum();
+    /// Walks of these phases, each of so many frames, one after the other.
+    fn walks(kinds: &[(PhaseStart, Side)], walks: &[&[(u16, u16)]]) -> ImuModel {
+        let frames = walks.iter().copied().flatten();
+        let frames: usize = frames.map(|(_, n)| usize::from(*n)).sum();
         let phases = kinds.iter().map(|(start, side)| PhaseKind {
             behaviour: Behaviour::Walk,
             start: *start,
@@ -259,7 +260,10 @@ mod tests {
             phases: phases.collect(),
             next: vec![0.0; kinds.len() * kinds.len()],
             subjects: 1,
-            segments: segments.iter().enumerate().map(of).collect(),
+            segments: walks
+                .iter()
+                .flat_map(|walk| walk.iter().enumerate().map(of))
+                .collect(),
             sensor: vec![0.0; frames * SENSOR_COUNT],
             body: vec![0.0; frames * BODY_COUNT],
             deviations: vec![1.0; SENSOR_COUNT],
@@ -278,21 +282,11 @@ mod tests {
             (TakeOff, Side::Left),
             (HeelOff, Side::Left),
         ];
-        // Two strides of 30 frames from the left foot's landing on; then one whose first phase comes again only after two.
+        // Two strides of 30 frames from the left foot's landing on; then two that begin with a phase that comes but once.
         let stride = [(0, 4), (1, 11), (2, 5), (3, 10)];
-        let twice = [
-            (4, 1),
-            (0, 3),
-            (1, 11),
-            (2, 5),
-            (3, 11),
-            (0, 3),
-            (1, 11),
-            (2, 5),
-            (3, 11),
-            (4, 1),
-        ];
-        let model = walk(&kinds, &[&stride[..], &stride, &twice].concat());
+        let longer = [(0, 3), (1, 11), (2, 5), (3, 11)];
+        let twice = [&[(4, 1)], &longer[..], &longer].concat();
+        let model = walks(&kinds, &[&[stride, stride].concat(), &twice]);
         let foot = WornFoot {
             sensor: 0,
             side: Side::Right,
