@@ -268,7 +268,8 @@ impl Reconstructor {
         let stride = self.clock.step(frames);
         let measured = measure(&self.prepared.model, frames);
         let mut measured = measured.map(|measured| Measurement { stride, ..measured });
-        self.tracker.step_striding(measured.as_mut());
+        self.tracker
+            .step_striding(measured.as_mut(), self.confidence);
         let frame_secs = 1.0 / self.prepared.model.frame_rate_hz as f32;
         if measured.is_some() {
             let log_density = self.tracker.log_density() as f32;

@@ -94,11 +94,12 @@ pub fn reconstruct_recording(
     let mut tracker = Tracker::new(prepared, config.tracker);
     if live {
         for (frame, measured) in frames.iter().zip(&mut measured) {
-            tracker.step_striding(measured.as_mut());
+            tracker.step_striding(measured.as_mut(), shown.confidence);
             shown.add(&tracker, measured.as_ref(), frame, tracker.log_density());
         }
         return Ok(shown.done());
     }
+    let mut explains = shown.confidence;
     let mut back = Tracker::new(prepared, config.tracker);
     let mut filtered: Vec<Vec<f32>> = Vec::new();
     let mut log_densities = Vec::with_capacity(frames.len());
@@ -107,7 +108,10 @@ pub fn reconstruct_recording(
         let end = (first + BLOCK_FRAMES).min(frames.len());
         let ahead = (end + BLOCK_FRAMES).min(frames.len());
         for measured in &mut measured[first + filtered.len()..ahead] {
-            tracker.step_striding(measured.as_mut());
+            tracker.step_striding(measured.as_mut(), explains);
+            if measured.is_some() {
+                explains.step(tracker.log_density() as f32, shown.frame_secs);
+            }
             filtered.push(tracker.probabilities().to_vec());
             log_densities.push(tracker.log_density());
         }

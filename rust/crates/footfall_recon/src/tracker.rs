@@ -4,6 +4,7 @@
 mod backward;
 mod interpolation;
 
+use crate::confidence::Confidence;
 use crate::kernels::{add, distances, weigh};
 use crate::prepared::Prepared;
 use crate::stride_phase::{PHASE_COUNT, PHASE_DEVIATION, StridePhase};
@@ -184,9 +185,10 @@ impl Tracker {
         self.weigh_segments();
     }
 
-    /// Goes on by a frame in which the phase of the stride counts by as much as the body is known to walk or run; weighs it so in `sensor`.
-    pub(crate) fn step_striding(&mut self, sensor: Option<&mut Measurement>) {
-        let strides = self.strides();
+    /// Goes on by a frame in which the phase of the stride counts by as much as the body is known to walk or run and the model explains it; weighs it so in
+    /// `sensor`: what shakes a sensor has a rhythm, too.
+    pub(crate) fn step_striding(&mut self, sensor: Option<&mut Measurement>, explains: Confidence) {
+        let strides = self.strides() * explains.trusted();
         let sensor = sensor.map(|sensor| {
             sensor.stride.weight *= strides;
             &*sensor
