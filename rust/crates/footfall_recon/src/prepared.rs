@@ -105,7 +105,7 @@ impl Prepared {
 
     /// Leaves the bodies as they were recorded ([`Published::Manner`](crate::Published::Manner)).
     #[must_use]
-    pub fn as_recorded(mut self) -> Self {
+    pub fn with_bodies_as_recorded(mut self) -> Self {
         self.body.clone_from(&self.model.body);
         self
     }

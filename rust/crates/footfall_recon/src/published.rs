@@ -84,7 +84,7 @@ impl Published {
     #[must_use]
     pub fn prepare(parts: &[Self], prepared: Prepared) -> Prepared {
         let prepared = if parts.contains(&Self::Manner) {
-            prepared.as_recorded()
+            prepared.with_bodies_as_recorded()
         } else {
             prepared
         };

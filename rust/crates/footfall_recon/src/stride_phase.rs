@@ -185,6 +185,11 @@ fn cycles(model: &ImuModel) -> Vec<Range<usize>> {
 
 #[cfg(test)]
 mod tests {
+    #![expect(
+        clippy::float_cmp,
+        reason = "a phase that counts in full or not at all is exact"
+    )]
+
     use super::*;
     use footfall_core::{PhaseKind, Side, Site, Skeleton};
     use footfall_model::Provenance;

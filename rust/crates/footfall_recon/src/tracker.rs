@@ -2,12 +2,12 @@
 //! appendix A), linear in the number of frames.
 
 mod backward;
+mod evidence;
 mod interpolation;
 
-use crate::confidence::Confidence;
-use crate::kernels::{add, distances, weigh};
+use crate::kernels::add;
 use crate::prepared::Prepared;
-use crate::stride_phase::{PHASE_COUNT, PHASE_DEVIATION, StridePhase};
+use crate::stride_phase::StridePhase;
 use footfall_core::Behaviour;
 use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
 use std::sync::Arc;
@@ -105,9 +105,6 @@ pub struct Tracker {
     log_density: f64,
 }
 
-/// Frames that are predicted with less than this share of what each would have if all were alike are not compared with the measurement.
-const LEAST_SHARE: f32 = 0.15;
-
 /// Segments that held less than this are dropped.
 const LEAST_MASS: f32 = 2e-5;
 
@@ -183,17 +180,6 @@ impl Tracker {
         };
         self.keep(weighed);
         self.weigh_segments();
-    }
-
-    /// Goes on by a frame in which the phase of the stride counts by as much as the body is known to walk or run and the model explains it; weighs it so in
-    /// `sensor`: what shakes a sensor has a rhythm, too.
-    pub(crate) fn step_striding(&mut self, sensor: Option<&mut Measurement>, explains: Confidence) {
-        let strides = self.strides() * explains.trusted();
-        let sensor = sensor.map(|sensor| {
-            sensor.stride.weight *= strides;
-            &*sensor
-        });
-        self.step(sensor);
     }
 
     /// Moves probability that leaves the segments at their ends to the phases it enters.
@@ -320,86 +306,6 @@ impl Tracker {
             new[0] += config.keep_subject * own + (1.0 - config.keep_subject) * any;
         }
         self.turn = (self.turn + 1) % self.round_frames();
-    }
-
-    /// Weighs what may be with what was measured (appendix A, "update"). Returns the sum.
-    fn update(&mut self, sensor: &Measurement) -> f32 {
-        let limit = LEAST_SHARE / self.prepared.frames as f32;
-        let nearest = self.measure(sensor, limit);
-        let factor = self.factor(sensor);
-        let sum = weigh(
-            &self.predicted,
-            &self.distance,
-            factor,
-            [nearest, self.farthest()],
-            &mut self.weighed,
-        );
-        self.log_density = f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
-        self.log_likelihood += self.log_density;
-        sum
-    }
-
-    /// Factor from a squared distance of all sensors to the logarithm of a probability.
-    fn factor(&self, sensor: &Measurement) -> f32 {
-        -0.5 * self.config.evidence * self.counted(sensor) / self.prepared.model.sites.len() as f32
-    }
-
-    /// Share of a measurement that counts.
-    fn counted(&self, sensor: &Measurement) -> f32 {
-        1.0 - self.stride_weight(sensor) * (1.0 - self.config.repeated)
-    }
-
-    /// Weight of the phase of the stride.
-    fn stride_weight(&self, sensor: &Measurement) -> f32 {
-        if self.prepared.has_strides() {
-            self.config.stride * sensor.stride.weight
-        } else {
-            0.0
-        }
-    }
-
-    /// Probability that the body walks or runs.
-    pub(crate) const fn strides(&self) -> f32 {
-        self.behaviours[Behaviour::Walk.index()] + self.behaviours[Behaviour::Run.index()]
-    }
-
-    /// Squared distance of all sensors beyond which a frame counts as no farther.
-    fn farthest(&self) -> f32 {
-        self.config.farthest * self.prepared.model.sites.len() as f32
-    }
-
-    /// Measures how far frames that are predicted with more than a limit are from what was measured. Returns the least distance.
-    fn measure(&mut self, sensor: &Measurement, limit: f32) -> f32 {
-        let farthest = self.farthest();
-        if let Some(phases) = &self.prepared.phase_deviations {
-            phases.distances(&self.prepared, sensor, &mut self.distance);
-            return self.distance.iter().copied().fold(farthest, f32::min);
-        }
-        const MOST: usize = MAX_WIDTH + PHASE_COUNT;
-        let (mut measured, mut weights) = ([0.0; MOST], [0.0; MOST]);
-        let deviations = &self.prepared.model.deviations;
-        for (n, deviation) in deviations.iter().enumerate() {
-            measured[n] = sensor.values[n] / deviation;
-            weights[n] = sensor.weights[n];
-        }
-        let mut width = deviations.len();
-        if self.prepared.has_strides() {
-            // Its evidence counts in full.
-            let weight = self.stride_weight(sensor) / self.counted(sensor);
-            for value in sensor.stride.values {
-                (measured[width], weights[width]) = (value / PHASE_DEVIATION, weight);
-                width += 1;
-            }
-        }
-        let nearest = distances(
-            &self.prepared.sensor,
-            &measured[..width],
-            &weights[..width],
-            &self.predicted,
-            limit,
-            &mut self.distance,
-        );
-        nearest.min(farthest)
     }
 
     /// Brings the weighed candidates to a sum of one, and drops those that hold next to nothing.
