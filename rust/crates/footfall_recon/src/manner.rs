@@ -1,6 +1,6 @@
 //! The manner of several people in place of one's: a stranger moves as people do, not as the one of them does whose sensor measured the most similar.
 //!
-//! Which person in a model a sensor resembles says little of arms, trunk and hips. So every segment is drawn to the mean of all people in the same phase at a
+//! Resemblance of one sensor to a person in a model says little of arms, trunk and hips. So every segment is drawn to the mean of all people in the same phase at a
 //! similar speed whose sensors measured similar things, each person counting as one, however much was recorded of them.
 
 use footfall_model::ImuModel;

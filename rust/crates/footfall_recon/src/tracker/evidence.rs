@@ -1,4 +1,4 @@
-//! What a measurement tells of each frame of the model.
+//! Evidence of a measurement for each frame of the model.
 
 use super::{Measurement, Tracker};
 use crate::confidence::Confidence;
