@@ -11,7 +11,7 @@ use footfall_model::imu_model::MAX_WIDTH;
 const MOST_NUMBERS: usize = MAX_WIDTH + PHASE_COUNT;
 
 /// Frames that are predicted with less than this share of what each would have if all were alike are not compared with the measurement.
-const LEAST_SHARE: f32 = 0.15;
+const LEAST_SHARE: f32 = 0.6;
 
 impl Tracker {
     /// Goes on by a frame in which the phase of the stride counts by as much as the body is known to walk or run and the model explains it; weighs it so in
