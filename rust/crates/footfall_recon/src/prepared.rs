@@ -3,7 +3,9 @@
 use crate::body::BodyFrame;
 use crate::confidence::{standing_body, standing_rows};
 use crate::kernels::BLOCK;
+use crate::manner::drawn_to_others;
 use crate::published::PhaseDeviations;
+use crate::stride_phase::{PHASE_COUNT, PHASE_DEVIATION, phases_of};
 use crate::watch::{Watch, WornRecording};
 use footfall_core::Side;
 use footfall_imu::{ImuRecording, ToldContact};
@@ -29,7 +31,10 @@ pub struct Prepared {
     pub(crate) frames: usize,
     /// Frames in whole blocks.
     pub(crate) padded: usize,
-    /// Sensor numbers over their deviations: for each block of frames the first number of all of them, then the second.
+    /// Motion of the body, each person drawn to the others: a row for each frame.
+    body: Vec<f32>,
+    /// Sensor numbers over their deviations, then the phase of the stride of a foot with a sensor over its: for each block of frames the first number of all of
+    /// them, then the second.
     pub(crate) sensor: Vec<f32>,
     /// Deviations of the sensors within each phase, where they take the place of the model's.
     pub(crate) phase_deviations: Option<PhaseDeviations>,
@@ -57,7 +62,6 @@ impl Prepared {
     pub fn new(model: Arc<ImuModel>) -> Result<Self, ModelError> {
         model.check()?;
         let frames = model.frame_count();
-        let width = model.sensor_width();
         let padded = frames.next_multiple_of(BLOCK);
         let sites = model.sites.iter().enumerate();
         let worn_feet: Vec<WornFoot> = sites
@@ -69,13 +73,7 @@ impl Prepared {
                 })
             })
             .collect();
-        let mut sensor = vec![0.0; padded * width];
-        for (frame, row) in model.sensor.chunks_exact(width).enumerate() {
-            let block = frame / BLOCK * BLOCK * width + frame % BLOCK;
-            for (n, (value, deviation)) in row.iter().zip(&model.deviations).enumerate() {
-                sensor[block + n * BLOCK] = value / deviation;
-            }
-        }
+        let sensor = laid_out(&model, padded, worn_feet.first());
         let kinds = model.phases.len();
         let mut starts = Vec::with_capacity(model.segments.len() + 1);
         let mut segment_of = Vec::with_capacity(frames);
@@ -95,6 +93,7 @@ impl Prepared {
             phase_deviations: None,
             worn_feet,
             standing: standing_body(&model),
+            body: drawn_to_others(&model),
             standing_up: core::array::from_fn(|n| standing_up(&model, n)),
             model,
             starts,
@@ -102,6 +101,13 @@ impl Prepared {
             counts,
             of_phase,
         })
+    }
+
+    /// Leaves the bodies as they were recorded ([`Published::Manner`](crate::Published::Manner)).
+    #[must_use]
+    pub fn with_bodies_as_recorded(mut self) -> Self {
+        self.body.clone_from(&self.model.body);
+        self
     }
 
     /// Learns how far sensors deviate within each phase ([`Published::Gaussians`](crate::Published::Gaussians)).
@@ -139,6 +145,11 @@ impl Prepared {
         WornRecording::watched(watch, recording, calibrated, alone)
     }
 
+    /// Returns true if measurements are compared with the phase of the stride, too.
+    pub(crate) const fn has_strides(&self) -> bool {
+        !self.worn_feet.is_empty() && self.phase_deviations.is_none()
+    }
+
     /// Returns the model.
     pub const fn model(&self) -> &Arc<ImuModel> {
         &self.model
@@ -159,7 +170,7 @@ impl Prepared {
 
     /// Returns a frame of the body.
     pub(crate) fn body_row(&self, frame: usize) -> &[f32] {
-        &self.model.body[frame * BODY_COUNT..(frame + 1) * BODY_COUNT]
+        &self.body[frame * BODY_COUNT..(frame + 1) * BODY_COUNT]
     }
 
     /// Returns true for the first frame of a chain, and past the last of all.
@@ -170,6 +181,27 @@ impl Prepared {
         let segment = self.segment_of[frame] as usize;
         self.starts[segment] == frame && !self.model.segments[segment].follows
     }
+}
+
+/// Lays out what is compared with measurements, in whole blocks.
+fn laid_out(model: &ImuModel, padded: usize, foot: Option<&WornFoot>) -> Vec<f32> {
+    let width = model.sensor_width();
+    let phases = foot.map(|foot| phases_of(model, *foot));
+    let columns = width + phases.as_ref().map_or(0, |_| PHASE_COUNT);
+    let mut numbers = vec![0.0; padded * columns];
+    for (frame, row) in model.sensor.chunks_exact(width).enumerate() {
+        let block = frame / BLOCK * BLOCK * columns + frame % BLOCK;
+        let sensor = row.iter().zip(&model.deviations);
+        let phase = phases.iter().flat_map(|phases| phases[frame]);
+        let phase = phase.map(|value| value / PHASE_DEVIATION);
+        let row = sensor
+            .map(|(value, deviation)| value / deviation)
+            .chain(phase);
+        for (n, value) in row.enumerate() {
+            numbers[block + n * BLOCK] = value;
+        }
+    }
+    numbers
 }
 
 /// Returns the mean vertical in the axes of a site of standing people; the site's own if nobody stands or the model has no such site.

@@ -9,6 +9,7 @@ use crate::prepared::{Prepared, WornFoot};
 use crate::reconstructor::ReconConfig;
 use crate::sensor::Frames;
 use crate::shown_behaviour::{LEAST_SHOWN_SECS, ShownBehaviour, drop_short_runs};
+use crate::stride_phase::StrideClock;
 use crate::tracker::{Measurement, Tracker};
 use crate::travel::Travel;
 use footfall_core::{Behaviour, Clip, Pose, Skeleton, SkeletonError};
@@ -83,16 +84,22 @@ pub fn reconstruct_recording(
         ground: Ground::new(skeleton, &prepared.model.skeleton),
         frame_secs: 1.0 / rate as f32,
     };
-    let measured: Vec<Option<Measurement>> =
-        frames.iter().map(|f| measure(&prepared.model, f)).collect();
+    let mut clock = StrideClock::new(prepared);
+    let measured = frames.iter().map(|frames| {
+        let stride = clock.step(frames);
+        let measured = measure(&prepared.model, frames)?;
+        Some(Measurement { stride, ..measured })
+    });
+    let mut measured: Vec<Option<Measurement>> = measured.collect();
     let mut tracker = Tracker::new(prepared, config.tracker);
     if live {
-        for (frame, measured) in frames.iter().zip(&measured) {
-            tracker.step(measured.as_ref());
+        for (frame, measured) in frames.iter().zip(&mut measured) {
+            tracker.step_striding(measured.as_mut(), shown.confidence);
             shown.add(&tracker, measured.as_ref(), frame, tracker.log_density());
         }
         return Ok(shown.done());
     }
+    let mut explains = shown.confidence;
     let mut back = Tracker::new(prepared, config.tracker);
     let mut filtered: Vec<Vec<f32>> = Vec::new();
     let mut log_densities = Vec::with_capacity(frames.len());
@@ -100,8 +107,11 @@ pub fn reconstruct_recording(
     for first in (0..frames.len()).step_by(BLOCK_FRAMES) {
         let end = (first + BLOCK_FRAMES).min(frames.len());
         let ahead = (end + BLOCK_FRAMES).min(frames.len());
-        for measured in &measured[first + filtered.len()..ahead] {
-            tracker.step(measured.as_ref());
+        for measured in &mut measured[first + filtered.len()..ahead] {
+            tracker.step_striding(measured.as_mut(), explains);
+            if measured.is_some() {
+                explains.step(tracker.log_density() as f32, shown.frame_secs);
+            }
             filtered.push(tracker.probabilities().to_vec());
             log_densities.push(tracker.log_density());
         }

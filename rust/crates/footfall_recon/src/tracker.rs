@@ -2,10 +2,12 @@
 //! appendix A), linear in the number of frames.
 
 mod backward;
+mod evidence;
 mod interpolation;
 
-use crate::kernels::{add, distances, weigh};
+use crate::kernels::add;
 use crate::prepared::Prepared;
+use crate::stride_phase::StridePhase;
 use footfall_core::Behaviour;
 use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
 use std::sync::Arc;
@@ -23,6 +25,10 @@ pub struct TrackerConfig {
     pub exit: f32,
     /// Weight of a frame of the sensors: successive frames are alike, and would count several times over, and so would two sensors on one body.
     pub evidence: f32,
+    /// Weight of the phase of the stride beside the numbers of the sensors; 0 ignores it.
+    pub stride: f32,
+    /// Share of the evidence that counts while strides repeat: what a stranger's sensor measures differently is then the same over and over.
+    pub repeated: f32,
     /// Squared distance a sensor, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
     /// where none explains it the body goes on as it did.
     pub farthest: f32,
@@ -44,6 +50,8 @@ impl Default for TrackerConfig {
             keep_subject: 0.7,
             exit: 0.01,
             evidence: 0.5,
+            stride: 1.0,
+            repeated: 0.3,
             farthest: 25.0,
             round_frames: 24,
             interpolated: 20,
@@ -61,6 +69,8 @@ pub struct Measurement {
     pub values: [f32; MAX_WIDTH],
     /// Weights of the numbers, 0 to 1.
     pub weights: [f32; MAX_WIDTH],
+    /// Phase of the stride of the first foot with a sensor.
+    pub stride: StridePhase,
 }
 
 /// Probabilities after a frame.
@@ -94,9 +104,6 @@ pub struct Tracker {
     /// The part of it that the last measured frame added.
     log_density: f64,
 }
-
-/// Frames that are predicted with less than this share of what each would have if all were alike are not compared with the measurement.
-const LEAST_SHARE: f32 = 0.15;
 
 /// Segments that held less than this are dropped.
 const LEAST_MASS: f32 = 2e-5;
@@ -299,58 +306,6 @@ impl Tracker {
             new[0] += config.keep_subject * own + (1.0 - config.keep_subject) * any;
         }
         self.turn = (self.turn + 1) % self.round_frames();
-    }
-
-    /// Weighs what may be with what was measured (appendix A, "update"). Returns the sum.
-    fn update(&mut self, sensor: &Measurement) -> f32 {
-        let limit = LEAST_SHARE / self.prepared.frames as f32;
-        let nearest = self.measure(sensor, limit);
-        let factor = self.factor();
-        let sum = weigh(
-            &self.predicted,
-            &self.distance,
-            factor,
-            [nearest, self.farthest()],
-            &mut self.weighed,
-        );
-        self.log_density = f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
-        self.log_likelihood += self.log_density;
-        sum
-    }
-
-    /// Factor from a squared distance of all sensors to the logarithm of a probability.
-    fn factor(&self) -> f32 {
-        -0.5 * self.config.evidence / self.prepared.model.sites.len() as f32
-    }
-
-    /// Squared distance of all sensors beyond which a frame counts as no farther.
-    fn farthest(&self) -> f32 {
-        self.config.farthest * self.prepared.model.sites.len() as f32
-    }
-
-    /// Measures how far frames that are predicted with more than a limit are from what was measured. Returns the least distance.
-    fn measure(&mut self, sensor: &Measurement, limit: f32) -> f32 {
-        let farthest = self.farthest();
-        if let Some(phases) = &self.prepared.phase_deviations {
-            phases.distances(&self.prepared, sensor, &mut self.distance);
-            return self.distance.iter().copied().fold(farthest, f32::min);
-        }
-        let (mut measured, mut weights) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
-        let deviations = &self.prepared.model.deviations;
-        for (n, deviation) in deviations.iter().enumerate() {
-            measured[n] = sensor.values[n] / deviation;
-            weights[n] = sensor.weights[n];
-        }
-        let width = deviations.len();
-        let nearest = distances(
-            &self.prepared.sensor,
-            &measured[..width],
-            &weights[..width],
-            &self.predicted,
-            limit,
-            &mut self.distance,
-        );
-        nearest.min(farthest)
     }
 
     /// Brings the weighed candidates to a sum of one, and drops those that hold next to nothing.

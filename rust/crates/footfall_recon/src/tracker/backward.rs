@@ -26,7 +26,7 @@ impl Tracker {
         if let Some(sensor) = sensor {
             self.predicted[..later.len()].copy_from_slice(later);
             let nearest = self.measure(sensor, f32::NEG_INFINITY);
-            let factor = self.factor();
+            let factor = self.factor(sensor);
             weigh(
                 &self.predicted,
                 &self.distance,
