@@ -25,6 +25,7 @@ pub mod reconstructor;
 pub mod recording;
 mod sensor;
 mod shown_behaviour;
+mod strangeness;
 mod stride_phase;
 pub mod tracker;
 mod travel;

@@ -5,12 +5,12 @@ use crate::confidence::{standing_body, standing_rows};
 use crate::kernels::BLOCK;
 use crate::manner::drawn_to_others;
 use crate::published::PhaseDeviations;
-use crate::stride_phase::{PHASE_COUNT, PHASE_DEVIATION, phases_of};
+use crate::stride_phase::{PHASE_COUNT, PHASE_DEVIATION, phases_of, without_stride};
 use crate::watch::{Watch, WornRecording};
 use footfall_core::Side;
 use footfall_imu::{ImuRecording, ToldContact};
 use footfall_model::ModelError;
-use footfall_model::imu_model::{BODY_COUNT, MAX_SENSORS, SENSOR_COUNT};
+use footfall_model::imu_model::{MAX_SENSORS, SENSOR_COUNT};
 use footfall_model::{CalibratedSensor, ImuModel};
 use glam::Vec3;
 use std::ops::Range;
@@ -31,11 +31,15 @@ pub struct Prepared {
     pub(crate) frames: usize,
     /// Frames in whole blocks.
     pub(crate) padded: usize,
-    /// Motion of the body, each person drawn to the others: a row for each frame.
-    body: Vec<f32>,
+    /// Motion of the body of a stranger, each person drawn to the others: a row for each frame; `None` where strangers are shown as one of the people.
+    drawn: Option<Vec<f32>>,
     /// Sensor numbers over their deviations, then the phase of the stride of a foot with a sensor over its: for each block of frames the first number of all of
     /// them, then the second.
     pub(crate) sensor: Vec<f32>,
+    /// Numbers of a frame among them.
+    pub(crate) columns: usize,
+    /// Runs of frames that belong to no stride.
+    pub(crate) without_stride: Vec<Range<usize>>,
     /// Deviations of the sensors within each phase, where they take the place of the model's.
     pub(crate) phase_deviations: Option<PhaseDeviations>,
     /// The body of the people who stand, to show where the model explains little.
@@ -73,7 +77,9 @@ impl Prepared {
                 })
             })
             .collect();
-        let sensor = laid_out(&model, padded, worn_feet.first());
+        let phases = worn_feet.first().map(|foot| phases_of(&model, *foot));
+        let phases = phases.unwrap_or_default();
+        let (sensor, columns) = laid_out(&model, padded, &phases);
         let kinds = model.phases.len();
         let mut starts = Vec::with_capacity(model.segments.len() + 1);
         let mut segment_of = Vec::with_capacity(frames);
@@ -90,10 +96,12 @@ impl Prepared {
             frames,
             padded,
             sensor,
+            columns,
+            without_stride: without_stride(&phases),
             phase_deviations: None,
             worn_feet,
             standing: standing_body(&model),
-            body: drawn_to_others(&model),
+            drawn: Some(drawn_to_others(&model)),
             standing_up: core::array::from_fn(|n| standing_up(&model, n)),
             model,
             starts,
@@ -103,10 +111,10 @@ impl Prepared {
         })
     }
 
-    /// Leaves the bodies as they were recorded ([`Published::Manner`](crate::Published::Manner)).
+    /// Shows strangers as people were recorded, too ([`Published::Manner`](crate::Published::Manner)).
     #[must_use]
     pub fn with_bodies_as_recorded(mut self) -> Self {
-        self.body.clone_from(&self.model.body);
+        self.drawn = None;
         self
     }
 
@@ -168,9 +176,14 @@ impl Prepared {
             .is_some_and(|next| next.follows)
     }
 
-    /// Returns a frame of the body.
-    pub(crate) fn body_row(&self, frame: usize) -> &[f32] {
-        &self.body[frame * BODY_COUNT..(frame + 1) * BODY_COUNT]
+    /// Returns the rows of bodies and their shares where the wearer is a stranger by a share: those of people as recorded, and drawn to others.
+    pub(crate) fn bodies(&self, stranger: f32) -> [(&[f32], f32); 2] {
+        let drawn = self.drawn.as_deref();
+        let share = drawn.map_or(0.0, |_| stranger);
+        [
+            (&self.model.body, 1.0 - share),
+            (drawn.unwrap_or_default(), share),
+        ]
     }
 
     /// Returns true for the first frame of a chain, and past the last of all.
@@ -183,16 +196,15 @@ impl Prepared {
     }
 }
 
-/// Lays out what is compared with measurements, in whole blocks.
-fn laid_out(model: &ImuModel, padded: usize, foot: Option<&WornFoot>) -> Vec<f32> {
+/// Lays out what is compared with measurements, in whole blocks, given the phases of strides, if there are any. Returns also the numbers of a frame.
+fn laid_out(model: &ImuModel, padded: usize, phases: &[[f32; PHASE_COUNT]]) -> (Vec<f32>, usize) {
     let width = model.sensor_width();
-    let phases = foot.map(|foot| phases_of(model, *foot));
-    let columns = width + phases.as_ref().map_or(0, |_| PHASE_COUNT);
+    let columns = width + phases.first().map_or(0, |phase| phase.len());
     let mut numbers = vec![0.0; padded * columns];
     for (frame, row) in model.sensor.chunks_exact(width).enumerate() {
         let block = frame / BLOCK * BLOCK * columns + frame % BLOCK;
         let sensor = row.iter().zip(&model.deviations);
-        let phase = phases.iter().flat_map(|phases| phases[frame]);
+        let phase = phases.get(frame).into_iter().flatten();
         let phase = phase.map(|value| value / PHASE_DEVIATION);
         let row = sensor
             .map(|(value, deviation)| value / deviation)
@@ -201,7 +213,7 @@ fn laid_out(model: &ImuModel, padded: usize, foot: Option<&WornFoot>) -> Vec<f32
             numbers[block + n * BLOCK] = value;
         }
     }
-    numbers
+    (numbers, columns)
 }
 
 /// Returns the mean vertical in the axes of a site of standing people; the site's own if nobody stands or the model has no such site.

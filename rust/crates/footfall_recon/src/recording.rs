@@ -124,6 +124,7 @@ pub fn reconstruct_recording(
                 back.step_back(measured[frame].as_ref(), &mut later);
             }
         }
+        back.take_strangeness(&tracker);
         for frame in first..end {
             back.set_probabilities(&filtered[frame - first]);
             let log_density = log_densities[frame];

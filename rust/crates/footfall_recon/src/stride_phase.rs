@@ -17,6 +17,10 @@ pub(crate) const PHASE_COUNT: usize = 2;
 /// Standard deviation of both numbers.
 pub(crate) const PHASE_DEVIATION: f32 = 0.3;
 
+/// Squared distance, in deviations, of a frame that belongs to no stride from every phase: that of a tenth of a stride. Were it farther, strides would go on
+/// where people stop or jump.
+pub(crate) const NO_STRIDE: f32 = 4.0;
+
 /// Durations of strides of walking and running, seconds.
 const STRIDE_SECS: Range<f32> = 0.5..2.0;
 
@@ -129,6 +133,19 @@ pub(crate) fn phases_of(model: &ImuModel, foot: WornFoot) -> Vec<[f32; PHASE_COU
         }));
     }
     phases
+}
+
+/// Returns the runs of frames that belong to no strides, given the phases of all.
+pub(crate) fn without_stride(phases: &[[f32; PHASE_COUNT]]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    let frames = phases.iter().enumerate();
+    for (frame, _) in frames.filter(|(_, phase)| **phase == [0.0; PHASE_COUNT]) {
+        match runs.last_mut().filter(|run| run.end == frame) {
+            Some(run) => run.end += 1,
+            None => runs.push(frame..frame + 1),
+        }
+    }
+    runs
 }
 
 /// Returns the mean shares of a stride at which each kind of phase begins and ends; `None` for those that belong to no strides.

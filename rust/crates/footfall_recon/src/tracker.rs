@@ -7,6 +7,7 @@ mod interpolation;
 
 use crate::kernels::add;
 use crate::prepared::Prepared;
+use crate::strangeness::Strangeness;
 use crate::stride_phase::StridePhase;
 use footfall_core::Behaviour;
 use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
@@ -25,7 +26,7 @@ pub struct TrackerConfig {
     pub exit: f32,
     /// Weight of a frame of the sensors: successive frames are alike, and would count several times over, and so would two sensors on one body.
     pub evidence: f32,
-    /// Weight of the phase of the stride beside the numbers of the sensors; 0 ignores it.
+    /// Weight of the phase of a stranger's stride beside the numbers of the sensors; 0 ignores it.
     pub stride: f32,
     /// Share of the evidence that counts while strides repeat: what a stranger's sensor measures differently is then the same over and over.
     pub repeated: f32,
@@ -103,6 +104,7 @@ pub struct Tracker {
     log_likelihood: f64,
     /// The part of it that the last measured frame added.
     log_density: f64,
+    strangeness: Strangeness,
 }
 
 /// Segments that held less than this are dropped.
@@ -130,6 +132,7 @@ impl Tracker {
             behaviours: [0.0; Behaviour::ALL.len()],
             log_likelihood: 0.0,
             log_density: 0.0,
+            strangeness: Strangeness::UNKNOWN,
             prepared: Arc::clone(prepared),
         };
         tracker.reset();
@@ -144,6 +147,7 @@ impl Tracker {
             .extend(0..self.prepared.model.segments.len() as u32);
         self.turn = 0;
         (self.log_likelihood, self.log_density) = (0.0, 0.0);
+        self.strangeness = Strangeness::UNKNOWN;
         self.weigh_segments();
     }
 
@@ -180,6 +184,9 @@ impl Tracker {
         };
         self.keep(weighed);
         self.weigh_segments();
+        if let Some(sensor) = sensor {
+            self.compare(sensor);
+        }
     }
 
     /// Moves probability that leaves the segments at their ends to the phases it enters.
@@ -329,9 +336,9 @@ impl Tracker {
         }
         if self.active.is_empty() {
             // Nothing explains what was measured: start anew.
-            let known = (self.log_likelihood, self.log_density);
+            let known = (self.log_likelihood, self.log_density, self.strangeness);
             self.reset();
-            (self.log_likelihood, self.log_density) = known;
+            (self.log_likelihood, self.log_density, self.strangeness) = known;
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::{Measurement, Tracker};
 use crate::confidence::Confidence;
 use crate::kernels::{distances, weigh};
-use crate::stride_phase::{PHASE_COUNT, PHASE_DEVIATION};
+use crate::stride_phase::{NO_STRIDE, PHASE_COUNT, PHASE_DEVIATION};
 use footfall_core::Behaviour;
 use footfall_model::imu_model::MAX_WIDTH;
 
@@ -11,13 +11,13 @@ use footfall_model::imu_model::MAX_WIDTH;
 const MOST_NUMBERS: usize = MAX_WIDTH + PHASE_COUNT;
 
 /// Frames that are predicted with less than this share of what each would have if all were alike are not compared with the measurement.
-const LEAST_SHARE: f32 = 0.6;
+const LEAST_SHARE: f32 = 0.15;
 
 impl Tracker {
-    /// Goes on by a frame in which the phase of the stride counts by as much as the body is known to walk or run and the model explains it; weighs it so in
-    /// `sensor`: what shakes a sensor has a rhythm, too.
+    /// Goes on by a frame in which the phase of the stride counts by as much as the wearer is a stranger, the body is known to walk or run and the model explains it;
+    /// weighs it so in `sensor`. The sensors of whoever moves like people in the model tell more, and what shakes a sensor has a rhythm, too.
     pub(crate) fn step_striding(&mut self, sensor: Option<&mut Measurement>, explains: Confidence) {
-        let strides = self.strides() * explains.trusted();
+        let strides = self.strangeness.share() * self.strides() * explains.trusted();
         let sensor = sensor.map(|sensor| {
             sensor.stride.weight *= strides;
             &*sensor
@@ -40,6 +40,22 @@ impl Tracker {
         self.log_density = f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
         self.log_likelihood += self.log_density;
         sum
+    }
+
+    /// Compares what was measured with what the probable frames measured: how strange the wearer is.
+    pub(super) fn compare(&mut self, sensor: &Measurement) {
+        let model = &*self.prepared.model;
+        let mut expected = [0.0; MAX_WIDTH];
+        self.expected_sensor(&mut expected);
+        let numbers = model.deviations.iter().enumerate();
+        let squares = numbers.map(|(n, deviation)| {
+            let apart = (sensor.values[n] - expected[n]) / deviation;
+            sensor.weights[n] * apart * apart
+        });
+        let distance = squares.sum::<f32>().min(self.farthest()) / model.sites.len() as f32;
+        let moves = 1.0 - self.behaviours[Behaviour::Stand.index()];
+        self.strangeness
+            .step(distance, moves / model.frame_rate_hz as f32);
     }
 
     /// Factor from a squared distance of all sensors to the logarithm of a probability.
@@ -85,22 +101,33 @@ impl Tracker {
             weights[n] = sensor.weights[n];
         }
         let mut width = deviations.len();
-        if self.prepared.has_strides() {
-            // Its evidence counts in full.
-            let weight = self.stride_weight(sensor) / self.counted(sensor);
+        // Its evidence counts in full.
+        let stride = self.stride_weight(sensor) / self.counted(sensor);
+        if stride > 0.0 {
             for value in sensor.stride.values {
-                (measured[width], weights[width]) = (value / PHASE_DEVIATION, weight);
+                (measured[width], weights[width]) = (value / PHASE_DEVIATION, stride);
                 width += 1;
             }
         }
-        let nearest = distances(
+        let mut nearest = distances(
             &self.prepared.sensor,
+            self.prepared.columns,
             &measured[..width],
             &weights[..width],
             &self.predicted,
             limit,
             &mut self.distance,
         );
+        if stride > 0.0 {
+            // Their phase of zeros is as far from all others.
+            let nearer = stride * (PHASE_DEVIATION.powi(-2) - NO_STRIDE);
+            for frames in &self.prepared.without_stride {
+                for distance in &mut self.distance[frames.clone()] {
+                    *distance -= nearer;
+                    nearest = nearest.min(*distance);
+                }
+            }
+        }
         nearest.min(farthest)
     }
 }

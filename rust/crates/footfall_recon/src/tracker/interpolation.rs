@@ -4,7 +4,7 @@ use super::{Measurement, Tracker};
 use crate::body::Course;
 use crate::kernels::add;
 use footfall_core::Behaviour;
-use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
+use footfall_model::imu_model::{BODY_COUNT, MAX_PHASES, MAX_WIDTH};
 
 impl Tracker {
     /// Sums up behaviours, and chooses the segments to interpolate.
@@ -58,36 +58,43 @@ impl Tracker {
         let sum: f32 = self.chosen.iter().map(|(_, mass)| mass).sum();
         let norm = 1.0 / sum.max(1e-30);
         let width = model.sensor_width();
+        let bodies = prepared.bodies(self.strangeness.share());
         for &(n, mass) in &self.chosen {
             let segment = n as usize;
             let frames = prepared.frames_of(segment);
-            let mut expected = [0.0_f32; MAX_WIDTH];
-            for frame in frames {
+            for frame in frames.clone() {
                 let weight = self.probability[frame] * norm;
                 if weight < 1e-6 {
                     continue;
                 }
-                let row = prepared.body_row(frame);
-                add(weight, row, &mut course.body);
-                if !prepared.begins_chain(frame) {
-                    add(weight, row, &mut course.arrival);
-                    add(-weight, prepared.body_row(frame - 1), &mut course.arrival);
-                }
-                if !prepared.begins_chain(frame + 1) {
-                    add(weight, prepared.body_row(frame + 1), &mut course.velocity);
-                    add(-weight, row, &mut course.velocity);
-                }
-                add(
-                    weight,
-                    &model.sensor[frame * width..][..width],
-                    &mut expected,
+                let (begins, ends) = (
+                    prepared.begins_chain(frame),
+                    prepared.begins_chain(frame + 1),
                 );
+                for (rows, share) in bodies.iter().filter(|(_, share)| *share > 0.0) {
+                    let row = |frame: usize| &rows[frame * BODY_COUNT..(frame + 1) * BODY_COUNT];
+                    let weight = weight * share;
+                    add(weight, row(frame), &mut course.body);
+                    if !begins {
+                        add(weight, row(frame), &mut course.arrival);
+                        add(-weight, row(frame - 1), &mut course.arrival);
+                    }
+                    if !ends {
+                        add(weight, row(frame + 1), &mut course.velocity);
+                        add(-weight, row(frame), &mut course.velocity);
+                    }
+                }
             }
             let regression = &model.regressions[usize::from(model.segments[segment].phase)];
             if let Some(sensor) = sensor
                 && !regression.is_empty()
                 && self.config.regression > 0.0
             {
+                let mut expected = [0.0_f32; MAX_WIDTH];
+                for frame in frames {
+                    let row = &model.sensor[frame * width..][..width];
+                    add(self.probability[frame] * norm, row, &mut expected);
+                }
                 let weight = mass * norm;
                 for (body, row) in course.body.iter_mut().zip(regression.chunks_exact(width)) {
                     let terms = row.iter().zip(&sensor.values).zip(&expected);
