@@ -19,6 +19,9 @@ const ALIKE: f32 = 6.0;
 /// The same of the mean speed ahead, m/s: runs are not averaged with jogs.
 const ALIKE_SPEED_MPS: f32 = 0.5;
 
+/// Segments with less weight than e^-½ to the power of this do not count: most of a large model.
+const FARTHEST: f32 = 14.0;
+
 /// Numbers of the body that have a manner: joints and height. The way, the turn, contacts and headings are the segment's own.
 const MANNER: usize = HEIGHT + 1;
 
@@ -102,7 +105,9 @@ fn mean_of_people<'a>(
     }
     let mut people: BTreeMap<u16, Person> = BTreeMap::new();
     for (subject, other) in segments {
-        let weight = own.likeness(other);
+        let Some(weight) = own.likeness(other) else {
+            continue;
+        };
         let person = people.entry(subject).or_insert_with(|| Person {
             most: 0.0,
             sum: 0.0,
@@ -116,7 +121,7 @@ fn mean_of_people<'a>(
     }
     let all: f32 = people.values().map(|person| person.most).sum();
     let mut mean = vec![0.0; own.body.len()];
-    for person in people.values().filter(|person| person.most > 0.0) {
+    for person in people.values() {
         let weight = person.most / (all * person.sum);
         for (mean, value) in mean.iter_mut().zip(&person.bodies) {
             *mean += weight * value;
@@ -126,11 +131,20 @@ fn mean_of_people<'a>(
 }
 
 impl Resampled {
-    fn likeness(&self, other: &Self) -> f32 {
-        let pairs = self.sensor.iter().zip(&other.sensor);
-        let apart: f32 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
+    /// Weight of another segment beside this one; `None` where it does not count.
+    fn likeness(&self, other: &Self) -> Option<f32> {
         let faster = (self.speed_mps - other.speed_mps) / ALIKE_SPEED_MPS;
-        (-0.5 * (apart / TIMES as f32 / ALIKE + faster * faster)).exp()
+        let mut apart = faster * faster;
+        let width = self.sensor.len() / TIMES;
+        let times = self.sensor.chunks_exact(width);
+        for (own, other) in times.zip(other.sensor.chunks_exact(width)) {
+            if apart > FARTHEST {
+                return None;
+            }
+            let squares = own.iter().zip(other).map(|(a, b)| (a - b).powi(2));
+            apart += squares.sum::<f32>() / (TIMES as f32 * ALIKE);
+        }
+        (apart < FARTHEST).then(|| (-0.5 * apart).exp())
     }
 }
 

@@ -208,9 +208,11 @@ mod tests {
     )]
 
     use super::*;
+    use crate::tracker::{Measurement, Tracker, TrackerConfig};
     use footfall_core::{PhaseKind, Side, Site, Skeleton};
     use footfall_model::Provenance;
-    use footfall_model::imu_model::{BODY_COUNT, SENSOR_COUNT, Segment};
+    use footfall_model::imu_model::{BODY_COUNT, MAX_WIDTH, SENSOR_COUNT, Segment};
+    use std::sync::Arc;
 
     const FRAME_SECS: f32 = 1.0 / 30.0;
 
@@ -334,6 +336,42 @@ mod tests {
         assert!(
             (phases[15][0] - landed[0]).abs() < 1e-5 && (phases[15][1] - landed[1]).abs() < 1e-5
         );
+    }
+
+    #[test]
+    fn frames_without_a_stride_are_a_tenth_of_one_off() {
+        use PhaseStart::{HeelOff, Landing, TakeOff};
+        let kinds = [
+            (Landing, Side::Right),
+            (TakeOff, Side::Left),
+            (Landing, Side::Left),
+            (TakeOff, Side::Right),
+            (HeelOff, Side::Right),
+        ];
+        let stride = [(0, 5), (1, 10), (2, 5), (3, 10)];
+        let model = walks(&kinds, &[&[stride, stride].concat(), &[(4, 6)]]);
+        let prepared = Prepared::new(Arc::new(model)).expect("a model that fits together");
+        let config = TrackerConfig {
+            stay_next_skip: [1.0, 0.0, 0.0],
+            exit: 0.0,
+            evidence: 1.0,
+            repeated: 1.0,
+            ..TrackerConfig::default()
+        };
+        let mut tracker = Tracker::new(&Arc::new(prepared), config);
+        let landed = 0.5 / 30.0;
+        tracker.step(Some(&Measurement {
+            values: [0.0; MAX_WIDTH],
+            weights: [1.0; MAX_WIDTH],
+            stride: StridePhase::of(landed, 1.0),
+        }));
+        let probability = tracker.probabilities();
+        let beside = |frame: usize| (probability[frame] / probability[0]).ln();
+        let without = beside(62);
+        assert!((without + 0.5 * NO_STRIDE).abs() < 1e-3, "{without}");
+        // Frames two and four thirtieths of a stride later are nearer and farther.
+        assert!(beside(2) > without && without > beside(4));
+        assert!(beside(15) < -15.0, "half a stride off");
     }
 
     #[test]

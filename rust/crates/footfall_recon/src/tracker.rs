@@ -86,6 +86,8 @@ pub struct Tracker {
     probability: Vec<f32>,
     /// Segments that hold some of it.
     active: Vec<u32>,
+    /// How much each of these holds.
+    masses: Vec<f32>,
     /// Segments that are looked at, and whether each is among them.
     candidates: Vec<u32>,
     listed: Vec<bool>,
@@ -120,6 +122,7 @@ impl Tracker {
             config,
             probability: vec![0.0; frames],
             active: Vec::with_capacity(segments),
+            masses: Vec::with_capacity(segments),
             candidates: Vec::with_capacity(segments),
             listed: vec![false; segments],
             turn: 0,
