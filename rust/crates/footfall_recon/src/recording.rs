@@ -84,22 +84,22 @@ pub fn reconstruct_recording(
         ground: Ground::new(skeleton, &prepared.model.skeleton),
         frame_secs: 1.0 / rate as f32,
     };
-    let mut clock = StrideClock::new(prepared);
-    let measured = frames.iter().map(|frames| {
-        let stride = clock.step(frames);
-        let measured = measure(&prepared.model, frames)?;
-        Some(Measurement { stride, ..measured })
-    });
+    let measured = frames.iter().map(|frames| measure(&prepared.model, frames));
     let mut measured: Vec<Option<Measurement>> = measured.collect();
     let mut tracker = Tracker::new(prepared, config.tracker);
     if live {
+        let mut clock = StrideClock::new(prepared);
         for (frame, measured) in frames.iter().zip(&mut measured) {
+            let stride = clock.step(frame);
+            if let Some(measured) = measured {
+                measured.stride = stride;
+            }
             tracker.step_striding(measured.as_mut(), shown.confidence);
             shown.add(&tracker, measured.as_ref(), frame, tracker.log_density());
         }
         return Ok(shown.done());
     }
-    let mut explains = shown.confidence;
+    // Where in the stride the other leg is, later frames tell better than the time since a landing.
     let mut back = Tracker::new(prepared, config.tracker);
     let mut filtered: Vec<Vec<f32>> = Vec::new();
     let mut log_densities = Vec::with_capacity(frames.len());
@@ -107,11 +107,8 @@ pub fn reconstruct_recording(
     for first in (0..frames.len()).step_by(BLOCK_FRAMES) {
         let end = (first + BLOCK_FRAMES).min(frames.len());
         let ahead = (end + BLOCK_FRAMES).min(frames.len());
-        for measured in &mut measured[first + filtered.len()..ahead] {
-            tracker.step_striding(measured.as_mut(), explains);
-            if measured.is_some() {
-                explains.step(tracker.log_density() as f32, shown.frame_secs);
-            }
+        for measured in &measured[first + filtered.len()..ahead] {
+            tracker.step(measured.as_ref());
             filtered.push(tracker.probabilities().to_vec());
             log_densities.push(tracker.log_density());
         }
