@@ -20,8 +20,7 @@ pub(crate) const BLOCK: usize = 8;
 pub(crate) fn distances(
     rows: &[f32],
     columns: usize,
-    measured: &[f32],
-    weights: &[f32],
+    [measured, weights]: [&[f32]; 2],
     values: &[f32],
     limit: f32,
     out: &mut [f32],
@@ -138,7 +137,7 @@ mod tests {
             .map(|n| f32::from(u8::from(n < BLOCK)))
             .collect();
         let mut out = vec![0.0; 2 * BLOCK];
-        let nearest = distances(&rows, 3, &measured, &weights, &values, 0.5, &mut out);
+        let nearest = distances(&rows, 3, [&measured, &weights], &values, 0.5, &mut out);
         for frame in 0..BLOCK {
             let terms = (0..3).map(|n| weights[n] * (number(frame, n) - measured[n]).powi(2));
             let exact: f32 = terms.sum();
@@ -151,7 +150,7 @@ mod tests {
         }
         assert!(out[BLOCK..].iter().all(|distance| distance.is_infinite()));
         let all = out.clone();
-        distances(&rows, 3, &measured[..2], &weights, &values, 0.5, &mut out);
+        distances(&rows, 3, [&measured[..2], &weights], &values, 0.5, &mut out);
         for frame in 0..BLOCK {
             let third = weights[2] * (number(frame, 2) - measured[2]).powi(2);
             assert!((all[frame] - out[frame] - third).abs() < 1e-5);

@@ -139,7 +139,7 @@ pub(crate) fn phases_of(model: &ImuModel, foot: WornFoot) -> Vec<[f32; PHASE_COU
 pub(crate) fn without_stride(phases: &[[f32; PHASE_COUNT]]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     let frames = phases.iter().enumerate();
-    for (frame, _) in frames.filter(|(_, phase)| **phase == [0.0; PHASE_COUNT]) {
+    for (frame, _) in frames.filter(|(_, phase)| phase[0].hypot(phase[1]) < 0.5) {
         match runs.last_mut().filter(|run| run.end == frame) {
             Some(run) => run.end += 1,
             None => runs.push(frame..frame + 1),

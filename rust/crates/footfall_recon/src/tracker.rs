@@ -86,7 +86,7 @@ pub struct Tracker {
     probability: Vec<f32>,
     /// Segments that hold some of it.
     active: Vec<u32>,
-    /// How much each of these holds.
+    /// Probability of each of these.
     masses: Vec<f32>,
     /// Segments that are looked at, and whether each is among them.
     candidates: Vec<u32>,

@@ -112,8 +112,7 @@ impl Tracker {
         let mut nearest = distances(
             &self.prepared.sensor,
             self.prepared.columns,
-            &measured[..width],
-            &weights[..width],
+            [&measured[..width], &weights[..width]],
             &self.predicted,
             limit,
             &mut self.distance,
