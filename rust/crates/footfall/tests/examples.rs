@@ -163,8 +163,8 @@ fn a_sensor_on_a_foot_walks_a_body_as_far_as_its_wearer_went() {
     let truth = (poses[1] - poses[0]).with_y(0.0).length();
     let share = way.with_y(0.0).length() / truth;
     slips.sort_by(f32::total_cmp);
-    // A body of other lengths, known by one sensor: 0.78 of the way, straight ahead, step by step.
-    assert!((0.72..0.85).contains(&share), "{way} of {truth} m");
+    // A body of other lengths, known by one sensor: 0.89 of the way, straight ahead, step by step.
+    assert!((0.82..0.95).contains(&share), "{way} of {truth} m");
     // Where ahead is follows from its first steps, within twenty degrees.
     assert!(way.x.abs() < 0.36 * way.z, "{way}");
     assert!((10..=12).contains(&footfalls), "{footfalls}");

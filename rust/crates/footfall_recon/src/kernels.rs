@@ -14,19 +14,19 @@ pub(crate) const BLOCK: usize = 8;
 
 /// Weighted square of the distance of each frame from a measurement; returns the least.
 ///
-/// `rows` holds, for each block of frames, the first number of all its frames, then the second. A block in which no value exceeds `limit` is passed
+/// `rows` holds, for each block of frames, the first of `columns` numbers of all its frames, then the second; those beyond the measured ones do not count. A block in which no value exceeds `limit` is passed
 /// over: its distances are infinite.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(crate) fn distances(
     rows: &[f32],
-    measured: &[f32],
-    weights: &[f32],
+    columns: usize,
+    [measured, weights]: [&[f32]; 2],
     values: &[f32],
     limit: f32,
     out: &mut [f32],
 ) -> f32 {
     let mut nearest = [f32::INFINITY; BLOCK];
-    let blocks = rows.chunks_exact(BLOCK * measured.len());
+    let blocks = rows.chunks_exact(BLOCK * columns);
     let blocks = blocks.zip(values.chunks_exact(BLOCK));
     for (out, (rows, values)) in out.chunks_exact_mut(BLOCK).zip(blocks) {
         let mut any = false;
@@ -137,7 +137,7 @@ mod tests {
             .map(|n| f32::from(u8::from(n < BLOCK)))
             .collect();
         let mut out = vec![0.0; 2 * BLOCK];
-        let nearest = distances(&rows, &measured, &weights, &values, 0.5, &mut out);
+        let nearest = distances(&rows, 3, [&measured, &weights], &values, 0.5, &mut out);
         for frame in 0..BLOCK {
             let terms = (0..3).map(|n| weights[n] * (number(frame, n) - measured[n]).powi(2));
             let exact: f32 = terms.sum();
@@ -149,6 +149,12 @@ mod tests {
             assert!(nearest <= out[frame]);
         }
         assert!(out[BLOCK..].iter().all(|distance| distance.is_infinite()));
+        let all = out.clone();
+        distances(&rows, 3, [&measured[..2], &weights], &values, 0.5, &mut out);
+        for frame in 0..BLOCK {
+            let third = weights[2] * (number(frame, 2) - measured[2]).powi(2);
+            assert!((all[frame] - out[frame] - third).abs() < 1e-5);
+        }
     }
 
     #[test]

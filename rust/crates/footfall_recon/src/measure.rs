@@ -1,6 +1,7 @@
 //! Frames of the sensors as the tracker takes them.
 
 use crate::body::BodyFrame;
+use crate::stride_phase::StridePhase;
 use crate::tracker::Measurement;
 use footfall_core::rotation::heading;
 use footfall_imu::{FeatureFrame, SENSOR_FEATURES, ToldContact};
@@ -31,6 +32,7 @@ pub(crate) fn measure(model: &ImuModel, frames: &SensorFrames) -> Option<Measure
     let mut measurement = Measurement {
         values: [0.0; MAX_WIDTH],
         weights: [0.0; MAX_WIDTH],
+        stride: StridePhase::default(),
     };
     let mut any = false;
     for (n, frame) in frames.iter().enumerate().take(model.sites.len()) {

@@ -3,12 +3,14 @@
 use crate::body::BodyFrame;
 use crate::confidence::{standing_body, standing_rows};
 use crate::kernels::BLOCK;
+use crate::manner::drawn_to_others;
 use crate::published::PhaseDeviations;
+use crate::stride_phase::{PHASE_COUNT, PHASE_DEVIATION, phases_of, without_stride};
 use crate::watch::{Watch, WornRecording};
 use footfall_core::Side;
 use footfall_imu::{ImuRecording, ToldContact};
 use footfall_model::ModelError;
-use footfall_model::imu_model::{BODY_COUNT, MAX_SENSORS, SENSOR_COUNT};
+use footfall_model::imu_model::{MAX_SENSORS, SENSOR_COUNT};
 use footfall_model::{CalibratedSensor, ImuModel};
 use glam::Vec3;
 use std::ops::Range;
@@ -29,8 +31,15 @@ pub struct Prepared {
     pub(crate) frames: usize,
     /// Frames in whole blocks.
     pub(crate) padded: usize,
-    /// Sensor numbers over their deviations: for each block of frames the first number of all of them, then the second.
+    /// Motion of the body of a stranger, each person drawn to the others: a row for each frame; `None` where strangers are shown as one of the people.
+    drawn: Option<Vec<f32>>,
+    /// Sensor numbers over their deviations, then the phase of the stride of a foot with a sensor over its: for each block of frames the first number of all of
+    /// them, then the second.
     pub(crate) sensor: Vec<f32>,
+    /// Numbers of a frame among them.
+    pub(crate) columns: usize,
+    /// Runs of frames that belong to no stride.
+    pub(crate) without_stride: Vec<Range<usize>>,
     /// Deviations of the sensors within each phase, where they take the place of the model's.
     pub(crate) phase_deviations: Option<PhaseDeviations>,
     /// The body of the people who stand, to show where the model explains little.
@@ -57,7 +66,6 @@ impl Prepared {
     pub fn new(model: Arc<ImuModel>) -> Result<Self, ModelError> {
         model.check()?;
         let frames = model.frame_count();
-        let width = model.sensor_width();
         let padded = frames.next_multiple_of(BLOCK);
         let sites = model.sites.iter().enumerate();
         let worn_feet: Vec<WornFoot> = sites
@@ -69,13 +77,9 @@ impl Prepared {
                 })
             })
             .collect();
-        let mut sensor = vec![0.0; padded * width];
-        for (frame, row) in model.sensor.chunks_exact(width).enumerate() {
-            let block = frame / BLOCK * BLOCK * width + frame % BLOCK;
-            for (n, (value, deviation)) in row.iter().zip(&model.deviations).enumerate() {
-                sensor[block + n * BLOCK] = value / deviation;
-            }
-        }
+        let phases = worn_feet.first().map(|foot| phases_of(&model, *foot));
+        let phases = phases.unwrap_or_default();
+        let (sensor, columns) = laid_out(&model, padded, &phases);
         let kinds = model.phases.len();
         let mut starts = Vec::with_capacity(model.segments.len() + 1);
         let mut segment_of = Vec::with_capacity(frames);
@@ -92,9 +96,12 @@ impl Prepared {
             frames,
             padded,
             sensor,
+            columns,
+            without_stride: without_stride(&phases),
             phase_deviations: None,
             worn_feet,
             standing: standing_body(&model),
+            drawn: Some(drawn_to_others(&model)),
             standing_up: core::array::from_fn(|n| standing_up(&model, n)),
             model,
             starts,
@@ -102,6 +109,13 @@ impl Prepared {
             counts,
             of_phase,
         })
+    }
+
+    /// Shows strangers as people were recorded, too ([`Published::Manner`](crate::Published::Manner)).
+    #[must_use]
+    pub fn with_bodies_as_recorded(mut self) -> Self {
+        self.drawn = None;
+        self
     }
 
     /// Learns how far sensors deviate within each phase ([`Published::Gaussians`](crate::Published::Gaussians)).
@@ -139,6 +153,11 @@ impl Prepared {
         WornRecording::watched(watch, recording, calibrated, alone)
     }
 
+    /// Returns true if measurements are compared with the phase of the stride, too.
+    pub(crate) const fn has_strides(&self) -> bool {
+        !self.worn_feet.is_empty() && self.phase_deviations.is_none()
+    }
+
     /// Returns the model.
     pub const fn model(&self) -> &Arc<ImuModel> {
         &self.model
@@ -157,9 +176,14 @@ impl Prepared {
             .is_some_and(|next| next.follows)
     }
 
-    /// Returns a frame of the body.
-    pub(crate) fn body_row(&self, frame: usize) -> &[f32] {
-        &self.model.body[frame * BODY_COUNT..(frame + 1) * BODY_COUNT]
+    /// Returns the rows of bodies and their shares where the wearer is a stranger by a share: those of people as recorded, and drawn to others.
+    pub(crate) fn bodies(&self, stranger: f32) -> [(&[f32], f32); 2] {
+        let drawn = self.drawn.as_deref();
+        let share = drawn.map_or(0.0, |_| stranger);
+        [
+            (&self.model.body, 1.0 - share),
+            (drawn.unwrap_or_default(), share),
+        ]
     }
 
     /// Returns true for the first frame of a chain, and past the last of all.
@@ -170,6 +194,26 @@ impl Prepared {
         let segment = self.segment_of[frame] as usize;
         self.starts[segment] == frame && !self.model.segments[segment].follows
     }
+}
+
+/// Lays out what is compared with measurements, in whole blocks, given the phases of strides, if there are any. Returns also the numbers of a frame.
+fn laid_out(model: &ImuModel, padded: usize, phases: &[[f32; PHASE_COUNT]]) -> (Vec<f32>, usize) {
+    let width = model.sensor_width();
+    let columns = width + phases.first().map_or(0, |phase| phase.len());
+    let mut numbers = vec![0.0; padded * columns];
+    for (frame, row) in model.sensor.chunks_exact(width).enumerate() {
+        let block = frame / BLOCK * BLOCK * columns + frame % BLOCK;
+        let sensor = row.iter().zip(&model.deviations);
+        let phase = phases.get(frame).into_iter().flatten();
+        let phase = phase.map(|value| value / PHASE_DEVIATION);
+        let row = sensor
+            .map(|(value, deviation)| value / deviation)
+            .chain(phase);
+        for (n, value) in row.enumerate() {
+            numbers[block + n * BLOCK] = value;
+        }
+    }
+    (numbers, columns)
 }
 
 /// Returns the mean vertical in the axes of a site of standing people; the site's own if nobody stands or the model has no such site.

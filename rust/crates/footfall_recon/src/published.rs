@@ -22,16 +22,22 @@ pub enum Published {
     Regression,
     /// Velocity-based blending (section 6).
     Blending,
+    /// Bodies of single people, not drawn to those of others.
+    Manner,
+    /// Sensors alone, without the time since a foot landed.
+    Strides,
 }
 
 impl Published {
     /// All parts.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 7] = [
         Self::Transitions,
         Self::Gaussians,
         Self::Interpolation,
         Self::Regression,
         Self::Blending,
+        Self::Manner,
+        Self::Strides,
     ];
 
     /// Name on the command line.
@@ -42,6 +48,8 @@ impl Published {
             Self::Interpolation => "interpolation",
             Self::Regression => "regression",
             Self::Blending => "blending",
+            Self::Manner => "manner",
+            Self::Strides => "strides",
         }
     }
 
@@ -67,12 +75,19 @@ impl Published {
             }
             Self::Regression => config.regression = 1.0,
             Self::Blending => recon.blending = Blending::Velocity { gain: 0.6 },
+            Self::Manner => {}
+            Self::Strides => config.stride = 0.0,
         }
     }
 
     /// Lays a model out for these parts.
     #[must_use]
     pub fn prepare(parts: &[Self], prepared: Prepared) -> Prepared {
+        let prepared = if parts.contains(&Self::Manner) {
+            prepared.with_bodies_as_recorded()
+        } else {
+            prepared
+        };
         if parts.contains(&Self::Gaussians) {
             prepared.with_phase_deviations()
         } else {

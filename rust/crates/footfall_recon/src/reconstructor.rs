@@ -10,7 +10,8 @@ use crate::prepared::Prepared;
 use crate::problem::SensorProblem;
 use crate::sensor::{Sensor, Sight};
 use crate::shown_behaviour::ShownBehaviour;
-use crate::tracker::{Tracker, TrackerConfig};
+use crate::stride_phase::StrideClock;
+use crate::tracker::{Measurement, Tracker, TrackerConfig};
 use crate::travel::Travel;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Behaviour, Pose, Skeleton, SkeletonError};
@@ -86,6 +87,7 @@ pub struct Reconstructor {
     /// Time in which the model explained little, seconds.
     unexplained_secs: f32,
     travel: Travel,
+    clock: StrideClock,
     confidence: Confidence,
     behaviour: ShownBehaviour,
     silent_secs: f32,
@@ -117,6 +119,7 @@ impl Reconstructor {
             }),
             findings: [None; MAX_SENSORS],
             travel: Travel::new(&prepared.model.sites, config.stride),
+            clock: StrideClock::new(prepared),
             confidence: Confidence::new(config.stands_unexplained),
             behaviour: ShownBehaviour::new(),
             silent_secs: 0.0,
@@ -137,6 +140,7 @@ impl Reconstructor {
         self.blend.reset();
         self.ground.reset();
         self.travel = Travel::new(&self.prepared.model.sites, self.config.stride);
+        self.clock.forget();
         self.confidence = Confidence::new(self.config.stands_unexplained);
         self.behaviour = ShownBehaviour::new();
         (self.silent_secs, self.ahead, self.unexplained_secs) = (0.0, 0.0, 0.0);
@@ -261,8 +265,11 @@ impl Reconstructor {
 
     /// One frame of the model.
     fn frame(&mut self, frames: &SensorFrames) {
+        let stride = self.clock.step(frames);
         let measured = measure(&self.prepared.model, frames);
-        self.tracker.step(measured.as_ref());
+        let mut measured = measured.map(|measured| Measurement { stride, ..measured });
+        self.tracker
+            .step_striding(measured.as_mut(), self.confidence);
         let frame_secs = 1.0 / self.prepared.model.frame_rate_hz as f32;
         if measured.is_some() {
             let log_density = self.tracker.log_density() as f32;

@@ -9,6 +9,7 @@ use crate::prepared::{Prepared, WornFoot};
 use crate::reconstructor::ReconConfig;
 use crate::sensor::Frames;
 use crate::shown_behaviour::{LEAST_SHOWN_SECS, ShownBehaviour, drop_short_runs};
+use crate::stride_phase::StrideClock;
 use crate::tracker::{Measurement, Tracker};
 use crate::travel::Travel;
 use footfall_core::{Behaviour, Clip, Pose, Skeleton, SkeletonError};
@@ -83,16 +84,22 @@ pub fn reconstruct_recording(
         ground: Ground::new(skeleton, &prepared.model.skeleton),
         frame_secs: 1.0 / rate as f32,
     };
-    let measured: Vec<Option<Measurement>> =
-        frames.iter().map(|f| measure(&prepared.model, f)).collect();
+    let measured = frames.iter().map(|frames| measure(&prepared.model, frames));
+    let mut measured: Vec<Option<Measurement>> = measured.collect();
     let mut tracker = Tracker::new(prepared, config.tracker);
     if live {
-        for (frame, measured) in frames.iter().zip(&measured) {
-            tracker.step(measured.as_ref());
+        let mut clock = StrideClock::new(prepared);
+        for (frame, measured) in frames.iter().zip(&mut measured) {
+            let stride = clock.step(frame);
+            if let Some(measured) = measured {
+                measured.stride = stride;
+            }
+            tracker.step_striding(measured.as_mut(), shown.confidence);
             shown.add(&tracker, measured.as_ref(), frame, tracker.log_density());
         }
         return Ok(shown.done());
     }
+    // Where in the stride the other leg is, later frames tell better than the time since a landing.
     let mut back = Tracker::new(prepared, config.tracker);
     let mut filtered: Vec<Vec<f32>> = Vec::new();
     let mut log_densities = Vec::with_capacity(frames.len());
@@ -114,6 +121,7 @@ pub fn reconstruct_recording(
                 back.step_back(measured[frame].as_ref(), &mut later);
             }
         }
+        back.take_strangeness(&tracker);
         for frame in first..end {
             back.set_probabilities(&filtered[frame - first]);
             let log_density = log_densities[frame];

@@ -2,10 +2,13 @@
 //! appendix A), linear in the number of frames.
 
 mod backward;
+mod evidence;
 mod interpolation;
 
-use crate::kernels::{add, distances, weigh};
+use crate::kernels::add;
 use crate::prepared::Prepared;
+use crate::strangeness::Strangeness;
+use crate::stride_phase::StridePhase;
 use footfall_core::Behaviour;
 use footfall_model::imu_model::{MAX_PHASES, MAX_WIDTH};
 use std::sync::Arc;
@@ -23,6 +26,10 @@ pub struct TrackerConfig {
     pub exit: f32,
     /// Weight of a frame of the sensors: successive frames are alike, and would count several times over, and so would two sensors on one body.
     pub evidence: f32,
+    /// Weight of the phase of a stranger's stride beside the numbers of the sensors; 0 ignores it.
+    pub stride: f32,
+    /// Share of the evidence that counts while strides repeat: what a stranger's sensor measures differently is then the same over and over.
+    pub repeated: f32,
     /// Squared distance a sensor, in deviations of the model, from which on a frame explains nothing of what was measured: all such frames are alike, so that
     /// where none explains it the body goes on as it did.
     pub farthest: f32,
@@ -44,6 +51,8 @@ impl Default for TrackerConfig {
             keep_subject: 0.7,
             exit: 0.01,
             evidence: 0.5,
+            stride: 1.0,
+            repeated: 0.3,
             farthest: 25.0,
             round_frames: 24,
             interpolated: 20,
@@ -61,6 +70,8 @@ pub struct Measurement {
     pub values: [f32; MAX_WIDTH],
     /// Weights of the numbers, 0 to 1.
     pub weights: [f32; MAX_WIDTH],
+    /// Phase of the stride of the first foot with a sensor.
+    pub stride: StridePhase,
 }
 
 /// Probabilities after a frame.
@@ -75,6 +86,8 @@ pub struct Tracker {
     probability: Vec<f32>,
     /// Segments that hold some of it.
     active: Vec<u32>,
+    /// Probability of each of these.
+    masses: Vec<f32>,
     /// Segments that are looked at, and whether each is among them.
     candidates: Vec<u32>,
     listed: Vec<bool>,
@@ -93,10 +106,8 @@ pub struct Tracker {
     log_likelihood: f64,
     /// The part of it that the last measured frame added.
     log_density: f64,
+    strangeness: Strangeness,
 }
-
-/// Frames that are predicted with less than this share of what each would have if all were alike are not compared with the measurement.
-const LEAST_SHARE: f32 = 0.15;
 
 /// Segments that held less than this are dropped.
 const LEAST_MASS: f32 = 2e-5;
@@ -111,6 +122,7 @@ impl Tracker {
             config,
             probability: vec![0.0; frames],
             active: Vec::with_capacity(segments),
+            masses: Vec::with_capacity(segments),
             candidates: Vec::with_capacity(segments),
             listed: vec![false; segments],
             turn: 0,
@@ -123,6 +135,7 @@ impl Tracker {
             behaviours: [0.0; Behaviour::ALL.len()],
             log_likelihood: 0.0,
             log_density: 0.0,
+            strangeness: Strangeness::UNKNOWN,
             prepared: Arc::clone(prepared),
         };
         tracker.reset();
@@ -137,6 +150,7 @@ impl Tracker {
             .extend(0..self.prepared.model.segments.len() as u32);
         self.turn = 0;
         (self.log_likelihood, self.log_density) = (0.0, 0.0);
+        self.strangeness = Strangeness::UNKNOWN;
         self.weigh_segments();
     }
 
@@ -173,6 +187,9 @@ impl Tracker {
         };
         self.keep(weighed);
         self.weigh_segments();
+        if let Some(sensor) = sensor {
+            self.compare(sensor);
+        }
     }
 
     /// Moves probability that leaves the segments at their ends to the phases it enters.
@@ -301,58 +318,6 @@ impl Tracker {
         self.turn = (self.turn + 1) % self.round_frames();
     }
 
-    /// Weighs what may be with what was measured (appendix A, "update"). Returns the sum.
-    fn update(&mut self, sensor: &Measurement) -> f32 {
-        let limit = LEAST_SHARE / self.prepared.frames as f32;
-        let nearest = self.measure(sensor, limit);
-        let factor = self.factor();
-        let sum = weigh(
-            &self.predicted,
-            &self.distance,
-            factor,
-            [nearest, self.farthest()],
-            &mut self.weighed,
-        );
-        self.log_density = f64::from(sum.max(f32::MIN_POSITIVE)).ln() + f64::from(factor * nearest);
-        self.log_likelihood += self.log_density;
-        sum
-    }
-
-    /// Factor from a squared distance of all sensors to the logarithm of a probability.
-    fn factor(&self) -> f32 {
-        -0.5 * self.config.evidence / self.prepared.model.sites.len() as f32
-    }
-
-    /// Squared distance of all sensors beyond which a frame counts as no farther.
-    fn farthest(&self) -> f32 {
-        self.config.farthest * self.prepared.model.sites.len() as f32
-    }
-
-    /// Measures how far frames that are predicted with more than a limit are from what was measured. Returns the least distance.
-    fn measure(&mut self, sensor: &Measurement, limit: f32) -> f32 {
-        let farthest = self.farthest();
-        if let Some(phases) = &self.prepared.phase_deviations {
-            phases.distances(&self.prepared, sensor, &mut self.distance);
-            return self.distance.iter().copied().fold(farthest, f32::min);
-        }
-        let (mut measured, mut weights) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
-        let deviations = &self.prepared.model.deviations;
-        for (n, deviation) in deviations.iter().enumerate() {
-            measured[n] = sensor.values[n] / deviation;
-            weights[n] = sensor.weights[n];
-        }
-        let width = deviations.len();
-        let nearest = distances(
-            &self.prepared.sensor,
-            &measured[..width],
-            &weights[..width],
-            &self.predicted,
-            limit,
-            &mut self.distance,
-        );
-        nearest.min(farthest)
-    }
-
     /// Brings the weighed candidates to a sum of one, and drops those that hold next to nothing.
     fn keep(&mut self, sum: f32) {
         let prepared = &*self.prepared;
@@ -374,9 +339,9 @@ impl Tracker {
         }
         if self.active.is_empty() {
             // Nothing explains what was measured: start anew.
-            let known = (self.log_likelihood, self.log_density);
+            let known = (self.log_likelihood, self.log_density, self.strangeness);
             self.reset();
-            (self.log_likelihood, self.log_density) = known;
+            (self.log_likelihood, self.log_density, self.strangeness) = known;
         }
     }
 }

@@ -3,7 +3,9 @@
 use footfall_core::{Behaviour, PhaseKind, PhaseStart, Side, Site, Skeleton};
 use footfall_model::imu_model::{BODY_COUNT, SENSOR_COUNT, Segment};
 use footfall_model::{ImuModel, Provenance};
-use footfall_recon::{Measurement, Prepared, Published, ReconConfig, Tracker, TrackerConfig};
+use footfall_recon::{
+    Measurement, Prepared, Published, ReconConfig, StridePhase, Tracker, TrackerConfig,
+};
 use std::sync::Arc;
 
 const WIDTH: usize = SENSOR_COUNT * 2;
@@ -55,6 +57,7 @@ fn measured(n: usize) -> Measurement {
     let mut measurement = Measurement {
         values: [0.0; WIDTH],
         weights: [1.0; WIDTH],
+        stride: StridePhase::default(),
     };
     for (number, value) in measurement.values.iter_mut().enumerate() {
         *value = ((n * 5 + number) as f32 * 0.7).cos();

@@ -389,6 +389,8 @@ fn parts_of_the_published_method_are_switched_one_by_one() {
         "interpolation",
         "regression",
         "blending",
+        "manner",
+        "strides",
     ] {
         let (parts, live, constant) = figures(&["--as-published", part]);
         assert_eq!(parts, serde_json::json!([part]));
@@ -396,7 +398,7 @@ fn parts_of_the_published_method_are_switched_one_by_one() {
         assert!(live < 0.42 * constant, "{part}: {live} of {constant} cm");
     }
     let (all, live, constant) = figures(&["--as-published", "all"]);
-    assert_eq!(all.as_array().map(Vec::len), Some(5));
+    assert_eq!(all.as_array().map(Vec::len), Some(7));
     assert!(live < 0.42 * constant, "all: {live} of {constant} cm");
     assert_eq!(run(&["--as-published", "everything"]).code, 2);
 }

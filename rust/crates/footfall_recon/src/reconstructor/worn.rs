@@ -36,6 +36,7 @@ impl Reconstructor {
     pub(super) fn forget_samples(&mut self) {
         self.ground.forget_sensor_heading();
         self.travel.forget_samples();
+        self.clock.forget();
     }
 
     /// Sets a sensor's measurements at rest: its angular rate, in its own axes, and the strength of gravity.

@@ -6,6 +6,11 @@ use footfall_model::imu_model::MAX_PHASES;
 use std::sync::Arc;
 
 impl Tracker {
+    /// Takes how strange the wearer is from the tracker that goes forward.
+    pub(crate) const fn take_strangeness(&mut self, forward: &Self) {
+        self.strangeness = forward.strangeness;
+    }
+
     /// Takes probabilities from outside, for which [`body`](Self::body) then stands.
     pub(crate) fn set_probabilities(&mut self, probabilities: &[f32]) {
         self.probability.copy_from_slice(probabilities);
@@ -26,7 +31,7 @@ impl Tracker {
         if let Some(sensor) = sensor {
             self.predicted[..later.len()].copy_from_slice(later);
             let nearest = self.measure(sensor, f32::NEG_INFINITY);
-            let factor = self.factor();
+            let factor = self.factor(sensor);
             weigh(
                 &self.predicted,
                 &self.distance,

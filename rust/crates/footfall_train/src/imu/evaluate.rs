@@ -5,7 +5,7 @@
 //! joints of both bodies, their hips and headings brought together.
 //!
 //! Measured on the CMU recordings of the public data as recorded (72 clips, 14 subjects, not what the shipped models learned from: `DECISIONS.md` has their table;
-//! `footfall evaluate imu`), centimetres over the frames in which the
+//! `footfall evaluate imu --as-published manner,strides`), centimetres over the frames in which the
 //! body moves: live, and with what comes later in the recording. The constant pose is the mean of the training data. Paper: table 3 and figure 10, which
 //! trains and tests on the same subject. Jumps and hops are one of a kind here: what is held out was seen once or not at all.
 //!

@@ -105,6 +105,10 @@ enum PartArg {
     Regression,
     /// Velocity-based blending
     Blending,
+    /// Bodies of single people, not drawn to those of others
+    Manner,
+    /// Sensors alone, without the time since a foot landed
+    Strides,
 }
 
 impl PartArg {
@@ -116,6 +120,8 @@ impl PartArg {
             Self::Interpolation => &[Published::Interpolation],
             Self::Regression => &[Published::Regression],
             Self::Blending => &[Published::Blending],
+            Self::Manner => &[Published::Manner],
+            Self::Strides => &[Published::Strides],
         }
     }
 }
