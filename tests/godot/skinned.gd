@@ -8,8 +8,8 @@ static func scene(without: PackedStringArray = []) -> PackedScene:
 	return packed(walker)
 
 
-## A scene with the body of a walker that is not built yet.
-static func packed(walker: Walker) -> PackedScene:
+## A scene with the body of a walker that is not built yet. `dress` makes the mesh on a skeleton.
+static func packed(walker: Walker, dress := clothe.bind(0.03)) -> PackedScene:
 	walker.build(false)
 	var root := Node3D.new()
 	var skeleton := walker.skeleton
@@ -19,7 +19,7 @@ static func packed(walker: Walker) -> PackedScene:
 	root.add_child(skeleton)
 	skeleton.owner = root
 	skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_IDLE
-	clothe(skeleton, 0.03).owner = root
+	(dress.call(skeleton) as Node).owner = root
 	var scene := PackedScene.new()
 	scene.pack(root)
 	root.free()

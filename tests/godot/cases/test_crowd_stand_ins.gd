@@ -50,30 +50,17 @@ func _row(distances: PackedFloat32Array, configure := Callable(), texture: Textu
 
 ## The canonical body with a ball around each bone, red on the left, of which a texture is the other colour.
 func _figure(texture: Texture2D) -> PackedScene:
-	var walker := Walker.new()
-	walker.build(false)
-	var root := Node3D.new()
-	var skeleton := walker.skeleton
-	walker.remove_child(skeleton)
-	skeleton.remove_child(walker.gait)
-	walker.gait.free()
-	root.add_child(skeleton)
-	skeleton.owner = root
-	var mesh := MeshInstance3D.new()
-	mesh.mesh = _balls(skeleton)
-	skeleton.add_child(mesh)
-	mesh.owner = root
-	mesh.skin = skeleton.create_skin_from_rest_transforms()
-	mesh.skeleton = ^".."
-	var material := StandardMaterial3D.new()
-	material.albedo_color = Color(0.5, 0.5, 0.5)
-	material.albedo_texture = texture
-	mesh.mesh.surface_set_material(0, material)
-	var scene := PackedScene.new()
-	scene.pack(root)
-	root.free()
-	walker.free()
-	return scene
+	return Skinned.packed(Walker.new(), func(skeleton: Skeleton3D) -> MeshInstance3D:
+		var mesh := MeshInstance3D.new()
+		mesh.mesh = _balls(skeleton)
+		skeleton.add_child(mesh)
+		mesh.skin = skeleton.create_skin_from_rest_transforms()
+		mesh.skeleton = ^".."
+		var material := StandardMaterial3D.new()
+		material.albedo_color = Color(0.5, 0.5, 0.5)
+		material.albedo_texture = texture
+		mesh.mesh.surface_set_material(0, material)
+		return mesh)
 
 
 func _balls(skeleton: Skeleton3D) -> ArrayMesh:
