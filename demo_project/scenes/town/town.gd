@@ -130,13 +130,14 @@ func problems(frames: int) -> PackedStringArray:
 
 ## Goes on as the character that a game with others has made.
 func _become(player: GaitCharacter3D) -> void:
+	# A phone lets go of the character before it is freed.
+	%Doors.take(player)
 	$Bodies.queue_free()
 	_player.queue_free()
 	_player = player
 	var camera: SpringArm3D = player.get_node(^"Camera")
 	camera.rotation = VIEW
 	camera.set(&"mouse_look", 1)
-	%Doors.take(player)
 
 
 func _open_menu() -> void:
