@@ -25,7 +25,6 @@ const UNEXPLAINED := 0.1
 
 var _source: Resource
 var _kind := Kind.PHONE
-var _url := ""
 
 
 func _ready() -> void:
@@ -49,9 +48,8 @@ func choose(kind: Kind) -> void:
 	if _source != null and _source.has_method(&"stop"):
 		_source.stop()
 	_source = _make(kind)
-	_url = ""
 	%Signal.clear()
-	%Code.texture = null
+	%Code.clear()
 	%Code.visible = kind == Kind.PHONE
 	%Ports.visible = kind == Kind.SERIAL
 	%Address.visible = kind == Kind.SENSOR_SERVER
@@ -122,7 +120,7 @@ func show_state(driven: ImuReconstructor3D) -> void:
 	%Progress.value = driven.get_calibration_progress()
 	%Behaviour.text = _doing(driven) if step == &"done" else ""
 	if _kind == Kind.PHONE and not heard:
-		_show_code()
+		%Code.show_page(_source)
 	elif heard:
 		%Code.hide()
 
@@ -133,15 +131,6 @@ func _doing(driven: ImuReconstructor3D) -> String:
 	if confidence < UNEXPLAINED:
 		return "the model does not know this: walk, or calibrate again"
 	return "you %s (confidence %d %%)" % [driven.get_behaviour(), roundi(100.0 * confidence)]
-
-
-func _show_code() -> void:
-	var url: String = _source.get_url()
-	if url == _url:
-		return
-	_url = url
-	%Code.texture = ImageTexture.create_from_image(_source.get_qr_code()) if url != "" else null
-	%Code.tooltip_text = url
 
 
 func _unhandled_key_input(event: InputEvent) -> void:

@@ -15,7 +15,6 @@ static var _news := ""
 var _player: GaitCharacter3D
 var _phone: PhoneImuSource
 var _walk: SensorWalk
-var _url := ""
 
 
 func _ready() -> void:
@@ -46,10 +45,7 @@ func _process(_delta: float) -> void:
 	var heard: bool = not sensor.is_empty() and sensor.samples > 0
 	%Code.visible = not heard
 	%Ahead.visible = heard
-	if _phone.get_url() != _url:
-		_url = _phone.get_url()
-		%Code.texture = ImageTexture.create_from_image(_phone.get_qr_code()) if _url != "" else null
-		%Code.tooltip_text = _url
+	%Code.show_page(_phone)
 	_tell(_next_step(heard))
 
 
@@ -77,7 +73,7 @@ func _use_phone(on: bool) -> void:
 	_phone = PhoneImuSource.new()
 	_walk = SensorWalk.new(THIGH, _player)
 	_walk.driven.source = _phone
-	_url = ""
+	%Code.clear()
 	add_child(_walk)
 	_walk.driven.start_calibration()
 	_phone.start()
