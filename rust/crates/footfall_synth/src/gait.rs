@@ -1,5 +1,10 @@
 //! Walking and running, and the choice between them.
 
+pub(crate) mod applied;
+pub(crate) mod chooser;
+pub(crate) mod pace;
+pub(crate) mod stand;
+
 use glam::Vec2;
 
 /// Kind of gait.

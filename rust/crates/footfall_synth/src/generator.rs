@@ -1,18 +1,22 @@
 //! Streaming generator: one walker, for any length of time.
 
+pub(crate) mod footholds;
+mod jumping;
+pub(crate) mod state;
+
 use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
 use crate::gait::Gait;
+use crate::ground::planter::PlantedFrame;
 use crate::moves::{Leap, Moves};
 use crate::plan::StepShape;
-use crate::planting::PlantedFrame;
-use crate::space::StyleSpace;
+use crate::source::step_source::{Ask, Steps};
+use crate::source::style_space::StyleSpace;
+use crate::source::styled::StyledSteps;
+use crate::source::switching::SwitchingSteps;
 use crate::standing::Life;
-use crate::steps::{Ask, Steps};
-use crate::styled::StyledSteps;
-use crate::switching::SwitchingSteps;
 use footfall_core::rotation::{blend_near, from_heading};
 use footfall_core::{GroundTransform, Joint, Pose, Side, Skeleton};
 use footfall_model::DynamicsModel;

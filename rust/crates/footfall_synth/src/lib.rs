@@ -5,44 +5,30 @@
 //! the ground, on `rocker` feet. `moves` adds motion of the whole body: crouching, jumping, leaning and yielding to pushes. [`GaitGenerator`] does so in real time; [`synthesize`] solves a whole walk
 //! at once.
 
+mod batch;
 mod controls;
 mod crowd;
 mod detail;
 mod error;
-mod fine_motion;
-mod footing;
 mod footstep;
 mod gait;
 mod generator;
-mod jumping;
-mod looped;
+mod ground;
 mod moves;
-mod obeyed;
-mod pace;
 mod plan;
-mod planting;
-mod raw;
-mod recording;
 pub mod replica;
-mod rest;
-mod space;
-mod stage;
+mod source;
 mod standing;
-mod state;
-mod statistics;
-mod steps;
-mod strafe;
-mod styled;
-mod switching;
 mod trajectory;
-mod variance;
-mod walk;
-mod walker;
-mod workbench;
 #[doc(hidden)]
 pub mod workload;
-mod worn;
 
+pub use batch::looped::LoopedWalk;
+pub use batch::streamed::{
+    Move, StandConfig, SwitchingWalkConfig, synthesize_moves, synthesize_standing,
+    synthesize_switching,
+};
+pub use batch::{SynthesizedWalk, WalkConfig, synthesize};
 pub use controls::Controls;
 pub use crowd::{
     CrowdPose, CrowdWalker, LedAim, LedBeginning, LedStep, SharedPose, StyledBody, Workshop,
@@ -52,13 +38,7 @@ pub use error::SynthError;
 pub use footfall_core::GroundTransform;
 pub use footstep::Footstep;
 pub use gait::{Gait, GaitChoice};
+pub use generator::state::StateError;
 pub use generator::{GaitGenerator, GeneratorConfig};
-pub use looped::LoopedWalk;
 pub use moves::JumpPhase;
-pub use recording::{
-    Move, StandConfig, SwitchingWalkConfig, synthesize_moves, synthesize_standing,
-    synthesize_switching,
-};
-pub use space::StyleSpace;
-pub use state::StateError;
-pub use walk::{SynthesizedWalk, WalkConfig, synthesize};
+pub use source::style_space::StyleSpace;

@@ -9,8 +9,8 @@ mod crouch;
 mod jump;
 mod push;
 
-use crate::space::StyleSpace;
-use crate::standing::standing_features;
+use crate::gait::stand::standing_features;
+use crate::source::style_space::StyleSpace;
 use body::Body;
 pub(crate) use climb::ClimbMoment;
 use crouch::Crouch;

@@ -1,20 +1,23 @@
 //! Plan of the coming steps: durations and means of their states.
 
+mod draw;
 mod offsets;
 mod planner;
-mod strides;
+pub(crate) mod remainder;
+pub(crate) mod statistics;
+pub(crate) mod timing;
 
 use crate::detail::{Detail, MOST_GROUND_FRAMES};
-use crate::fine_motion::FineDraw;
+use crate::gait::stand::{Amplitude, START_TERMINAL};
 use crate::gait::{GRAVITY_MPS2, Gait};
-use crate::planting::StepTiming;
-use crate::standing::{Amplitude, START_TERMINAL};
-use crate::statistics::STEP_MEANS;
+use crate::trajectory::fine_motion::FineDraw;
 use footfall_core::{Side, StepPosition};
 use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::mlpg::Real;
 pub(crate) use offsets::Sum;
 pub(crate) use planner::{MAX_COMPONENTS, Planner};
+use statistics::STEP_MEANS;
+use timing::StepTiming;
 
 /// Share of a running step that is spent in the air at most.
 const LONGEST_FLIGHT: f64 = 0.6;

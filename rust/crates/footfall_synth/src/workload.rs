@@ -2,7 +2,7 @@
 
 use crate::error::SynthError;
 use crate::generator::GeneratorConfig;
-use crate::switching::SwitchingSteps;
+use crate::source::switching::SwitchingSteps;
 use footfall_core::{Side, Skeleton};
 use footfall_model::DynamicsModel;
 use std::sync::Arc;

@@ -2,8 +2,8 @@
 
 use super::CrowdWalker;
 use super::own::OwnWalk;
-use crate::footing;
 use crate::footstep::Footstep;
+use crate::generator::footholds;
 use footfall_ik::Plant;
 use footfall_ik::placement::Landing;
 
@@ -28,7 +28,7 @@ impl CrowdWalker {
             return [None; 2];
         };
         let from = own.plan_from_character();
-        footing::landings(self.next_footstep(), &from, &own.ending.arrival)
+        footholds::landings(self.next_footstep(), &from, &own.ending.arrival)
     }
 
     /// Returns whether the left and the right foot bear on the ground.

@@ -4,13 +4,13 @@ use super::own::{Chance, OwnWalk, variation};
 use super::{CrowdWalker, Workshop};
 use crate::controls::Controls;
 use crate::footstep::Footstep;
+use crate::gait::stand::Amplitude;
 use crate::gait::{Gait, GaitChoice};
 use crate::generator::MAX_DT_SECS;
 use crate::plan::{Planner, StepDraw};
-use crate::standing::Amplitude;
-use crate::steps::Ask;
-use crate::walker::{Aim, WINDOW, Walker};
-use crate::workbench::Workbench;
+use crate::source::buffers::Workbench;
+use crate::source::step_source::Ask;
+use crate::source::window::{Aim, WINDOW, Walker};
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
 

@@ -4,8 +4,8 @@ use super::frames::CrowdPose;
 use super::own::OwnWalk;
 use super::workshop::Workshop;
 use crate::footstep::Footstep;
+use crate::ground::planter::PlantedFrame;
 use crate::plan::Planner;
-use crate::planting::PlantedFrame;
 use crate::standing::Life;
 use footfall_core::GroundTransform;
 

@@ -5,11 +5,11 @@ use super::own::OwnWalk;
 use super::rest::RestBench;
 use super::shared::SharedSteps;
 use crate::error::SynthError;
+use crate::gait::chooser::Worn;
 use crate::plan::Planner;
-use crate::space::StyleSpace;
-use crate::walker::Walker;
-use crate::workbench::Workbench;
-use crate::worn::Worn;
+use crate::source::buffers::Workbench;
+use crate::source::style_space::StyleSpace;
+use crate::source::window::Walker;
 use footfall_core::Skeleton;
 use std::sync::{Arc, OnceLock};
 

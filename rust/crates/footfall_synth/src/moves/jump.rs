@@ -7,7 +7,7 @@
 mod course;
 
 use super::body::{Beside, Body};
-use crate::stage::Posture;
+use crate::ground::step::Posture;
 use course::Course;
 use footfall_core::Pose;
 use footfall_core::ease::{hermite, smooth_step};

@@ -1,7 +1,7 @@
 //! Offsets from a model's average step.
 
 use super::MAX_COMPONENTS;
-use crate::statistics::{Part, Statistics};
+use super::statistics::{Part, Statistics};
 use core::ops::Range;
 use footfall_core::Side;
 use footfall_model::StepOffset;

@@ -1,10 +1,10 @@
 //! Planning of steps: chance, speed and manner become durations and means.
 
 use super::offsets::{Offsets, Sum};
+use super::statistics::{Part, STEP_MEANS, Statistics};
 use super::{MAX_STEP_SECS, Manner, StepDraw, StepPlan, StepShape};
 use crate::detail::Detail;
-use crate::fine_motion::FineDraw;
-use crate::statistics::{Part, STEP_MEANS, Statistics};
+use crate::trajectory::fine_motion::FineDraw;
 use footfall_core::Side;
 use footfall_model::{GaitModel, OBSERVATION_COUNT, STATES_PER_STEP};
 use rand::SeedableRng as _;

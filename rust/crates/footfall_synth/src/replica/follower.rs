@@ -10,7 +10,7 @@ use super::update::{Planned, WalkUpdate};
 use super::{ReplicaError, WalkIdentity};
 use crate::controls::Controls;
 use crate::generator::{GaitGenerator, MAX_DT_SECS};
-use crate::walker::Aim;
+use crate::source::window::Aim;
 use footfall_core::{GroundTransform, Pose};
 
 /// Walks go faster or slower by this share at most to keep their time, and by as much of it as makes good what they are late within this time, seconds.

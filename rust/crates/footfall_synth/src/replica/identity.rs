@@ -3,7 +3,7 @@
 use super::ReplicaError;
 use super::update::FORMAT;
 use crate::generator::{GaitGenerator, GeneratorConfig};
-use crate::steps::Steps;
+use crate::source::step_source::Steps;
 use footfall_core::hash::fnv1a;
 use serde::{Deserialize, Serialize};
 

@@ -2,15 +2,15 @@
 
 use super::update::Planned;
 use crate::controls::Controls;
+use crate::gait::applied::Obeyed;
+use crate::gait::stand::Amplitude;
 use crate::gait::{Gait, GaitChoice};
 use crate::generator::{GaitGenerator, GeneratorConfig};
-use crate::obeyed::Obeyed;
+use crate::ground::displacement::Aside;
 use crate::plan::StepDraw;
-use crate::planting::Aside;
-use crate::standing::Amplitude;
-use crate::steps::{Ask, StepSource as _, Steps};
-use crate::styled::{StyledSteps, walker_of};
-use crate::walker::Aim;
+use crate::source::step_source::{Ask, StepSource as _, Steps};
+use crate::source::styled::{StyledSteps, walker_of};
+use crate::source::window::Aim;
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
 

@@ -6,12 +6,12 @@ use super::identity::tag;
 use super::update::{Planned, UPDATE_BYTES, WalkUpdate};
 use super::{ReplicaError, WalkIdentity};
 use crate::controls::Controls;
+use crate::gait::applied::Obeyed;
 use crate::gait::{Gait, GaitChoice};
 use crate::generator::GaitGenerator;
 use crate::moves::{Leap, Moves};
-use crate::obeyed::Obeyed;
-use crate::steps::Steps;
-use crate::styled::StyledSteps;
+use crate::source::step_source::Steps;
+use crate::source::styled::StyledSteps;
 use footfall_core::GroundTransform;
 use footfall_core::rotation::from_heading;
 

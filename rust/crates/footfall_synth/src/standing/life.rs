@@ -3,7 +3,7 @@
 use super::carry::Carrier;
 use super::sway::{Stander, StandingTables, Sway};
 use crate::generator::GeneratorConfig;
-use crate::space::StyleSpace;
+use crate::source::style_space::StyleSpace;
 use footfall_core::ease::settled;
 use footfall_core::{Pose, Skeleton};
 use glam::Quat;

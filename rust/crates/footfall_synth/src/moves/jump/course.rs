@@ -1,8 +1,8 @@
 //! The way of the hips through a jump: as the legs have it before and after, and a parabola in between.
 
-use super::super::body::{Beside, Body};
 use super::{ABSORPTION, DIP, FLIGHT, JumpTables, Leap, PUSH, RECOVERY, Timing};
 use crate::gait::GRAVITY_MPS2;
+use crate::moves::body::{Beside, Body};
 use footfall_core::ease::{hermite, smooth_step};
 use footfall_model::{BESIDE_COUNT, FEATURE_COUNT};
 use glam::Vec3;

@@ -1,9 +1,9 @@
 //! Changes of the step that is made: what the sender was asked for in its middle, and jumps.
 
-use super::super::update::WalkUpdate;
 use super::WalkFollower;
 use crate::generator::GaitGenerator;
 use crate::moves::Leap;
+use crate::replica::update::WalkUpdate;
 use footfall_core::GroundTransform;
 
 /// A step that was heard of late is planned anew when it ends so far from where it should, metres.

@@ -1,0 +1,94 @@
+//! Standing, and the steps between standing and walking.
+//!
+//! A model that was trained on standing people has their posture. For a model that only walks, the posture is the mean of a walk over straight legs. A
+//! step that starts or ends a walk blends between that posture and the walk, with the same planted feet.
+
+use crate::ground::step::Posture;
+use footfall_core::ease::smooth_step;
+use footfall_core::rotation::log_map;
+use footfall_core::{Joint, Side};
+use footfall_model::layout::{feature_offset, mirror};
+use footfall_model::{FEATURE_COUNT, GaitModel};
+use glam::Quat;
+
+/// Flexion of the knees of a standing walker, radians.
+const KNEE_FLEXION: f32 = 0.1;
+
+/// Part of a starting step in which it grows: before, the weight shifts.
+const GROWTH: [f32; 2] = [0.0, 0.7];
+
+/// Part of a stopping step by which it has shrunk.
+const SHRUNK_BY: f32 = 0.9;
+
+/// Least part of a starting step in which both feet stand.
+pub(crate) const START_TERMINAL: f64 = 0.22;
+
+/// Share of the walk at the beginning and at the end of a step: 0 is standing, 1 is walking.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Amplitude {
+    pub(crate) from: f32,
+    pub(crate) to: f32,
+}
+
+impl Amplitude {
+    pub(crate) const WALK: Self = Self { from: 1.0, to: 1.0 };
+    pub(crate) const STAND: Self = Self { from: 0.0, to: 0.0 };
+
+    /// Share of the walk at part `s` of the step.
+    pub(crate) fn at(self, s: f32) -> f32 {
+        let progress = if self.to < self.from {
+            s / SHRUNK_BY
+        } else {
+            (s - GROWTH[0]) / (GROWTH[1] - GROWTH[0])
+        };
+        self.from + smooth_step(progress) * (self.to - self.from)
+    }
+}
+
+/// Features of the standing walker of a model.
+pub(crate) fn standing_features(model: &GaitModel) -> Posture {
+    let row = |features: &[f64]| core::array::from_fn(|n| features[n]);
+    if let Some(standing) = &model.standing {
+        return row(&standing.posture).map(|value| value as f32);
+    }
+    standing_posture(row(&model.mean_features()))
+}
+
+/// Features of the standing walker: the mean of a walk, the same left and right, on straight legs.
+pub(crate) fn standing_posture(mut mean: [f64; FEATURE_COUNT]) -> Posture {
+    let mut mirrored = mean;
+    mirror(&mut mirrored);
+    for (mean, mirrored) in mean.iter_mut().zip(mirrored) {
+        *mean = 0.5 * (*mean + mirrored);
+    }
+    // After mirroring only the tilt is left of the hips: the legs undo it to stand upright.
+    let tilt = Quat::from_rotation_x(mean[feature_offset(Joint::Hips)] as f32);
+    let thigh = Quat::from_rotation_x(-0.5 * KNEE_FLEXION);
+    let mut set = |joint: Joint, rotation: Quat| {
+        let vector = log_map(rotation).as_dvec3().to_array();
+        mean[feature_offset(joint)..][..3].copy_from_slice(&vector);
+    };
+    for side in Side::BOTH {
+        set(side.upper_leg(), tilt.inverse() * thigh);
+        set(side.lower_leg(), Quat::from_rotation_x(KNEE_FLEXION));
+        set(side.foot(), thigh);
+        set(side.toes(), Quat::IDENTITY);
+    }
+    mean.map(|value| value as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amplitudes_begin_and_end_where_they_say() {
+        for (from, to) in [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)] {
+            let amplitude = Amplitude { from, to };
+            assert!((amplitude.at(0.0) - from).abs() < 1e-6);
+            assert!((amplitude.at(1.0) - to).abs() < 1e-6);
+            let halves = [amplitude.at(0.4), amplitude.at(0.6)];
+            assert!((halves[1] - halves[0]) * (to - from) >= 0.0);
+        }
+    }
+}

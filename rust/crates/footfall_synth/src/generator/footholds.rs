@@ -1,0 +1,103 @@
+//! Interface to the ground: coming landings, and steps that land elsewhere.
+
+use super::GaitGenerator;
+use crate::footstep::Footstep;
+use crate::ground::step::{Arrival, Stage};
+use crate::plan::StepShape;
+use footfall_core::GroundTransform;
+use footfall_core::rotation::from_heading;
+use footfall_ik::placement::{Frame, Landing};
+use glam::Vec3;
+
+/// Share of a step until which it can still change.
+const STRETCHED_UNTIL: f32 = 0.25;
+/// Limits of shortening and lengthening a step.
+const SHORTEST: f32 = 0.25;
+const LONGEST: f32 = 1.5;
+/// Greatest factor on its tempo: people do not hurry up stairs.
+const MOST_HASTE: f32 = 1.5;
+/// Shortest step and tolerance of its length, metres, and the maximum number of trials for it.
+const SHORT_STEP_M: f32 = 0.05;
+const SAME_LENGTH_M: f32 = 0.01;
+const STRETCHES: usize = 3;
+
+impl GaitGenerator {
+    /// Returns the next landing of each foot and the body's place then, for callers that place feet on real ground.
+    pub fn landings(&self) -> [Option<Landing>; 2] {
+        let arrival = &self.steps.source().stage().arrival;
+        landings(self.next_footstep(), &self.plan_from_character(), arrival)
+    }
+
+    /// Keeps the current step unchanged: new controls wait for the next one. For callers that have chosen a foothold for it.
+    pub fn keep_step(&mut self) {
+        self.steps.source_mut().keep();
+    }
+
+    /// Sets the grade of the way, rise over run, positive uphill: the trunk leans into it. Holds until the next call.
+    ///
+    /// A grade that is not finite counts as level. A switching model ignores it.
+    pub fn set_grade(&mut self, grade: f32) {
+        if let Some(moves) = &mut self.moves {
+            moves.climb(grade);
+        }
+    }
+
+    /// Scales the length of the step that has just begun by this share, within people's limits. The walk continues at the resulting
+    /// speed and returns to the requested one over the next steps. A step further under way stays as it is.
+    pub fn stretch_step(&mut self, share: f32) {
+        let timing = self.shape().timing;
+        let begun = self.position < STRETCHED_UNTIL * timing.frames as f32;
+        if !begun || timing.rests || !share.is_finite() {
+            return;
+        }
+        let length = step_length(self.shape(), self.steps.source().stage());
+        let wanted = share.clamp(SHORTEST, LONGEST) * length;
+        if wanted < SHORT_STEP_M {
+            return;
+        }
+        // Who is to go on at a speed in shorter steps takes them quicker, and who brakes less so.
+        let secs = timing.frames as f32 / self.frame_rate_hz;
+        let quickest = (secs * self.asked_mps / wanted).min(length / wanted);
+        let haste = quickest.clamp(1.0, MOST_HASTE);
+        let mut trials = 0..STRETCHES;
+        let mut next = |shape: &StepShape, stage: &Stage| {
+            trials.next()?;
+            let length = step_length(shape, stage);
+            let far = (length - wanted).abs() >= SAME_LENGTH_M;
+            far.then(|| wanted / length.max(SHORT_STEP_M))
+        };
+        self.steps.source_mut().stretch(haste, &mut next);
+    }
+}
+
+/// Landing of the next footstep, and the body's place with it, seen from where the character is.
+pub(crate) fn landings(
+    next: Option<(Footstep, f32)>,
+    from: &GroundTransform,
+    arrival: &Arrival,
+) -> [Option<Landing>; 2] {
+    let mut landings = [None; 2];
+    if let Some((footstep, secs)) = next {
+        let back = from_heading(-from.heading);
+        let seen = |place: Vec3| back * (place - from.position);
+        landings[footstep.side.index()] = Some(Landing {
+            flat: Frame {
+                position: footstep.position,
+                rotation: from_heading(footstep.heading),
+            },
+            secs,
+            hips: seen(arrival.hips),
+            ankles: arrival.ankles.map(seen),
+        });
+    }
+    landings
+}
+
+/// Distance of a landing foot ahead of the standing one, metres.
+fn step_length(shape: &StepShape, stage: &Stage) -> f32 {
+    let way = stage.travel(shape).normalize_or_zero();
+    let leading = shape.timing.leading;
+    let [from, to] = [leading, leading.other()].map(|side| stage.plant(side));
+    from.zip(to)
+        .map_or(0.0, |(from, to)| (to.flat_ankle - from.flat_ankle).dot(way))
+}

@@ -1,0 +1,74 @@
+//! Feet and hips as they are saved between two steps.
+
+use crate::ground::lean::Lean;
+use crate::ground::planter_state::PlanterState;
+use crate::ground::strafe::Strafe;
+use footfall_ik::Plant;
+use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// Feet and hips that a step takes over from the one before.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Feet {
+    /// Flat ankle and heading, left and right.
+    plants: [[f32; 4]; 2],
+    hips: [f32; 3],
+    hips_velocity: Option<[f32; 3]>,
+    heading: f32,
+    turn_rate: f32,
+    ground_position: [f32; 3],
+    ground_velocity: Option<[f32; 3]>,
+    stride: f32,
+    strafe: Strafe,
+}
+
+impl Feet {
+    pub(super) fn of(planter: &PlanterState) -> Self {
+        Self {
+            plants: planter.plants.map(|plant| {
+                let [x, y, z] = plant.flat_ankle.to_array();
+                [x, y, z, plant.heading]
+            }),
+            hips: planter.hips.to_array(),
+            hips_velocity: planter.hips_velocity.map(|v| v.to_array()),
+            heading: planter.heading,
+            turn_rate: planter.turn_rate,
+            ground_position: planter.ground_position.to_array(),
+            ground_velocity: planter.ground_velocity.map(|v| v.to_array()),
+            stride: planter.stride,
+            strafe: planter.strafe,
+        }
+    }
+
+    pub(super) fn planter(&self) -> PlanterState {
+        PlanterState {
+            plants: self.plants.map(|[x, y, z, heading]| Plant {
+                flat_ankle: Vec3::new(x, y, z),
+                heading,
+            }),
+            hips: self.hips.into(),
+            hips_velocity: self.hips_velocity.map(Vec3::from),
+            heading: self.heading,
+            turn_rate: self.turn_rate,
+            ground_position: self.ground_position.into(),
+            ground_velocity: self.ground_velocity.map(Vec3::from),
+            stride: self.stride,
+            strafe: self.strafe,
+            balance: Vec2::ZERO,
+            airborne: None,
+            lean: Lean::default(),
+        }
+    }
+
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f32> {
+        let velocities = [self.hips_velocity, self.ground_velocity];
+        self.plants
+            .into_iter()
+            .flatten()
+            .chain(self.hips)
+            .chain(self.ground_position)
+            .chain([self.heading, self.turn_rate, self.stride])
+            .chain(self.strafe.numbers())
+            .chain(velocities.into_iter().flatten().flatten())
+    }
+}

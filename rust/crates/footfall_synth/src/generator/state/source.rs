@@ -1,0 +1,222 @@
+//! Parts of a state that each kind of steps adds, and their restoration.
+
+use super::{Led, Quick, Running, Source, State, StateError, detail_of};
+use crate::error::SynthError;
+use crate::gait::chooser::Worn;
+use crate::generator::GeneratorConfig;
+use crate::ground::lean::Lean;
+use crate::ground::planter_state::PlanterState;
+use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
+use crate::source::styled::{StyledSteps, walker_of};
+use crate::source::switching::{SwitchingOrigin, SwitchingSteps};
+use crate::source::window::{Origin, Request, TIE_LEN, WINDOW, Walker};
+use footfall_core::{Side, Skeleton, StepPosition};
+use footfall_model::GaitModel;
+use glam::Vec2;
+use std::sync::Arc;
+
+impl Source {
+    pub(super) fn of_styled(steps: &StyledSteps) -> Self {
+        let origin = steps.walker.origin();
+        let components = components_of(steps.space.model());
+        let draws = steps.walker.draws();
+        let used = draws.iter().flat_map(|draw| {
+            let used = draw.weights.len().min(components);
+            draw.weights[..used].iter().copied()
+        });
+        let manners = [origin.manner_before, origin.request.manner];
+        let blends = steps.walker.blends();
+        Self::Styled {
+            weights: [blends[0], blends[1], &steps.worn.blend].map(|blend| blend.weights.clone()),
+            left_first: draws[0].side == Side::Left,
+            draws: used.collect(),
+            paces: manners
+                .map(|manner| manner.pace)
+                .map(|pace| [pace.covariate_mps, pace.tempo, pace.stride]),
+            positions: manners.map(|manner| manner.position.index() as u8),
+            details: manners.map(|manner| manner.detail as u8),
+            tie: if origin.planter.is_some() {
+                origin.tie.to_vec()
+            } else {
+                Vec::new()
+            },
+        }
+    }
+
+    pub(super) fn of_switching(steps: &SwitchingSteps) -> Self {
+        let origin = &steps.origin;
+        Self::Switching {
+            left: origin.leading == Side::Left,
+            pace: [origin.tempo, origin.stride],
+            detail: origin.detail as u8,
+            expected: origin.expected.clone(),
+        }
+    }
+}
+
+impl State {
+    /// Takes styled steps up from here; they stay as they are where that fails.
+    pub(super) fn take_up(
+        &self,
+        steps: &mut StyledSteps,
+        (running, quick, leap_m, balance, led): (&Running, &Quick, Option<f32>, [f32; 2], &Led),
+        skeleton: &Skeleton,
+        config: &GeneratorConfig,
+    ) -> Result<(), StateError> {
+        let space = Arc::clone(&steps.space);
+        if self.model != space.fingerprint() {
+            return Err(StateError::OtherModel);
+        }
+        let Source::Styled {
+            weights,
+            left_first,
+            draws,
+            paces,
+            positions,
+            details,
+            tie,
+        } = &self.steps
+        else {
+            return Err(StateError::OtherModel);
+        };
+        let found = space.styles().len();
+        if let Some(weights) = weights.iter().find(|w| w.len() != found) {
+            let expected = weights.len();
+            return Err(StateError::OtherStyles { expected, found });
+        }
+        let components = components_of(space.model()).min(MAX_COMPONENTS);
+        let ties = self.feet.is_none() || tie.len() == TIE_LEN;
+        if draws.len() != WINDOW * components || !ties {
+            return Err(StateError::Damaged);
+        }
+        let mut side = if *left_first { Side::Right } else { Side::Left };
+        let draws = core::array::from_fn(|step| {
+            side = side.other();
+            let mut weights = [0.0; MAX_COMPONENTS];
+            weights[..components].copy_from_slice(&draws[step * components..][..components]);
+            StepDraw { side, weights }
+        });
+        let manner = |step: usize| {
+            let [covariate_mps, tempo, stride] = paces[step];
+            let position = StepPosition::ALL.get(usize::from(positions[step]));
+            Manner {
+                pace: Pace {
+                    covariate_mps,
+                    tempo,
+                    stride,
+                },
+                position: position.copied().unwrap_or_default(),
+                detail: detail_of(details[step]),
+            }
+        };
+        let mut origin = Origin {
+            request: Request {
+                manner: manner(1),
+                amplitude: self.amplitude(),
+                turn_rate: self.turn_rate,
+                velocity_mps: quick.velocities_mps[1].into(),
+                facing: self.facing[1],
+                leap_m,
+            },
+            manner_before: manner(0),
+            facing_before: self.facing[0],
+            velocity_before_mps: quick.velocities_mps[0].into(),
+            planter: self.feet.as_ref().map(|feet| PlanterState {
+                airborne: running.airborne(),
+                balance: balance.into(),
+                lean: quick.lean(),
+                ..feet.planter()
+            }),
+            tie: [0.0; TIE_LEN],
+            rest: quick.rest(),
+            aside: led.aside(),
+        };
+        if tie.len() == TIE_LEN {
+            origin.tie.copy_from_slice(tie);
+        }
+        let mut planner = walker_of(&space, config);
+        let [before, now, next] = weights.each_ref().map(|w| space.blend(w));
+        let [gait_before, gait] = running.gaits();
+        planner.resume(self.chance_position, &draws);
+        planner.count_strides(led.strides);
+        // A walker that goes back a little, as in games that predict, is measured already.
+        let known = planner.is_same_walker(&steps.planner) && Arc::ptr_eq(&next, &steps.worn.blend);
+        space.at_bench(|bench| {
+            let worn = if known {
+                None
+            } else {
+                Some(Worn::measure(&planner, skeleton, next, bench)?)
+            };
+            let blends = [before.of_gait(gait_before), now.of_gait(gait)];
+            if origin.planter.is_none() {
+                // The first step of all may fail, so it is tried on somebody else.
+                steps.walker = {
+                    let mut walker = Walker::new(skeleton, &now);
+                    walker.restore(&mut planner, blends, draws, origin, bench)?;
+                    walker
+                };
+            } else {
+                steps
+                    .walker
+                    .restore(&mut planner, blends, draws, origin, bench)?;
+            }
+            if let Some(worn) = worn {
+                steps.worn = worn;
+            }
+            Ok::<_, SynthError>(())
+        })?;
+        steps.planner = planner;
+        steps.velocity_mps = self.velocity_mps.into();
+        steps.obeyed = quick.obeyed();
+        Ok(())
+    }
+
+    /// Takes switching steps up from here.
+    pub(super) fn resume(
+        &self,
+        steps: &mut SwitchingSteps,
+        (lean, balance): (Lean, Vec2),
+        config: &GeneratorConfig,
+    ) -> Result<(), StateError> {
+        let Source::Switching {
+            left,
+            pace: [tempo, stride],
+            detail,
+            expected,
+        } = &self.steps
+        else {
+            return Err(StateError::OtherModel);
+        };
+        if self.model != steps.fingerprint {
+            return Err(StateError::OtherModel);
+        }
+        if ![0, 2 * steps.model.components.len()].contains(&expected.len()) {
+            return Err(StateError::Damaged);
+        }
+        let origin = SwitchingOrigin {
+            leading: if *left { Side::Left } else { Side::Right },
+            tempo: *tempo,
+            stride: *stride,
+            detail: detail_of(*detail),
+            amplitude: self.amplitude(),
+            turn_rate: self.turn_rate,
+            facing: self.facing,
+            chance_position: self.chance_position,
+            expected: expected.clone(),
+            planter: self.feet.as_ref().map(|feet| PlanterState {
+                balance,
+                lean,
+                ..feet.planter()
+            }),
+        };
+        steps.resume(config, origin, self.velocity_mps.into());
+        Ok(())
+    }
+}
+
+/// Components of the variation that a step has at most, walked or run.
+fn components_of(model: &GaitModel) -> usize {
+    let own = model.variation.step.len();
+    let running = model.running.as_ref();
+    running.map_or(own, |running| own.max(running.variation.step.len()))
+}

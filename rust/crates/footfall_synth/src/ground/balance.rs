@@ -1,0 +1,57 @@
+//! Balance: legs turned under the hips so that, as a foot lands, both feet are on the ground and no knee gives way for it.
+//!
+//! Angles that were generated one by one leave one foot a centimetre or two above the other when it lands. Both are put on the ground by turning
+//! the legs about the hips, which moves the body over its feet, and not by bending a knee. Where legs keep their lengths, the leg behind raises its heel instead (`height.rs`).
+
+use super::generated::RawFrame;
+use super::planter::{Course, Planter};
+use crate::plan::timing::StepTiming;
+use footfall_core::ease::smooth_step;
+use glam::{Vec2, Vec3Swizzles as _};
+
+/// Greatest shift of the feet, as a share of the leg's length.
+const MOST_SHIFT: f32 = 0.07;
+
+/// Feet that stand closer together than this are hardly levelled by a shift, as a share of the leg's length.
+const NEAR: f32 = 0.15;
+
+/// Share of what a landing lacks that is made up for by then: all at once would sway a walker whose left and right steps differ.
+const TAKEN_UP: f32 = 0.5;
+
+impl Planter {
+    /// Turns the legs over a step, from the balance that the one before ended with to that of the landing.
+    pub(super) fn balance(&mut self, raw: &mut [RawFrame], timing: &StepTiming, course: Course) {
+        let from = self.state.balance;
+        let to = match timing.take_off {
+            Some(_) => Vec2::ZERO,
+            // The leg behind raises its heel instead, and no foot lands too far ahead.
+            None if course.keeps_lengths => Vec2::ZERO,
+            None => from.lerp(self.balancing(&raw[timing.frames], timing), TAKEN_UP),
+        };
+        self.state.balance = to;
+        if [from, to] == [Vec2::ZERO; 2] {
+            return;
+        }
+        for (index, frame) in raw[..=timing.frames].iter_mut().enumerate() {
+            let shift = from.lerp(to, smooth_step(index as f32 / timing.frames as f32));
+            for leg in &mut frame.legs {
+                leg.shift(shift);
+            }
+        }
+    }
+
+    /// The shift of both feet over the ground by which their legs have the hips at one height.
+    fn balancing(&self, landing: &RawFrame, timing: &StepTiming) -> Vec2 {
+        let sides = [timing.leading.other(), timing.leading];
+        let [ahead, behind] = sides.map(|side| landing.legs[side.index()].ankle);
+        let [high, low] = sides.map(|side| self.landing_height(landing, side));
+        let length = self.leg_lengths[timing.leading.index()];
+        let apart = (ahead - behind).xz();
+        let height = -0.5 * (ahead.y + behind.y);
+        let near = NEAR * length;
+        let forwards = self.state.strafe.uprightness();
+        let shift =
+            apart * (forwards * (high - low) * height / (apart.length_squared() + near * near));
+        shift.clamp_length_max(MOST_SHIFT * length)
+    }
+}

@@ -1,0 +1,87 @@
+//! A step cut off in its swing: what its rest goes on from.
+
+use super::flight::Airborne;
+use super::lean::Bend;
+use super::lean::Pull;
+use super::planter::PlantedFrame;
+use super::planter_state::PlanterState;
+use super::travel::TURN_ONSET;
+use crate::plan::timing::StepTiming;
+use footfall_core::ease::smooth_step;
+use footfall_core::{Joint, Side, Skeleton};
+use footfall_ik::FootTarget;
+use glam::Vec3;
+
+/// A frame at which a step is cut, and what it was put on the ground with.
+pub(crate) struct Cut<'a> {
+    pub(crate) skeleton: &'a Skeleton,
+    pub(crate) frame_secs: f32,
+    pub(crate) timing: &'a StepTiming,
+    pub(crate) frames: &'a [PlantedFrame],
+    pub(crate) frame: usize,
+    /// State at the step's beginning, the state that the next step would begin with, and the turning at its end.
+    pub(crate) begun: &'a PlanterState,
+    pub(crate) ended: PlanterState,
+    pub(crate) turn_rate: f32,
+    pub(crate) pull: Pull,
+}
+
+impl Cut<'_> {
+    /// Returns true when one foot stands and the other is in the air, and was in the frame before.
+    pub(crate) fn is_in_swing(&self) -> bool {
+        let (standing, swinging) = (self.timing.leading, self.timing.leading.other());
+        self.frame > 0
+            && self.frames[self.frame - 1..=self.frame]
+                .iter()
+                .all(|frame| frame.contact[standing.index()] && !frame.contact[swinging.index()])
+    }
+
+    /// State that a step goes on from that begins here, with one foot in the air.
+    pub(crate) fn state(&self) -> PlanterState {
+        let [before, now] = [self.frame - 1, self.frame].map(|frame| &self.frames[frame]);
+        let s = self.frame as f32 / self.timing.frames as f32;
+        let share = smooth_step(s);
+        let velocity =
+            |of: fn(&PlantedFrame) -> Vec3| Some((of(now) - of(before)) / self.frame_secs);
+        let swinging = self.timing.leading.other();
+        PlanterState {
+            plants: self.begun.plants,
+            hips: now.pose.root_position,
+            hips_velocity: velocity(|frame| frame.pose.root_position),
+            heading: now.heading,
+            turn_rate: self.begun.turn_rate
+                + smooth_step(s / TURN_ONSET) * (self.turn_rate - self.begun.turn_rate),
+            ground_position: now.ground_position,
+            ground_velocity: velocity(|frame| frame.ground_position),
+            stride: self.begun.stride + share * (self.ended.stride - self.begun.stride),
+            strafe: self.begun.strafe.between(&self.ended.strafe, s),
+            balance: self.begun.balance.lerp(self.ended.balance, share),
+            lean: Bend::new(
+                self.begun.lean,
+                &self.pull,
+                self.timing.frames as f32 * self.frame_secs,
+            )
+            .at(s),
+            airborne: Some(Airborne {
+                now: self.foot(now, swinging),
+                before: self.foot(before, swinging),
+                frame_secs: self.frame_secs,
+            }),
+        }
+    }
+
+    /// Place of a pose's foot.
+    fn foot(&self, frame: &PlantedFrame, side: Side) -> FootTarget {
+        let pose = &frame.pose;
+        let (mut place, mut rotation) = (pose.root_position, pose.rotation(Joint::Hips));
+        for joint in [side.upper_leg(), side.lower_leg(), side.foot()] {
+            place += rotation * self.skeleton.offset(joint);
+            rotation *= pose.rotation(joint);
+        }
+        FootTarget {
+            ankle: place,
+            foot: rotation,
+            toes: rotation * pose.rotation(side.toes()),
+        }
+    }
+}

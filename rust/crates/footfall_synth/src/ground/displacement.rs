@@ -1,0 +1,52 @@
+//! Steps that end elsewhere than planned: how a walker that is a little off its place walks there.
+//!
+//! The foot that stands stays. Hips go over to where the step is to end with the ease of a smooth step, and the foot that lands goes with them, so that a
+//! correction is part of the walk.
+
+use super::planter::PlantedFrame;
+use crate::plan::timing::StepTiming;
+use footfall_core::ease::smooth_step;
+use glam::Vec3;
+
+/// Displacement of the end of a step from where it was planned, in the space where the walk began.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Aside {
+    /// Way over the ground, metres.
+    pub(crate) way: Vec3,
+    /// Turn, radians, positive to the left.
+    pub(crate) turn: f32,
+}
+
+impl Aside {
+    pub(crate) const NONE: Self = Self {
+        way: Vec3::ZERO,
+        turn: 0.0,
+    };
+
+    /// The same, and as much again as another.
+    pub(crate) fn and(self, more: Self) -> Self {
+        Self {
+            way: self.way + more.way,
+            turn: self.turn + more.turn,
+        }
+    }
+
+    /// No more than this far and this much about.
+    pub(crate) fn within(self, most_m: f32, most_rad: f32) -> Self {
+        Self {
+            way: self.way.clamp_length_max(most_m),
+            turn: self.turn.clamp(-most_rad, most_rad),
+        }
+    }
+
+    /// Leads the hips aside in the course of a step.
+    pub(super) fn lead(&self, timing: &StepTiming, out: &mut [PlantedFrame]) {
+        if self.way == Vec3::ZERO {
+            return;
+        }
+        for (index, frame) in out.iter_mut().enumerate() {
+            let share = smooth_step(index as f32 / timing.frames as f32);
+            frame.pose.root_position += share * self.way;
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Even travel: people's hips speed up and slow down once a step, whatever the angles of the standing leg say.
+//!
+//! The way above the standing foot follows from angles that were generated one by one, and every error of an angle becomes a surge of
+//! the whole body: hips were fastest before a foot landed, where people's are soon after. So a step forwards has the speed that people's hips have over a step,
+//! one in another direction keeps as much of the step's frequency as people have, and the legs are solved to the feet from there.
+
+use super::planter::{Course, PlantedFrame, Planter};
+use super::speed_change::{steady, urge};
+use crate::plan::timing::StepTiming;
+use core::f32::consts::TAU;
+use footfall_core::ease::smooth_step;
+use glam::{Vec2, Vec3};
+
+/// Greatest amplitudes of the first harmonics of a step's frequency in the hips' speed, as shares of its mean:
+/// captured walks have 0.13 and 0.05. Higher harmonics are surge.
+const MOST: [f32; 2] = [0.15, 0.06];
+
+/// The same harmonics in a walk forwards, cosine and sine from the landing on: means of CMU's neutral walkers, all eight of whom are fastest 50 to 110 ms after a
+/// landing, as the leg behind pushes off, and slowest in the middle of the stance.
+const FORWARDS: [Vec2; 2] = [Vec2::new(0.097, 0.086), Vec2::new(-0.009, 0.034)];
+
+/// Part of the way from the harmonics of the generated legs to those. All of it would have legs stretch faster than they do when the speed is about to change.
+const PEOPLE_S: f32 = 0.35;
+
+/// Weight of a change of speed, and displacement of the end of a step in metres, from which on it is none of a steady walk.
+const UNSTEADY: f32 = 0.25;
+const ASIDE_M: f32 = 0.05;
+
+/// Time constant with which the speed of the step before passes into this one's, seconds.
+const PASSING_SECS: f32 = 0.15;
+
+/// Travel in a step, as a share of the leg's length, from which on the way is evened, and that from which on it is wholly.
+const EVENED: [f32; 2] = [0.1, 0.5];
+
+impl Planter {
+    /// Evens the hips' way over a step; it begins and ends where it did.
+    pub(super) fn even(&self, timing: &StepTiming, course: Course, out: &mut [PlantedFrame]) {
+        let change = course.change;
+        let frames = timing.frames as f32;
+        let begin = out[0].pose.root_position;
+        let way = (out[timing.frames].pose.root_position - begin) * Vec3::new(1.0, 0.0, 1.0);
+        let length = way.length();
+        let share = length / self.leg_lengths[timing.leading.index()];
+        let even = smooth_step((share - EVENED[0]) / (EVENED[1] - EVENED[0]));
+        let weight = even.max(change.weight_over(share));
+        if weight <= 0.0 {
+            return;
+        }
+        let along = way / length;
+        let pace = length / frames;
+        // How far the hips are ahead of who goes at an even speed.
+        let ahead = |hips: Vec3, frame: usize| along.dot(hips - begin) - pace * frame as f32;
+
+        let people = self.people_s(timing, course);
+        let mut waves = [Wave::default(); MOST.len()];
+        for (index, (wave, most)) in waves.iter_mut().zip(MOST).enumerate() {
+            let turn = Vec2::from_angle(TAU * (index + 1) as f32 / frames);
+            let mut angle = Vec2::X;
+            let mut sum = Vec2::ZERO;
+            for (frame, planted) in out[..timing.frames].iter().enumerate() {
+                sum += angle * ahead(planted.pose.root_position, frame);
+                angle = turn.rotate(angle);
+            }
+            wave.turn = turn;
+            // Displacement by a speed of one mean.
+            let unit = pace / turn.to_angle();
+            let generated = (sum * (2.0 / frames)).clamp_length_max(most * unit);
+            let captured = FORWARDS[index].perp() * unit;
+            // A change of speed is no surge, though it looks like one.
+            wave.amplitude = generated.lerp(captured, people) * (1.0 - change.weight);
+        }
+        let begins_at = waves
+            .iter()
+            .fold(pace, |speed, wave| speed + wave.first_speed());
+        let news = self.state.hips_velocity.map_or(0.0, |velocity| {
+            along.dot(velocity) * self.frame_secs - begins_at
+        });
+        let mut ends = change.speed_mps * self.frame_secs - pace;
+        if !timing.rests {
+            ends = 0.5 * (ends + steady(news, ends));
+        }
+        let decay = -self.frame_secs / PASSING_SECS;
+        let left = (frames * decay).exp();
+        let mut angles = [Vec2::X; MOST.len()];
+        for (frame, planted) in out[..=timing.frames].iter_mut().enumerate() {
+            let time = frame as f32;
+            let settled = news * time * ((time * decay).exp() - left);
+            let urged = frames * urge(news, ends, time / frames);
+            let mut evened = settled + change.weight * (urged - settled);
+            for (wave, angle) in waves.iter().zip(&mut angles) {
+                evened += wave.amplitude.dot(*angle - Vec2::X);
+                *angle = wave.turn.rotate(*angle);
+            }
+            let hips = &mut planted.pose.root_position;
+            *hips += along * (weight * (evened - ahead(*hips, frame)));
+        }
+    }
+
+    /// Share of people's harmonics in those of a step: none in a run, in a step that ends standing, backwards or to the side.
+    fn people_s(&self, timing: &StepTiming, course: Course) -> f32 {
+        if timing.take_off.is_some() || timing.airborne || timing.rests {
+            return 0.0;
+        }
+        let unsteady = course.change.weight / UNSTEADY + course.aside.way.length() / ASIDE_M;
+        PEOPLE_S * (1.0 - unsteady).max(0.0) * self.state.strafe.uprightness()
+    }
+}
+
+/// One harmonic of a way.
+#[derive(Clone, Copy, Default)]
+struct Wave {
+    /// The turn from a frame to the next, as a unit vector.
+    turn: Vec2,
+    /// Of its cosine and its sine, metres.
+    amplitude: Vec2,
+}
+
+impl Wave {
+    /// Its speed in the first frame, metres a frame.
+    fn first_speed(&self) -> f32 {
+        self.amplitude.y * self.turn.to_angle()
+    }
+}

@@ -1,0 +1,237 @@
+//! Flight: the part of a running step in which no foot bears the body.
+//!
+//! Nothing but gravity acts then, so the hips go on at an even speed over the ground and on a parabola above it, from where the foot takes off to
+//! where the generated leg of the other foot has them as it lands. The foot that took off is on its swing; the next step brings it down.
+
+use super::bounce::Bounce;
+use super::generated::RawFrame;
+use super::planter::{PlantedFrame, Planter, free_foot};
+use super::support::LET_GO_EXTENSION;
+use super::swing::Swing;
+use crate::gait::GRAVITY_MPS2;
+use crate::plan::timing::StepTiming;
+use footfall_core::rotation::from_heading;
+use footfall_ik::FootTarget;
+use glam::Quat;
+
+/// Speed upwards at which the hips leave the ground at least and at most, m/s, beyond that which brings them back to the same height. Legs that
+/// disagree more about where a short flight ends are bent or stretched.
+const MOST_LIFT_MPS: f32 = 0.3;
+
+/// The foot that lands and the one that takes off each have the hips at a height of their own. This share of the way from the first to the second they
+/// are as a run lands.
+const LEAVING_SHARE: f32 = 0.15;
+
+/// Longer flights are leaps, seconds; they keep this share of the speed over the ground that they begin with.
+const LEAP_SECS: f32 = 0.22;
+const LEAP_SPEED_SHARE: f32 = 0.85;
+
+/// Fraction of the straight leg at which a foot that leaps leaves the ground: hips rise so fast then that a knee would snap straight.
+const LEAP_EXTENSION: f32 = 0.98;
+
+/// A foot in the air between two steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Airborne {
+    /// Places of the foot as the step begins, and a frame earlier.
+    pub(crate) now: FootTarget,
+    pub(crate) before: FootTarget,
+    /// Time between the two, seconds.
+    pub(crate) frame_secs: f32,
+}
+
+impl Airborne {
+    /// Place of the foot so long ago.
+    fn earlier(&self, secs: f32) -> FootTarget {
+        let share = secs / self.frame_secs;
+        if (share - 1.0).abs() < 1e-3 {
+            return self.before;
+        }
+        let turned = |now: Quat, before: Quat| now.slerp(before, share);
+        FootTarget {
+            ankle: self.now.ankle + share * (self.before.ankle - self.now.ankle),
+            foot: turned(self.now.foot, self.before.foot),
+            toes: turned(self.now.toes, self.before.toes),
+        }
+    }
+}
+
+impl Planter {
+    /// Lets the hips go on over the ground as they did above the foot, in the frames after it has taken off; a leap keeps most of the speed that it begins
+    /// with.
+    pub(super) fn drift(&self, timing: &StepTiming, out: &mut [PlantedFrame]) {
+        let Some(take_off) = timing.take_off else {
+            return;
+        };
+        let [begin, leaves] = [0, take_off].map(|frame| out[frame].pose.root_position);
+        // In a turn the way of the stance is an arc, and what flies goes on along its tangent.
+        let headings = out[..=take_off].iter().map(|frame| frame.heading);
+        let ahead = out[take_off].heading - headings.sum::<f32>() / (take_off + 1) as f32;
+        let mut pace = from_heading(ahead) * (leaves - begin) / take_off as f32;
+        if self.leaps(timing) {
+            let along = pace.with_y(0.0).normalize_or_zero();
+            let entry = self.state.hips_velocity.unwrap_or_default().dot(along);
+            let missing = (LEAP_SPEED_SHARE * entry * self.frame_secs - pace.dot(along)).max(0.0);
+            for (frame, planted) in out[..=take_off].iter_mut().enumerate() {
+                let s = frame as f32 / take_off as f32;
+                let gained = s * s * s / 3.0 * take_off as f32;
+                planted.pose.root_position += along * (missing * gained);
+            }
+            pace += along * missing;
+        }
+        let leaves = out[take_off].pose.root_position;
+        for (passed, frame) in out[take_off..=timing.frames].iter_mut().enumerate() {
+            frame.pose.root_position = leaves + passed as f32 * pace;
+        }
+    }
+
+    /// Time from the take-off to the end of the step, seconds.
+    fn flight_secs(&self, timing: &StepTiming) -> f32 {
+        let frames = timing.take_off.map_or(0, |last| timing.frames - last);
+        frames as f32 * self.frame_secs
+    }
+
+    /// Returns true when the step goes from flight to flight, as those of a steady run do.
+    pub(super) fn runs_on(&self, timing: &StepTiming) -> bool {
+        timing.airborne && timing.take_off.is_some() && !self.leaps(timing)
+    }
+
+    /// Returns true when the flight that ends the step is that of a leap.
+    fn leaps(&self, timing: &StepTiming) -> bool {
+        self.flight_secs(timing) > LEAP_SECS
+    }
+
+    /// Puts the hips on their parabola, and lets the standing leg push them off at its speed. From flight to flight it does so as a spring; in the first
+    /// step of a run and before a leap it goes on as generated, and pushes harder.
+    pub(super) fn fly(&self, raw: &[RawFrame], timing: &StepTiming, out: &mut [PlantedFrame]) {
+        let Some(take_off) = timing.take_off else {
+            return;
+        };
+        let landing = self.landing_height(&raw[timing.frames], timing.leading.other());
+        let flight_secs = self.flight_secs(timing);
+        let even = 0.5 * GRAVITY_MPS2 * flight_secs;
+        let stance_secs = take_off as f32 * self.frame_secs;
+        let limited = |lift: f32| even + lift.clamp(-MOST_LIFT_MPS, MOST_LIFT_MPS);
+        let rise = match self.state.hips_velocity {
+            Some(velocity) if self.runs_on(timing) => {
+                // A frame's velocity is that of half a frame earlier.
+                let fall = velocity.y - 0.5 * GRAVITY_MPS2 * self.frame_secs;
+                let begin = self.state.hips.y;
+                let leaving = &raw[take_off].legs[timing.leading.index()];
+                let leaving = leaving.target.ankle.y - leaving.ankle.y;
+                let end = landing + LEAVING_SHARE * (leaving - landing);
+                let short = end - begin - 0.5 * (fall + even) * stance_secs;
+                let rise = limited(short / (0.5 * stance_secs + flight_secs));
+                let bounce = Bounce::new(begin, [fall, rise], stance_secs);
+                for (index, frame) in out[..=take_off].iter_mut().enumerate() {
+                    frame.pose.root_position.y = bounce.height(index as f32 * self.frame_secs);
+                }
+                rise
+            }
+            _ => {
+                let height = |frame: usize| out[frame].pose.root_position.y;
+                let rise = limited((landing - height(take_off)) / flight_secs);
+                // The generated leg pushes off nearly as fast; what is missing is added over the stance.
+                let pushed = (height(take_off) - height(take_off - 1)) / self.frame_secs;
+                // Between two frames the leg's speed is that of half a frame earlier.
+                let missing = rise + 0.5 * GRAVITY_MPS2 * self.frame_secs * 0.5 - pushed;
+                for (index, frame) in out[..=take_off].iter_mut().enumerate() {
+                    let s = index as f32 / take_off as f32;
+                    frame.pose.root_position.y += missing * stance_secs * s * s * (s - 1.0);
+                }
+                rise
+            }
+        };
+        let begin = out[take_off].pose.root_position.y;
+        for (passed, frame) in out[take_off..=timing.frames].iter_mut().enumerate() {
+            let t = passed as f32 * self.frame_secs;
+            frame.pose.root_position.y = begin + rise * t - 0.5 * GRAVITY_MPS2 * t * t;
+        }
+    }
+
+    /// Lets the foot take off earlier where its leg, stretched, does not reach any more; returns its last frame on the ground.
+    pub(super) fn leave(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &mut [PlantedFrame],
+    ) -> Option<usize> {
+        let take_off = timing.take_off?;
+        let side = timing.leading.index();
+        let extension = if self.leaps(timing) {
+            LEAP_EXTENSION
+        } else {
+            LET_GO_EXTENSION
+        };
+        let reach = extension * self.leg_lengths[side];
+        let beyond = (2..=take_off).find(|index| {
+            let frame = &frames[*index];
+            let leg = &raw[*index].legs[side];
+            let hip = frame.pose.root_position + frame.level * leg.hip;
+            hip.distance(leg.target.ankle) > reach
+        });
+        let last = beyond.map_or(take_off, |beyond| beyond - 1);
+        for frame in &mut frames[last + 1..=take_off] {
+            frame.contact[side] = false;
+        }
+        Some(last)
+    }
+
+    /// Fills where the foot that took off is until the step ends, and keeps it for the next.
+    pub(super) fn depart(
+        &mut self,
+        raw: &mut [RawFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+    ) {
+        let side = timing.leading;
+        self.state.airborne = timing.take_off.map(|take_off| {
+            let ends = [take_off - 1, take_off].map(|index| {
+                let frame = &frames[index];
+                let hips = frame.pose.root_position;
+                let free = free_foot(&raw[index], side, hips, frame.level);
+                (raw[index].legs[side.index()].target, free)
+            });
+            let leaps = self.leaps(timing);
+            let swing = Swing::departing(&ends, timing, take_off, leaps, self.frame_secs);
+            self.fill_swing(raw, side, take_off + 1..timing.frames + 1, &swing, frames);
+            let at = |frame: usize| raw[frame].legs[side.index()].target;
+            Airborne {
+                now: at(timing.frames),
+                before: at(timing.frames - 1),
+                frame_secs: self.frame_secs,
+            }
+        });
+    }
+
+    /// Planned and free places of a foot that was in the air as the step began, a frame earlier and then.
+    pub(super) fn airborne_ends(
+        &self,
+        airborne: &Airborne,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+    ) -> [(FootTarget, FootTarget); 2] {
+        let side = timing.leading.other();
+        let [now, next] = [0, 1].map(|index: usize| {
+            let frame = &frames[index];
+            free_foot(&raw[index], side, frame.pose.root_position, frame.level)
+        });
+        let back = |now: Quat, next: Quat| (now * next.inverse() * now).normalize();
+        let earlier = FootTarget {
+            ankle: 2.0 * now.ankle - next.ankle,
+            foot: back(now.foot, next.foot),
+            toes: back(now.toes, next.toes),
+        };
+        [
+            (airborne.earlier(self.frame_secs), earlier),
+            (airborne.now, now),
+        ]
+    }
+
+    /// Height of the hips over the leg of a landing foot, metres.
+    pub(super) fn landing_height(&self, raw: &RawFrame, side: footfall_core::Side) -> f32 {
+        let leg = &raw.legs[side.index()];
+        let foot = &self.feet[side.index()];
+        foot.ankle_height() + foot.roll(leg.pitch).y - leg.ankle.y
+    }
+}

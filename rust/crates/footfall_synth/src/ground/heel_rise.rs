@@ -1,0 +1,184 @@
+//! Heels that rise: a standing leg that comes to its end rolls its foot onto the ball, as people's do, before its knee snaps straight or
+//! its pelvis drops.
+
+use super::generated::{RawFrame, RawLeg};
+use super::planter::{PlantedFrame, Planter};
+use super::support::MAX_STANCE_EXTENSION;
+use crate::plan::timing::StepTiming;
+use footfall_core::Side;
+use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8, smooth_step};
+use footfall_core::rotation::from_heading;
+use footfall_ik::{Plant, RockerFoot};
+use glam::Quat;
+
+/// Fraction of the straight leg beyond which the heel rises instead, and over how much more it comes to do so.
+const RISING_EXTENSION: f32 = 0.9965;
+const RISING_SOFTNESS: f32 = 0.0014;
+
+/// A leg that leaves the ground begins to bend so long before, seconds, and its knee is bent by twice this more by then, radians: it would snap.
+const LEAVING_BEND: f32 = 0.055;
+const LEAVING_SECS: f32 = 0.05;
+
+/// No leg counts as stretched farther, as a multiple of that: its exponential stays a number.
+const MOST_BEYOND: f32 = 50.0;
+
+/// A leg that is shorter by so many times as much raises no heel.
+const MOST_SHORT: f32 = 5.0;
+
+/// Greatest extra rise of a heel, radians.
+const MOST_RISE: f32 = 0.4;
+
+/// A heel rises for this where the foot is not ahead of the hip by this share of the leg's length: there it has just landed.
+const AHEAD: f32 = 0.1;
+
+/// Weights by which the rise of a frame counts, and those of its neighbours: a leg that comes off its end does so smoothly.
+const SMOOTHED: [f32; 3] = [3.0, 2.0, 1.0];
+
+impl Planter {
+    /// Raises the heels of feet that bear, where their legs are at their end, and puts those down again that need not be raised any more.
+    pub(super) fn raise_heels(
+        &self,
+        raw: &mut [RawFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+    ) {
+        let leading = timing.take_off.unwrap_or(timing.frames);
+        let trailing = (!timing.airborne).then_some(timing.terminal);
+        let stances = [
+            (timing.leading, Some(leading)),
+            (timing.leading.other(), trailing),
+        ];
+        // The cosine of half the knee's bend is what is left of the leg's length.
+        let half_bend = RISING_EXTENSION.acos();
+        for (side, last) in stances {
+            let Some(last) = last else { continue };
+            let raw = &mut raw[..=last];
+            let plant = self.plant(side);
+            let level = from_heading(plant.heading);
+            let stance = Stance {
+                foot: &self.feet[side.index()],
+                plant,
+                from_level: level.inverse(),
+                length: self.leg_lengths[side.index()],
+            };
+            let leaves = side != timing.leading && !timing.rests;
+            let most_extension = |index: usize| {
+                let left_secs = last.saturating_sub(index) as f32 * self.frame_secs;
+                if leaves && left_secs < LEAVING_SECS {
+                    let left = 1.0 - left_secs / LEAVING_SECS;
+                    (half_bend + LEAVING_BEND * left * left).cos()
+                } else {
+                    RISING_EXTENSION
+                }
+            };
+            self.stand(side, raw, |leg| (leg.rise > 0.0).then_some(leg.pitch));
+            let mut any = false;
+            let blocks = raw.chunks_mut(LANES).zip(frames.chunks(LANES));
+            for (block, (raw, frames)) in blocks.enumerate() {
+                let at = |lane: usize| lane.min(raw.len() - 1);
+                let leg = |lane: usize| &raw[at(lane)].legs[side.index()];
+                let of_legs = |value: &dyn Fn(&RawLeg) -> f32| {
+                    f32x8::new(core::array::from_fn(|lane| value(leg(lane))))
+                };
+                let level = Quatx8::gather(|lane| frames[at(lane)].level);
+                let hips = Vec3x8::gather(|lane| frames[at(lane)].pose.root_position);
+                let legs = Legs {
+                    level,
+                    hip: hips + level * Vec3x8::gather(|lane| leg(lane).hip),
+                    ankle: Vec3x8::gather(|lane| leg(lane).target.ankle),
+                    pitch: of_legs(&|leg| leg.pitch),
+                    rise: of_legs(&|leg| leg.rise),
+                };
+                let most = core::array::from_fn(|lane| most_extension(block * LANES + lane));
+                let rises = stance.rises(&legs, f32x8::new(most));
+                any |= rises.simd_gt(f32x8::ZERO).any();
+                for (raw, rise) in raw.iter_mut().zip(rises.to_array()) {
+                    raw.legs[side.index()].rise = rise;
+                }
+            }
+            if any {
+                smooth(raw, side);
+                let risen = |leg: &RawLeg| (leg.rise > 0.0).then_some(leg.pitch + leg.rise);
+                self.stand(side, raw, risen);
+            }
+        }
+    }
+}
+
+/// A foot on its plant, and the length of its leg.
+struct Stance<'a> {
+    foot: &'a RockerFoot,
+    plant: &'a Plant,
+    /// The rotation into the axes of the plant.
+    from_level: Quat,
+    length: f32,
+}
+
+/// The leg in eight frames, its foot as generated.
+struct Legs {
+    level: Quatx8,
+    /// Place of the hip joint.
+    hip: Vec3x8,
+    ankle: Vec3x8,
+    pitch: f32x8,
+    /// By how much the heel was raised before.
+    rise: f32x8,
+}
+
+impl Stance<'_> {
+    /// Returns by how much heels have to be higher than generated for their legs not to be beyond these shares of their length, radians.
+    fn rises(&self, legs: &Legs, most_extension: f32x8) -> f32x8 {
+        let reach = legs.ankle - legs.hip;
+        let extension = reach.length() * self.length.recip();
+        let beyond = (extension - most_extension) * RISING_SOFTNESS.recip();
+        let ahead = (legs.level.conjugate() * reach).z * (AHEAD * self.length).recip();
+        let share = smooth_step(f32x8::ONE - ahead);
+        let some = beyond.simd_ge(f32x8::splat(-MOST_SHORT))
+            & legs.pitch.simd_ge(f32x8::ZERO)
+            & share.simd_gt(f32x8::ZERO);
+        if some.none() {
+            return f32x8::ZERO;
+        }
+        let beyond = beyond.fast_min(f32x8::splat(MOST_BEYOND));
+        let less = (f32x8::ONE + beyond.exp()).ln();
+        let wanted = extension - share * RISING_SOFTNESS * less;
+        // The hips have come down to what a leg with its heel up reaches, and no lower.
+        let most = wanted.fast_min(f32x8::splat(MAX_STANCE_EXTENSION));
+        let wanted = legs.rise.simd_gt(f32x8::ZERO).bitselect(most, wanted);
+        let plant = Vec3x8::splat(self.plant.flat_ankle);
+        let from_plant = Quatx8::splat(self.from_level) * (legs.hip - plant);
+        let reach = wanted * self.length;
+        let pitch = self
+            .foot
+            .pitches_within_reach(from_plant, reach, legs.pitch);
+        let rise = (pitch - legs.pitch)
+            .fast_max(f32x8::ZERO)
+            .fast_min(f32x8::splat(MOST_RISE));
+        some.bitselect(rise, f32x8::ZERO)
+    }
+}
+
+/// Smooths the rise of a heel in time, less and less towards the ends of its stance.
+fn smooth(raw: &mut [RawFrame], side: Side) {
+    let side = side.index();
+    let last = raw.len() - 1;
+    // Rises of the frames before, as they were.
+    let mut before = [0.0; 2];
+    for index in 0..raw.len() {
+        let own = raw[index].legs[side].rise;
+        let reach = index.min(last - index).min(before.len());
+        let (mut sum, mut weights) = (SMOOTHED[0] * own, SMOOTHED[0]);
+        for away in 1..=reach {
+            sum += SMOOTHED[away] * (before[away - 1] + raw[index + away].legs[side].rise);
+            weights += 2.0 * SMOOTHED[away];
+        }
+        // No less than its leg lacks, and none for a foot that stands on its heel.
+        let leg = &mut raw[index].legs[side];
+        leg.rise = if leg.pitch < 0.0 {
+            own
+        } else {
+            own.max(sum / weights)
+        };
+        before = [own, before[0]];
+    }
+}

@@ -1,0 +1,51 @@
+//! Height of the hips in a walk: the standing leg keeps the length that was generated for it.
+//!
+//! The hips' way over the ground is evened, and a planted foot does not creep as captured ones do, so the standing leg has another direction than the generated
+//! one. Its length is what shows, as the bend of the knee. So the hips are as high as that length has them, and come to the height of the leg that lands by
+//! the end of the step. Steps to the side and backwards keep the direction of the leg, too. A leg that is too short for that raises its heel (`heel.rs`).
+
+use super::generated::RawFrame;
+use super::planter::{PlantedFrame, Planter};
+use super::travel::MEETING_FROM;
+use crate::plan::timing::StepTiming;
+use footfall_core::ease::{settled, smooth_step};
+use glam::Vec3Swizzles as _;
+
+/// Least share of a leg's squared length that is left of it from the side.
+const LEAST_HEIGHT: f32 = 0.25;
+
+impl Planter {
+    /// Puts the hips of every frame of a walked step at the height at which the standing leg is as long as generated.
+    pub(super) fn keep_lengths(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        out: &mut [PlantedFrame],
+    ) {
+        let height = |index: usize| height_by_length(&raw[index], timing, &out[index]);
+        let [start, follow, last] = [0, 1, timing.frames].map(height);
+        let offset = self.state.hips.y - start;
+        let velocity = self.state.hips_velocity.map_or(0.0, |velocity| {
+            velocity.y * self.frame_secs - (follow - start)
+        });
+        let decay = self.frame_secs / self.settle_secs();
+        let rise = self.landing_height(&raw[timing.frames], timing.leading.other()) - last;
+        for (index, (raw, frame)) in raw.iter().zip(out).take(timing.frames + 1).enumerate() {
+            let time = index as f32;
+            let part = (time / timing.frames as f32 - MEETING_FROM) / (1.0 - MEETING_FROM);
+            let (settling, _) = settled(offset, velocity, decay, time);
+            frame.pose.root_position.y =
+                height_by_length(raw, timing, frame) + smooth_step(part) * rise + settling;
+        }
+    }
+}
+
+/// Height of the hips at which the standing leg has its generated length.
+fn height_by_length(raw: &RawFrame, timing: &StepTiming, frame: &PlantedFrame) -> f32 {
+    let leg = &raw.legs[timing.leading.index()];
+    let hip = frame.level * leg.hip;
+    let squared = leg.ankle.distance_squared(leg.hip);
+    let over = (frame.pose.root_position + hip - leg.target.ankle).xz();
+    let height = (squared - over.length_squared()).max(LEAST_HEIGHT * squared);
+    leg.target.ankle.y + height.sqrt() - hip.y
+}

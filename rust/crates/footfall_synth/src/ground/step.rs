@@ -1,0 +1,247 @@
+//! Stage of one walker: steps of generated features become frames on the ground.
+
+use super::cut::Cut;
+use super::displacement::Aside;
+use super::generated::{RawFrame, Stride};
+use super::lean::Pull;
+use super::planter::{Course, PlantedFrame, Planter};
+use super::planter_state::PlanterState;
+use super::speed_change::SpeedChange;
+use super::strafe::{Strafe, sway};
+use crate::detail::Detail;
+use crate::gait::stand::Amplitude;
+use crate::plan::StepShape;
+use footfall_core::ease::smooth_step;
+use footfall_core::lanes::{self, COUNTING, f32x8};
+use footfall_core::{Side, Skeleton};
+use footfall_ik::Plant;
+use footfall_model::{FEATURE_COUNT, layout};
+use glam::{Vec2, Vec3};
+
+/// Static features of one posture.
+pub(crate) type Posture = [f32; FEATURE_COUNT];
+
+/// Placing of a step on the ground.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placing<'a> {
+    pub(crate) shape: &'a StepShape,
+    /// The standing posture before the step and after it.
+    pub(crate) standing: [&'a Posture; 2],
+    /// Turning at its end, rad/s.
+    pub(crate) turn_rate: f32,
+    /// Headings under which the walk goes along +Z, before the step and after it, radians.
+    pub(crate) facing: [f32; 2],
+    /// Travel to the left and forwards from where the steps face, m/s: those of a run face where it goes.
+    pub(crate) velocity_mps: Vec2,
+    /// That of the step before.
+    pub(crate) velocity_before_mps: Vec2,
+    /// Direction of a run from where the walker faces, radians, positive to the left; none in a walk, and where the generated legs choose it.
+    pub(crate) direction: Option<f32>,
+    /// The share of it that had passed when it was planned anew.
+    pub(crate) passed: f32,
+    /// Displacement of its end.
+    pub(crate) aside: Aside,
+    /// True where legs are to be as long as generated: those of two systems are not true enough for that.
+    pub(crate) keeps_lengths: bool,
+}
+
+/// A body whose foot lands.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Arrival {
+    pub(crate) hips: Vec3,
+    pub(crate) ankles: [Vec3; 2],
+}
+
+/// Puts one step after another on the ground; allocates nothing after it was made.
+#[derive(Debug)]
+pub(crate) struct Stage {
+    skeleton: Skeleton,
+    frame_secs: f32,
+    /// Planter with the feet's last places; `None` before the first step.
+    planter: Option<Planter>,
+    /// Place of the body when the step on the ground ends.
+    pub(crate) arrival: Arrival,
+    /// The last step on the ground, at its own detail, one frame longer than the step; what lies beyond is left from others.
+    pub(crate) frames: Vec<PlantedFrame>,
+}
+
+impl Stage {
+    /// For steps of at most `longest` frames, which come at `frame_rate_hz`.
+    pub(crate) fn new(skeleton: &Skeleton, frame_rate_hz: f64, longest: usize) -> Self {
+        Self {
+            skeleton: skeleton.clone(),
+            frame_secs: (1.0 / frame_rate_hz) as f32,
+            planter: None,
+            arrival: Arrival::default(),
+            frames: vec![PlantedFrame::default(); Detail::ground_room(longest) + 1],
+        }
+    }
+
+    /// Working memory of [`put`](Self::put), for steps of at most `longest` frames.
+    pub(crate) fn raw(longest: usize) -> Vec<RawFrame> {
+        vec![RawFrame::default(); Detail::ground_room(longest) + 1]
+    }
+
+    /// The next step is the first.
+    pub(crate) fn clear(&mut self) {
+        self.planter = None;
+    }
+
+    /// The next step goes on from these feet.
+    pub(crate) fn resume(&mut self, state: &PlanterState) {
+        self.planter = Some(Planter::resume(&self.skeleton, self.frame_secs, state));
+    }
+
+    /// State that the next step begins with; `None` before the first.
+    pub(crate) fn planter_state(&self) -> Option<PlanterState> {
+        self.planter.as_ref().map(Planter::state)
+    }
+
+    /// Last plant of this foot; `None` before the first step.
+    pub(crate) fn plant(&self, side: Side) -> Option<&Plant> {
+        self.planter.as_ref().map(|planter| planter.plant(side))
+    }
+
+    /// State that the rest of the step on the ground goes on from when it is cut at a frame in which one foot is in the air; `None` where none is, and where frames
+    /// were left out. `begun` is what the step began with.
+    pub(crate) fn cut(
+        &self,
+        shape: &StepShape,
+        frame: usize,
+        begun: &PlanterState,
+        placing: &Placing<'_>,
+    ) -> Option<PlanterState> {
+        let cut = Cut {
+            skeleton: &self.skeleton,
+            frame_secs: self.frame_secs,
+            timing: &shape.timing,
+            frames: self.frames.get(..=shape.timing.frames)?,
+            frame,
+            begun,
+            ended: self.planter_state()?,
+            turn_rate: placing.turn_rate,
+            pull: placing.pull(shape.timing.frames as f32 * self.frame_secs),
+        };
+        let whole = shape.detail == Detail::Full && frame < shape.timing.frames;
+        (whole && cut.is_in_swing()).then(|| cut.state())
+    }
+
+    /// Travel of the hips over the ground in the step that was put there.
+    pub(crate) fn travel(&self, shape: &StepShape) -> Vec3 {
+        let last = shape.ground_frames();
+        let [from, to] = [0, last].map(|frame| self.frames[frame].pose.root_position);
+        (to - from) * Vec3::new(1.0, 0.0, 1.0)
+    }
+
+    /// Puts a step on the ground: `rows` are the features of its frames, and of the first frame of the next step. `raw` has room for it.
+    pub(crate) fn put<'a>(
+        &mut self,
+        rows: impl Iterator<Item = &'a [f32]>,
+        placing: &Placing<'_>,
+        raw: &mut [RawFrame],
+    ) {
+        let shape = placing.shape;
+        let timing = shape.ground_timing();
+        let detail = shape.detail.stride();
+        let frame_secs = self.frame_secs * detail as f32;
+        let stride = 1.0 + shape.amplitude.to * (shape.stride as f32 - 1.0);
+        let before = self.planter.as_ref().map(Planter::state);
+        let (before, stride_before) =
+            before.map_or((Strafe::NONE, stride), |state| (state.strafe, state.stride));
+        let step_secs = frame_secs * timing.frames as f32;
+        let strafe = Strafe::of(placing.velocity_mps, step_secs, &self.skeleton);
+        let as_it_is = shape.amplitude == Amplitude::WALK && [before, strafe] == [Strafe::NONE; 2];
+        let raw = &mut raw[..=timing.frames];
+        let frames = &mut self.frames[..=timing.frames];
+        let rows = rows.step_by(detail).enumerate();
+        for (frame, (index, features)) in frames.iter_mut().zip(rows) {
+            let rotations = &mut frame.pose.rotations;
+            if as_it_is {
+                layout::decode(features, rotations);
+                continue;
+            }
+            let s = index as f32 / timing.frames as f32;
+            let (standing, mut blended) = placing.grown(features, s);
+            sway(&mut blended, &standing, before.between(&strafe, s));
+            layout::decode(&blended, rotations);
+        }
+        RawFrame::fill(raw, frames, &self.skeleton, |index| {
+            // A foot that stands must not notice that another step has begun.
+            let s = (COUNTING + f32x8::splat(index as f32)) * (timing.frames as f32).recip();
+            let share = lanes::smooth_step(s);
+            let between = |from: f32, to: f32| share * (to - from) + f32x8::splat(from);
+            Stride {
+                scale: between(stride_before, stride),
+                upright: between(before.uprightness(), strafe.uprightness()),
+            }
+        });
+        let [_, facing] = placing.facing;
+        let planter = self.planter.get_or_insert_with(|| {
+            Planter::new(&self.skeleton, frame_secs, &raw[0], &timing, facing)
+        });
+        let course = Course {
+            turn_rate: placing.turn_rate,
+            facing: placing.facing,
+            keeps_lengths: placing.keeps_lengths && [before, strafe] == [Strafe::NONE; 2],
+            direction: placing.direction,
+            change: placing.change(),
+            aside: placing.aside,
+            step_secs: step_secs / (1.0 - placing.passed),
+        };
+        planter.set_frame_secs(frame_secs);
+        planter.set_stride(stride);
+        let walks = shape.amplitude == Amplitude::WALK;
+        let wanted_m = walks.then_some(placing.velocity_mps.length() * step_secs);
+        planter.turn_step(
+            raw,
+            &timing,
+            (strafe, wanted_m),
+            facing - strafe.turn,
+            frames,
+        );
+        planter.plant_step(raw, &timing, course, frames);
+        planter.lean(&placing.pull(step_secs), frames);
+        self.arrival = Arrival {
+            hips: frames[timing.frames].pose.root_position,
+            ankles: Side::BOTH.map(|side| raw[timing.frames].legs[side.index()].target.ankle),
+        };
+    }
+}
+
+impl Placing<'_> {
+    /// Accelerations to lean against in a step of so many seconds. A run leans into its turns, too; nobody leans out of a sidestep.
+    fn pull(&self, secs: f32) -> Pull {
+        let Amplitude { from, to } = self.shape.amplitude;
+        let [before, after] = [from * self.velocity_before_mps, to * self.velocity_mps];
+        Pull {
+            within: Vec2::new(0.0, (after.y - before.y) / secs),
+            after: Vec2::new(after.y * self.turn_rate, 0.0),
+        }
+    }
+
+    /// Change of speed from the step before to the end of this one.
+    fn change(&self) -> SpeedChange {
+        let Amplitude { from, to } = self.shape.amplitude;
+        let change = SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps);
+        if self.passed > 0.0 {
+            // Half a step has no surge of a step.
+            return change.whole();
+        }
+        change
+    }
+
+    /// The standing posture at part `s` of the step, and what there is of the walk on top of it.
+    fn grown(&self, walking: &[f32], s: f32) -> (Posture, Posture) {
+        let amplitude = self.shape.amplitude.at(s);
+        let change = smooth_step(s);
+        let mut standing = *self.standing[0];
+        let mut grown = [0.0; FEATURE_COUNT];
+        let pairs = self.standing[1].iter().zip(walking);
+        for ((value, standing), (after, walking)) in grown.iter_mut().zip(&mut standing).zip(pairs)
+        {
+            *standing += change * (after - *standing);
+            *value = *standing + amplitude * (walking - *standing);
+        }
+        (standing, grown)
+    }
+}

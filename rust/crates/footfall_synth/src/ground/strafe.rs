@@ -1,0 +1,186 @@
+//! Facing one way and going another: sidestepping, walking backwards and everything between.
+//!
+//! The model knows walking forwards only, so its steps are turned under the body. What a leg does is taken apart into the place of its
+//! foot, were it flat, and the roll of the foot about that place. The place's way to and fro is turned towards the travel; it is what
+//! carries the body, so the body then travels there. The roll is taken away for going sideways and turned round for going backwards, where
+//! people land on their toes and leave from their heels. Pelvis and feet turn part of the way, as people's do, and the back turns back.
+
+mod turner;
+
+use super::generated::RawFrame;
+use core::f32::consts::FRAC_PI_6;
+use footfall_core::ease::smooth_step;
+use footfall_core::{Joint, Skeleton};
+use footfall_model::FEATURE_COUNT;
+use footfall_model::layout::feature_offset;
+use glam::Vec2;
+use serde::{Deserialize, Serialize};
+pub(crate) use turner::Turner;
+
+/// Greatest turn of the pelvis towards the travel, radians: half way between the axes.
+const MAX_PELVIS_TURN: f32 = FRAC_PI_6;
+
+/// Slower than this the pelvis turns less, m/s: feet that hardly travel need no room.
+const FULL_TURN_SPEED_MPS: f32 = 0.4;
+
+/// Longest steps to the side and backwards, as shares of the leg. People's are shorter than those forwards.
+const MAX_SIDE_STEP: f32 = 0.38;
+const MAX_BACK_STEP: f32 = 0.6;
+
+/// Greatest factor that makes steps as long as they should be.
+const MOST_LENGTHENED: f32 = 1.8;
+
+/// Feet that pass each other sideways keep this far from the middle, as a share of the leg, so that legs do not cross.
+const PASSING_SHARE: f32 = 0.085;
+
+/// Swing of arms and trunk in steps to the side, as a share of a walk forwards.
+const SIDE_SWAY: f32 = 0.25;
+
+/// Turn of a step's legs and trunk.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Strafe {
+    /// Displacement for each metre of the legs' reach forwards: to the left and forwards, metres.
+    pub(crate) reach: [f32; 2],
+    /// Likeness to a walk forwards: 1, sideways: 0, or backwards: -1.
+    pub(crate) forwardness: f32,
+    /// Turn of the pelvis towards the travel, radians.
+    pub(crate) turn: f32,
+    /// By how much each foot is set further out, metres.
+    pub(crate) widening: f32,
+}
+
+impl Strafe {
+    /// The walk as it is.
+    pub(crate) const NONE: Self = Self {
+        reach: [0.0, 1.0],
+        forwardness: 1.0,
+        turn: 0.0,
+        widening: 0.0,
+    };
+
+    /// For a step of this velocity (to the left and forwards, m/s) that lasts so long.
+    pub(crate) fn of(velocity_mps: Vec2, step_secs: f32, skeleton: &Skeleton) -> Self {
+        if velocity_mps.x == 0.0 && velocity_mps.y >= 0.0 {
+            return Self::NONE;
+        }
+        let turn = pelvis_turn(velocity_mps);
+        let direction = seen_from_pelvis(velocity_mps).normalize_or(Vec2::Y);
+        let over = overstep(velocity_mps, step_secs, skeleton.mean_leg_length());
+        Self {
+            reach: (direction / over.max(1.0)).to_array(),
+            forwardness: direction.y,
+            turn,
+            ..Self::NONE
+        }
+    }
+
+    /// Sets the feet of a step so far apart that they pass each other. `raw` is the step forwards.
+    pub(crate) fn spread(mut self, raw: &[RawFrame], leg_length: f32) -> Self {
+        let (mut apart, mut step) = (0.0, 0.0_f32);
+        for raw in raw {
+            let [left, right] = &raw.legs;
+            apart += left.ankle.x - right.ankle.x;
+            step = step.max((left.ankle.z - right.ankle.z).abs());
+        }
+        let stance = 0.5 * apart / raw.len() as f32;
+        // Each leg goes half a step out and half a step in.
+        let side_step = 0.5 * step * self.reach[0].abs();
+        if side_step > 0.0 {
+            self.widening = (side_step + PASSING_SHARE * leg_length - stance).max(0.0);
+        }
+        self
+    }
+
+    /// Lengthens the legs' reach so that a step leads as far as it should: one of a quick walk that was made shorter leads less far forwards than its share of a whole one. `flat_m` is how far
+    /// it leads forwards, `wanted_m` how far it should, metres.
+    pub(crate) fn lengthened(mut self, flat_m: f32, wanted_m: Option<f32>) -> Self {
+        if let Some(wanted_m) = wanted_m
+            && flat_m > 0.0
+        {
+            let factor = (wanted_m / flat_m).clamp(1.0, MOST_LENGTHENED);
+            self.reach = self.reach.map(|axis| axis * factor);
+        }
+        self
+    }
+
+    /// Straightness of landing and standing legs, from 0 to 1: as people's in a walk forwards, over bent knees in steps to the side and backwards.
+    pub(crate) fn uprightness(&self) -> f32 {
+        self.forwardness.max(0.0).powi(2)
+    }
+
+    /// Every number of it.
+    pub(crate) const fn numbers(&self) -> [f32; 5] {
+        let [left, forwards] = self.reach;
+        [left, forwards, self.forwardness, self.turn, self.widening]
+    }
+
+    /// At part `s` of a step, from what the step before was to what this one is.
+    pub(crate) fn between(&self, next: &Self, s: f32) -> Self {
+        let share = smooth_step(s);
+        let mix = |from: f32, to: f32| from + share * (to - from);
+        Self {
+            reach: [0, 1].map(|axis| mix(self.reach[axis], next.reach[axis])),
+            forwardness: mix(self.forwardness, next.forwardness),
+            turn: mix(self.turn, next.turn),
+            widening: mix(self.widening, next.widening),
+        }
+    }
+}
+
+/// Turn of the pelvis towards a velocity to the left and forwards, m/s; radians, positive to the left.
+///
+/// Not at all along the axes: it faces forwards in steps forwards, sideways and backwards.
+pub(crate) fn pelvis_turn(velocity_mps: Vec2) -> f32 {
+    let direction = velocity_mps.normalize_or_zero();
+    let share = smooth_step(velocity_mps.length() / FULL_TURN_SPEED_MPS);
+    2.0 * direction.x * direction.y * MAX_PELVIS_TURN * share
+}
+
+/// Length of a step of this velocity on legs of this length, as a multiple of people's steps; at most 1 for one that is possible.
+pub(crate) fn overstep(velocity_mps: Vec2, step_secs: f32, leg: f32) -> f32 {
+    let step = seen_from_pelvis(velocity_mps) * step_secs / leg;
+    Vec2::new(step.x / MAX_SIDE_STEP, step.y.min(0.0) / MAX_BACK_STEP).length()
+}
+
+/// Angles of headings are positive to the left, which is where x points; those of vectors are to y.
+fn seen_from_pelvis(velocity_mps: Vec2) -> Vec2 {
+    Vec2::from_angle(pelvis_turn(velocity_mps)).rotate(velocity_mps)
+}
+
+/// Share of the walk that is left of arms and trunk: they swing against the legs, so they stop for steps to the side and turn round for
+/// steps backwards. `middle` is the posture that they swing about.
+pub(crate) fn sway(
+    features: &mut [f32; FEATURE_COUNT],
+    middle: &[f32; FEATURE_COUNT],
+    strafe: Strafe,
+) {
+    let towards = if strafe.forwardness < 0.0 { 1.0 } else { -1.0 };
+    let share = SIDE_SWAY + (1.0 + towards * SIDE_SWAY) * strafe.forwardness;
+    for joint in Joint::ALL {
+        let at = feature_offset(joint);
+        let swings = match joint {
+            // A trunk sways sideways and nods in any walk; only its turning goes with the legs.
+            Joint::Hips | Joint::Spine | Joint::Chest | Joint::UpperChest => at + 1..at + 2,
+            Joint::Neck | Joint::Head => continue,
+            _ if is_arm(joint) => at..at + 3,
+            _ => continue,
+        };
+        for index in swings {
+            features[index] = middle[index] + share * (features[index] - middle[index]);
+        }
+    }
+}
+
+const fn is_arm(joint: Joint) -> bool {
+    matches!(
+        joint,
+        Joint::LeftShoulder
+            | Joint::LeftUpperArm
+            | Joint::LeftLowerArm
+            | Joint::LeftHand
+            | Joint::RightShoulder
+            | Joint::RightUpperArm
+            | Joint::RightLowerArm
+            | Joint::RightHand
+    )
+}

@@ -1,0 +1,179 @@
+//! Support: the feet that bear the body, and the height that their legs allow the hips.
+
+use super::generated::RawFrame;
+use super::planter::{PlantedFrame, Planter, free_foot};
+use crate::plan::timing::StepTiming;
+use footfall_core::Side;
+use footfall_core::ease::soft_min;
+use footfall_ik::reach_height;
+use glam::Vec3;
+
+/// Fraction of the straight leg that a standing leg uses at most before the pelvis drops.
+pub(super) const MAX_STANCE_EXTENSION: f32 = 0.998;
+
+/// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
+pub(super) const LET_GO_EXTENSION: f32 = 0.998;
+
+/// Over how many metres the pelvis yields to that limit.
+const REACH_SOFTNESS_M: f32 = 0.003;
+
+/// Over how long a leaving leg's reach ceases to bear on the pelvis, seconds.
+const REACH_FADE_SECS: f32 = 0.07;
+
+/// Time constant with which the pelvis comes up again when such a leg lets go, seconds.
+const REACH_RELEASE_SECS: f32 = 0.05;
+
+/// Distance between the generated ankle and the standing foot's beyond which the foot leaves the ground, as a
+/// share of the leg's length.
+const RELEASE_SHARE: f32 = 0.03;
+
+impl Planter {
+    /// The last frame up to `timing.terminal` in which the trailing foot can stay where it stands.
+    pub(super) fn release(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+    ) -> usize {
+        let trailing = timing.leading.other();
+        let allowance = RELEASE_SHARE * self.leg_lengths[trailing.index()];
+        (2..=timing.terminal)
+            .find(|index| {
+                let frame = &frames[*index];
+                let free = free_foot(
+                    &raw[*index],
+                    trailing,
+                    frame.pose.root_position,
+                    frame.level,
+                );
+                let ankle = raw[*index].legs[trailing.index()].target.ankle;
+                free.ankle.distance(ankle) > allowance
+            })
+            .map_or(timing.terminal, |beyond| beyond - 1)
+    }
+
+    /// Fills the contacts, and lowers the hips, softly, to where every standing leg reaches its ankle.
+    pub(super) fn bear(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) {
+        let fade_frames = REACH_FADE_SECS / self.frame_secs;
+        let landing = Landing::of(raw, timing, frames);
+        let trailing = timing.leading.other();
+        let release = (-self.frame_secs / REACH_RELEASE_SECS).exp();
+        let mut drop = 0.0_f32;
+        for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
+            let hips = frame.pose.root_position;
+            let bears = timing.trailing_bears(index);
+            frame.contact[timing.leading.index()] = timing.leading_bears(index);
+            frame.contact[trailing.index()] = bears || index == timing.frames;
+            // A leg that lets go of the pelvis does so smoothly, also when its contact is all but over as the step begins.
+            drop *= release;
+            if bears && let Some(limit) = self.reach_limit(trailing, hips, raw, frame) {
+                let fade = if index == 0 {
+                    0.0
+                } else {
+                    let onset = index as f32 / timing.terminal as f32;
+                    let remaining = (timing.terminal - index) as f32;
+                    onset * (1.0 - remaining / fade_frames).max(0.0)
+                };
+                let length = self.leg_lengths[trailing.index()];
+                let yielding =
+                    soft_min(hips.y, limit + 0.1 * length * fade * fade, REACH_SOFTNESS_M);
+                drop = drop.max(hips.y - yielding);
+            }
+            frame.pose.root_position.y -= drop;
+            if timing.leading_bears(index)
+                && let Some(limit) = self.reach_limit(timing.leading, hips, raw, frame)
+            {
+                let height = &mut frame.pose.root_position.y;
+                *height = soft_min(*height, limit, REACH_SOFTNESS_M);
+            }
+            if !bears && timing.rests {
+                self.settle(landing, index, timing, frame);
+            }
+        }
+    }
+
+    /// Greatest height of the hips at which this leg reaches its foot; `None` when the foot is out of reach sideways at any
+    /// height: then the solver stretches the leg, and the pelvis stays human.
+    pub(super) fn reach_limit(
+        &self,
+        side: Side,
+        hips: Vec3,
+        raw: &RawFrame,
+        frame: &PlantedFrame,
+    ) -> Option<f32> {
+        let leg = &raw.legs[side.index()];
+        let length = self.leg_lengths[side.index()];
+        let hip = frame.level * leg.hip;
+        reach_height(hips, hip, leg.target.ankle, length, MAX_STANCE_EXTENSION)
+    }
+
+    /// Lowers the hips to where the landing leg will have them once it bears with the other.
+    fn settle(
+        &self,
+        landing: Landing,
+        index: usize,
+        timing: &StepTiming,
+        frame: &mut PlantedFrame,
+    ) {
+        let length = self.leg_lengths[timing.leading.other().index()];
+        let Landing { hips, hip, ankle } = landing;
+        let Some(limit) = reach_height(hips, hip, ankle, length, MAX_STANCE_EXTENSION) else {
+            return;
+        };
+        let swing = (timing.frames - timing.terminal) as f32;
+        let remaining = (timing.frames - index) as f32 / swing;
+        let height = &mut frame.pose.root_position.y;
+        *height = soft_min(
+            *height,
+            limit + 0.1 * length * remaining * remaining,
+            REACH_SOFTNESS_M,
+        );
+    }
+
+    /// Ends the trailing foot's contact where its leg, stretched, does not reach any more; returns its last frame.
+    pub(super) fn let_go(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &mut [PlantedFrame],
+    ) -> usize {
+        let trailing = timing.leading.other();
+        let reach = LET_GO_EXTENSION * self.leg_lengths[trailing.index()];
+        let beyond = (1..=timing.terminal).find(|index| {
+            let frame = &frames[*index];
+            let leg = &raw[*index].legs[trailing.index()];
+            let hip = frame.level * leg.hip;
+            let ankle = leg.target.ankle;
+            (frame.pose.root_position + hip).distance(ankle) > reach
+        });
+        let Some(beyond) = beyond else {
+            return timing.terminal;
+        };
+        for frame in &mut frames[beyond..=timing.terminal] {
+            frame.contact[trailing.index()] = false;
+        }
+        beyond - 1
+    }
+}
+
+/// Landing of a leg at the end of a step.
+#[derive(Clone, Copy)]
+struct Landing {
+    hips: Vec3,
+    /// The hip joint, from the hips.
+    hip: Vec3,
+    ankle: Vec3,
+}
+
+impl Landing {
+    fn of(raw: &[RawFrame], timing: &StepTiming, frames: &[PlantedFrame]) -> Self {
+        let (raw, frame) = (&raw[timing.frames], &frames[timing.frames]);
+        let side = timing.leading.other();
+        let hips = frame.pose.root_position;
+        Self {
+            hips,
+            hip: frame.level * raw.legs[side.index()].hip,
+            ankle: free_foot(raw, side, hips, frame.level).ankle,
+        }
+    }
+}

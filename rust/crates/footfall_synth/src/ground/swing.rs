@@ -1,0 +1,214 @@
+//! The swinging foot: from where it stood to where it lands, along the generated path.
+
+use crate::plan::timing::StepTiming;
+use core::f32::consts::PI;
+use footfall_core::lanes::{COUNTING, Quatx8, Vec3x8, f32x8, smooth_step};
+use footfall_core::rotation::log_map;
+use footfall_ik::{FootTarget, FootTargetx8, RockerFoot};
+use glam::Vec3;
+
+/// Least clearance of the sole in the middle of the swing, metres.
+const CLEARANCE_M: f32 = 0.012;
+
+/// Over how many metres the foot yields to that clearance.
+const CLEARANCE_SOFTNESS_M: f32 = 0.004;
+
+/// Rate at which the disagreement from the last stance dies away, per swing.
+const SETTLE_RATE: f32 = 8.0;
+
+/// A foot that walks and one that runs lands at most this fast, m/s: people brake their swing before the heel strikes.
+const MOST_LANDING_MPS: [f32; 2] = [1.2, 2.2];
+
+/// Part of the swing by which a foot is free of how it stood.
+const FREED_BY: f32 = 0.3;
+
+/// A foot that leaps has forgotten how it stood after so long, seconds: hips rise fast, and its leg is drawn after them at once.
+const LEAP_DEPARTURE_SECS: f32 = 0.5;
+
+/// Over this time at most a faster foot is braked, seconds.
+const BRAKING_SECS: [f32; 2] = [0.16, 0.1];
+
+/// Disagreement between planted and generated foot, from the foot's last frame on the ground to its next first.
+pub(super) struct Swing {
+    first: usize,
+    frames: f32,
+    position: Correction,
+    rotation: Correction,
+    /// The toes' own rotation.
+    toes: Correction,
+    /// By how much the foot would land too fast, metres a frame, and over how many frames it is braked.
+    excess: Vec3,
+    braking: f32,
+    /// Frames of the swing after which the foot is free of how it stood.
+    freed_after: f32,
+}
+
+/// A correction at both ends of the swing, and how fast it changes when the foot leaves the ground (per swing).
+struct Correction {
+    start: Vec3,
+    departure: Vec3,
+    end: Vec3,
+}
+
+impl Correction {
+    /// A critically damped farewell to the start, and a smooth approach to the end.
+    fn at(&self, share: &Share) -> Vec3x8 {
+        let going = Vec3x8::splat(self.departure + self.start * SETTLE_RATE) * share.s;
+        let farewell = (Vec3x8::splat(self.start) + going) * share.left;
+        farewell + Vec3x8::splat(self.end) * share.smooth
+    }
+}
+
+impl Swing {
+    /// `ends`: the planted and the free foot one frame before the swing, at its start and at its end; `arrival`: where the free
+    /// foot is one frame before the end.
+    pub(super) fn new(
+        ends: &[(FootTarget, FootTarget); 3],
+        arrival: Vec3,
+        timing: &StepTiming,
+        frame_secs: f32,
+    ) -> Self {
+        let first = timing.terminal;
+        let frames = (timing.frames - first).max(1) as f32;
+        // The corrections have come to rest by then.
+        let landing = ends[2].1.ankle - arrival;
+        let runs = usize::from(timing.airborne);
+        let (most_landing_mps, braking_secs) = (MOST_LANDING_MPS[runs], BRAKING_SECS[runs]);
+        Self {
+            freed_after: if timing.airborne {
+                0.0
+            } else {
+                FREED_BY * frames
+            },
+            excess: landing - landing.clamp_length_max(most_landing_mps * frame_secs),
+            braking: (braking_secs / frame_secs).min(frames),
+            ..Self::between(&[ends[0], ends[1]], Some(&ends[2]), first, frames)
+        }
+    }
+
+    /// The beginning of a swing that the next step ends: `ends` are the planted and the free foot one frame before it takes off and then.
+    pub(super) fn departing(
+        ends: &[(FootTarget, FootTarget); 2],
+        timing: &StepTiming,
+        take_off: usize,
+        leaps: bool,
+        frame_secs: f32,
+    ) -> Self {
+        let flight = timing.frames - take_off;
+        // The next step is about as long as this one; that after a leap is not.
+        let frames = (flight + timing.frames) as f32;
+        let frames = if leaps {
+            (LEAP_DEPARTURE_SECS / frame_secs).max(1.0)
+        } else {
+            frames
+        };
+        Self {
+            freed_after: if leaps { 0.0 } else { flight as f32 },
+            ..Self::between(ends, None, take_off, frames)
+        }
+    }
+
+    /// A swing of so many frames from the frame `first` on; without a landing it goes where the free foot goes.
+    fn between(
+        starts: &[(FootTarget, FootTarget); 2],
+        landing: Option<&(FootTarget, FootTarget)>,
+        first: usize,
+        frames: f32,
+    ) -> Self {
+        let correction = |difference: &dyn Fn(&FootTarget, &FootTarget) -> Vec3| {
+            let [before, start] = starts
+                .each_ref()
+                .map(|(planted, free)| difference(planted, free));
+            Correction {
+                start,
+                departure: (start - before) * frames,
+                end: landing.map_or(Vec3::ZERO, |(planted, free)| difference(planted, free)),
+            }
+        };
+        Self {
+            first,
+            frames,
+            position: correction(&|planted, free| planted.ankle - free.ankle),
+            rotation: correction(&|planted, free| log_map(planted.foot * free.foot.inverse())),
+            // Captured toes are too noisy to follow, as most marker sets guess them: from their bend at the end of the stance
+            // they go to that of the landing, which is none where the heel lands first.
+            toes: correction(&|planted, _| log_map(planted.foot.inverse() * planted.toes)),
+            excess: Vec3::ZERO,
+            braking: frames,
+            freed_after: FREED_BY * frames,
+        }
+    }
+
+    /// Eight frames of the step from `index` on: the feet from where they would be free.
+    pub(super) fn guide(
+        &self,
+        index: usize,
+        free: &FootTargetx8,
+        foot: &RockerFoot,
+    ) -> FootTargetx8 {
+        let passed = self.passed(index);
+        let share = Share::of(passed * self.frames.recip());
+        let rotation = (Quatx8::exp_map(self.rotation.at(&share)) * free.foot).normalize();
+        let mut target = FootTargetx8 {
+            ankle: free.ankle + self.position.at(&share),
+            foot: rotation,
+            toes: rotation * Quatx8::exp_map(self.toes.at(&share)),
+        };
+        // Ahead at first, so as to arrive slower.
+        let left = f32x8::splat(self.frames) - passed;
+        let b = (f32x8::ONE - left * self.braking.recip()).fast_max(f32x8::ZERO);
+        let ahead = b * b * (f32x8::ONE - b) * self.braking;
+        target.ankle = target.ankle + Vec3x8::splat(self.excess) * ahead;
+        let clearance = share.hump * share.hump * CLEARANCE_M;
+        let softness = share.hump * CLEARANCE_SOFTNESS_M + f32x8::splat(1e-6);
+        let short = (clearance - foot.lowest_points(&target)) / softness;
+        target.ankle.y += softness * soft_positive(short);
+        target
+    }
+
+    /// Progress of the feet away from their stance in eight frames from `index` on, from 0 to 1.
+    pub(super) fn freed(&self, index: usize) -> f32x8 {
+        if self.freed_after <= 0.0 {
+            return f32x8::ONE;
+        }
+        smooth_step(self.passed(index) * self.freed_after.recip())
+    }
+
+    /// Frames of the swing that have passed in eight frames of the step from `index` on.
+    fn passed(&self, index: usize) -> f32x8 {
+        (COUNTING + f32x8::splat((index - self.first) as f32)).fast_min(f32x8::splat(self.frames))
+    }
+}
+
+/// Parts of the swing in eight frames, and what depends on them alone.
+struct Share {
+    s: f32x8,
+    smooth: f32x8,
+    /// Remaining part of a farewell.
+    left: f32x8,
+    /// From 0 at the ends to 1 in the middle.
+    hump: f32x8,
+}
+
+impl Share {
+    fn of(s: f32x8) -> Self {
+        // Sine and cosine of half the angle that the hump is the sine of.
+        let half = Quatx8::from_rotation_x(s * PI);
+        Self {
+            s,
+            smooth: smooth_step(s),
+            left: (s * -SETTLE_RATE).exp(),
+            hump: half.x * half.w * 2.0,
+        }
+    }
+}
+
+/// The larger of a number and 0, rounded off where they meet.
+fn soft_positive(value: f32x8) -> f32x8 {
+    // Beyond these it is the plain maximum to the last digit that shows.
+    let most = f32x8::splat(10.0);
+    let near = value.fast_max(-most).fast_min(most);
+    let soft = (f32x8::ONE + near.exp()).ln();
+    let soft = value.simd_gt(most).bitselect(value, soft);
+    value.simd_lt(-most).bitselect(f32x8::ZERO, soft)
+}

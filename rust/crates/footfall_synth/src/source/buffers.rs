@@ -1,0 +1,111 @@
+//! Buffers in which steps are solved: nobody needs them between two steps, so all walkers share them.
+
+use super::window::{TIE, TIE_LEN, WINDOW};
+use crate::error::SynthError;
+use crate::ground::generated::RawFrame;
+use crate::ground::step::Stage;
+use crate::plan::statistics::Statistics;
+use crate::plan::{Planner, StepPlan};
+use crate::trajectory::TrajectorySolver;
+use crate::trajectory::fine_motion::FineBench;
+use footfall_core::Joint;
+use footfall_model::layout::feature_offset;
+use footfall_model::{FEATURE_COUNT, GaitModel};
+use std::sync::{Mutex, PoisonError};
+
+/// Features that are generated: all but those of the right toes, which come last. The planter turns toes.
+const WALKED: usize = feature_offset(Joint::RightToes);
+
+/// Buffers in which a step is solved and put on the ground.
+#[derive(Debug)]
+pub(crate) struct Workbench {
+    solver: TrajectorySolver<f32>,
+    /// Features of the window that was solved last.
+    pub(crate) trajectory: Vec<f32>,
+    pub(crate) fine: FineBench,
+    /// Features of the step that is put on the ground, with its fine motion.
+    pub(crate) shown: Vec<f32>,
+    pub(crate) raw: Vec<RawFrame>,
+    /// A step in the gait before, where that changes.
+    pub(crate) going_over: StepPlan<f32>,
+}
+
+impl Workbench {
+    /// For steps of this model, in any style.
+    pub(crate) fn new(model: &GaitModel) -> Self {
+        let longest = Planner::longest_step(model);
+        let room = WINDOW * longest + TIE;
+        Self {
+            solver: TrajectorySolver::new(WINDOW, room),
+            trajectory: Vec::with_capacity(room * FEATURE_COUNT),
+            fine: FineBench::new(),
+            shown: vec![0.0; (longest + 1) * FEATURE_COUNT],
+            raw: Stage::raw(longest),
+            going_over: StepPlan::empty(),
+        }
+    }
+
+    /// Solves a window that nothing comes before.
+    ///
+    /// # Errors
+    /// [`SynthError::Inference`] when the model gives no trajectory.
+    pub(crate) fn start(
+        &mut self,
+        statistics: &Statistics<f32>,
+        plans: &[StepPlan<f32>],
+    ) -> Result<(), SynthError> {
+        let frames = self.solver.load(statistics, plans, 0);
+        self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
+        self.solver
+            .solve(statistics, &mut self.trajectory, 0, WALKED)
+    }
+
+    /// Solves a window from the last frames of its first step on, which are given. Where the gait changes, nothing is pulled away from the mean of either.
+    pub(crate) fn go_on(
+        &mut self,
+        statistics: &Statistics<f32>,
+        plans: &[StepPlan<f32>; WINDOW],
+        tie: &[f32; TIE_LEN],
+        changes_gait: bool,
+    ) {
+        self.solver.pulls = !changes_gait;
+        let skip = (plans[0].shape.timing.frames + 1).saturating_sub(TIE);
+        let frames = self.solver.load(statistics, plans, skip);
+        self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
+        self.trajectory[..TIE_LEN].copy_from_slice(tie);
+        let solved = self
+            .solver
+            .solve(statistics, &mut self.trajectory, TIE, WALKED);
+        self.solver.pulls = true;
+        if solved.is_err() {
+            // A checked model does not get here; were it to, a rough pose beats none.
+            self.solver.fill_with_means(&mut self.trajectory, TIE);
+        }
+    }
+
+    /// The frames from this one on that tie the next window to this one.
+    pub(crate) fn tie_at(&self, frame: usize) -> [f32; TIE_LEN] {
+        let mut tie = [0.0; TIE_LEN];
+        tie.copy_from_slice(&self.trajectory[frame * FEATURE_COUNT..][..TIE_LEN]);
+        for frame in tie.chunks_exact_mut(FEATURE_COUNT) {
+            frame[WALKED..].fill(0.0);
+        }
+        tie
+    }
+}
+
+/// Workbenches that walkers of one model lend each other: as many as there ever were threads that worked steps out at the same time.
+#[derive(Debug, Default)]
+pub(crate) struct Workbenches(Mutex<Vec<Workbench>>);
+
+impl Workbenches {
+    /// Works at one of them. Allocates only when all are in use.
+    pub(crate) fn at_one<R>(&self, model: &GaitModel, work: impl FnOnce(&mut Workbench) -> R) -> R {
+        let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut bench = free.unwrap_or_else(|| Workbench::new(model));
+        let done = work(&mut bench);
+        let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        free.push(bench);
+        done
+    }
+}

@@ -1,0 +1,381 @@
+//! Steps of a switching model: two linear systems alternate, each from a state in which a recorded segment began (*Gait as a
+//! switching dynamical system*, section 4).
+
+mod source;
+mod system;
+
+use super::step_source::{Ask, StepSource as _};
+use crate::detail::Detail;
+use crate::error::SynthError;
+use crate::gait::GaitChoice;
+use crate::gait::pace::tempo_and_stride;
+use crate::gait::stand::{Amplitude, standing_posture};
+use crate::generator::GeneratorConfig;
+use crate::ground::displacement::Aside;
+use crate::ground::generated::RawFrame;
+use crate::ground::planter_state::PlanterState;
+use crate::ground::step::{Placing, Posture, Stage};
+use crate::ground::strafe::overstep;
+use crate::plan::{MAX_STEP_SECS, StepShape};
+use footfall_core::{Side, Skeleton};
+use footfall_model::{DynamicsModel, FEATURE_COUNT, SEGMENT_SLACK};
+use glam::{Vec2, Vec3};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
+use system::{FeatureLanes, Pose, RunningSystem};
+
+/// A segment begins where one of so many nearest recorded ones began: the pose goes on, and still varies.
+const NEAREST: usize = 4;
+
+/// Time in which the jump of the pose at a switch dies away, seconds.
+const SETTLE_SECS: f64 = 0.06;
+
+/// A segment ends this many frames before or after the end of the recorded one, where the next one begins most alike.
+const SWITCH_REACH: usize = 2;
+
+// Two frames beyond the end are looked at.
+const _: () = assert!(SWITCH_REACH + 2 <= SEGMENT_SLACK);
+
+/// Ratios of the recorded speed at which the way is measured, the recorded one last.
+const FACING_RATIOS: [f64; 2] = [0.4, 1.0];
+
+/// Steps of which the speed is measured: all of chance's in the long run, so that any walk keeps it.
+const MEASURED_STEPS: usize = 80;
+
+/// Speeds up to this many times the recorded one are walked.
+const MAX_SPEED_RATIO: f64 = 1.4;
+
+/// Most by which steps to the side and backwards are quicker than those forwards of the same speed.
+const MAX_HASTE: f64 = 1.6;
+
+/// Two systems that take turns.
+#[derive(Debug)]
+pub(crate) struct SwitchingSteps {
+    pub(crate) model: Arc<DynamicsModel>,
+    /// [`DynamicsModel::fingerprint`].
+    pub(crate) fingerprint: u32,
+    systems: [RunningSystem; 2],
+    pose: Pose,
+    standing: Posture,
+    stage: Stage,
+    raw: Vec<RawFrame>,
+    rng: ChaCha8Rng,
+    variation: f64,
+    shape: StepShape,
+    pub(crate) origin: SwitchingOrigin,
+    /// Component weights of the current segment, frame by frame, two frames beyond its end.
+    weights: Vec<f32>,
+    features: Vec<FeatureLanes>,
+    /// Speed of the recorded walk on this body, m/s.
+    pub(crate) own_speed_mps: f64,
+    /// Mean duration of its steps, seconds.
+    own_step_secs: f32,
+    leg_length: f32,
+    /// Headings under which the walk goes along +Z at each of [`FACING_RATIOS`], radians.
+    facings: [f32; 2],
+    /// Velocity of the current step, to the left and forwards from where the walker faces.
+    pub(crate) velocity_mps: Vec2,
+}
+
+/// Origin of the current step: with the model all that it takes to make it again.
+#[derive(Clone, Debug)]
+pub(crate) struct SwitchingOrigin {
+    pub(crate) leading: Side,
+    pub(crate) tempo: f64,
+    pub(crate) stride: f64,
+    pub(crate) detail: Detail,
+    pub(crate) amplitude: Amplitude,
+    pub(crate) turn_rate: f32,
+    pub(crate) facing: [f32; 2],
+    /// Position in the sequence of random numbers.
+    pub(crate) chance_position: u64,
+    /// The next two frames of the segment before, had nothing switched; empty for the first.
+    pub(crate) expected: Vec<f32>,
+    /// The feet before the step; `None` for the first.
+    pub(crate) planter: Option<PlanterState>,
+}
+
+impl SwitchingSteps {
+    /// Walking already, with the initial contact of the foot `first`.
+    ///
+    /// # Errors
+    /// [`SynthError::Model`] when the model cannot be used.
+    pub(crate) fn new(
+        model: &Arc<DynamicsModel>,
+        skeleton: &Skeleton,
+        config: &GeneratorConfig,
+        first: Side,
+    ) -> Result<Self, SynthError> {
+        model.check()?;
+        let mut steps = Self::prepare(model, skeleton, model.fingerprint()?);
+        steps.draw_by(&GeneratorConfig { seed: 0, ..*config });
+        steps.measure();
+        steps.draw_by(config);
+        steps.begin(first, Amplitude::WALK, steps.own_speed_mps, Detail::Full);
+        Ok(steps)
+    }
+
+    fn prepare(model: &Arc<DynamicsModel>, skeleton: &Skeleton, fingerprint: u32) -> Self {
+        let longest = (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize;
+        let longest = Detail::Quarter.whole_frames(longest);
+        let channels = model.components.len();
+        Self {
+            systems: Side::BOTH.map(|side| RunningSystem::new(model.regime(side))),
+            standing: standing_of(&model.mean),
+            pose: Pose::new(model),
+            stage: Stage::new(skeleton, model.frame_rate_hz, longest),
+            raw: Stage::raw(longest),
+            rng: ChaCha8Rng::seed_from_u64(0),
+            variation: 0.0,
+            shape: StepShape::of_walk(Side::Left, 1, 0.0, 1.0, Detail::Full),
+            origin: SwitchingOrigin {
+                leading: Side::Left,
+                tempo: 1.0,
+                stride: 1.0,
+                detail: Detail::Full,
+                amplitude: Amplitude::WALK,
+                turn_rate: 0.0,
+                facing: [0.0; 2],
+                chance_position: 0,
+                expected: Vec::with_capacity(2 * channels),
+                planter: None,
+            },
+            weights: Vec::with_capacity((longest + SWITCH_REACH + 2) * channels),
+            features: Vec::with_capacity(longest + 1),
+            own_speed_mps: 1.0,
+            own_step_secs: 0.5,
+            leg_length: skeleton.mean_leg_length(),
+            facings: [0.0; 2],
+            velocity_mps: Vec2::ZERO,
+            model: Arc::clone(model),
+            fingerprint,
+        }
+    }
+
+    /// From here on chance is that of a seed.
+    fn draw_by(&mut self, config: &GeneratorConfig) {
+        self.rng = ChaCha8Rng::seed_from_u64(config.seed);
+        self.variation = f64::from(config.variation.clamp(0.0, 2.0));
+    }
+
+    /// Walks some steps, to learn how fast and which way they go: first the ways, under which the speed is then measured.
+    fn measure(&mut self) {
+        let mut own = 1.0;
+        for _ in 0..2 {
+            for (index, ratio) in FACING_RATIOS.into_iter().enumerate() {
+                let (travel, frames) = self.travel(ratio);
+                self.facings[index] -= travel.x.atan2(travel.z);
+                let secs = frames as f64 / self.model.frame_rate_hz;
+                own = f64::from(travel.length()) / secs;
+                self.own_step_secs = secs as f32 / MEASURED_STEPS as f32;
+            }
+        }
+        self.own_speed_mps = own.max(0.05);
+    }
+
+    /// Travel over the ground and frames of some steps at this ratio of the own speed.
+    fn travel(&mut self, ratio: f64) -> (Vec3, usize) {
+        let speed = ratio * self.own_speed_mps;
+        let ask = Ask {
+            leap_m: None,
+            gait: GaitChoice::Walk,
+            velocity_mps: speed as f32 * Vec2::Y,
+            turn_rate: 0.0,
+            amplitude: Amplitude::WALK,
+            detail: Detail::Full,
+        };
+        self.begin(Side::Left, ask.amplitude, speed, ask.detail);
+        let (mut travel, mut frames) = (Vec3::ZERO, 0);
+        for step in 0..2 + MEASURED_STEPS {
+            self.advance(&ask);
+            if step >= 2 {
+                travel += self.stage.travel(&self.shape);
+                frames += self.shape.timing.frames;
+            }
+        }
+        (travel, frames)
+    }
+
+    /// Heading under which the walk goes along +Z at a stride.
+    fn facing(&self) -> f32 {
+        let [low, high] = FACING_RATIOS.map(|ratio| pace_of(ratio).1);
+        let share = ((self.origin.stride - low) / (high - low)).clamp(0.0, 1.0);
+        self.facings[0] + share as f32 * (self.facings[1] - self.facings[0])
+    }
+
+    /// Starts over: one step that does not show, then the first.
+    fn begin(&mut self, first: Side, amplitude: Amplitude, speed_mps: f64, detail: Detail) {
+        self.stage.clear();
+        self.weights.clear();
+        self.origin.turn_rate = 0.0;
+        self.origin.amplitude = amplitude;
+        self.origin.detail = detail;
+        self.velocity_mps = speed_mps as f32 * Vec2::Y;
+        self.set_pace();
+        self.origin.facing = [self.facing(); 2];
+        for side in [first.other(), first] {
+            self.take_over(side);
+            self.realise();
+        }
+    }
+
+    /// Takes up an [`origin`](SwitchingOrigin) and makes its step again.
+    pub(crate) fn resume(
+        &mut self,
+        config: &GeneratorConfig,
+        origin: SwitchingOrigin,
+        velocity_mps: Vec2,
+    ) {
+        self.draw_by(config);
+        self.rng.set_word_pos(u128::from(origin.chance_position));
+        match origin.planter {
+            Some(state) => self.stage.resume(&state),
+            None => self.stage.clear(),
+        }
+        self.origin = origin;
+        // Steps allocate nothing.
+        self.origin
+            .expected
+            .reserve(2 * self.model.components.len());
+        self.velocity_mps = velocity_mps;
+        self.realise();
+    }
+
+    /// The tempo and the stride that give a speed, shared between both.
+    fn set_pace(&mut self) {
+        let ratio = f64::from(self.velocity_mps.length()) / self.own_speed_mps;
+        let (tempo, stride) = pace_of(ratio);
+        let secs = self.own_step_secs / tempo as f32;
+        let over = overstep(self.velocity_mps, secs, self.leg_length);
+        let haste = f64::from(over).clamp(1.0, MAX_HASTE);
+        (self.origin.tempo, self.origin.stride) = (tempo * haste, stride / haste);
+    }
+
+    /// Makes what the current step left behind the origin of the next.
+    fn take_over(&mut self, leading: Side) {
+        self.origin.leading = leading;
+        self.origin.chance_position = self.rng.get_word_pos() as u64;
+        self.origin.planter = self.stage.planter_state();
+        let channels = self.model.components.len();
+        self.origin.expected.clear();
+        let end = self.weights.len().saturating_sub(2 * channels);
+        self.origin.expected.extend_from_slice(&self.weights[end..]);
+    }
+
+    /// Works the step of the [`origin`](SwitchingOrigin) out and puts it on the ground.
+    fn realise(&mut self) {
+        self.work_out();
+        self.put_on_ground();
+    }
+
+    fn put_on_ground(&mut self) {
+        let rows = self.features.iter();
+        let rows = rows.map(|row| &row.as_flattened()[..FEATURE_COUNT]);
+        self.stage.put(
+            rows,
+            &Placing {
+                shape: &self.shape,
+                standing: [&self.standing; 2],
+                turn_rate: self.origin.turn_rate,
+                facing: self.origin.facing,
+                velocity_mps: self.velocity_mps,
+                velocity_before_mps: self.velocity_mps,
+                passed: 0.0,
+                aside: Aside::NONE,
+                direction: None,
+                keeps_lengths: false,
+            },
+            &mut self.raw,
+        );
+    }
+
+    /// The next step's features, without putting it on the ground; returns how many frames they are for.
+    pub(crate) fn work_out_next(&mut self) -> usize {
+        self.take_over(self.origin.leading.other());
+        self.work_out();
+        self.shape.timing.frames
+    }
+
+    fn work_out(&mut self) {
+        let side = self.origin.leading;
+        let start = self.draw_start(side);
+        let longest = (MAX_STEP_SECS * self.model.frame_rate_hz) as usize;
+        let drawn = self.model.regime(side).frames[start].min(longest);
+        let settle = SETTLE_SECS * self.model.frame_rate_hz;
+        let reach = SWITCH_REACH.min(drawn - 1);
+        let system = &mut self.systems[side.index()];
+        system.run(
+            start,
+            drawn + reach + 2,
+            &self.origin.expected,
+            settle as f32,
+            &mut self.weights,
+        );
+        let length = self.switch_near(drawn, reach);
+
+        let frames = (length as f64 / self.origin.tempo).round() as usize;
+        let terminal = self.model.regime(side).other_terminal;
+        let frames = frames.min(longest);
+        self.shape = StepShape::of_walk(
+            side,
+            frames,
+            terminal,
+            self.origin.stride,
+            self.origin.detail,
+        );
+        self.shape.set_amplitude(self.origin.amplitude);
+        self.write_features(length);
+    }
+
+    /// The frame, at most `reach` away from the recorded end, at which the other system takes over best: there the segment ends.
+    fn switch_near(&mut self, drawn: usize, reach: usize) -> usize {
+        let channels = self.model.components.len();
+        let other = &self.systems[self.origin.leading.other().index()];
+        let mut best = (f32::INFINITY, drawn);
+        for end in drawn - reach..=drawn + reach {
+            let after = &self.weights[end * channels..][..2 * channels];
+            let gap = other.least_distance(after);
+            if gap < best.0 {
+                best = (gap, end);
+            }
+        }
+        let length = best.1;
+        self.weights.truncate((length + 2) * channels);
+        length
+    }
+
+    /// One of the recorded starts that go on best from where the pose is.
+    fn draw_start(&mut self, side: Side) -> usize {
+        let system = &self.systems[side.index()];
+        let nearest = system.nearest::<NEAREST>(&self.origin.expected);
+        let among = if self.variation > 0.0 {
+            nearest.len()
+        } else {
+            1
+        };
+        // Drawn in any case, so that chance comes as far in either.
+        let drawn = self.rng.random_range(0..nearest.len());
+        nearest.get(drawn.min(among - 1))
+    }
+
+    /// The features of the step's frames and of the one after, at its own tempo.
+    fn write_features(&mut self, length: usize) {
+        let frames = self.shape.timing.frames;
+        self.features.resize(frames + 1, FeatureLanes::default());
+        let frames_per_row = length as f32 / frames as f32;
+        self.pose
+            .write(&self.weights, frames_per_row, &mut self.features);
+    }
+}
+
+/// Tempo and stride at a ratio of the recorded speed.
+fn pace_of(ratio: f64) -> (f64, f64) {
+    tempo_and_stride(ratio.clamp(0.0, MAX_SPEED_RATIO))
+}
+
+fn standing_of(mean: &[f64]) -> Posture {
+    let mut wide = [0.0; FEATURE_COUNT];
+    wide.copy_from_slice(mean);
+    standing_posture(wide)
+}

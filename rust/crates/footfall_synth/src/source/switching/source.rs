@@ -1,0 +1,80 @@
+//! The steps of a switching model, one after the other.
+
+use super::SwitchingSteps;
+use crate::controls::STANDING_SPEED_MPS;
+use crate::detail::Detail;
+use crate::gait::stand::Amplitude;
+use crate::gait::{FASTEST_WALK_MPS, Gait};
+use crate::ground::step::Stage;
+use crate::ground::strafe::pelvis_turn;
+use crate::plan::StepShape;
+use crate::source::step_source::{Ask, StepSource, Stretches};
+use glam::Vec2;
+
+/// A step's velocity differs by at most this much from that of the step before, m/s: two systems know one way of walking and are harder to bend.
+const MOST_CHANGE_MPS: f32 = 0.5;
+
+impl StepSource for SwitchingSteps {
+    fn fastest_mps(&self) -> f32 {
+        FASTEST_WALK_MPS
+    }
+
+    fn gait(&self) -> Gait {
+        Gait::Walk
+    }
+
+    fn shape(&self) -> &StepShape {
+        &self.shape
+    }
+
+    fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    fn facing(&self) -> [f32; 2] {
+        self.origin.facing
+    }
+
+    fn stand(&mut self, detail: Detail) -> bool {
+        let first = self.origin.leading;
+        let speed = f64::from(STANDING_SPEED_MPS);
+        self.begin(first, Amplitude::STAND, speed, detail);
+        self.velocity_mps = Vec2::ZERO;
+        true
+    }
+
+    fn advance(&mut self, ask: &Ask) {
+        self.velocity_mps = ask.velocity_within(self.velocity_mps, MOST_CHANGE_MPS);
+        self.take_over(self.origin.leading.other());
+        self.set_pace();
+        self.origin.turn_rate = ask.turn_rate;
+        self.origin.amplitude = ask.amplitude;
+        self.origin.detail = ask.detail;
+        let facing = self.facing() + pelvis_turn(self.velocity_mps);
+        self.origin.facing = [self.origin.facing[1], facing];
+        self.realise();
+    }
+
+    fn stretch(&mut self, haste: f32, next: &mut Stretches<'_>) {
+        let Some(feet) = self.origin.planter else {
+            return;
+        };
+        if haste > 1.0 {
+            let haste = f64::from(haste);
+            self.origin.tempo *= haste;
+            self.origin.stride /= haste;
+            // The same step, drawn by the same chance.
+            self.rng
+                .set_word_pos(u128::from(self.origin.chance_position));
+            self.stage.resume(&feet);
+            self.realise();
+        }
+        while let Some(share) = next(&self.shape, &self.stage) {
+            self.origin.stride *= f64::from(share);
+            self.shape.stride = self.origin.stride;
+            self.velocity_mps *= share;
+            self.stage.resume(&feet);
+            self.put_on_ground();
+        }
+    }
+}

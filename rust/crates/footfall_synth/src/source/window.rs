@@ -1,0 +1,398 @@
+//! One walker, step after step: planning, trajectory and planting in a row.
+
+mod aim;
+mod displace;
+mod origin;
+mod replan;
+
+pub(crate) use aim::Aim;
+pub(crate) use origin::{Origin, Request, TIE_LEN};
+
+use super::buffers::Workbench;
+use super::step_source::Stretches;
+use super::style_space::Blend;
+use crate::error::SynthError;
+use crate::gait::Gait;
+use crate::gait::stand::Amplitude;
+use crate::ground::displacement::Aside;
+use crate::ground::step::{Placing, Stage};
+use crate::plan::remainder::Rest;
+use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan, StepShape};
+use crate::trajectory::fine_motion::{Scale, neighbours};
+use footfall_core::{Side, Skeleton, StepPosition};
+use footfall_model::FEATURE_COUNT;
+use glam::Vec2;
+use std::sync::Arc;
+
+/// Steps in a window: the one before, the one to be put on the ground, and one ahead, which shapes its end. What lies
+/// beyond does not show: a frame's influence has died away after half a step.
+pub(crate) const WINDOW: usize = 3;
+
+/// Frames that tie a window to the one before: the longest dynamic window couples no more.
+pub(crate) const TIE: usize = 4;
+
+/// No fine motion.
+const NO_SCALE: Scale = [0.0; FEATURE_COUNT];
+
+/// One walker between the planner's draws and frames on the ground; allocates nothing after it was made.
+#[derive(Debug)]
+pub(crate) struct Walker {
+    blend: Arc<Blend>,
+    /// The mixture of the step before.
+    blend_before: Arc<Blend>,
+    draws: [StepDraw; WINDOW],
+    plans: [StepPlan<f32>; WINDOW],
+    /// True when the steps ahead are not those of the last request.
+    stale: bool,
+    origin: Origin,
+    /// The last frames of the current step, which tie the next one to it.
+    end: [f32; TIE_LEN],
+    stage: Stage,
+}
+
+impl Walker {
+    pub(crate) fn new(skeleton: &Skeleton, blend: &Arc<Blend>) -> Self {
+        let longest = Planner::longest_step(&blend.model);
+        let nothing = Request {
+            manner: Manner::inside(Pace {
+                covariate_mps: 0.0,
+                tempo: 1.0,
+                stride: 1.0,
+            }),
+            amplitude: Amplitude::STAND,
+            turn_rate: 0.0,
+            velocity_mps: Vec2::ZERO,
+            facing: 0.0,
+            leap_m: None,
+        };
+        Self {
+            blend: Arc::clone(blend),
+            blend_before: Arc::clone(blend),
+            draws: [(); WINDOW].map(|()| Planner::mean_draw(Side::Left)),
+            plans: [(); WINDOW].map(|()| StepPlan::empty()),
+            stale: true,
+            end: [0.0; TIE_LEN],
+            origin: Origin {
+                request: nothing,
+                manner_before: nothing.manner,
+                facing_before: 0.0,
+                velocity_before_mps: Vec2::ZERO,
+                planter: None,
+                tie: [0.0; TIE_LEN],
+                rest: None,
+                aside: Aside::NONE,
+            },
+            stage: Stage::new(skeleton, blend.model.frame_rate_hz, longest),
+        }
+    }
+
+    /// Starts over with these steps: the second is the first that shows, and the one before brings it into its stride.
+    ///
+    /// # Errors
+    /// [`SynthError::Inference`] when the model gives no trajectory.
+    pub(crate) fn start(
+        &mut self,
+        planner: &mut Planner,
+        blend: &Arc<Blend>,
+        draws: [StepDraw; WINDOW],
+        request: Request,
+        bench: &mut Workbench,
+    ) -> Result<(), SynthError> {
+        self.blend = Arc::clone(blend);
+        self.blend_before = Arc::clone(blend);
+        self.draws = draws;
+        self.stale = request.amplitude != Amplitude::WALK;
+        self.origin.request = request;
+        self.origin.manner_before = request.manner;
+        self.origin.facing_before = request.facing;
+        self.origin.velocity_before_mps = request.velocity_mps;
+        self.origin.planter = None;
+        self.origin.rest = None;
+        self.origin.aside = Aside::NONE;
+        for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
+            planner.realise(draw, request.manner, &blend.statistics, plan);
+            plan.shape.set_amplitude(request.amplitude);
+        }
+        bench.start(&blend.statistics, &self.plans)?;
+        self.stage.clear();
+        self.put_on_ground(0, 0, bench);
+        self.put_on_ground(1, self.plans[0].shape.timing.frames, bench);
+        Ok(())
+    }
+
+    /// Goes on to the next step; `draw` is one that lies ahead of it.
+    pub(crate) fn advance(
+        &mut self,
+        planner: &mut Planner,
+        blend: &Arc<Blend>,
+        draw: StepDraw,
+        request: Request,
+        bench: &mut Workbench,
+    ) {
+        // A new pace or style is taken up by every step ahead: what is asked now takes effect at once.
+        let same = !self.stale
+            && self.origin.request.manner == request.manner
+            && request.manner.position == StepPosition::Inside
+            && [request.leap_m, self.origin.request.leap_m] == [None; 2]
+            && Arc::ptr_eq(&self.blend, blend);
+        self.origin = self.next_origin(request);
+        self.draws.rotate_left(1);
+        self.plans.rotate_left(1);
+        self.draws[WINDOW - 1] = draw;
+        self.blend_before = core::mem::replace(&mut self.blend, Arc::clone(blend));
+        self.stale = false;
+        self.realise(planner, if same { WINDOW - 1 } else { 1 }, bench);
+        self.solve_tied(bench);
+    }
+
+    /// Puts the current step on the ground anew, quicker by the factor `haste` and shorter by as much, and then with the factors on the
+    /// legs' reach that `next` gives; returns what these make together. The first step came from nowhere and stays.
+    pub(crate) fn stretch(
+        &mut self,
+        planner: &mut Planner,
+        haste: f64,
+        next: &mut Stretches<'_>,
+        bench: &mut Workbench,
+    ) -> f32 {
+        let mut whole = 1.0;
+        let Some(feet) = self.origin.planter else {
+            return whole;
+        };
+        let mut solved = false;
+        if haste > 1.0 {
+            let pace = &mut self.origin.request.manner.pace;
+            pace.tempo *= haste;
+            pace.stride /= haste;
+            self.stage.resume(&feet);
+            self.realise(planner, 1, bench);
+            self.solve_tied(bench);
+            solved = true;
+        }
+        while let Some(share) = next(&self.plans[1].shape, &self.stage) {
+            whole *= share;
+            let stride = self.origin.request.manner.pace.stride * f64::from(share);
+            self.origin.request.manner.pace.stride = stride;
+            self.plans[1].shape.stride = stride;
+            self.stage.resume(&feet);
+            if solved {
+                self.put_on_ground(1, TIE - 1, bench);
+            } else {
+                // Nobody kept what it was made of.
+                self.solve_tied(bench);
+                solved = true;
+            }
+        }
+        whole
+    }
+
+    /// Origin of the step after the current one when this is requested of it.
+    pub(crate) fn next_origin(&self, request: Request) -> Origin {
+        Origin {
+            request,
+            manner_before: self.origin.request.manner,
+            facing_before: self.origin.request.facing,
+            velocity_before_mps: self.origin.request.velocity_mps,
+            planter: self.stage.planter_state(),
+            tie: self.end,
+            rest: None,
+            aside: Aside::NONE,
+        }
+    }
+
+    /// Makes a step from where it comes from.
+    ///
+    /// # Errors
+    /// [`SynthError::Inference`] when the model gives no trajectory.
+    pub(crate) fn restore(
+        &mut self,
+        planner: &mut Planner,
+        [blend_before, blend]: [&Arc<Blend>; 2],
+        draws: [StepDraw; WINDOW],
+        origin: Origin,
+        bench: &mut Workbench,
+    ) -> Result<(), SynthError> {
+        let Some(state) = origin.planter else {
+            planner.wear(&blend.model);
+            return self.start(planner, blend, draws, origin.request, bench);
+        };
+        self.draws = draws;
+        planner.wear(&blend_before.model);
+        // Of the step before only the last frames count.
+        planner.realise_end(
+            &self.draws[0],
+            origin.manner_before,
+            TIE,
+            &blend_before.statistics,
+            &mut self.plans[0],
+        );
+        planner.wear(&blend.model);
+        self.blend_before = Arc::clone(blend_before);
+        self.blend = Arc::clone(blend);
+        self.stage.resume(&state);
+        self.origin = origin;
+        self.stale = false;
+        self.realise(planner, 1, bench);
+        self.solve_tied(bench);
+        Ok(())
+    }
+
+    fn realise(&mut self, planner: &mut Planner, first: usize, bench: &mut Workbench) {
+        let request = self.origin.request;
+        let changes = first <= 1 && self.blend_before.gait != self.blend.gait;
+        if changes {
+            planner.wear(&self.blend_before.model);
+            let before = &self.blend_before.statistics;
+            let manner = Manner {
+                detail: request.manner.detail,
+                ..Manner::inside(self.origin.manner_before.pace)
+            };
+            planner.realise(&self.draws[1], manner, before, &mut bench.going_over);
+            planner.wear(&self.blend.model);
+        }
+        // The step ahead is that of someone who walks on.
+        let ahead = match request.manner.position {
+            StepPosition::First => StepPosition::Second,
+            _ => StepPosition::Inside,
+        };
+        let positions = [request.manner.position, request.manner.position, ahead];
+        let steps = self.draws.iter().zip(&mut self.plans).zip(positions);
+        for ((draw, plan), position) in steps.skip(first) {
+            let manner = Manner {
+                position,
+                ..request.manner
+            };
+            planner.realise(draw, manner, &self.blend.statistics, plan);
+        }
+        if changes {
+            self.plans[1].go_over_from(&bench.going_over);
+        }
+        if let Some(rise_m) = request.leap_m {
+            let before = self.blend_before.gait;
+            self.plans[1].leap(rise_m, before, self.blend.model.frame_rate_hz);
+        }
+        self.plans[1].shape.set_amplitude(request.amplitude);
+        if let Some(rest) = self.origin.rest
+            && first <= 1
+        {
+            rest.keep(&mut self.plans[1]);
+            let fine = self.plans[0].fine;
+            let manner = self.origin.manner_before;
+            planner.realise(
+                &self.draws[1],
+                manner,
+                &self.blend.statistics,
+                &mut self.plans[0],
+            );
+            rest.hold(&mut self.plans[0]);
+            self.plans[0].fine = fine;
+        }
+    }
+
+    /// The share of the current step that had passed when it was planned anew.
+    fn passed(&self) -> f64 {
+        self.origin.rest.map_or(0.0, |rest| f64::from(rest.passed))
+    }
+
+    /// Solves the current step and the one ahead, tied to the step before, and puts the current one on the ground.
+    fn solve_tied(&mut self, bench: &mut Workbench) {
+        let changes = self.blend_before.gait != self.blend.gait;
+        bench.go_on(
+            &self.blend.statistics,
+            &self.plans,
+            &self.origin.tie,
+            changes,
+        );
+        self.put_on_ground(1, TIE - 1, bench);
+    }
+
+    /// The step that is on the ground now.
+    pub(crate) fn step(&self) -> &StepShape {
+        &self.plans[1].shape
+    }
+
+    /// The ground that it is on.
+    pub(crate) fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// Origin of the current step.
+    pub(crate) fn origin(&self) -> &Origin {
+        &self.origin
+    }
+
+    /// Random draws of the steps in the window.
+    pub(crate) fn draws(&self) -> &[StepDraw; WINDOW] {
+        &self.draws
+    }
+
+    /// The mixtures of the step before and of the current one.
+    pub(crate) fn blends(&self) -> [&Arc<Blend>; 2] {
+        [&self.blend_before, &self.blend]
+    }
+
+    /// Puts a step of the window, which begins with frame `first` of what was solved, on the ground.
+    fn put_on_ground(&mut self, step: usize, first: usize, bench: &mut Workbench) {
+        let shape = &self.plans[step].shape;
+        let rest = self.origin.rest.filter(|_| step == 1);
+        self.end = bench.tie_at(first + shape.timing.frames + 1 - TIE);
+        let blends = [&*self.blend_before, &*self.blend];
+        let placing = placing(&self.origin, &self.plans, blends, step);
+        let Workbench {
+            trajectory,
+            raw,
+            fine,
+            shown,
+            ..
+        } = bench;
+        let trajectory = &trajectory[first * FEATURE_COUNT..];
+        let [before, now] = [&self.blend_before, &self.blend];
+        // A gait has a fine motion of its own: that of the one before goes as that of the other comes.
+        let fading = (before.gait != now.gait).then_some((before, [&before.fine_scale, &NO_SCALE]));
+        let scale_before = if fading.is_some() {
+            &NO_SCALE
+        } else {
+            &before.fine_scale
+        };
+        let motions = fading
+            .into_iter()
+            .chain([(now, [scale_before, &now.fine_scale])]);
+        let length = (shape.timing.frames + 1) * FEATURE_COUNT;
+        let shown = &mut shown[..length];
+        shown.copy_from_slice(&trajectory[..length]);
+        for (blend, scales) in motions {
+            let Some(tables) = &blend.fine else { continue };
+            fine.prepare(tables, shape.timing.leading, &neighbours(&self.plans, step));
+            let rows = shown.chunks_exact_mut(FEATURE_COUNT).enumerate();
+            for (frame, row) in rows.step_by(shape.detail.stride()) {
+                let phase = Rest::phase(rest, frame as f32 / shape.timing.frames as f32);
+                fine.add(phase, scales, row);
+            }
+        }
+        self.stage
+            .put(shown.chunks_exact(FEATURE_COUNT), &placing, raw);
+    }
+}
+
+/// Placing of a step of the window on the ground, after a step in one mixture and in another.
+fn placing<'a>(
+    origin: &Origin,
+    plans: &'a [StepPlan<f32>; WINDOW],
+    [before, now]: [&'a Blend; 2],
+    step: usize,
+) -> Placing<'a> {
+    let rest = origin.rest.filter(|_| step == 1);
+    let velocity = origin.request.velocity_mps;
+    let runs = now.gait == Gait::Run && velocity != Vec2::ZERO;
+    Placing {
+        shape: &plans[step].shape,
+        standing: [&before.standing, &now.standing],
+        turn_rate: origin.request.turn_rate,
+        facing: [origin.facing_before, origin.request.facing],
+        velocity_mps: now.gait.seen_from_steps(velocity),
+        velocity_before_mps: before.gait.seen_from_steps(origin.velocity_before_mps),
+        direction: runs.then(|| velocity.x.atan2(velocity.y)),
+        passed: rest.map_or(0.0, |rest| rest.passed),
+        aside: if step == 1 { origin.aside } else { Aside::NONE },
+        keeps_lengths: true,
+    }
+}
