@@ -1,27 +1,28 @@
 //! Whole walks, solved at once.
 
-pub(crate) mod looped;
-pub(crate) mod streamed;
+mod looped;
+mod streamed;
 
+use crate::controls::GaitChoice;
 use crate::error::SynthError;
-use crate::gait::pace::PaceTable;
-use crate::gait::{Gait, GaitChoice};
-use crate::ground::displacement::Aside;
-use crate::ground::generated::{RawFrame, Stride};
-use crate::ground::planter::{Course, PlantedFrame, Planter};
-use crate::ground::speed_change::SpeedChange;
-use crate::plan::{Manner, Planner, StepDraw, StepPlan};
-use crate::trajectory::fine_motion::{FineBench, FineTables, neighbours};
+use crate::gait::{Gait, Manner};
+use crate::ground::{Aside, Course, PlantedFrame, Planter, RawFrame, SpeedChange, Stride};
+use crate::plan::{Planner, Statistics, StepDraw, StepPlan};
+use crate::source::{StyleSpace, measure_paces};
+use crate::trajectory::{FineBench, FineTables, neighbours, variance};
 
-use crate::plan::statistics::Statistics;
-use crate::source::style_space::StyleSpace;
-use crate::trajectory::variance;
 use footfall_core::lanes::f32x8;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Clip, EventKind, FrameSpan, GaitEvent, Joint, Pose, Side, Skeleton};
 use footfall_model::{FEATURE_COUNT, GaitModel, layout};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
+
+pub use looped::LoopedWalk;
+pub use streamed::{
+    Move, StandConfig, SwitchingWalkConfig, synthesize_moves, synthesize_standing,
+    synthesize_switching,
+};
 
 /// Number of hidden steps at either end of the walk.
 const LEAD_STEPS: usize = 1;
@@ -119,7 +120,7 @@ pub fn synthesize(
     let speed = config
         .speed_mps
         .map_or(model.speed.reference_mps, f64::from);
-    let paces = space.at_bench(|bench| PaceTable::measure(&planner, skeleton, blend, bench))?;
+    let paces = space.at_bench(|bench| measure_paces(&planner, skeleton, blend, bench))?;
     let pace = paces.pace(speed.max(MIN_SPEED_MPS));
 
     let mut side = if LEAD_STEPS.is_multiple_of(2) {

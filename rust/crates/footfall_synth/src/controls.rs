@@ -1,6 +1,5 @@
 //! Requests to a walker.
 
-use crate::gait::{FASTEST_RUN_MPS, GaitChoice};
 use footfall_core::rotation::wrap_angle;
 use glam::Vec2;
 
@@ -8,8 +7,23 @@ use glam::Vec2;
 pub(crate) const STANDING_SPEED_MPS: f32 = 0.1;
 const STANDING_TURN_RATE_RADPS: f32 = 0.05;
 
+/// Fastest speed of a run, m/s.
+pub(crate) const FASTEST_RUN_MPS: f32 = 6.0;
+
 /// Fastest turn rate of a walk.
 const MAX_TURN_RATE_RADPS: f32 = 3.5;
+
+/// Requested gait.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum GaitChoice {
+    /// Automatic: runs above about 2 m/s, where walking costs people more.
+    #[default]
+    Auto,
+    /// Walks at any speed.
+    Walk,
+    /// Runs at any speed, except in the steps in which it starts and stops.
+    Run,
+}
 
 /// Requests to a walker. A walker with a foot in the air responds at once if enough of the step is left, otherwise with the next
 /// step. Runners, walkers in less than full detail and those of a [`DynamicsModel`](footfall_model::DynamicsModel) always respond with the next step.

@@ -16,11 +16,11 @@ mod shared;
 mod stroll;
 mod workshop;
 
+use crate::config::{GeneratorConfig, MAX_DT_SECS};
 use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
-use crate::generator::{GeneratorConfig, MAX_DT_SECS};
 use footfall_core::GroundTransform;
 pub use frames::CrowdPose;
 pub use led::{LedAim, LedBeginning, LedStep};

@@ -1,11 +1,20 @@
 //! Walking and running, and the choice between them.
 
-pub(crate) mod applied;
-pub(crate) mod chooser;
-pub(crate) mod pace;
-pub(crate) mod stand;
+mod applied;
+mod chooser;
+mod direction;
+mod pace;
+mod request;
+mod stand;
 
+use crate::controls::{FASTEST_RUN_MPS, GaitChoice};
+pub(crate) use applied::Obeyed;
+pub(crate) use chooser::StepChooser;
+pub(crate) use direction::{overstep, pelvis_turn, seen_from_pelvis};
 use glam::Vec2;
+pub(crate) use pace::{Pace, PaceTable, SAMPLES, tempo_and_stride};
+pub(crate) use request::{Ask, Manner, Request};
+pub(crate) use stand::{Amplitude, Posture, standing_features, standing_posture};
 
 /// Kind of gait.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -14,18 +23,6 @@ pub enum Gait {
     #[default]
     Walk,
     /// Both feet are in the air between one step and the next.
-    Run,
-}
-
-/// Requested gait.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum GaitChoice {
-    /// Automatic: runs above about 2 m/s, where walking costs people more.
-    #[default]
-    Auto,
-    /// Walks at any speed.
-    Walk,
-    /// Runs at any speed, except in the steps in which it starts and stops.
     Run,
 }
 
@@ -38,9 +35,8 @@ pub(crate) const GRAVITY_MPS2: f32 = 9.81;
 /// Largest angle between the direction of a run and the facing direction, radians: people do not run sideways.
 pub(crate) const WIDEST_RUN_RAD: f32 = 1.1;
 
-/// Fastest speed of a walk and of a run, m/s.
+/// Fastest speed of a walk, m/s.
 pub(crate) const FASTEST_WALK_MPS: f32 = 3.0;
-pub(crate) const FASTEST_RUN_MPS: f32 = 6.0;
 
 /// Largest difference in velocity between consecutive steps, m/s, walked and run: people who start or brake hard
 /// change their velocity by 3 to 4 m/s².

@@ -1,47 +1,33 @@
 //! Streaming generator: one walker, for any length of time.
 
-pub(crate) mod footholds;
+mod footholds;
 mod jumping;
-pub(crate) mod state;
+mod state;
 
+use crate::config::{GeneratorConfig, MAX_DT_SECS, check};
 use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
-use crate::gait::Gait;
-use crate::ground::planter::PlantedFrame;
+use crate::gait::{Ask, Gait};
+use crate::ground::PlantedFrame;
 use crate::moves::{Leap, Moves};
 use crate::plan::StepShape;
-use crate::source::step_source::{Ask, Steps};
-use crate::source::style_space::StyleSpace;
-use crate::source::styled::StyledSteps;
-use crate::source::switching::SwitchingSteps;
+use crate::source::{Steps, StyleSpace, StyledSteps, SwitchingSteps};
 use crate::standing::Life;
 use footfall_core::rotation::{blend_near, from_heading};
-use footfall_core::{GroundTransform, Joint, Pose, Side, Skeleton};
+use footfall_core::{GroundTransform, Joint, Pose, Skeleton};
 use footfall_model::DynamicsModel;
 use glam::Quat;
 use std::sync::Arc;
 
+pub use state::StateError;
+
 /// Maximum number of initial contacts that one call of [`GaitGenerator::step`] reports.
 const MAX_FOOTSTEPS: usize = 64;
 
-/// Maximum time by which a single call advances, seconds.
-pub(crate) const MAX_DT_SECS: f32 = 10.0;
-
 /// Share of a frame within which a time counts as on the frame: time adds up with rounding.
 const SAME_FRAME: f32 = 1e-2;
-
-/// Settings that distinguish one walker from another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GeneratorConfig {
-    /// Seed of the walker's manner and of the variation of its steps.
-    pub seed: u64,
-    /// Initial phase of the stride: 0 is the left foot's initial contact, 0.5 the right's.
-    pub phase: f32,
-    /// Deviation of walkers and steps from the average: 0 none, 1 as in the recordings.
-    pub variation: f32,
-}
 
 /// Walks one body in real time, in styles of a [`GaitModel`](footfall_model::GaitModel) or by a [`DynamicsModel`].
 ///
@@ -90,8 +76,8 @@ impl GaitGenerator {
         let rate = space.model().frame_rate_hz;
         let steps = Steps::Styled(Box::new(steps));
         let mut generator = Self::begin(steps, rate, skeleton, config);
-        generator.life = Life::new(space, skeleton, config);
-        generator.moves = Some(Moves::new(space, skeleton));
+        generator.life = Life::new(space.standing(), skeleton, config);
+        generator.moves = Some(Moves::new(space.moves(), skeleton));
         Ok(generator)
     }
 
@@ -329,7 +315,7 @@ impl GaitGenerator {
         let fastest = self.steps.source().fastest_mps();
         let ask = Ask {
             leap_m: self.next_leap(controls),
-            ..Ask::after(self.shape(), *controls, fastest, self.detail)
+            ..Ask::after(self.shape().amplitude, *controls, fastest, self.detail)
         };
         self.steps.source_mut().advance(&ask);
         self.heard = None;
@@ -353,7 +339,7 @@ impl GaitGenerator {
         }
         let frame = self.position as usize;
         let fastest = self.steps.source().fastest_mps();
-        let ask = Ask::after(self.shape(), *controls, fastest, self.detail);
+        let ask = Ask::after(self.shape().amplitude, *controls, fastest, self.detail);
         let source = self.steps.source_mut();
         if source.replan(&ask, frame) {
             self.position -= frame as f32;
@@ -387,16 +373,4 @@ fn ground_between((frame, next, weight): (&PlantedFrame, &PlantedFrame, f32)) ->
         position: frame.ground_position.lerp(next.ground_position, weight),
         heading: frame.ground_heading + weight * (next.ground_heading - frame.ground_heading),
     }
-}
-
-/// Checks the inputs of a walker, and returns the foot that lands first.
-pub(crate) fn check(skeleton: &Skeleton, config: &GeneratorConfig) -> Result<Side, SynthError> {
-    skeleton.check()?;
-    for (setting, value) in [("phase", config.phase), ("variation", config.variation)] {
-        if !value.is_finite() {
-            return Err(SynthError::Setting { setting, value });
-        }
-    }
-    let phase = config.phase.rem_euclid(1.0);
-    Ok(if phase < 0.5 { Side::Left } else { Side::Right })
 }

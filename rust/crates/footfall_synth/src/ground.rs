@@ -5,25 +5,43 @@
 //! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
 //! generated rotations and planted feet disagree about is spread over the swing.
 
+mod arrival;
 mod balance;
 mod bounce;
-pub(crate) mod cut;
-pub(crate) mod displacement;
+mod course;
+mod cut;
+mod displacement;
 mod even_travel;
-pub(crate) mod flight;
-pub(crate) mod generated;
+mod flight;
+mod frame;
+mod generated;
 mod heel_rise;
 mod height_smoothing;
 mod hip_height;
 mod landing;
-pub(crate) mod lean;
-pub(crate) mod planter;
-pub(crate) mod planter_state;
+mod lean;
+mod placing;
+mod planter;
+mod planter_state;
 mod reach;
 mod run_travel;
-pub(crate) mod speed_change;
-pub(crate) mod step;
-pub(crate) mod strafe;
+mod speed_change;
+mod step;
+mod strafe;
 mod support;
 mod swing;
 mod travel;
+
+pub(crate) use arrival::{Arrival, landings};
+pub(crate) use course::Course;
+pub(crate) use displacement::Aside;
+pub(crate) use flight::Airborne;
+pub(crate) use frame::PlantedFrame;
+pub(crate) use generated::{RawFrame, Stride};
+pub(crate) use lean::Lean;
+pub(crate) use placing::Placing;
+pub(crate) use planter::Planter;
+pub(crate) use planter_state::PlanterState;
+pub(crate) use speed_change::SpeedChange;
+pub(crate) use step::Stage;
+pub(crate) use strafe::Strafe;

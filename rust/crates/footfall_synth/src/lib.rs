@@ -6,6 +6,7 @@
 //! at once.
 
 mod batch;
+mod config;
 mod controls;
 mod crowd;
 mod detail;
@@ -14,22 +15,23 @@ mod footstep;
 mod gait;
 mod generator;
 mod ground;
+mod hash;
 mod moves;
 mod plan;
 pub mod replica;
+mod rows;
 mod source;
 mod standing;
 mod trajectory;
 #[doc(hidden)]
 pub mod workload;
 
-pub use batch::looped::LoopedWalk;
-pub use batch::streamed::{
-    Move, StandConfig, SwitchingWalkConfig, synthesize_moves, synthesize_standing,
-    synthesize_switching,
+pub use batch::{
+    LoopedWalk, Move, StandConfig, SwitchingWalkConfig, SynthesizedWalk, WalkConfig, synthesize,
+    synthesize_moves, synthesize_standing, synthesize_switching,
 };
-pub use batch::{SynthesizedWalk, WalkConfig, synthesize};
-pub use controls::Controls;
+pub use config::GeneratorConfig;
+pub use controls::{Controls, GaitChoice};
 pub use crowd::{
     CrowdPose, CrowdWalker, LedAim, LedBeginning, LedStep, SharedPose, StyledBody, Workshop,
 };
@@ -37,8 +39,7 @@ pub use detail::Detail;
 pub use error::SynthError;
 pub use footfall_core::GroundTransform;
 pub use footstep::Footstep;
-pub use gait::{Gait, GaitChoice};
-pub use generator::state::StateError;
-pub use generator::{GaitGenerator, GeneratorConfig};
+pub use gait::Gait;
+pub use generator::{GaitGenerator, StateError};
 pub use moves::JumpPhase;
-pub use source::style_space::StyleSpace;
+pub use source::StyleSpace;

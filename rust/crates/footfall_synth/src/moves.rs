@@ -9,8 +9,7 @@ mod crouch;
 mod jump;
 mod push;
 
-use crate::gait::stand::standing_features;
-use crate::source::style_space::StyleSpace;
+use crate::gait::standing_features;
 use body::Body;
 pub(crate) use climb::ClimbMoment;
 use crouch::Crouch;
@@ -55,9 +54,9 @@ impl MoveTables {
 }
 
 impl Moves {
-    /// Those of a walker of this space.
-    pub(crate) fn new(space: &StyleSpace, skeleton: &Skeleton) -> Self {
-        let tables = Arc::clone(space.moves());
+    /// Those of a walker of a model.
+    pub(crate) fn new(tables: &Arc<MoveTables>, skeleton: &Skeleton) -> Self {
+        let tables = Arc::clone(tables);
         let body = Body::new(skeleton);
         Self {
             crouch: Crouch::new(tables.crouch.as_ref(), body.leg_length),

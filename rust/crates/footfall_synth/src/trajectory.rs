@@ -1,11 +1,11 @@
 //! From planned steps to smooth features: maximum-likelihood parameter generation with the global variance kept.
 
-pub(crate) mod fine_motion;
+mod fine_motion;
 pub(crate) mod variance;
 
 use crate::error::SynthError;
-use crate::plan::StepPlan;
-use crate::plan::statistics::Statistics;
+use crate::plan::{Statistics, StepPlan};
+pub(crate) use fine_motion::{FineBench, FineTables, Scale, neighbours};
 use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, Real, mlpg_part};
 

@@ -1,8 +1,8 @@
 //! Benchmark workloads, outside the public interface.
 
+use crate::config::GeneratorConfig;
 use crate::error::SynthError;
-use crate::generator::GeneratorConfig;
-use crate::source::switching::SwitchingSteps;
+use crate::source::SwitchingSteps;
 use footfall_core::{Side, Skeleton};
 use footfall_model::DynamicsModel;
 use std::sync::Arc;

@@ -1,10 +1,11 @@
 //! Recordings of the streaming generator.
 
 use super::{SynthesizedWalk, WalkConfig};
+use crate::config::GeneratorConfig;
 use crate::controls::Controls;
 use crate::error::SynthError;
-use crate::generator::{GaitGenerator, GeneratorConfig};
-use crate::source::style_space::StyleSpace;
+use crate::generator::GaitGenerator;
+use crate::source::StyleSpace;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Clip, FrameSpan, Joint, Pose, Skeleton};
 use footfall_model::{DynamicsModel, GaitModel};

@@ -5,8 +5,8 @@ use super::own::{Chance, OwnWalk, variation};
 use super::rest::Rest;
 use super::shared::Shared;
 use super::workshop::StyledBody;
+use crate::config::GeneratorConfig;
 use crate::detail::Detail;
-use crate::generator::GeneratorConfig;
 use crate::plan::{MAX_COMPONENTS, Planner};
 use crate::standing::{Life, Moment};
 use footfall_core::GroundTransform;
@@ -56,7 +56,7 @@ impl OwnWalk {
             life.become_walker(config);
             life.moment = Moment::default();
         } else {
-            self.life = Life::new(&styled.0.space, &styled.0.skeleton, config);
+            self.life = Life::new(styled.0.space.standing(), &styled.0.skeleton, config);
         }
     }
 

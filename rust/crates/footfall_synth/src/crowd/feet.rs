@@ -3,7 +3,7 @@
 use super::CrowdWalker;
 use super::own::OwnWalk;
 use crate::footstep::Footstep;
-use crate::generator::footholds;
+use crate::ground::landings;
 use footfall_ik::Plant;
 use footfall_ik::placement::Landing;
 
@@ -28,7 +28,7 @@ impl CrowdWalker {
             return [None; 2];
         };
         let from = own.plan_from_character();
-        footholds::landings(self.next_footstep(), &from, &own.ending.arrival)
+        landings(self.next_footstep(), &from, &own.ending.arrival)
     }
 
     /// Returns whether the left and the right foot bear on the ground.

@@ -1,6 +1,6 @@
 //! A step as a crowd keeps it: joints where they are drawn, in small numbers.
 
-use crate::ground::planter::PlantedFrame;
+use crate::ground::PlantedFrame;
 use footfall_core::{
     GroundTransform, JOINT_COUNT, Joint, ModelPose, Pose, Skeleton, forward_kinematics_of,
 };

@@ -2,15 +2,12 @@
 
 use super::own::{Chance, OwnWalk, variation};
 use super::{CrowdWalker, Workshop};
-use crate::controls::Controls;
+use crate::config::MAX_DT_SECS;
+use crate::controls::{Controls, GaitChoice};
 use crate::footstep::Footstep;
-use crate::gait::stand::Amplitude;
-use crate::gait::{Gait, GaitChoice};
-use crate::generator::MAX_DT_SECS;
-use crate::plan::{Planner, StepDraw};
-use crate::source::buffers::Workbench;
-use crate::source::step_source::Ask;
-use crate::source::window::{Aim, WINDOW, Walker};
+use crate::gait::{Amplitude, Ask, Gait};
+use crate::plan::{Planner, StepDraw, WINDOW};
+use crate::source::{Aim, Walker, Workbench};
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
 
@@ -199,7 +196,12 @@ impl OwnWalk {
         let worn = &styled.worn;
         let ask = Ask {
             amplitude: Amplitude::WALK,
-            ..Ask::after(&self.shape, at.controls, worn.fastest_mps(), self.detail)
+            ..Ask::after(
+                self.shape.amplitude,
+                at.controls,
+                worn.chooser.fastest_mps(),
+                self.detail,
+            )
         };
         let gait = match ask.gait {
             GaitChoice::Run => Gait::Run,
@@ -207,9 +209,9 @@ impl OwnWalk {
         };
         let mut velocity_mps = ask.velocity_mps;
         let (request, gait) = if at.rests {
-            (worn.standing_request(self.detail), Gait::Walk)
+            (worn.chooser.standing_request(self.detail), Gait::Walk)
         } else {
-            worn.request(&ask, gait, &mut velocity_mps)
+            worn.chooser.request(&ask, gait, &mut velocity_mps)
         };
         let blend = worn.dress(gait);
         let Workshop {

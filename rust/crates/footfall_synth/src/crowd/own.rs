@@ -4,17 +4,15 @@ use super::frames::{CrowdFrames, CrowdPose};
 use super::led::LedStep;
 use super::rest::{Rest, RestBench, leave};
 use super::workshop::{StyledBody, Workshop};
+use crate::config::{GeneratorConfig, check};
 use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
-use crate::gait::stand::Amplitude;
-use crate::generator::{GeneratorConfig, check};
-use crate::ground::step::Arrival;
-use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape};
-use crate::source::step_source::Ask;
-use crate::source::style_space::Blend;
-use crate::source::window::{Origin, WINDOW};
+use crate::gait::{Amplitude, Ask};
+use crate::ground::Arrival;
+use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape, WINDOW};
+use crate::source::{Blend, Origin};
 use crate::standing::Life;
 use footfall_core::{GroundTransform, Side};
 use footfall_ik::Plant;
@@ -106,9 +104,9 @@ impl OwnWalk {
         } = &mut *workshop;
         *planner = Planner::new(&worn.blend.model, config.seed, variation(config));
         let request = if standing {
-            worn.standing_request(Detail::Full)
+            worn.chooser.standing_request(Detail::Full)
         } else {
-            worn.first_request(Detail::Full)
+            worn.chooser.first_request(Detail::Full)
         };
         let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
         walker.start(planner, &worn.blend, draws, request, bench)?;
@@ -120,7 +118,7 @@ impl OwnWalk {
             arrival: Arrival::default(),
         };
         let mut made = Self {
-            life: Life::new(&styled.0.space, &styled.0.skeleton, config),
+            life: Life::new(styled.0.space.standing(), &styled.0.skeleton, config),
             ..Self::before(styled, config, *planner.walker(), (ending, *walker.step()))
         };
         if let Some(life) = made.life.as_mut().filter(|_| standing) {
@@ -303,10 +301,17 @@ impl OwnWalk {
         let natural = self.number().wrapping_add(1);
         let styled = Arc::clone(&self.styled.0);
         let worn = &styled.worn;
-        let ask = Ask::after(&self.shape, controls, worn.fastest_mps(), self.detail);
+        let ask = Ask::after(
+            self.shape.amplitude,
+            controls,
+            worn.chooser.fastest_mps(),
+            self.detail,
+        );
         let leading = self.shape.timing.leading;
         let ending = &mut *self.ending;
-        let (request, gait) = worn.request(&ask, ending.blend.gait, &mut ending.velocity_mps);
+        let (request, gait) =
+            worn.chooser
+                .request(&ask, ending.blend.gait, &mut ending.velocity_mps);
         let blend = worn.dress(gait);
         let origin = Origin {
             request,

@@ -4,7 +4,7 @@ use super::frames::CrowdPose;
 use super::own::OwnWalk;
 use super::workshop::Workshop;
 use crate::footstep::Footstep;
-use crate::ground::planter::PlantedFrame;
+use crate::ground::PlantedFrame;
 use crate::plan::Planner;
 use crate::standing::Life;
 use footfall_core::GroundTransform;

@@ -2,7 +2,7 @@
 
 use super::frames::{CrowdFrames, CrowdPose, FramesBench};
 use crate::detail::Detail;
-use crate::ground::planter::PlantedFrame;
+use crate::ground::PlantedFrame;
 use crate::standing::{Life, Moment};
 use footfall_core::Skeleton;
 

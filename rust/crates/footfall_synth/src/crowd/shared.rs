@@ -3,12 +3,12 @@
 use super::frames::{CrowdPose, POSE_NUMBERS};
 use super::own::{Ending, OwnWalk};
 use super::workshop::{StyledBody, Workshop};
+use crate::config::GeneratorConfig;
 use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
-use crate::generator::GeneratorConfig;
-use crate::ground::planter::PlantedFrame;
+use crate::ground::PlantedFrame;
 use crate::plan::StepShape;
 use crate::standing::Life;
 use footfall_core::{GroundTransform, Joint, Side};

@@ -2,9 +2,9 @@
 
 use super::frames::{CrowdPose, POSE_NUMBERS};
 use super::shared::{Course, Kind, PEOPLE, SPOT, STAND, STEP_POSES, SharedSteps, nearest_speed};
-use crate::controls::Controls;
+use crate::controls::{Controls, FASTEST_RUN_MPS};
 use crate::footstep::Footstep;
-use crate::gait::{FASTEST_RUN_MPS, Gait, STOPPABLE_MPS};
+use crate::gait::{Gait, STOPPABLE_MPS};
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{GroundTransform, Side};

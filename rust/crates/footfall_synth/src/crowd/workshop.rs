@@ -5,11 +5,8 @@ use super::own::OwnWalk;
 use super::rest::RestBench;
 use super::shared::SharedSteps;
 use crate::error::SynthError;
-use crate::gait::chooser::Worn;
 use crate::plan::Planner;
-use crate::source::buffers::Workbench;
-use crate::source::style_space::StyleSpace;
-use crate::source::window::Walker;
+use crate::source::{StyleSpace, Walker, Workbench, Worn};
 use footfall_core::Skeleton;
 use std::sync::{Arc, OnceLock};
 

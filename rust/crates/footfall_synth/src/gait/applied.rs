@@ -1,6 +1,6 @@
 //! Requests that the current step was made to obey.
 
-use crate::source::step_source::Ask;
+use super::request::Ask;
 use glam::Vec2;
 
 /// Smaller changes of what is asked for wait for the next step, m/s and rad/s.

@@ -1,20 +1,14 @@
-//! A mixture of styles on one body, and its next step by the controls.
+//! Choice of the next step: its gait, velocity and pace by the controls.
 
+use super::direction::pelvis_turn;
 use super::pace::PaceTable;
+use super::request::{Ask, Manner, Request};
 use super::stand::Amplitude;
-use super::{FASTEST_RUN_MPS, FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
-use crate::controls::STANDING_SPEED_MPS;
+use super::{FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
+use crate::controls::{FASTEST_RUN_MPS, STANDING_SPEED_MPS};
 use crate::detail::Detail;
-use crate::error::SynthError;
-use crate::ground::strafe::pelvis_turn;
-use crate::plan::{Manner, Planner};
-use crate::source::buffers::Workbench;
-use crate::source::step_source::Ask;
-use crate::source::style_space::Blend;
-use crate::source::window::Request;
-use footfall_core::{Skeleton, StepPosition};
+use footfall_core::StepPosition;
 use glam::Vec2;
-use std::sync::Arc;
 
 /// Steps that start a walk and that end one take this long at most, seconds.
 const FIRST_SECS: f64 = 0.45;
@@ -32,41 +26,19 @@ const HARDEST_BRAKING_MPS2: f64 = 6.0;
 /// Steps that go to the side by more than this share of their way forwards do not.
 const STRAIGHT: f32 = 0.2;
 
-/// A mixture of styles, and how fast each of its gaits goes on this body.
+/// Gaits of one body, each with its paces.
 #[derive(Clone, Debug)]
-pub(crate) struct Worn {
-    /// The walk; the run is in it.
-    pub(crate) blend: Arc<Blend>,
-    walk: PaceTable,
-    /// Nothing where the model only walks.
-    run: Option<PaceTable>,
-    leg_length: f32,
+pub(crate) struct StepChooser {
+    pub(crate) walk: PaceTable,
+    /// `None` where the model only walks.
+    pub(crate) run: Option<PaceTable>,
+    pub(crate) leg_length: f32,
+    pub(crate) frame_rate_hz: f64,
+    /// Speed that suits the walk best, m/s.
+    pub(crate) usual_mps: f64,
 }
 
-impl Worn {
-    /// Measures a walker in a mixture of styles.
-    ///
-    /// # Errors
-    /// [`SynthError::Inference`] when the model gives no trajectory.
-    pub(crate) fn measure(
-        planner: &Planner,
-        skeleton: &Skeleton,
-        blend: Arc<Blend>,
-        bench: &mut Workbench,
-    ) -> Result<Self, SynthError> {
-        let walk = PaceTable::measure(planner, skeleton, &blend, bench)?;
-        let run = match &blend.running {
-            Some(run) => Some(PaceTable::measure(planner, skeleton, run, bench)?),
-            None => None,
-        };
-        Ok(Self {
-            blend,
-            walk,
-            run,
-            leg_length: skeleton.mean_leg_length(),
-        })
-    }
-
+impl StepChooser {
     /// Fastest speed that it goes at, m/s.
     pub(crate) const fn fastest_mps(&self) -> f32 {
         if self.run.is_some() {
@@ -74,11 +46,6 @@ impl Worn {
         } else {
             FASTEST_WALK_MPS
         }
-    }
-
-    /// The mixture that a step of this gait wears.
-    pub(crate) fn dress(&self, gait: Gait) -> &Arc<Blend> {
-        self.blend.of_gait(gait)
     }
 
     /// The next step, after one of this gait, and the gait that it is walked or run in. `velocity_mps` is the
@@ -151,7 +118,7 @@ impl Worn {
         passed: f64,
         velocity_mps: &mut Vec2,
     ) -> Request {
-        let secs = frames / self.blend.model.frame_rate_hz;
+        let secs = frames / self.frame_rate_hz;
         let left = (1.0 - passed) * secs;
         let braking = f64::from(velocity_mps.length()) / left;
         let forwards = velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y;
@@ -202,7 +169,7 @@ impl Worn {
 
     /// A walk under way at the speed that suits it.
     pub(crate) fn first_request(&self, detail: Detail) -> Request {
-        let speed = self.blend.model.speed.reference_mps;
+        let speed = self.usual_mps;
         Request {
             manner: Manner {
                 detail,

@@ -1,21 +1,10 @@
-//! Conversion of a requested speed to a pace of the model, by measuring the model.
+//! Conversion of a requested speed to a pace of the model, by a table of measured paces.
 
-use super::stand::Amplitude;
-use crate::error::SynthError;
-use crate::ground::strafe::overstep;
-use crate::plan::{Manner, Pace, Planner};
-use crate::source::buffers::Workbench;
-use crate::source::style_space::Blend;
-use crate::source::window::{Request, Walker};
-use footfall_core::{Side, Skeleton};
-use glam::{Vec2, Vec3};
-use std::sync::Arc;
+use super::direction::overstep;
+use glam::Vec2;
 
 /// Number of paces that are measured.
-const SAMPLES: usize = 7;
-
-/// Range beyond the speeds of the corpus in which the speed response is trusted, as a fraction of their range.
-const EXTRAPOLATION: f64 = 0.15;
+pub(crate) const SAMPLES: usize = 7;
 
 /// Largest factor by which tempo and stride together exceed what was measured.
 const MAX_RESIDUAL: f64 = 1.6;
@@ -29,6 +18,17 @@ const MOST_QUICKER: f64 = 1.9;
 /// Tolerance of the search for a walk whose steps are quick enough, m/s.
 const BRISKER_MPS: f64 = 0.05;
 
+/// Pace of a step: the result of the speed response and the limits of the model for a speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pace {
+    /// Place on the model's speed response, m/s.
+    pub(crate) covariate_mps: f64,
+    /// Factor on the rate at which states pass.
+    pub(crate) tempo: f64,
+    /// Factor on the legs' reach forwards and backwards.
+    pub(crate) stride: f64,
+}
+
 /// Speeds of one walker at the paces of the model.
 #[derive(Clone, Debug)]
 pub(crate) struct PaceTable {
@@ -40,43 +40,17 @@ pub(crate) struct PaceTable {
 }
 
 impl PaceTable {
-    /// Measures a walker in a mixture of styles over the model's range of speeds.
-    pub(crate) fn measure(
-        planner: &Planner,
-        skeleton: &Skeleton,
-        blend: &Arc<Blend>,
-        bench: &mut Workbench,
-    ) -> Result<Self, SynthError> {
-        let model = &blend.model;
-        let mut planner = planner.clone();
-        planner.wear(model);
-        let mut trial = Trial {
-            walker: Walker::new(skeleton, blend),
-            planner,
-            blend,
-            bench,
-        };
-        let (way, _) = trial.travel(model.speed.reference_mps, 0.0)?;
-        let facing = -way.x.atan2(way.z);
-        let [slowest, fastest] = model.speed_range();
-        let margin = EXTRAPOLATION * (fastest - slowest);
-        let (low, high) = ((slowest - margin).max(0.3 * slowest), fastest + margin);
-        let mut samples = [[0.0; 3]; SAMPLES];
-        for (index, sample) in samples.iter_mut().enumerate() {
-            let covariate = low + (high - low) * index as f64 / (SAMPLES - 1) as f64;
-            let (travel, frames) = trial.travel(covariate, facing)?;
-            let secs = frames as f64 / model.frame_rate_hz;
-            *sample = [covariate, f64::from(travel.length()) / secs, 0.5 * secs];
-        }
+    /// A table of measured samples: covariate and realised speed, m/s, and how long a step lasts, seconds.
+    pub(crate) fn new(mut samples: [[f64; 3]; SAMPLES], leg_length: f32, facing: f32) -> Self {
         for index in 1..SAMPLES {
             // A corpus of one speed has a flat response: the order must still be strict.
             samples[index][1] = samples[index][1].max(samples[index - 1][1] + 1e-4);
         }
-        Ok(Self {
+        Self {
             samples,
-            leg_length: skeleton.mean_leg_length(),
+            leg_length,
             facing,
-        })
+        }
     }
 
     /// The pace that gives a speed forwards. Beyond the measured range tempo and stride share what is missing.
@@ -138,46 +112,4 @@ impl PaceTable {
 pub(crate) fn tempo_and_stride(factor: f64) -> (f64, f64) {
     let tempo = factor.sqrt().max(MIN_TEMPO);
     (tempo, factor / tempo)
-}
-
-/// A walker that walks without chance, to be measured.
-struct Trial<'a> {
-    planner: Planner,
-    walker: Walker,
-    blend: &'a Arc<Blend>,
-    bench: &'a mut Workbench,
-}
-
-impl Trial<'_> {
-    /// Travel over the ground and frames of the second stride.
-    fn travel(&mut self, covariate_mps: f64, facing: f32) -> Result<(Vec3, usize), SynthError> {
-        let request = Request {
-            leap_m: None,
-            manner: Manner::inside(Pace {
-                covariate_mps,
-                tempo: 1.0,
-                stride: 1.0,
-            }),
-            amplitude: Amplitude::WALK,
-            turn_rate: 0.0,
-            velocity_mps: Vec2::ZERO,
-            facing,
-        };
-        let draws = [Side::Right, Side::Left, Side::Right].map(Planner::mean_draw);
-        let (planner, walker) = (&mut self.planner, &mut self.walker);
-        walker.start(planner, self.blend, draws, request, self.bench)?;
-        let mut travel = Vec3::ZERO;
-        let mut frames = 0;
-        for step in 0..4 {
-            if step > 0 {
-                let ahead = Planner::mean_draw(walker.step().timing.leading);
-                walker.advance(planner, self.blend, ahead, request, self.bench);
-            }
-            if step >= 2 {
-                travel += walker.stage().travel(walker.step());
-                frames += walker.step().timing.frames;
-            }
-        }
-        Ok((travel, frames))
-    }
 }

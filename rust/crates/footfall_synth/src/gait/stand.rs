@@ -3,13 +3,15 @@
 //! A model that was trained on standing people has their posture. For a model that only walks, the posture is the mean of a walk over straight legs. A
 //! step that starts or ends a walk blends between that posture and the walk, with the same planted feet.
 
-use crate::ground::step::Posture;
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::log_map;
 use footfall_core::{Joint, Side};
 use footfall_model::layout::{feature_offset, mirror};
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use glam::Quat;
+
+/// Static features of one posture.
+pub(crate) type Posture = [f32; FEATURE_COUNT];
 
 /// Flexion of the knees of a standing walker, radians.
 const KNEE_FLEXION: f32 = 0.1;
@@ -19,9 +21,6 @@ const GROWTH: [f32; 2] = [0.0, 0.7];
 
 /// Part of a stopping step by which it has shrunk.
 const SHRUNK_BY: f32 = 0.9;
-
-/// Least part of a starting step in which both feet stand.
-pub(crate) const START_TERMINAL: f64 = 0.22;
 
 /// Share of the walk at the beginning and at the end of a step: 0 is standing, 1 is walking.
 #[derive(Clone, Copy, Debug, PartialEq)]

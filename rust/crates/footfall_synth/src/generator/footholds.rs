@@ -1,13 +1,9 @@
 //! Interface to the ground: coming landings, and steps that land elsewhere.
 
 use super::GaitGenerator;
-use crate::footstep::Footstep;
-use crate::ground::step::{Arrival, Stage};
+use crate::ground::{Stage, landings};
 use crate::plan::StepShape;
-use footfall_core::GroundTransform;
-use footfall_core::rotation::from_heading;
-use footfall_ik::placement::{Frame, Landing};
-use glam::Vec3;
+use footfall_ik::placement::Landing;
 
 /// Share of a step until which it can still change.
 const STRETCHED_UNTIL: f32 = 0.25;
@@ -68,29 +64,6 @@ impl GaitGenerator {
         };
         self.steps.source_mut().stretch(haste, &mut next);
     }
-}
-
-/// Landing of the next footstep, and the body's place with it, seen from where the character is.
-pub(crate) fn landings(
-    next: Option<(Footstep, f32)>,
-    from: &GroundTransform,
-    arrival: &Arrival,
-) -> [Option<Landing>; 2] {
-    let mut landings = [None; 2];
-    if let Some((footstep, secs)) = next {
-        let back = from_heading(-from.heading);
-        let seen = |place: Vec3| back * (place - from.position);
-        landings[footstep.side.index()] = Some(Landing {
-            flat: Frame {
-                position: footstep.position,
-                rotation: from_heading(footstep.heading),
-            },
-            secs,
-            hips: seen(arrival.hips),
-            ankles: arrival.ankles.map(seen),
-        });
-    }
-    landings
 }
 
 /// Distance of a landing foot ahead of the standing one, metres.

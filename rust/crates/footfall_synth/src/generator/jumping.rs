@@ -4,11 +4,11 @@
 //! long as the rise takes ([`StepPlan::leap`](crate::plan::StepPlan::leap)). One that goes sideways, backwards or very slowly stops first.
 
 use super::GaitGenerator;
-use crate::controls::Controls;
+use crate::controls::{Controls, FASTEST_RUN_MPS};
 use crate::footstep::Footstep;
-use crate::gait::{FASTEST_RUN_MPS, WIDEST_RUN_RAD};
+use crate::gait::WIDEST_RUN_RAD;
 use crate::moves::{JumpPhase, Leap, Moves};
-use crate::source::step_source::Steps;
+use crate::source::Steps;
 use footfall_core::Side;
 use footfall_core::rotation::from_heading;
 use glam::{Vec2, Vec3};

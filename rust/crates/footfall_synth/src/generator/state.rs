@@ -12,11 +12,12 @@ mod quick;
 mod running;
 mod source;
 
-use super::{GaitGenerator, GeneratorConfig};
+use super::GaitGenerator;
+use crate::config::GeneratorConfig;
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::gait::stand::Amplitude;
-use crate::source::step_source::Steps;
+use crate::gait::Amplitude;
+use crate::source::Steps;
 use crate::standing::Moment;
 use aside::Led;
 use climbing::Climbing;

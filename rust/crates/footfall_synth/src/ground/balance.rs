@@ -3,9 +3,10 @@
 //! Angles that were generated one by one leave one foot a centimetre or two above the other when it lands. Both are put on the ground by turning
 //! the legs about the hips, which moves the body over its feet, and not by bending a knee. Where legs keep their lengths, the leg behind raises its heel instead (`height.rs`).
 
+use super::course::Course;
 use super::generated::RawFrame;
-use super::planter::{Course, Planter};
-use crate::plan::timing::StepTiming;
+use super::planter::Planter;
+use crate::plan::StepTiming;
 use footfall_core::ease::smooth_step;
 use glam::{Vec2, Vec3Swizzles as _};
 

@@ -1,12 +1,11 @@
 //! A step cut off in its swing: what its rest goes on from.
 
 use super::flight::Airborne;
-use super::lean::Bend;
-use super::lean::Pull;
-use super::planter::PlantedFrame;
+use super::frame::PlantedFrame;
+use super::lean::{Bend, Pull};
 use super::planter_state::PlanterState;
 use super::travel::TURN_ONSET;
-use crate::plan::timing::StepTiming;
+use crate::plan::StepTiming;
 use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Side, Skeleton};
 use footfall_ik::FootTarget;

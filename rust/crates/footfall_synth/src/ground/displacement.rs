@@ -3,8 +3,8 @@
 //! The foot that stands stays. Hips go over to where the step is to end with the ease of a smooth step, and the foot that lands goes with them, so that a
 //! correction is part of the walk.
 
-use super::planter::PlantedFrame;
-use crate::plan::timing::StepTiming;
+use super::frame::PlantedFrame;
+use crate::plan::StepTiming;
 use footfall_core::ease::smooth_step;
 use glam::Vec3;
 

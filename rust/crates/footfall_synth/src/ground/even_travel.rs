@@ -4,9 +4,11 @@
 //! the whole body: hips were fastest before a foot landed, where people's are soon after. So a step forwards has the speed that people's hips have over a step,
 //! one in another direction keeps as much of the step's frequency as people have, and the legs are solved to the feet from there.
 
-use super::planter::{Course, PlantedFrame, Planter};
+use super::course::Course;
+use super::frame::PlantedFrame;
+use super::planter::Planter;
 use super::speed_change::{steady, urge};
-use crate::plan::timing::StepTiming;
+use crate::plan::StepTiming;
 use core::f32::consts::TAU;
 use footfall_core::ease::smooth_step;
 use glam::{Vec2, Vec3};

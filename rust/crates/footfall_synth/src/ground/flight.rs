@@ -4,12 +4,13 @@
 //! where the generated leg of the other foot has them as it lands. The foot that took off is on its swing; the next step brings it down.
 
 use super::bounce::Bounce;
-use super::generated::RawFrame;
-use super::planter::{PlantedFrame, Planter, free_foot};
+use super::frame::PlantedFrame;
+use super::generated::{RawFrame, free_foot};
+use super::planter::Planter;
 use super::support::LET_GO_EXTENSION;
 use super::swing::Swing;
 use crate::gait::GRAVITY_MPS2;
-use crate::plan::timing::StepTiming;
+use crate::plan::StepTiming;
 use footfall_core::rotation::from_heading;
 use footfall_ik::FootTarget;
 use glam::Quat;

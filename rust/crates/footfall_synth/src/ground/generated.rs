@@ -135,6 +135,17 @@ impl RawFrame {
     }
 }
 
+/// Place of a foot whose leg is as generated.
+pub(super) fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget {
+    let leg = &raw.legs[side.index()];
+    let foot = level * leg.foot;
+    FootTarget {
+        ankle: hips + level * leg.ankle,
+        foot,
+        toes: foot,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,10 +1,11 @@
 //! Heels that rise: a standing leg that comes to its end rolls its foot onto the ball, as people's do, before its knee snaps straight or
 //! its pelvis drops.
 
+use super::frame::PlantedFrame;
 use super::generated::{RawFrame, RawLeg};
-use super::planter::{PlantedFrame, Planter};
+use super::planter::Planter;
 use super::support::MAX_STANCE_EXTENSION;
-use crate::plan::timing::StepTiming;
+use crate::plan::StepTiming;
 use footfall_core::Side;
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8, smooth_step};
 use footfall_core::rotation::from_heading;

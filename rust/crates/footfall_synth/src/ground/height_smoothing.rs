@@ -1,8 +1,9 @@
 //! Even height: hips rise and fall without a jolt where a foot rolls off its heel, a leg's reach ends, or another foot takes over.
 
+use super::frame::PlantedFrame;
 use super::generated::RawFrame;
-use super::planter::{PlantedFrame, Planter};
-use crate::plan::timing::StepTiming;
+use super::planter::Planter;
+use crate::plan::StepTiming;
 use core::ops::RangeInclusive;
 
 /// Changes of the hips' height that last shorter are smoothed out, seconds.

@@ -4,10 +4,11 @@
 //! one. Its length is what shows, as the bend of the knee. So the hips are as high as that length has them, and come to the height of the leg that lands by
 //! the end of the step. Steps to the side and backwards keep the direction of the leg, too. A leg that is too short for that raises its heel (`heel.rs`).
 
+use super::frame::PlantedFrame;
 use super::generated::RawFrame;
-use super::planter::{PlantedFrame, Planter};
+use super::planter::Planter;
 use super::travel::MEETING_FROM;
-use crate::plan::timing::StepTiming;
+use crate::plan::StepTiming;
 use footfall_core::ease::{settled, smooth_step};
 use glam::Vec3Swizzles as _;
 

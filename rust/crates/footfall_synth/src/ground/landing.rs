@@ -1,10 +1,11 @@
 //! Landing: the place at which a foot comes down, and how straight its leg is.
 
+use super::course::Course;
 use super::generated::RawFrame;
-use super::planter::{Course, Planter};
+use super::planter::Planter;
 use super::reach::within_reach;
 use super::support::MAX_STANCE_EXTENSION;
-use crate::plan::timing::StepTiming;
+use crate::plan::StepTiming;
 use footfall_core::Side;
 use footfall_core::rotation::from_heading;
 use footfall_ik::{Plant, reach_height};

@@ -3,7 +3,8 @@
 //! Whoever is in balance leans so far that gravity and acceleration together point along the body: the tangent of the angle is the acceleration over g, which is
 //! `v·ω` in a turn. The legs lean by where they stand; the trunk has its [`SHARE`] here, and the head half of that, for people keep their eyes level.
 
-use super::planter::{PlantedFrame, Planter};
+use super::frame::PlantedFrame;
+use super::planter::Planter;
 use crate::gait::GRAVITY_MPS2;
 use core::f32::consts::PI;
 use footfall_core::ease::smooth_step;

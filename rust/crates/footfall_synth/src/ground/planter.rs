@@ -1,40 +1,17 @@
 //! Plants one step after another.
 
-use super::displacement::Aside;
-use super::generated::{RawFrame, RawLeg};
+use super::course::Course;
+use super::frame::PlantedFrame;
+use super::generated::{RawFrame, free_foot};
 use super::lean::Lean;
 use super::planter_state::PlanterState;
-use super::reach::yielding;
-use super::speed_change::SpeedChange;
 use super::strafe::{Strafe, Turner};
 use super::swing::Swing;
-use crate::plan::timing::StepTiming;
-use core::ops::Range;
-use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
+use crate::plan::StepTiming;
 use footfall_core::rotation::from_heading;
-use footfall_core::{Pose, Side, Skeleton};
-use footfall_ik::{FootTarget, FootTargetx8, Leg, Plant, RockerFoot};
-use glam::{Quat, Vec2, Vec3};
-
-/// Share of the straight leg to which a swinging leg can be stretched.
-const SWING_EXTENSION: f32 = 0.9993;
-
-/// One frame of a walk on the ground.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct PlantedFrame {
-    /// The pose in the space where the walk began.
-    pub(crate) pose: Pose,
-    /// Place of the walker on the ground: its travel without sway.
-    pub(crate) ground_position: Vec3,
-    /// Heading of the walker, radians, and the rotation by it; continuous within a step.
-    pub(crate) ground_heading: f32,
-    pub(crate) plan_from_ground: Quat,
-    /// Heading under which the generated features are put, radians, and the rotation by it.
-    pub(crate) heading: f32,
-    pub(crate) level: Quat,
-    /// Contacts of the left and the right foot.
-    pub(crate) contact: [bool; 2],
-}
+use footfall_core::{Side, Skeleton};
+use footfall_ik::{Leg, Plant, RockerFoot};
+use glam::{Vec2, Vec3};
 
 /// Carries plants, hips and heading from step to step.
 #[derive(Clone, Debug)]
@@ -44,37 +21,6 @@ pub(crate) struct Planter {
     pub(super) leg_lengths: [f32; 2],
     pub(super) frame_secs: f32,
     pub(super) state: PlanterState,
-}
-
-impl AsRef<Pose> for PlantedFrame {
-    fn as_ref(&self) -> &Pose {
-        &self.pose
-    }
-}
-
-impl AsMut<Pose> for PlantedFrame {
-    fn as_mut(&mut self) -> &mut Pose {
-        &mut self.pose
-    }
-}
-
-/// Course of a step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Course {
-    /// Turning at its end, rad/s.
-    pub(crate) turn_rate: f32,
-    /// Headings of the features from where the walker faces, before the step and after it, radians.
-    pub(crate) facing: [f32; 2],
-    /// True where standing legs are to be as long as generated; those of a step that ends in flight are not.
-    pub(crate) keeps_lengths: bool,
-    /// Direction of a run from where the walker faces, radians, positive to the left; none where the generated legs choose it.
-    pub(crate) direction: Option<f32>,
-    /// Change of speed within it.
-    pub(crate) change: SpeedChange,
-    /// Displacement of its end.
-    pub(crate) aside: Aside,
-    /// Duration of the whole step, seconds.
-    pub(crate) step_secs: f32,
 }
 
 impl Planter {
@@ -270,117 +216,5 @@ impl Planter {
         }
         self.state.plants[trailing.index()] = next_plant;
         *timing
-    }
-
-    /// Fills where each foot stands while it may: on its plant, under the plant's heading, at the generated pitch.
-    pub(super) fn fill_stances(&self, raw: &mut [RawFrame], timing: &StepTiming) {
-        let trailing = timing.leading.other();
-        let stances = [
-            (timing.leading, Some(timing.frames)),
-            (trailing, (!timing.airborne).then_some(timing.terminal)),
-        ];
-        for (side, last) in stances {
-            let Some(last) = last else { continue };
-            self.stand(side, &mut raw[..=last], |leg| Some(leg.pitch));
-        }
-    }
-
-    /// Stands a foot on its plant, under the plant's heading, in those frames in which `pitch` gives it a pitch.
-    pub(super) fn stand(
-        &self,
-        side: Side,
-        raw: &mut [RawFrame],
-        pitch: impl Fn(&RawLeg) -> Option<f32>,
-    ) {
-        let plant = self.plant(side);
-        let level = from_heading(plant.heading);
-        for frames in raw.chunks_mut(LANES) {
-            let mut pitches = [None; LANES];
-            for (lane, frame) in pitches.iter_mut().zip(&*frames) {
-                *lane = pitch(&frame.legs[side.index()]);
-            }
-            let Some(any) = pitches.iter().find_map(|pitch| *pitch) else {
-                continue;
-            };
-            let lanes = f32x8::new(pitches.map(|pitch| pitch.unwrap_or(any)));
-            let stances = self.feet[side.index()].stand_many(plant, level, lanes);
-            let stances = stances.lanes().into_iter().zip(pitches);
-            for (frame, (stance, pitch)) in frames.iter_mut().zip(stances) {
-                if pitch.is_some() {
-                    frame.legs[side.index()].target = stance;
-                }
-            }
-        }
-    }
-
-    /// Fills where a foot is on its way in some frames, eight at a time.
-    pub(super) fn fill_swing(
-        &self,
-        raw: &mut [RawFrame],
-        side: Side,
-        within: Range<usize>,
-        swing: &Swing,
-        frames: &[PlantedFrame],
-    ) {
-        let side = side.index();
-        let extensions = [self.landing_extension(), SWING_EXTENSION]
-            .map(|share| f32x8::splat(share * self.leg_lengths[side]));
-        let end = within.end;
-        for index in within.step_by(LANES) {
-            let at = |lane: usize| (index + lane).min(end - 1);
-            let level = Quatx8::gather(|lane| frames[at(lane)].level);
-            let hips = Vec3x8::gather(|lane| frames[at(lane)].pose.root_position);
-            let leg = |lane: usize| &raw[at(lane)].legs[side];
-            let foot = level * Quatx8::gather(|lane| leg(lane).foot);
-            let free = FootTargetx8 {
-                ankle: hips + level * Vec3x8::gather(|lane| leg(lane).ankle),
-                foot,
-                toes: foot,
-            };
-            let hip = hips + level * Vec3x8::gather(|lane| leg(lane).hip);
-            let mut target = swing.guide(index, &free, &self.feet[side]);
-            let ankle = target.ankle - hip;
-            let yielded = ankle * yielding(ankle.length(), extensions);
-            target.ankle = hip + ankle + (yielded - ankle) * swing.freed(index);
-            let frames = &mut raw[index..end.min(index + LANES)];
-            for (frame, target) in frames.iter_mut().zip(target.lanes()) {
-                frame.legs[side].target = target;
-            }
-        }
-    }
-
-    /// Planted and free places of the trailing foot, at the ends of its swing.
-    pub(super) fn swing_ends(
-        &self,
-        raw: &[RawFrame],
-        timing: &StepTiming,
-        frames: &[PlantedFrame],
-        next_plant: &Plant,
-    ) -> [(FootTarget, FootTarget); 3] {
-        let side = timing.leading.other();
-        let foot = &self.feet[side.index()];
-        let before = timing.terminal.saturating_sub(1);
-        [before, timing.terminal, timing.frames].map(|index| {
-            let frame = &frames[index];
-            let leg = &raw[index].legs[side.index()];
-            let planted = if index == timing.frames {
-                foot.stand(next_plant, leg.pitch)
-            } else {
-                leg.target
-            };
-            let free = free_foot(&raw[index], side, frame.pose.root_position, frame.level);
-            (planted, free)
-        })
-    }
-}
-
-/// Place of a foot whose leg is as generated.
-pub(super) fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget {
-    let leg = &raw.legs[side.index()];
-    let foot = level * leg.foot;
-    FootTarget {
-        ankle: hips + level * leg.ankle,
-        foot,
-        toes: foot,
     }
 }

@@ -5,8 +5,10 @@
 //! that bears, are braked as it lands and pushed on as it leaves (Cavagna et al., The sources of external work in level walking and running, 1976).
 
 use super::bounce::pushed;
-use super::planter::{Course, PlantedFrame, Planter};
-use crate::plan::timing::StepTiming;
+use super::course::Course;
+use super::frame::PlantedFrame;
+use super::planter::Planter;
+use crate::plan::StepTiming;
 use core::f32::consts::TAU;
 use footfall_core::Side;
 use footfall_core::rotation::from_heading;

@@ -8,7 +8,7 @@
 mod turner;
 
 use super::generated::RawFrame;
-use core::f32::consts::FRAC_PI_6;
+use crate::gait::{overstep, pelvis_turn, seen_from_pelvis};
 use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Skeleton};
 use footfall_model::FEATURE_COUNT;
@@ -16,16 +16,6 @@ use footfall_model::layout::feature_offset;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 pub(crate) use turner::Turner;
-
-/// Greatest turn of the pelvis towards the travel, radians: half way between the axes.
-const MAX_PELVIS_TURN: f32 = FRAC_PI_6;
-
-/// Slower than this the pelvis turns less, m/s: feet that hardly travel need no room.
-const FULL_TURN_SPEED_MPS: f32 = 0.4;
-
-/// Longest steps to the side and backwards, as shares of the leg. People's are shorter than those forwards.
-const MAX_SIDE_STEP: f32 = 0.38;
-const MAX_BACK_STEP: f32 = 0.6;
 
 /// Greatest factor that makes steps as long as they should be.
 const MOST_LENGTHENED: f32 = 1.8;
@@ -125,26 +115,6 @@ impl Strafe {
             widening: mix(self.widening, next.widening),
         }
     }
-}
-
-/// Turn of the pelvis towards a velocity to the left and forwards, m/s; radians, positive to the left.
-///
-/// Not at all along the axes: it faces forwards in steps forwards, sideways and backwards.
-pub(crate) fn pelvis_turn(velocity_mps: Vec2) -> f32 {
-    let direction = velocity_mps.normalize_or_zero();
-    let share = smooth_step(velocity_mps.length() / FULL_TURN_SPEED_MPS);
-    2.0 * direction.x * direction.y * MAX_PELVIS_TURN * share
-}
-
-/// Length of a step of this velocity on legs of this length, as a multiple of people's steps; at most 1 for one that is possible.
-pub(crate) fn overstep(velocity_mps: Vec2, step_secs: f32, leg: f32) -> f32 {
-    let step = seen_from_pelvis(velocity_mps) * step_secs / leg;
-    Vec2::new(step.x / MAX_SIDE_STEP, step.y.min(0.0) / MAX_BACK_STEP).length()
-}
-
-/// Angles of headings are positive to the left, which is where x points; those of vectors are to y.
-fn seen_from_pelvis(velocity_mps: Vec2) -> Vec2 {
-    Vec2::from_angle(pelvis_turn(velocity_mps)).rotate(velocity_mps)
 }
 
 /// Share of the walk that is left of arms and trunk: they swing against the legs, so they stop for steps to the side and turn round for

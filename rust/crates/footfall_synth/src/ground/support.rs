@@ -1,10 +1,13 @@
 //! Support: the feet that bear the body, and the height that their legs allow the hips.
 
-use super::generated::RawFrame;
-use super::planter::{PlantedFrame, Planter, free_foot};
-use crate::plan::timing::StepTiming;
+use super::frame::PlantedFrame;
+use super::generated::{RawFrame, RawLeg, free_foot};
+use super::planter::Planter;
+use crate::plan::StepTiming;
 use footfall_core::Side;
 use footfall_core::ease::soft_min;
+use footfall_core::lanes::{LANES, f32x8};
+use footfall_core::rotation::from_heading;
 use footfall_ik::reach_height;
 use glam::Vec3;
 
@@ -28,6 +31,47 @@ const REACH_RELEASE_SECS: f32 = 0.05;
 const RELEASE_SHARE: f32 = 0.03;
 
 impl Planter {
+    /// Fills where each foot stands while it may: on its plant, under the plant's heading, at the generated pitch.
+    pub(super) fn fill_stances(&self, raw: &mut [RawFrame], timing: &StepTiming) {
+        let trailing = timing.leading.other();
+        let stances = [
+            (timing.leading, Some(timing.frames)),
+            (trailing, (!timing.airborne).then_some(timing.terminal)),
+        ];
+        for (side, last) in stances {
+            let Some(last) = last else { continue };
+            self.stand(side, &mut raw[..=last], |leg| Some(leg.pitch));
+        }
+    }
+
+    /// Stands a foot on its plant, under the plant's heading, in those frames in which `pitch` gives it a pitch.
+    pub(super) fn stand(
+        &self,
+        side: Side,
+        raw: &mut [RawFrame],
+        pitch: impl Fn(&RawLeg) -> Option<f32>,
+    ) {
+        let plant = self.plant(side);
+        let level = from_heading(plant.heading);
+        for frames in raw.chunks_mut(LANES) {
+            let mut pitches = [None; LANES];
+            for (lane, frame) in pitches.iter_mut().zip(&*frames) {
+                *lane = pitch(&frame.legs[side.index()]);
+            }
+            let Some(any) = pitches.iter().find_map(|pitch| *pitch) else {
+                continue;
+            };
+            let lanes = f32x8::new(pitches.map(|pitch| pitch.unwrap_or(any)));
+            let stances = self.feet[side.index()].stand_many(plant, level, lanes);
+            let stances = stances.lanes().into_iter().zip(pitches);
+            for (frame, (stance, pitch)) in frames.iter_mut().zip(stances) {
+                if pitch.is_some() {
+                    frame.legs[side.index()].target = stance;
+                }
+            }
+        }
+    }
+
     /// The last frame up to `timing.terminal` in which the trailing foot can stay where it stands.
     pub(super) fn release(
         &self,

@@ -1,10 +1,16 @@
 //! The swinging foot: from where it stood to where it lands, along the generated path.
 
-use crate::plan::timing::StepTiming;
+use super::frame::PlantedFrame;
+use super::generated::{RawFrame, free_foot};
+use super::planter::Planter;
+use super::reach::yielding;
+use crate::plan::StepTiming;
 use core::f32::consts::PI;
-use footfall_core::lanes::{COUNTING, Quatx8, Vec3x8, f32x8, smooth_step};
+use core::ops::Range;
+use footfall_core::Side;
+use footfall_core::lanes::{COUNTING, LANES, Quatx8, Vec3x8, f32x8, smooth_step};
 use footfall_core::rotation::log_map;
-use footfall_ik::{FootTarget, FootTargetx8, RockerFoot};
+use footfall_ik::{FootTarget, FootTargetx8, Plant, RockerFoot};
 use glam::Vec3;
 
 /// Least clearance of the sole in the middle of the swing, metres.
@@ -27,6 +33,9 @@ const LEAP_DEPARTURE_SECS: f32 = 0.5;
 
 /// Over this time at most a faster foot is braked, seconds.
 const BRAKING_SECS: [f32; 2] = [0.16, 0.1];
+
+/// Share of the straight leg to which a swinging leg can be stretched.
+const SWING_EXTENSION: f32 = 0.9993;
 
 /// Disagreement between planted and generated foot, from the foot's last frame on the ground to its next first.
 pub(super) struct Swing {
@@ -177,6 +186,68 @@ impl Swing {
     /// Frames of the swing that have passed in eight frames of the step from `index` on.
     fn passed(&self, index: usize) -> f32x8 {
         (COUNTING + f32x8::splat((index - self.first) as f32)).fast_min(f32x8::splat(self.frames))
+    }
+}
+
+impl Planter {
+    /// Fills where a foot is on its way in some frames, eight at a time.
+    pub(super) fn fill_swing(
+        &self,
+        raw: &mut [RawFrame],
+        side: Side,
+        within: Range<usize>,
+        swing: &Swing,
+        frames: &[PlantedFrame],
+    ) {
+        let side = side.index();
+        let extensions = [self.landing_extension(), SWING_EXTENSION]
+            .map(|share| f32x8::splat(share * self.leg_lengths[side]));
+        let end = within.end;
+        for index in within.step_by(LANES) {
+            let at = |lane: usize| (index + lane).min(end - 1);
+            let level = Quatx8::gather(|lane| frames[at(lane)].level);
+            let hips = Vec3x8::gather(|lane| frames[at(lane)].pose.root_position);
+            let leg = |lane: usize| &raw[at(lane)].legs[side];
+            let foot = level * Quatx8::gather(|lane| leg(lane).foot);
+            let free = FootTargetx8 {
+                ankle: hips + level * Vec3x8::gather(|lane| leg(lane).ankle),
+                foot,
+                toes: foot,
+            };
+            let hip = hips + level * Vec3x8::gather(|lane| leg(lane).hip);
+            let mut target = swing.guide(index, &free, &self.feet[side]);
+            let ankle = target.ankle - hip;
+            let yielded = ankle * yielding(ankle.length(), extensions);
+            target.ankle = hip + ankle + (yielded - ankle) * swing.freed(index);
+            let frames = &mut raw[index..end.min(index + LANES)];
+            for (frame, target) in frames.iter_mut().zip(target.lanes()) {
+                frame.legs[side].target = target;
+            }
+        }
+    }
+
+    /// Planted and free places of the trailing foot, at the ends of its swing.
+    pub(super) fn swing_ends(
+        &self,
+        raw: &[RawFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+        next_plant: &Plant,
+    ) -> [(FootTarget, FootTarget); 3] {
+        let side = timing.leading.other();
+        let foot = &self.feet[side.index()];
+        let before = timing.terminal.saturating_sub(1);
+        [before, timing.terminal, timing.frames].map(|index| {
+            let frame = &frames[index];
+            let leg = &raw[index].legs[side.index()];
+            let planted = if index == timing.frames {
+                foot.stand(next_plant, leg.pitch)
+            } else {
+                leg.target
+            };
+            let free = free_foot(&raw[index], side, frame.pose.root_position, frame.level);
+            (planted, free)
+        })
     }
 }
 

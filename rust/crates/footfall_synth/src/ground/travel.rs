@@ -1,9 +1,11 @@
 //! The way of the body over a step: hips above the foot that stands, heading, and the walker's place on the ground.
 
+use super::course::Course;
+use super::frame::PlantedFrame;
 use super::generated::RawFrame;
-use super::planter::{Course, PlantedFrame, Planter};
+use super::planter::Planter;
 use super::strafe::Strafe;
-use crate::plan::timing::StepTiming;
+use crate::plan::StepTiming;
 use footfall_core::ease::{hermite, smooth_step};
 use footfall_core::lanes::{self, COUNTING, LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::rotation::from_heading;

@@ -7,7 +7,7 @@
 mod course;
 
 use super::body::{Beside, Body};
-use crate::ground::step::Posture;
+use crate::gait::Posture;
 use course::Course;
 use footfall_core::Pose;
 use footfall_core::ease::{hermite, smooth_step};

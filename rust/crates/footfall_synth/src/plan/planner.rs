@@ -1,10 +1,13 @@
 //! Planning of steps: chance, speed and manner become durations and means.
 
-use super::offsets::{Offsets, Sum};
+use super::draw::StepDraw;
+use super::fine_draw::FineDraw;
+use super::offsets::Offsets;
 use super::statistics::{Part, STEP_MEANS, Statistics};
-use super::{MAX_STEP_SECS, Manner, StepDraw, StepPlan, StepShape};
+use super::{MAX_STEP_SECS, StepPlan, StepShape};
 use crate::detail::Detail;
-use crate::trajectory::fine_motion::FineDraw;
+use crate::gait::Manner;
+use crate::rows::Sum;
 use footfall_core::Side;
 use footfall_model::{GaitModel, OBSERVATION_COUNT, STATES_PER_STEP};
 use rand::SeedableRng as _;

@@ -4,7 +4,7 @@
 //! frames already shown, and takes the states of the new plan that have not passed yet. It need not fit the previous plan.
 
 use super::StepPlan;
-use crate::source::window::TIE;
+use super::window::TIE;
 use footfall_model::STATES_PER_STEP;
 
 /// A step is planned anew no later than in this state, and leaves so many frames at least.

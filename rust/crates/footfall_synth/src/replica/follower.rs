@@ -8,9 +8,10 @@ use super::led::Beginning;
 use super::queue::{Planning, Queue};
 use super::update::{Planned, WalkUpdate};
 use super::{ReplicaError, WalkIdentity};
+use crate::config::MAX_DT_SECS;
 use crate::controls::Controls;
-use crate::generator::{GaitGenerator, MAX_DT_SECS};
-use crate::source::window::Aim;
+use crate::generator::GaitGenerator;
+use crate::source::Aim;
 use footfall_core::{GroundTransform, Pose};
 
 /// Walks go faster or slower by this share at most to keep their time, and by as much of it as makes good what they are late within this time, seconds.

@@ -2,8 +2,9 @@
 
 use super::ReplicaError;
 use super::update::FORMAT;
-use crate::generator::{GaitGenerator, GeneratorConfig};
-use crate::source::step_source::Steps;
+use crate::config::GeneratorConfig;
+use crate::generator::GaitGenerator;
+use crate::source::Steps;
 use footfall_core::hash::fnv1a;
 use serde::{Deserialize, Serialize};
 

@@ -1,16 +1,13 @@
 //! Walks whose steps are another walker's: which step comes next, what it obeys and where it ends.
 
 use super::update::Planned;
-use crate::controls::Controls;
-use crate::gait::applied::Obeyed;
-use crate::gait::stand::Amplitude;
-use crate::gait::{Gait, GaitChoice};
-use crate::generator::{GaitGenerator, GeneratorConfig};
-use crate::ground::displacement::Aside;
+use crate::config::GeneratorConfig;
+use crate::controls::{Controls, GaitChoice};
+use crate::gait::{Amplitude, Ask, Gait, Obeyed};
+use crate::generator::GaitGenerator;
+use crate::ground::Aside;
 use crate::plan::StepDraw;
-use crate::source::step_source::{Ask, StepSource as _, Steps};
-use crate::source::styled::{StyledSteps, walker_of};
-use crate::source::window::Aim;
+use crate::source::{Aim, StepSource as _, Steps, StyledSteps, walker_of};
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
 
@@ -63,9 +60,9 @@ impl StyledSteps {
             GaitChoice::Auto | GaitChoice::Walk => Gait::Walk,
         };
         let (request, gait) = if at.rests {
-            (self.worn.standing_request(ask.detail), Gait::Walk)
+            (self.worn.chooser.standing_request(ask.detail), Gait::Walk)
         } else {
-            self.worn.request(ask, gait, &mut self.velocity_mps)
+            self.worn.chooser.request(ask, gait, &mut self.velocity_mps)
         };
         self.obeyed = if at.rests {
             Obeyed::default()
@@ -116,7 +113,7 @@ impl GaitGenerator {
         let fastest = self.steps.source().fastest_mps();
         let ask = Ask {
             amplitude: Amplitude::WALK,
-            ..Ask::after(self.shape(), at.controls, fastest, detail)
+            ..Ask::after(self.shape().amplitude, at.controls, fastest, detail)
         };
         let begun = self
             .styled_mut()
@@ -165,7 +162,7 @@ impl GaitGenerator {
         let frames = self.shape().timing.frames as f32;
         let (position, detail) = (self.position, self.detail);
         let fastest = self.steps.source().fastest_mps();
-        let ask = Ask::after(self.shape(), *controls, fastest, detail);
+        let ask = Ask::after(self.shape().amplitude, *controls, fastest, detail);
         let Some(steps) = self.styled_mut() else {
             return false;
         };

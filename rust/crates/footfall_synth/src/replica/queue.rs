@@ -3,7 +3,7 @@
 use super::update::{Planned, WalkUpdate};
 use crate::controls::Controls;
 use crate::generator::GaitGenerator;
-use crate::source::window::Aim;
+use crate::source::Aim;
 use footfall_core::GroundTransform;
 
 /// Steps that wait at most; the oldest gives way.

@@ -5,13 +5,11 @@ use super::gate::Way;
 use super::identity::tag;
 use super::update::{Planned, UPDATE_BYTES, WalkUpdate};
 use super::{ReplicaError, WalkIdentity};
-use crate::controls::Controls;
-use crate::gait::applied::Obeyed;
-use crate::gait::{Gait, GaitChoice};
+use crate::controls::{Controls, GaitChoice};
+use crate::gait::{Gait, Obeyed};
 use crate::generator::GaitGenerator;
 use crate::moves::{Leap, Moves};
-use crate::source::step_source::Steps;
-use crate::source::styled::StyledSteps;
+use crate::source::{Steps, StyledSteps};
 use footfall_core::GroundTransform;
 use footfall_core::rotation::from_heading;
 

@@ -17,8 +17,7 @@
 //! | 22–23 | the walker's heading there (12 bits), depth of the crouch (4 bits) | π/2048, 1/15 |
 
 use super::ReplicaError;
-use crate::controls::Controls;
-use crate::gait::GaitChoice;
+use crate::controls::{Controls, GaitChoice};
 use core::f32::consts::{PI, TAU};
 use footfall_core::GroundTransform;
 use glam::Vec3;

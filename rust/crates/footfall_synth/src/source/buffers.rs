@@ -1,13 +1,9 @@
 //! Buffers in which steps are solved: nobody needs them between two steps, so all walkers share them.
 
-use super::window::{TIE, TIE_LEN, WINDOW};
 use crate::error::SynthError;
-use crate::ground::generated::RawFrame;
-use crate::ground::step::Stage;
-use crate::plan::statistics::Statistics;
-use crate::plan::{Planner, StepPlan};
-use crate::trajectory::TrajectorySolver;
-use crate::trajectory::fine_motion::FineBench;
+use crate::ground::{RawFrame, Stage};
+use crate::plan::{Planner, Statistics, StepPlan, TIE, TIE_LEN, WINDOW};
+use crate::trajectory::{FineBench, TrajectorySolver};
 use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
 use footfall_model::{FEATURE_COUNT, GaitModel};

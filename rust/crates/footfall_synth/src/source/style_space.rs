@@ -2,13 +2,11 @@
 
 use super::buffers::{Workbench, Workbenches};
 use crate::error::SynthError;
-use crate::gait::Gait;
-use crate::gait::stand::standing_features;
+use crate::gait::{Gait, standing_features};
 use crate::moves::MoveTables;
-use crate::plan::statistics::Statistics;
+use crate::plan::Statistics;
 use crate::standing::StandingTables;
-use crate::trajectory::fine_motion::{FineTables, Scale};
-use crate::trajectory::variance;
+use crate::trajectory::{FineTables, Scale, variance};
 use footfall_model::{FEATURE_COUNT, GaitModel, GaitStyle};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 

@@ -1,16 +1,15 @@
 //! Steps of a hidden semi-Markov model in a mixture of styles.
 
-use super::step_source::{Ask, StepSource, Stretches};
+use super::measured::Worn;
+use super::step_source::{StepSource, Stretches};
 use super::style_space::{Blend, StyleSpace};
-use super::window::{Request, WINDOW, Walker};
+use super::window::Walker;
+use crate::config::GeneratorConfig;
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::gait::Gait;
-use crate::gait::applied::Obeyed;
-use crate::gait::chooser::Worn;
-use crate::generator::GeneratorConfig;
-use crate::ground::step::Stage;
-use crate::plan::{Planner, StepShape};
+use crate::gait::{Ask, Gait, Obeyed, Request};
+use crate::ground::Stage;
+use crate::plan::{Planner, StepShape, WINDOW};
 use footfall_core::{Side, Skeleton};
 use glam::Vec2;
 use std::sync::Arc;
@@ -49,7 +48,7 @@ impl StyledSteps {
         let mut walker = Walker::new(skeleton, &blend);
         let (worn, request) = space.at_bench(|bench| {
             let worn = Worn::measure(&planner, skeleton, blend, bench)?;
-            let request = worn.first_request(Detail::Full);
+            let request = worn.chooser.first_request(Detail::Full);
             let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
             walker.start(&mut planner, &worn.blend, draws, request, bench)?;
             Ok::<_, SynthError>((worn, request))
@@ -91,7 +90,8 @@ impl StyledSteps {
         self.planner.wear(&self.walker.blends()[1].model);
         let (worn, velocity) = (&self.worn, &mut self.velocity_mps);
         let request = |before: &Request, frames: f64, passed: f64| {
-            worn.rest_request(ask, before, frames, passed, velocity)
+            worn.chooser
+                .rest_request(ask, before, frames, passed, velocity)
         };
         let (planner, walker) = (&mut self.planner, &mut self.walker);
         let replanned = self
@@ -119,7 +119,7 @@ impl StepSource for StyledSteps {
     }
 
     fn fastest_mps(&self) -> f32 {
-        self.worn.fastest_mps()
+        self.worn.chooser.fastest_mps()
     }
 
     fn gait(&self) -> Gait {
@@ -128,7 +128,7 @@ impl StepSource for StyledSteps {
 
     fn stand(&mut self, detail: Detail) -> bool {
         let first = self.walker.step().timing.leading;
-        let request = self.worn.standing_request(detail);
+        let request = self.worn.chooser.standing_request(detail);
         let draws = [first.other(), first, first.other()].map(|side| self.planner.draw(side));
         self.planner.wear(&self.worn.blend.model);
         let (planner, blend) = (&mut self.planner, &self.worn.blend);
@@ -147,7 +147,7 @@ impl StepSource for StyledSteps {
     fn advance(&mut self, ask: &Ask) {
         self.obeyed = Obeyed::of(ask);
         let gait = self.gait();
-        let (request, gait) = self.worn.request(ask, gait, &mut self.velocity_mps);
+        let (request, gait) = self.worn.chooser.request(ask, gait, &mut self.velocity_mps);
         let next = self.walker.draws()[WINDOW - 1].side;
         let draw = self.planner.draw(next.other());
         let blend = self.worn.dress(gait);

@@ -4,18 +4,13 @@
 mod source;
 mod system;
 
-use super::step_source::{Ask, StepSource as _};
+use super::step_source::StepSource as _;
+use crate::config::GeneratorConfig;
+use crate::controls::GaitChoice;
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::gait::GaitChoice;
-use crate::gait::pace::tempo_and_stride;
-use crate::gait::stand::{Amplitude, standing_posture};
-use crate::generator::GeneratorConfig;
-use crate::ground::displacement::Aside;
-use crate::ground::generated::RawFrame;
-use crate::ground::planter_state::PlanterState;
-use crate::ground::step::{Placing, Posture, Stage};
-use crate::ground::strafe::overstep;
+use crate::gait::{Amplitude, Ask, Posture, overstep, standing_posture, tempo_and_stride};
+use crate::ground::{Aside, Placing, PlanterState, RawFrame, Stage};
 use crate::plan::{MAX_STEP_SECS, StepShape};
 use footfall_core::{Side, Skeleton};
 use footfall_model::{DynamicsModel, FEATURE_COUNT, SEGMENT_SLACK};

@@ -6,30 +6,20 @@ mod origin;
 mod replan;
 
 pub(crate) use aim::Aim;
-pub(crate) use origin::{Origin, Request, TIE_LEN};
+pub(crate) use origin::Origin;
 
 use super::buffers::Workbench;
 use super::step_source::Stretches;
 use super::style_space::Blend;
 use crate::error::SynthError;
-use crate::gait::Gait;
-use crate::gait::stand::Amplitude;
-use crate::ground::displacement::Aside;
-use crate::ground::step::{Placing, Stage};
-use crate::plan::remainder::Rest;
-use crate::plan::{Manner, Pace, Planner, StepDraw, StepPlan, StepShape};
-use crate::trajectory::fine_motion::{Scale, neighbours};
+use crate::gait::{Amplitude, Gait, Manner, Pace, Request};
+use crate::ground::{Aside, Placing, Stage};
+use crate::plan::{Planner, Rest, StepDraw, StepPlan, StepShape, TIE, TIE_LEN, WINDOW};
+use crate::trajectory::{Scale, neighbours};
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::FEATURE_COUNT;
 use glam::Vec2;
 use std::sync::Arc;
-
-/// Steps in a window: the one before, the one to be put on the ground, and one ahead, which shapes its end. What lies
-/// beyond does not show: a frame's influence has died away after half a step.
-pub(crate) const WINDOW: usize = 3;
-
-/// Frames that tie a window to the one before: the longest dynamic window couples no more.
-pub(crate) const TIE: usize = 4;
 
 /// No fine motion.
 const NO_SCALE: Scale = [0.0; FEATURE_COUNT];

@@ -2,8 +2,7 @@
 
 use super::carry::Carrier;
 use super::sway::{Stander, StandingTables, Sway};
-use crate::generator::GeneratorConfig;
-use crate::source::style_space::StyleSpace;
+use crate::config::GeneratorConfig;
 use footfall_core::ease::settled;
 use footfall_core::{Pose, Skeleton};
 use glam::Quat;
@@ -69,13 +68,13 @@ impl Moment {
 }
 
 impl Life {
-    /// That of a walker of this space; `None` where the model stands still.
+    /// That of a walker of a model; `None` where the model stands still.
     pub(crate) fn new(
-        space: &StyleSpace,
+        tables: Option<&Arc<StandingTables>>,
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Option<Self> {
-        let tables = space.standing()?;
+        let tables = tables?;
         Some(Self {
             stander: tables.stander(config.seed, config.variation.clamp(0.0, 2.0)),
             tables: Arc::clone(tables),

@@ -1,6 +1,6 @@
 //! Curves of seeded chance over time that nobody has to remember: every number of them follows from the walker, the curve and the moment.
 
-use crate::trajectory::fine_motion::mixed;
+use crate::hash::mixed;
 
 /// Knots that a moment's value is made of.
 const SUPPORT: usize = 4;

@@ -1,7 +1,7 @@
 //! Deviation of a standing body from its posture at a moment: octaves of sway, looks about and breath.
 
 use super::noise::{AT_ONCE, Curves, key, normal, share};
-use crate::plan::Sum as _;
+use crate::rows::Sum as _;
 use core::f32::consts::TAU;
 use footfall_core::Joint;
 use footfall_model::layout::feature_offset;

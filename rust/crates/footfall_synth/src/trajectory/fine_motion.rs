@@ -4,7 +4,9 @@
 //! so that steps join without a jump. Noise needs no memory: every step has a number of its own, from which its points' independent
 //! numbers follow, and a point's noise is a weighted sum of those around it.
 
-use crate::plan::{MAX_COMPONENTS, StepDraw, StepPlan, Sum as _};
+use crate::hash::mixed;
+use crate::plan::{FineDraw, StepPlan};
+use crate::rows::Sum as _;
 use footfall_core::Side;
 use footfall_core::ease::{catmull_rom, smooth_step};
 use footfall_model::{
@@ -21,9 +23,6 @@ const SOURCES: usize = KNOTS + 2 * FINE_REACH;
 /// Independent numbers that come out of the generator at once.
 const AT_ONCE: usize = 4;
 
-/// Strength of a walker's noise stays within this factor of the average's.
-const MAX_STRENGTH: f64 = 1.6;
-
 /// A factor a feature.
 pub(crate) type Scale = [f32; FEATURE_COUNT];
 
@@ -36,17 +35,6 @@ pub(crate) struct FineTables {
     kernels: [[f32; MAX_FINE_DIRECTIONS]; FINE_TAPS],
     /// Four at a time, the last filled up with zeros.
     directions: Vec<[[f32; FEATURE_COUNT]; 4]>,
-}
-
-/// Facts of a step from which its fine motion follows.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct FineDraw {
-    /// The weights of the model's walker components.
-    walker: [f32; MAX_COMPONENTS],
-    /// Factor on the noise.
-    strength: f32,
-    /// Source of the step's noise.
-    number: u64,
 }
 
 /// Three steps in a row: the one that is shown is in the middle. One that is not there has no noise.
@@ -89,52 +77,6 @@ impl FineTables {
     pub(crate) fn scale(fine: &FineMotion) -> Scale {
         core::array::from_fn(|feature| fine.scale[feature] as f32)
     }
-}
-
-impl FineDraw {
-    /// That of a step of a walker; `variation` scales how far both stray.
-    pub(crate) fn new(
-        model: &GaitModel,
-        walker: &[f64; MAX_COMPONENTS],
-        draw: &StepDraw,
-        variation: f64,
-    ) -> Self {
-        let Some(fine) = &model.fine else {
-            return Self::default();
-        };
-        let weights = walker.map(|weight| variation * weight);
-        let slopes = fine.chance.walker_strength.iter().zip(&weights);
-        let log: f64 = slopes.map(|(slope, weight)| slope * weight).sum();
-        let most = MAX_STRENGTH.ln();
-        let number = number_of(draw, model.variation.step.len());
-        let strength = variation * log.clamp(-most, most).exp();
-        Self {
-            walker: weights.map(|weight| weight as f32),
-            strength: if number == 0 { 0.0 } else { strength as f32 },
-            number,
-        }
-    }
-}
-
-/// A number that no other step has, made of what chance decided about its stride and of its side; 0 for a step without chance.
-fn number_of(draw: &StepDraw, components: usize) -> u64 {
-    let used = components.clamp(1, MAX_COMPONENTS);
-    let weights = &draw.weights[..used];
-    if weights.iter().all(|weight| weight.abs() <= 0.0) {
-        return 0;
-    }
-    let side = mixed(draw.side.index() as u64);
-    weights
-        .iter()
-        .fold(side, |number, weight| mixed(number ^ weight.to_bits()))
-}
-
-/// The finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every bit depends on every bit.
-pub(crate) const fn mixed(number: u64) -> u64 {
-    let mut bits = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    bits ^ (bits >> 31)
 }
 
 impl FineBench {

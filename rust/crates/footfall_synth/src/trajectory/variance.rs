@@ -7,8 +7,8 @@
 
 use super::TrajectorySolver;
 use crate::error::SynthError;
-use crate::plan::statistics::Statistics;
-use crate::plan::{Manner, Pace, Planner, StepPlan};
+use crate::gait::{Manner, Pace};
+use crate::plan::{Planner, Statistics, StepPlan};
 use footfall_core::Side;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use footfall_prob::global_variance::{

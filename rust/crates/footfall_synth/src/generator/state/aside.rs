@@ -2,8 +2,8 @@
 
 use super::is_reasonable;
 use crate::generator::GaitGenerator;
-use crate::ground::displacement::Aside;
-use crate::source::step_source::Steps;
+use crate::ground::Aside;
+use crate::source::Steps;
 use serde::{Deserialize, Serialize};
 
 /// Strides that chance has drawn, and how far the current step ends from where it was planned, behind a [`State`](super::State).

@@ -1,8 +1,6 @@
 //! Feet and hips as they are saved between two steps.
 
-use crate::ground::lean::Lean;
-use crate::ground::planter_state::PlanterState;
-use crate::ground::strafe::Strafe;
+use crate::ground::{Lean, PlanterState, Strafe};
 use footfall_ik::Plant;
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};

@@ -3,7 +3,7 @@
 use super::is_reasonable;
 use crate::generator::GaitGenerator;
 use crate::moves::{CrouchMoment, Leap, Moves, PushMoment};
-use crate::source::step_source::Steps;
+use crate::source::Steps;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 

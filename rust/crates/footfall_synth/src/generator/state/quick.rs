@@ -1,12 +1,11 @@
 //! Saving a step that was made to obey in its middle.
 
 use super::{State, is_reasonable};
-use crate::gait::applied::Obeyed;
+use crate::gait::Obeyed;
 use crate::generator::GaitGenerator;
-use crate::ground::lean::Lean;
-use crate::ground::planter_state::PlanterState;
-use crate::plan::remainder::Rest;
-use crate::source::step_source::Steps;
+use crate::ground::{Lean, PlanterState};
+use crate::plan::Rest;
+use crate::source::Steps;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 

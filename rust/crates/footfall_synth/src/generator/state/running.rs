@@ -3,8 +3,8 @@
 use super::is_reasonable;
 use crate::gait::Gait;
 use crate::generator::GaitGenerator;
-use crate::ground::flight::Airborne;
-use crate::source::step_source::Steps;
+use crate::ground::Airborne;
+use crate::source::Steps;
 use footfall_ik::FootTarget;
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};

@@ -1,15 +1,14 @@
 //! Parts of a state that each kind of steps adds, and their restoration.
 
 use super::{Led, Quick, Running, Source, State, StateError, detail_of};
+use crate::config::GeneratorConfig;
 use crate::error::SynthError;
-use crate::gait::chooser::Worn;
-use crate::generator::GeneratorConfig;
-use crate::ground::lean::Lean;
-use crate::ground::planter_state::PlanterState;
-use crate::plan::{MAX_COMPONENTS, Manner, Pace, StepDraw};
-use crate::source::styled::{StyledSteps, walker_of};
-use crate::source::switching::{SwitchingOrigin, SwitchingSteps};
-use crate::source::window::{Origin, Request, TIE_LEN, WINDOW, Walker};
+use crate::gait::{Manner, Pace, Request};
+use crate::ground::{Lean, PlanterState};
+use crate::plan::{MAX_COMPONENTS, StepDraw, TIE_LEN, WINDOW};
+use crate::source::{
+    Origin, StyledSteps, SwitchingOrigin, SwitchingSteps, Walker, Worn, walker_of,
+};
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::GaitModel;
 use glam::Vec2;

@@ -1,9 +1,9 @@
 //! Turning the legs and the trunk of one step.
 
 use super::Strafe;
+use crate::ground::frame::PlantedFrame;
 use crate::ground::generated::{RawFrame, RawLeg};
-use crate::ground::planter::PlantedFrame;
-use crate::plan::timing::StepTiming;
+use crate::plan::StepTiming;
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Side};

@@ -3,12 +3,10 @@
 use super::SwitchingSteps;
 use crate::controls::STANDING_SPEED_MPS;
 use crate::detail::Detail;
-use crate::gait::stand::Amplitude;
-use crate::gait::{FASTEST_WALK_MPS, Gait};
-use crate::ground::step::Stage;
-use crate::ground::strafe::pelvis_turn;
+use crate::gait::{Amplitude, Ask, FASTEST_WALK_MPS, Gait, pelvis_turn};
+use crate::ground::Stage;
 use crate::plan::StepShape;
-use crate::source::step_source::{Ask, StepSource, Stretches};
+use crate::source::step_source::{StepSource, Stretches};
 use glam::Vec2;
 
 /// A step's velocity differs by at most this much from that of the step before, m/s: two systems know one way of walking and are harder to bend.

@@ -2,8 +2,7 @@
 
 use super::Walker;
 use crate::footstep::Footstep;
-use crate::ground::displacement::Aside;
-use crate::ground::step::Stage;
+use crate::ground::{Aside, Stage};
 use crate::plan::StepShape;
 use crate::source::buffers::Workbench;
 use footfall_core::GroundTransform;

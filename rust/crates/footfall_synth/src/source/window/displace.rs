@@ -1,8 +1,8 @@
 //! Steps that are made to end elsewhere, and draws that are not the next of chance.
 
-use super::{TIE, WINDOW, Walker};
-use crate::ground::displacement::Aside;
-use crate::plan::StepDraw;
+use super::Walker;
+use crate::ground::Aside;
+use crate::plan::{StepDraw, TIE, WINDOW};
 use crate::source::buffers::Workbench;
 
 impl Walker {

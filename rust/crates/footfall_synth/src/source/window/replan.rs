@@ -1,11 +1,10 @@
 //! Planning of the rest of a step anew.
 
-use super::{Origin, Request, Walker, placing};
+use super::{Origin, Walker, placing};
 use crate::detail::Detail;
-use crate::gait::stand::Amplitude;
-use crate::ground::displacement::Aside;
-use crate::plan::Planner;
-use crate::plan::remainder::Rest;
+use crate::gait::{Amplitude, Request};
+use crate::ground::Aside;
+use crate::plan::{Planner, Rest};
 use crate::source::buffers::Workbench;
 use footfall_core::ease::smooth_step;
 use std::sync::Arc;

@@ -1,0 +1,33 @@
+//! Frames on the ground.
+
+use footfall_core::Pose;
+use glam::{Quat, Vec3};
+
+/// One frame of a walk on the ground.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PlantedFrame {
+    /// The pose in the space where the walk began.
+    pub(crate) pose: Pose,
+    /// Place of the walker on the ground: its travel without sway.
+    pub(crate) ground_position: Vec3,
+    /// Heading of the walker, radians, and the rotation by it; continuous within a step.
+    pub(crate) ground_heading: f32,
+    pub(crate) plan_from_ground: Quat,
+    /// Heading under which the generated features are put, radians, and the rotation by it.
+    pub(crate) heading: f32,
+    pub(crate) level: Quat,
+    /// Contacts of the left and the right foot.
+    pub(crate) contact: [bool; 2],
+}
+
+impl AsRef<Pose> for PlantedFrame {
+    fn as_ref(&self) -> &Pose {
+        &self.pose
+    }
+}
+
+impl AsMut<Pose> for PlantedFrame {
+    fn as_mut(&mut self) -> &mut Pose {
+        &mut self.pose
+    }
+}
