@@ -10,6 +10,7 @@ mod feet;
 mod frames;
 mod led;
 mod own;
+mod own_step;
 mod recorded;
 mod rest;
 mod shared;

@@ -1,6 +1,7 @@
 //! Looping walks, for tools that play clips.
 
 use crate::controls::Controls;
+use crate::footstep::Footstep;
 use crate::generator::GaitGenerator;
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{from_heading, wrap_angle};
@@ -120,7 +121,7 @@ impl Recording {
             generator.step(frame_secs, controls, &mut pose);
             recording.poses.push(pose.clone());
             recording.places.push(generator.start_from_character());
-            let lands = |step: &crate::Footstep| step.side == Side::Left;
+            let lands = |step: &Footstep| step.side == Side::Left;
             if generator.footsteps().iter().any(lands) {
                 recording.contacts.push(frame);
             }

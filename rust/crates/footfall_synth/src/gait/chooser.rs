@@ -1,10 +1,10 @@
 //! Choice of the next step: its gait, velocity and pace by the controls.
 
 use super::direction::pelvis_turn;
+use super::kinds::{FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
 use super::pace::PaceTable;
 use super::request::{Ask, Manner, Request};
 use super::stand::Amplitude;
-use super::{FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
 use crate::controls::{FASTEST_RUN_MPS, STANDING_SPEED_MPS};
 use crate::detail::Detail;
 use footfall_core::StepPosition;

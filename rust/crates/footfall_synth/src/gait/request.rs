@@ -1,6 +1,6 @@
 //! Requests for one step: the controls as a step can follow them, and the step that a gait makes of them.
 
-use super::Gait;
+use super::kinds::Gait;
 use super::pace::Pace;
 use super::stand::Amplitude;
 use crate::controls::{Controls, GaitChoice};

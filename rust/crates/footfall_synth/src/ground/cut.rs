@@ -1,9 +1,8 @@
 //! A step cut off in its swing: what its rest goes on from.
 
-use super::flight::Airborne;
 use super::frame::PlantedFrame;
 use super::lean::{Bend, Pull};
-use super::planter_state::PlanterState;
+use super::planter_state::{Airborne, PlanterState};
 use super::travel::TURN_ONSET;
 use crate::plan::StepTiming;
 use footfall_core::ease::smooth_step;

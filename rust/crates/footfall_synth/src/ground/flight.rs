@@ -7,6 +7,7 @@ use super::bounce::Bounce;
 use super::frame::PlantedFrame;
 use super::generated::{RawFrame, free_foot};
 use super::planter::Planter;
+use super::planter_state::Airborne;
 use super::support::LET_GO_EXTENSION;
 use super::swing::Swing;
 use crate::gait::GRAVITY_MPS2;
@@ -29,32 +30,6 @@ const LEAP_SPEED_SHARE: f32 = 0.85;
 
 /// Fraction of the straight leg at which a foot that leaps leaves the ground: hips rise so fast then that a knee would snap straight.
 const LEAP_EXTENSION: f32 = 0.98;
-
-/// A foot in the air between two steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Airborne {
-    /// Places of the foot as the step begins, and a frame earlier.
-    pub(crate) now: FootTarget,
-    pub(crate) before: FootTarget,
-    /// Time between the two, seconds.
-    pub(crate) frame_secs: f32,
-}
-
-impl Airborne {
-    /// Place of the foot so long ago.
-    fn earlier(&self, secs: f32) -> FootTarget {
-        let share = secs / self.frame_secs;
-        if (share - 1.0).abs() < 1e-3 {
-            return self.before;
-        }
-        let turned = |now: Quat, before: Quat| now.slerp(before, share);
-        FootTarget {
-            ankle: self.now.ankle + share * (self.before.ankle - self.now.ankle),
-            foot: turned(self.now.foot, self.before.foot),
-            toes: turned(self.now.toes, self.before.toes),
-        }
-    }
-}
 
 impl Planter {
     /// Lets the hips go on over the ground as they did above the foot, in the frames after it has taken off; a leap keeps most of the speed that it begins

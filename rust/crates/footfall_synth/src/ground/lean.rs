@@ -5,6 +5,7 @@
 
 use super::frame::PlantedFrame;
 use super::planter::Planter;
+use super::planter_state::Lean;
 use crate::gait::GRAVITY_MPS2;
 use core::f32::consts::PI;
 use footfall_core::ease::smooth_step;
@@ -23,13 +24,6 @@ const UNNOTICED_MPS2: f32 = 0.3;
 
 /// Nobody's trunk leans farther, radians.
 const MOST_RAD: f32 = 0.22;
-
-/// Lean of the trunk: to the left and forwards, radians, and its rate of change, rad/s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Lean {
-    pub(crate) angle: Vec2,
-    pub(crate) rate: Vec2,
-}
 
 /// Accelerations that the trunk leans against in a step: to the left and forwards, m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

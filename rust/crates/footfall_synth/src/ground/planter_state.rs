@@ -1,10 +1,8 @@
 //! Feet, hips and heading as they are carried from step to step.
 
-use super::flight::Airborne;
-use super::lean::Lean;
 use super::strafe::Strafe;
-use footfall_ik::Plant;
-use glam::{Vec2, Vec3};
+use footfall_ik::{FootTarget, Plant};
+use glam::{Quat, Vec2, Vec3};
 
 /// State that goes from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,4 +25,37 @@ pub(crate) struct PlanterState {
     pub(crate) airborne: Option<Airborne>,
     /// Lean of the trunk.
     pub(crate) lean: Lean,
+}
+
+/// A foot in the air between two steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Airborne {
+    /// Places of the foot as the step begins, and a frame earlier.
+    pub(crate) now: FootTarget,
+    pub(crate) before: FootTarget,
+    /// Time between the two, seconds.
+    pub(crate) frame_secs: f32,
+}
+
+impl Airborne {
+    /// Place of the foot so long ago.
+    pub(super) fn earlier(&self, secs: f32) -> FootTarget {
+        let share = secs / self.frame_secs;
+        if (share - 1.0).abs() < 1e-3 {
+            return self.before;
+        }
+        let turned = |now: Quat, before: Quat| now.slerp(before, share);
+        FootTarget {
+            ankle: self.now.ankle + share * (self.before.ankle - self.now.ankle),
+            foot: turned(self.now.foot, self.before.foot),
+            toes: turned(self.now.toes, self.before.toes),
+        }
+    }
+}
+
+/// Lean of the trunk: to the left and forwards, radians, and its rate of change, rad/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Lean {
+    pub(crate) angle: Vec2,
+    pub(crate) rate: Vec2,
 }

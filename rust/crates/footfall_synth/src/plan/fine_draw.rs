@@ -1,7 +1,6 @@
 //! The part of a plan from which the fine motion of its step follows.
 
-use super::draw::StepDraw;
-use super::planner::MAX_COMPONENTS;
+use super::step_draw::{MAX_COMPONENTS, StepDraw};
 use crate::hash::mixed;
 use footfall_model::GaitModel;
 

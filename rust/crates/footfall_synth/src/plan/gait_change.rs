@@ -1,6 +1,6 @@
 //! Steps in which one gait goes over into another.
 
-use super::StepPlan;
+use super::step_plan::StepPlan;
 use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP};
 
 /// Shares by which the states of a step in which the gait changes have gone over into the new one.

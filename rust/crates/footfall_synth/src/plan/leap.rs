@@ -1,6 +1,6 @@
 //! Leaps: steps of a run whose flight lasts as long as the rise of the hips takes.
 
-use super::StepPlan;
+use super::step_plan::StepPlan;
 use crate::detail::{Detail, MOST_GROUND_FRAMES};
 use crate::gait::{GRAVITY_MPS2, Gait};
 use footfall_model::STATES_PER_STEP;

@@ -1,7 +1,7 @@
 //! Offsets from a model's average step.
 
-use super::planner::MAX_COMPONENTS;
 use super::statistics::{Part, Statistics};
+use super::step_draw::MAX_COMPONENTS;
 use crate::rows::Sum;
 use core::ops::Range;
 use footfall_core::Side;

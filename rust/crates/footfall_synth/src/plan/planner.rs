@@ -1,10 +1,10 @@
 //! Planning of steps: chance, speed and manner become durations and means.
 
-use super::draw::StepDraw;
 use super::fine_draw::FineDraw;
 use super::offsets::Offsets;
 use super::statistics::{Part, STEP_MEANS, Statistics};
-use super::{MAX_STEP_SECS, StepPlan, StepShape};
+use super::step_draw::{MAX_COMPONENTS, StepDraw};
+use super::step_plan::{MAX_STEP_SECS, StepPlan, StepShape};
 use crate::detail::Detail;
 use crate::gait::Manner;
 use crate::rows::Sum;
@@ -14,9 +14,6 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 use std::sync::Arc;
-
-/// Components of the variation that a step can hold; a model has no more.
-pub(crate) const MAX_COMPONENTS: usize = 16;
 
 /// Weights of components stay within this many standard deviations, so that every walker is a plausible one.
 const MAX_WALKER_WEIGHT: f64 = 2.0;

@@ -3,7 +3,7 @@
 //! Controls may change in the middle of a swing. The rest of the step then becomes a step of its own: it begins with a foot in the air, continues the
 //! frames already shown, and takes the states of the new plan that have not passed yet. It need not fit the previous plan.
 
-use super::StepPlan;
+use super::step_plan::StepPlan;
 use super::window::TIE;
 use footfall_model::STATES_PER_STEP;
 

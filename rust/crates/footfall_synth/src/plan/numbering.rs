@@ -1,6 +1,7 @@
 //! Draws of steps by their numbers: the same walker draws the same step on any machine.
 
-use super::planner::{MAX_COMPONENTS, Planner};
+use super::planner::Planner;
+use super::step_draw::StepDraw;
 use footfall_core::Side;
 
 /// Strides are counted so far; then the count begins anew.
@@ -8,13 +9,6 @@ const STRIDES: u32 = 0x7fff;
 
 /// Strides of chance that are drawn one by one to get to a later one; for more, and for earlier ones, chance begins anew.
 const STRIDES_AHEAD: u32 = 64;
-
-/// Random draw of a step; its pace may still change.
-#[derive(Clone, Debug)]
-pub(crate) struct StepDraw {
-    pub(crate) side: Side,
-    pub(crate) weights: [f64; MAX_COMPONENTS],
-}
 
 impl Planner {
     /// Takes chance to where it draws the step of this number; returns that. Even ones begin with the left foot's contact. `fresh` is the walker before its first step.

@@ -1,0 +1,134 @@
+//! A step on the ground, part by part: stances, travel and height of the hips, flight, the next plant, the swing, and the legs.
+
+use super::course::Course;
+use super::frame::PlantedFrame;
+use super::generated::{RawFrame, free_foot};
+use super::planter::Planter;
+use super::strafe::{Strafe, Turner};
+use super::swing::Swing;
+use crate::plan::StepTiming;
+use footfall_core::Side;
+use footfall_core::rotation::from_heading;
+
+impl Planter {
+    /// Turns a step that goes forwards to where it is to go; forwards it goes along +Z under the heading `own_facing`. A step in full walk leads `wanted_m` far, metres.
+    pub(crate) fn turn_step(
+        &mut self,
+        raw: &mut [RawFrame],
+        timing: &StepTiming,
+        (strafe, wanted_m): (Strafe, Option<f32>),
+        own_facing: f32,
+        out: &mut [PlantedFrame],
+    ) {
+        let before = self.state.strafe;
+        if [before, strafe] != [Strafe::NONE; 2] {
+            let leg_length = self.leg_lengths[timing.leading.index()];
+            let strafe = strafe.lengthened(self.flat_way(timing, raw, own_facing), wanted_m);
+            // A step that ends a walk brings the feet together.
+            let strafe = if timing.rests {
+                strafe
+            } else {
+                strafe.spread(raw, leg_length)
+            };
+            self.state.strafe = strafe;
+            let turner = Turner {
+                feet: &self.feet,
+                leg_length,
+                own_facing,
+            };
+            turner.turn_step(raw, out, timing, [&before, &strafe]);
+        }
+    }
+
+    /// Way of the hips over the standing foot in a step forwards, were that foot flat throughout, metres.
+    fn flat_way(&self, timing: &StepTiming, raw: &[RawFrame], own_facing: f32) -> f32 {
+        let side = timing.leading.index();
+        let level = from_heading(own_facing);
+        let ahead = |frame: usize| {
+            let leg = &raw[frame].legs[side];
+            (level * (leg.ankle - self.feet[side].roll(leg.pitch))).z
+        };
+        ahead(0) - ahead(timing.frames)
+    }
+
+    /// Puts a step on the ground. `raw` and `out` have one frame more than the step: the next initial contact, which is the
+    /// first frame of the next step. The poses in `out` hold the generated local rotations.
+    ///
+    /// The trailing foot leaves the ground at `timing.terminal`, or earlier when the generated leg takes it away, and in a run the leading foot at
+    /// `timing.take_off`; returns the timing as it came out.
+    pub(crate) fn plant_step(
+        &mut self,
+        raw: &mut [RawFrame],
+        timing: &StepTiming,
+        course: Course,
+        out: &mut [PlantedFrame],
+    ) -> StepTiming {
+        let airborne = self.state.airborne.take();
+        let timing = &StepTiming {
+            terminal: if airborne.is_some() {
+                0
+            } else {
+                timing.terminal
+            },
+            airborne: airborne.is_some(),
+            ..*timing
+        };
+        let course = Course {
+            keeps_lengths: course.keeps_lengths && timing.take_off.is_none(),
+            ..course
+        };
+        self.balance(raw, timing, course);
+        self.fill_stances(raw, timing);
+        self.travel(raw, timing, course, out);
+        let timing = &StepTiming {
+            terminal: self.release(raw, timing, out),
+            ..*timing
+        };
+        if course.keeps_lengths {
+            // What a heel can give, the hips need not.
+            self.raise_heels(raw, timing, out);
+        }
+        self.bear(raw, timing, out);
+        if timing.take_off.is_none() || !timing.airborne {
+            self.even_height(raw, timing, out);
+        }
+        if timing.take_off.is_some() {
+            self.fly(raw, timing, out);
+        }
+        self.raise_heels(raw, timing, out);
+        let [before, last] = [timing.frames - 1, timing.frames].map(|f| out[f].pose.root_position);
+        self.state.hips = last;
+        self.state.hips_velocity = Some((last - before) / self.frame_secs);
+        let timing = &StepTiming {
+            terminal: self.let_go(raw, timing, out),
+            take_off: self.leave(raw, timing, out),
+            ..*timing
+        };
+        let last = &out[timing.frames];
+        let (hips, heading) = (last.pose.root_position, last.heading);
+        let trailing = timing.leading.other();
+        let next_plant = self.next_plant(raw, timing, hips, heading, course);
+        let mut ends = self.swing_ends(raw, timing, out, &next_plant);
+        if let Some(airborne) = &airborne {
+            [ends[0], ends[1]] = self.airborne_ends(airborne, raw, timing, out);
+        }
+        let before = timing.frames - 1;
+        let (hips, level) = (out[before].pose.root_position, out[before].level);
+        let arrival = free_foot(&raw[before], trailing, hips, level).ankle;
+        let swing = Swing::new(&ends, arrival, timing, self.frame_secs);
+        let first = if timing.airborne {
+            0
+        } else {
+            timing.terminal + 1
+        };
+        self.fill_swing(raw, trailing, first..timing.frames, &swing, out);
+        self.depart(raw, timing, out);
+        raw[timing.frames].legs[trailing.index()].target = ends[2].0;
+        for side in Side::BOTH {
+            let target = |index: usize| &raw[index].legs[side.index()].target;
+            self.legs[side.index()].solve_many(out, target);
+        }
+        self.state.plants[trailing.index()] = next_plant;
+        *timing
+    }
+}
