@@ -6,10 +6,12 @@ mod streamed;
 use crate::controls::GaitChoice;
 use crate::error::SynthError;
 use crate::gait::{Gait, Manner};
-use crate::ground::{Aside, Course, PlantedFrame, Planter, RawFrame, SpeedChange, Stride};
+use crate::ground::{
+    Course, Displacement, GeneratedFrame, PlantedFrame, Planter, SpeedChange, Stride,
+};
 use crate::plan::{Planner, Statistics, StepDraw, StepPlan};
 use crate::source::{StyleSpace, measure_paces};
-use crate::trajectory::{FineBench, FineTables, neighbours, variance};
+use crate::trajectory::{FineBuffers, FineTables, neighbours, variance};
 
 use footfall_core::lanes::f32x8;
 use footfall_core::rotation::from_heading;
@@ -120,7 +122,7 @@ pub fn synthesize(
     let speed = config
         .speed_mps
         .map_or(model.speed.reference_mps, f64::from);
-    let paces = space.at_bench(|bench| measure_paces(&planner, skeleton, blend, bench))?;
+    let paces = space.with_buffers(|buffers| measure_paces(&planner, skeleton, blend, buffers))?;
     let pace = paces.pace(speed.max(MIN_SPEED_MPS));
 
     let mut side = if LEAD_STEPS.is_multiple_of(2) {
@@ -134,12 +136,12 @@ pub fn synthesize(
             let draw: StepDraw = planner.draw(side);
             side = side.other();
             let mut plan = StepPlan::empty();
-            planner.realise(&draw, Manner::inside(pace), &statistics, &mut plan);
+            planner.plan_step(&draw, Manner::inside(pace), &statistics, &mut plan);
             plan
         })
         .collect();
     let trajectory = variance::solve_walk(model, &statistics, &plans)?;
-    Ok(put_on_ground(
+    Ok(plant(
         model,
         skeleton,
         config,
@@ -161,7 +163,7 @@ fn gait_of(model: &GaitModel, skeleton: &Skeleton, config: &WalkConfig) -> Gait 
 }
 
 /// Places planned steps on the ground; the first and the last [`LEAD_STEPS`] are hidden.
-pub(crate) fn put_on_ground(
+pub(crate) fn plant(
     model: &GaitModel,
     skeleton: &Skeleton,
     config: &WalkConfig,
@@ -176,7 +178,7 @@ pub(crate) fn put_on_ground(
         .as_ref()
         .zip(FineTables::of(model))
         .map(|(fine, tables)| (tables, FineTables::scale(fine)));
-    let mut bench = FineBench::new();
+    let mut buffers = FineBuffers::new();
     let mut planter: Option<Planter> = None;
     let mut course = Course {
         step_secs: 0.0,
@@ -185,7 +187,7 @@ pub(crate) fn put_on_ground(
         keeps_lengths: true,
         direction: Some(0.0),
         change: SpeedChange::default(),
-        aside: Aside::NONE,
+        displacement: Displacement::NONE,
     };
     let mut poses: Vec<Pose> = Vec::new();
     let mut stances: [Vec<[f64; 2]>; 2] = [vec![], vec![]];
@@ -195,12 +197,12 @@ pub(crate) fn put_on_ground(
     let mut start_heading = 0.0;
     for (index, plan) in plans[..shown.end].iter().enumerate() {
         let timing = &plan.shape.timing;
-        let mut raw = vec![RawFrame::default(); timing.frames + 1];
+        let mut generated = vec![GeneratedFrame::default(); timing.frames + 1];
         let stride = plan.shape.stride as f32;
         let rows = trajectory[begin * FEATURE_COUNT..].chunks_exact(FEATURE_COUNT);
         let mut frames = vec![PlantedFrame::default(); timing.frames + 1];
         if let Some((tables, _)) = &fine {
-            bench.prepare(tables, timing.leading, &neighbours(plans, index));
+            buffers.prepare(tables, timing.leading, &neighbours(plans, index));
         }
         for (number, (frame, features)) in frames.iter_mut().zip(rows).enumerate() {
             let mut narrow = [0.0; FEATURE_COUNT];
@@ -208,7 +210,7 @@ pub(crate) fn put_on_ground(
                 *narrow = *feature as f32;
             }
             if let Some((_, scale)) = &fine {
-                bench.add(
+                buffers.add(
                     number as f32 / timing.frames as f32,
                     [scale; 2],
                     &mut narrow,
@@ -216,7 +218,7 @@ pub(crate) fn put_on_ground(
             }
             layout::decode(&narrow, &mut frame.pose.rotations);
         }
-        RawFrame::fill(&mut raw, &frames, skeleton, |_| Stride {
+        GeneratedFrame::fill(&mut generated, &frames, skeleton, |_| Stride {
             scale: f32x8::splat(stride),
             upright: f32x8::ONE,
         });
@@ -224,9 +226,9 @@ pub(crate) fn put_on_ground(
         course.step_secs = (timing.frames as f64 * frame_secs) as f32;
         let timing = planter
             .get_or_insert_with(|| {
-                Planter::new(skeleton, frame_secs as f32, &raw[0], timing, facing)
+                Planter::new(skeleton, frame_secs as f32, &generated[0], timing, facing)
             })
-            .plant_step(&mut raw, timing, course, &mut frames);
+            .plant_step(&mut generated, timing, course, &mut frames);
         if index < shown.start {
             continue;
         }

@@ -9,7 +9,7 @@ use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
-use crate::gait::{Ask, Gait};
+use crate::gait::{Gait, StepControls};
 use crate::ground::PlantedFrame;
 use crate::moves::{Leap, Moves};
 use crate::plan::StepShape;
@@ -49,14 +49,14 @@ pub struct GaitGenerator {
     /// Crouches and jumps; `None` with a switching model.
     pub(crate) moves: Option<Moves>,
     /// Pending jump.
-    pub(crate) asked_jump: Option<Leap>,
+    pub(crate) pending_jump: Option<Leap>,
     pub(crate) footsteps: Vec<Footstep>,
     /// Last requested forward speed, m/s.
-    pub(crate) asked_mps: f32,
+    pub(crate) requested_mps: f32,
     start_from_character: GroundTransform,
     contact: [bool; 2],
     /// Controls to which the current step already responds.
-    pub(crate) heard: Option<Controls>,
+    pub(crate) answered: Option<Controls>,
 }
 
 impl GaitGenerator {
@@ -119,12 +119,12 @@ impl GaitGenerator {
             plan_from_start: GroundTransform::default(),
             life: None,
             moves: None,
-            asked_jump: None,
+            pending_jump: None,
             footsteps: Vec::with_capacity(MAX_FOOTSTEPS),
-            asked_mps: 0.0,
+            requested_mps: 0.0,
             start_from_character: GroundTransform::default(),
             contact: [true; 2],
-            heard: None,
+            answered: None,
         };
         generator.plan_from_start = generator.plan_from_character();
         generator
@@ -168,7 +168,7 @@ impl GaitGenerator {
     /// Returns the weights of the styles from the next step on.
     pub fn style_weights(&self) -> &[f32] {
         match &self.steps {
-            Steps::Styled(steps) => &steps.worn().weights,
+            Steps::Styled(steps) => &steps.blend().weights,
             Steps::Switching(_) => &[],
         }
     }
@@ -176,7 +176,7 @@ impl GaitGenerator {
     /// Returns the speed that suits the model and this body best, that of its recordings, m/s.
     pub fn usual_speed_mps(&self) -> f32 {
         match &self.steps {
-            Steps::Styled(steps) => steps.worn().model.speed.reference_mps as f32,
+            Steps::Styled(steps) => steps.blend().model.speed.reference_mps as f32,
             Steps::Switching(steps) => steps.own_speed_mps as f32,
         }
     }
@@ -212,7 +212,7 @@ impl GaitGenerator {
     pub(crate) fn begin_frame(&mut self, controls: &Controls) -> Controls {
         self.footsteps.clear();
         let controls = self.steered(controls);
-        self.asked_mps = controls.velocity().y.max(0.0);
+        self.requested_mps = controls.velocity().y.max(0.0);
         controls
     }
 
@@ -280,7 +280,7 @@ impl GaitGenerator {
         }
         let timing = &self.shape().timing;
         let side = timing.leading.other();
-        let plant = self.steps.source().stage().plant(side)?;
+        let plant = self.steps.source().planted().plant(side)?;
         let footstep = Footstep::seen_from(&self.plan_from_character(), side, plant);
         let secs = (timing.frames as f32 - self.position) / self.frame_rate_hz;
         Some((footstep, secs.max(0.0)))
@@ -313,14 +313,14 @@ impl GaitGenerator {
 
     pub(crate) fn next_step(&mut self, controls: &Controls) {
         let fastest = self.steps.source().fastest_mps();
-        let ask = Ask {
+        let step_controls = StepControls {
             leap_m: self.next_leap(controls),
-            ..Ask::after(self.shape().amplitude, *controls, fastest, self.detail)
+            ..StepControls::after(self.shape().amplitude, *controls, fastest, self.detail)
         };
-        self.steps.source_mut().advance(&ask);
-        self.heard = None;
+        self.steps.source_mut().advance(&step_controls);
+        self.answered = None;
         let side = self.shape().timing.leading;
-        if let Some(plant) = self.steps.source().stage().plant(side) {
+        if let Some(plant) = self.steps.source().planted().plant(side) {
             self.report(Footstep::seen_from(&self.plan_from_start, side, plant));
         }
     }
@@ -334,25 +334,26 @@ impl GaitGenerator {
 
     /// Lets a step with a foot in the air respond to the current controls.
     fn replan(&mut self, controls: &Controls) {
-        if self.heard.as_ref() == Some(controls) {
+        if self.answered.as_ref() == Some(controls) {
             return;
         }
         let frame = self.position as usize;
         let fastest = self.steps.source().fastest_mps();
-        let ask = Ask::after(self.shape().amplitude, *controls, fastest, self.detail);
+        let step_controls =
+            StepControls::after(self.shape().amplitude, *controls, fastest, self.detail);
         let source = self.steps.source_mut();
-        if source.replan(&ask, frame) {
+        if source.replan(&step_controls, frame) {
             self.position -= frame as f32;
-        } else if source.is_news(&ask) {
+        } else if source.needs_replan(&step_controls) {
             // It may be obeyed a few frames later.
             return;
         }
-        self.heard = Some(*controls);
+        self.answered = Some(*controls);
     }
 
     /// Returns the frames before and after the current time, and the weight of the later one.
     fn frames(&self) -> (&PlantedFrame, &PlantedFrame, f32) {
-        let frames = &self.steps.source().stage().frames;
+        let frames = &self.steps.source().planted().frames;
         let step = self.shape();
         let last = step.ground_frames() - 1;
         let position = self.position / step.detail.stride() as f32;

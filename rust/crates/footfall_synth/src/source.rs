@@ -8,14 +8,14 @@ mod styled;
 mod switching;
 mod window;
 
-pub(crate) use buffers::Workbench;
-pub(crate) use measured::{Worn, measure_paces};
+pub(crate) use buffers::StepBuffers;
+pub(crate) use measured::{MeasuredBlend, measure_paces};
 pub(crate) use step_source::StepSource;
 pub(crate) use style_space::Blend;
 pub use style_space::StyleSpace;
-pub(crate) use styled::{StyledSteps, walker_of};
+pub(crate) use styled::{StyledSteps, planner_of};
 pub(crate) use switching::{SwitchingOrigin, SwitchingSteps};
-pub(crate) use window::{Aim, Origin, Walker};
+pub(crate) use window::{Aim, Origin, StepWindow};
 
 /// The kinds of models that walk.
 #[derive(Debug)]

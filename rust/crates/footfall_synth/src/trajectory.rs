@@ -5,7 +5,7 @@ pub(crate) mod variance;
 
 use crate::error::SynthError;
 use crate::plan::{Statistics, StepPlan};
-pub(crate) use fine_motion::{FineBench, FineTables, Scale, neighbours};
+pub(crate) use fine_motion::{FineBuffers, FineTables, Scale, neighbours};
 use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, Real, mlpg_part};
 

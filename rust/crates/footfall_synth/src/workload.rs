@@ -25,6 +25,6 @@ impl SwitchingWorkload {
 
     /// Generates the next segment; returns its number of frames.
     pub fn segment(&mut self) -> usize {
-        self.0.work_out_next()
+        self.0.generate_next()
     }
 }

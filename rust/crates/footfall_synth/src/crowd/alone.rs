@@ -21,7 +21,11 @@ impl OwnWalk {
         start_from_end: &GroundTransform,
         (chance, rest_secs): (Chance, f32),
     ) {
-        let fresh = Planner::new(&styled.0.worn.blend.model, config.seed, variation(config));
+        let fresh = Planner::new(
+            &styled.0.measured.blend.model,
+            config.seed,
+            variation(config),
+        );
         self.config = *config;
         self.styled = styled.clone();
         self.walker = *fresh.walker();

@@ -95,7 +95,7 @@ const TOGETHER: usize = 4;
 
 /// Working memory of [`CrowdFrames::set`].
 #[derive(Debug, Default)]
-pub(super) struct FramesBench {
+pub(super) struct FrameBuffers {
     poses: [Pose; TOGETHER],
     model_poses: [ModelPose; TOGETHER],
 }
@@ -113,11 +113,11 @@ impl CrowdFrames {
         &mut self,
         frames: &[PlantedFrame],
         skeleton: &Skeleton,
-        bench: &mut FramesBench,
+        buffers: &mut FrameBuffers,
     ) {
         self.places.resize(frames.len(), CrowdPlace::default());
         self.poses.resize(frames.len(), [0; POSE_NUMBERS]);
-        let FramesBench { poses, model_poses } = bench;
+        let FrameBuffers { poses, model_poses } = buffers;
         let mut before = [Quat::IDENTITY; JOINT_COUNT];
         let places = self.places.chunks_mut(TOGETHER);
         let kept = places.zip(self.poses.chunks_mut(TOGETHER));

@@ -5,9 +5,9 @@ use super::{CrowdWalker, Workshop};
 use crate::config::MAX_DT_SECS;
 use crate::controls::{Controls, GaitChoice};
 use crate::footstep::Footstep;
-use crate::gait::{Amplitude, Ask, Gait};
+use crate::gait::{Amplitude, Gait, StepControls};
 use crate::plan::{Planner, StepDraw, WINDOW};
-use crate::source::{Aim, Walker, Workbench};
+use crate::source::{Aim, StepBuffers, StepWindow};
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
 
@@ -53,21 +53,21 @@ impl LedAim {
     pub(super) fn take(
         &self,
         plan_from_start: &GroundTransform,
-        walker: &mut Walker,
-        bench: &mut Workbench,
+        window: &mut StepWindow,
+        buffers: &mut StepBuffers,
     ) {
         let place = match self {
             Self::None => return,
             Self::Place(place) | Self::Rest(place) => *place,
             Self::Moved(by) => {
-                by.global(&walker.stage().aim(plan_from_start, walker.step(), false))
+                by.global(&window.planted().aim(plan_from_start, window.step(), false))
             }
         };
         let aim = Aim {
             place,
             rests: matches!(self, Self::Rest(_)),
         };
-        walker.aim_at(&aim, plan_from_start, bench);
+        window.aim_at(&aim, plan_from_start, buffers);
     }
 }
 
@@ -193,31 +193,33 @@ impl OwnWalk {
     /// Starts over at the origin in the middle of a step; `None` where the model gives no trajectory.
     fn begin_led(&mut self, at: &LedBeginning, workshop: &mut Workshop) -> Option<()> {
         let styled = Arc::clone(&self.styled.0);
-        let worn = &styled.worn;
-        let ask = Ask {
+        let measured = &styled.measured;
+        let step_controls = StepControls {
             amplitude: Amplitude::WALK,
-            ..Ask::after(
+            ..StepControls::after(
                 self.shape.amplitude,
                 at.controls,
-                worn.chooser.fastest_mps(),
+                measured.chooser.fastest_mps(),
                 self.detail,
             )
         };
-        let gait = match ask.gait {
+        let gait = match step_controls.gait {
             GaitChoice::Run => Gait::Run,
             GaitChoice::Auto | GaitChoice::Walk => Gait::Walk,
         };
-        let mut velocity_mps = ask.velocity_mps;
+        let mut velocity_mps = step_controls.velocity_mps;
         let (request, gait) = if at.rests {
-            (worn.chooser.standing_request(self.detail), Gait::Walk)
+            (measured.chooser.standing_request(self.detail), Gait::Walk)
         } else {
-            worn.chooser.request(&ask, gait, &mut velocity_mps)
+            measured
+                .chooser
+                .request(&step_controls, gait, &mut velocity_mps)
         };
-        let blend = worn.dress(gait);
+        let blend = measured.blend_of(gait);
         let Workshop {
             planner,
-            walker,
-            bench,
+            window,
+            buffers,
             ..
         } = &mut *workshop;
         let model = &blend.model;
@@ -231,13 +233,13 @@ impl OwnWalk {
         self.chance.resume(planner, &draws);
         draws[0] = self.draw_of(at.number.wrapping_sub(1), planner);
         self.redraw(at.number, planner, &mut draws);
-        walker.start(planner, blend, draws, request, bench).ok()?;
+        window.start(planner, blend, draws, request, buffers).ok()?;
         let ending = &mut *self.ending;
         ending.blend = Arc::clone(blend);
-        ending.draws.clone_from(walker.draws());
-        ending.next = walker.next_origin(request);
+        ending.draws.clone_from(window.draws());
+        ending.next = window.next_origin(request);
         ending.velocity_mps = velocity_mps;
-        self.shape = *walker.step();
+        self.shape = *window.step();
         self.footstep = None;
         self.plan_from_start = GroundTransform::default();
         if let Some(life) = self.life.as_mut().filter(|_| at.rests) {
@@ -269,7 +271,7 @@ impl OwnWalk {
             return planner.draw_again(number);
         }
         planner.draw_of(number, || {
-            let model = &self.styled.0.worn.blend.model;
+            let model = &self.styled.0.measured.blend.model;
             Planner::new(model, self.config.seed, variation(&self.config))
         })
     }

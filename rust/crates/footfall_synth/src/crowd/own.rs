@@ -94,31 +94,31 @@ impl OwnWalk {
         workshop: &mut Workshop,
     ) -> Result<Self, SynthError> {
         let first = check(&styled.0.skeleton, config)?;
-        let worn = &styled.0.worn;
+        let measured = &styled.0.measured;
         let Workshop {
             planner,
-            walker,
-            bench,
+            window,
+            buffers,
             ..
         } = &mut *workshop;
-        *planner = Planner::new(&worn.blend.model, config.seed, variation(config));
+        *planner = Planner::new(&measured.blend.model, config.seed, variation(config));
         let request = if standing {
-            worn.chooser.standing_request(Detail::Full)
+            measured.chooser.standing_request(Detail::Full)
         } else {
-            worn.chooser.first_request(Detail::Full)
+            measured.chooser.walking_request(Detail::Full)
         };
         let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
-        walker.start(planner, &worn.blend, draws, request, bench)?;
+        window.start(planner, &measured.blend, draws, request, buffers)?;
         let ending = Ending {
-            blend: Arc::clone(&worn.blend),
-            draws: walker.draws().clone(),
-            next: walker.next_origin(request),
+            blend: Arc::clone(&measured.blend),
+            draws: window.draws().clone(),
+            next: window.next_origin(request),
             velocity_mps: request.velocity_mps,
             arrival: Arrival::default(),
         };
         let mut made = Self {
             life: Life::new(styled.0.space.standing(), &styled.0.skeleton, config),
-            ..Self::before(styled, config, *planner.walker(), (ending, *walker.step()))
+            ..Self::before(styled, config, *planner.walker(), (ending, *window.step()))
         };
         if let Some(life) = made.life.as_mut().filter(|_| standing) {
             life.stand();

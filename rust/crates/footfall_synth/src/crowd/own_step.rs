@@ -2,10 +2,10 @@
 
 use super::led::LedStep;
 use super::own::{Chance, OwnWalk, variation};
-use super::rest::{Rest, RestBench, leave};
+use super::rest::{Rest, RestBuffers, leave};
 use super::workshop::Workshop;
 use crate::controls::Controls;
-use crate::gait::{Amplitude, Ask};
+use crate::gait::{Amplitude, StepControls};
 use crate::plan::{Planner, WINDOW};
 use crate::source::Origin;
 use std::sync::Arc;
@@ -20,27 +20,28 @@ impl OwnWalk {
     ) {
         let natural = self.number().wrapping_add(1);
         let styled = Arc::clone(&self.styled.0);
-        let worn = &styled.worn;
-        let ask = Ask::after(
+        let measured = &styled.measured;
+        let step_controls = StepControls::after(
             self.shape.amplitude,
             controls,
-            worn.chooser.fastest_mps(),
+            measured.chooser.fastest_mps(),
             self.detail,
         );
         let leading = self.shape.timing.leading;
         let ending = &mut *self.ending;
         let (request, gait) =
-            worn.chooser
-                .request(&ask, ending.blend.gait, &mut ending.velocity_mps);
-        let blend = worn.dress(gait);
+            measured
+                .chooser
+                .request(&step_controls, ending.blend.gait, &mut ending.velocity_mps);
+        let blend = measured.blend_of(gait);
         let origin = Origin {
             request,
             ..ending.next.clone()
         };
         let Workshop {
             planner,
-            walker,
-            bench,
+            window,
+            buffers,
             ..
         } = &mut *workshop;
         let model = &ending.blend.model;
@@ -60,20 +61,20 @@ impl OwnWalk {
         }
         let blends = [&self.ending.blend, blend];
         // The model gave a trajectory when the walker was made, so it gives one now.
-        if walker
-            .restore(planner, blends, draws, origin, bench)
+        if window
+            .restore(planner, blends, draws, origin, buffers)
             .is_err()
         {
             return;
         }
         if let Some(led) = led {
-            led.aim.take(&self.plan_from_start, walker, bench);
+            led.aim.take(&self.plan_from_start, window, buffers);
         }
         let ending = &mut *self.ending;
         ending.blend = Arc::clone(blend);
-        ending.draws.clone_from(walker.draws());
-        ending.next = walker.next_origin(request);
-        self.shape = *walker.step();
+        ending.draws.clone_from(window.draws());
+        ending.next = window.next_origin(request);
+        self.shape = *window.step();
         self.take_over(workshop);
         self.landing = self.landing_of_step();
         self.footstep = self.footstep_at(self.landing);
@@ -82,13 +83,13 @@ impl OwnWalk {
     /// Keeps the step that was just worked out.
     pub(super) fn take_over(&mut self, workshop: &mut Workshop) {
         self.chance = Chance::of(&workshop.planner);
-        self.ending.arrival = workshop.walker.stage().arrival;
+        self.ending.arrival = workshop.window.planted().arrival;
         let timing = self.shape.ground_timing();
-        let stage = &workshop.walker.stage().frames[..=timing.frames];
-        let RestBench { planted, frames } = &mut workshop.rest;
-        let mut shown = stage;
+        let step = &workshop.window.planted().frames[..=timing.frames];
+        let RestBuffers { planted, frames } = &mut workshop.rest;
+        let mut shown = step;
         if let Some(life) = &self.life {
-            if let (true, Some(last)) = (self.shape.amplitude.to < 1.0, stage.last()) {
+            if let (true, Some(last)) = (self.shape.amplitude.to < 1.0, step.last()) {
                 match &mut self.rest {
                     Some(rest) => rest.begin(last),
                     none => *none = Some(Box::new(Rest::new(last))),
@@ -96,7 +97,7 @@ impl OwnWalk {
             }
             if !life.is_still() && self.shape.amplitude != Amplitude::STAND {
                 planted.clear();
-                planted.extend_from_slice(stage);
+                planted.extend_from_slice(step);
                 let apart = self.shape.detail.stride() as f32 / self.frame_rate_hz;
                 leave(life, planted, apart);
                 shown = planted;

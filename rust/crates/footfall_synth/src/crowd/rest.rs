@@ -1,6 +1,6 @@
 //! A crowd's walker at rest: a moment of standing at a time, worked out ahead.
 
-use super::frames::{CrowdFrames, CrowdPose, FramesBench};
+use super::frames::{CrowdFrames, CrowdPose, FrameBuffers};
 use crate::detail::Detail;
 use crate::ground::PlantedFrame;
 use crate::standing::{Life, Moment};
@@ -23,17 +23,17 @@ pub(super) struct Rest {
 
 /// Buffers in which poses are worked out.
 #[derive(Debug)]
-pub(super) struct RestBench {
+pub(super) struct RestBuffers {
     pub(super) planted: Vec<PlantedFrame>,
-    pub(super) frames: FramesBench,
+    pub(super) frames: FrameBuffers,
 }
 
-impl RestBench {
+impl RestBuffers {
     /// With room for steps of at most `longest` frames.
     pub(super) fn new(longest: usize) -> Self {
         Self {
             planted: Vec::with_capacity(Detail::ground_room(longest) + 1),
-            frames: FramesBench::default(),
+            frames: FrameBuffers::default(),
         }
     }
 }
@@ -61,19 +61,19 @@ impl Rest {
         life: &Life,
         detail: Detail,
         skeleton: &Skeleton,
-        bench: &mut RestBench,
+        buffers: &mut RestBuffers,
     ) {
         if self.place(&life.moment).is_some() {
             return;
         }
         let apart_secs = APART_SECS * detail.stride() as f32;
-        bench.planted.resize(AHEAD + 1, PlantedFrame::default());
-        for (frame, index) in bench.planted.iter_mut().zip(0_u16..) {
+        buffers.planted.resize(AHEAD + 1, PlantedFrame::default());
+        for (frame, index) in buffers.planted.iter_mut().zip(0_u16..) {
             frame.clone_from(&self.still);
             let moment = life.moment.after(f32::from(index) * apart_secs, true);
             life.move_pose(&moment, frame.plan_from_ground, &mut frame.pose);
         }
-        let RestBench { planted, frames } = bench;
+        let RestBuffers { planted, frames } = buffers;
         self.frames.set(planted, skeleton, frames);
         self.begin_secs = life.moment.secs;
         self.apart_secs = Some(apart_secs);

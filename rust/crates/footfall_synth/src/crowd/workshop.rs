@@ -2,11 +2,11 @@
 
 use super::frames::CrowdPose;
 use super::own::OwnWalk;
-use super::rest::RestBench;
+use super::rest::RestBuffers;
 use super::shared::SharedSteps;
 use crate::error::SynthError;
 use crate::plan::Planner;
-use crate::source::{StyleSpace, Walker, Workbench, Worn};
+use crate::source::{MeasuredBlend, StepBuffers, StepWindow, StyleSpace};
 use footfall_core::Skeleton;
 use std::sync::{Arc, OnceLock};
 
@@ -22,7 +22,7 @@ pub struct StyledBody(pub(super) Arc<Styled>, pub(super) u32);
 pub(super) struct Styled {
     pub(super) space: Arc<StyleSpace>,
     pub(super) skeleton: Skeleton,
-    pub(super) worn: Worn,
+    pub(super) measured: MeasuredBlend,
     shared: OnceLock<SharedSteps>,
 }
 
@@ -40,11 +40,12 @@ impl StyledBody {
         skeleton.check()?;
         let blend = space.blend(style_weights);
         let average = Planner::new(&blend.model, 0, 0.0);
-        let worn = space.at_bench(|bench| Worn::measure(&average, skeleton, blend, bench))?;
+        let measured = space
+            .with_buffers(|buffers| MeasuredBlend::measure(&average, skeleton, blend, buffers))?;
         let styled = Arc::new(Styled {
             space: Arc::clone(space),
             skeleton: skeleton.clone(),
-            worn,
+            measured,
             shared: OnceLock::new(),
         });
         let made = Self(styled, 0);
@@ -82,7 +83,7 @@ impl StyledBody {
 
     /// The speed that suits it best, m/s.
     pub fn usual_speed_mps(&self) -> f32 {
-        self.0.worn.blend.model.speed.reference_mps as f32
+        self.0.measured.blend.model.speed.reference_mps as f32
     }
 }
 
@@ -97,9 +98,9 @@ impl Styled {
 #[derive(Debug)]
 pub struct Workshop {
     pub(super) planner: Planner,
-    pub(super) walker: Walker,
-    pub(super) bench: Workbench,
-    pub(super) rest: RestBench,
+    pub(super) window: StepWindow,
+    pub(super) buffers: StepBuffers,
+    pub(super) rest: RestBuffers,
     /// Own walks that nobody walks.
     #[expect(
         clippy::vec_box,
@@ -118,12 +119,12 @@ impl Workshop {
 
     /// For walkers like this one.
     pub fn new(styled: &StyledBody) -> Self {
-        let blend = &styled.0.worn.blend;
+        let blend = &styled.0.measured.blend;
         Self {
             planner: Planner::new(&blend.model, 0, 0.0),
-            walker: Walker::new(&styled.0.skeleton, blend),
-            bench: Workbench::new(&blend.model),
-            rest: RestBench::new(Planner::longest_step(&blend.model)),
+            window: StepWindow::new(&styled.0.skeleton, blend),
+            buffers: StepBuffers::new(&blend.model),
+            rest: RestBuffers::new(Planner::longest_step(&blend.model)),
             spares: Vec::with_capacity(SPARES),
         }
     }

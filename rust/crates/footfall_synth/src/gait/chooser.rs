@@ -3,7 +3,7 @@
 use super::direction::pelvis_turn;
 use super::kinds::{FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
 use super::pace::PaceTable;
-use super::request::{Ask, Manner, Request};
+use super::request::{Manner, StepControls, StepRequest};
 use super::stand::Amplitude;
 use crate::controls::{FASTEST_RUN_MPS, STANDING_SPEED_MPS};
 use crate::detail::Detail;
@@ -52,11 +52,11 @@ impl StepChooser {
     /// walk's and follows.
     pub(crate) fn request(
         &self,
-        ask: &Ask,
+        controls: &StepControls,
         gait_before: Gait,
         velocity_mps: &mut Vec2,
-    ) -> (Request, Gait) {
-        let mut amplitude = ask.amplitude;
+    ) -> (StepRequest, Gait) {
+        let mut amplitude = controls.amplitude;
         let too_fast = velocity_mps.length() > self.first_mps();
         if amplitude.to < 1.0 && amplitude.from >= 1.0 && too_fast {
             // Who runs slows down before coming to a stand.
@@ -69,11 +69,11 @@ impl StepChooser {
             } else {
                 FASTEST_WALK_MPS
             };
-            *velocity_mps = ask.velocity_mps.clamp_length_max(most);
+            *velocity_mps = controls.velocity_mps.clamp_length_max(most);
         } else if amplitude.to >= 1.0 {
-            *velocity_mps = ask.velocity_after(*velocity_mps, gait_before);
+            *velocity_mps = controls.velocity_after(*velocity_mps, gait_before);
         }
-        let gait = self.gait(ask, gait_before, amplitude, *velocity_mps);
+        let gait = self.gait(controls, gait_before, amplitude, *velocity_mps);
         *velocity_mps = velocity_mps.clamp_length_max(gait.fastest_mps());
         let (mut pace, facing) = match (gait, &self.run) {
             (Gait::Run, Some(run)) => {
@@ -92,17 +92,17 @@ impl StepChooser {
             let most = if sets_out { FIRST_SECS } else { LAST_SECS };
             pace = self.walk.within(pace, most);
         }
-        let request = Request {
+        let request = StepRequest {
             manner: Manner {
                 pace,
                 position: StepPosition::Inside,
-                detail: ask.detail,
+                detail: controls.detail,
             },
             amplitude,
-            turn_rate: ask.turn_rate,
+            turn_rate: controls.turn_rate,
             velocity_mps: *velocity_mps,
             facing,
-            leap_m: ask.leap_m,
+            leap_m: controls.leap_m,
         };
         (request, gait)
     }
@@ -110,35 +110,35 @@ impl StepChooser {
     /// The rest of a walked step that came from `before` and would have so many frames in all, of which this share has passed, when something else is asked
     /// for in its middle. It takes no longer than it would have. Whoever is to stop closes it beside the standing foot, as long as the hips are behind that
     /// one and need not brake too hard; otherwise the next step does.
-    pub(crate) fn rest_request(
+    pub(crate) fn remainder_request(
         &self,
-        ask: &Ask,
-        before: &Request,
+        controls: &StepControls,
+        before: &StepRequest,
         frames: f64,
         passed: f64,
         velocity_mps: &mut Vec2,
-    ) -> Request {
+    ) -> StepRequest {
         let secs = frames / self.frame_rate_hz;
         let left = (1.0 - passed) * secs;
         let braking = f64::from(velocity_mps.length()) / left;
         let forwards = velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y;
         let closes = passed < CLOSED_FROM && braking < HARDEST_BRAKING_MPS2 && forwards;
-        if ask.amplitude.to < 1.0 && closes {
-            return Request {
+        if controls.amplitude.to < 1.0 && closes {
+            return StepRequest {
                 amplitude: Amplitude { from: 1.0, to: 0.0 },
                 turn_rate: 0.0,
                 ..*before
             };
         }
-        let wanted = ask.velocity_after(*velocity_mps, Gait::Walk);
+        let wanted = controls.velocity_after(*velocity_mps, Gait::Walk);
         *velocity_mps = wanted.clamp_length_max(REST_MOST_MPS.max(velocity_mps.length()));
         let pace = self.walk.pace_towards(*velocity_mps);
-        Request {
+        StepRequest {
             manner: Manner {
                 pace: self.walk.within(pace, secs),
                 ..before.manner
             },
-            turn_rate: ask.turn_rate,
+            turn_rate: controls.turn_rate,
             velocity_mps: *velocity_mps,
             facing: self.walk.facing + pelvis_turn(*velocity_mps),
             ..*before
@@ -146,15 +146,22 @@ impl StepChooser {
     }
 
     /// The gait of a step.
-    fn gait(&self, ask: &Ask, before: Gait, amplitude: Amplitude, velocity_mps: Vec2) -> Gait {
+    fn gait(
+        &self,
+        controls: &StepControls,
+        before: Gait,
+        amplitude: Amplitude,
+        velocity_mps: Vec2,
+    ) -> Gait {
         if self.run.is_none() {
             return Gait::Walk;
         }
-        if ask.leap_m.is_some() {
+        if controls.leap_m.is_some() {
             return Gait::Run;
         }
         let ends = amplitude != Amplitude::WALK;
-        ask.gait
+        controls
+            .gait
             .of_step(before, velocity_mps, self.leg_length, ends)
     }
 
@@ -168,9 +175,9 @@ impl StepChooser {
     }
 
     /// A walk under way at the speed that suits it.
-    pub(crate) fn first_request(&self, detail: Detail) -> Request {
+    pub(crate) fn walking_request(&self, detail: Detail) -> StepRequest {
         let speed = self.usual_mps;
-        Request {
+        StepRequest {
             manner: Manner {
                 detail,
                 ..Manner::inside(self.walk.pace(speed))
@@ -184,15 +191,15 @@ impl StepChooser {
     }
 
     /// Someone who stands.
-    pub(crate) fn standing_request(&self, detail: Detail) -> Request {
-        Request {
+    pub(crate) fn standing_request(&self, detail: Detail) -> StepRequest {
+        StepRequest {
             manner: Manner {
                 detail,
                 ..Manner::inside(self.walk.pace(f64::from(STANDING_SPEED_MPS)))
             },
             amplitude: Amplitude::STAND,
             velocity_mps: Vec2::ZERO,
-            ..self.first_request(detail)
+            ..self.walking_request(detail)
         }
     }
 }

@@ -10,7 +10,7 @@ use glam::Vec2;
 
 /// Requirements of the next step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ask {
+pub(crate) struct StepControls {
     /// Travel to the left and forwards from where the walker faces.
     pub(crate) velocity_mps: Vec2,
     pub(crate) turn_rate: f32,
@@ -21,7 +21,7 @@ pub(crate) struct Ask {
     pub(crate) detail: Detail,
 }
 
-impl Ask {
+impl StepControls {
     /// Derives the requirements of the step after one of this amplitude from the controls.
     pub(crate) fn after(
         before: Amplitude,
@@ -73,9 +73,9 @@ impl Manner {
     }
 }
 
-/// Request for one step.
+/// StepRequest for one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Request {
+pub(crate) struct StepRequest {
     pub(crate) manner: Manner,
     pub(crate) amplitude: Amplitude,
     /// Turning at its end, rad/s.

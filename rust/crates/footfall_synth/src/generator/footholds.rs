@@ -1,7 +1,7 @@
 //! Interface to the ground: coming landings, and steps that land elsewhere.
 
 use super::GaitGenerator;
-use crate::ground::{Stage, landings};
+use crate::ground::{PlantedStep, landings};
 use crate::plan::StepShape;
 use footfall_ik::placement::Landing;
 
@@ -20,7 +20,7 @@ const STRETCHES: usize = 3;
 impl GaitGenerator {
     /// Returns the next landing of each foot and the body's place then, for callers that place feet on real ground.
     pub fn landings(&self) -> [Option<Landing>; 2] {
-        let arrival = &self.steps.source().stage().arrival;
+        let arrival = &self.steps.source().planted().arrival;
         landings(self.next_footstep(), &self.plan_from_character(), arrival)
     }
 
@@ -46,19 +46,19 @@ impl GaitGenerator {
         if !begun || timing.rests || !share.is_finite() {
             return;
         }
-        let length = step_length(self.shape(), self.steps.source().stage());
+        let length = step_length(self.shape(), self.steps.source().planted());
         let wanted = share.clamp(SHORTEST, LONGEST) * length;
         if wanted < SHORT_STEP_M {
             return;
         }
         // Who is to go on at a speed in shorter steps takes them quicker, and who brakes less so.
         let secs = timing.frames as f32 / self.frame_rate_hz;
-        let quickest = (secs * self.asked_mps / wanted).min(length / wanted);
+        let quickest = (secs * self.requested_mps / wanted).min(length / wanted);
         let haste = quickest.clamp(1.0, MOST_HASTE);
         let mut trials = 0..STRETCHES;
-        let mut next = |shape: &StepShape, stage: &Stage| {
+        let mut next = |shape: &StepShape, planted: &PlantedStep| {
             trials.next()?;
-            let length = step_length(shape, stage);
+            let length = step_length(shape, planted);
             let far = (length - wanted).abs() >= SAME_LENGTH_M;
             far.then(|| wanted / length.max(SHORT_STEP_M))
         };
@@ -67,10 +67,10 @@ impl GaitGenerator {
 }
 
 /// Distance of a landing foot ahead of the standing one, metres.
-fn step_length(shape: &StepShape, stage: &Stage) -> f32 {
-    let way = stage.travel(shape).normalize_or_zero();
+fn step_length(shape: &StepShape, planted: &PlantedStep) -> f32 {
+    let way = planted.travel(shape).normalize_or_zero();
     let leading = shape.timing.leading;
-    let [from, to] = [leading, leading.other()].map(|side| stage.plant(side));
+    let [from, to] = [leading, leading.other()].map(|side| planted.plant(side));
     from.zip(to)
         .map_or(0.0, |(from, to)| (to.flat_ankle - from.flat_ankle).dot(way))
 }

@@ -31,7 +31,7 @@ impl GaitGenerator {
     ///
     /// Returns true if there will be a jump: not with a model without jumps, nor for a rise that is not finite or too small.
     pub fn jump(&mut self, rise_m: f32) -> bool {
-        self.ask_jump(Leap {
+        self.request_jump(Leap {
             rise_m,
             way: Vec3::ZERO,
         })
@@ -44,21 +44,21 @@ impl GaitGenerator {
     /// Returns true if there will be a jump, as [`jump`](Self::jump) does.
     pub fn jump_to(&mut self, place: Vec3) -> bool {
         let level = RISE_TO_PLACE_M + RISE_BY_DISTANCE * place.with_y(0.0).length();
-        self.ask_jump(Leap {
+        self.request_jump(Leap {
             rise_m: level.max(place.y + RISE_ABOVE_PLACE_M),
             way: place,
         })
     }
 
     /// Requests this jump, as [`jump`](Self::jump) does.
-    pub(crate) fn ask_jump(&mut self, leap: Leap) -> bool {
+    pub(crate) fn request_jump(&mut self, leap: Leap) -> bool {
         let possible = self.moves.as_ref().is_some_and(Moves::can_jump);
         let sensible = leap.way.is_finite() && leap.rise_m.is_finite();
         if !possible || !sensible || leap.rise_m < LEAST_RISE_M {
             return false;
         }
-        if self.asked_jump.is_none() && self.jump_phase().is_none() {
-            self.asked_jump = Some(leap);
+        if self.pending_jump.is_none() && self.jump_phase().is_none() {
+            self.pending_jump = Some(leap);
         }
         true
     }
@@ -74,7 +74,7 @@ impl GaitGenerator {
         let Steps::Styled(steps) = &self.steps else {
             return None;
         };
-        steps.walker.origin().request.leap_m?;
+        steps.window.origin().request.leap_m?;
         let flies = self.feet_in_contact() == [false; 2];
         Some(if flies {
             JumpPhase::Flight
@@ -88,7 +88,7 @@ impl GaitGenerator {
         let Some(moves) = &self.moves else {
             return *controls;
         };
-        let waits = self.asked_jump.is_some() && !self.leaps(controls);
+        let waits = self.pending_jump.is_some() && !self.leaps(controls);
         if waits || moves.phase().is_some() {
             return Controls {
                 crouch: controls.crouch,
@@ -128,13 +128,13 @@ impl GaitGenerator {
 
     /// Returns true when the requested jump can be a step.
     fn leaps(&self, controls: &Controls) -> bool {
-        let Some(leap) = self.asked_jump else {
+        let Some(leap) = self.pending_jump else {
             return false;
         };
         let velocity = controls.velocity();
         let direction = velocity.x.atan2(velocity.y).abs();
         let walks = self.shape().amplitude.to >= 1.0;
-        let runs = matches!(&self.steps, Steps::Styled(steps) if steps.worn().running.is_some());
+        let runs = matches!(&self.steps, Steps::Styled(steps) if steps.blend().running.is_some());
         leap.way == Vec3::ZERO
             && walks
             && runs
@@ -145,7 +145,7 @@ impl GaitGenerator {
     /// Returns the rise of the next step's leap, if it is one.
     pub(crate) fn next_leap(&mut self, controls: &Controls) -> Option<f32> {
         if self.leaps(controls) {
-            self.asked_jump.take().map(|leap| leap.rise_m)
+            self.pending_jump.take().map(|leap| leap.rise_m)
         } else {
             None
         }
@@ -161,7 +161,7 @@ impl GaitGenerator {
             self.shift(way);
         } else if before.is_none()
             && stands
-            && let Some(leap) = self.asked_jump.take()
+            && let Some(leap) = self.pending_jump.take()
         {
             moves.jump(leap);
         } else if before != moves.phase() && moves.phase() == Some(JumpPhase::Landing) {
@@ -182,8 +182,8 @@ impl GaitGenerator {
             return;
         };
         for side in Side::BOTH {
-            let stage = self.steps.source().stage();
-            let Some(plant) = stage.plant(side) else {
+            let planted = self.steps.source().planted();
+            let Some(plant) = planted.plant(side) else {
                 continue;
             };
             let mut footstep = Footstep::seen_from(&self.plan_from_start, side, plant);

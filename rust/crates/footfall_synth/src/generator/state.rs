@@ -4,9 +4,9 @@
 //! and the input from the step before (the places of the feet and the last frames of the trajectory). The rest is
 //! generated again from the model.
 
-mod aside;
 mod climbing;
 mod feet;
+mod led;
 mod moving;
 mod quick;
 mod running;
@@ -19,11 +19,11 @@ use crate::error::SynthError;
 use crate::gait::Amplitude;
 use crate::source::Steps;
 use crate::standing::Moment;
-use aside::Led;
 use climbing::Climbing;
 use feet::Feet;
 use footfall_core::{GroundTransform, StepPosition};
 use glam::Vec3;
+use led::Led;
 use moving::Moving;
 use quick::Quick;
 use running::Running;
@@ -142,7 +142,7 @@ impl GaitGenerator {
         let (model, chance_position, velocity_mps, amplitude, turn_rate, planter) =
             match &self.steps {
                 Steps::Styled(steps) => {
-                    let origin = steps.walker.origin();
+                    let origin = steps.window.origin();
                     let request = &origin.request;
                     (
                         steps.space.fingerprint(),
@@ -292,7 +292,7 @@ impl GaitGenerator {
             };
         }
         self.detail = detail_of(state.detail);
-        self.heard = None;
+        self.answered = None;
         let [x, y, z, heading] = state.plan_from_start;
         self.plan_from_start = GroundTransform {
             position: Vec3::new(x, y, z),

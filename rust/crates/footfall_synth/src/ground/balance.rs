@@ -4,7 +4,7 @@
 //! the legs about the hips, which moves the body over its feet, and not by bending a knee. Where legs keep their lengths, the leg behind raises its heel instead (`height.rs`).
 
 use super::course::Course;
-use super::generated::RawFrame;
+use super::generated::GeneratedFrame;
 use super::planter::Planter;
 use crate::plan::StepTiming;
 use footfall_core::ease::smooth_step;
@@ -21,19 +21,24 @@ const TAKEN_UP: f32 = 0.5;
 
 impl Planter {
     /// Turns the legs over a step, from the balance that the one before ended with to that of the landing.
-    pub(super) fn balance(&mut self, raw: &mut [RawFrame], timing: &StepTiming, course: Course) {
+    pub(super) fn balance(
+        &mut self,
+        generated: &mut [GeneratedFrame],
+        timing: &StepTiming,
+        course: Course,
+    ) {
         let from = self.state.balance;
         let to = match timing.take_off {
             Some(_) => Vec2::ZERO,
             // The leg behind raises its heel instead, and no foot lands too far ahead.
             None if course.keeps_lengths => Vec2::ZERO,
-            None => from.lerp(self.balancing(&raw[timing.frames], timing), TAKEN_UP),
+            None => from.lerp(self.balancing(&generated[timing.frames], timing), TAKEN_UP),
         };
         self.state.balance = to;
         if [from, to] == [Vec2::ZERO; 2] {
             return;
         }
-        for (index, frame) in raw[..=timing.frames].iter_mut().enumerate() {
+        for (index, frame) in generated[..=timing.frames].iter_mut().enumerate() {
             let shift = from.lerp(to, smooth_step(index as f32 / timing.frames as f32));
             for leg in &mut frame.legs {
                 leg.shift(shift);
@@ -42,7 +47,7 @@ impl Planter {
     }
 
     /// The shift of both feet over the ground by which their legs have the hips at one height.
-    fn balancing(&self, landing: &RawFrame, timing: &StepTiming) -> Vec2 {
+    fn balancing(&self, landing: &GeneratedFrame, timing: &StepTiming) -> Vec2 {
         let sides = [timing.leading.other(), timing.leading];
         let [ahead, behind] = sides.map(|side| landing.legs[side.index()].ankle);
         let [high, low] = sides.map(|side| self.landing_height(landing, side));

@@ -1,6 +1,6 @@
 //! Course of a step over the ground.
 
-use super::displacement::Aside;
+use super::displacement::Displacement;
 use super::speed_change::SpeedChange;
 
 /// Course of a step.
@@ -17,7 +17,7 @@ pub(crate) struct Course {
     /// Change of speed within it.
     pub(crate) change: SpeedChange,
     /// Displacement of its end.
-    pub(crate) aside: Aside,
+    pub(crate) displacement: Displacement,
     /// Duration of the whole step, seconds.
     pub(crate) step_secs: f32,
 }

@@ -10,14 +10,14 @@ use glam::Vec3;
 
 /// Displacement of the end of a step from where it was planned, in the space where the walk began.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Aside {
+pub(crate) struct Displacement {
     /// Way over the ground, metres.
     pub(crate) way: Vec3,
     /// Turn, radians, positive to the left.
     pub(crate) turn: f32,
 }
 
-impl Aside {
+impl Displacement {
     pub(crate) const NONE: Self = Self {
         way: Vec3::ZERO,
         turn: 0.0,

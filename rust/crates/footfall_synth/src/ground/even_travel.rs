@@ -26,7 +26,7 @@ const PEOPLE_S: f32 = 0.35;
 
 /// Weight of a change of speed, and displacement of the end of a step in metres, from which on it is none of a steady walk.
 const UNSTEADY: f32 = 0.25;
-const ASIDE_M: f32 = 0.05;
+const DISPLACED_M: f32 = 0.05;
 
 /// Time constant with which the speed of the step before passes into this one's, seconds.
 const PASSING_SECS: f32 = 0.15;
@@ -103,7 +103,8 @@ impl Planter {
         if timing.take_off.is_some() || timing.airborne || timing.rests {
             return 0.0;
         }
-        let unsteady = course.change.weight / UNSTEADY + course.aside.way.length() / ASIDE_M;
+        let unsteady =
+            course.change.weight / UNSTEADY + course.displacement.way.length() / DISPLACED_M;
         PEOPLE_S * (1.0 - unsteady).max(0.0) * self.state.strafe.uprightness()
     }
 }

@@ -5,7 +5,7 @@
 
 use super::bounce::Bounce;
 use super::frame::PlantedFrame;
-use super::generated::{RawFrame, free_foot};
+use super::generated::{GeneratedFrame, free_foot};
 use super::planter::Planter;
 use super::planter_state::Airborne;
 use super::support::LET_GO_EXTENSION;
@@ -78,11 +78,16 @@ impl Planter {
 
     /// Puts the hips on their parabola, and lets the standing leg push them off at its speed. From flight to flight it does so as a spring; in the first
     /// step of a run and before a leap it goes on as generated, and pushes harder.
-    pub(super) fn fly(&self, raw: &[RawFrame], timing: &StepTiming, out: &mut [PlantedFrame]) {
+    pub(super) fn fly(
+        &self,
+        generated: &[GeneratedFrame],
+        timing: &StepTiming,
+        out: &mut [PlantedFrame],
+    ) {
         let Some(take_off) = timing.take_off else {
             return;
         };
-        let landing = self.landing_height(&raw[timing.frames], timing.leading.other());
+        let landing = self.landing_height(&generated[timing.frames], timing.leading.other());
         let flight_secs = self.flight_secs(timing);
         let even = 0.5 * GRAVITY_MPS2 * flight_secs;
         let stance_secs = take_off as f32 * self.frame_secs;
@@ -92,7 +97,7 @@ impl Planter {
                 // A frame's velocity is that of half a frame earlier.
                 let fall = velocity.y - 0.5 * GRAVITY_MPS2 * self.frame_secs;
                 let begin = self.state.hips.y;
-                let leaving = &raw[take_off].legs[timing.leading.index()];
+                let leaving = &generated[take_off].legs[timing.leading.index()];
                 let leaving = leaving.target.ankle.y - leaving.ankle.y;
                 let end = landing + LEAVING_SHARE * (leaving - landing);
                 let short = end - begin - 0.5 * (fall + even) * stance_secs;
@@ -127,7 +132,7 @@ impl Planter {
     /// Lets the foot take off earlier where its leg, stretched, does not reach any more; returns its last frame on the ground.
     pub(super) fn leave(
         &self,
-        raw: &[RawFrame],
+        generated: &[GeneratedFrame],
         timing: &StepTiming,
         frames: &mut [PlantedFrame],
     ) -> Option<usize> {
@@ -141,7 +146,7 @@ impl Planter {
         let reach = extension * self.leg_lengths[side];
         let beyond = (2..=take_off).find(|index| {
             let frame = &frames[*index];
-            let leg = &raw[*index].legs[side];
+            let leg = &generated[*index].legs[side];
             let hip = frame.pose.root_position + frame.level * leg.hip;
             hip.distance(leg.target.ankle) > reach
         });
@@ -155,7 +160,7 @@ impl Planter {
     /// Fills where the foot that took off is until the step ends, and keeps it for the next.
     pub(super) fn depart(
         &mut self,
-        raw: &mut [RawFrame],
+        generated: &mut [GeneratedFrame],
         timing: &StepTiming,
         frames: &[PlantedFrame],
     ) {
@@ -164,13 +169,19 @@ impl Planter {
             let ends = [take_off - 1, take_off].map(|index| {
                 let frame = &frames[index];
                 let hips = frame.pose.root_position;
-                let free = free_foot(&raw[index], side, hips, frame.level);
-                (raw[index].legs[side.index()].target, free)
+                let free = free_foot(&generated[index], side, hips, frame.level);
+                (generated[index].legs[side.index()].target, free)
             });
             let leaps = self.leaps(timing);
             let swing = Swing::departing(&ends, timing, take_off, leaps, self.frame_secs);
-            self.fill_swing(raw, side, take_off + 1..timing.frames + 1, &swing, frames);
-            let at = |frame: usize| raw[frame].legs[side.index()].target;
+            self.fill_swing(
+                generated,
+                side,
+                take_off + 1..timing.frames + 1,
+                &swing,
+                frames,
+            );
+            let at = |frame: usize| generated[frame].legs[side.index()].target;
             Airborne {
                 now: at(timing.frames),
                 before: at(timing.frames - 1),
@@ -183,14 +194,19 @@ impl Planter {
     pub(super) fn airborne_ends(
         &self,
         airborne: &Airborne,
-        raw: &[RawFrame],
+        generated: &[GeneratedFrame],
         timing: &StepTiming,
         frames: &[PlantedFrame],
     ) -> [(FootTarget, FootTarget); 2] {
         let side = timing.leading.other();
         let [now, next] = [0, 1].map(|index: usize| {
             let frame = &frames[index];
-            free_foot(&raw[index], side, frame.pose.root_position, frame.level)
+            free_foot(
+                &generated[index],
+                side,
+                frame.pose.root_position,
+                frame.level,
+            )
         });
         let back = |now: Quat, next: Quat| (now * next.inverse() * now).normalize();
         let earlier = FootTarget {
@@ -205,8 +221,12 @@ impl Planter {
     }
 
     /// Height of the hips over the leg of a landing foot, metres.
-    pub(super) fn landing_height(&self, raw: &RawFrame, side: footfall_core::Side) -> f32 {
-        let leg = &raw.legs[side.index()];
+    pub(super) fn landing_height(
+        &self,
+        generated: &GeneratedFrame,
+        side: footfall_core::Side,
+    ) -> f32 {
+        let leg = &generated.legs[side.index()];
         let foot = &self.feet[side.index()];
         foot.ankle_height() + foot.roll(leg.pitch).y - leg.ankle.y
     }

@@ -19,16 +19,16 @@ pub(crate) struct Stride {
 
 /// One generated frame, hips at the origin and heading removed.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct RawFrame {
+pub(crate) struct GeneratedFrame {
     /// Rotation of the hips relative to the heading.
     pub(crate) hips: Quat,
     /// Per side, what the leg does.
-    pub(crate) legs: [RawLeg; 2],
+    pub(crate) legs: [GeneratedLeg; 2],
 }
 
 /// One leg of a generated frame, relative to the hips and the heading.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RawLeg {
+pub(crate) struct GeneratedLeg {
     /// The hip joint from the hips.
     pub(crate) hip: Vec3,
     /// The ankle from the hips.
@@ -45,7 +45,7 @@ pub(crate) struct RawLeg {
     pub(crate) rise: f32,
 }
 
-impl RawLeg {
+impl GeneratedLeg {
     /// Heading of the foot relative to the walker's.
     pub(crate) fn heading(&self) -> f32 {
         foot_heading(self.foot)
@@ -68,7 +68,7 @@ impl RawLeg {
     }
 }
 
-impl Default for RawLeg {
+impl Default for GeneratedLeg {
     fn default() -> Self {
         Self {
             hip: Vec3::ZERO,
@@ -86,7 +86,7 @@ impl Default for RawLeg {
     }
 }
 
-impl RawFrame {
+impl GeneratedFrame {
     /// Fills frames, eight at a time, from poses that hold generated local rotations (the hips' relative to the heading).
     /// `stride` gives that of eight frames from an index on.
     pub(crate) fn fill(
@@ -136,8 +136,13 @@ impl RawFrame {
 }
 
 /// Place of a foot whose leg is as generated.
-pub(super) fn free_foot(raw: &RawFrame, side: Side, hips: Vec3, level: Quat) -> FootTarget {
-    let leg = &raw.legs[side.index()];
+pub(super) fn free_foot(
+    generated: &GeneratedFrame,
+    side: Side,
+    hips: Vec3,
+    level: Quat,
+) -> FootTarget {
+    let leg = &generated.legs[side.index()];
     let foot = level * leg.foot;
     FootTarget {
         ankle: hips + level * leg.ankle,
@@ -165,12 +170,12 @@ mod tests {
                 pose
             })
             .collect();
-        let mut frames = vec![RawFrame::default(); poses.len()];
+        let mut frames = vec![GeneratedFrame::default(); poses.len()];
         let stride = Stride {
             scale: f32x8::splat(1.25),
             upright: f32x8::ONE,
         };
-        RawFrame::fill(&mut frames, &poses, &skeleton, |_| stride);
+        GeneratedFrame::fill(&mut frames, &poses, &skeleton, |_| stride);
         for (frame, pose) in frames.iter().zip(&poses) {
             let mut model = ModelPose::default();
             forward_kinematics(&skeleton, pose, &mut model);

@@ -2,7 +2,7 @@
 //! its pelvis drops.
 
 use super::frame::PlantedFrame;
-use super::generated::{RawFrame, RawLeg};
+use super::generated::{GeneratedFrame, GeneratedLeg};
 use super::planter::Planter;
 use super::support::MAX_STANCE_EXTENSION;
 use crate::plan::StepTiming;
@@ -39,7 +39,7 @@ impl Planter {
     /// Raises the heels of feet that bear, where their legs are at their end, and puts those down again that need not be raised any more.
     pub(super) fn raise_heels(
         &self,
-        raw: &mut [RawFrame],
+        generated: &mut [GeneratedFrame],
         timing: &StepTiming,
         frames: &[PlantedFrame],
     ) {
@@ -53,7 +53,7 @@ impl Planter {
         let half_bend = RISING_EXTENSION.acos();
         for (side, last) in stances {
             let Some(last) = last else { continue };
-            let raw = &mut raw[..=last];
+            let generated = &mut generated[..=last];
             let plant = self.plant(side);
             let level = from_heading(plant.heading);
             let stance = Stance {
@@ -72,13 +72,13 @@ impl Planter {
                     RISING_EXTENSION
                 }
             };
-            self.stand(side, raw, |leg| (leg.rise > 0.0).then_some(leg.pitch));
+            self.stand(side, generated, |leg| (leg.rise > 0.0).then_some(leg.pitch));
             let mut any = false;
-            let blocks = raw.chunks_mut(LANES).zip(frames.chunks(LANES));
-            for (block, (raw, frames)) in blocks.enumerate() {
-                let at = |lane: usize| lane.min(raw.len() - 1);
-                let leg = |lane: usize| &raw[at(lane)].legs[side.index()];
-                let of_legs = |value: &dyn Fn(&RawLeg) -> f32| {
+            let blocks = generated.chunks_mut(LANES).zip(frames.chunks(LANES));
+            for (block, (generated, frames)) in blocks.enumerate() {
+                let at = |lane: usize| lane.min(generated.len() - 1);
+                let leg = |lane: usize| &generated[at(lane)].legs[side.index()];
+                let of_legs = |value: &dyn Fn(&GeneratedLeg) -> f32| {
                     f32x8::new(core::array::from_fn(|lane| value(leg(lane))))
                 };
                 let level = Quatx8::gather(|lane| frames[at(lane)].level);
@@ -93,14 +93,14 @@ impl Planter {
                 let most = core::array::from_fn(|lane| most_extension(block * LANES + lane));
                 let rises = stance.rises(&legs, f32x8::new(most));
                 any |= rises.simd_gt(f32x8::ZERO).any();
-                for (raw, rise) in raw.iter_mut().zip(rises.to_array()) {
-                    raw.legs[side.index()].rise = rise;
+                for (generated, rise) in generated.iter_mut().zip(rises.to_array()) {
+                    generated.legs[side.index()].rise = rise;
                 }
             }
             if any {
-                smooth(raw, side);
-                let risen = |leg: &RawLeg| (leg.rise > 0.0).then_some(leg.pitch + leg.rise);
-                self.stand(side, raw, risen);
+                smooth(generated, side);
+                let risen = |leg: &GeneratedLeg| (leg.rise > 0.0).then_some(leg.pitch + leg.rise);
+                self.stand(side, generated, risen);
             }
         }
     }
@@ -160,21 +160,21 @@ impl Stance<'_> {
 }
 
 /// Smooths the rise of a heel in time, less and less towards the ends of its stance.
-fn smooth(raw: &mut [RawFrame], side: Side) {
+fn smooth(generated: &mut [GeneratedFrame], side: Side) {
     let side = side.index();
-    let last = raw.len() - 1;
+    let last = generated.len() - 1;
     // Rises of the frames before, as they were.
     let mut before = [0.0; 2];
-    for index in 0..raw.len() {
-        let own = raw[index].legs[side].rise;
+    for index in 0..generated.len() {
+        let own = generated[index].legs[side].rise;
         let reach = index.min(last - index).min(before.len());
         let (mut sum, mut weights) = (SMOOTHED[0] * own, SMOOTHED[0]);
         for away in 1..=reach {
-            sum += SMOOTHED[away] * (before[away - 1] + raw[index + away].legs[side].rise);
+            sum += SMOOTHED[away] * (before[away - 1] + generated[index + away].legs[side].rise);
             weights += 2.0 * SMOOTHED[away];
         }
         // No less than its leg lacks, and none for a foot that stands on its heel.
-        let leg = &mut raw[index].legs[side];
+        let leg = &mut generated[index].legs[side];
         leg.rise = if leg.pitch < 0.0 {
             own
         } else {

@@ -1,7 +1,7 @@
 //! Even height: hips rise and fall without a jolt where a foot rolls off its heel, a leg's reach ends, or another foot takes over.
 
 use super::frame::PlantedFrame;
-use super::generated::RawFrame;
+use super::generated::GeneratedFrame;
 use super::planter::Planter;
 use crate::plan::StepTiming;
 use core::ops::RangeInclusive;
@@ -26,7 +26,7 @@ impl Planter {
     /// Smooths the hips' height over a step, which goes on from the height and the speed that the one before ended with.
     pub(super) fn even_height(
         &self,
-        raw: &[RawFrame],
+        generated: &[GeneratedFrame],
         timing: &StepTiming,
         out: &mut [PlantedFrame],
     ) {
@@ -40,13 +40,13 @@ impl Planter {
         let begin = f64::from(self.state.hips.y);
         let rise = self.state.hips_velocity;
         // A leg that has just been planned anew may be at its end already.
-        let most = self.bearing_limit(&raw[1], timing, 1, &frames[1]) - begin;
+        let most = self.bearing_limit(&generated[1], timing, 1, &frames[1]) - begin;
         let rise = rise.map(|velocity| f64::from(velocity.y * self.frame_secs).min(most.max(0.0)));
         asked.smooth(begin, rise);
         for weight in REACH_WEIGHTS {
             let mut beyond = false;
             for (index, frame) in frames.iter().enumerate() {
-                let limit = self.bearing_limit(&raw[index], timing, index, frame);
+                let limit = self.bearing_limit(&generated[index], timing, index, frame);
                 if asked.smoothed[index] > limit + REACHED_M {
                     beyond = true;
                     asked.set(index, asked.heights[index].min(limit), weight);
@@ -65,7 +65,7 @@ impl Planter {
     /// Greatest height of the hips that the bearing legs allow.
     fn bearing_limit(
         &self,
-        raw: &RawFrame,
+        generated: &GeneratedFrame,
         timing: &StepTiming,
         index: usize,
         frame: &PlantedFrame,
@@ -77,11 +77,11 @@ impl Planter {
         ];
         let limits = bearing.into_iter().filter_map(|(side, bears)| {
             let hips = frame.pose.root_position;
-            bears.then(|| self.reach_limit(side, hips, raw, frame))?
+            bears.then(|| self.reach_limit(side, hips, generated, frame))?
         });
         // The rest of a step that was planned anew is too short to come down by itself.
         let landing = if index == timing.frames && timing.airborne {
-            self.landing_limit(raw, leading.other())
+            self.landing_limit(generated, leading.other())
         } else {
             f32::MAX
         };

@@ -5,7 +5,7 @@
 //! the end of the step. Steps to the side and backwards keep the direction of the leg, too. A leg that is too short for that raises its heel (`heel.rs`).
 
 use super::frame::PlantedFrame;
-use super::generated::RawFrame;
+use super::generated::GeneratedFrame;
 use super::planter::Planter;
 use super::travel::MEETING_FROM;
 use crate::plan::StepTiming;
@@ -19,31 +19,36 @@ impl Planter {
     /// Puts the hips of every frame of a walked step at the height at which the standing leg is as long as generated.
     pub(super) fn keep_lengths(
         &self,
-        raw: &[RawFrame],
+        generated: &[GeneratedFrame],
         timing: &StepTiming,
         out: &mut [PlantedFrame],
     ) {
-        let height = |index: usize| height_by_length(&raw[index], timing, &out[index]);
+        let height = |index: usize| height_by_length(&generated[index], timing, &out[index]);
         let [start, follow, last] = [0, 1, timing.frames].map(height);
         let offset = self.state.hips.y - start;
         let velocity = self.state.hips_velocity.map_or(0.0, |velocity| {
             velocity.y * self.frame_secs - (follow - start)
         });
         let decay = self.frame_secs / self.settle_secs();
-        let rise = self.landing_height(&raw[timing.frames], timing.leading.other()) - last;
-        for (index, (raw, frame)) in raw.iter().zip(out).take(timing.frames + 1).enumerate() {
+        let rise = self.landing_height(&generated[timing.frames], timing.leading.other()) - last;
+        for (index, (generated, frame)) in generated
+            .iter()
+            .zip(out)
+            .take(timing.frames + 1)
+            .enumerate()
+        {
             let time = index as f32;
             let part = (time / timing.frames as f32 - MEETING_FROM) / (1.0 - MEETING_FROM);
             let (settling, _) = settled(offset, velocity, decay, time);
             frame.pose.root_position.y =
-                height_by_length(raw, timing, frame) + smooth_step(part) * rise + settling;
+                height_by_length(generated, timing, frame) + smooth_step(part) * rise + settling;
         }
     }
 }
 
 /// Height of the hips at which the standing leg has its generated length.
-fn height_by_length(raw: &RawFrame, timing: &StepTiming, frame: &PlantedFrame) -> f32 {
-    let leg = &raw.legs[timing.leading.index()];
+fn height_by_length(generated: &GeneratedFrame, timing: &StepTiming, frame: &PlantedFrame) -> f32 {
+    let leg = &generated.legs[timing.leading.index()];
     let hip = frame.level * leg.hip;
     let squared = leg.ankle.distance_squared(leg.hip);
     let over = (frame.pose.root_position + hip - leg.target.ankle).xz();

@@ -1,7 +1,7 @@
 //! Landing: the place at which a foot comes down, and how straight its leg is.
 
 use super::course::Course;
-use super::generated::RawFrame;
+use super::generated::GeneratedFrame;
 use super::planter::Planter;
 use super::reach::within_reach;
 use super::support::MAX_STANCE_EXTENSION;
@@ -30,20 +30,20 @@ impl Planter {
     /// Plant of the trailing foot at the end of the step.
     pub(super) fn next_plant(
         &self,
-        raw: &[RawFrame],
+        generated: &[GeneratedFrame],
         timing: &StepTiming,
         hips: Vec3,
         heading: f32,
         course: Course,
     ) -> Plant {
         let side = timing.leading.other();
-        let leg = &raw[timing.frames].legs[side.index()];
+        let leg = &generated[timing.frames].legs[side.index()];
         let level = from_heading(heading);
         let (hip, ankle) = (hips + level * leg.hip, hips + level * leg.ankle);
         // The foot points to where the body will have turned by the middle of its stance.
         let lead = 0.5 * course.turn_rate * course.step_secs;
         let foot = &self.feet[side.index()];
-        let heading = heading + lead + leg.heading() + self.turn_to_flat(raw, timing);
+        let heading = heading + lead + leg.heading() + self.turn_to_flat(generated, timing);
         let mut plant = foot.plant_under(ankle, heading, leg.pitch);
         let reach = self.landing_extension() * self.leg_lengths[side.index()];
         plant.flat_ankle += within_reach(foot.stand(&plant, leg.pitch).ankle - hip, reach);
@@ -52,11 +52,11 @@ impl Planter {
 
     /// Turn of the trailing foot from its landing to how it stands, radians: heels strike with the toes still pointing outwards, and a planted foot does not turn,
     /// so it lands nearly as it would lie flat. The foot that stands shows the turn, mirrored, unless the step begins in its stance.
-    fn turn_to_flat(&self, raw: &[RawFrame], timing: &StepTiming) -> f32 {
+    fn turn_to_flat(&self, generated: &[GeneratedFrame], timing: &StepTiming) -> f32 {
         if timing.airborne {
             return 0.0;
         }
-        let heading = |frame: usize| raw[frame].legs[timing.leading.index()].heading();
+        let heading = |frame: usize| generated[frame].legs[timing.leading.index()].heading();
         let flat = timing.frames / 5..=timing.frames / 2;
         let count = flat.clone().count() as f32;
         let turn = flat.map(heading).sum::<f32>() / count - heading(0);
@@ -77,9 +77,9 @@ impl Planter {
     }
 
     /// Greatest height of the hips at which a leg reaches the foot that it lands where it was generated.
-    pub(super) fn landing_limit(&self, raw: &RawFrame, side: Side) -> f32 {
-        let leg = &raw.legs[side.index()];
-        let generated = self.landing_height(raw, side);
+    pub(super) fn landing_limit(&self, generated: &GeneratedFrame, side: Side) -> f32 {
+        let leg = &generated.legs[side.index()];
+        let generated = self.landing_height(generated, side);
         // As seen from hips at no height.
         let ankle = leg.ankle + Vec3::Y * generated;
         let length = self.leg_lengths[side.index()];

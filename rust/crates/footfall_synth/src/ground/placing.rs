@@ -1,6 +1,6 @@
 //! Placing of a step: where on the ground it goes, and from which posture.
 
-use super::displacement::Aside;
+use super::displacement::Displacement;
 use super::lean::Pull;
 use super::speed_change::SpeedChange;
 use crate::gait::{Amplitude, Posture};
@@ -28,7 +28,7 @@ pub(crate) struct Placing<'a> {
     /// The share of it that had passed when it was planned anew.
     pub(crate) passed: f32,
     /// Displacement of its end.
-    pub(crate) aside: Aside,
+    pub(crate) displacement: Displacement,
     /// True where legs are to be as long as generated: those of two systems are not true enough for that.
     pub(crate) keeps_lengths: bool,
 }

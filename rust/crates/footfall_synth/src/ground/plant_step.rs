@@ -2,7 +2,7 @@
 
 use super::course::Course;
 use super::frame::PlantedFrame;
-use super::generated::{RawFrame, free_foot};
+use super::generated::{GeneratedFrame, free_foot};
 use super::planter::Planter;
 use super::strafe::{Strafe, Turner};
 use super::swing::Swing;
@@ -14,7 +14,7 @@ impl Planter {
     /// Turns a step that goes forwards to where it is to go; forwards it goes along +Z under the heading `own_facing`. A step in full walk leads `wanted_m` far, metres.
     pub(crate) fn turn_step(
         &mut self,
-        raw: &mut [RawFrame],
+        generated: &mut [GeneratedFrame],
         timing: &StepTiming,
         (strafe, wanted_m): (Strafe, Option<f32>),
         own_facing: f32,
@@ -23,12 +23,12 @@ impl Planter {
         let before = self.state.strafe;
         if [before, strafe] != [Strafe::NONE; 2] {
             let leg_length = self.leg_lengths[timing.leading.index()];
-            let strafe = strafe.lengthened(self.flat_way(timing, raw, own_facing), wanted_m);
+            let strafe = strafe.lengthened(self.flat_way(timing, generated, own_facing), wanted_m);
             // A step that ends a walk brings the feet together.
             let strafe = if timing.rests {
                 strafe
             } else {
-                strafe.spread(raw, leg_length)
+                strafe.spread(generated, leg_length)
             };
             self.state.strafe = strafe;
             let turner = Turner {
@@ -36,16 +36,16 @@ impl Planter {
                 leg_length,
                 own_facing,
             };
-            turner.turn_step(raw, out, timing, [&before, &strafe]);
+            turner.turn_step(generated, out, timing, [&before, &strafe]);
         }
     }
 
     /// Way of the hips over the standing foot in a step forwards, were that foot flat throughout, metres.
-    fn flat_way(&self, timing: &StepTiming, raw: &[RawFrame], own_facing: f32) -> f32 {
+    fn flat_way(&self, timing: &StepTiming, generated: &[GeneratedFrame], own_facing: f32) -> f32 {
         let side = timing.leading.index();
         let level = from_heading(own_facing);
         let ahead = |frame: usize| {
-            let leg = &raw[frame].legs[side];
+            let leg = &generated[frame].legs[side];
             (level * (leg.ankle - self.feet[side].roll(leg.pitch))).z
         };
         ahead(0) - ahead(timing.frames)
@@ -58,7 +58,7 @@ impl Planter {
     /// `timing.take_off`; returns the timing as it came out.
     pub(crate) fn plant_step(
         &mut self,
-        raw: &mut [RawFrame],
+        generated: &mut [GeneratedFrame],
         timing: &StepTiming,
         course: Course,
         out: &mut [PlantedFrame],
@@ -77,55 +77,55 @@ impl Planter {
             keeps_lengths: course.keeps_lengths && timing.take_off.is_none(),
             ..course
         };
-        self.balance(raw, timing, course);
-        self.fill_stances(raw, timing);
-        self.travel(raw, timing, course, out);
+        self.balance(generated, timing, course);
+        self.fill_stances(generated, timing);
+        self.travel(generated, timing, course, out);
         let timing = &StepTiming {
-            terminal: self.release(raw, timing, out),
+            terminal: self.release(generated, timing, out),
             ..*timing
         };
         if course.keeps_lengths {
             // What a heel can give, the hips need not.
-            self.raise_heels(raw, timing, out);
+            self.raise_heels(generated, timing, out);
         }
-        self.bear(raw, timing, out);
+        self.bear(generated, timing, out);
         if timing.take_off.is_none() || !timing.airborne {
-            self.even_height(raw, timing, out);
+            self.even_height(generated, timing, out);
         }
         if timing.take_off.is_some() {
-            self.fly(raw, timing, out);
+            self.fly(generated, timing, out);
         }
-        self.raise_heels(raw, timing, out);
+        self.raise_heels(generated, timing, out);
         let [before, last] = [timing.frames - 1, timing.frames].map(|f| out[f].pose.root_position);
         self.state.hips = last;
         self.state.hips_velocity = Some((last - before) / self.frame_secs);
         let timing = &StepTiming {
-            terminal: self.let_go(raw, timing, out),
-            take_off: self.leave(raw, timing, out),
+            terminal: self.let_go(generated, timing, out),
+            take_off: self.leave(generated, timing, out),
             ..*timing
         };
         let last = &out[timing.frames];
         let (hips, heading) = (last.pose.root_position, last.heading);
         let trailing = timing.leading.other();
-        let next_plant = self.next_plant(raw, timing, hips, heading, course);
-        let mut ends = self.swing_ends(raw, timing, out, &next_plant);
+        let next_plant = self.next_plant(generated, timing, hips, heading, course);
+        let mut ends = self.swing_ends(generated, timing, out, &next_plant);
         if let Some(airborne) = &airborne {
-            [ends[0], ends[1]] = self.airborne_ends(airborne, raw, timing, out);
+            [ends[0], ends[1]] = self.airborne_ends(airborne, generated, timing, out);
         }
         let before = timing.frames - 1;
         let (hips, level) = (out[before].pose.root_position, out[before].level);
-        let arrival = free_foot(&raw[before], trailing, hips, level).ankle;
+        let arrival = free_foot(&generated[before], trailing, hips, level).ankle;
         let swing = Swing::new(&ends, arrival, timing, self.frame_secs);
         let first = if timing.airborne {
             0
         } else {
             timing.terminal + 1
         };
-        self.fill_swing(raw, trailing, first..timing.frames, &swing, out);
-        self.depart(raw, timing, out);
-        raw[timing.frames].legs[trailing.index()].target = ends[2].0;
+        self.fill_swing(generated, trailing, first..timing.frames, &swing, out);
+        self.depart(generated, timing, out);
+        generated[timing.frames].legs[trailing.index()].target = ends[2].0;
         for side in Side::BOTH {
-            let target = |index: usize| &raw[index].legs[side.index()].target;
+            let target = |index: usize| &generated[index].legs[side.index()].target;
             self.legs[side.index()].solve_many(out, target);
         }
         self.state.plants[trailing.index()] = next_plant;

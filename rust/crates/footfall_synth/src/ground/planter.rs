@@ -1,6 +1,6 @@
 //! Plants one step after another.
 
-use super::generated::RawFrame;
+use super::generated::GeneratedFrame;
 use super::planter_state::{Lean, PlanterState};
 use super::strafe::Strafe;
 use crate::plan::StepTiming;
@@ -25,7 +25,7 @@ impl Planter {
     pub(crate) fn new(
         skeleton: &Skeleton,
         frame_secs: f32,
-        first: &RawFrame,
+        first: &GeneratedFrame,
         timing: &StepTiming,
         heading: f32,
     ) -> Self {

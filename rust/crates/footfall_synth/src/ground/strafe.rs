@@ -7,7 +7,7 @@
 
 mod turner;
 
-use super::generated::RawFrame;
+use super::generated::GeneratedFrame;
 use crate::gait::{overstep, pelvis_turn, seen_from_pelvis};
 use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Skeleton};
@@ -65,14 +65,14 @@ impl Strafe {
     }
 
     /// Sets the feet of a step so far apart that they pass each other. `raw` is the step forwards.
-    pub(crate) fn spread(mut self, raw: &[RawFrame], leg_length: f32) -> Self {
+    pub(crate) fn spread(mut self, generated: &[GeneratedFrame], leg_length: f32) -> Self {
         let (mut apart, mut step) = (0.0, 0.0_f32);
-        for raw in raw {
-            let [left, right] = &raw.legs;
+        for generated in generated {
+            let [left, right] = &generated.legs;
             apart += left.ankle.x - right.ankle.x;
             step = step.max((left.ankle.z - right.ankle.z).abs());
         }
-        let stance = 0.5 * apart / raw.len() as f32;
+        let stance = 0.5 * apart / generated.len() as f32;
         // Each leg goes half a step out and half a step in.
         let side_step = 0.5 * step * self.reach[0].abs();
         if side_step > 0.0 {

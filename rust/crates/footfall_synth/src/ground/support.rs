@@ -1,7 +1,7 @@
 //! Support: the feet that bear the body, and the height that their legs allow the hips.
 
 use super::frame::PlantedFrame;
-use super::generated::{RawFrame, RawLeg, free_foot};
+use super::generated::{GeneratedFrame, GeneratedLeg, free_foot};
 use super::planter::Planter;
 use crate::plan::StepTiming;
 use footfall_core::Side;
@@ -32,7 +32,7 @@ const RELEASE_SHARE: f32 = 0.03;
 
 impl Planter {
     /// Fills where each foot stands while it may: on its plant, under the plant's heading, at the generated pitch.
-    pub(super) fn fill_stances(&self, raw: &mut [RawFrame], timing: &StepTiming) {
+    pub(super) fn fill_stances(&self, generated: &mut [GeneratedFrame], timing: &StepTiming) {
         let trailing = timing.leading.other();
         let stances = [
             (timing.leading, Some(timing.frames)),
@@ -40,7 +40,7 @@ impl Planter {
         ];
         for (side, last) in stances {
             let Some(last) = last else { continue };
-            self.stand(side, &mut raw[..=last], |leg| Some(leg.pitch));
+            self.stand(side, &mut generated[..=last], |leg| Some(leg.pitch));
         }
     }
 
@@ -48,12 +48,12 @@ impl Planter {
     pub(super) fn stand(
         &self,
         side: Side,
-        raw: &mut [RawFrame],
-        pitch: impl Fn(&RawLeg) -> Option<f32>,
+        generated: &mut [GeneratedFrame],
+        pitch: impl Fn(&GeneratedLeg) -> Option<f32>,
     ) {
         let plant = self.plant(side);
         let level = from_heading(plant.heading);
-        for frames in raw.chunks_mut(LANES) {
+        for frames in generated.chunks_mut(LANES) {
             let mut pitches = [None; LANES];
             for (lane, frame) in pitches.iter_mut().zip(&*frames) {
                 *lane = pitch(&frame.legs[side.index()]);
@@ -75,7 +75,7 @@ impl Planter {
     /// The last frame up to `timing.terminal` in which the trailing foot can stay where it stands.
     pub(super) fn release(
         &self,
-        raw: &[RawFrame],
+        generated: &[GeneratedFrame],
         timing: &StepTiming,
         frames: &[PlantedFrame],
     ) -> usize {
@@ -85,32 +85,37 @@ impl Planter {
             .find(|index| {
                 let frame = &frames[*index];
                 let free = free_foot(
-                    &raw[*index],
+                    &generated[*index],
                     trailing,
                     frame.pose.root_position,
                     frame.level,
                 );
-                let ankle = raw[*index].legs[trailing.index()].target.ankle;
+                let ankle = generated[*index].legs[trailing.index()].target.ankle;
                 free.ankle.distance(ankle) > allowance
             })
             .map_or(timing.terminal, |beyond| beyond - 1)
     }
 
     /// Fills the contacts, and lowers the hips, softly, to where every standing leg reaches its ankle.
-    pub(super) fn bear(&self, raw: &[RawFrame], timing: &StepTiming, frames: &mut [PlantedFrame]) {
+    pub(super) fn bear(
+        &self,
+        generated: &[GeneratedFrame],
+        timing: &StepTiming,
+        frames: &mut [PlantedFrame],
+    ) {
         let fade_frames = REACH_FADE_SECS / self.frame_secs;
-        let landing = Landing::of(raw, timing, frames);
+        let landing = Landing::of(generated, timing, frames);
         let trailing = timing.leading.other();
         let release = (-self.frame_secs / REACH_RELEASE_SECS).exp();
         let mut drop = 0.0_f32;
-        for (index, (frame, raw)) in frames.iter_mut().zip(raw).enumerate() {
+        for (index, (frame, generated)) in frames.iter_mut().zip(generated).enumerate() {
             let hips = frame.pose.root_position;
             let bears = timing.trailing_bears(index);
             frame.contact[timing.leading.index()] = timing.leading_bears(index);
             frame.contact[trailing.index()] = bears || index == timing.frames;
             // A leg that lets go of the pelvis does so smoothly, also when its contact is all but over as the step begins.
             drop *= release;
-            if bears && let Some(limit) = self.reach_limit(trailing, hips, raw, frame) {
+            if bears && let Some(limit) = self.reach_limit(trailing, hips, generated, frame) {
                 let fade = if index == 0 {
                     0.0
                 } else {
@@ -125,7 +130,7 @@ impl Planter {
             }
             frame.pose.root_position.y -= drop;
             if timing.leading_bears(index)
-                && let Some(limit) = self.reach_limit(timing.leading, hips, raw, frame)
+                && let Some(limit) = self.reach_limit(timing.leading, hips, generated, frame)
             {
                 let height = &mut frame.pose.root_position.y;
                 *height = soft_min(*height, limit, REACH_SOFTNESS_M);
@@ -142,10 +147,10 @@ impl Planter {
         &self,
         side: Side,
         hips: Vec3,
-        raw: &RawFrame,
+        generated: &GeneratedFrame,
         frame: &PlantedFrame,
     ) -> Option<f32> {
-        let leg = &raw.legs[side.index()];
+        let leg = &generated.legs[side.index()];
         let length = self.leg_lengths[side.index()];
         let hip = frame.level * leg.hip;
         reach_height(hips, hip, leg.target.ankle, length, MAX_STANCE_EXTENSION)
@@ -177,7 +182,7 @@ impl Planter {
     /// Ends the trailing foot's contact where its leg, stretched, does not reach any more; returns its last frame.
     pub(super) fn let_go(
         &self,
-        raw: &[RawFrame],
+        generated: &[GeneratedFrame],
         timing: &StepTiming,
         frames: &mut [PlantedFrame],
     ) -> usize {
@@ -185,7 +190,7 @@ impl Planter {
         let reach = LET_GO_EXTENSION * self.leg_lengths[trailing.index()];
         let beyond = (1..=timing.terminal).find(|index| {
             let frame = &frames[*index];
-            let leg = &raw[*index].legs[trailing.index()];
+            let leg = &generated[*index].legs[trailing.index()];
             let hip = frame.level * leg.hip;
             let ankle = leg.target.ankle;
             (frame.pose.root_position + hip).distance(ankle) > reach
@@ -210,14 +215,14 @@ struct Landing {
 }
 
 impl Landing {
-    fn of(raw: &[RawFrame], timing: &StepTiming, frames: &[PlantedFrame]) -> Self {
-        let (raw, frame) = (&raw[timing.frames], &frames[timing.frames]);
+    fn of(generated: &[GeneratedFrame], timing: &StepTiming, frames: &[PlantedFrame]) -> Self {
+        let (generated, frame) = (&generated[timing.frames], &frames[timing.frames]);
         let side = timing.leading.other();
         let hips = frame.pose.root_position;
         Self {
             hips,
-            hip: frame.level * raw.legs[side.index()].hip,
-            ankle: free_foot(raw, side, hips, frame.level).ankle,
+            hip: frame.level * generated.legs[side.index()].hip,
+            ankle: free_foot(generated, side, hips, frame.level).ankle,
         }
     }
 }

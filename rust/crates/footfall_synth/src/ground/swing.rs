@@ -1,7 +1,7 @@
 //! The swinging foot: from where it stood to where it lands, along the generated path.
 
 use super::frame::PlantedFrame;
-use super::generated::{RawFrame, free_foot};
+use super::generated::{GeneratedFrame, free_foot};
 use super::planter::Planter;
 use super::reach::yielding;
 use crate::plan::StepTiming;
@@ -193,7 +193,7 @@ impl Planter {
     /// Fills where a foot is on its way in some frames, eight at a time.
     pub(super) fn fill_swing(
         &self,
-        raw: &mut [RawFrame],
+        generated: &mut [GeneratedFrame],
         side: Side,
         within: Range<usize>,
         swing: &Swing,
@@ -207,7 +207,7 @@ impl Planter {
             let at = |lane: usize| (index + lane).min(end - 1);
             let level = Quatx8::gather(|lane| frames[at(lane)].level);
             let hips = Vec3x8::gather(|lane| frames[at(lane)].pose.root_position);
-            let leg = |lane: usize| &raw[at(lane)].legs[side];
+            let leg = |lane: usize| &generated[at(lane)].legs[side];
             let foot = level * Quatx8::gather(|lane| leg(lane).foot);
             let free = FootTargetx8 {
                 ankle: hips + level * Vec3x8::gather(|lane| leg(lane).ankle),
@@ -219,7 +219,7 @@ impl Planter {
             let ankle = target.ankle - hip;
             let yielded = ankle * yielding(ankle.length(), extensions);
             target.ankle = hip + ankle + (yielded - ankle) * swing.freed(index);
-            let frames = &mut raw[index..end.min(index + LANES)];
+            let frames = &mut generated[index..end.min(index + LANES)];
             for (frame, target) in frames.iter_mut().zip(target.lanes()) {
                 frame.legs[side].target = target;
             }
@@ -229,7 +229,7 @@ impl Planter {
     /// Planted and free places of the trailing foot, at the ends of its swing.
     pub(super) fn swing_ends(
         &self,
-        raw: &[RawFrame],
+        generated: &[GeneratedFrame],
         timing: &StepTiming,
         frames: &[PlantedFrame],
         next_plant: &Plant,
@@ -239,13 +239,18 @@ impl Planter {
         let before = timing.terminal.saturating_sub(1);
         [before, timing.terminal, timing.frames].map(|index| {
             let frame = &frames[index];
-            let leg = &raw[index].legs[side.index()];
+            let leg = &generated[index].legs[side.index()];
             let planted = if index == timing.frames {
                 foot.stand(next_plant, leg.pitch)
             } else {
                 leg.target
             };
-            let free = free_foot(&raw[index], side, frame.pose.root_position, frame.level);
+            let free = free_foot(
+                &generated[index],
+                side,
+                frame.pose.root_position,
+                frame.level,
+            );
             (planted, free)
         })
     }

@@ -2,7 +2,7 @@
 
 use super::course::Course;
 use super::frame::PlantedFrame;
-use super::generated::RawFrame;
+use super::generated::GeneratedFrame;
 use super::planter::Planter;
 use super::strafe::Strafe;
 use crate::plan::StepTiming;
@@ -35,20 +35,20 @@ impl Planter {
     /// Fills hips, headings and ground position of every frame, and carries the latter two to the next step.
     pub(super) fn travel(
         &mut self,
-        raw: &[RawFrame],
+        generated: &[GeneratedFrame],
         timing: &StepTiming,
         course: Course,
         out: &mut [PlantedFrame],
     ) {
-        let settling = self.settling(raw, timing);
+        let settling = self.settling(generated, timing);
         let from = self.turn(timing, course, out);
         let level_from = Quatx8::splat(from_heading(from));
         let [facing_before, facing] = course.facing;
         let side = timing.leading.index();
-        let blocks = raw.chunks(LANES).zip(out.chunks_mut(LANES));
-        for (block, (raw, frames)) in blocks.enumerate() {
-            let at = |lane: usize| lane.min(raw.len() - 1);
-            let leg = |lane: usize| &raw[at(lane)].legs[side];
+        let blocks = generated.chunks(LANES).zip(out.chunks_mut(LANES));
+        for (block, (generated, frames)) in blocks.enumerate() {
+            let at = |lane: usize| lane.min(generated.len() - 1);
+            let leg = |lane: usize| &generated[at(lane)].legs[side];
             // Not wrapped: rotations of frames in a row must not change their sign.
             let turned = core::array::from_fn(|lane| frames[at(lane)].heading - from);
             let level = level_from * Quatx8::from_rotation_y(f32x8::new(turned));
@@ -59,7 +59,8 @@ impl Planter {
             let part = lanes::smooth_step(time * (timing.frames as f32).recip());
             let facing = f32x8::splat(facing_before) + part * (facing - facing_before);
             let plan_from_ground = level * Quatx8::from_rotation_y(-facing);
-            let hips_rotation = (level * Quatx8::gather(|lane| raw[at(lane)].hips)).normalize();
+            let hips_rotation =
+                (level * Quatx8::gather(|lane| generated[at(lane)].hips)).normalize();
             let rotations = [level, plan_from_ground, hips_rotation].map(|all| all.lanes());
             for (lane, frame) in frames.iter_mut().enumerate() {
                 let [level, plan_from_ground, hips_rotation] =
@@ -74,18 +75,22 @@ impl Planter {
         self.drift(timing, out);
         self.even(timing, course, out);
         self.thrust(timing, course, out);
-        course.aside.lead(timing, out);
+        course.displacement.lead(timing, out);
         if course.keeps_lengths {
-            self.keep_lengths(raw, timing, out);
+            self.keep_lengths(generated, timing, out);
         }
         self.glide(timing, out);
     }
 
     /// Settling of the hips from their former way to that above the foot that has landed.
-    fn settling(&self, raw: &[RawFrame], timing: &StepTiming) -> Settling {
-        let start = hips_above(&raw[0], timing.leading, from_heading(self.state.heading));
+    fn settling(&self, generated: &[GeneratedFrame], timing: &StepTiming) -> Settling {
+        let start = hips_above(
+            &generated[0],
+            timing.leading,
+            from_heading(self.state.heading),
+        );
         let next_level = from_heading(self.state.heading + self.state.turn_rate * self.frame_secs);
-        let follow = hips_above(&raw[1], timing.leading, next_level);
+        let follow = hips_above(&generated[1], timing.leading, next_level);
         Settling {
             offset: self.state.hips - start,
             velocity: self.state.hips_velocity.map_or(Vec3::ZERO, |velocity| {
@@ -95,7 +100,7 @@ impl Planter {
             // Who flies falls onto the foot that lands.
             meeting: match timing.take_off {
                 Some(_) => 0.0,
-                None => MEETING_SHARE * self.landing_height_gap(raw, timing),
+                None => MEETING_SHARE * self.landing_height_gap(generated, timing),
             },
             frames: timing.frames as f32,
         }
@@ -124,7 +129,7 @@ impl Planter {
                 let onset = smooth_step(time / (TURN_ONSET * timing.frames as f32));
                 self.state.turn_rate = from_rate + onset * (course.turn_rate - from_rate);
                 self.state.heading += self.state.turn_rate * self.frame_secs
-                    + (facing - facing_before + course.aside.turn)
+                    + (facing - facing_before + course.displacement.turn)
                         * (share(time + 1.0) - share(time));
             }
         }
@@ -132,8 +137,8 @@ impl Planter {
     }
 
     /// Difference between the heights that the landing leg and the standing leg would give the hips at the end of the step.
-    fn landing_height_gap(&self, raw: &[RawFrame], timing: &StepTiming) -> f32 {
-        let last = &raw[timing.frames];
+    fn landing_height_gap(&self, generated: &[GeneratedFrame], timing: &StepTiming) -> f32 {
+        let last = &generated[timing.frames];
         let landing = timing.leading.other();
         self.landing_height(last, landing) - hips_above(last, timing.leading, Quat::IDENTITY).y
     }
@@ -183,7 +188,7 @@ impl Settling {
 }
 
 /// Position of the hips over a foot on its plant, with the leg as generated.
-fn hips_above(raw: &RawFrame, side: Side, level: Quat) -> Vec3 {
-    let leg = &raw.legs[side.index()];
+fn hips_above(generated: &GeneratedFrame, side: Side, level: Quat) -> Vec3 {
+    let leg = &generated.legs[side.index()];
     leg.target.ankle - level * leg.ankle
 }

@@ -27,7 +27,7 @@ const RECOVERY: usize = 4;
 const FREED_BY: f32 = 0.5;
 const REACHING_FROM: f32 = 0.45;
 
-/// Request for a jump.
+/// StepRequest for a jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Leap {
     /// Rise of the hips above their height before the jump, metres.

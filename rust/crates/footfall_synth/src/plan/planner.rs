@@ -81,7 +81,7 @@ impl Planner {
     }
 
     /// Wears another mixture of styles from the next step that is worked out.
-    pub(crate) fn wear(&mut self, model: &Arc<GaitModel>) {
+    pub(crate) fn set_model(&mut self, model: &Arc<GaitModel>) {
         self.model = Arc::clone(model);
     }
 
@@ -129,7 +129,7 @@ impl Planner {
         }
     }
 
-    /// Frames of the longest step that [`realise`](Self::realise) can make.
+    /// Frames of the longest step that [`plan_step`](Self::plan_step) can make.
     pub(crate) fn longest_step(model: &GaitModel) -> usize {
         let longest = (MAX_STEP_SECS * model.frame_rate_hz).ceil() as usize + STATES_PER_STEP;
         Detail::Quarter.whole_frames(longest)
@@ -144,18 +144,18 @@ impl Planner {
     }
 
     /// Works out a drawn step; the statistics are those of the mixture that is worn.
-    pub(crate) fn realise<R: Sum>(
+    pub(crate) fn plan_step<R: Sum>(
         &self,
         draw: &StepDraw,
         manner: Manner,
         statistics: &Statistics<R>,
         plan: &mut StepPlan<R>,
     ) {
-        self.realise_end(draw, manner, usize::MAX, statistics, plan);
+        self.plan_step_end(draw, manner, usize::MAX, statistics, plan);
     }
 
     /// Works out how a drawn step ends: its shape, but only the means of the states that its last frames are in, so many.
-    pub(crate) fn realise_end<R: Sum>(
+    pub(crate) fn plan_step_end<R: Sum>(
         &self,
         draw: &StepDraw,
         manner: Manner,

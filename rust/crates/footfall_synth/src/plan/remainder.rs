@@ -1,4 +1,4 @@
-//! Rest of a step that is replanned while its foot is in the air.
+//! Remainder of a step that is replanned while its foot is in the air.
 //!
 //! Controls may change in the middle of a swing. The rest of the step then becomes a step of its own: it begins with a foot in the air, continues the
 //! frames already shown, and takes the states of the new plan that have not passed yet. It need not fit the previous plan.
@@ -13,7 +13,7 @@ const LEAST_FRAMES: usize = 6;
 
 /// Part of a step that has passed when its rest begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rest {
+pub(crate) struct Remainder {
     /// The state that it is in, and the share of it that is left.
     pub(crate) state: usize,
     pub(crate) left: f32,
@@ -21,8 +21,8 @@ pub(crate) struct Rest {
     pub(crate) passed: f32,
 }
 
-impl Rest {
-    /// Rest of a plan from a frame on, of which this much was left before; `None` where it is too late to change it.
+impl Remainder {
+    /// Remainder of a plan from a frame on, of which this much was left before; `None` where it is too late to change it.
     pub(crate) fn of<R>(plan: &StepPlan<R>, frame: usize, before: Option<Self>) -> Option<Self> {
         let frames = plan.shape.timing.frames;
         if frame + LEAST_FRAMES > frames {
@@ -45,8 +45,10 @@ impl Rest {
     }
 
     /// The share of the whole step that has passed at part `s` of its rest.
-    pub(crate) fn phase(rest: Option<Self>, s: f32) -> f32 {
-        rest.map_or(s, |rest| rest.passed + (1.0 - rest.passed) * s)
+    pub(crate) fn phase(remainder: Option<Self>, s: f32) -> f32 {
+        remainder.map_or(s, |remainder| {
+            remainder.passed + (1.0 - remainder.passed) * s
+        })
     }
 
     /// Returns true when its numbers make sense.

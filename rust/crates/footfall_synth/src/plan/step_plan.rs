@@ -113,7 +113,7 @@ impl StepShape {
 }
 
 impl<R: Real> StepPlan<R> {
-    /// A plan that [`Planner::realise`] can fill without allocating.
+    /// A plan that [`Planner::plan_step`] can fill without allocating.
     pub(crate) fn empty() -> Self {
         Self {
             shape: StepShape::of_walk(Side::Left, 1, 0.0, 1.0, Detail::Full),

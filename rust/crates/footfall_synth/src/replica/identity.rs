@@ -44,7 +44,7 @@ impl WalkIdentity {
             phase: generator.config.phase,
             variation: generator.config.variation,
             epoch,
-            style_weights: steps.worn().weights.clone(),
+            style_weights: steps.blend().weights.clone(),
         })
     }
 

@@ -3,11 +3,11 @@
 use super::update::Planned;
 use crate::config::GeneratorConfig;
 use crate::controls::{Controls, GaitChoice};
-use crate::gait::{Amplitude, Ask, Gait, Obeyed};
+use crate::gait::{Amplitude, AppliedControls, Gait, StepControls};
 use crate::generator::GaitGenerator;
-use crate::ground::Aside;
+use crate::ground::Displacement;
 use crate::plan::StepDraw;
-use crate::source::{Aim, StepSource as _, Steps, StyledSteps, walker_of};
+use crate::source::{Aim, StepSource as _, Steps, StyledSteps, planner_of};
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
 
@@ -25,13 +25,16 @@ impl StyledSteps {
     /// Number of the current step: even ones begin with the left foot's contact. It wraps.
     pub(super) fn number(&self) -> u16 {
         let strides = self.planner.strides() as u16;
-        let right = self.walker.step().timing.leading == Side::Right;
+        let right = self.window.step().timing.leading == Side::Right;
         strides.wrapping_mul(2).wrapping_sub(u16::from(right))
     }
 
     /// Share of the current step that had passed when it was planned last.
     pub(super) fn passed(&self) -> f32 {
-        self.walker.origin().rest.map_or(0.0, |rest| rest.passed)
+        self.window
+            .origin()
+            .remainder
+            .map_or(0.0, |rest| rest.passed)
     }
 
     /// Takes chance to where it draws the step of this number; returns that.
@@ -39,41 +42,51 @@ impl StyledSteps {
         let Self {
             planner,
             space,
-            worn,
+            measured,
             ..
         } = self;
         planner.draw_of(number, || {
-            let mut fresh = walker_of(space, config);
-            fresh.wear(&worn.blend.model);
+            let mut fresh = planner_of(space, config);
+            fresh.set_model(&measured.blend.model);
             fresh
         })
     }
 
     /// Starts over in the step of this number; whether it could.
-    fn begin(&mut self, config: &GeneratorConfig, at: &Beginning, ask: &Ask) -> bool {
+    fn begin(
+        &mut self,
+        config: &GeneratorConfig,
+        at: &Beginning,
+        step_controls: &StepControls,
+    ) -> bool {
         let before = self.draw_of(config, at.number.wrapping_sub(1));
         let (first, next) = (before.side.other(), before.side);
         let draws = [before, self.planner.draw(first), self.planner.draw(next)];
-        self.velocity_mps = ask.velocity_mps;
-        let gait = match ask.gait {
+        self.velocity_mps = step_controls.velocity_mps;
+        let gait = match step_controls.gait {
             GaitChoice::Run => Gait::Run,
             GaitChoice::Auto | GaitChoice::Walk => Gait::Walk,
         };
         let (request, gait) = if at.rests {
-            (self.worn.chooser.standing_request(ask.detail), Gait::Walk)
+            (
+                self.measured.chooser.standing_request(step_controls.detail),
+                Gait::Walk,
+            )
         } else {
-            self.worn.chooser.request(ask, gait, &mut self.velocity_mps)
+            self.measured
+                .chooser
+                .request(step_controls, gait, &mut self.velocity_mps)
         };
-        self.obeyed = if at.rests {
-            Obeyed::default()
+        self.applied = if at.rests {
+            AppliedControls::default()
         } else {
-            Obeyed::of(ask)
+            AppliedControls::of(step_controls)
         };
-        let blend = self.worn.dress(gait);
-        self.planner.wear(&blend.model);
-        let (planner, walker) = (&mut self.planner, &mut self.walker);
+        let blend = self.measured.blend_of(gait);
+        self.planner.set_model(&blend.model);
+        let (planner, window) = (&mut self.planner, &mut self.window);
         self.space
-            .at_bench(|bench| walker.start(planner, blend, draws, request, bench))
+            .with_buffers(|buffers| window.start(planner, blend, draws, request, buffers))
             .is_ok()
     }
 }
@@ -103,7 +116,7 @@ impl GaitGenerator {
     pub(super) fn start_from_aim(&self, rests: bool) -> GroundTransform {
         let source = self.steps.source();
         source
-            .stage()
+            .planted()
             .aim(&self.plan_from_start, self.shape(), rests)
     }
 
@@ -111,13 +124,13 @@ impl GaitGenerator {
     pub(super) fn begin_led(&mut self, at: &Beginning) -> bool {
         let (config, detail) = (self.config, self.detail);
         let fastest = self.steps.source().fastest_mps();
-        let ask = Ask {
+        let step_controls = StepControls {
             amplitude: Amplitude::WALK,
-            ..Ask::after(self.shape().amplitude, at.controls, fastest, detail)
+            ..StepControls::after(self.shape().amplitude, at.controls, fastest, detail)
         };
         let begun = self
             .styled_mut()
-            .is_some_and(|steps| steps.begin(&config, at, &ask));
+            .is_some_and(|steps| steps.begin(&config, at, &step_controls));
         if begun {
             let frames = self.shape().timing.frames as f32;
             let share = if at.rests {
@@ -127,7 +140,7 @@ impl GaitGenerator {
             };
             self.position = share * frames;
             self.plan_from_start = self.plan_from_character();
-            self.heard = None;
+            self.answered = None;
             if let (true, Some(life)) = (at.rests, &mut self.life) {
                 life.stand();
             }
@@ -142,14 +155,14 @@ impl GaitGenerator {
             && steps.number().wrapping_add(1) != number
         {
             let draw = steps.draw_of(&config, number);
-            steps.walker.redraw_next(draw);
+            steps.window.redraw_next(draw);
         }
         if rise_m > 0.0 {
             self.jump(rise_m);
         }
         self.next_step(controls);
         // A leap that this step is not is none at all.
-        self.asked_jump = None;
+        self.pending_jump = None;
     }
 
     /// Plans the current step anew where its sender did, or later if it must be; whether it did. `before` is where the walk was in the frame before.
@@ -162,7 +175,7 @@ impl GaitGenerator {
         let frames = self.shape().timing.frames as f32;
         let (position, detail) = (self.position, self.detail);
         let fastest = self.steps.source().fastest_mps();
-        let ask = Ask::after(self.shape().amplitude, *controls, fastest, detail);
+        let step_controls = StepControls::after(self.shape().amplitude, *controls, fastest, detail);
         let Some(steps) = self.styled_mut() else {
             return false;
         };
@@ -171,9 +184,9 @@ impl GaitGenerator {
         // What was shown stays as it was.
         let in_time = wanted > before && wanted <= position;
         let frame = if in_time { wanted } else { position.floor() };
-        let needed = in_time || must || steps.is_news(&ask);
+        let needed = in_time || must || steps.needs_replan(&step_controls);
         let possible = steps.gait() == Gait::Walk && frame > 0.0;
-        let replanned = needed && possible && steps.go_over(&ask, frame as usize);
+        let replanned = needed && possible && steps.replan_from(&step_controls, frame as usize);
         if replanned {
             self.position -= frame;
         }
@@ -181,7 +194,7 @@ impl GaitGenerator {
     }
 
     /// Way and turn from where the current step leads to where it should, seen from the start of the walk.
-    pub(super) fn off(&self, aim: &Aim) -> Aside {
+    pub(super) fn off(&self, aim: &Aim) -> Displacement {
         aim.off(&self.start_from_aim(aim.rests))
     }
 
@@ -189,8 +202,8 @@ impl GaitGenerator {
     pub(super) fn aim_at(&mut self, aim: &Aim) {
         let plan_from_start = self.plan_from_start;
         if let Some(steps) = self.styled_mut() {
-            let (space, walker) = (Arc::clone(&steps.space), &mut steps.walker);
-            space.at_bench(|bench| walker.aim_at(aim, &plan_from_start, bench));
+            let (space, window) = (Arc::clone(&steps.space), &mut steps.window);
+            space.with_buffers(|buffers| window.aim_at(aim, &plan_from_start, buffers));
         }
     }
 

@@ -6,7 +6,7 @@ use super::identity::tag;
 use super::update::{Planned, UPDATE_BYTES, WalkUpdate};
 use super::{ReplicaError, WalkIdentity};
 use crate::controls::{Controls, GaitChoice};
-use crate::gait::{Gait, Obeyed};
+use crate::gait::{AppliedControls, Gait};
 use crate::generator::GaitGenerator;
 use crate::moves::{Leap, Moves};
 use crate::source::{Steps, StyledSteps};
@@ -97,16 +97,16 @@ impl WalkSender {
 
 /// Controls that the current step obeys.
 fn controls(steps: &StyledSteps, generator: &GaitGenerator) -> Controls {
-    let Obeyed {
+    let AppliedControls {
         velocity_mps,
         turn_rate,
         stops,
         ..
-    } = steps.obeyed;
+    } = steps.applied;
     let crouch = generator.moves.as_ref().map(Moves::moment);
     let (velocity, turn_rate_radps) = if stops {
         (glam::Vec2::ZERO, 0.0)
-    } else if steps.obeyed == Obeyed::default() {
+    } else if steps.applied == AppliedControls::default() {
         // The first step was not asked to be anything.
         (steps.velocity_mps, 0.0)
     } else {
@@ -126,7 +126,7 @@ fn controls(steps: &StyledSteps, generator: &GaitGenerator) -> Controls {
 
 /// Rise of the jump that is made.
 fn rise_m(steps: &StyledSteps, generator: &GaitGenerator) -> f32 {
-    let leap = steps.walker.origin().request.leap_m;
+    let leap = steps.window.origin().request.leap_m;
     leap.or(jump(generator).map(|(leap, _)| leap.rise_m))
         .unwrap_or(0.0)
 }

@@ -1,9 +1,9 @@
 //! Buffers in which steps are solved: nobody needs them between two steps, so all walkers share them.
 
 use crate::error::SynthError;
-use crate::ground::{RawFrame, Stage};
+use crate::ground::{GeneratedFrame, PlantedStep};
 use crate::plan::{Planner, Statistics, StepPlan, TIE, TIE_LEN, WINDOW};
-use crate::trajectory::{FineBench, TrajectorySolver};
+use crate::trajectory::{FineBuffers, TrajectorySolver};
 use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
 use footfall_model::{FEATURE_COUNT, GaitModel};
@@ -14,19 +14,19 @@ const WALKED: usize = feature_offset(Joint::RightToes);
 
 /// Buffers in which a step is solved and put on the ground.
 #[derive(Debug)]
-pub(crate) struct Workbench {
+pub(crate) struct StepBuffers {
     solver: TrajectorySolver<f32>,
     /// Features of the window that was solved last.
     pub(crate) trajectory: Vec<f32>,
-    pub(crate) fine: FineBench,
+    pub(crate) fine: FineBuffers,
     /// Features of the step that is put on the ground, with its fine motion.
     pub(crate) shown: Vec<f32>,
-    pub(crate) raw: Vec<RawFrame>,
+    pub(crate) generated: Vec<GeneratedFrame>,
     /// A step in the gait before, where that changes.
     pub(crate) going_over: StepPlan<f32>,
 }
 
-impl Workbench {
+impl StepBuffers {
     /// For steps of this model, in any style.
     pub(crate) fn new(model: &GaitModel) -> Self {
         let longest = Planner::longest_step(model);
@@ -34,9 +34,9 @@ impl Workbench {
         Self {
             solver: TrajectorySolver::new(WINDOW, room),
             trajectory: Vec::with_capacity(room * FEATURE_COUNT),
-            fine: FineBench::new(),
+            fine: FineBuffers::new(),
             shown: vec![0.0; (longest + 1) * FEATURE_COUNT],
-            raw: Stage::raw(longest),
+            generated: PlantedStep::generated(longest),
             going_over: StepPlan::empty(),
         }
     }
@@ -90,18 +90,22 @@ impl Workbench {
     }
 }
 
-/// Workbenches that walkers of one model lend each other: as many as there ever were threads that worked steps out at the same time.
+/// BufferPool that walkers of one model lend each other: as many as there ever were threads that worked steps out at the same time.
 #[derive(Debug, Default)]
-pub(crate) struct Workbenches(Mutex<Vec<Workbench>>);
+pub(crate) struct BufferPool(Mutex<Vec<StepBuffers>>);
 
-impl Workbenches {
+impl BufferPool {
     /// Works at one of them. Allocates only when all are in use.
-    pub(crate) fn at_one<R>(&self, model: &GaitModel, work: impl FnOnce(&mut Workbench) -> R) -> R {
+    pub(crate) fn with_one<R>(
+        &self,
+        model: &GaitModel,
+        work: impl FnOnce(&mut StepBuffers) -> R,
+    ) -> R {
         let free = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut bench = free.unwrap_or_else(|| Workbench::new(model));
-        let done = work(&mut bench);
+        let mut buffers = free.unwrap_or_else(|| StepBuffers::new(model));
+        let done = work(&mut buffers);
         let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        free.push(bench);
+        free.push(buffers);
         done
     }
 }

@@ -1,10 +1,10 @@
 //! A mixture of styles on one body, and the paces that are measured of it.
 
-use super::buffers::Workbench;
+use super::buffers::StepBuffers;
 use super::style_space::Blend;
-use super::window::Walker;
+use super::window::StepWindow;
 use crate::error::SynthError;
-use crate::gait::{Amplitude, Gait, Manner, Pace, PaceTable, Request, SAMPLES, StepChooser};
+use crate::gait::{Amplitude, Gait, Manner, Pace, PaceTable, SAMPLES, StepChooser, StepRequest};
 use crate::plan::Planner;
 use footfall_core::{Side, Skeleton};
 use glam::{Vec2, Vec3};
@@ -15,13 +15,13 @@ const EXTRAPOLATION: f64 = 0.15;
 
 /// A mixture of styles, and its gaits on one body.
 #[derive(Clone, Debug)]
-pub(crate) struct Worn {
+pub(crate) struct MeasuredBlend {
     /// The walk; the run is in it.
     pub(crate) blend: Arc<Blend>,
     pub(crate) chooser: StepChooser,
 }
 
-impl Worn {
+impl MeasuredBlend {
     /// Measures a walker in a mixture of styles.
     ///
     /// # Errors
@@ -30,11 +30,11 @@ impl Worn {
         planner: &Planner,
         skeleton: &Skeleton,
         blend: Arc<Blend>,
-        bench: &mut Workbench,
+        buffers: &mut StepBuffers,
     ) -> Result<Self, SynthError> {
-        let walk = measure_paces(planner, skeleton, &blend, bench)?;
+        let walk = measure_paces(planner, skeleton, &blend, buffers)?;
         let run = match &blend.running {
-            Some(run) => Some(measure_paces(planner, skeleton, run, bench)?),
+            Some(run) => Some(measure_paces(planner, skeleton, run, buffers)?),
             None => None,
         };
         let chooser = StepChooser {
@@ -48,7 +48,7 @@ impl Worn {
     }
 
     /// The mixture that a step of this gait wears.
-    pub(crate) fn dress(&self, gait: Gait) -> &Arc<Blend> {
+    pub(crate) fn blend_of(&self, gait: Gait) -> &Arc<Blend> {
         self.blend.of_gait(gait)
     }
 }
@@ -58,16 +58,16 @@ pub(crate) fn measure_paces(
     planner: &Planner,
     skeleton: &Skeleton,
     blend: &Arc<Blend>,
-    bench: &mut Workbench,
+    buffers: &mut StepBuffers,
 ) -> Result<PaceTable, SynthError> {
     let model = &blend.model;
     let mut planner = planner.clone();
-    planner.wear(model);
+    planner.set_model(model);
     let mut trial = Trial {
-        walker: Walker::new(skeleton, blend),
+        window: StepWindow::new(skeleton, blend),
         planner,
         blend,
-        bench,
+        buffers,
     };
     let (way, _) = trial.travel(model.speed.reference_mps, 0.0)?;
     let facing = -way.x.atan2(way.z);
@@ -88,15 +88,15 @@ pub(crate) fn measure_paces(
 /// A walker that walks without chance, to be measured.
 struct Trial<'a> {
     planner: Planner,
-    walker: Walker,
+    window: StepWindow,
     blend: &'a Arc<Blend>,
-    bench: &'a mut Workbench,
+    buffers: &'a mut StepBuffers,
 }
 
 impl Trial<'_> {
     /// Travel over the ground and frames of the second stride.
     fn travel(&mut self, covariate_mps: f64, facing: f32) -> Result<(Vec3, usize), SynthError> {
-        let request = Request {
+        let request = StepRequest {
             leap_m: None,
             manner: Manner::inside(Pace {
                 covariate_mps,
@@ -109,18 +109,18 @@ impl Trial<'_> {
             facing,
         };
         let draws = [Side::Right, Side::Left, Side::Right].map(Planner::mean_draw);
-        let (planner, walker) = (&mut self.planner, &mut self.walker);
-        walker.start(planner, self.blend, draws, request, self.bench)?;
+        let (planner, window) = (&mut self.planner, &mut self.window);
+        window.start(planner, self.blend, draws, request, self.buffers)?;
         let mut travel = Vec3::ZERO;
         let mut frames = 0;
         for step in 0..4 {
             if step > 0 {
-                let ahead = Planner::mean_draw(walker.step().timing.leading);
-                walker.advance(planner, self.blend, ahead, request, self.bench);
+                let ahead = Planner::mean_draw(window.step().timing.leading);
+                window.advance(planner, self.blend, ahead, request, self.buffers);
             }
             if step >= 2 {
-                travel += walker.stage().travel(walker.step());
-                frames += walker.step().timing.frames;
+                travel += window.planted().travel(window.step());
+                frames += window.step().timing.frames;
             }
         }
         Ok((travel, frames))

@@ -1,12 +1,12 @@
 //! Sources of a walker's steps.
 
 use crate::detail::Detail;
-use crate::gait::{Ask, Gait};
-use crate::ground::Stage;
+use crate::gait::{Gait, StepControls};
+use crate::ground::PlantedStep;
 use crate::plan::StepShape;
 
 /// The next factor on the legs' reach, made of a step and the ground that it is on; `None` when it lies well.
-pub(crate) type Stretches<'a> = dyn FnMut(&StepShape, &Stage) -> Option<f32> + 'a;
+pub(crate) type Stretches<'a> = dyn FnMut(&StepShape, &PlantedStep) -> Option<f32> + 'a;
 
 /// One walker's steps, put on the ground one after the other.
 pub(crate) trait StepSource {
@@ -14,7 +14,7 @@ pub(crate) trait StepSource {
     fn shape(&self) -> &StepShape;
 
     /// The ground that it is on.
-    fn stage(&self) -> &Stage;
+    fn planted(&self) -> &PlantedStep;
 
     /// Headings under which the walk goes along +Z, before the current step and after it, radians.
     fn facing(&self) -> [f32; 2];
@@ -29,10 +29,10 @@ pub(crate) trait StepSource {
     fn stand(&mut self, detail: Detail) -> bool;
 
     /// Goes on to the next step.
-    fn advance(&mut self, ask: &Ask);
+    fn advance(&mut self, controls: &StepControls);
 
     /// Has the rest of the current step obey something new from a frame of it on; whether it does. The step then begins with that frame.
-    fn replan(&mut self, _ask: &Ask, _frame: usize) -> bool {
+    fn replan(&mut self, _controls: &StepControls, _frame: usize) -> bool {
         false
     }
 
@@ -40,7 +40,7 @@ pub(crate) trait StepSource {
     fn keep(&mut self) {}
 
     /// Returns whether so much else is asked for that the current step would obey it where it can.
-    fn is_news(&self, _ask: &Ask) -> bool {
+    fn needs_replan(&self, _controls: &StepControls) -> bool {
         false
     }
 

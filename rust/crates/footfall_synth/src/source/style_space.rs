@@ -1,6 +1,6 @@
 //! A model and its styles, prepared once; mixtures are quick.
 
-use super::buffers::{Workbench, Workbenches};
+use super::buffers::{BufferPool, StepBuffers};
 use crate::error::SynthError;
 use crate::gait::{Gait, standing_features};
 use crate::moves::MoveTables;
@@ -28,7 +28,7 @@ pub struct StyleSpace {
     moves: Arc<MoveTables>,
     /// Mixtures in use.
     blends: Mutex<Vec<Weak<Blend>>>,
-    benches: Workbenches,
+    buffers: BufferPool,
 }
 
 /// Parts that all runs of a model share.
@@ -96,7 +96,7 @@ impl StyleSpace {
             model: Arc::clone(model),
             styles: styles.to_vec(),
             blends: Mutex::default(),
-            benches: Workbenches::default(),
+            buffers: BufferPool::default(),
         })
     }
 
@@ -134,21 +134,21 @@ impl StyleSpace {
     }
 
     /// Runs work at a bench that all walkers of the space share.
-    pub(crate) fn at_bench<R>(&self, work: impl FnOnce(&mut Workbench) -> R) -> R {
-        self.benches.at_one(&self.model, work)
+    pub(crate) fn with_buffers<R>(&self, work: impl FnOnce(&mut StepBuffers) -> R) -> R {
+        self.buffers.with_one(&self.model, work)
     }
 
     /// Returns the mixture by these weights, shared by all walkers that use it at the same time.
     pub(crate) fn blend(&self, weights: &[f32]) -> Arc<Blend> {
         let weights: Vec<f32> = self.weights(weights).collect();
-        let mut worn = self.blends.lock().unwrap_or_else(PoisonError::into_inner);
-        worn.retain(|blend| blend.strong_count() > 0);
-        let mut known = worn.iter().filter_map(Weak::upgrade);
+        let mut in_use = self.blends.lock().unwrap_or_else(PoisonError::into_inner);
+        in_use.retain(|blend| blend.strong_count() > 0);
+        let mut known = in_use.iter().filter_map(Weak::upgrade);
         if let Some(blend) = known.find(|blend| blend.weights == weights) {
             return blend;
         }
         let blend = Arc::new(self.mix(weights));
-        worn.push(Arc::downgrade(&blend));
+        in_use.push(Arc::downgrade(&blend));
         blend
     }
 
@@ -183,13 +183,13 @@ impl StyleSpace {
 
     /// Returns the pull of a mixture: between those of the base and of its styles.
     fn pull(&self, weights: &[f32]) -> Vec<f64> {
-        let worn = || {
+        let in_use = || {
             let pairs = self.style_pulls.iter().zip(weights);
             pairs.filter(|(_, weight)| weight.abs() > 0.0)
         };
         let mix = |(dim, base): (usize, &f64)| {
-            let ways = worn().map(|(pull, weight)| f64::from(*weight) * (pull[dim] - base));
-            let corners = || worn().map(|(pull, _)| pull[dim]).chain([*base]);
+            let ways = in_use().map(|(pull, weight)| f64::from(*weight) * (pull[dim] - base));
+            let corners = || in_use().map(|(pull, _)| pull[dim]).chain([*base]);
             let low = corners().fold(f64::INFINITY, f64::min);
             let high = corners().fold(f64::NEG_INFINITY, f64::max);
             (base + ways.sum::<f64>()).clamp(low, high)

@@ -1,14 +1,14 @@
 //! Steps of a hidden semi-Markov model in a mixture of styles.
 
-use super::measured::Worn;
+use super::measured::MeasuredBlend;
 use super::step_source::{StepSource, Stretches};
 use super::style_space::{Blend, StyleSpace};
-use super::window::Walker;
+use super::window::StepWindow;
 use crate::config::GeneratorConfig;
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::gait::{Ask, Gait, Obeyed, Request};
-use crate::ground::Stage;
+use crate::gait::{AppliedControls, Gait, StepControls, StepRequest};
+use crate::ground::PlantedStep;
 use crate::plan::{Planner, StepShape, WINDOW};
 use footfall_core::{Side, Skeleton};
 use glam::Vec2;
@@ -19,15 +19,15 @@ use std::sync::Arc;
 pub(crate) struct StyledSteps {
     pub(crate) space: Arc<StyleSpace>,
     pub(crate) planner: Planner,
-    pub(crate) walker: Walker,
+    pub(crate) window: StepWindow,
     /// Mixture of styles of the next step.
-    pub(crate) worn: Worn,
+    pub(crate) measured: MeasuredBlend,
     /// A mixture that the next step lets go of, kept so that it is not freed there.
     retired: Option<Arc<Blend>>,
     /// Velocity of the current step, as its request has it.
     pub(crate) velocity_mps: Vec2,
     /// Requests that the current step was made to obey.
-    pub(crate) obeyed: Obeyed,
+    pub(crate) applied: AppliedControls,
 }
 
 impl StyledSteps {
@@ -42,63 +42,65 @@ impl StyledSteps {
         config: &GeneratorConfig,
         first: Side,
     ) -> Result<Self, SynthError> {
-        let mut planner = walker_of(space, config);
+        let mut planner = planner_of(space, config);
         let blend = space.blend(style_weights);
-        planner.wear(&blend.model);
-        let mut walker = Walker::new(skeleton, &blend);
-        let (worn, request) = space.at_bench(|bench| {
-            let worn = Worn::measure(&planner, skeleton, blend, bench)?;
-            let request = worn.chooser.first_request(Detail::Full);
+        planner.set_model(&blend.model);
+        let mut window = StepWindow::new(skeleton, &blend);
+        let (measured, request) = space.with_buffers(|buffers| {
+            let measured = MeasuredBlend::measure(&planner, skeleton, blend, buffers)?;
+            let request = measured.chooser.walking_request(Detail::Full);
             let draws = [first.other(), first, first.other()].map(|side| planner.draw(side));
-            walker.start(&mut planner, &worn.blend, draws, request, bench)?;
-            Ok::<_, SynthError>((worn, request))
+            window.start(&mut planner, &measured.blend, draws, request, buffers)?;
+            Ok::<_, SynthError>((measured, request))
         })?;
         Ok(Self {
             space: Arc::clone(space),
             planner,
-            walker,
-            worn,
+            window,
+            measured,
             retired: None,
             velocity_mps: request.velocity_mps,
-            obeyed: Obeyed::default(),
+            applied: AppliedControls::default(),
         })
     }
 
     /// The mixture that the next step wears.
-    pub(crate) fn worn(&self) -> &Blend {
-        &self.worn.blend
+    pub(crate) fn blend(&self) -> &Blend {
+        &self.measured.blend
     }
 
     pub(crate) fn set_style_weights(&mut self, skeleton: &Skeleton, weights: &[f32]) {
-        let worn = self.worn.blend.weights.iter().copied();
-        if self.space.weights(weights).eq(worn) {
+        let current = self.measured.blend.weights.iter().copied();
+        if self.space.weights(weights).eq(current) {
             return;
         }
         let blend = self.space.blend(weights);
         // The planner of a checked model gives a trajectory; were it not to, the walker keeps its style.
-        let measured = self
-            .space
-            .at_bench(|bench| Worn::measure(&self.planner, skeleton, blend, bench));
-        if let Ok(worn) = measured {
-            self.retired = Some(Arc::clone(self.walker.blends()[0]));
-            self.worn = worn;
+        let measured = self.space.with_buffers(|buffers| {
+            MeasuredBlend::measure(&self.planner, skeleton, blend, buffers)
+        });
+        if let Ok(measured) = measured {
+            self.retired = Some(Arc::clone(self.window.blends()[0]));
+            self.measured = measured;
         }
     }
+
     /// Has the rest of the current step, from a frame of it on, be what is asked for; whether it does.
-    pub(crate) fn go_over(&mut self, ask: &Ask, frame: usize) -> bool {
+    pub(crate) fn replan_from(&mut self, controls: &StepControls, frame: usize) -> bool {
         // Styles may have changed since the step began.
-        self.planner.wear(&self.walker.blends()[1].model);
-        let (worn, velocity) = (&self.worn, &mut self.velocity_mps);
-        let request = |before: &Request, frames: f64, passed: f64| {
-            worn.chooser
-                .rest_request(ask, before, frames, passed, velocity)
+        self.planner.set_model(&self.window.blends()[1].model);
+        let (measured, velocity) = (&self.measured, &mut self.velocity_mps);
+        let request = |before: &StepRequest, frames: f64, passed: f64| {
+            measured
+                .chooser
+                .remainder_request(controls, before, frames, passed, velocity)
         };
-        let (planner, walker) = (&mut self.planner, &mut self.walker);
+        let (planner, window) = (&mut self.planner, &mut self.window);
         let replanned = self
             .space
-            .at_bench(|bench| walker.replan(planner, frame, request, bench));
+            .with_buffers(|buffers| window.replan(planner, frame, request, buffers));
         if replanned {
-            self.obeyed = Obeyed::of(ask);
+            self.applied = AppliedControls::of(controls);
         }
         replanned
     }
@@ -106,87 +108,92 @@ impl StyledSteps {
 
 impl StepSource for StyledSteps {
     fn shape(&self) -> &StepShape {
-        self.walker.step()
+        self.window.step()
     }
 
-    fn stage(&self) -> &Stage {
-        self.walker.stage()
+    fn planted(&self) -> &PlantedStep {
+        self.window.planted()
     }
 
     fn facing(&self) -> [f32; 2] {
-        let origin = self.walker.origin();
+        let origin = self.window.origin();
         [origin.facing_before, origin.request.facing]
     }
 
     fn fastest_mps(&self) -> f32 {
-        self.worn.chooser.fastest_mps()
+        self.measured.chooser.fastest_mps()
     }
 
     fn gait(&self) -> Gait {
-        self.walker.blends()[1].gait
+        self.window.blends()[1].gait
     }
 
     fn stand(&mut self, detail: Detail) -> bool {
-        let first = self.walker.step().timing.leading;
-        let request = self.worn.chooser.standing_request(detail);
+        let first = self.window.step().timing.leading;
+        let request = self.measured.chooser.standing_request(detail);
         let draws = [first.other(), first, first.other()].map(|side| self.planner.draw(side));
-        self.planner.wear(&self.worn.blend.model);
-        let (planner, blend) = (&mut self.planner, &self.worn.blend);
+        self.planner.set_model(&self.measured.blend.model);
+        let (planner, blend) = (&mut self.planner, &self.measured.blend);
         // The model gave a trajectory when the generator was made, so it gives one now.
-        let walker = &mut self.walker;
-        let started = self
-            .space
-            .at_bench(|bench| walker.start(planner, blend, draws, request, bench).is_ok());
+        let window = &mut self.window;
+        let started = self.space.with_buffers(|buffers| {
+            window
+                .start(planner, blend, draws, request, buffers)
+                .is_ok()
+        });
         if started {
             self.velocity_mps = Vec2::ZERO;
-            self.obeyed = Obeyed::default();
+            self.applied = AppliedControls::default();
         }
         started
     }
 
-    fn advance(&mut self, ask: &Ask) {
-        self.obeyed = Obeyed::of(ask);
+    fn advance(&mut self, controls: &StepControls) {
+        self.applied = AppliedControls::of(controls);
         let gait = self.gait();
-        let (request, gait) = self.worn.chooser.request(ask, gait, &mut self.velocity_mps);
-        let next = self.walker.draws()[WINDOW - 1].side;
+        let (request, gait) = self
+            .measured
+            .chooser
+            .request(controls, gait, &mut self.velocity_mps);
+        let next = self.window.draws()[WINDOW - 1].side;
         let draw = self.planner.draw(next.other());
-        let blend = self.worn.dress(gait);
-        self.planner.wear(&blend.model);
-        let (planner, walker) = (&mut self.planner, &mut self.walker);
+        let blend = self.measured.blend_of(gait);
+        self.planner.set_model(&blend.model);
+        let (planner, window) = (&mut self.planner, &mut self.window);
         self.space
-            .at_bench(|bench| walker.advance(planner, blend, draw, request, bench));
+            .with_buffers(|buffers| window.advance(planner, blend, draw, request, buffers));
     }
 
     fn stretch(&mut self, haste: f32, next: &mut Stretches<'_>) {
         let haste = f64::from(haste);
         // Styles may have changed since the step began.
-        self.planner.wear(&self.walker.blends()[1].model);
-        let (planner, walker) = (&mut self.planner, &mut self.walker);
+        self.planner.set_model(&self.window.blends()[1].model);
+        let (planner, window) = (&mut self.planner, &mut self.window);
         let whole = self
             .space
-            .at_bench(|bench| walker.stretch(planner, haste, next, bench));
+            .with_buffers(|buffers| window.stretch(planner, haste, next, buffers));
         self.velocity_mps *= whole;
-        self.obeyed.stretched = true;
+        self.applied.stretched = true;
     }
 
     fn keep(&mut self) {
-        self.obeyed.stretched = true;
+        self.applied.stretched = true;
     }
 
-    fn is_news(&self, ask: &Ask) -> bool {
-        !self.obeyed.stretched && self.obeyed.differs_from(ask) && self.gait() == Gait::Walk
+    fn needs_replan(&self, controls: &StepControls) -> bool {
+        !self.applied.stretched && self.applied.differs_from(controls) && self.gait() == Gait::Walk
     }
 
-    fn replan(&mut self, ask: &Ask, frame: usize) -> bool {
-        if !self.is_news(ask) {
+    fn replan(&mut self, controls: &StepControls, frame: usize) -> bool {
+        if !self.needs_replan(controls) {
             return false;
         }
-        self.go_over(ask, frame)
+        self.replan_from(controls, frame)
     }
 }
 
 /// The walker that a seed draws.
-pub(crate) fn walker_of(space: &StyleSpace, config: &GeneratorConfig) -> Planner {
+pub(crate) fn planner_of(space: &StyleSpace, config: &GeneratorConfig) -> Planner {
     let variation = f64::from(config.variation.clamp(0.0, 2.0));
     Planner::new(space.model(), config.seed, variation)
 }

@@ -9,8 +9,8 @@ use crate::config::GeneratorConfig;
 use crate::controls::GaitChoice;
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::gait::{Amplitude, Ask, Posture, overstep, standing_posture, tempo_and_stride};
-use crate::ground::{Aside, Placing, PlanterState, RawFrame, Stage};
+use crate::gait::{Amplitude, Posture, StepControls, overstep, standing_posture, tempo_and_stride};
+use crate::ground::{Displacement, GeneratedFrame, Placing, PlantedStep, PlanterState};
 use crate::plan::{MAX_STEP_SECS, StepShape};
 use footfall_core::{Side, Skeleton};
 use footfall_model::{DynamicsModel, FEATURE_COUNT, SEGMENT_SLACK};
@@ -53,8 +53,8 @@ pub(crate) struct SwitchingSteps {
     systems: [RunningSystem; 2],
     pose: Pose,
     standing: Posture,
-    stage: Stage,
-    raw: Vec<RawFrame>,
+    planted: PlantedStep,
+    generated: Vec<GeneratedFrame>,
     rng: ChaCha8Rng,
     variation: f64,
     shape: StepShape,
@@ -119,8 +119,8 @@ impl SwitchingSteps {
             systems: Side::BOTH.map(|side| RunningSystem::new(model.regime(side))),
             standing: standing_of(&model.mean),
             pose: Pose::new(model),
-            stage: Stage::new(skeleton, model.frame_rate_hz, longest),
-            raw: Stage::raw(longest),
+            planted: PlantedStep::new(skeleton, model.frame_rate_hz, longest),
+            generated: PlantedStep::generated(longest),
             rng: ChaCha8Rng::seed_from_u64(0),
             variation: 0.0,
             shape: StepShape::of_walk(Side::Left, 1, 0.0, 1.0, Detail::Full),
@@ -172,7 +172,7 @@ impl SwitchingSteps {
     /// Travel over the ground and frames of some steps at this ratio of the own speed.
     fn travel(&mut self, ratio: f64) -> (Vec3, usize) {
         let speed = ratio * self.own_speed_mps;
-        let ask = Ask {
+        let controls = StepControls {
             leap_m: None,
             gait: GaitChoice::Walk,
             velocity_mps: speed as f32 * Vec2::Y,
@@ -180,12 +180,12 @@ impl SwitchingSteps {
             amplitude: Amplitude::WALK,
             detail: Detail::Full,
         };
-        self.begin(Side::Left, ask.amplitude, speed, ask.detail);
+        self.begin(Side::Left, controls.amplitude, speed, controls.detail);
         let (mut travel, mut frames) = (Vec3::ZERO, 0);
         for step in 0..2 + MEASURED_STEPS {
-            self.advance(&ask);
+            self.advance(&controls);
             if step >= 2 {
-                travel += self.stage.travel(&self.shape);
+                travel += self.planted.travel(&self.shape);
                 frames += self.shape.timing.frames;
             }
         }
@@ -201,7 +201,7 @@ impl SwitchingSteps {
 
     /// Starts over: one step that does not show, then the first.
     fn begin(&mut self, first: Side, amplitude: Amplitude, speed_mps: f64, detail: Detail) {
-        self.stage.clear();
+        self.planted.clear();
         self.weights.clear();
         self.origin.turn_rate = 0.0;
         self.origin.amplitude = amplitude;
@@ -211,7 +211,7 @@ impl SwitchingSteps {
         self.origin.facing = [self.facing(); 2];
         for side in [first.other(), first] {
             self.take_over(side);
-            self.realise();
+            self.generate_and_plant();
         }
     }
 
@@ -225,8 +225,8 @@ impl SwitchingSteps {
         self.draw_by(config);
         self.rng.set_word_pos(u128::from(origin.chance_position));
         match origin.planter {
-            Some(state) => self.stage.resume(&state),
-            None => self.stage.clear(),
+            Some(state) => self.planted.resume(&state),
+            None => self.planted.clear(),
         }
         self.origin = origin;
         // Steps allocate nothing.
@@ -234,7 +234,7 @@ impl SwitchingSteps {
             .expected
             .reserve(2 * self.model.components.len());
         self.velocity_mps = velocity_mps;
-        self.realise();
+        self.generate_and_plant();
     }
 
     /// The tempo and the stride that give a speed, shared between both.
@@ -251,7 +251,7 @@ impl SwitchingSteps {
     fn take_over(&mut self, leading: Side) {
         self.origin.leading = leading;
         self.origin.chance_position = self.rng.get_word_pos() as u64;
-        self.origin.planter = self.stage.planter_state();
+        self.origin.planter = self.planted.planter_state();
         let channels = self.model.components.len();
         self.origin.expected.clear();
         let end = self.weights.len().saturating_sub(2 * channels);
@@ -259,15 +259,15 @@ impl SwitchingSteps {
     }
 
     /// Works the step of the [`origin`](SwitchingOrigin) out and puts it on the ground.
-    fn realise(&mut self) {
-        self.work_out();
-        self.put_on_ground();
+    fn generate_and_plant(&mut self) {
+        self.generate();
+        self.plant();
     }
 
-    fn put_on_ground(&mut self) {
+    fn plant(&mut self) {
         let rows = self.features.iter();
         let rows = rows.map(|row| &row.as_flattened()[..FEATURE_COUNT]);
-        self.stage.put(
+        self.planted.put(
             rows,
             &Placing {
                 shape: &self.shape,
@@ -277,22 +277,22 @@ impl SwitchingSteps {
                 velocity_mps: self.velocity_mps,
                 velocity_before_mps: self.velocity_mps,
                 passed: 0.0,
-                aside: Aside::NONE,
+                displacement: Displacement::NONE,
                 direction: None,
                 keeps_lengths: false,
             },
-            &mut self.raw,
+            &mut self.generated,
         );
     }
 
     /// The next step's features, without putting it on the ground; returns how many frames they are for.
-    pub(crate) fn work_out_next(&mut self) -> usize {
+    pub(crate) fn generate_next(&mut self) -> usize {
         self.take_over(self.origin.leading.other());
-        self.work_out();
+        self.generate();
         self.shape.timing.frames
     }
 
-    fn work_out(&mut self) {
+    fn generate(&mut self) {
         let side = self.origin.leading;
         let start = self.draw_start(side);
         let longest = (MAX_STEP_SECS * self.model.frame_rate_hz) as usize;

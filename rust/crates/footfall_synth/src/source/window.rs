@@ -8,13 +8,13 @@ mod replan;
 pub(crate) use aim::Aim;
 pub(crate) use origin::Origin;
 
-use super::buffers::Workbench;
+use super::buffers::StepBuffers;
 use super::step_source::Stretches;
 use super::style_space::Blend;
 use crate::error::SynthError;
-use crate::gait::{Amplitude, Gait, Manner, Pace, Request};
-use crate::ground::{Aside, Placing, Stage};
-use crate::plan::{Planner, Rest, StepDraw, StepPlan, StepShape, TIE, TIE_LEN, WINDOW};
+use crate::gait::{Amplitude, Gait, Manner, Pace, StepRequest};
+use crate::ground::{Displacement, Placing, PlantedStep};
+use crate::plan::{Planner, Remainder, StepDraw, StepPlan, StepShape, TIE, TIE_LEN, WINDOW};
 use crate::trajectory::{Scale, neighbours};
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::FEATURE_COUNT;
@@ -26,7 +26,7 @@ const NO_SCALE: Scale = [0.0; FEATURE_COUNT];
 
 /// One walker between the planner's draws and frames on the ground; allocates nothing after it was made.
 #[derive(Debug)]
-pub(crate) struct Walker {
+pub(crate) struct StepWindow {
     blend: Arc<Blend>,
     /// The mixture of the step before.
     blend_before: Arc<Blend>,
@@ -37,13 +37,13 @@ pub(crate) struct Walker {
     origin: Origin,
     /// The last frames of the current step, which tie the next one to it.
     end: [f32; TIE_LEN],
-    stage: Stage,
+    planted: PlantedStep,
 }
 
-impl Walker {
+impl StepWindow {
     pub(crate) fn new(skeleton: &Skeleton, blend: &Arc<Blend>) -> Self {
         let longest = Planner::longest_step(&blend.model);
-        let nothing = Request {
+        let nothing = StepRequest {
             manner: Manner::inside(Pace {
                 covariate_mps: 0.0,
                 tempo: 1.0,
@@ -69,10 +69,10 @@ impl Walker {
                 velocity_before_mps: Vec2::ZERO,
                 planter: None,
                 tie: [0.0; TIE_LEN],
-                rest: None,
-                aside: Aside::NONE,
+                remainder: None,
+                displacement: Displacement::NONE,
             },
-            stage: Stage::new(skeleton, blend.model.frame_rate_hz, longest),
+            planted: PlantedStep::new(skeleton, blend.model.frame_rate_hz, longest),
         }
     }
 
@@ -85,8 +85,8 @@ impl Walker {
         planner: &mut Planner,
         blend: &Arc<Blend>,
         draws: [StepDraw; WINDOW],
-        request: Request,
-        bench: &mut Workbench,
+        request: StepRequest,
+        buffers: &mut StepBuffers,
     ) -> Result<(), SynthError> {
         self.blend = Arc::clone(blend);
         self.blend_before = Arc::clone(blend);
@@ -97,16 +97,16 @@ impl Walker {
         self.origin.facing_before = request.facing;
         self.origin.velocity_before_mps = request.velocity_mps;
         self.origin.planter = None;
-        self.origin.rest = None;
-        self.origin.aside = Aside::NONE;
+        self.origin.remainder = None;
+        self.origin.displacement = Displacement::NONE;
         for (draw, plan) in self.draws.iter().zip(&mut self.plans) {
-            planner.realise(draw, request.manner, &blend.statistics, plan);
+            planner.plan_step(draw, request.manner, &blend.statistics, plan);
             plan.shape.set_amplitude(request.amplitude);
         }
-        bench.start(&blend.statistics, &self.plans)?;
-        self.stage.clear();
-        self.put_on_ground(0, 0, bench);
-        self.put_on_ground(1, self.plans[0].shape.timing.frames, bench);
+        buffers.start(&blend.statistics, &self.plans)?;
+        self.planted.clear();
+        self.plant(0, 0, buffers);
+        self.plant(1, self.plans[0].shape.timing.frames, buffers);
         Ok(())
     }
 
@@ -116,8 +116,8 @@ impl Walker {
         planner: &mut Planner,
         blend: &Arc<Blend>,
         draw: StepDraw,
-        request: Request,
-        bench: &mut Workbench,
+        request: StepRequest,
+        buffers: &mut StepBuffers,
     ) {
         // A new pace or style is taken up by every step ahead: what is asked now takes effect at once.
         let same = !self.stale
@@ -131,8 +131,8 @@ impl Walker {
         self.draws[WINDOW - 1] = draw;
         self.blend_before = core::mem::replace(&mut self.blend, Arc::clone(blend));
         self.stale = false;
-        self.realise(planner, if same { WINDOW - 1 } else { 1 }, bench);
-        self.solve_tied(bench);
+        self.plan(planner, if same { WINDOW - 1 } else { 1 }, buffers);
+        self.solve_and_plant(buffers);
     }
 
     /// Puts the current step on the ground anew, quicker by the factor `haste` and shorter by as much, and then with the factors on the
@@ -142,7 +142,7 @@ impl Walker {
         planner: &mut Planner,
         haste: f64,
         next: &mut Stretches<'_>,
-        bench: &mut Workbench,
+        buffers: &mut StepBuffers,
     ) -> f32 {
         let mut whole = 1.0;
         let Some(feet) = self.origin.planter else {
@@ -153,22 +153,22 @@ impl Walker {
             let pace = &mut self.origin.request.manner.pace;
             pace.tempo *= haste;
             pace.stride /= haste;
-            self.stage.resume(&feet);
-            self.realise(planner, 1, bench);
-            self.solve_tied(bench);
+            self.planted.resume(&feet);
+            self.plan(planner, 1, buffers);
+            self.solve_and_plant(buffers);
             solved = true;
         }
-        while let Some(share) = next(&self.plans[1].shape, &self.stage) {
+        while let Some(share) = next(&self.plans[1].shape, &self.planted) {
             whole *= share;
             let stride = self.origin.request.manner.pace.stride * f64::from(share);
             self.origin.request.manner.pace.stride = stride;
             self.plans[1].shape.stride = stride;
-            self.stage.resume(&feet);
+            self.planted.resume(&feet);
             if solved {
-                self.put_on_ground(1, TIE - 1, bench);
+                self.plant(1, TIE - 1, buffers);
             } else {
                 // Nobody kept what it was made of.
-                self.solve_tied(bench);
+                self.solve_and_plant(buffers);
                 solved = true;
             }
         }
@@ -176,16 +176,16 @@ impl Walker {
     }
 
     /// Origin of the step after the current one when this is requested of it.
-    pub(crate) fn next_origin(&self, request: Request) -> Origin {
+    pub(crate) fn next_origin(&self, request: StepRequest) -> Origin {
         Origin {
             request,
             manner_before: self.origin.request.manner,
             facing_before: self.origin.request.facing,
             velocity_before_mps: self.origin.request.velocity_mps,
-            planter: self.stage.planter_state(),
+            planter: self.planted.planter_state(),
             tie: self.end,
-            rest: None,
-            aside: Aside::NONE,
+            remainder: None,
+            displacement: Displacement::NONE,
         }
     }
 
@@ -199,45 +199,45 @@ impl Walker {
         [blend_before, blend]: [&Arc<Blend>; 2],
         draws: [StepDraw; WINDOW],
         origin: Origin,
-        bench: &mut Workbench,
+        buffers: &mut StepBuffers,
     ) -> Result<(), SynthError> {
         let Some(state) = origin.planter else {
-            planner.wear(&blend.model);
-            return self.start(planner, blend, draws, origin.request, bench);
+            planner.set_model(&blend.model);
+            return self.start(planner, blend, draws, origin.request, buffers);
         };
         self.draws = draws;
-        planner.wear(&blend_before.model);
+        planner.set_model(&blend_before.model);
         // Of the step before only the last frames count.
-        planner.realise_end(
+        planner.plan_step_end(
             &self.draws[0],
             origin.manner_before,
             TIE,
             &blend_before.statistics,
             &mut self.plans[0],
         );
-        planner.wear(&blend.model);
+        planner.set_model(&blend.model);
         self.blend_before = Arc::clone(blend_before);
         self.blend = Arc::clone(blend);
-        self.stage.resume(&state);
+        self.planted.resume(&state);
         self.origin = origin;
         self.stale = false;
-        self.realise(planner, 1, bench);
-        self.solve_tied(bench);
+        self.plan(planner, 1, buffers);
+        self.solve_and_plant(buffers);
         Ok(())
     }
 
-    fn realise(&mut self, planner: &mut Planner, first: usize, bench: &mut Workbench) {
+    fn plan(&mut self, planner: &mut Planner, first: usize, buffers: &mut StepBuffers) {
         let request = self.origin.request;
         let changes = first <= 1 && self.blend_before.gait != self.blend.gait;
         if changes {
-            planner.wear(&self.blend_before.model);
+            planner.set_model(&self.blend_before.model);
             let before = &self.blend_before.statistics;
             let manner = Manner {
                 detail: request.manner.detail,
                 ..Manner::inside(self.origin.manner_before.pace)
             };
-            planner.realise(&self.draws[1], manner, before, &mut bench.going_over);
-            planner.wear(&self.blend.model);
+            planner.plan_step(&self.draws[1], manner, before, &mut buffers.going_over);
+            planner.set_model(&self.blend.model);
         }
         // The step ahead is that of someone who walks on.
         let ahead = match request.manner.position {
@@ -251,48 +251,50 @@ impl Walker {
                 position,
                 ..request.manner
             };
-            planner.realise(draw, manner, &self.blend.statistics, plan);
+            planner.plan_step(draw, manner, &self.blend.statistics, plan);
         }
         if changes {
-            self.plans[1].go_over_from(&bench.going_over);
+            self.plans[1].go_over_from(&buffers.going_over);
         }
         if let Some(rise_m) = request.leap_m {
             let before = self.blend_before.gait;
             self.plans[1].leap(rise_m, before, self.blend.model.frame_rate_hz);
         }
         self.plans[1].shape.set_amplitude(request.amplitude);
-        if let Some(rest) = self.origin.rest
+        if let Some(remainder) = self.origin.remainder
             && first <= 1
         {
-            rest.keep(&mut self.plans[1]);
+            remainder.keep(&mut self.plans[1]);
             let fine = self.plans[0].fine;
             let manner = self.origin.manner_before;
-            planner.realise(
+            planner.plan_step(
                 &self.draws[1],
                 manner,
                 &self.blend.statistics,
                 &mut self.plans[0],
             );
-            rest.hold(&mut self.plans[0]);
+            remainder.hold(&mut self.plans[0]);
             self.plans[0].fine = fine;
         }
     }
 
     /// The share of the current step that had passed when it was planned anew.
     fn passed(&self) -> f64 {
-        self.origin.rest.map_or(0.0, |rest| f64::from(rest.passed))
+        self.origin
+            .remainder
+            .map_or(0.0, |remainder| f64::from(remainder.passed))
     }
 
     /// Solves the current step and the one ahead, tied to the step before, and puts the current one on the ground.
-    fn solve_tied(&mut self, bench: &mut Workbench) {
+    fn solve_and_plant(&mut self, buffers: &mut StepBuffers) {
         let changes = self.blend_before.gait != self.blend.gait;
-        bench.go_on(
+        buffers.go_on(
             &self.blend.statistics,
             &self.plans,
             &self.origin.tie,
             changes,
         );
-        self.put_on_ground(1, TIE - 1, bench);
+        self.plant(1, TIE - 1, buffers);
     }
 
     /// The step that is on the ground now.
@@ -301,8 +303,8 @@ impl Walker {
     }
 
     /// The ground that it is on.
-    pub(crate) fn stage(&self) -> &Stage {
-        &self.stage
+    pub(crate) fn planted(&self) -> &PlantedStep {
+        &self.planted
     }
 
     /// Origin of the current step.
@@ -321,19 +323,19 @@ impl Walker {
     }
 
     /// Puts a step of the window, which begins with frame `first` of what was solved, on the ground.
-    fn put_on_ground(&mut self, step: usize, first: usize, bench: &mut Workbench) {
+    fn plant(&mut self, step: usize, first: usize, buffers: &mut StepBuffers) {
         let shape = &self.plans[step].shape;
-        let rest = self.origin.rest.filter(|_| step == 1);
-        self.end = bench.tie_at(first + shape.timing.frames + 1 - TIE);
+        let remainder = self.origin.remainder.filter(|_| step == 1);
+        self.end = buffers.tie_at(first + shape.timing.frames + 1 - TIE);
         let blends = [&*self.blend_before, &*self.blend];
         let placing = placing(&self.origin, &self.plans, blends, step);
-        let Workbench {
+        let StepBuffers {
             trajectory,
-            raw,
+            generated,
             fine,
             shown,
             ..
-        } = bench;
+        } = buffers;
         let trajectory = &trajectory[first * FEATURE_COUNT..];
         let [before, now] = [&self.blend_before, &self.blend];
         // A gait has a fine motion of its own: that of the one before goes as that of the other comes.
@@ -354,12 +356,12 @@ impl Walker {
             fine.prepare(tables, shape.timing.leading, &neighbours(&self.plans, step));
             let rows = shown.chunks_exact_mut(FEATURE_COUNT).enumerate();
             for (frame, row) in rows.step_by(shape.detail.stride()) {
-                let phase = Rest::phase(rest, frame as f32 / shape.timing.frames as f32);
+                let phase = Remainder::phase(remainder, frame as f32 / shape.timing.frames as f32);
                 fine.add(phase, scales, row);
             }
         }
-        self.stage
-            .put(shown.chunks_exact(FEATURE_COUNT), &placing, raw);
+        self.planted
+            .put(shown.chunks_exact(FEATURE_COUNT), &placing, generated);
     }
 }
 
@@ -370,7 +372,7 @@ fn placing<'a>(
     [before, now]: [&'a Blend; 2],
     step: usize,
 ) -> Placing<'a> {
-    let rest = origin.rest.filter(|_| step == 1);
+    let remainder = origin.remainder.filter(|_| step == 1);
     let velocity = origin.request.velocity_mps;
     let runs = now.gait == Gait::Run && velocity != Vec2::ZERO;
     Placing {
@@ -381,8 +383,12 @@ fn placing<'a>(
         velocity_mps: now.gait.seen_from_steps(velocity),
         velocity_before_mps: before.gait.seen_from_steps(origin.velocity_before_mps),
         direction: runs.then(|| velocity.x.atan2(velocity.y)),
-        passed: rest.map_or(0.0, |rest| rest.passed),
-        aside: if step == 1 { origin.aside } else { Aside::NONE },
+        passed: remainder.map_or(0.0, |remainder| remainder.passed),
+        displacement: if step == 1 {
+            origin.displacement
+        } else {
+            Displacement::NONE
+        },
         keeps_lengths: true,
     }
 }

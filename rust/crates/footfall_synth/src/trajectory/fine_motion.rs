@@ -42,7 +42,7 @@ pub(crate) type Neighbours = [FineDraw; 3];
 
 /// Working memory for a step's fine motion.
 #[derive(Debug)]
-pub(crate) struct FineBench {
+pub(crate) struct FineBuffers {
     sources: Vec<[f32; MAX_FINE_DIRECTIONS]>,
     knots: Vec<f32>,
 }
@@ -79,7 +79,7 @@ impl FineTables {
     }
 }
 
-impl FineBench {
+impl FineBuffers {
     /// With room for any step.
     pub(crate) fn new() -> Self {
         Self {
@@ -268,20 +268,20 @@ mod tests {
         }
     }
 
-    fn at(bench: &FineBench, s: f32) -> [f32; FEATURE_COUNT] {
+    fn at(buffers: &FineBuffers, s: f32) -> [f32; FEATURE_COUNT] {
         let mut features = [0.0; FEATURE_COUNT];
-        bench.add(s, [&SCALE; 2], &mut features);
+        buffers.add(s, [&SCALE; 2], &mut features);
         features
     }
 
     #[test]
     fn a_step_begins_where_and_as_fast_as_the_one_before_ends() {
-        let (tables, mut bench) = (tables(), FineBench::new());
+        let (tables, mut buffers) = (tables(), FineBuffers::new());
         let steps = [3, 8, 2, 11].map(draw);
-        bench.prepare(&tables, Side::Left, &[steps[0], steps[1], steps[2]]);
-        let (last, end) = (at(&bench, 0.999), at(&bench, 1.0));
-        bench.prepare(&tables, Side::Right, &[steps[1], steps[2], steps[3]]);
-        let (start, second) = (at(&bench, 0.0), at(&bench, 0.001));
+        buffers.prepare(&tables, Side::Left, &[steps[0], steps[1], steps[2]]);
+        let (last, end) = (at(&buffers, 0.999), at(&buffers, 1.0));
+        buffers.prepare(&tables, Side::Right, &[steps[1], steps[2], steps[3]]);
+        let (start, second) = (at(&buffers, 0.0), at(&buffers, 0.001));
         for feature in 0..FEATURE_COUNT {
             assert!((start[feature] - end[feature]).abs() < 1e-6);
             let speeds = [
@@ -291,13 +291,13 @@ mod tests {
             assert!((speeds[1] - speeds[0]).abs() < 2e-3, "{speeds:?}");
         }
         // With another neighbour there is a jump, so the join is no accident.
-        bench.prepare(&tables, Side::Right, &[steps[0], steps[2], steps[3]]);
-        assert!((at(&bench, 0.0)[0] - end[0]).abs() > 1e-3);
+        buffers.prepare(&tables, Side::Right, &[steps[0], steps[2], steps[3]]);
+        assert!((at(&buffers, 0.0)[0] - end[0]).abs() > 1e-3);
     }
 
     #[test]
     fn noise_has_the_covariance_and_the_correlation_it_was_given() {
-        let (tables, mut bench) = (tables(), FineBench::new());
+        let (tables, mut buffers) = (tables(), FineBuffers::new());
         let mut noise: Vec<[f32; FEATURE_COUNT]> = Vec::new();
         for step in 1..4000_u64 {
             let side = if step % 2 == 0 {
@@ -305,9 +305,9 @@ mod tests {
             } else {
                 Side::Right
             };
-            bench.prepare(&tables, side, &[draw(step - 1), draw(step), draw(step + 1)]);
+            buffers.prepare(&tables, side, &[draw(step - 1), draw(step), draw(step + 1)]);
             for point in 0..FINE_POINTS {
-                let mut features = at(&bench, point as f32 / FINE_POINTS as f32);
+                let mut features = at(&buffers, point as f32 / FINE_POINTS as f32);
                 let shared = tables.tables[side.index()][0][(point + 1) * FEATURE_COUNT];
                 for value in &mut features {
                     *value -= shared;
@@ -332,9 +332,9 @@ mod tests {
 
     #[test]
     fn a_step_without_chance_has_what_all_share() {
-        let (tables, mut bench) = (tables(), FineBench::new());
-        bench.prepare(&tables, Side::Left, &[FineDraw::default(); 3]);
-        let middle = at(&bench, 0.5);
+        let (tables, mut buffers) = (tables(), FineBuffers::new());
+        buffers.prepare(&tables, Side::Left, &[FineDraw::default(); 3]);
+        let middle = at(&buffers, 0.5);
         assert!(middle.iter().all(|value| (value - 1.0).abs() < 1e-3));
     }
 }

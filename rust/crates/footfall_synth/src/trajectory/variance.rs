@@ -92,7 +92,7 @@ fn sample_walk(model: &Arc<GaitModel>, statistics: &Statistics<f64>) -> Vec<Step
         .map(|_| {
             let mut plan = StepPlan::empty();
             let draw = Planner::mean_draw(side);
-            planner.realise(&draw, Manner::inside(pace), statistics, &mut plan);
+            planner.plan_step(&draw, Manner::inside(pace), statistics, &mut plan);
             side = side.other();
             plan
         })

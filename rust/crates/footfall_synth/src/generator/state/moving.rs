@@ -33,9 +33,9 @@ impl Moving {
             push: (push != PushMoment::default())
                 .then(|| [push.velocity, push.away, push.speed].map(|way| way.to_array())),
             jump: jump.map(|(leap, secs)| (numbers_of(&leap), secs)),
-            asked: generator.asked_jump.as_ref().map(numbers_of),
+            asked: generator.pending_jump.as_ref().map(numbers_of),
             leap_m: match &generator.steps {
-                Steps::Styled(steps) => steps.walker.origin().request.leap_m,
+                Steps::Styled(steps) => steps.window.origin().request.leap_m,
                 Steps::Switching(_) => None,
             },
         }
@@ -43,7 +43,7 @@ impl Moving {
 
     /// Lets a walker go on from here.
     pub(super) fn resume(&self, generator: &mut GaitGenerator) {
-        generator.asked_jump = self.asked.map(leap_of);
+        generator.pending_jump = self.asked.map(leap_of);
         if let Some(moves) = &mut generator.moves {
             let [amount, speed] = self.crouch;
             let jump = self.jump.map(|(leap, secs)| (leap_of(leap), secs));

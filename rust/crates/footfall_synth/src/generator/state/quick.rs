@@ -1,10 +1,10 @@
 //! Saving a step that was made to obey in its middle.
 
 use super::{State, is_reasonable};
-use crate::gait::Obeyed;
+use crate::gait::AppliedControls;
 use crate::generator::GaitGenerator;
 use crate::ground::{Lean, PlanterState};
-use crate::plan::Rest;
+use crate::plan::Remainder;
 use crate::source::Steps;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub(super) struct Quick {
     /// Requests that the step obeys: velocity and turning; true where it stops, and where it was stretched.
     obeys: ([f32; 2], f32, bool, bool),
     /// The state that its rest begins in, the share of that which is left, and the share of the whole step that had passed.
-    rest: Option<(u8, f32, f32)>,
+    remainder: Option<(u8, f32, f32)>,
     /// Lean of the trunk as the step begins, and its rate of change.
     lean: [[f32; 2]; 2],
 }
@@ -38,19 +38,19 @@ impl Quick {
                 };
             }
         };
-        let (origin, obeyed) = (steps.walker.origin(), &steps.obeyed);
+        let (origin, applied) = (steps.window.origin(), &steps.applied);
         let velocities = [origin.velocity_before_mps, origin.request.velocity_mps];
         Self {
             velocities_mps: velocities.map(|velocity| velocity.to_array()),
             obeys: (
-                obeyed.velocity_mps.to_array(),
-                obeyed.turn_rate,
-                obeyed.stops,
-                obeyed.stretched,
+                applied.velocity_mps.to_array(),
+                applied.turn_rate,
+                applied.stops,
+                applied.stretched,
             ),
-            rest: origin
-                .rest
-                .map(|rest| (rest.state as u8, rest.left, rest.passed)),
+            remainder: origin
+                .remainder
+                .map(|remainder| (remainder.state as u8, remainder.left, remainder.passed)),
             lean: lean_of(origin.planter),
         }
     }
@@ -65,7 +65,7 @@ impl Quick {
                 state.amplitude[1] < 1.0,
                 false,
             ),
-            rest: None,
+            remainder: None,
             lean: Default::default(),
         }
     }
@@ -75,9 +75,9 @@ impl Quick {
         Lean { angle, rate }
     }
 
-    pub(super) fn obeyed(&self) -> Obeyed {
+    pub(super) fn applied(&self) -> AppliedControls {
         let (velocity, turn_rate, stops, stretched) = self.obeys;
-        Obeyed {
+        AppliedControls {
             velocity_mps: velocity.into(),
             turn_rate,
             stops,
@@ -85,8 +85,8 @@ impl Quick {
         }
     }
 
-    pub(super) fn rest(&self) -> Option<Rest> {
-        self.rest.map(|(state, left, passed)| Rest {
+    pub(super) fn remainder(&self) -> Option<Remainder> {
+        self.remainder.map(|(state, left, passed)| Remainder {
             state: state.into(),
             left,
             passed,
@@ -94,14 +94,17 @@ impl Quick {
     }
 
     pub(super) fn is_sensible(&self) -> bool {
-        let (obeyed, turn_rate, ..) = self.obeys;
+        let (applied, turn_rate, ..) = self.obeys;
         let numbers = self
             .velocities_mps
             .into_iter()
             .chain(self.lean)
             .flatten()
-            .chain(obeyed);
+            .chain(applied);
         let reasonable = numbers.chain([turn_rate]).map(f64::from).all(is_reasonable);
-        reasonable && self.rest().is_none_or(|rest| rest.is_sensible())
+        reasonable
+            && self
+                .remainder()
+                .is_none_or(|remainder| remainder.is_sensible())
     }
 }

@@ -23,10 +23,10 @@ impl Running {
         let Steps::Styled(steps) = &generator.steps else {
             return Self::default();
         };
-        let feet = steps.walker.origin().planter;
+        let feet = steps.window.origin().planter;
         let airborne = feet.and_then(|feet| feet.airborne);
         Self {
-            runs: steps.walker.blends().map(|blend| blend.gait == Gait::Run),
+            runs: steps.window.blends().map(|blend| blend.gait == Gait::Run),
             airborne: airborne.map(|foot| {
                 (
                     numbers_of(&foot.now),

@@ -3,11 +3,11 @@
 use super::{Led, Quick, Running, Source, State, StateError, detail_of};
 use crate::config::GeneratorConfig;
 use crate::error::SynthError;
-use crate::gait::{Manner, Pace, Request};
+use crate::gait::{Manner, Pace, StepRequest};
 use crate::ground::{Lean, PlanterState};
 use crate::plan::{MAX_COMPONENTS, StepDraw, TIE_LEN, WINDOW};
 use crate::source::{
-    Origin, StyledSteps, SwitchingOrigin, SwitchingSteps, Walker, Worn, walker_of,
+    MeasuredBlend, Origin, StepWindow, StyledSteps, SwitchingOrigin, SwitchingSteps, planner_of,
 };
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::GaitModel;
@@ -16,17 +16,18 @@ use std::sync::Arc;
 
 impl Source {
     pub(super) fn of_styled(steps: &StyledSteps) -> Self {
-        let origin = steps.walker.origin();
+        let origin = steps.window.origin();
         let components = components_of(steps.space.model());
-        let draws = steps.walker.draws();
+        let draws = steps.window.draws();
         let used = draws.iter().flat_map(|draw| {
             let used = draw.weights.len().min(components);
             draw.weights[..used].iter().copied()
         });
         let manners = [origin.manner_before, origin.request.manner];
-        let blends = steps.walker.blends();
+        let blends = steps.window.blends();
         Self::Styled {
-            weights: [blends[0], blends[1], &steps.worn.blend].map(|blend| blend.weights.clone()),
+            weights: [blends[0], blends[1], &steps.measured.blend]
+                .map(|blend| blend.weights.clone()),
             left_first: draws[0].side == Side::Left,
             draws: used.collect(),
             paces: manners
@@ -109,7 +110,7 @@ impl State {
             }
         };
         let mut origin = Origin {
-            request: Request {
+            request: StepRequest {
                 manner: manner(1),
                 amplitude: self.amplitude(),
                 turn_rate: self.turn_rate,
@@ -127,46 +128,47 @@ impl State {
                 ..feet.planter()
             }),
             tie: [0.0; TIE_LEN],
-            rest: quick.rest(),
-            aside: led.aside(),
+            remainder: quick.remainder(),
+            displacement: led.displacement(),
         };
         if tie.len() == TIE_LEN {
             origin.tie.copy_from_slice(tie);
         }
-        let mut planner = walker_of(&space, config);
+        let mut planner = planner_of(&space, config);
         let [before, now, next] = weights.each_ref().map(|w| space.blend(w));
         let [gait_before, gait] = running.gaits();
         planner.resume(self.chance_position, &draws);
         planner.count_strides(led.strides);
         // A walker that goes back a little, as in games that predict, is measured already.
-        let known = planner.is_same_walker(&steps.planner) && Arc::ptr_eq(&next, &steps.worn.blend);
-        space.at_bench(|bench| {
-            let worn = if known {
+        let known =
+            planner.is_same_walker(&steps.planner) && Arc::ptr_eq(&next, &steps.measured.blend);
+        space.with_buffers(|buffers| {
+            let measured = if known {
                 None
             } else {
-                Some(Worn::measure(&planner, skeleton, next, bench)?)
+                Some(MeasuredBlend::measure(&planner, skeleton, next, buffers)?)
             };
             let blends = [before.of_gait(gait_before), now.of_gait(gait)];
             if origin.planter.is_none() {
                 // The first step of all may fail, so it is tried on somebody else.
-                steps.walker = {
-                    let mut walker = Walker::new(skeleton, &now);
-                    walker.restore(&mut planner, blends, draws, origin, bench)?;
-                    walker
+                steps.window = {
+                    let mut window = StepWindow::new(skeleton, &now);
+                    window.restore(&mut planner, blends, draws, origin, buffers)?;
+                    window
                 };
             } else {
                 steps
-                    .walker
-                    .restore(&mut planner, blends, draws, origin, bench)?;
+                    .window
+                    .restore(&mut planner, blends, draws, origin, buffers)?;
             }
-            if let Some(worn) = worn {
-                steps.worn = worn;
+            if let Some(measured) = measured {
+                steps.measured = measured;
             }
             Ok::<_, SynthError>(())
         })?;
         steps.planner = planner;
         steps.velocity_mps = self.velocity_mps.into();
-        steps.obeyed = quick.obeyed();
+        steps.applied = quick.applied();
         Ok(())
     }
 

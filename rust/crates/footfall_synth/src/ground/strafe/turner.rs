@@ -2,7 +2,7 @@
 
 use super::Strafe;
 use crate::ground::frame::PlantedFrame;
-use crate::ground::generated::{RawFrame, RawLeg};
+use crate::ground::generated::{GeneratedFrame, GeneratedLeg};
 use crate::plan::StepTiming;
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::from_heading;
@@ -54,7 +54,7 @@ impl Turner<'_> {
     /// Turns a step that goes forwards to where it is to go, coming from a step that went as `before` says.
     pub(crate) fn turn_step(
         &self,
-        raw: &mut [RawFrame],
+        generated: &mut [GeneratedFrame],
         frames: &mut [PlantedFrame],
         timing: &StepTiming,
         [before, now]: [&Strafe; 2],
@@ -65,12 +65,12 @@ impl Turner<'_> {
         for (index, frame) in frames.iter_mut().enumerate().take(last + 1) {
             let strafe = before.between(now, index as f32 / last as f32);
             let mirrored = (timing.terminal + last).saturating_sub(index).min(last);
-            let mirrored = raw[mirrored].legs[trailing.index()].free_pitch;
+            let mirrored = generated[mirrored].legs[trailing.index()].free_pitch;
             let swing = (index > timing.terminal).then(|| Swing {
                 freed: smooth_step((index - timing.terminal) as f32 / freed_by),
                 mirrored,
             });
-            let legs = &mut raw[index].legs;
+            let legs = &mut generated[index].legs;
             let rise =
                 self.turn_standing(&strafe, timing.leading, &mut legs[timing.leading.index()]);
             self.turn_trailing(&strafe, trailing, &mut legs[trailing.index()], rise, swing);
@@ -84,7 +84,7 @@ impl Turner<'_> {
 
     /// Turns the leg that stands. In steps to the side its foot stays as far from the hip as it is, or comes as close as the leg reaches;
     /// returns by how much the hips rise with it.
-    fn turn_standing(&self, strafe: &Strafe, side: Side, leg: &mut RawLeg) -> f32 {
+    fn turn_standing(&self, strafe: &Strafe, side: Side, leg: &mut GeneratedLeg) -> f32 {
         let foot = &self.feet[side.index()];
         let flat = leg.ankle - foot.roll(leg.pitch);
         let length = flat
@@ -114,7 +114,7 @@ impl Turner<'_> {
         &self,
         strafe: &Strafe,
         side: Side,
-        leg: &mut RawLeg,
+        leg: &mut GeneratedLeg,
         rise: f32,
         swing: Option<Swing>,
     ) {

@@ -58,7 +58,7 @@ impl WalkFollower {
         let jumps = heard.rests && heard.rise_m > 0.0;
         if jumps && !self.jumped && generator.is_standing() {
             let lands = shared_from_start.local(&heard.aim).position;
-            generator.ask_jump(Leap {
+            generator.request_jump(Leap {
                 rise_m: heard.rise_m,
                 way: generator
                     .start_from_character()

@@ -3,8 +3,8 @@
 use super::SwitchingSteps;
 use crate::controls::STANDING_SPEED_MPS;
 use crate::detail::Detail;
-use crate::gait::{Amplitude, Ask, FASTEST_WALK_MPS, Gait, pelvis_turn};
-use crate::ground::Stage;
+use crate::gait::{Amplitude, FASTEST_WALK_MPS, Gait, StepControls, pelvis_turn};
+use crate::ground::PlantedStep;
 use crate::plan::StepShape;
 use crate::source::step_source::{StepSource, Stretches};
 use glam::Vec2;
@@ -25,8 +25,8 @@ impl StepSource for SwitchingSteps {
         &self.shape
     }
 
-    fn stage(&self) -> &Stage {
-        &self.stage
+    fn planted(&self) -> &PlantedStep {
+        &self.planted
     }
 
     fn facing(&self) -> [f32; 2] {
@@ -41,16 +41,16 @@ impl StepSource for SwitchingSteps {
         true
     }
 
-    fn advance(&mut self, ask: &Ask) {
-        self.velocity_mps = ask.velocity_within(self.velocity_mps, MOST_CHANGE_MPS);
+    fn advance(&mut self, controls: &StepControls) {
+        self.velocity_mps = controls.velocity_within(self.velocity_mps, MOST_CHANGE_MPS);
         self.take_over(self.origin.leading.other());
         self.set_pace();
-        self.origin.turn_rate = ask.turn_rate;
-        self.origin.amplitude = ask.amplitude;
-        self.origin.detail = ask.detail;
+        self.origin.turn_rate = controls.turn_rate;
+        self.origin.amplitude = controls.amplitude;
+        self.origin.detail = controls.detail;
         let facing = self.facing() + pelvis_turn(self.velocity_mps);
         self.origin.facing = [self.origin.facing[1], facing];
-        self.realise();
+        self.generate_and_plant();
     }
 
     fn stretch(&mut self, haste: f32, next: &mut Stretches<'_>) {
@@ -64,15 +64,15 @@ impl StepSource for SwitchingSteps {
             // The same step, drawn by the same chance.
             self.rng
                 .set_word_pos(u128::from(self.origin.chance_position));
-            self.stage.resume(&feet);
-            self.realise();
+            self.planted.resume(&feet);
+            self.generate_and_plant();
         }
-        while let Some(share) = next(&self.shape, &self.stage) {
+        while let Some(share) = next(&self.shape, &self.planted) {
             self.origin.stride *= f64::from(share);
             self.shape.stride = self.origin.stride;
             self.velocity_mps *= share;
-            self.stage.resume(&feet);
-            self.put_on_ground();
+            self.planted.resume(&feet);
+            self.plant();
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Steps that are made to lead where another walker's do.
 
-use super::Walker;
+use super::StepWindow;
 use crate::footstep::Footstep;
-use crate::ground::{Aside, Stage};
+use crate::ground::{Displacement, PlantedStep};
 use crate::plan::StepShape;
-use crate::source::buffers::Workbench;
+use crate::source::buffers::StepBuffers;
 use footfall_core::GroundTransform;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use glam::Vec3;
@@ -14,7 +14,7 @@ const SAME_PLACE_M: f32 = 0.002;
 const SAME_HEADING_RAD: f32 = 0.004;
 
 /// Way and turn that one step corrects at most, metres and radians.
-const MOST_ASIDE_M: f32 = 0.2;
+const MOST_DISPLACEMENT_M: f32 = 0.2;
 const MOST_TURN_RAD: f32 = 0.35;
 
 /// Trials in which a step is made to end where it should: a turn moves its end, too, and so does a hip that is led aside.
@@ -33,15 +33,15 @@ pub(crate) struct Aim {
 
 impl Aim {
     /// Way and turn to the aim from where a step leads.
-    pub(crate) fn off(&self, leads: &GroundTransform) -> Aside {
-        Aside {
+    pub(crate) fn off(&self, leads: &GroundTransform) -> Displacement {
+        Displacement {
             way: (self.place.position - leads.position).with_y(0.0),
             turn: wrap_angle(self.place.heading - leads.heading),
         }
     }
 }
 
-impl Stage {
+impl PlantedStep {
     /// Place where the step on it leads, from where the walk began: that of the foot that lands, under the walker's heading. That of a walker who rests is where
     /// it stands.
     pub(crate) fn aim(
@@ -66,20 +66,20 @@ impl Stage {
     }
 }
 
-impl Walker {
+impl StepWindow {
     /// Has the current step, which has just been planned, lead where it should, as far as one step can.
     pub(crate) fn aim_at(
         &mut self,
         aim: &Aim,
         plan_from_start: &GroundTransform,
-        bench: &mut Workbench,
+        buffers: &mut StepBuffers,
     ) {
         let rotation = from_heading(plan_from_start.heading);
         let mut trial: Option<Trial> = None;
         for _ in 0..TRIALS {
-            let leads = self.stage().aim(plan_from_start, self.step(), aim.rests);
+            let leads = self.planted().aim(plan_from_start, self.step(), aim.rests);
             let off = aim.off(&leads);
-            let most = off.within(MOST_ASIDE_M, MOST_TURN_RAD);
+            let most = off.within(MOST_DISPLACEMENT_M, MOST_TURN_RAD);
             let next = match trial {
                 None => Trial {
                     off: most.way,
@@ -91,12 +91,12 @@ impl Walker {
             // Where the body turns to, it is after the first trial.
             let turn = if trial.is_none() { most.turn } else { 0.0 };
             let near = next.off.length() < SAME_PLACE_M && turn.abs() < SAME_HEADING_RAD;
-            let more = Aside {
+            let more = Displacement {
                 way: rotation * next.led,
                 turn,
             };
             trial = Some(next);
-            if near || !self.step_aside(more, bench) {
+            if near || !self.displace(more, buffers) {
                 return;
             }
         }

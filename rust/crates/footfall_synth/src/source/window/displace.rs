@@ -1,27 +1,27 @@
 //! Steps that are made to end elsewhere, and draws that are not the next of chance.
 
-use super::Walker;
-use crate::ground::Aside;
+use super::StepWindow;
+use crate::ground::Displacement;
 use crate::plan::{StepDraw, TIE, WINDOW};
-use crate::source::buffers::Workbench;
+use crate::source::buffers::StepBuffers;
 
-impl Walker {
+impl StepWindow {
     /// Has the current step end elsewhere than it would; whether it does. The first step came from nowhere and stays.
-    pub(crate) fn step_aside(&mut self, more: Aside, bench: &mut Workbench) -> bool {
+    pub(crate) fn displace(&mut self, more: Displacement, buffers: &mut StepBuffers) -> bool {
         let Some(feet) = self.origin.planter else {
             return false;
         };
-        self.origin.aside = self.origin.aside.and(more);
-        self.stage.resume(&feet);
+        self.origin.displacement = self.origin.displacement.and(more);
+        self.planted.resume(&feet);
         // Nobody kept what it was made of.
         let changes = self.blend_before.gait != self.blend.gait;
-        bench.go_on(
+        buffers.go_on(
             &self.blend.statistics,
             &self.plans,
             &self.origin.tie,
             changes,
         );
-        self.put_on_ground(1, TIE - 1, bench);
+        self.plant(1, TIE - 1, buffers);
         true
     }
 

@@ -1,23 +1,23 @@
 //! Planning of the rest of a step anew.
 
-use super::{Origin, Walker, placing};
+use super::{Origin, StepWindow, placing};
 use crate::detail::Detail;
-use crate::gait::{Amplitude, Request};
-use crate::ground::Aside;
-use crate::plan::{Planner, Rest};
-use crate::source::buffers::Workbench;
+use crate::gait::{Amplitude, StepRequest};
+use crate::ground::Displacement;
+use crate::plan::{Planner, Remainder};
+use crate::source::buffers::StepBuffers;
 use footfall_core::ease::smooth_step;
 use std::sync::Arc;
 
-impl Walker {
+impl StepWindow {
     /// Plans the rest of the current step anew from a frame of it on, where one foot is in the air and enough is left; whether it did. `request` makes of
     /// the current request what is asked for now.
     pub(crate) fn replan(
         &mut self,
         planner: &mut Planner,
         frame: usize,
-        request: impl FnOnce(&Request, f64, f64) -> Request,
-        bench: &mut Workbench,
+        request: impl FnOnce(&StepRequest, f64, f64) -> StepRequest,
+        buffers: &mut StepBuffers,
     ) -> bool {
         let shape = self.plans[1].shape;
         let before = self.origin.request;
@@ -26,34 +26,34 @@ impl Walker {
         let (Some(begun), true) = (self.origin.planter, same && usual) else {
             return false;
         };
-        let Some(rest) = Rest::of(&self.plans[1], frame, self.origin.rest) else {
+        let Some(remainder) = Remainder::of(&self.plans[1], frame, self.origin.remainder) else {
             return false;
         };
         let blends = [&*self.blend_before, &*self.blend];
         let placing = placing(&self.origin, &self.plans, blends, 1);
-        let Some(feet) = self.stage.cut(&shape, frame, &begun, &placing) else {
+        let Some(feet) = self.planted.cut(&shape, frame, &begun, &placing) else {
             return false;
         };
         // Nobody kept the trajectory.
-        bench.go_on(&self.blend.statistics, &self.plans, &self.origin.tie, false);
-        let tie = bench.tie_at(frame);
+        buffers.go_on(&self.blend.statistics, &self.plans, &self.origin.tie, false);
+        let tie = buffers.tie_at(frame);
         let whole = shape.timing.frames as f64 / (1.0 - self.passed());
         let [facing_before, facing] = [self.origin.facing_before, before.facing];
         let share = smooth_step(frame as f32 / shape.timing.frames as f32);
         self.origin = Origin {
-            request: request(&before, whole, f64::from(rest.passed)),
+            request: request(&before, whole, f64::from(remainder.passed)),
             manner_before: before.manner,
             facing_before: facing_before + share * (facing - facing_before),
             velocity_before_mps: before.velocity_mps,
             planter: Some(feet),
             tie,
-            rest: Some(rest),
-            aside: Aside::NONE,
+            remainder: Some(remainder),
+            displacement: Displacement::NONE,
         };
-        self.stage.resume(&feet);
+        self.planted.resume(&feet);
         self.stale = false;
-        self.realise(planner, 1, bench);
-        self.solve_tied(bench);
+        self.plan(planner, 1, buffers);
+        self.solve_and_plant(buffers);
         true
     }
 }

@@ -2,7 +2,7 @@
 
 use super::is_reasonable;
 use crate::generator::GaitGenerator;
-use crate::ground::Aside;
+use crate::ground::Displacement;
 use crate::source::Steps;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Led {
     pub(super) strides: u32,
     /// Way over the ground and turn; `None` where it ends as planned.
-    aside: Option<[f32; 4]>,
+    displacement: Option<[f32; 4]>,
 }
 
 impl Led {
@@ -19,23 +19,29 @@ impl Led {
         let Steps::Styled(steps) = &generator.steps else {
             return Self::default();
         };
-        let aside = steps.walker.origin().aside;
-        let [x, y, z] = aside.way.to_array();
+        let displacement = steps.window.origin().displacement;
+        let [x, y, z] = displacement.way.to_array();
         Self {
             strides: steps.planner.strides(),
-            aside: (aside != Aside::NONE).then_some([x, y, z, aside.turn]),
+            displacement: (displacement != Displacement::NONE).then_some([
+                x,
+                y,
+                z,
+                displacement.turn,
+            ]),
         }
     }
 
-    pub(super) fn aside(&self) -> Aside {
-        self.aside.map_or(Aside::NONE, |[x, y, z, turn]| Aside {
-            way: [x, y, z].into(),
-            turn,
-        })
+    pub(super) fn displacement(&self) -> Displacement {
+        self.displacement
+            .map_or(Displacement::NONE, |[x, y, z, turn]| Displacement {
+                way: [x, y, z].into(),
+                turn,
+            })
     }
 
     pub(super) fn is_sensible(&self) -> bool {
-        let numbers = self.aside.into_iter().flatten();
+        let numbers = self.displacement.into_iter().flatten();
         numbers.map(f64::from).all(is_reasonable)
     }
 }

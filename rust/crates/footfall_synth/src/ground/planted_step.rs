@@ -1,10 +1,10 @@
-//! Stage of one walker: steps of generated features become frames on the ground.
+//! PlantedStep of one walker: steps of generated features become frames on the ground.
 
 use super::arrival::Arrival;
 use super::course::Course;
 use super::cut::Cut;
 use super::frame::PlantedFrame;
-use super::generated::{RawFrame, Stride};
+use super::generated::{GeneratedFrame, Stride};
 use super::placing::Placing;
 use super::planter::Planter;
 use super::planter_state::PlanterState;
@@ -20,7 +20,7 @@ use glam::Vec3;
 
 /// Puts one step after another on the ground; allocates nothing after it was made.
 #[derive(Debug)]
-pub(crate) struct Stage {
+pub(crate) struct PlantedStep {
     skeleton: Skeleton,
     frame_secs: f32,
     /// Planter with the feet's last places; `None` before the first step.
@@ -31,7 +31,7 @@ pub(crate) struct Stage {
     pub(crate) frames: Vec<PlantedFrame>,
 }
 
-impl Stage {
+impl PlantedStep {
     /// For steps of at most `longest` frames, which come at `frame_rate_hz`.
     pub(crate) fn new(skeleton: &Skeleton, frame_rate_hz: f64, longest: usize) -> Self {
         Self {
@@ -44,8 +44,8 @@ impl Stage {
     }
 
     /// Working memory of [`put`](Self::put), for steps of at most `longest` frames.
-    pub(crate) fn raw(longest: usize) -> Vec<RawFrame> {
-        vec![RawFrame::default(); Detail::ground_room(longest) + 1]
+    pub(crate) fn generated(longest: usize) -> Vec<GeneratedFrame> {
+        vec![GeneratedFrame::default(); Detail::ground_room(longest) + 1]
     }
 
     /// The next step is the first.
@@ -104,7 +104,7 @@ impl Stage {
         &mut self,
         rows: impl Iterator<Item = &'a [f32]>,
         placing: &Placing<'_>,
-        raw: &mut [RawFrame],
+        generated: &mut [GeneratedFrame],
     ) {
         let shape = placing.shape;
         let timing = shape.ground_timing();
@@ -117,7 +117,7 @@ impl Stage {
         let step_secs = frame_secs * timing.frames as f32;
         let strafe = Strafe::of(placing.velocity_mps, step_secs, &self.skeleton);
         let as_it_is = shape.amplitude == Amplitude::WALK && [before, strafe] == [Strafe::NONE; 2];
-        let raw = &mut raw[..=timing.frames];
+        let generated = &mut generated[..=timing.frames];
         let frames = &mut self.frames[..=timing.frames];
         let rows = rows.step_by(detail).enumerate();
         for (frame, (index, features)) in frames.iter_mut().zip(rows) {
@@ -131,7 +131,7 @@ impl Stage {
             sway(&mut blended, &standing, before.between(&strafe, s));
             layout::decode(&blended, rotations);
         }
-        RawFrame::fill(raw, frames, &self.skeleton, |index| {
+        GeneratedFrame::fill(generated, frames, &self.skeleton, |index| {
             // A foot that stands must not notice that another step has begun.
             let s = (COUNTING + f32x8::splat(index as f32)) * (timing.frames as f32).recip();
             let share = lanes::smooth_step(s);
@@ -143,7 +143,7 @@ impl Stage {
         });
         let [_, facing] = placing.facing;
         let planter = self.planter.get_or_insert_with(|| {
-            Planter::new(&self.skeleton, frame_secs, &raw[0], &timing, facing)
+            Planter::new(&self.skeleton, frame_secs, &generated[0], &timing, facing)
         });
         let course = Course {
             turn_rate: placing.turn_rate,
@@ -151,7 +151,7 @@ impl Stage {
             keeps_lengths: placing.keeps_lengths && [before, strafe] == [Strafe::NONE; 2],
             direction: placing.direction,
             change: placing.change(),
-            aside: placing.aside,
+            displacement: placing.displacement,
             step_secs: step_secs / (1.0 - placing.passed),
         };
         planter.set_frame_secs(frame_secs);
@@ -159,17 +159,17 @@ impl Stage {
         let walks = shape.amplitude == Amplitude::WALK;
         let wanted_m = walks.then_some(placing.velocity_mps.length() * step_secs);
         planter.turn_step(
-            raw,
+            generated,
             &timing,
             (strafe, wanted_m),
             facing - strafe.turn,
             frames,
         );
-        planter.plant_step(raw, &timing, course, frames);
+        planter.plant_step(generated, &timing, course, frames);
         planter.lean(&placing.pull(step_secs), frames);
         self.arrival = Arrival {
             hips: frames[timing.frames].pose.root_position,
-            ankles: Side::BOTH.map(|side| raw[timing.frames].legs[side.index()].target.ankle),
+            ankles: Side::BOTH.map(|side| generated[timing.frames].legs[side.index()].target.ankle),
         };
     }
 }
