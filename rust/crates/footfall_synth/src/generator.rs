@@ -1,7 +1,9 @@
 //! Streaming generator: one walker, for any length of time.
 
+mod facts;
 mod footholds;
 mod jumping;
+mod pose;
 mod state;
 
 use crate::config::{GeneratorConfig, MAX_DT_SECS, check};
@@ -9,25 +11,19 @@ use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
-use crate::gait::{Gait, StepControls};
-use crate::ground::PlantedFrame;
+use crate::gait::StepControls;
 use crate::moves::{Leap, Moves};
 use crate::plan::StepShape;
 use crate::source::{Steps, StyleSpace, StyledSteps, SwitchingSteps};
 use crate::standing::Life;
-use footfall_core::rotation::{blend_near, from_heading};
-use footfall_core::{GroundTransform, Joint, Pose, Skeleton};
+use footfall_core::{GroundTransform, Pose, Skeleton};
 use footfall_model::DynamicsModel;
-use glam::Quat;
 use std::sync::Arc;
 
 pub use state::StateError;
 
 /// Maximum number of initial contacts that one call of [`GaitGenerator::step`] reports.
 const MAX_FOOTSTEPS: usize = 64;
-
-/// Share of a frame within which a time counts as on the frame: time adds up with rounding.
-const SAME_FRAME: f32 = 1e-2;
 
 /// Walks one body in real time, in styles of a [`GaitModel`](footfall_model::GaitModel) or by a [`DynamicsModel`].
 ///
@@ -141,51 +137,6 @@ impl GaitGenerator {
         }
     }
 
-    /// Sets the amount of standing motion: 0 is a still pose, 1 as the model's people move, 2 at most. A model without standing motion
-    /// stands still.
-    pub fn set_standing_motion(&mut self, amount: f32) {
-        if let Some(life) = &mut self.life {
-            life.set_amount(amount);
-        }
-    }
-
-    /// Sets the mixture of the space's styles from the next step on, one weight each: weights as of
-    /// [`GaitModel::styled`](footfall_model::GaitModel::styled). Missing and non-finite weights count as 0.
-    ///
-    /// Takes about a millisecond when weights change, and nothing otherwise. A standing walker adopts the new
-    /// posture with its first step. A walker of a [`DynamicsModel`] has no styles.
-    pub fn set_style_weights(&mut self, weights: &[f32]) {
-        if let Steps::Styled(steps) = &mut self.steps {
-            steps.set_style_weights(&self.skeleton, weights);
-        }
-    }
-
-    /// Returns the seed in use: the initial one, or that of a restored state.
-    pub fn seed(&self) -> u64 {
-        self.config.seed
-    }
-
-    /// Returns the weights of the styles from the next step on.
-    pub fn style_weights(&self) -> &[f32] {
-        match &self.steps {
-            Steps::Styled(steps) => &steps.blend().weights,
-            Steps::Switching(_) => &[],
-        }
-    }
-
-    /// Returns the speed that suits the model and this body best, that of its recordings, m/s.
-    pub fn usual_speed_mps(&self) -> f32 {
-        match &self.steps {
-            Steps::Styled(steps) => steps.blend().model.speed.reference_mps as f32,
-            Steps::Switching(steps) => steps.own_speed_mps as f32,
-        }
-    }
-
-    /// Sets the level of detail, from the next step on.
-    pub fn set_detail(&mut self, detail: Detail) {
-        self.detail = detail;
-    }
-
     /// Advances by `dt_secs` and writes the pose in the character's own space: above the ground point of
     /// [`start_from_character`](Self::start_from_character), facing +Z.
     ///
@@ -216,101 +167,7 @@ impl GaitGenerator {
         controls
     }
 
-    /// Writes the current pose, with all motion above the steps; `dt_secs` have passed.
-    pub(crate) fn show(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
-        let between = self.frames();
-        let plan_from_character = ground_between(between);
-        let (frame, next, weight) = between;
-        let (facing, _) = blend_near(frame.plan_from_ground, next.plan_from_ground, weight);
-        let character_from_plan = facing.conjugate();
-        // Between two frames a foot stands only if it does in both.
-        let contact = core::array::from_fn(|side| {
-            (frame.contact[side] || weight > 1.0 - SAME_FRAME)
-                && (next.contact[side] || weight < SAME_FRAME)
-        });
-        frame.pose.interpolate_near(&next.pose, weight, out);
-        out.root_position =
-            character_from_plan * (out.root_position - plan_from_character.position);
-        let root = Joint::Hips.index();
-        out.rotations[root] = (character_from_plan * out.rotations[root]).normalize();
-        self.live(dt_secs, out);
-        self.contact = contact;
-        self.pass_moves(dt_secs.clamp(0.0, MAX_DT_SECS), controls);
-        self.start_from_character = self.plan_from_start.local(&plan_from_character);
-        if let Some(flown) = self.moves.as_ref().and_then(|moves| moves.move_pose(out)) {
-            let faced = from_heading(self.start_from_character.heading);
-            self.start_from_character.position += faced * flown.place;
-            self.contact = contact.map(|bears| bears && flown.bears);
-        }
-    }
-
-    /// Adds the motion of a walker that stands, or has just begun to walk.
-    fn live(&mut self, dt_secs: f32, out: &mut Pose) {
-        let stands = self.is_standing();
-        let Some(life) = &mut self.life else { return };
-        if dt_secs > 0.0 {
-            life.step(dt_secs.min(MAX_DT_SECS), stands);
-        }
-        if !life.is_still() {
-            life.move_pose(&life.moment, Quat::IDENTITY, out);
-        }
-    }
-
-    /// Updates the character's place without advancing time.
-    pub(crate) fn tell_place(&mut self) {
-        self.footsteps.clear();
-        self.start_from_character = self.plan_from_start.local(&self.plan_from_character());
-    }
-
-    /// Returns the place and heading of the character relative to its start.
-    pub fn start_from_character(&self) -> GroundTransform {
-        self.start_from_character
-    }
-
-    /// Returns the initial contacts during the last [`step`](Self::step), oldest first.
-    pub fn footsteps(&self) -> &[Footstep] {
-        &self.footsteps
-    }
-
-    /// Returns the next landing of the swinging foot, in the character's current space, and the seconds until then, if the
-    /// controls stay as they are. `None` for a walker that rests.
-    pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
-        if self.is_standing() {
-            return None;
-        }
-        let timing = &self.shape().timing;
-        let side = timing.leading.other();
-        let plant = self.steps.source().planted().plant(side)?;
-        let footstep = Footstep::seen_from(&self.plan_from_character(), side, plant);
-        let secs = (timing.frames as f32 - self.position) / self.frame_rate_hz;
-        Some((footstep, secs.max(0.0)))
-    }
-
-    /// Returns true when the walker has stopped and rests.
-    pub fn is_standing(&self) -> bool {
-        let step = self.shape();
-        step.amplitude.to < 1.0 && self.position >= step.timing.frames as f32
-    }
-
-    /// Returns the share of the current step that has passed; for a replanned step, of its rest.
-    pub(crate) fn share_of_step(&self) -> f32 {
-        self.position / self.shape().timing.frames as f32
-    }
-
-    /// Returns the gait of the current step.
-    pub fn gait(&self) -> Gait {
-        self.steps.source().gait()
-    }
-
-    /// Returns the contacts of the left and the right foot; both are false in the flight of a run.
-    pub fn feet_in_contact(&self) -> [bool; 2] {
-        self.contact
-    }
-
-    pub(crate) fn shape(&self) -> &StepShape {
-        self.steps.source().shape()
-    }
-
+    /// Goes on to the next step: from controls for one step to the step on the ground.
     pub(crate) fn next_step(&mut self, controls: &Controls) {
         let fastest = self.steps.source().fastest_mps();
         let step_controls = StepControls {
@@ -322,13 +179,6 @@ impl GaitGenerator {
         let side = self.shape().timing.leading;
         if let Some(plant) = self.steps.source().planted().plant(side) {
             self.report(Footstep::seen_from(&self.plan_from_start, side, plant));
-        }
-    }
-
-    /// Reports an initial contact while there is room for it.
-    pub(crate) fn report(&mut self, footstep: Footstep) {
-        if self.footsteps.len() < MAX_FOOTSTEPS {
-            self.footsteps.push(footstep);
         }
     }
 
@@ -351,27 +201,14 @@ impl GaitGenerator {
         self.answered = Some(*controls);
     }
 
-    /// Returns the frames before and after the current time, and the weight of the later one.
-    fn frames(&self) -> (&PlantedFrame, &PlantedFrame, f32) {
-        let frames = &self.steps.source().planted().frames;
-        let step = self.shape();
-        let last = step.ground_frames() - 1;
-        let position = self.position / step.detail.stride() as f32;
-        // A cast rounds towards zero, and a position is not below it.
-        let first = (position as usize).min(last);
-        let weight = position - first as f32;
-        (&frames[first], &frames[first + 1], weight)
+    pub(crate) fn shape(&self) -> &StepShape {
+        self.steps.source().shape()
     }
 
-    pub(crate) fn plan_from_character(&self) -> GroundTransform {
-        ground_between(self.frames())
-    }
-}
-
-/// Returns the place of the walker between two frames, with the weight of the later one.
-fn ground_between((frame, next, weight): (&PlantedFrame, &PlantedFrame, f32)) -> GroundTransform {
-    GroundTransform {
-        position: frame.ground_position.lerp(next.ground_position, weight),
-        heading: frame.ground_heading + weight * (next.ground_heading - frame.ground_heading),
+    /// Reports an initial contact while there is room for it.
+    pub(crate) fn report(&mut self, footstep: Footstep) {
+        if self.footsteps.len() < MAX_FOOTSTEPS {
+            self.footsteps.push(footstep);
+        }
     }
 }

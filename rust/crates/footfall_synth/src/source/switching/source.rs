@@ -1,12 +1,12 @@
 //! The steps of a switching model, one after the other.
 
+use super::super::step_source::{StepSource, Stretches};
 use super::SwitchingSteps;
 use crate::controls::STANDING_SPEED_MPS;
 use crate::detail::Detail;
 use crate::gait::{Amplitude, FASTEST_WALK_MPS, Gait, StepControls, pelvis_turn};
 use crate::ground::PlantedStep;
 use crate::plan::StepShape;
-use crate::source::step_source::{StepSource, Stretches};
 use glam::Vec2;
 
 /// A step's velocity differs by at most this much from that of the step before, m/s: two systems know one way of walking and are harder to bend.

@@ -1,9 +1,9 @@
 //! Steps that are made to end elsewhere, and draws that are not the next of chance.
 
+use super::super::buffers::StepBuffers;
 use super::StepWindow;
 use crate::ground::Displacement;
 use crate::plan::{StepDraw, TIE, WINDOW};
-use crate::source::buffers::StepBuffers;
 
 impl StepWindow {
     /// Has the current step end elsewhere than it would; whether it does. The first step came from nowhere and stays.

@@ -1,11 +1,12 @@
 //! Planning of the rest of a step anew.
 
-use super::{Origin, StepWindow, placing};
+use super::super::buffers::StepBuffers;
+use super::generate::placing;
+use super::{Origin, StepWindow};
 use crate::detail::Detail;
 use crate::gait::{Amplitude, StepRequest};
 use crate::ground::Displacement;
 use crate::plan::{Planner, Remainder};
-use crate::source::buffers::StepBuffers;
 use footfall_core::ease::smooth_step;
 use std::sync::Arc;
 

@@ -1,0 +1,153 @@
+//! The way of a step through the window: planned, solved as a trajectory, and planted.
+
+use super::super::buffers::StepBuffers;
+use super::super::style_space::Blend;
+use super::StepWindow;
+use super::origin::Origin;
+use crate::gait::{Gait, Manner};
+use crate::ground::{Displacement, Placing};
+use crate::plan::{Planner, Remainder, StepPlan, TIE, WINDOW};
+use crate::trajectory::{Scale, neighbours};
+use footfall_core::StepPosition;
+use footfall_model::FEATURE_COUNT;
+use glam::Vec2;
+
+/// No fine motion.
+const NO_SCALE: Scale = [0.0; FEATURE_COUNT];
+
+impl StepWindow {
+    /// Plans the steps of the window from this one on.
+    pub(super) fn plan(&mut self, planner: &mut Planner, first: usize, buffers: &mut StepBuffers) {
+        let request = self.origin.request;
+        let changes = first <= 1 && self.blend_before.gait != self.blend.gait;
+        if changes {
+            planner.set_model(&self.blend_before.model);
+            let before = &self.blend_before.statistics;
+            let manner = Manner {
+                detail: request.manner.detail,
+                ..Manner::inside(self.origin.manner_before.pace)
+            };
+            planner.plan_step(&self.draws[1], manner, before, &mut buffers.going_over);
+            planner.set_model(&self.blend.model);
+        }
+        // The step ahead is that of someone who walks on.
+        let ahead = match request.manner.position {
+            StepPosition::First => StepPosition::Second,
+            _ => StepPosition::Inside,
+        };
+        let positions = [request.manner.position, request.manner.position, ahead];
+        let steps = self.draws.iter().zip(&mut self.plans).zip(positions);
+        for ((draw, plan), position) in steps.skip(first) {
+            let manner = Manner {
+                position,
+                ..request.manner
+            };
+            planner.plan_step(draw, manner, &self.blend.statistics, plan);
+        }
+        if changes {
+            self.plans[1].go_over_from(&buffers.going_over);
+        }
+        if let Some(rise_m) = request.leap_m {
+            let before = self.blend_before.gait;
+            self.plans[1].leap(rise_m, before, self.blend.model.frame_rate_hz);
+        }
+        self.plans[1].shape.set_amplitude(request.amplitude);
+        if let Some(remainder) = self.origin.remainder
+            && first <= 1
+        {
+            remainder.keep(&mut self.plans[1]);
+            let fine = self.plans[0].fine;
+            let manner = self.origin.manner_before;
+            planner.plan_step(
+                &self.draws[1],
+                manner,
+                &self.blend.statistics,
+                &mut self.plans[0],
+            );
+            remainder.hold(&mut self.plans[0]);
+            self.plans[0].fine = fine;
+        }
+    }
+
+    /// Solves the current step and the one ahead, tied to the step before, and puts the current one on the ground.
+    pub(super) fn solve_and_plant(&mut self, buffers: &mut StepBuffers) {
+        let changes = self.blend_before.gait != self.blend.gait;
+        buffers.go_on(
+            &self.blend.statistics,
+            &self.plans,
+            &self.origin.tie,
+            changes,
+        );
+        self.plant(1, TIE - 1, buffers);
+    }
+
+    /// Puts a step of the window, which begins with frame `first` of what was solved, on the ground.
+    pub(super) fn plant(&mut self, step: usize, first: usize, buffers: &mut StepBuffers) {
+        let shape = &self.plans[step].shape;
+        let remainder = self.origin.remainder.filter(|_| step == 1);
+        self.end = buffers.tie_at(first + shape.timing.frames + 1 - TIE);
+        let blends = [&*self.blend_before, &*self.blend];
+        let placing = placing(&self.origin, &self.plans, blends, step);
+        let StepBuffers {
+            trajectory,
+            generated,
+            fine,
+            shown,
+            ..
+        } = buffers;
+        let trajectory = &trajectory[first * FEATURE_COUNT..];
+        let [before, now] = [&self.blend_before, &self.blend];
+        // A gait has a fine motion of its own: that of the one before goes as that of the other comes.
+        let fading = (before.gait != now.gait).then_some((before, [&before.fine_scale, &NO_SCALE]));
+        let scale_before = if fading.is_some() {
+            &NO_SCALE
+        } else {
+            &before.fine_scale
+        };
+        let motions = fading
+            .into_iter()
+            .chain([(now, [scale_before, &now.fine_scale])]);
+        let length = (shape.timing.frames + 1) * FEATURE_COUNT;
+        let shown = &mut shown[..length];
+        shown.copy_from_slice(&trajectory[..length]);
+        for (blend, scales) in motions {
+            let Some(tables) = &blend.fine else { continue };
+            fine.prepare(tables, shape.timing.leading, &neighbours(&self.plans, step));
+            let rows = shown.chunks_exact_mut(FEATURE_COUNT).enumerate();
+            for (frame, row) in rows.step_by(shape.detail.stride()) {
+                let phase = Remainder::phase(remainder, frame as f32 / shape.timing.frames as f32);
+                fine.add(phase, scales, row);
+            }
+        }
+        self.planted
+            .put(shown.chunks_exact(FEATURE_COUNT), &placing, generated);
+    }
+}
+
+/// Placing of a step of the window on the ground, after a step in one mixture and in another.
+pub(super) fn placing<'a>(
+    origin: &Origin,
+    plans: &'a [StepPlan<f32>; WINDOW],
+    [before, now]: [&'a Blend; 2],
+    step: usize,
+) -> Placing<'a> {
+    let remainder = origin.remainder.filter(|_| step == 1);
+    let velocity = origin.request.velocity_mps;
+    let runs = now.gait == Gait::Run && velocity != Vec2::ZERO;
+    Placing {
+        shape: &plans[step].shape,
+        standing: [&before.standing, &now.standing],
+        turn_rate: origin.request.turn_rate,
+        facing: [origin.facing_before, origin.request.facing],
+        velocity_mps: now.gait.seen_from_steps(velocity),
+        velocity_before_mps: before.gait.seen_from_steps(origin.velocity_before_mps),
+        direction: runs.then(|| velocity.x.atan2(velocity.y)),
+        passed: remainder.map_or(0.0, |remainder| remainder.passed),
+        displacement: if step == 1 {
+            origin.displacement
+        } else {
+            Displacement::NONE
+        },
+        keeps_lengths: true,
+    }
+}
