@@ -1,6 +1,6 @@
 //! Recordings of the streaming generator.
 
-use super::{SynthesizedWalk, WalkConfig};
+use super::walk::{SynthesizedWalk, WalkConfig};
 use crate::config::GeneratorConfig;
 use crate::controls::Controls;
 use crate::error::SynthError;
