@@ -3,7 +3,7 @@
 use crate::error::SynthError;
 use footfall_core::{Side, Skeleton};
 
-/// Maximum time by which a single call advances, seconds.
+/// Longest time that a single call advances, seconds.
 pub(crate) const MAX_DT_SECS: f32 = 10.0;
 
 /// Settings that distinguish one walker from another.

@@ -1,9 +1,9 @@
-//! Walkers by the thousand: each near one keeps a step in a few kilobytes, those far away share theirs, and all share what works steps out.
+//! Crowds: thousands of walkers that share the buffers of step generation and, far away, the steps themselves.
 //!
 //! A [`GaitGenerator`](crate::GaitGenerator) owns the buffers in which its steps are solved, some hundred kilobytes. A
-//! [`CrowdWalker`] borrows them from a [`Workshop`], one a thread, for a moment about twice a second, and keeps the result: where every
-//! joint is in each frame of its step. In between it costs an interpolation. One that is far away walks in steps that were worked out once for everybody
-//! ([`shared`]), and keeps no more than its place among them ([`stroll`]).
+//! [`CrowdWalker`] borrows them from a [`Workshop`], one a thread, for a moment about twice a second, and keeps the result: the place of every
+//! joint in each frame of its step. Between two steps it costs an interpolation. A distant one walks in steps that were generated once for all walkers
+//! ([`shared`]), and only keeps its place among them ([`stroll`]).
 
 mod alone;
 mod feet;
@@ -33,31 +33,31 @@ pub use workshop::{StyledBody, Workshop};
 /// One walker of a crowd: walks as a [`GaitGenerator`](crate::GaitGenerator) of its seed would, in a hundredth of the memory, or in steps that it shares with others, in a hundredth of
 /// that.
 ///
-/// Its speed is that of the average walker of its styles: people of the same crowd who are asked for the same speed differ by a few
+/// Its paces are those of the average walker of its styles: with the same requested speed, the speeds of people in a crowd differ by a few
 /// percent.
 #[derive(Debug)]
 pub struct CrowdWalker {
     config: GeneratorConfig,
     styled: StyledBody,
-    /// Its own steps: those that it walks in, or, beside shared ones, those that it came from, as long as their last pose still shows.
+    /// Own steps: the current ones or, in shared steps, the previous ones as long as their last pose still shows.
     own: Option<Box<OwnWalk>>,
-    /// Place among the shared steps that it walks in.
+    /// Place among the shared steps, while it walks in them.
     stroll: Option<Stroll>,
-    /// True when it is to share steps.
+    /// True when it shares steps from the next one on.
     repeating: bool,
     detail: Detail,
     standing_motion: f32,
-    /// Place in the sequence of chance from which its next own step goes on.
+    /// Progress of chance at its next own step.
     chance: Chance,
     start_from_character: GroundTransform,
     footstep: Option<Footstep>,
 }
 
-/// Time in which the last own pose of somebody who stands dies away, seconds.
+/// Time in which the last own pose of a standing walker fades, seconds.
 const LEAVING_SECS: f32 = 0.5;
 
 impl CrowdWalker {
-    /// A walker at the origin, facing +Z, walking already at the speed that suits it; or standing.
+    /// Creates a walker at the origin, facing +Z, that walks at its usual speed or stands.
     ///
     /// # Errors
     /// [`SynthError`] when a setting is not finite or the model gives no trajectory.
@@ -76,7 +76,7 @@ impl CrowdWalker {
         })
     }
 
-    /// A walker of the same kind who walks in shared steps from the first one on. It costs next to nothing.
+    /// Creates a walker in shared steps, at almost no cost.
     pub fn sharing(styled: &StyledBody, config: &GeneratorConfig) -> Self {
         let phase = if config.phase.is_finite() {
             config.phase
@@ -99,8 +99,8 @@ impl CrowdWalker {
         }
     }
 
-    /// Sets how much it moves as it stands, as of [`GaitGenerator::set_standing_motion`](crate::GaitGenerator::set_standing_motion). Shows within a second. In shared steps it moves as people do,
-    /// or not at all.
+    /// Sets the amount of standing motion, as of [`GaitGenerator::set_standing_motion`](crate::GaitGenerator::set_standing_motion). Takes effect within a second. In shared steps the amount is 1
+    /// or 0.
     pub fn set_standing_motion(&mut self, amount: f32) {
         self.standing_motion = amount;
         let life = self.own.as_mut().and_then(|own| own.life.as_mut());
@@ -109,7 +109,7 @@ impl CrowdWalker {
         }
     }
 
-    /// Wears other styles from the next step on. They must be of the same model and body.
+    /// Changes the styles from the next step on. They must be of the same model and body.
     pub fn wear(&mut self, styled: &StyledBody) {
         self.styled = styled.clone();
         if let Some(own) = &mut self.own {
@@ -117,7 +117,7 @@ impl CrowdWalker {
         }
     }
 
-    /// Sets the detail in which its own steps are worked out, from the next one on.
+    /// Sets the level of detail of its own steps, from the next one on.
     pub fn set_detail(&mut self, detail: Detail) {
         self.detail = detail;
         if let Some(own) = &mut self.own {
@@ -125,13 +125,13 @@ impl CrowdWalker {
         }
     }
 
-    /// Sets whether it walks in steps that all who wear the same share instead of its own, for walkers far away, from the next step on. They are of one of two dozen speeds each and as alike as
-    /// those of two people; its memory for own steps goes to who needs it next.
+    /// Switches between own steps and steps shared by all walkers of its [`StyledBody`], for distant walkers, from the next step on. Shared steps have one of two dozen speeds and are
+    /// those of two people. The memory for own steps is handed on to other walkers.
     pub fn set_repeating(&mut self, repeating: bool) {
         self.repeating = repeating;
     }
 
-    /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before, for the first rest, and for own steps of more walkers than ever.
+    /// Advances by `dt_secs`. Allocates only for a step longer than all previous ones, for the first rest, and for own steps of more walkers than before.
     pub fn step(&mut self, dt_secs: f32, controls: Controls, workshop: &mut Workshop) {
         self.footstep = None;
         let passes = dt_secs > 0.0;
@@ -154,7 +154,7 @@ impl CrowdWalker {
         };
     }
 
-    /// Lets time pass in its own step; what is left where that has ended and others are to follow that it shares, seconds.
+    /// Advances in its own steps; returns the remaining time if shared steps are to follow, seconds.
     fn step_own(&mut self, secs: f32, controls: Controls, workshop: &mut Workshop) -> Option<f32> {
         let own = self.own.as_mut()?;
         let left = own.step(secs, controls, self.repeating, workshop);
@@ -168,7 +168,7 @@ impl CrowdWalker {
         Some(left)
     }
 
-    /// Lets time pass in a step that it shares; what is left where that has ended, seconds.
+    /// Advances in a shared step; returns the remaining time after its end, seconds.
     fn step_shared(
         &mut self,
         secs: f32,
@@ -191,7 +191,7 @@ impl CrowdWalker {
         Some(left)
     }
 
-    /// Goes on in steps of its own from the end of one that it shared, if it can.
+    /// Continues in own steps from the end of a shared one, if possible.
     fn go_alone(&mut self, workshop: &mut Workshop) -> Option<()> {
         let stroll = self.stroll.as_ref()?;
         let steps = self.styled.0.shared();
@@ -215,12 +215,12 @@ impl CrowdWalker {
         Some(())
     }
 
-    /// Place and heading of the character, from where it began.
+    /// Returns the place and heading of the character relative to its start.
     pub fn start_from_character(&self) -> GroundTransform {
         self.start_from_character
     }
 
-    /// Seconds until the next step begins, 0 for someone who rests.
+    /// Returns the time until the next step begins, seconds; 0 for a resting walker.
     pub fn secs_to_next_step(&self) -> f32 {
         match (&self.stroll, &self.own) {
             (Some(stroll), _) => stroll.secs_to_next_step(self.styled.0.shared()),
@@ -228,7 +228,7 @@ impl CrowdWalker {
         }
     }
 
-    /// Seconds since the current step began; for one who rests, since that was over, the length of the step.
+    /// Returns the time since the current step began, seconds; for a resting walker its duration.
     pub fn secs_of_step(&self) -> f32 {
         match (&self.stroll, &self.own) {
             (Some(stroll), _) => stroll.secs_of_step(self.styled.0.shared()),
@@ -236,7 +236,7 @@ impl CrowdWalker {
         }
     }
 
-    /// Returns whether it has come to a stand and rests.
+    /// Returns true when the walker has stopped and rests.
     pub fn is_standing(&self) -> bool {
         match (&self.stroll, &self.own) {
             (Some(stroll), _) => stroll.is_standing(),
@@ -244,7 +244,7 @@ impl CrowdWalker {
         }
     }
 
-    /// Share of its stride that is behind it: 0 when the left foot lands, 0.5 when the right one does.
+    /// Returns the phase of the stride: 0 at the left foot's landing, 0.5 at the right one's.
     pub fn phase(&self) -> f32 {
         match (&self.stroll, &self.own) {
             (Some(stroll), _) => stroll.phase(),
@@ -252,22 +252,22 @@ impl CrowdWalker {
         }
     }
 
-    /// Has memory bring what [`pose`](Self::pose) reads. Worth it for several walkers in a row, whose poses are then asked for in the same
-    /// order: they lie in no cache.
+    /// Prefetches the memory that [`pose`](Self::pose) reads. Useful for several walkers in a row, whose poses are then read in the same
+    /// order and are in no cache.
     pub fn fetch_pose(&self) {
         if let Some(own) = &self.own {
             own.fetch_pose();
         }
     }
 
-    /// The same for what a [`step`](Self::step) reads that stays within a step.
+    /// Prefetches the memory that a [`step`](Self::step) without a new step reads.
     pub fn fetch_place(&self) {
         if let Some(own) = &self.own {
             own.fetch_place();
         }
     }
 
-    /// Writes how it is posed in its own space.
+    /// Writes the pose in the character's own space.
     pub fn pose(&self, out: &mut CrowdPose) {
         let Some(stroll) = &self.stroll else {
             if let Some(own) = &self.own {
@@ -278,7 +278,7 @@ impl CrowdWalker {
         let steps = self.styled.0.shared();
         steps.write(&stroll.look(0.0, steps), out);
         if let Some(last) = self.own.as_ref().and_then(|own| own.frames.last_pose()) {
-            // What it was away from the shared step as that began dies away.
+            // The difference from the shared step at its beginning fades.
             steps.shift(out, stroll.first_pose(), last, stroll.leaving(LEAVING_SECS));
         }
     }
@@ -291,7 +291,7 @@ impl CrowdWalker {
         Some((self.styled.1, look))
     }
 
-    /// Returns whether it takes steps of its own, or its pose comes from one still.
+    /// Returns true when it walks in own steps, or still shows a pose of one.
     pub fn has_own_steps(&self) -> bool {
         self.own.is_some()
     }

@@ -1,4 +1,7 @@
-//! Walking and running, and the choice between them.
+//! Gaits: from controls to the request for the next step.
+//!
+//! [`StepControls`] are the controls that one step can follow. [`StepChooser`] makes a [`StepRequest`] of them: standing or walking on ([`stand`]), walking or running
+//! ([`kinds`]), the velocity that the step reaches, and the pace for it ([`pace`], measured once for each body). A jump off one foot is a request too ([`StepRequest::leap_m`]).
 
 mod applied;
 mod chooser;

@@ -1,4 +1,7 @@
 //! Streaming generator: one walker, for any length of time.
+//!
+//! The whole way is in [`GaitGenerator::step`]: controls become those of a step ([`StepControls`]), the source makes a request, a plan, features and the step on the ground of
+//! them ([`advance`](crate::source::StepSource::advance)), and `show` reads the pose between two planted frames, with standing motion and moves on top.
 
 mod facts;
 mod footholds;
@@ -35,7 +38,7 @@ pub struct GaitGenerator {
     pub(crate) config: GeneratorConfig,
     pub(crate) steps: Steps,
     pub(crate) frame_rate_hz: f32,
-    /// Of the next step.
+    /// Level of detail of the next step.
     pub(crate) detail: Detail,
     /// Frames since the current step began.
     pub(crate) position: f32,
@@ -51,7 +54,7 @@ pub struct GaitGenerator {
     pub(crate) requested_mps: f32,
     start_from_character: GroundTransform,
     contact: [bool; 2],
-    /// Controls to which the current step already responds.
+    /// Controls that the current step already answers.
     pub(crate) answered: Option<Controls>,
 }
 
@@ -167,7 +170,7 @@ impl GaitGenerator {
         controls
     }
 
-    /// Goes on to the next step: from controls for one step to the step on the ground.
+    /// Generates the next step and reports its initial contact.
     pub(crate) fn next_step(&mut self, controls: &Controls) {
         let fastest = self.steps.source().fastest_mps();
         let step_controls = StepControls {
@@ -182,7 +185,7 @@ impl GaitGenerator {
         }
     }
 
-    /// Lets a step with a foot in the air respond to the current controls.
+    /// Replans a step with a foot in the air for the current controls.
     fn replan(&mut self, controls: &Controls) {
         if self.answered.as_ref() == Some(controls) {
             return;
@@ -195,7 +198,7 @@ impl GaitGenerator {
         if source.replan(&step_controls, frame) {
             self.position -= frame as f32;
         } else if source.needs_replan(&step_controls) {
-            // It may be obeyed a few frames later.
+            // A later frame may allow it.
             return;
         }
         self.answered = Some(*controls);

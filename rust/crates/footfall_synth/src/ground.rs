@@ -1,9 +1,12 @@
-//! Puts generated rotations on the ground, one step at a time: root travel, planted feet, legs that reach them.
+//! The ground: from generated features to a planted step, with root travel, planted feet and legs that reach them.
 //!
-//! The model generates rotations only; the travel of the body follows from the foot that stands (Tilmanne et al. 2012,
+//! [`PlantedStep`] holds the step on the ground. `PlantedStep::put` decodes features to legs ([`generated`]), turns them towards the direction of travel ([`strafe`]), and
+//! `Planter::plant_step` plants them part by part ([`plant_step`]).
+//!
+//! The model generates rotations only; the travel of the body follows from the standing foot (Tilmanne et al. 2012,
 //! section 5.2.3). Here the standing foot rolls on its plant without sliding ([`footfall_ik::rocker`]), the hips follow from
-//! it through the generated leg, and both legs are then solved so that each foot is exactly where it belongs. What
-//! generated rotations and planted feet disagree about is spread over the swing.
+//! it through the generated leg, and both legs are then solved so that each foot is exactly in its place. Differences
+//! between generated rotations and planted feet are spread over the swing.
 
 mod arrival;
 mod balance;

@@ -1,4 +1,4 @@
-//! Seeded numbers that need no memory.
+//! Hash for seeded values that need no memory.
 
 /// The finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every bit depends on every bit.
 pub(crate) const fn mixed(number: u64) -> u64 {

@@ -1,7 +1,7 @@
-//! Moves of the whole body on top of its steps: crouching, jumping off both feet, leaning into climbs, and giving way to pushes.
+//! Moves of the whole body on top of its steps: crouches, two-footed jumps, leans into climbs, and pushes.
 //!
-//! Steps say where the feet are and how the body is held over them; [`crouch`] lowers it there, [`jump`] takes it off the ground and back, and [`push`] moves it aside. The first two are
-//! postures beside standing that the model has learned, put on by [`body`].
+//! Steps determine the feet and the posture over them; [`crouch`] lowers the body there, [`jump`] takes it off the ground and back, and [`push`] displaces it. The first two are
+//! learned postures relative to standing, applied by [`body`].
 
 mod body;
 mod climb;
@@ -54,7 +54,7 @@ impl MoveTables {
 }
 
 impl Moves {
-    /// Those of a walker of a model.
+    /// Creates the moves of a walker.
     pub(crate) fn new(tables: &Arc<MoveTables>, skeleton: &Skeleton) -> Self {
         let tables = Arc::clone(tables);
         let body = Body::new(skeleton);
@@ -68,17 +68,17 @@ impl Moves {
         }
     }
 
-    /// Returns true when the model knows how to jump off both feet.
+    /// Returns true when the model has two-footed jumps.
     pub(crate) fn can_jump(&self) -> bool {
         self.tables.jump.is_some()
     }
 
-    /// Highest speed of somebody who is asked to crouch by this amount, m/s.
+    /// Returns the maximum speed at this requested depth of crouch, m/s.
     pub(crate) fn fastest_mps(&self, amount: f32, upright: f32) -> f32 {
         self.crouch.fastest_mps(amount, upright)
     }
 
-    /// Begins to jump off both feet.
+    /// Begins a two-footed jump.
     pub(crate) fn jump(&mut self, leap: Leap) {
         let Some(tables) = &self.tables.jump else {
             return;
@@ -91,27 +91,27 @@ impl Moves {
         self.push.push(velocity);
     }
 
-    /// Goes on on a way of this grade.
+    /// Sets the grade of the way.
     pub(crate) fn climb(&mut self, grade: f32) {
         self.climb.go_on(grade);
     }
 
-    /// The velocity of a push that is to be stepped off.
+    /// Returns the velocity of a push that remains to be followed with steps.
     pub(crate) fn stepped(&self) -> Vec2 {
         self.push.stepped()
     }
 
-    /// The phase of the jump that is under way.
+    /// Returns the phase of the jump under way.
     pub(crate) fn phase(&self) -> Option<JumpPhase> {
         self.jump.as_ref().map(JumpMoment::phase)
     }
 
-    /// Displacement of the jump under way to the left, up and ahead, metres.
+    /// Returns the displacement of the jump under way to the left, up and ahead, metres.
     pub(crate) fn way(&self) -> Option<Vec3> {
         self.jump.as_ref().map(JumpMoment::way)
     }
 
-    /// Lets time pass.
+    /// Advances by a time.
     pub(crate) fn step(&mut self, secs: f32, crouch: f32) {
         self.crouch.step(secs, crouch);
         self.push.step(secs);
@@ -121,14 +121,14 @@ impl Moves {
         }
     }
 
-    /// Displacement of the jump that has just ended; returned once.
+    /// Returns the displacement of a jump that has just ended, once.
     pub(crate) fn landed(&mut self) -> Option<Vec3> {
         let jump = self.jump.filter(JumpMoment::is_over)?;
         self.jump = None;
         Some(jump.way())
     }
 
-    /// Moves a pose that faces +Z; returns how far that goes for one who jumps.
+    /// Applies the moves to a pose that faces +Z; returns the progress of a jump under way.
     pub(crate) fn move_pose(&self, pose: &mut Pose) -> Option<Flown> {
         self.climb.bend(pose);
         self.push.give_way(&self.body, pose);
@@ -137,23 +137,23 @@ impl Moves {
         Some(jump.move_pose(tables, &self.body, pose))
     }
 
-    /// Lean into the slope being climbed.
+    /// Returns the lean into the climb.
     pub(crate) fn climb_moment(&self) -> ClimbMoment {
         self.climb
     }
 
-    /// Goes on climbing from such a moment.
+    /// Restores the lean into the climb.
     pub(crate) fn resume_climb(&mut self, climb: ClimbMoment) {
         self.climb = climb;
     }
 
-    /// Depth of the crouch, the push that is taken up, and the jump under way with the time since it began: the moves' part of a state.
+    /// Returns the moves' part of a state: crouch, push, and the jump under way with the time since its beginning.
     pub(crate) fn moment(&self) -> (CrouchMoment, PushMoment, Option<(Leap, f32)>) {
         let jump = self.jump.map(|jump| (jump.leap, jump.secs));
         (self.crouch.moment, self.push, jump)
     }
 
-    /// Goes on from such a moment.
+    /// Restores the moves.
     pub(crate) fn resume(
         &mut self,
         crouch: CrouchMoment,

@@ -1,4 +1,7 @@
-//! Plan of the coming steps: durations and means of their states.
+//! Plans: from the request for a step to the timing, durations and means of its states.
+//!
+//! [`Planner`] draws a step by chance and adds speed, position in the walk, person and chance to the model's average step. A plan can become the change to another gait
+//! ([`gait_change`]), a leap ([`leap`]), or the remainder of a step that is replanned ([`remainder`]).
 
 mod fine_draw;
 mod gait_change;

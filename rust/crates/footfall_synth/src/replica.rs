@@ -1,10 +1,10 @@
-//! Walkers over a network: one that is walked on one machine makes the same steps on others.
+//! Replicas: a walker of one machine makes the same steps on others, over a network.
 //!
-//! A walk follows from a seed and what is asked of it, so little has to be sent: a [`WalkIdentity`] once and whenever it changes, reliably, and updates of
-//! [`UPDATE_BYTES`] as often as the game likes, which may be lost. An update says which step of the walk the walker is in, what that was asked to be, and where it ends.
-//! [`WalkSender`] makes both. [`WalkFollower`] walks a [`GaitGenerator`](crate::GaitGenerator) by them, a little later than they come, so that what is late or lost is not missed: each
-//! step is drawn by the chance that the sender's was, begins when it did, obeys what it obeyed, and ends where it ended. What is still left between the two is
-//! walked off with the next steps; feet that stand are not moved for it.
+//! A walk follows from a seed and its controls, so little has to be sent: a [`WalkIdentity`] once and after each change, reliably, and updates of
+//! [`UPDATE_BYTES`] as often as the game likes, which may be lost. An update contains the number of the current step, its controls and its end.
+//! [`WalkSender`] makes both. [`WalkFollower`] drives a [`GaitGenerator`](crate::GaitGenerator) by them with a small delay that hides late and lost updates: each
+//! step has the draw, the beginning, the controls and the end of the sender's. Remaining differences are
+//! walked off with the next steps, without moving standing feet.
 //!
 //! Places are those of a space that all machines share, such as the level.
 

@@ -1,4 +1,7 @@
-//! Sources of steps: styles or two linear systems, each from controls to a step on the ground.
+//! Sources of steps: each takes the controls of a step through gait, plan and trajectory to the ground.
+//!
+//! [`StyledSteps`] are those of a hidden semi-Markov model in a mixture of styles ([`style_space`], [`measured`]); [`window`] plans, solves and plants three steps at a time.
+//! [`SwitchingSteps`] are those of two linear systems, which have no plan: a system generates the features directly.
 
 mod buffers;
 mod measured;
@@ -17,12 +20,12 @@ pub(crate) use styled::{StyledSteps, planner_of};
 pub(crate) use switching::{SwitchingOrigin, SwitchingSteps};
 pub(crate) use window::{Aim, Origin, StepWindow};
 
-/// The kinds of models that walk.
+/// Steps of a walker, by the kind of its model.
 #[derive(Debug)]
 pub(crate) enum Steps {
     /// A hidden semi-Markov model in styles.
     Styled(Box<StyledSteps>),
-    /// Two linear systems that take turns.
+    /// Two alternating linear systems.
     Switching(Box<SwitchingSteps>),
 }
 

@@ -1,6 +1,6 @@
-//! Motion of a body that rests: sway, looks about and breath, above the posture in which it stands.
+//! Standing motion: sway, glances and breathing on top of the standing posture.
 //!
-//! [`sway`] computes the body's offset from its posture, [`carry`] applies it over planted feet, and [`life`] holds its amount.
+//! [`sway`] computes the body's offset from its posture, [`carry`] applies it over planted feet, and [`life`] fades it in and out.
 
 mod carry;
 mod life;

@@ -1,4 +1,6 @@
-//! From planned steps to smooth features: maximum-likelihood parameter generation with the global variance kept.
+//! Trajectories: from plans to smooth features, joints and fine detail.
+//!
+//! Maximum-likelihood parameter generation with the corpus' global variance preserved ([`variance`]); [`fine_motion`] then adds the detail that states average away.
 
 mod fine_motion;
 pub(crate) mod variance;
@@ -9,10 +11,10 @@ pub(crate) use fine_motion::{FineBuffers, FineTables, Scale, neighbours};
 use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, Real, mlpg_part};
 
-/// Solves trajectories; owns every buffer that this takes.
+/// Solver of trajectories, with all of its buffers.
 #[derive(Debug)]
 pub(crate) struct TrajectorySolver<R: Real> {
-    /// True when trajectories are pulled at all.
+    /// True when the pull that preserves variance is applied.
     pub(crate) pulls: bool,
     pull_towards: Vec<R>,
     workspace: MlpgWorkspace<R>,
@@ -35,7 +37,7 @@ impl<R: Real> TrajectorySolver<R> {
         }
     }
 
-    /// Loads the states of steps in a row without their first `skip` frames; returns the number of frames.
+    /// Loads the states of consecutive steps without their first `skip` frames; returns the number of frames.
     pub(crate) fn load(
         &mut self,
         statistics: &Statistics<R>,
@@ -80,7 +82,7 @@ impl<R: Real> TrajectorySolver<R> {
         }
     }
 
-    /// The loaded features as a problem whose first `n_fixed` frames are given, without the pull.
+    /// Returns the loaded states as a problem without pull, whose first `n_fixed` frames are given.
     pub(crate) fn problem(&self, statistics: &Statistics<R>, n_fixed: usize) -> MlpgProblem<'_, R> {
         MlpgProblem {
             windows: statistics.windows,
@@ -93,7 +95,7 @@ impl<R: Real> TrajectorySolver<R> {
         }
     }
 
-    /// Solves the first `wanted` features at least of what is loaded. `trajectory` (T × [`FEATURE_COUNT`]) holds the given frames already.
+    /// Solves at least the first `wanted` features. `trajectory` (T × [`FEATURE_COUNT`]) already holds the given frames.
     pub(crate) fn solve(
         &mut self,
         statistics: &Statistics<R>,
@@ -114,7 +116,7 @@ impl<R: Real> TrajectorySolver<R> {
         Ok(solved?)
     }
 
-    /// Fills the frames that are not given with the means of their states: rough, but always there.
+    /// Fills the other frames with the means of their states: a rough fallback that cannot fail.
     pub(crate) fn fill_with_means(&self, trajectory: &mut [R], n_fixed: usize) {
         let rows = trajectory.chunks_exact_mut(FEATURE_COUNT);
         for (row, state) in rows.zip(&self.state_of_frame).skip(n_fixed) {

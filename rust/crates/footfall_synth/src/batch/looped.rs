@@ -23,7 +23,7 @@ const SPEED_TOLERANCE: f32 = 0.003;
 const MOST_STRETCH: f32 = 0.03;
 /// Time by which a mismatch of joint velocities is weighted against one of positions, seconds.
 const VELOCITY_SECS: f32 = 0.1;
-/// Time before the end in which trunk and arms blend to their approach of the beginning, seconds.
+/// Time before the end in which trunk and arms blend to their motion before the beginning, seconds.
 const FADE_SECS: f32 = 0.4;
 /// The same for a standing person, seconds.
 const STANDING_FADE_SECS: f32 = 2.0;
@@ -90,7 +90,7 @@ impl LoopedWalk {
     }
 }
 
-/// A walk as it was generated, frame by frame.
+/// A generated walk, frame by frame.
 struct Recording {
     frame_secs: f32,
     skeleton: footfall_core::Skeleton,
@@ -144,7 +144,7 @@ impl Recording {
         way / (self.frame_secs * (to - from) as f32)
     }
 
-    /// The frames between which whole strides of about this length lie that begin and end alike; `None` without a walk.
+    /// Returns the best beginning and end of whole strides of about this length; `None` without a walk.
     fn best_loop(&self, speed_mps: f32, secs: f32) -> Option<(usize, usize)> {
         let strides = self
             .contacts
@@ -189,7 +189,7 @@ impl Recording {
         })
     }
 
-    /// The frames of a loop above a point that moves evenly, with what is missing at its end spread over all of it.
+    /// Returns the loop above a point of constant velocity, with the mismatch at its end spread over all frames.
     fn closed(&self, from: usize, to: usize, speed_mps: f32) -> LoopedWalk {
         let (begin, end) = (&self.places[from], &self.places[to]);
         let way = end.position - begin.position;
@@ -238,7 +238,7 @@ impl Recording {
         }
     }
 
-    /// Blends a standing person, towards the end, to their approach of the frame `first`. All that lies between two poses on the same feet stands
+    /// Blends a standing person, towards the end, to their motion before the frame `first`. A blend of two poses on the same feet stands
     /// on them, too.
     fn meet(&mut self, first: usize) {
         let last = self.poses.len() - 1;
@@ -250,7 +250,7 @@ impl Recording {
         }
     }
 
-    /// Lets what does not bear the body end in its motion before the beginning, so that it goes on there at the same pace.
+    /// Blends joints that do not bear the body to their motion before the beginning, so that they continue there at the same speed.
     fn fade(&self, from: usize, to: usize, poses: &mut [Pose]) {
         let frames = ((FADE_SECS / self.frame_secs) as usize)
             .min(from)
@@ -301,7 +301,7 @@ impl Look {
     }
 }
 
-/// Moves every frame a little, the last one onto the first. Spread so thin, standing feet stay where they are to within millimetres.
+/// Spreads the mismatch between the last and the first frame over all frames. Standing feet move by millimetres at most.
 fn close(poses: &mut [Pose]) {
     let (Some(first), Some(last)) = (poses.first().cloned(), poses.last().cloned()) else {
         return;
@@ -318,7 +318,7 @@ fn close(poses: &mut [Pose]) {
             *rotation = (*rotation * Quat::IDENTITY.slerp(missing, share)).normalize();
         }
     }
-    // Without the rounding of what was turned.
+    // Without rounding errors.
     let last = poses.len() - 1;
     poses[last] = poses[0].clone();
 }

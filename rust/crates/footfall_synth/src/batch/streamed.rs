@@ -45,7 +45,7 @@ pub(crate) fn from_standing(
     for _ in 0..=rest {
         recording.step(Controls::STAND);
     }
-    // The last step is the one that stops: it is asked for in the second half of the one before, which would close at once if it were asked sooner.
+    // The last step stops. The stop is requested in the second half of the previous step, which would itself stop if it were requested earlier.
     let mut taken = 0;
     let steps = config.steps.max(2);
     for _ in 0..steps * longest {
@@ -172,9 +172,9 @@ pub struct SwitchingWalkConfig {
     pub variation: f32,
     /// Speed over the ground, m/s; that of the recordings when absent.
     pub speed_mps: Option<f32>,
-    /// Turning, rad/s, positive to the left.
+    /// Turn rate, rad/s, positive to the left.
     pub turn_rate_radps: f32,
-    /// Direction of travel, relative to where the walker faces, as of [`Controls::direction_rad`].
+    /// Direction of travel relative to the facing direction, as of [`Controls::direction_rad`].
     pub direction_rad: f32,
     /// Frames per second of the clip; the model's when absent.
     pub frame_rate_hz: Option<f64>,
@@ -239,7 +239,7 @@ impl Recording {
         }
     }
 
-    /// Records a frame and tells how many steps began.
+    /// Records a frame; returns the number of steps that began.
     fn step(&mut self, controls: Controls) -> usize {
         // The first frame is where the walker stands.
         let dt = if self.poses.is_empty() {

@@ -1,4 +1,4 @@
-//! A walker who goes on alone from the end of a step that it shared.
+//! Change from shared steps to own steps.
 
 use super::frames::{CrowdPlace, POSE_NUMBERS};
 use super::own::{Chance, OwnWalk, variation};
@@ -13,7 +13,7 @@ use footfall_core::GroundTransform;
 use footfall_core::rotation::from_heading;
 
 impl OwnWalk {
-    /// Goes on alone from the end of a shared step at this place, as the walker of this seed; its chance goes on from there.
+    /// Continues alone from the end of a shared step at this place, as the walker of this seed and with its progress of chance.
     pub(super) fn go_on_from(
         &mut self,
         (styled, config): (&StyledBody, &GeneratorConfig),
@@ -41,7 +41,7 @@ impl OwnWalk {
         self.landing = None;
         self.footstep = None;
         self.even = false;
-        // Where the shared step ends in its own plan is where the walker is.
+        // The walker is at the end of the shared step in the plan of that step.
         let heading = shared.end.heading - start_from_end.heading;
         self.plan_from_start = GroundTransform {
             position: shared.end.position - from_heading(heading) * start_from_end.position,
@@ -64,7 +64,7 @@ impl OwnWalk {
         }
     }
 
-    /// A walker who is about to go on so.
+    /// Makes a walk at the end of a shared step.
     pub(super) fn from_shared(
         styled: &StyledBody,
         config: &GeneratorConfig,

@@ -1,4 +1,4 @@
-//! Feet of a crowd's walker: landings as they come, and those to come.
+//! Feet of a crowd's walker: initial contacts, and coming landings.
 
 use super::CrowdWalker;
 use super::own::OwnWalk;
@@ -8,13 +8,13 @@ use footfall_ik::Plant;
 use footfall_ik::placement::Landing;
 
 impl CrowdWalker {
-    /// The initial contact of the last [`step`](Self::step), from where the walk began.
+    /// Returns the initial contact during the last [`step`](Self::step), relative to the start of the walk.
     pub fn footstep(&self) -> Option<&Footstep> {
         self.footstep.as_ref()
     }
 
-    /// Next landing of the foot on its way, in the character's space as it is now, and the seconds until then. `None` for someone
-    /// who rests or shares steps.
+    /// Returns the next landing of the swinging foot, in the character's current space, and the seconds until then. `None` for a walker
+    /// that rests or shares steps.
     pub fn next_footstep(&self) -> Option<(Footstep, f32)> {
         let own = self.own.as_ref()?;
         (self.stroll.is_none() && !self.repeating)
@@ -22,7 +22,7 @@ impl CrowdWalker {
             .flatten()
     }
 
-    /// Next landing of each foot and the body's place then, for callers that put feet on real ground.
+    /// Returns the next landing of each foot and the body's place then, for callers that place feet on real ground.
     pub fn landings(&self) -> [Option<Landing>; 2] {
         let Some(own) = self.own.as_ref().filter(|_| self.stroll.is_none()) else {
             return [None; 2];
@@ -31,7 +31,7 @@ impl CrowdWalker {
         landings(self.next_footstep(), &from, &own.ending.arrival)
     }
 
-    /// Returns whether the left and the right foot bear on the ground.
+    /// Returns the contacts of the left and the right foot.
     pub fn feet_in_contact(&self) -> [bool; 2] {
         match (&self.stroll, &self.own) {
             (Some(stroll), _) => stroll.contacts(self.styled.0.shared()),
@@ -53,19 +53,19 @@ impl OwnWalk {
         Some((footstep, self.secs_to_next_step()))
     }
 
-    /// Contacts so many frames after the step began.
+    /// Returns the contacts this many frames after the step began.
     pub(super) fn contacts_at(&self, position: f32) -> [bool; 2] {
         let (frame, weight) = self.frame_at(position);
         self.frames.places[frame + usize::from(weight >= 0.5)].contact
     }
 
-    /// Plant of the leading foot of the step that was just worked out.
+    /// Returns the plant of the leading foot of the step that was just generated.
     pub(super) fn landing_of_step(&self) -> Option<Plant> {
         let feet = self.ending.next.planter.as_ref()?;
         Some(feet.plants[self.shape.timing.leading.index()])
     }
 
-    /// The leading foot's landing on this plant, as it is reported.
+    /// Returns the footstep for the leading foot's landing on this plant.
     pub(super) fn footstep_at(&self, landing: Option<Plant>) -> Option<Footstep> {
         let side = self.shape.timing.leading;
         landing.map(|plant| Footstep::seen_from(&self.plan_from_start, side, &plant))

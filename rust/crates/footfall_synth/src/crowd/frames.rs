@@ -1,4 +1,4 @@
-//! A step as a crowd keeps it: joints where they are drawn, in small numbers.
+//! Frames of a crowd's step: places of the joints as 16-bit numbers.
 
 use crate::ground::PlantedFrame;
 use footfall_core::{
@@ -14,7 +14,7 @@ pub(super) const POSE_NUMBERS: usize = JOINT_COUNT * JOINT_NUMBERS;
 const ROTATION_STEPS: f32 = 32_767.0;
 const POSITION_STEPS: f32 = 10_000.0;
 
-/// Bytes that memory comes in.
+/// Size of a cache line, bytes.
 const CACHE_LINE: usize = 64;
 
 /// Positions of all joints and their rotations relative to the T-pose, in the character's own space, in the order of [`Joint::ALL`].
@@ -29,7 +29,7 @@ impl Default for CrowdPose {
 }
 
 impl CrowdPose {
-    /// Numbers of one joint: its rotation, its position, and one to spare.
+    /// Numbers of one joint: rotation, position, and one for padding.
     pub const JOINT_NUMBERS: usize = 8;
 
     /// Eight numbers a joint: `character_from_joint` rotation (x, y, z, w), of length 1 to within a percent; position in metres;
@@ -38,12 +38,12 @@ impl CrowdPose {
         &self.0
     }
 
-    /// Writes it in small numbers.
+    /// Packs it into 16-bit numbers.
     pub(super) fn shrink(&self, out: &mut [i16; POSE_NUMBERS]) {
         shrink(&self.0, out);
     }
 
-    /// This one, and as much of another one as this weight says, number by number.
+    /// Adds another pose by a weight, number by number.
     pub(super) fn mixed(&self, other: &Self, weight: f32) -> Self {
         let numbers = self.0.iter().zip(&other.0);
         let mut out = Self::default();
@@ -53,14 +53,14 @@ impl CrowdPose {
         out
     }
 
-    /// Moves it by the difference of two others, number by number, as far as this weight says.
+    /// Adds the difference of two other poses by a weight, number by number.
     pub(super) fn shift(&mut self, from: &Self, to: &Self, weight: f32) {
         for (out, (from, to)) in self.0.iter_mut().zip(from.0.iter().zip(&to.0)) {
             *out += weight * (to - from);
         }
     }
 
-    /// Writes the blend of a pose in small numbers towards another one.
+    /// Writes the blend of two packed poses.
     pub(super) fn blend(
         &mut self,
         now: &[i16; POSE_NUMBERS],
@@ -90,7 +90,7 @@ pub(super) struct CrowdPlace {
     pub(super) contact: [bool; 2],
 }
 
-/// Frames that are taken over together.
+/// Number of frames packed together.
 const TOGETHER: usize = 4;
 
 /// Working memory of [`CrowdFrames::set`].
@@ -100,7 +100,7 @@ pub(super) struct FrameBuffers {
     model_poses: [ModelPose; TOGETHER],
 }
 
-/// A step: one entry a frame in both lists. They are apart because each frame of a game needs a place, and not every one a pose.
+/// Frames of a step, one entry per frame in both lists. They are separate because a game needs the place in each of its frames, but not always the pose.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CrowdFrames {
     pub(super) places: Vec<CrowdPlace>,
@@ -108,7 +108,7 @@ pub(super) struct CrowdFrames {
 }
 
 impl CrowdFrames {
-    /// Takes over frames on the ground.
+    /// Packs planted frames.
     pub(super) fn set(
         &mut self,
         frames: &[PlantedFrame],
@@ -141,7 +141,7 @@ impl CrowdFrames {
                 let mut values = CrowdPose::default();
                 let rows = values.0.chunks_exact_mut(JOINT_NUMBERS);
                 for ((row, (rotation, position)), before) in rows.zip(joints).zip(&mut before) {
-                    // Of the two quaternions of a rotation the one near to the last: frames can be blended number by number.
+                    // The quaternion of the same sign as the previous one, so that frames can be blended number by number.
                     let sign = if rotation.dot(*before) < 0.0 {
                         -1.0
                     } else {
@@ -156,7 +156,7 @@ impl CrowdFrames {
         }
     }
 
-    /// Stays in one place and pose.
+    /// Holds one place and pose.
     pub(super) fn hold(&mut self, place: CrowdPlace, pose: &[i16; POSE_NUMBERS]) {
         self.places.clear();
         self.places.extend([place; 2]);
@@ -164,25 +164,25 @@ impl CrowdFrames {
         self.poses.extend([*pose; 2]);
     }
 
-    /// The last pose.
+    /// Returns the last pose.
     pub(super) fn last_pose(&self) -> Option<&[i16; POSE_NUMBERS]> {
         self.poses.last()
     }
 
-    /// Number of frames.
+    /// Returns the number of frames.
     pub(super) fn len(&self) -> usize {
         self.places.len()
     }
 
-    /// The same for the places of a frame and of the one that follows.
+    /// Prefetches the places of a frame and of the next one.
     pub(super) fn fetch_place(&self, frame: usize) {
         for place in &self.places[frame..=frame + 1] {
             core::hint::black_box(place.place.heading);
         }
     }
 
-    /// Reads a little of every cache line that [`blend`](Self::blend) will read: who does so for several steps before any is blended
-    /// waits for memory once, not for each.
+    /// Reads a little of every cache line that [`blend`](Self::blend) will read: after this for several steps, blending them
+    /// waits for memory once instead of once per step.
     pub(super) fn fetch(&self, frame: usize) {
         for pose in &self.poses[frame..=frame + 1] {
             for number in pose.iter().step_by(CACHE_LINE / size_of::<i16>()) {
@@ -191,13 +191,13 @@ impl CrowdFrames {
         }
     }
 
-    /// Writes the blend of a frame towards the one that follows.
+    /// Writes the blend of a frame and the next one.
     pub(super) fn blend(&self, frame: usize, weight: f32, out: &mut CrowdPose) {
         out.blend(&self.poses[frame], &self.poses[frame + 1], weight);
     }
 }
 
-/// Steps per unit of the numbers of a joint.
+/// Returns the resolution of the numbers of a joint, steps per unit.
 const STEPS: [f32; JOINT_NUMBERS] = {
     let (rotation, position) = (ROTATION_STEPS, POSITION_STEPS);
     [

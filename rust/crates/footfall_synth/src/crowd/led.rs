@@ -1,4 +1,4 @@
-//! A crowd's walker that makes another's steps: one of the same seed, on another machine.
+//! Replication in a crowd: a walker that repeats the steps of one with the same seed on another machine.
 
 use super::own::{Chance, OwnWalk, variation};
 use super::{CrowdWalker, Workshop};
@@ -11,45 +11,45 @@ use crate::source::{Aim, StepBuffers, StepWindow};
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
 
-/// Aim of a led step. Places are of the foot that lands, under the walker's heading when the step is over, and seen from where the walk began.
+/// Aim of a led step. A place is that of the landing foot, under the walker's heading at the end of the step, relative to the start of the walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LedAim {
-    /// Place where it leads by itself.
+    /// The step keeps its own end.
     None,
-    /// There.
+    /// The foot lands at this place.
     Place(GroundTransform),
-    /// Itself, rather than its foot, to there: it comes to rest.
+    /// The walker comes to rest at this place.
     Rest(GroundTransform),
-    /// Place to which this takes the one where it leads by itself: the one before led elsewhere by as much.
+    /// The end of the step is moved by this transform, by which the previous one ended elsewhere.
     Moved(GroundTransform),
 }
 
-/// A step that a walker is to take because another one has.
+/// A step to repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LedStep {
     /// [Number](CrowdWalker::number) of the step.
     pub number: u16,
-    /// Controls that it obeys.
+    /// Controls of the step.
     pub controls: Controls,
-    /// Place where it leads. One step goes at most 0.2 m and 20° out of its way.
+    /// Aim of the step. One step deviates by at most 0.2 m and 20°.
     pub aim: LedAim,
 }
 
-/// A moment of a walk to begin at.
+/// Moment of a walk at which to begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LedBeginning {
     /// [Number](CrowdWalker::number) of the step.
     pub number: u16,
-    /// Share of it that has passed, from 0 to 1.
+    /// Share of the step that has passed, from 0 to 1.
     pub share: f32,
-    /// Controls that it obeys. The gait is taken as it is.
+    /// Controls of the step. Their gait is used unchanged.
     pub controls: Controls,
-    /// True for one who rests.
+    /// True for a resting walker.
     pub rests: bool,
 }
 
 impl LedAim {
-    /// Has a step that was just worked out lead there.
+    /// Displaces a step that was just generated towards the aim.
     pub(super) fn take(
         &self,
         plan_from_start: &GroundTransform,
@@ -72,23 +72,23 @@ impl LedAim {
 }
 
 impl CrowdWalker {
-    /// Returns whether it walks in steps that it shares with others, which cannot be told.
+    /// Returns true when it walks in shared steps, which cannot be replicated.
     pub fn is_sharing(&self) -> bool {
         self.stroll.is_some()
     }
 
-    /// Number of its own current step: even ones begin with the left foot's contact. It wraps. Steps that are [shared](Self::set_repeating) are not counted.
+    /// Returns the number of its current own step: even ones begin with the left foot's contact. It wraps. [Shared](Self::set_repeating) steps are not counted.
     pub fn number(&self) -> u16 {
         self.own.as_ref().map_or(0, |own| own.number())
     }
 
-    /// Position of its chance, with which a walker of the same seed goes on to draw the same steps.
+    /// Returns the position of chance, from which a walker of the same seed draws the same steps.
     pub fn chance_position(&self) -> u64 {
         let own = self.own.as_ref().filter(|_| !self.is_sharing());
         own.map_or(self.chance, |own| own.chance).position
     }
 
-    /// Takes chance up where another walker of the same seed had it in the step of this number. Its draws become the same within a few strides.
+    /// Sets chance to the position of another walker of the same seed in the step of this number. The draws become the same within a few strides.
     pub fn take_chance(&mut self, number: u16, chance_position: u64) {
         self.chance = Chance {
             position: chance_position,
@@ -99,32 +99,32 @@ impl CrowdWalker {
         }
     }
 
-    /// The gait of its own current step.
+    /// Returns the gait of its current own step.
     pub fn gait(&self) -> Gait {
         let own = self.own.as_ref();
         own.map_or(Gait::Walk, |own| own.ending.blend.gait)
     }
 
-    /// Speed of its own current step, m/s.
+    /// Returns the speed of its current own step, m/s.
     pub fn speed_mps(&self) -> f32 {
         let own = self.own.as_ref();
         own.map_or(0.0, |own| own.ending.velocity_mps.length())
     }
 
-    /// Returns whether its own current step ends in a stand.
+    /// Returns true when its current own step ends standing.
     pub fn comes_to_rest(&self) -> bool {
         self.own.as_ref().is_none_or(|own| own.comes_to_rest())
     }
 
-    /// Place where the current step leads, seen from where the walk began: of the foot that lands, under the walker's heading when the step is over. `None` where no
-    /// foot lands, and for steps that are shared.
+    /// Returns the place where the current step ends, relative to the start of the walk: that of the landing foot, under the walker's heading at the end of the step. `None` if no
+    /// foot lands, and for shared steps.
     pub fn start_from_aim(&self) -> Option<GroundTransform> {
         let own = self.own.as_ref().filter(|_| !self.is_sharing())?;
         own.start_from_aim()
     }
 
-    /// Lets time pass as [`step`](Self::step) does, through own steps that `next` gives: it is asked when one is over, and answers nothing while the walker is to rest.
-    /// One that does not [come to rest](Self::comes_to_rest) has to be given a step. One that [shares](Self::is_sharing) steps stays where it is: let it [begin](Self::begin_led).
+    /// Advances as [`step`](Self::step) does, through own steps from `next`. It is called at the end of a step and returns `None` while the walker is to rest.
+    /// A walker that does not [come to rest](Self::comes_to_rest) needs a step. One that [shares](Self::is_sharing) steps stays where it is: let it [begin](Self::begin_led).
     pub fn step_led(
         &mut self,
         dt_secs: f32,
@@ -157,7 +157,7 @@ impl CrowdWalker {
         }
     }
 
-    /// Starts over at the origin, facing +Z, in the middle of a step of its own. The walker stays as it is where the model gives no trajectory.
+    /// Restarts at the origin, facing +Z, in the middle of an own step. The walker stays unchanged if the model gives no trajectory.
     pub fn begin_led(&mut self, at: &LedBeginning, workshop: &mut Workshop) {
         self.footstep = None;
         if self.is_sharing() && self.go_alone(workshop).is_none() {
@@ -172,7 +172,7 @@ impl CrowdWalker {
 }
 
 impl OwnWalk {
-    /// Number of the current step.
+    /// Returns the number of the current step.
     pub(super) fn number(&self) -> u16 {
         let right = self.shape.timing.leading == Side::Right;
         let strides = self.chance.strides as u16;
@@ -190,7 +190,7 @@ impl OwnWalk {
         })
     }
 
-    /// Starts over at the origin in the middle of a step; `None` where the model gives no trajectory.
+    /// Creates a walk at the origin in the middle of a step; `None` if the model gives no trajectory.
     fn begin_led(&mut self, at: &LedBeginning, workshop: &mut Workshop) -> Option<()> {
         let styled = Arc::clone(&self.styled.0);
         let measured = &styled.measured;
@@ -254,7 +254,7 @@ impl OwnWalk {
         Some(())
     }
 
-    /// Draws the step of this number and the one after it, in place of the last two of a window.
+    /// Replaces the last two draws of a window by those of the step of this number and the next.
     pub(super) fn redraw(
         &self,
         number: u16,
@@ -265,7 +265,7 @@ impl OwnWalk {
         draws[2] = self.draw_of(number.wrapping_add(1), planner);
     }
 
-    /// Takes chance to where it draws the step of this number; returns that. One stride back it takes what is at hand: going there would take chance from its beginning.
+    /// Advances chance to the step of this number and returns its draw. For one stride back it uses the last draw, since going back would draw everything again from the seed.
     fn draw_of(&self, number: u16, planner: &mut Planner) -> StepDraw {
         if planner.is_one_ahead_of(number) {
             return planner.draw_again(number);

@@ -1,4 +1,4 @@
-//! A walker's own steps: as a generator of its seed makes them, kept in a few kilobytes.
+//! Own steps of a crowd's walker, the same as those of a generator of its seed, in a few kilobytes.
 
 use super::frames::{CrowdFrames, CrowdPose};
 use super::led::LedStep;
@@ -18,7 +18,7 @@ use footfall_ik::Plant;
 use glam::Vec2;
 use std::sync::Arc;
 
-/// The end of a step: all that the next one comes from.
+/// End of a step: all data from which the next one is generated.
 #[derive(Clone, Debug)]
 pub(super) struct Ending {
     /// The mixture of the step.
@@ -31,7 +31,7 @@ pub(super) struct Ending {
     pub(super) arrival: Arrival,
 }
 
-/// Place in a walker's sequence of chance: its position, and the strides that were drawn until there.
+/// Progress of a walker's chance: position of the random generator, and number of strides drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Chance {
     pub(super) position: u64,
@@ -39,7 +39,7 @@ pub(super) struct Chance {
 }
 
 impl Chance {
-    /// The place at which a planner is.
+    /// Returns the progress of a planner.
     pub(super) fn of(planner: &Planner) -> Self {
         Self {
             position: planner.chance_position(),
@@ -47,14 +47,14 @@ impl Chance {
         }
     }
 
-    /// Takes a planner there, after these steps.
+    /// Restores the progress of a planner, after these steps.
     pub(super) fn resume(self, planner: &mut Planner, last: &[StepDraw]) {
         planner.resume(self.position, last);
         planner.count_strides(self.strides);
     }
 }
 
-/// Steps of one walker alone.
+/// Walk of one walker in own steps.
 #[derive(Debug)]
 pub(super) struct OwnWalk {
     pub(super) config: GeneratorConfig,
@@ -62,7 +62,7 @@ pub(super) struct OwnWalk {
     /// Identity of the walker: weights of the model's walker components.
     pub(super) walker: [f64; MAX_COMPONENTS],
     pub(super) chance: Chance,
-    /// Boxed, for most frames need nothing of it.
+    /// Boxed, because most frames do not need it.
     pub(super) ending: Box<Ending>,
     pub(super) shape: StepShape,
     pub(super) detail: Detail,
@@ -74,16 +74,16 @@ pub(super) struct OwnWalk {
     pub(super) landing: Option<Plant>,
     pub(super) plan_from_start: GroundTransform,
     pub(super) footstep: Option<Footstep>,
-    /// Its life as it stands; nothing where the model stands still.
+    /// Standing motion; `None` if the model stands still.
     pub(super) life: Option<Life>,
-    /// Resting state; `None` before it first came to a stand.
+    /// Resting state; `None` before the first stop.
     pub(super) rest: Option<Box<Rest>>,
-    /// True for one whose steps are all the mean of those that it could take.
+    /// True when all steps are mean ones, without chance.
     pub(super) even: bool,
 }
 
 impl OwnWalk {
-    /// A walker at the origin, facing +Z, walking already at the speed that suits it; or standing.
+    /// Creates a walk at the origin, facing +Z, at the usual speed or standing.
     ///
     /// # Errors
     /// [`SynthError`] when a setting is not finite or the model gives no trajectory.
@@ -132,7 +132,7 @@ impl OwnWalk {
         Ok(made)
     }
 
-    /// A walker whose first step is still to be taken over: one of this shape, which ends so.
+    /// Makes a walk whose first step, of this shape and ending, is not kept yet.
     pub(super) fn before(
         styled: &StyledBody,
         config: &GeneratorConfig,
@@ -159,7 +159,7 @@ impl OwnWalk {
         }
     }
 
-    /// Takes over its first step, in the middle of it.
+    /// Keeps the first step and begins in the middle of it.
     pub(super) fn settle(&mut self, share: f32, workshop: &mut Workshop) {
         self.take_over(workshop);
         self.position = share * self.shape.timing.frames as f32;
@@ -168,8 +168,8 @@ impl OwnWalk {
         self.live(0.0, workshop);
     }
 
-    /// Advances by `dt_secs`. Allocates nothing, but for a step that is longer than any before and for the first rest. Where a step ends and none is wanted after it, `ends` says so and
-    /// it stays there: the time that is left over, seconds.
+    /// Advances by `dt_secs`. Allocates only for a step longer than all previous ones and for the first rest. If `ends` is true, the walk stays at the end of the current step,
+    /// and the remaining time is returned, seconds.
     pub(super) fn step(
         &mut self,
         dt_secs: f32,
@@ -196,7 +196,7 @@ impl OwnWalk {
         left
     }
 
-    /// Lets time pass in its step, and beyond the end of that.
+    /// Advances in its step, possibly beyond the end.
     pub(super) fn pass(&mut self, dt_secs: f32) {
         self.footstep = None;
         if dt_secs > 0.0 {
@@ -204,12 +204,12 @@ impl OwnWalk {
         }
     }
 
-    /// Returns whether its step has ended.
+    /// Returns true when its step has ended.
     pub(super) fn is_over(&self) -> bool {
         self.position >= self.shape.timing.frames as f32
     }
 
-    /// Stays where its step has ended; returns the time that has passed since, seconds.
+    /// Stays at the end of its step; returns the time that has passed since, seconds.
     pub(super) fn stay(&mut self) -> f32 {
         let frames = self.shape.timing.frames as f32;
         let left = (self.position - frames) / self.frame_rate_hz;
@@ -217,7 +217,7 @@ impl OwnWalk {
         left
     }
 
-    /// Goes on to the next step where one has ended; a led one is another walker's.
+    /// Continues with the next step after the end of one; a led step repeats another walker's.
     pub(super) fn go_on(
         &mut self,
         controls: Controls,
@@ -228,46 +228,46 @@ impl OwnWalk {
         self.next_step(controls, led, workshop);
     }
 
-    /// Seconds until the next step begins, 0 for someone who rests.
+    /// Returns the time until the next step begins, seconds; 0 for a resting walker.
     pub(super) fn secs_to_next_step(&self) -> f32 {
         (self.shape.timing.frames as f32 - self.position).max(0.0) / self.frame_rate_hz
     }
 
-    /// Seconds since the current step began; for one who rests, since that was over, the length of the step.
+    /// Returns the time since the current step began, seconds; for a resting walker its duration.
     pub(super) fn secs_of_step(&self) -> f32 {
         self.position / self.frame_rate_hz
     }
 
-    /// Returns whether it has come to a stand and rests.
+    /// Returns true when the walker has stopped and rests.
     pub(super) fn is_standing(&self) -> bool {
         self.comes_to_rest() && self.is_over()
     }
 
-    /// Returns whether its step ends in a stand.
+    /// Returns true when its step ends standing.
     pub(super) fn comes_to_rest(&self) -> bool {
         self.shape.amplitude.to < 1.0
     }
 
-    /// Share of its stride that is behind it: 0 when the left foot lands, 0.5 when the right one does.
+    /// Returns the phase of the stride: 0 at the left foot's landing, 0.5 at the right one's.
     pub(super) fn phase(&self) -> f32 {
         let share = (self.position / self.shape.timing.frames as f32).min(1.0);
         let half = self.shape.timing.leading.index() as f32;
         (0.5 * (half + share)).fract()
     }
 
-    /// Has memory bring what [`pose`](Self::pose) reads.
+    /// Prefetches the memory that [`pose`](Self::pose) reads.
     pub(super) fn fetch_pose(&self) {
         let (frame, _) = self.frame_at(self.position);
         self.frames.fetch(frame);
     }
 
-    /// The same for what a [`step`](Self::step) reads that stays within a step.
+    /// Prefetches the memory that a [`step`](Self::step) without a new step reads.
     pub(super) fn fetch_place(&self) {
         let (frame, _) = self.frame_at(self.position);
         self.frames.fetch_place(frame);
     }
 
-    /// Writes how it is posed in its own space.
+    /// Writes the pose in the character's own space.
     pub(super) fn pose(&self, out: &mut CrowdPose) {
         if let (Some(life), Some(rest)) = (&self.life, &self.rest)
             && self.is_standing()
@@ -279,7 +279,7 @@ impl OwnWalk {
         self.frames.blend(frame, weight, out);
     }
 
-    /// Lets time pass for someone who stands, or has just begun to walk.
+    /// Advances the standing motion of a walker that stands, or has just begun to walk.
     pub(super) fn live(&mut self, dt_secs: f32, workshop: &mut Workshop) {
         let stands = self.is_standing();
         let Some(life) = &mut self.life else { return };
@@ -290,27 +290,27 @@ impl OwnWalk {
         }
     }
 
-    /// The frame before a time of the step, and the weight of the one after it.
+    /// Returns the frame before a time of the step, and the weight of the next one.
     pub(super) fn frame_at(&self, position: f32) -> (usize, f32) {
-        // A power of two, but for steps that were taken over from those that all share.
+        // A power of two, except for shared steps.
         let each = self.shape.timing.frames as f32 / (self.frames.len() - 1) as f32;
         let position = position / each;
         let frame = (position.floor() as usize).min(self.frames.len() - 2);
         (frame, position - frame as f32)
     }
 
-    /// The foot that began its step.
+    /// Returns the foot that began the step.
     pub(super) fn side(&self) -> Side {
         self.shape.timing.leading
     }
 
-    /// Speed at the end of its step, m/s; none for one that ends in a stand.
+    /// Returns the speed at the end of the step, m/s; `None` for one that ends standing.
     pub(super) fn speed_mps(&self) -> Option<f32> {
         let walks = self.shape.amplitude.to >= 1.0;
         walks.then(|| self.ending.velocity_mps.length())
     }
 
-    /// Place and heading of the character, from where it began.
+    /// Returns the place and heading of the character relative to its start.
     pub(super) fn start_from_character(&self) -> GroundTransform {
         self.plan_from_start.local(&self.plan_from_character())
     }
@@ -319,7 +319,7 @@ impl OwnWalk {
         self.place_at(self.position)
     }
 
-    /// Place in the plan so many frames after the step began.
+    /// Returns the place in the plan this many frames after the step began.
     pub(super) fn place_at(&self, position: f32) -> GroundTransform {
         let (frame, weight) = self.frame_at(position);
         let [from, to] = [frame, frame + 1].map(|frame| self.frames.places[frame].place);

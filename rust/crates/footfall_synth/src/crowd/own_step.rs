@@ -1,4 +1,4 @@
-//! The next step of a walker of a crowd, generated in a workshop and kept.
+//! Generation of the next own step in a workshop.
 
 use super::led::LedStep;
 use super::own::{Chance, OwnWalk, variation};
@@ -11,7 +11,7 @@ use crate::source::Origin;
 use std::sync::Arc;
 
 impl OwnWalk {
-    /// Works out the next step; a led one is another walker's.
+    /// Generates the next step; a led step repeats another walker's.
     pub(super) fn next_step(
         &mut self,
         controls: Controls,
@@ -80,7 +80,7 @@ impl OwnWalk {
         self.footstep = self.footstep_at(self.landing);
     }
 
-    /// Keeps the step that was just worked out.
+    /// Keeps the step that was just generated.
     pub(super) fn take_over(&mut self, workshop: &mut Workshop) {
         self.chance = Chance::of(&workshop.planner);
         self.ending.arrival = workshop.window.planted().arrival;

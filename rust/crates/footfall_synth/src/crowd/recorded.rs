@@ -1,4 +1,4 @@
-//! A walker whose steps are recorded for all: chance leaves them alone.
+//! Recording of shared steps, without chance.
 
 use super::frames::CrowdPose;
 use super::own::OwnWalk;
@@ -10,7 +10,7 @@ use crate::standing::Life;
 use footfall_core::GroundTransform;
 
 impl OwnWalk {
-    /// Takes the mean of its steps from now on, again and again.
+    /// Takes only mean steps from now on.
     pub(super) fn take_mean_steps(&mut self) {
         self.even = true;
         for draw in &mut self.ending.draws {
@@ -18,30 +18,30 @@ impl OwnWalk {
         }
     }
 
-    /// Stands for so long, at the end of its step.
+    /// Stands for this long, at the end of its step.
     pub(super) fn rest_for(&mut self, secs: f32, workshop: &mut Workshop) {
         self.position = self.shape.timing.frames as f32;
         self.live(secs, workshop);
     }
 
-    /// The pose in which it stands still, and its life there.
+    /// Returns the pose in which it stands still, and its standing motion.
     pub(super) fn still(&self) -> Option<(PlantedFrame, Life)> {
         let still = self.rest.as_ref()?.still.clone();
         Some((still, self.life.clone()?))
     }
 
-    /// Length of its step, seconds.
+    /// Returns the duration of its step, seconds.
     pub(super) fn step_secs(&self) -> f32 {
         self.shape.timing.frames as f32 / self.frame_rate_hz
     }
 
-    /// Writes the pose so many frames after the step began.
+    /// Writes the pose this many frames after the step began.
     pub(super) fn pose_at(&self, position: f32, out: &mut CrowdPose) {
         let (frame, weight) = self.frame_at(position);
         self.frames.blend(frame, weight, out);
     }
 
-    /// The landing that began the step, seen from a place of the plan.
+    /// Returns the initial contact of the step, relative to a place of the plan.
     pub(super) fn landing_from(&self, place: &GroundTransform) -> Option<Footstep> {
         let side = self.shape.timing.leading;
         let landing = self.landing_of_step()?;

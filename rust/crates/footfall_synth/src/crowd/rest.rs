@@ -1,4 +1,4 @@
-//! A crowd's walker at rest: a moment of standing at a time, worked out ahead.
+//! Rest in a crowd: poses of standing motion, computed ahead.
 
 use super::frames::{CrowdFrames, CrowdPose, FrameBuffers};
 use crate::detail::Detail;
@@ -6,22 +6,22 @@ use crate::ground::PlantedFrame;
 use crate::standing::{Life, Moment};
 use footfall_core::Skeleton;
 
-/// Poses that are worked out ahead, and how far apart they are in full detail, seconds.
+/// Number of poses computed ahead, and time between them in full detail, seconds.
 const AHEAD: usize = 8;
 const APART_SECS: f32 = 0.1;
 
-/// Somebody who rests.
+/// A resting walker.
 #[derive(Debug)]
 pub(super) struct Rest {
-    /// The pose in which the walker came to a stand.
+    /// Pose in which the walker stopped.
     pub(super) still: PlantedFrame,
     frames: CrowdFrames,
-    /// When the poses begin in the walker's life, and how far apart they are, seconds; nothing before the first.
+    /// Time of the first pose in the walker's standing motion, and time between poses, seconds; `None` before the first.
     begin_secs: f64,
     apart_secs: Option<f32>,
 }
 
-/// Buffers in which poses are worked out.
+/// Buffers for the computation of poses.
 #[derive(Debug)]
 pub(super) struct RestBuffers {
     pub(super) planted: Vec<PlantedFrame>,
@@ -29,7 +29,7 @@ pub(super) struct RestBuffers {
 }
 
 impl RestBuffers {
-    /// With room for steps of at most `longest` frames.
+    /// Makes buffers for steps of at most `longest` frames.
     pub(super) fn new(longest: usize) -> Self {
         Self {
             planted: Vec::with_capacity(Detail::ground_room(longest) + 1),
@@ -39,7 +39,7 @@ impl RestBuffers {
 }
 
 impl Rest {
-    /// In the last frame of a step that ends in a stand.
+    /// Begins a rest in the last frame of a step that ends standing.
     pub(super) fn new(still: &PlantedFrame) -> Self {
         Self {
             still: still.clone(),
@@ -49,13 +49,13 @@ impl Rest {
         }
     }
 
-    /// The same for one who came to a stand again.
+    /// Begins another rest.
     pub(super) fn begin(&mut self, still: &PlantedFrame) {
         self.still.clone_from(still);
         self.apart_secs = None;
     }
 
-    /// Has the poses around a moment, working out new ones where they have run out.
+    /// Computes new poses if those around a moment have run out.
     pub(super) fn reach(
         &mut self,
         life: &Life,
@@ -79,7 +79,7 @@ impl Rest {
         self.apart_secs = Some(apart_secs);
     }
 
-    /// Writes the pose of a moment; whether it has it.
+    /// Writes the pose of a moment; returns false if it is not available.
     pub(super) fn pose(&self, moment: &Moment, out: &mut CrowdPose) -> bool {
         let place = self.place(moment);
         if let Some((frame, weight)) = place {
@@ -88,7 +88,7 @@ impl Rest {
         place.is_some()
     }
 
-    /// The pose before a moment, and the weight of the one after it.
+    /// Returns the index of the pose before a moment, and the weight of the next one.
     fn place(&self, moment: &Moment) -> Option<(usize, f32)> {
         let position = (moment.secs - self.begin_secs) as f32 / self.apart_secs?;
         let frame = position.floor();
@@ -98,7 +98,7 @@ impl Rest {
     }
 }
 
-/// Moves the frames of a step that begins in a stand by what is left of the life there.
+/// Adds the fading standing motion to the frames of a step that begins standing.
 pub(super) fn leave(life: &Life, frames: &mut [PlantedFrame], apart_secs: f32) {
     for (frame, index) in frames.iter_mut().zip(0_u16..) {
         let moment = life.moment.after(f32::from(index) * apart_secs, false);

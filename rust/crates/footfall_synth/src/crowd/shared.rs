@@ -1,4 +1,4 @@
-//! Steps that walkers far away share: one of each speed and side, of a few people, and moments of their standing. Worked out once for each mixture of styles on a body.
+//! Shared steps of distant walkers: one for each speed and side of a few people, and their standing, recorded once for each mixture of styles on a body.
 
 use super::frames::{CrowdPose, POSE_NUMBERS};
 use super::own::{Ending, OwnWalk};
@@ -14,29 +14,29 @@ use crate::standing::Life;
 use footfall_core::{GroundTransform, Joint, Side};
 use glam::Vec2;
 
-/// Poses of a step: the last is the first of the step that follows.
+/// Number of poses of a step; the last is the first of the next step.
 pub(super) const STEP_POSES: usize = 9;
-/// Poses of somebody who stands, how far apart they are, seconds, and how many of them lead back to the first.
+/// Number of poses of standing, time between them, seconds, and number of poses that lead back to the first.
 const REST_POSES: usize = 24;
 pub(super) const REST_APART_SECS: f32 = 0.4;
 const REST_LOOPED: usize = 6;
 
-/// Speeds of the steps, m/s, each nearly a quarter above the one before. In the first two somebody stands and turns on the spot.
+/// Speeds of the steps, m/s, each nearly a quarter above the previous one. The first two are standing and turning on the spot.
 pub(super) const SPEEDS_MPS: [f32; 15] = [
     0.0, 0.0, 0.35, 0.5, 0.7, 0.9, 1.1, 1.35, 1.65, 2.0, 2.5, 3.1, 3.9, 4.8, 5.9,
 ];
 pub(super) const STAND: usize = 0;
 pub(super) const SPOT: usize = 1;
-/// Turning of who turns on the spot, rad/s; and the speed from which a stop is recorded, m/s.
+/// Turn rate on the spot, rad/s, and speed from which a stop is recorded, m/s.
 const SPOT_RADPS: f32 = 0.5;
 const STOPPED_FROM_MPS: f32 = 1.1;
 
-/// People whose steps are taken.
+/// Number of people.
 pub(super) const PEOPLE: usize = 2;
-/// Steps after which nothing is left of the speed before.
+/// Number of steps after which the previous speed has no influence.
 const SETTLING: usize = 4;
 
-/// Whose step it is, with which foot it begins, and its place among the speeds.
+/// Kind of a step: person, leading foot, and index of the speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     pub(super) person: u8,
@@ -44,35 +44,35 @@ pub(super) struct Kind {
     pub(super) speed: u8,
 }
 
-/// Way of a step over the ground.
+/// Course of a step over the ground.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Course {
     pub(super) secs: f32,
     pub(super) speed_mps: f32,
-    /// Places at each pose, from that at the first: to the left and forwards, metres.
+    /// Places at each pose relative to the first, to the left and forwards, metres.
     pub(super) places: [Vec2; STEP_POSES],
     pub(super) contacts: [[bool; 2]; STEP_POSES],
-    /// The landing that begins it, seen from the place where it begins.
+    /// Initial contact relative to the place at the beginning.
     pub(super) landing: Option<Footstep>,
 }
 
-/// A step as one who goes on alone needs it.
+/// End of a shared step, from which own steps continue.
 #[derive(Clone, Debug)]
 pub(super) struct Shared {
     pub(super) ending: Ending,
     pub(super) shape: StepShape,
-    /// Place in its own plan where it ends.
+    /// Place of the end in the plan of the step.
     pub(super) end: GroundTransform,
-    /// The pose in which it comes to a stand, and the life of who stands then.
+    /// Pose in which it stops, and the standing motion there.
     pub(super) still: Option<(PlantedFrame, Life)>,
 }
 
-/// All of them.
+/// All shared steps of a body.
 #[derive(Debug)]
 pub(super) struct SharedSteps {
     courses: Vec<Course>,
     steps: Vec<Option<Shared>>,
-    /// Poses of all steps, then of all who stand, each with its first pose once more at the end.
+    /// Poses of all steps, then those of standing, each sequence with its first pose repeated at the end.
     poses: Vec<[i16; POSE_NUMBERS]>,
 }
 
@@ -84,12 +84,12 @@ impl Kind {
 
     const KINDS: usize = 2 * PEOPLE * SPEEDS_MPS.len();
 
-    /// Index of its first pose.
+    /// Returns the index of its first pose.
     pub(super) fn first_pose(self) -> usize {
         self.index() * STEP_POSES
     }
 
-    /// Index of a pose, and the weight of the one that follows, of who has stood for so long.
+    /// Returns the index of the pose of standing at this time, and the weight of the next one.
     pub(super) fn rest_pose(self, rest_secs: f32) -> (usize, f32) {
         let person = 2 * usize::from(self.person) + self.side.index();
         let at = (rest_secs / REST_APART_SECS).rem_euclid(REST_POSES as f32);
@@ -99,10 +99,10 @@ impl Kind {
     }
 }
 
-/// The place among the speeds that is nearest to one.
+/// Returns the index of the nearest speed.
 pub(super) fn nearest_speed(speed_mps: f32) -> usize {
     let faster = |pair: &[f32]| speed_mps * speed_mps > pair[0] * pair[1];
-    // Between turning on the spot and the slowest walk lies half of that.
+    // The limit between turning on the spot and the slowest walk is half of that.
     if speed_mps < 0.5 * SPEEDS_MPS[SPOT + 1] {
         return SPOT;
     }
@@ -111,7 +111,7 @@ pub(super) fn nearest_speed(speed_mps: f32) -> usize {
 }
 
 impl SharedSteps {
-    /// Has some people walk at all speeds, and stand.
+    /// Records some people walking at all speeds and standing.
     ///
     /// # Errors
     /// [`SynthError`] when the model gives no trajectory.
@@ -158,14 +158,14 @@ impl SharedSteps {
         }
     }
 
-    /// Stops with either foot, and stands for a while.
+    /// Records stops with either foot, and standing.
     fn record_stands(&mut self, person: u8, walker: &mut OwnWalk, workshop: &mut Workshop) {
         walker.detail = Detail::Quarter;
         let walks = Controls {
             speed_mps: STOPPED_FROM_MPS,
             ..Controls::STAND
         };
-        // From one stop to the next lies an odd number of steps.
+        // An odd number of steps between two stops.
         for steps in [2 * SETTLING, SETTLING + 2] {
             for _ in 0..steps {
                 walker.next_step(walks, None, workshop);
@@ -183,7 +183,7 @@ impl SharedSteps {
         }
     }
 
-    /// Keeps the step that a walker has just worked out.
+    /// Keeps the current step of a walker.
     fn take(&mut self, kind: Kind, walker: &OwnWalk, still: Option<(PlantedFrame, Life)>) {
         let frames = walker.shape.timing.frames as f32;
         let end = walker.place_at(frames);
@@ -221,14 +221,14 @@ impl SharedSteps {
         let (first, _) = kind.rest_pose(0.0);
         let mut shown = still.clone();
         for pose in 0..=REST_POSES {
-            // It begins still, as life comes up, and ends so.
+            // It begins and ends still.
             let after = pose.saturating_sub(REST_POSES - REST_LOOPED) as f32;
             let out = shown.mixed(&still, after / REST_LOOPED as f32);
             out.shrink(&mut self.poses[first + pose]);
             walker.rest_for(REST_APART_SECS, workshop);
             walker.pose(&mut shown);
         }
-        // The step into the stand, and out of it, goes to and from the first of them.
+        // Steps that stop and start lead to and from the first pose.
         let rest = self.poses[first];
         let step = kind.first_pose();
         self.poses[step..step + STEP_POSES].fill(rest);
@@ -243,24 +243,24 @@ impl SharedSteps {
         };
     }
 
-    /// Way of a step.
+    /// Returns the course of a step.
     pub(super) fn course(&self, kind: Kind) -> &Course {
         &self.courses[kind.index()]
     }
 
-    /// The step as one who goes on alone needs it, where there is one.
+    /// Returns the end of a step, from which own steps continue, if there is one.
     pub(super) fn step(&self, kind: Kind) -> Option<&Shared> {
         self.steps[kind.index()].as_ref()
     }
 
-    /// All poses.
+    /// Returns all poses.
     pub(super) fn poses(&self) -> &[[i16; POSE_NUMBERS]] {
         &self.poses
     }
 }
 
 impl Default for SharedSteps {
-    /// Nobody moves.
+    /// Steps without any motion.
     fn default() -> Self {
         let poses = Kind::KINDS * STEP_POSES + 2 * PEOPLE * (REST_POSES + 1);
         Self {

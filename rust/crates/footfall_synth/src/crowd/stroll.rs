@@ -1,4 +1,4 @@
-//! One walker's way in shared steps: which step, how much of it is over, and where that is.
+//! Walk in shared steps: the current step, its progress, and the place.
 
 use super::frames::{CrowdPose, POSE_NUMBERS};
 use super::shared::{Course, Kind, PEOPLE, SPOT, STAND, STEP_POSES, SharedSteps, nearest_speed};
@@ -10,49 +10,49 @@ use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{GroundTransform, Side};
 use glam::{Vec2, Vec3};
 
-/// Time in which a walk comes to a stand, seconds.
+/// Time in which a walk stops, seconds.
 const STOP_SECS: f32 = 0.4;
-/// A shared step is walked no slower and no faster than by these factors.
+/// Bounds of the factor on the tempo of a shared step.
 const PACES: [f32; 2] = [0.85, 1.15];
-/// Parts in which the weight of a speed that is left is counted: half floats tell no finer ones.
+/// Resolution of the weight of the previous speed, limited by half floats.
 const LEAVING_PARTS: f32 = 64.0;
 
 /// Place of a walker among shared steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stroll {
-    /// Place in which the step began.
+    /// Place where the step began.
     pub(super) start: GroundTransform,
     /// Turn from there to its end, radians.
     turn: f32,
-    /// Share of it that is over.
+    /// Share of the step that has passed.
     share: f32,
-    /// Factor on its tempo.
+    /// Factor on the tempo of the step.
     pace: f32,
-    /// Time that it has stood, and as much of it as it has moved, seconds.
+    /// Time since it stopped, and the part of it with standing motion, seconds.
     stood_secs: f32,
     rest_secs: f32,
     person: u8,
     side: Side,
-    /// Speed at its end, and at its beginning.
+    /// Indices of the speeds at the end and the beginning of the step.
     speed: u8,
     from: u8,
 }
 
-/// A pose among those that the walkers of a [`StyledBody`](super::StyledBody) share: a blend of two that follow each other, and of the same two at another speed.
+/// Pose among the shared ones of a [`StyledBody`](super::StyledBody): a blend of two consecutive poses, and of the same two at another speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SharedPose {
     /// Index of the first of the two.
     pub pose: u32,
     /// Weight of the second one.
     pub blend: f32,
-    /// The two of the speed that is left lie beyond them by this number of steps, of nine poses each.
+    /// Offset to the same two poses of the previous speed, in steps of nine poses each.
     pub beside: i8,
-    /// Their weight: a number of 64ths below 1.
+    /// Weight of the previous speed, in 64ths, below 1.
     pub leaving: f32,
 }
 
 impl Stroll {
-    /// One who walks at this speed, in this phase of the stride.
+    /// Begins a walk at this speed, in this phase of the stride.
     pub(super) fn new(seed: u64, speed_mps: f32, phase: f32) -> Self {
         let halves = 2.0 * phase.rem_euclid(1.0);
         let mut stroll = Self {
@@ -75,7 +75,7 @@ impl Stroll {
         stroll
     }
 
-    /// One who has just ended a step at this place, with the foot that began it, at this speed; none for somebody who has come to a stand.
+    /// Begins at the end of an own step: its place, the foot that began it, and its speed; `None` for a walker that has stopped.
     pub(super) fn after(
         seed: u64,
         end: &GroundTransform,
@@ -95,7 +95,7 @@ impl Stroll {
         stroll
     }
 
-    /// Is at this place now.
+    /// Moves the walk to this place.
     pub(super) fn be_at(&mut self, place: &GroundTransform, steps: &SharedSteps) {
         self.start = GroundTransform {
             position: Vec3::ZERO,
@@ -104,7 +104,7 @@ impl Stroll {
         self.start.position = place.position - self.place(steps).position;
     }
 
-    /// Walks its step so that it goes at this speed, as far as that looks well.
+    /// Adapts the tempo of the step to this speed, within the bounds.
     fn keep_pace(&mut self, speed_mps: f32, steps: &SharedSteps) {
         let course = steps.course(self.ending());
         self.pace = if usize::from(self.speed) > SPOT {
@@ -127,12 +127,12 @@ impl Stroll {
         }
     }
 
-    /// The first shared pose of the step that it is in.
+    /// Returns the first shared pose of the current step.
     pub(super) fn first_pose(&self) -> usize {
         self.kind(self.from).first_pose()
     }
 
-    /// The shared step at whose end it is, or comes to.
+    /// Returns the shared step at whose end the walker is, or will be.
     pub(super) fn ending(&self) -> Kind {
         self.kind(self.speed)
     }
@@ -141,7 +141,7 @@ impl Stroll {
         [self.from, self.speed].map(|speed| steps.course(self.kind(speed)))
     }
 
-    /// Length of the step, seconds.
+    /// Returns the duration of the step, seconds.
     fn secs(&self, steps: &SharedSteps) -> f32 {
         let [from, to] = self.courses(steps);
         if usize::from(self.speed) == STAND {
@@ -153,7 +153,7 @@ impl Stroll {
         }
     }
 
-    /// Returns whether it has come to a stand.
+    /// Returns true when the walker has stopped.
     pub(super) fn is_standing(&self) -> bool {
         usize::from(self.speed) == STAND && self.share >= 1.0
     }
@@ -174,7 +174,7 @@ impl Stroll {
         self.rest_secs
     }
 
-    /// Share of what was left of another walk that shows still, in its first step or as it stands for so long.
+    /// Returns the weight of the fading own pose, in the first step or while standing for this long.
     pub(super) fn leaving(&self, stand_secs: f32) -> f32 {
         let passed = if self.is_standing() {
             self.stood_secs / stand_secs
@@ -184,7 +184,7 @@ impl Stroll {
         1.0 - smooth_step(passed)
     }
 
-    /// Lets time pass within the step; what is left when that has ended, seconds.
+    /// Advances within the step; returns the remaining time after its end, seconds.
     pub(super) fn pass(&mut self, dt_secs: f32, lives: bool, steps: &SharedSteps) -> Option<f32> {
         if self.is_standing() {
             self.stood_secs += dt_secs;
@@ -200,7 +200,7 @@ impl Stroll {
         })
     }
 
-    /// Begins the next step where this one has ended; returns the landing that begins it. `None` where it stays standing.
+    /// Begins the next step at the end of this one; returns its initial contact. `None` if the walker stays standing.
     pub(super) fn next(&mut self, controls: Controls, steps: &SharedSteps) -> Option<Footstep> {
         let stands = usize::from(self.speed) == STAND;
         if stands && controls.is_standing() {
@@ -248,19 +248,19 @@ impl Stroll {
         })
     }
 
-    /// Place and heading, from where the walk began.
+    /// Returns the place and heading relative to the start.
     pub(super) fn place(&self, steps: &SharedSteps) -> GroundTransform {
         let share = self.share.min(1.0);
         let [from, to] = self.courses(steps);
         let along = if self.from == self.speed {
             to.place_at(share)
         } else {
-            // The speed goes smoothly from the one to the other.
+            // The speed changes smoothly.
             let gone_over = share * share * share * (1.0 - 0.5 * share);
             let [from, to] = [from, to].map(|course| course.places[STEP_POSES - 1]);
             from * (share - gone_over) + to * gone_over
         };
-        // On the whole it goes in the direction that it has in the middle of its turn.
+        // The step as a whole goes in the direction of the middle of its turn.
         let middle = from_heading(self.start.heading + 0.5 * self.turn);
         GroundTransform {
             position: self.start.position + middle * Vec3::new(along.x, 0.0, along.y),
@@ -275,7 +275,7 @@ impl Stroll {
         course.contacts[pose as usize]
     }
 
-    /// Its pose among the shared ones so long ago: within this step, or the one before.
+    /// Returns the pose among the shared ones this long ago: in this step or the previous one.
     pub(super) fn look(&self, ago_secs: f32, steps: &SharedSteps) -> SharedPose {
         if self.is_standing() {
             let rest_secs = (self.rest_secs - ago_secs).max(0.0);
@@ -300,7 +300,7 @@ impl Stroll {
         Self { share, ..*self }.within()
     }
 
-    /// Its pose within the step.
+    /// Returns the pose within the step.
     fn within(&self) -> SharedPose {
         let share = self.share.clamp(0.0, 1.0);
         let at = share * (STEP_POSES - 1) as f32;
@@ -343,7 +343,7 @@ impl SharedSteps {
         }
     }
 
-    /// Moves a pose by as much of what another one is away from a shared one as this weight says.
+    /// Adds the difference between another pose and a shared one by a weight.
     pub(super) fn shift(
         &self,
         out: &mut CrowdPose,
@@ -358,7 +358,7 @@ impl SharedSteps {
         out.shift(&shared, &own, weight);
     }
 
-    /// The last pose of a step, in which the next one begins.
+    /// Returns the last pose of a step, with which the next one begins.
     pub(super) fn last_pose(&self, kind: Kind) -> &[i16; POSE_NUMBERS] {
         &self.poses()[kind.first_pose() + STEP_POSES - 1]
     }

@@ -1,4 +1,4 @@
-//! Resources that the walkers of a crowd share: styles on a body, and the buffers in which steps are worked out.
+//! Resources that the walkers of a crowd share: styles on a body, and the workshop in which steps are generated.
 
 use super::frames::CrowdPose;
 use super::own::OwnWalk;
@@ -10,7 +10,7 @@ use crate::source::{MeasuredBlend, StepBuffers, StepWindow, StyleSpace};
 use footfall_core::Skeleton;
 use std::sync::{Arc, OnceLock};
 
-/// Own walks that nobody walks are kept for those who need one, so many.
+/// Maximum number of unused own walks that are kept for reuse.
 const SPARES: usize = 1024;
 
 /// A mixture of styles on a body, measured once for all walkers of a crowd that share it.
@@ -28,7 +28,7 @@ pub(super) struct Styled {
 
 impl StyledBody {
     /// Mixes the space's styles, weights as of [`GaitGenerator::set_style_weights`](crate::GaitGenerator::set_style_weights), and
-    /// measures how fast they walk on this body, and works out the steps that walkers far away share: about ten milliseconds.
+    /// measures their paces on this body, and generates the steps that distant walkers share: about ten milliseconds.
     ///
     /// # Errors
     /// [`SynthError`] when the model or the skeleton cannot be used.
@@ -54,18 +54,18 @@ impl StyledBody {
         Ok(made)
     }
 
-    /// The same under a number by which its walkers tell whose [poses](Self::shared_pose) they share.
+    /// Sets a number, by which walkers identify the body whose [poses](Self::shared_pose) they share.
     #[must_use]
     pub fn numbered(self, number: u32) -> Self {
         Self(self.0, number)
     }
 
-    /// The number that it was given.
+    /// Returns the number that was set.
     pub const fn number(&self) -> u32 {
         self.1
     }
 
-    /// Number of the poses that its walkers far away share.
+    /// Returns the number of poses that distant walkers share.
     pub fn shared_poses(&self) -> usize {
         self.0.shared().poses().len()
     }
@@ -76,32 +76,32 @@ impl StyledBody {
         out.blend(pose, pose, 0.0);
     }
 
-    /// The body.
+    /// Returns the body.
     pub fn skeleton(&self) -> &Skeleton {
         &self.0.skeleton
     }
 
-    /// The speed that suits it best, m/s.
+    /// Returns the usual speed, that of the recordings, m/s.
     pub fn usual_speed_mps(&self) -> f32 {
         self.0.measured.blend.model.speed.reference_mps as f32
     }
 }
 
 impl Styled {
-    /// Steps that walkers far away share.
+    /// Returns the steps that distant walkers share.
     pub(super) fn shared(&self) -> &SharedSteps {
         self.shared.get_or_init(SharedSteps::default)
     }
 }
 
-/// Working memory for steps, for walkers of one model on one body; one a thread.
+/// Working memory for the steps of walkers of one model on one body; one per thread.
 #[derive(Debug)]
 pub struct Workshop {
     pub(super) planner: Planner,
     pub(super) window: StepWindow,
     pub(super) buffers: StepBuffers,
     pub(super) rest: RestBuffers,
-    /// Own walks that nobody walks.
+    /// Unused own walks.
     #[expect(
         clippy::vec_box,
         reason = "handed on from walker to walker as they are"
@@ -110,14 +110,14 @@ pub struct Workshop {
 }
 
 impl Workshop {
-    /// Keeps an own walk that nobody walks any more, as long as there is room.
+    /// Keeps an unused own walk, as long as there is room.
     pub(super) fn spare(&mut self, own: Option<Box<OwnWalk>>) {
         if self.spares.len() < SPARES {
             self.spares.extend(own);
         }
     }
 
-    /// For walkers like this one.
+    /// Creates a workshop for walkers of this body.
     pub fn new(styled: &StyledBody) -> Self {
         let blend = &styled.0.measured.blend;
         Self {

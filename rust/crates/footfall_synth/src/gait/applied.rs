@@ -1,19 +1,19 @@
-//! Requests that the current step was made to obey.
+//! Controls that the current step follows.
 
 use super::request::StepControls;
 use glam::Vec2;
 
-/// Smaller changes of what is asked for wait for the next step, m/s and rad/s.
+/// Smaller changes of the controls wait for the next step, m/s and rad/s.
 const NEW_VELOCITY_MPS: f32 = 0.2;
 const NEW_TURN_RATE_RADPS: f32 = 0.35;
 
-/// Requests that a step was made to obey.
+/// Controls that a step was planned for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct AppliedControls {
     pub(crate) velocity_mps: Vec2,
     pub(crate) turn_rate: f32,
     pub(crate) stops: bool,
-    /// Set where it has a foothold on the ground, and may be longer or shorter for it: then it stays as it is.
+    /// True for a step with a foothold on the ground, whose length may have been adapted: it is not replanned.
     pub(crate) stretched: bool,
 }
 
@@ -27,7 +27,7 @@ impl AppliedControls {
         }
     }
 
-    /// Returns whether so much else is asked for that it shall not wait for the next step.
+    /// Returns true when the controls differ so much that they cannot wait for the next step.
     pub(crate) fn differs_from(&self, controls: &StepControls) -> bool {
         let other = Self::of(controls);
         self.velocity_mps.distance(other.velocity_mps) > NEW_VELOCITY_MPS

@@ -10,20 +10,20 @@ use crate::detail::Detail;
 use footfall_core::StepPosition;
 use glam::Vec2;
 
-/// Steps that start a walk and that end one take this long at most, seconds.
+/// Maximum durations of the steps that start and end a walk, seconds.
 const FIRST_SECS: f64 = 0.45;
 const LAST_SECS: f64 = 0.4;
 
-/// The speed that a first step reaches at most, m/s.
+/// Maximum speed at the end of a first step, m/s.
 const FIRST_MPS: f32 = 2.0;
 
-/// The rest of a step is walked no faster than this, m/s.
+/// Maximum speed of the remainder of a replanned step, m/s.
 const REST_MOST_MPS: f32 = 2.0;
 
-/// A walked step of which less has passed can end a walk, for hips are still behind the foot that stands; and the hardest that hips brake for it, m/s².
+/// Share of a walked step until which it can still end the walk, because the hips are behind the standing foot; and the hardest braking of the hips for it, m/s².
 const CLOSED_FROM: f64 = 0.45;
 const HARDEST_BRAKING_MPS2: f64 = 6.0;
-/// Steps that go to the side by more than this share of their way forwards do not.
+/// Largest sideways share of the way forwards with which a step can still end the walk.
 const STRAIGHT: f32 = 0.2;
 
 /// Gaits of one body, each with its paces.
@@ -39,7 +39,7 @@ pub(crate) struct StepChooser {
 }
 
 impl StepChooser {
-    /// Fastest speed that it goes at, m/s.
+    /// Maximum speed, m/s.
     pub(crate) const fn fastest_mps(&self) -> f32 {
         if self.run.is_some() {
             FASTEST_RUN_MPS
@@ -48,8 +48,8 @@ impl StepChooser {
         }
     }
 
-    /// The next step, after one of this gait, and the gait that it is walked or run in. `velocity_mps` is the
-    /// walk's and follows.
+    /// Returns the request for the next step, after one of this gait, and its gait. `velocity_mps` is the velocity of the walk and is
+    /// updated.
     pub(crate) fn request(
         &self,
         controls: &StepControls,
@@ -59,7 +59,7 @@ impl StepChooser {
         let mut amplitude = controls.amplitude;
         let too_fast = velocity_mps.length() > self.first_mps();
         if amplitude.to < 1.0 && amplitude.from >= 1.0 && too_fast {
-            // Who runs slows down before coming to a stand.
+            // A runner slows down before stopping.
             amplitude.to = 1.0;
         }
         let sets_out = amplitude.from < 1.0 && amplitude.to >= 1.0;
@@ -78,7 +78,7 @@ impl StepChooser {
         let (mut pace, facing) = match (gait, &self.run) {
             (Gait::Run, Some(run)) => {
                 let speed = velocity_mps.length();
-                // The body turns to where it runs.
+                // A runner faces the direction of travel.
                 let direction = velocity_mps.x.atan2(velocity_mps.y);
                 let facing = run.facing + direction;
                 (run.pace(f64::from(speed)), facing)
@@ -107,9 +107,9 @@ impl StepChooser {
         (request, gait)
     }
 
-    /// The rest of a walked step that came from `before` and would have so many frames in all, of which this share has passed, when something else is asked
-    /// for in its middle. It takes no longer than it would have. Whoever is to stop closes it beside the standing foot, as long as the hips are behind that
-    /// one and need not brake too hard; otherwise the next step does.
+    /// Returns the request for the remainder of a walked step when the controls change within it. `before` is its request, `frames` its whole length and
+    /// `passed` the share that is over. The remainder takes no longer than planned. A walker that is to stop brings the feet together, provided that the hips
+    /// are behind the standing foot and need not brake too hard; otherwise the next step does so.
     pub(crate) fn remainder_request(
         &self,
         controls: &StepControls,
@@ -165,7 +165,7 @@ impl StepChooser {
             .of_step(before, velocity_mps, self.leg_length, ends)
     }
 
-    /// The speed that a first step reaches at most, and from which one that stops can be taken, m/s.
+    /// Maximum speed of a first step, and maximum speed from which a step can stop, m/s.
     fn first_mps(&self) -> f32 {
         if self.run.is_some() {
             STOPPABLE_MPS
@@ -174,7 +174,7 @@ impl StepChooser {
         }
     }
 
-    /// A walk under way at the speed that suits it.
+    /// Request for a step inside a walk at the usual speed.
     pub(crate) fn walking_request(&self, detail: Detail) -> StepRequest {
         let speed = self.usual_mps;
         StepRequest {
@@ -190,7 +190,7 @@ impl StepChooser {
         }
     }
 
-    /// Someone who stands.
+    /// Request for standing.
     pub(crate) fn standing_request(&self, detail: Detail) -> StepRequest {
         StepRequest {
             manner: Manner {

@@ -3,22 +3,22 @@
 use super::direction::overstep;
 use glam::Vec2;
 
-/// Number of paces that are measured.
+/// Number of measured paces.
 pub(crate) const SAMPLES: usize = 7;
 
-/// Largest factor by which tempo and stride together exceed what was measured.
+/// Largest factor by which tempo and stride together exceed the measured range.
 const MAX_RESIDUAL: f64 = 1.6;
 
 /// Least factor on the tempo: slower walks take shorter strides instead.
 const MIN_TEMPO: f64 = 0.8;
 
-/// Factor on the tempo of the briskest walk at which steps to the side and backwards are taken at most.
+/// Largest factor on the tempo of the briskest walk, for steps to the side and backwards.
 const MOST_QUICKER: f64 = 1.9;
 
-/// Tolerance of the search for a walk whose steps are quick enough, m/s.
+/// Increment of the search for a walk with short enough steps, m/s.
 const BRISKER_MPS: f64 = 0.05;
 
-/// Pace of a step: the result of the speed response and the limits of the model for a speed.
+/// Pace of a step: where a speed lies on the model's speed response, and factors for speeds beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pace {
     /// Place on the model's speed response, m/s.
@@ -32,7 +32,7 @@ pub(crate) struct Pace {
 /// Speeds of one walker at the paces of the model.
 #[derive(Clone, Debug)]
 pub(crate) struct PaceTable {
-    /// Covariate and realised speed, both rising, m/s, and how long a step lasts, seconds.
+    /// Covariate and resulting speed, both rising, m/s, and duration of a step, seconds.
     samples: [[f64; 3]; SAMPLES],
     leg_length: f32,
     /// Heading under which the walk goes along +Z, radians.
@@ -40,7 +40,7 @@ pub(crate) struct PaceTable {
 }
 
 impl PaceTable {
-    /// A table of measured samples: covariate and realised speed, m/s, and how long a step lasts, seconds.
+    /// Makes a table of measured samples: covariate and resulting speed, m/s, and duration of a step, seconds.
     pub(crate) fn new(mut samples: [[f64; 3]; SAMPLES], leg_length: f32, facing: f32) -> Self {
         for index in 1..SAMPLES {
             // A corpus of one speed has a flat response: the order must still be strict.
@@ -53,13 +53,13 @@ impl PaceTable {
         }
     }
 
-    /// The pace that gives a speed forwards. Beyond the measured range tempo and stride share what is missing.
+    /// Returns the pace for a speed forwards. Beyond the measured range, tempo and stride share the missing factor.
     pub(crate) fn pace(&self, speed_mps: f64) -> Pace {
         self.pace_and_secs(speed_mps).0
     }
 
-    /// The pace that gives a velocity to the left and forwards. Where its steps would be too long, they are shorter ones of a brisker walk,
-    /// or of a quicker one still.
+    /// Returns the pace for a velocity to the left and forwards. If its steps would be too long, a brisker walk with shorter steps is chosen,
+    /// and a quicker tempo beyond that.
     pub(crate) fn pace_towards(&self, velocity_mps: Vec2) -> Pace {
         let speed = f64::from(velocity_mps.length());
         let fastest = self.samples[SAMPLES - 1][1];
@@ -77,7 +77,7 @@ impl PaceTable {
         }
     }
 
-    /// The same pace with a tempo at which its steps last so long at most, seconds.
+    /// Returns the pace with its tempo raised so that steps last at most `most_secs`.
     pub(crate) fn within(&self, mut pace: Pace, most_secs: f64) -> Pace {
         let speed = self
             .samples
@@ -88,7 +88,7 @@ impl PaceTable {
         pace
     }
 
-    /// The pace that gives a speed forwards, and how long its steps last.
+    /// Returns the pace for a speed forwards, and the duration of its steps, seconds.
     fn pace_and_secs(&self, speed_mps: f64) -> (Pace, f64) {
         let (first, last) = (self.samples[0], self.samples[SAMPLES - 1]);
         let within = speed_mps.clamp(first[1], last[1]);
@@ -108,7 +108,7 @@ impl PaceTable {
     }
 }
 
-/// Tempo and stride that share a factor on the speed.
+/// Returns the tempo and the stride that share a factor on the speed.
 pub(crate) fn tempo_and_stride(factor: f64) -> (f64, f64) {
     let tempo = factor.sqrt().max(MIN_TEMPO);
     (tempo, factor / tempo)

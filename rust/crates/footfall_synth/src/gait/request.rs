@@ -1,4 +1,4 @@
-//! Requests for one step: the controls as a step can follow them, and the step that a gait makes of them.
+//! Controls of one step, and the request that a gait makes of them.
 
 use super::kinds::Gait;
 use super::pace::Pace;
@@ -8,21 +8,21 @@ use crate::detail::Detail;
 use footfall_core::StepPosition;
 use glam::Vec2;
 
-/// Requirements of the next step.
+/// Controls within the limits of one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepControls {
-    /// Travel to the left and forwards from where the walker faces.
+    /// Velocity to the left and forwards relative to the facing direction.
     pub(crate) velocity_mps: Vec2,
     pub(crate) turn_rate: f32,
     pub(crate) amplitude: Amplitude,
     pub(crate) gait: GaitChoice,
-    /// Rise of the hips in a leap, if it is one, metres.
+    /// Rise of the hips in a leap, metres; `None` for other steps.
     pub(crate) leap_m: Option<f32>,
     pub(crate) detail: Detail,
 }
 
 impl StepControls {
-    /// Derives the requirements of the step after one of this amplitude from the controls.
+    /// Derives the controls of a step that follows one of this amplitude.
     pub(crate) fn after(
         before: Amplitude,
         controls: Controls,
@@ -42,12 +42,12 @@ impl StepControls {
         }
     }
 
-    /// The velocity of the next step, after one of this velocity and gait.
+    /// Returns the velocity of the next step, after one of this velocity and gait.
     pub(crate) fn velocity_after(&self, velocity_mps: Vec2, gait: Gait) -> Vec2 {
         self.velocity_within(velocity_mps, gait.most_change_mps())
     }
 
-    /// The velocity of the next step, which differs by so much at most from that of this one.
+    /// Returns the velocity of the next step, at most `most_mps` from that of this one.
     pub(crate) fn velocity_within(&self, velocity_mps: Vec2, most_mps: f32) -> Vec2 {
         velocity_mps + (self.velocity_mps - velocity_mps).clamp_length_max(most_mps)
     }
@@ -57,13 +57,13 @@ impl StepControls {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Manner {
     pub(crate) pace: Pace,
-    /// Place in the walk.
+    /// Position in the walk.
     pub(crate) position: StepPosition,
     pub(crate) detail: Detail,
 }
 
 impl Manner {
-    /// Inside a walk, in full detail.
+    /// Manner of a step inside a walk, in full detail.
     pub(crate) const fn inside(pace: Pace) -> Self {
         Self {
             pace,
@@ -73,17 +73,17 @@ impl Manner {
     }
 }
 
-/// StepRequest for one step.
+/// Request for one step: its gait's answer to the controls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StepRequest {
     pub(crate) manner: Manner,
     pub(crate) amplitude: Amplitude,
-    /// Turning at its end, rad/s.
+    /// Turn rate at the end of the step, rad/s.
     pub(crate) turn_rate: f32,
-    /// Travel to the left and forwards from where the walker faces.
+    /// Velocity to the left and forwards relative to the facing direction.
     pub(crate) velocity_mps: Vec2,
     /// Heading under which the walk goes along +Z, radians: people hold their hips a little askew.
     pub(crate) facing: f32,
-    /// Rise of the hips in a leap, if it is one, metres.
+    /// Rise of the hips in a leap, metres; `None` for other steps.
     pub(crate) leap_m: Option<f32>,
 }

@@ -1,4 +1,4 @@
-//! Standing, and the steps between standing and walking.
+//! Standing posture, and the blend between standing and walking.
 //!
 //! A model that was trained on standing people has their posture. For a model that only walks, the posture is the mean of a walk over straight legs. A
 //! step that starts or ends a walk blends between that posture and the walk, with the same planted feet.
@@ -16,10 +16,10 @@ pub(crate) type Posture = [f32; FEATURE_COUNT];
 /// Flexion of the knees of a standing walker, radians.
 const KNEE_FLEXION: f32 = 0.1;
 
-/// Part of a starting step in which it grows: before, the weight shifts.
+/// Part of a starting step in which the walk sets in; the weight shifts first.
 const GROWTH: [f32; 2] = [0.0, 0.7];
 
-/// Part of a stopping step by which it has shrunk.
+/// Part of a stopping step by the end of which the walk has faded.
 const SHRUNK_BY: f32 = 0.9;
 
 /// Share of the walk at the beginning and at the end of a step: 0 is standing, 1 is walking.
@@ -53,14 +53,14 @@ pub(crate) fn standing_features(model: &GaitModel) -> Posture {
     standing_posture(row(&model.mean_features()))
 }
 
-/// Features of the standing walker: the mean of a walk, the same left and right, on straight legs.
+/// Features of a standing walker, from the mean of a walk: made symmetric, on straight legs.
 pub(crate) fn standing_posture(mut mean: [f64; FEATURE_COUNT]) -> Posture {
     let mut mirrored = mean;
     mirror(&mut mirrored);
     for (mean, mirrored) in mean.iter_mut().zip(mirrored) {
         *mean = 0.5 * (*mean + mirrored);
     }
-    // After mirroring only the tilt is left of the hips: the legs undo it to stand upright.
+    // Mirroring leaves only the tilt of the hips; the legs compensate it to stand upright.
     let tilt = Quat::from_rotation_x(mean[feature_offset(Joint::Hips)] as f32);
     let thigh = Quat::from_rotation_x(-0.5 * KNEE_FLEXION);
     let mut set = |joint: Joint, rotation: Quat| {

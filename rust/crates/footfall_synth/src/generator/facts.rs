@@ -20,7 +20,7 @@ impl GaitGenerator {
     /// [`GaitModel::styled`](footfall_model::GaitModel::styled). Missing and non-finite weights count as 0.
     ///
     /// Takes about a millisecond when weights change, and nothing otherwise. A standing walker adopts the new
-    /// posture with its first step. A walker of a [`DynamicsModel`] has no styles.
+    /// posture with its first step. A walker of a [`DynamicsModel`](footfall_model::DynamicsModel) has no styles.
     pub fn set_style_weights(&mut self, weights: &[f32]) {
         if let Steps::Styled(steps) = &mut self.steps {
             steps.set_style_weights(&self.skeleton, weights);

@@ -1,4 +1,4 @@
-//! Interface to the ground: coming landings, and steps that land elsewhere.
+//! Footholds: coming landings, and steps adapted to the terrain.
 
 use super::GaitGenerator;
 use crate::ground::{PlantedStep, landings};
@@ -51,7 +51,7 @@ impl GaitGenerator {
         if wanted < SHORT_STEP_M {
             return;
         }
-        // Who is to go on at a speed in shorter steps takes them quicker, and who brakes less so.
+        // Shorter steps at the same speed are quicker; less so when the walker brakes.
         let secs = timing.frames as f32 / self.frame_rate_hz;
         let quickest = (secs * self.requested_mps / wanted).min(length / wanted);
         let haste = quickest.clamp(1.0, MOST_HASTE);
@@ -66,7 +66,7 @@ impl GaitGenerator {
     }
 }
 
-/// Distance of a landing foot ahead of the standing one, metres.
+/// Returns the distance of the landing foot ahead of the standing one, metres.
 fn step_length(shape: &StepShape, planted: &PlantedStep) -> f32 {
     let way = planted.travel(shape).normalize_or_zero();
     let leading = shape.timing.leading;

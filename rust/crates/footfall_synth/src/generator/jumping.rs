@@ -104,7 +104,7 @@ impl GaitGenerator {
         if pushed == Vec2::ZERO {
             return asked;
         }
-        // Who is pushed hard goes with it, and back on its way as the push is walked off.
+        // A hard push is followed with steps; the walker returns to its way as the push fades.
         let velocity = asked.velocity() + pushed;
         Controls {
             speed_mps: velocity.length(),

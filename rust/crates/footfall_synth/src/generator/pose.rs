@@ -1,4 +1,4 @@
-//! The pose at a time, between two planted frames, with all motion above the steps.
+//! Pose at the current time: between two planted frames, with all motion above the steps.
 
 use super::GaitGenerator;
 use crate::config::MAX_DT_SECS;

@@ -121,8 +121,8 @@ enum Source {
     },
 }
 
-/// State of a walker beyond that: a run, a step that obeys in its middle, a crouch or a jump, how its last landing was balanced, how it leans into a
-/// climb, and how it is led back to its place.
+/// Further parts of a state: run, replanned step, crouch and jump, balance of the last landing, lean into a climb, and
+/// displacement.
 type More = (Running, Quick, Moving, [f32; 2], Climbing, Led);
 
 /// Progress of a walker's life, behind a [`State`].

@@ -6,14 +6,14 @@ use footfall_core::rotation::from_heading;
 use footfall_ik::placement::{Frame, Landing};
 use glam::Vec3;
 
-/// A body whose foot lands.
+/// Place of the body at a landing.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Arrival {
     pub(crate) hips: Vec3,
     pub(crate) ankles: [Vec3; 2],
 }
 
-/// Landing of the next footstep, and the body's place with it, seen from where the character is.
+/// Returns the landing of the next footstep and the body's place at it, relative to the character.
 pub(crate) fn landings(
     next: Option<(Footstep, f32)>,
     from: &GroundTransform,

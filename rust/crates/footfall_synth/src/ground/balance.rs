@@ -1,7 +1,7 @@
-//! Balance: legs turned under the hips so that, as a foot lands, both feet are on the ground and no knee gives way for it.
+//! Balance: legs turn under the hips so that, at a landing, both feet are on the ground without bending a knee.
 //!
-//! Angles that were generated one by one leave one foot a centimetre or two above the other when it lands. Both are put on the ground by turning
-//! the legs about the hips, which moves the body over its feet, and not by bending a knee. Where legs keep their lengths, the leg behind raises its heel instead (`height.rs`).
+//! Independently generated angles leave one foot a centimetre or two above the other when it lands. Both are put on the ground by turning
+//! the legs about the hips, which moves the body over its feet, and not by bending a knee. Where legs keep their lengths, the leg behind raises its heel instead (`hip_height.rs`).
 
 use super::course::Course;
 use super::generated::GeneratedFrame;
@@ -16,11 +16,11 @@ const MOST_SHIFT: f32 = 0.07;
 /// Feet that stand closer together than this are hardly levelled by a shift, as a share of the leg's length.
 const NEAR: f32 = 0.15;
 
-/// Share of what a landing lacks that is made up for by then: all at once would sway a walker whose left and right steps differ.
+/// Share of the imbalance that is corrected by the landing: a full correction would sway a walker whose left and right steps differ.
 const TAKEN_UP: f32 = 0.5;
 
 impl Planter {
-    /// Turns the legs over a step, from the balance that the one before ended with to that of the landing.
+    /// Turns the legs over a step, from the balance at the end of the previous one to that of the landing.
     pub(super) fn balance(
         &mut self,
         generated: &mut [GeneratedFrame],
@@ -46,7 +46,7 @@ impl Planter {
         }
     }
 
-    /// The shift of both feet over the ground by which their legs have the hips at one height.
+    /// Returns the shift of both feet over the ground at which their legs give the hips the same height.
     fn balancing(&self, landing: &GeneratedFrame, timing: &StepTiming) -> Vec2 {
         let sides = [timing.leading.other(), timing.leading];
         let [ahead, behind] = sides.map(|side| landing.legs[side.index()].ankle);

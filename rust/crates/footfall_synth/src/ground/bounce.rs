@@ -34,7 +34,7 @@ impl Bounce {
     }
 }
 
-/// Way that the force on the leg has moved a body by the time `t` of a stance, for each unit of the speed that it gives by the end of it. Both times are in
+/// Returns the displacement by the leg's force at the time `t` of a stance, per unit of the speed gained by its end. Both times have
 /// the same unit.
 pub(super) fn pushed(t: f32, stance: f32) -> f32 {
     0.5 * (t - stance * (PI * t / stance).sin() / PI)

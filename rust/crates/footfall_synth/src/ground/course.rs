@@ -6,17 +6,17 @@ use super::speed_change::SpeedChange;
 /// Course of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Course {
-    /// Turning at its end, rad/s.
+    /// Turn rate at the end of the step, rad/s.
     pub(crate) turn_rate: f32,
-    /// Headings of the features from where the walker faces, before the step and after it, radians.
+    /// Headings of the features relative to the facing direction, before and after the step, radians.
     pub(crate) facing: [f32; 2],
-    /// True where standing legs are to be as long as generated; those of a step that ends in flight are not.
+    /// True when standing legs keep their generated lengths; they do not in a step that ends in flight.
     pub(crate) keeps_lengths: bool,
-    /// Direction of a run from where the walker faces, radians, positive to the left; none where the generated legs choose it.
+    /// Direction of a run relative to the facing direction, radians, positive to the left; `None` when the generated legs determine it.
     pub(crate) direction: Option<f32>,
-    /// Change of speed within it.
+    /// Change of speed within the step.
     pub(crate) change: SpeedChange,
-    /// Displacement of its end.
+    /// Displacement of the end of the step.
     pub(crate) displacement: Displacement,
     /// Duration of the whole step, seconds.
     pub(crate) step_secs: f32,

@@ -1,4 +1,4 @@
-//! A step cut off in its swing: what its rest goes on from.
+//! Cut of a step in its swing, from which its remainder continues.
 
 use super::frame::PlantedFrame;
 use super::lean::{Bend, Pull};
@@ -10,14 +10,14 @@ use footfall_core::{Joint, Side, Skeleton};
 use footfall_ik::FootTarget;
 use glam::Vec3;
 
-/// A frame at which a step is cut, and what it was put on the ground with.
+/// Frame at which a step is cut, and the data with which the step was planted.
 pub(crate) struct Cut<'a> {
     pub(crate) skeleton: &'a Skeleton,
     pub(crate) frame_secs: f32,
     pub(crate) timing: &'a StepTiming,
     pub(crate) frames: &'a [PlantedFrame],
     pub(crate) frame: usize,
-    /// State at the step's beginning, the state that the next step would begin with, and the turning at its end.
+    /// State at the beginning of the step, state with which the next one would begin, and turn rate at the end.
     pub(crate) begun: &'a PlanterState,
     pub(crate) ended: PlanterState,
     pub(crate) turn_rate: f32,
@@ -25,7 +25,7 @@ pub(crate) struct Cut<'a> {
 }
 
 impl Cut<'_> {
-    /// Returns true when one foot stands and the other is in the air, and was in the frame before.
+    /// Returns true when one foot stands and the other is in the air, in this frame and in the previous one.
     pub(crate) fn is_in_swing(&self) -> bool {
         let (standing, swinging) = (self.timing.leading, self.timing.leading.other());
         self.frame > 0
@@ -34,7 +34,7 @@ impl Cut<'_> {
                 .all(|frame| frame.contact[standing.index()] && !frame.contact[swinging.index()])
     }
 
-    /// State that a step goes on from that begins here, with one foot in the air.
+    /// Returns the state for a step that begins here, with one foot in the air.
     pub(crate) fn state(&self) -> PlanterState {
         let [before, now] = [self.frame - 1, self.frame].map(|frame| &self.frames[frame]);
         let s = self.frame as f32 / self.timing.frames as f32;

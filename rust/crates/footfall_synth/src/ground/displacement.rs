@@ -1,6 +1,6 @@
-//! Steps that end elsewhere than planned: how a walker that is a little off its place walks there.
+//! Displacement of a step's end: a walker that is a little off its place walks there.
 //!
-//! The foot that stands stays. Hips go over to where the step is to end with the ease of a smooth step, and the foot that lands goes with them, so that a
+//! The standing foot stays. The hips move smoothly to the displaced end, and the landing foot goes with them, so that the
 //! correction is part of the walk.
 
 use super::frame::PlantedFrame;
@@ -23,7 +23,7 @@ impl Displacement {
         turn: 0.0,
     };
 
-    /// The same, and as much again as another.
+    /// Returns the sum of two displacements.
     pub(crate) fn and(self, more: Self) -> Self {
         Self {
             way: self.way + more.way,
@@ -31,7 +31,7 @@ impl Displacement {
         }
     }
 
-    /// No more than this far and this much about.
+    /// Limits the way and the turn.
     pub(crate) fn within(self, most_m: f32, most_rad: f32) -> Self {
         Self {
             way: self.way.clamp_length_max(most_m),
@@ -39,7 +39,7 @@ impl Displacement {
         }
     }
 
-    /// Leads the hips aside in the course of a step.
+    /// Displaces the hips in the course of a step.
     pub(super) fn lead(&self, timing: &StepTiming, out: &mut [PlantedFrame]) {
         if self.way == Vec3::ZERO {
             return;

@@ -1,8 +1,8 @@
-//! Even travel: people's hips speed up and slow down once a step, whatever the angles of the standing leg say.
+//! Even travel: the hips speed up and slow down once per step as people's do, independent of errors in the angles of the standing leg.
 //!
-//! The way above the standing foot follows from angles that were generated one by one, and every error of an angle becomes a surge of
-//! the whole body: hips were fastest before a foot landed, where people's are soon after. So a step forwards has the speed that people's hips have over a step,
-//! one in another direction keeps as much of the step's frequency as people have, and the legs are solved to the feet from there.
+//! The path above the standing foot follows from independently generated angles, and every error of an angle becomes a surge of
+//! the whole body: the hips were fastest before a foot landed, whereas people's are fastest soon after. Therefore a forward step gets the speed profile of captured hips,
+//! a step in another direction keeps at most the captured amplitude at the step's frequency, and the legs are then solved to the feet.
 
 use super::course::Course;
 use super::frame::PlantedFrame;
@@ -21,21 +21,21 @@ const MOST: [f32; 2] = [0.15, 0.06];
 /// landing, as the leg behind pushes off, and slowest in the middle of the stance.
 const FORWARDS: [Vec2; 2] = [Vec2::new(0.097, 0.086), Vec2::new(-0.009, 0.034)];
 
-/// Part of the way from the harmonics of the generated legs to those. All of it would have legs stretch faster than they do when the speed is about to change.
+/// Blend from the harmonics of the generated legs to those. With 1 legs would stretch too fast before a change of speed.
 const PEOPLE_S: f32 = 0.35;
 
-/// Weight of a change of speed, and displacement of the end of a step in metres, from which on it is none of a steady walk.
+/// Weight of a change of speed, and displacement of the step's end in metres, from which a step is not part of a steady walk.
 const UNSTEADY: f32 = 0.25;
 const DISPLACED_M: f32 = 0.05;
 
-/// Time constant with which the speed of the step before passes into this one's, seconds.
+/// Time constant of the transition from the previous step's speed, seconds.
 const PASSING_SECS: f32 = 0.15;
 
-/// Travel in a step, as a share of the leg's length, from which on the way is evened, and that from which on it is wholly.
+/// Travel in a step, as a share of the leg's length, from which evening sets in, and from which it is complete.
 const EVENED: [f32; 2] = [0.1, 0.5];
 
 impl Planter {
-    /// Evens the hips' way over a step; it begins and ends where it did.
+    /// Evens the travel of the hips within a step; its ends stay.
     pub(super) fn even(&self, timing: &StepTiming, course: Course, out: &mut [PlantedFrame]) {
         let change = course.change;
         let frames = timing.frames as f32;
@@ -50,7 +50,7 @@ impl Planter {
         }
         let along = way / length;
         let pace = length / frames;
-        // How far the hips are ahead of who goes at an even speed.
+        // Lead of the hips over travel at constant speed.
         let ahead = |hips: Vec3, frame: usize| along.dot(hips - begin) - pace * frame as f32;
 
         let people = self.people_s(timing, course);
@@ -68,7 +68,7 @@ impl Planter {
             let unit = pace / turn.to_angle();
             let generated = (sum * (2.0 / frames)).clamp_length_max(most * unit);
             let captured = FORWARDS[index].perp() * unit;
-            // A change of speed is no surge, though it looks like one.
+            // A change of speed looks like a surge but is not one.
             wave.amplitude = generated.lerp(captured, people) * (1.0 - change.weight);
         }
         let begins_at = waves
@@ -98,7 +98,7 @@ impl Planter {
         }
     }
 
-    /// Share of people's harmonics in those of a step: none in a run, in a step that ends standing, backwards or to the side.
+    /// Returns the share of captured harmonics in a step: 0 in a run, in a step that ends standing, backwards and to the side.
     fn people_s(&self, timing: &StepTiming, course: Course) -> f32 {
         if timing.take_off.is_some() || timing.airborne || timing.rests {
             return 0.0;
@@ -109,12 +109,12 @@ impl Planter {
     }
 }
 
-/// One harmonic of a way.
+/// One harmonic of the travel.
 #[derive(Clone, Copy, Default)]
 struct Wave {
     /// The turn from a frame to the next, as a unit vector.
     turn: Vec2,
-    /// Of its cosine and its sine, metres.
+    /// Amplitudes of cosine and sine, metres.
     amplitude: Vec2,
 }
 

@@ -16,15 +16,15 @@ use footfall_core::rotation::from_heading;
 use footfall_ik::FootTarget;
 use glam::Quat;
 
-/// Speed upwards at which the hips leave the ground at least and at most, m/s, beyond that which brings them back to the same height. Legs that
-/// disagree more about where a short flight ends are bent or stretched.
+/// Bounds of the upward speed at take-off, m/s, relative to the one that returns the hips to the same height. Legs that
+/// disagree more about the end of a short flight are bent or stretched.
 const MOST_LIFT_MPS: f32 = 0.3;
 
-/// The foot that lands and the one that takes off each have the hips at a height of their own. This share of the way from the first to the second they
-/// are as a run lands.
+/// Height of the hips at the landing of a run, as a share of the way from the height over the landing foot to that over the foot that takes
+/// off.
 const LEAVING_SHARE: f32 = 0.15;
 
-/// Longer flights are leaps, seconds; they keep this share of the speed over the ground that they begin with.
+/// Duration from which a flight counts as a leap, seconds, and the share of the initial speed over the ground that a leap keeps.
 const LEAP_SECS: f32 = 0.22;
 const LEAP_SPEED_SHARE: f32 = 0.85;
 
@@ -32,14 +32,14 @@ const LEAP_SPEED_SHARE: f32 = 0.85;
 const LEAP_EXTENSION: f32 = 0.98;
 
 impl Planter {
-    /// Lets the hips go on over the ground as they did above the foot, in the frames after it has taken off; a leap keeps most of the speed that it begins
-    /// with.
+    /// Moves the hips over the ground at constant velocity in the frames after the take-off; a leap keeps most of its initial
+    /// speed.
     pub(super) fn drift(&self, timing: &StepTiming, out: &mut [PlantedFrame]) {
         let Some(take_off) = timing.take_off else {
             return;
         };
         let [begin, leaves] = [0, take_off].map(|frame| out[frame].pose.root_position);
-        // In a turn the way of the stance is an arc, and what flies goes on along its tangent.
+        // In a turn the path of the stance is an arc, and the flight follows its tangent.
         let headings = out[..=take_off].iter().map(|frame| frame.heading);
         let ahead = out[take_off].heading - headings.sum::<f32>() / (take_off + 1) as f32;
         let mut pace = from_heading(ahead) * (leaves - begin) / take_off as f32;
@@ -76,8 +76,8 @@ impl Planter {
         self.flight_secs(timing) > LEAP_SECS
     }
 
-    /// Puts the hips on their parabola, and lets the standing leg push them off at its speed. From flight to flight it does so as a spring; in the first
-    /// step of a run and before a leap it goes on as generated, and pushes harder.
+    /// Moves the hips onto their parabola, with a push-off of the standing leg at its initial speed. Between two flights the leg acts as a spring; in the first
+    /// step of a run and before a leap it follows the generated one and pushes harder.
     pub(super) fn fly(
         &self,
         generated: &[GeneratedFrame],
@@ -157,7 +157,7 @@ impl Planter {
         Some(last)
     }
 
-    /// Fills where the foot that took off is until the step ends, and keeps it for the next.
+    /// Fills the targets of the foot that took off until the end of the step, and keeps them for the next one.
     pub(super) fn depart(
         &mut self,
         generated: &mut [GeneratedFrame],
@@ -190,7 +190,7 @@ impl Planter {
         });
     }
 
-    /// Planned and free places of a foot that was in the air as the step began, a frame earlier and then.
+    /// Returns planned and free places of a foot that is in the air as the step begins, a frame earlier and then.
     pub(super) fn airborne_ends(
         &self,
         airborne: &Airborne,

@@ -1,4 +1,4 @@
-//! Frames on the ground.
+//! Planted frames.
 
 use footfall_core::Pose;
 use glam::{Quat, Vec3};
@@ -13,7 +13,7 @@ pub(crate) struct PlantedFrame {
     /// Heading of the walker, radians, and the rotation by it; continuous within a step.
     pub(crate) ground_heading: f32,
     pub(crate) plan_from_ground: Quat,
-    /// Heading under which the generated features are put, radians, and the rotation by it.
+    /// Heading of the generated features, radians, and the rotation by it.
     pub(crate) heading: f32,
     pub(crate) level: Quat,
     /// Contacts of the left and the right foot.

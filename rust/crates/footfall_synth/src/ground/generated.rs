@@ -13,7 +13,7 @@ const LEAST_HEIGHT: f32 = 0.25;
 pub(crate) struct Stride {
     /// Factor on their reach forwards and backwards.
     pub(crate) scale: f32x8,
-    /// Share of their length that they keep: 1 where shorter strides carry the hips higher, 0 where their height stays.
+    /// Share of the legs' length that is kept: with 1 shorter strides raise the hips, with 0 the height stays.
     pub(crate) upright: f32x8,
 }
 
@@ -22,22 +22,22 @@ pub(crate) struct Stride {
 pub(crate) struct GeneratedFrame {
     /// Rotation of the hips relative to the heading.
     pub(crate) hips: Quat,
-    /// Per side, what the leg does.
+    /// The legs, by side.
     pub(crate) legs: [GeneratedLeg; 2],
 }
 
 /// One leg of a generated frame, relative to the hips and the heading.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GeneratedLeg {
-    /// The hip joint from the hips.
+    /// The hip joint, relative to the hips.
     pub(crate) hip: Vec3,
-    /// The ankle from the hips.
+    /// The ankle, relative to the hips.
     pub(crate) ankle: Vec3,
     /// Rotation of the foot.
     pub(crate) foot: Quat,
     /// Its pitch (positive: heel up).
     pub(crate) free_pitch: f32,
-    /// The same on the ground: settled, and less of it in short strides.
+    /// Pitch on the ground: settled, and smaller in short strides.
     pub(crate) pitch: f32,
     /// Target of the foot, on its plant or in the air; the planter fills it.
     pub(crate) target: FootTarget,
@@ -51,7 +51,7 @@ impl GeneratedLeg {
         foot_heading(self.foot)
     }
 
-    /// Turns the leg about its hip joint so that the ankle is so much further to the left and ahead.
+    /// Turns the leg about its hip joint so that the ankle moves to the left and ahead by `shift`.
     pub(crate) fn shift(&mut self, shift: Vec2) {
         let reach = self.ankle - self.hip;
         let level = reach.xz() + shift;
@@ -60,7 +60,7 @@ impl GeneratedLeg {
         self.ankle = self.hip + Vec3::new(level.x, -height.sqrt(), level.y);
     }
 
-    /// Puts the ankle elsewhere, with the foot at another pitch: at `free` in the air and at `standing` on the ground.
+    /// Moves the ankle, and pitches the foot to `free` in the air and to `standing` on the ground.
     pub(crate) fn put(&mut self, ankle: Vec3, free: f32, standing: f32) {
         self.ankle = ankle;
         self.foot = (self.foot * Quat::from_rotation_x(free - self.free_pitch)).normalize();
@@ -88,7 +88,7 @@ impl Default for GeneratedLeg {
 
 impl GeneratedFrame {
     /// Fills frames, eight at a time, from poses that hold generated local rotations (the hips' relative to the heading).
-    /// `stride` gives that of eight frames from an index on.
+    /// `stride` returns the reach of the legs in eight frames from an index on.
     pub(crate) fn fill(
         frames: &mut [Self],
         poses: &[impl AsRef<Pose>],
@@ -135,7 +135,7 @@ impl GeneratedFrame {
     }
 }
 
-/// Place of a foot whose leg is as generated.
+/// Returns the place of a foot at the end of its generated leg.
 pub(super) fn free_foot(
     generated: &GeneratedFrame,
     side: Side,

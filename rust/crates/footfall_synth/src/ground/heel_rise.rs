@@ -1,5 +1,5 @@
-//! Heels that rise: a standing leg that comes to its end rolls its foot onto the ball, as people's do, before its knee snaps straight or
-//! its pelvis drops.
+//! Rise of the heel: a standing leg at the end of its reach rolls its foot onto the ball, as people's do, before the knee snaps straight or
+//! the pelvis drops.
 
 use super::frame::PlantedFrame;
 use super::generated::{GeneratedFrame, GeneratedLeg};
@@ -12,31 +12,31 @@ use footfall_core::rotation::from_heading;
 use footfall_ik::{Plant, RockerFoot};
 use glam::Quat;
 
-/// Fraction of the straight leg beyond which the heel rises instead, and over how much more it comes to do so.
+/// Fraction of the straight leg beyond which the heel rises instead, and the range over which it sets in.
 const RISING_EXTENSION: f32 = 0.9965;
 const RISING_SOFTNESS: f32 = 0.0014;
 
-/// A leg that leaves the ground begins to bend so long before, seconds, and its knee is bent by twice this more by then, radians: it would snap.
+/// Time before the end of contact at which a leaving leg begins to bend, seconds, and half of its extra knee flexion by then, radians; without it the knee would snap.
 const LEAVING_BEND: f32 = 0.055;
 const LEAVING_SECS: f32 = 0.05;
 
-/// No leg counts as stretched farther, as a multiple of that: its exponential stays a number.
+/// Limit of the excess stretch, as a multiple of that range, to keep the exponential finite.
 const MOST_BEYOND: f32 = 50.0;
 
-/// A leg that is shorter by so many times as much raises no heel.
+/// Multiple of that range by which a shorter leg raises no heel.
 const MOST_SHORT: f32 = 5.0;
 
 /// Greatest extra rise of a heel, radians.
 const MOST_RISE: f32 = 0.4;
 
-/// A heel rises for this where the foot is not ahead of the hip by this share of the leg's length: there it has just landed.
+/// Share of the leg's length by which a foot is ahead of its hip just after landing; its heel does not rise then.
 const AHEAD: f32 = 0.1;
 
-/// Weights by which the rise of a frame counts, and those of its neighbours: a leg that comes off its end does so smoothly.
+/// Weights of the rise of a frame and of its neighbours, for smooth changes.
 const SMOOTHED: [f32; 3] = [3.0, 2.0, 1.0];
 
 impl Planter {
-    /// Raises the heels of feet that bear, where their legs are at their end, and puts those down again that need not be raised any more.
+    /// Raises the heels of bearing feet whose legs are at the end of their reach, and lowers heels that need not be raised any more.
     pub(super) fn raise_heels(
         &self,
         generated: &mut [GeneratedFrame],
@@ -122,12 +122,12 @@ struct Legs {
     hip: Vec3x8,
     ankle: Vec3x8,
     pitch: f32x8,
-    /// By how much the heel was raised before.
+    /// Previous rise of the heel.
     rise: f32x8,
 }
 
 impl Stance<'_> {
-    /// Returns by how much heels have to be higher than generated for their legs not to be beyond these shares of their length, radians.
+    /// Returns the rise of the heels beyond the generated pitch that keeps the legs within these shares of their length, radians.
     fn rises(&self, legs: &Legs, most_extension: f32x8) -> f32x8 {
         let reach = legs.ankle - legs.hip;
         let extension = reach.length() * self.length.recip();

@@ -1,4 +1,4 @@
-//! Even height: hips rise and fall without a jolt where a foot rolls off its heel, a leg's reach ends, or another foot takes over.
+//! Smoothing of the hips' height: no jolts when a foot rolls off its heel, a leg's reach ends, or another foot takes over.
 
 use super::frame::PlantedFrame;
 use super::generated::GeneratedFrame;
@@ -6,16 +6,16 @@ use super::planter::Planter;
 use crate::plan::StepTiming;
 use core::ops::RangeInclusive;
 
-/// Changes of the hips' height that last shorter are smoothed out, seconds.
+/// Duration below which changes of the hips' height are smoothed out, seconds.
 const SMOOTHED_SECS: f32 = 0.035;
-/// Hips are lowest so long after a foot has landed, about, seconds.
+/// Approximate time from a landing to the lowest point of the hips, seconds.
 const TURN_SECS: f32 = 0.05;
-/// The height is looked at beyond that for so long, seconds.
+/// Time beyond that point for which heights are considered, seconds.
 const SEEN_SECS: f32 = 0.1;
-/// Weights of a height that a leg's reach allows, against one that was generated, until none is beyond it by more than the distance, metres.
+/// Weights of a height at the limit of a leg's reach, relative to a generated one, raised until no height exceeds its limit by more than the distance, metres.
 const REACH_WEIGHTS: [f64; 3] = [16.0, 256.0, 4096.0];
 const REACHED_M: f64 = 2e-4;
-/// Steps of more frames, those to come included, stay as they are: models at 60 frames a second have none.
+/// Maximum number of frames, including those to come; longer steps are not smoothed. Models at 60 frames a second have none.
 const MOST_FRAMES: usize = 256;
 /// Coefficients of a third difference: jerk.
 const JERK: [f64; 4] = [-1.0, 3.0, -3.0, 1.0];
@@ -23,7 +23,7 @@ const JERK: [f64; 4] = [-1.0, 3.0, -3.0, 1.0];
 const BAND: usize = JERK.len() - 1;
 
 impl Planter {
-    /// Smooths the hips' height over a step, which goes on from the height and the speed that the one before ended with.
+    /// Smooths the hips' height over a step, which continues from the height and the speed at the end of the previous one.
     pub(super) fn even_height(
         &self,
         generated: &[GeneratedFrame],
@@ -39,7 +39,7 @@ impl Planter {
         }
         let begin = f64::from(self.state.hips.y);
         let rise = self.state.hips_velocity;
-        // A leg that has just been planned anew may be at its end already.
+        // A replanned leg may be at the end of its reach already.
         let most = self.bearing_limit(&generated[1], timing, 1, &frames[1]) - begin;
         let rise = rise.map(|velocity| f64::from(velocity.y * self.frame_secs).min(most.max(0.0)));
         asked.smooth(begin, rise);
@@ -79,7 +79,7 @@ impl Planter {
             let hips = frame.pose.root_position;
             bears.then(|| self.reach_limit(side, hips, generated, frame))?
         });
-        // The rest of a step that was planned anew is too short to come down by itself.
+        // The remainder of a replanned step is too short to come down by itself.
         let landing = if index == timing.frames && timing.airborne {
             self.landing_limit(generated, leading.other())
         } else {
@@ -89,8 +89,8 @@ impl Planter {
     }
 }
 
-/// Heights that are asked for, and how much each counts. Nobody knows the next step yet: hips turn round at its beginning and rise
-/// about as they fell, so those of this step are seen again, backwards, beyond its end.
+/// Wanted heights, with their weights. The next step is not known yet: the hips turn round at its beginning and rise
+/// about as they fell, so the heights of this step are repeated backwards beyond its end.
 struct Asked {
     heights: [f64; MOST_FRAMES],
     weights: [f64; MOST_FRAMES],
@@ -106,7 +106,7 @@ struct Asked {
 }
 
 impl Asked {
-    /// Of a step that ends with this frame, nothing asked yet; none for steps of too few frames or too many.
+    /// Makes room for a step that ends with this frame; `None` for steps of too few or too many frames.
     fn new(last: usize, frame_secs: f32) -> Option<Self> {
         let frames = |secs: f32| secs / frame_secs;
         let turn = last + frames(TURN_SECS).round() as usize;
@@ -124,7 +124,7 @@ impl Asked {
         })
     }
 
-    /// Asks for a height in a frame of the step, and in its image.
+    /// Sets the wanted height of a frame of the step, and of its mirror image.
     fn set(&mut self, index: usize, height: f64, weight: f64) {
         self.heights[index] = height;
         self.weights[index] = weight;
@@ -157,8 +157,8 @@ struct Factors {
     below: [f64; BAND],
 }
 
-/// Changes values, all but the first `fixed`, to those that are nearest to them in the weighted sum of squares, where every squared
-/// jerk counts as much as the system's stiffness. There are more values than [`BAND`], and no more than there is room for `factors`.
+/// Smooths all values but the first `fixed`: minimises the weighted squared distances to them plus the squared jerks, weighted by the
+/// system's stiffness. There are more values than [`BAND`], and at most as many as `factors`.
 ///
 /// Whittaker's smoother (On a new method of graduation, 1923): a symmetric system with [`BAND`] bands on either side of its diagonal,
 /// solved by a square-root-free Cholesky decomposition.
@@ -177,7 +177,7 @@ fn smooth(values: &mut [f64], system: &System<'_>, fixed: usize, factors: &mut [
     for row in fixed..whole {
         eliminate(values, system, factors, row, row - fixed);
     }
-    // The compiler unrolls what has a length that it knows.
+    // The compiler unrolls loops of known length.
     for row in whole..count {
         eliminate(values, system, factors, row, BAND);
     }

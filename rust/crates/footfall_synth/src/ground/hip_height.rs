@@ -1,8 +1,8 @@
 //! Height of the hips in a walk: the standing leg keeps the length that was generated for it.
 //!
-//! The hips' way over the ground is evened, and a planted foot does not creep as captured ones do, so the standing leg has another direction than the generated
-//! one. Its length is what shows, as the bend of the knee. So the hips are as high as that length has them, and come to the height of the leg that lands by
-//! the end of the step. Steps to the side and backwards keep the direction of the leg, too. A leg that is too short for that raises its heel (`heel.rs`).
+//! The travel of the hips is evened, and a planted foot does not creep as captured ones do, so the direction of the standing leg differs from the generated
+//! one. Its length is visible as the bend of the knee. Therefore this length determines the height of the hips, which approach the height of the landing leg by
+//! the end of the step. Steps to the side and backwards keep the direction of the leg, too. A leg that is too short for that raises its heel (`heel_rise.rs`).
 
 use super::frame::PlantedFrame;
 use super::generated::GeneratedFrame;
@@ -16,7 +16,7 @@ use glam::Vec3Swizzles as _;
 const LEAST_HEIGHT: f32 = 0.25;
 
 impl Planter {
-    /// Puts the hips of every frame of a walked step at the height at which the standing leg is as long as generated.
+    /// Moves the hips in every frame of a walked step to the height at which the standing leg has its generated length.
     pub(super) fn keep_lengths(
         &self,
         generated: &[GeneratedFrame],

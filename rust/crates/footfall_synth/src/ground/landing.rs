@@ -1,4 +1,4 @@
-//! Landing: the place at which a foot comes down, and how straight its leg is.
+//! Landing: the place of the next plant, and the straightness of the landing leg.
 
 use super::course::Course;
 use super::generated::GeneratedFrame;
@@ -11,23 +11,23 @@ use footfall_core::rotation::from_heading;
 use footfall_ik::{Plant, reach_height};
 use glam::Vec3;
 
-/// Fraction of the straight leg with which a foot lands at most: what is left keeps the pelvis from dropping at once. A step forwards lands straighter than
-/// one to the side, and one backwards, which lands on its toes, over a bent knee.
+/// Largest fraction of the straight leg at landing; the remainder keeps the pelvis from dropping at once. A forward step lands straighter than
+/// one to the side; a backward step lands on the toes, over a bent knee.
 const LANDING_EXTENSION: f32 = 0.985;
 const LANDING_FORWARDS: f32 = 0.011;
 const LANDING_BACKWARDS: f32 = 0.005;
-/// Part of the turn of a foot that comes down flat by which it is turned as it lands, between how it lands and how it lies; and the most of that turn, radians.
+/// Share of the turn between the landing and the flat foot by which a foot is turned at landing, and the largest such turn, radians.
 const TURNED_SHARE: f32 = 0.6;
 const MOST_TURN: f32 = 0.2;
-/// Hips that fall faster than this, m/s, land on a leg that is less straight by this share of it, by m/s: it has to bend at once.
+/// Speed of a fall, m/s, beyond which the landing leg is less straight, and the decrease per m/s: the leg has to bend at once.
 const EASY_FALL_MPS: f32 = 0.2;
 const LANDING_BY_FALL: f32 = 0.03;
-/// Hips that fall faster than runners' do, m/s, land on a knee that gives: less straight by this share, by m/s.
+/// Speed of a fall beyond that of runners, m/s, from which the knee yields, and the decrease per m/s.
 const HARD_FALL_MPS: f32 = 1.3;
 const LANDING_BY_HARD_FALL: f32 = 0.012;
 
 impl Planter {
-    /// Plant of the trailing foot at the end of the step.
+    /// Returns the plant of the trailing foot at the end of the step.
     pub(super) fn next_plant(
         &self,
         generated: &[GeneratedFrame],
@@ -50,8 +50,8 @@ impl Planter {
         plant
     }
 
-    /// Turn of the trailing foot from its landing to how it stands, radians: heels strike with the toes still pointing outwards, and a planted foot does not turn,
-    /// so it lands nearly as it would lie flat. The foot that stands shows the turn, mirrored, unless the step begins in its stance.
+    /// Returns the turn of the trailing foot from landing to standing, radians. Heels strike with the toes still pointing outwards, and a planted foot does not turn,
+    /// so it lands nearly with its flat heading. The standing foot shows the turn, mirrored, unless the step begins in its stance.
     fn turn_to_flat(&self, generated: &[GeneratedFrame], timing: &StepTiming) -> f32 {
         if timing.airborne {
             return 0.0;
@@ -76,7 +76,7 @@ impl Planter {
             - bent
     }
 
-    /// Greatest height of the hips at which a leg reaches the foot that it lands where it was generated.
+    /// Returns the greatest height of the hips at which a leg reaches its foot in the generated landing place.
     pub(super) fn landing_limit(&self, generated: &GeneratedFrame, side: Side) -> f32 {
         let leg = &generated.legs[side.index()];
         let generated = self.landing_height(generated, side);

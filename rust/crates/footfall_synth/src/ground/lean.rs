@@ -1,7 +1,7 @@
 //! Lean: the trunk bends into turns, ahead of a gain of speed and against a loss of it.
 //!
-//! Whoever is in balance leans so far that gravity and acceleration together point along the body: the tangent of the angle is the acceleration over g, which is
-//! `v·ω` in a turn. The legs lean by where they stand; the trunk has its [`SHARE`] here, and the head half of that, for people keep their eyes level.
+//! A body in balance leans so far that gravity and acceleration together point along it: the tangent of the angle is the acceleration over g, which is
+//! `v·ω` in a turn. The legs lean by the places of the feet; here the trunk adds its [`SHARE`], and the head half of that, because people keep their eyes level.
 
 use super::frame::PlantedFrame;
 use super::planter::Planter;
@@ -16,29 +16,29 @@ use glam::{Quat, Vec2, Vec3};
 const SHARE: f32 = 0.5;
 const HEAD_KEPT: f32 = 0.5;
 
-/// Time for leaning and coming back, seconds, below which a walker leans less.
+/// Time for leaning and returning, seconds; in shorter steps a walker leans less.
 const UNHURRIED_SECS: f32 = 0.4;
 
-/// Weaker pulls bend nobody, m/s².
+/// Acceleration below which nobody leans, m/s².
 const UNNOTICED_MPS2: f32 = 0.3;
 
-/// Nobody's trunk leans farther, radians.
+/// Largest lean of the trunk, radians.
 const MOST_RAD: f32 = 0.22;
 
 /// Accelerations that the trunk leans against in a step: to the left and forwards, m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pull {
-    /// In the middle of the step, from its change of speed.
+    /// In the middle of the step, from the change of speed.
     pub(crate) within: Vec2,
-    /// At its end, from the turn that goes on.
+    /// At the end of the step, from the continuing turn.
     pub(crate) after: Vec2,
 }
 
-/// A lean over a step of so many seconds.
+/// Course of the lean in a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bend {
     begin: Lean,
-    /// Angles at the end, and what is added in the middle.
+    /// Angles at the end, and their increase in the middle.
     end: Vec2,
     middle: Vec2,
     secs: f32,
@@ -59,7 +59,7 @@ impl Bend {
         }
     }
 
-    /// The lean at part `s` of the step: it begins with the angle and the rate that the step before ended with, and ends without a rate.
+    /// Returns the lean at part `s` of the step. It begins with the angle and the rate at the end of the previous step, and ends at rest.
     pub(crate) fn at(&self, s: f32) -> Lean {
         let Self {
             begin,
@@ -86,7 +86,7 @@ impl Bend {
         }
     }
 
-    /// Returns true when the trunk stays as it is all through the step.
+    /// Returns true when the trunk does not lean in the step.
     fn is_none(&self) -> bool {
         self.begin == Lean::default() && [self.end, self.middle] == [Vec2::ZERO; 2]
     }

@@ -1,4 +1,4 @@
-//! Placing of a step: where on the ground it goes, and from which posture.
+//! Placing of a step on the ground: direction, speed and postures.
 
 use super::displacement::Displacement;
 use super::lean::Pull;
@@ -15,26 +15,26 @@ pub(crate) struct Placing<'a> {
     pub(crate) shape: &'a StepShape,
     /// The standing posture before the step and after it.
     pub(crate) standing: [&'a Posture; 2],
-    /// Turning at its end, rad/s.
+    /// Turn rate at the end of the step, rad/s.
     pub(crate) turn_rate: f32,
     /// Headings under which the walk goes along +Z, before the step and after it, radians.
     pub(crate) facing: [f32; 2],
-    /// Travel to the left and forwards from where the steps face, m/s: those of a run face where it goes.
+    /// Velocity to the left and forwards relative to the facing direction of the steps, m/s; steps of a run face their direction of travel.
     pub(crate) velocity_mps: Vec2,
-    /// That of the step before.
+    /// The same of the previous step.
     pub(crate) velocity_before_mps: Vec2,
-    /// Direction of a run from where the walker faces, radians, positive to the left; none in a walk, and where the generated legs choose it.
+    /// Direction of a run relative to the facing direction, radians, positive to the left; `None` in a walk, and when the generated legs determine it.
     pub(crate) direction: Option<f32>,
-    /// The share of it that had passed when it was planned anew.
+    /// Share of the step that had passed when it was replanned.
     pub(crate) passed: f32,
-    /// Displacement of its end.
+    /// Displacement of the end of the step.
     pub(crate) displacement: Displacement,
-    /// True where legs are to be as long as generated: those of two systems are not true enough for that.
+    /// True when legs keep their generated lengths; those of a switching model are not accurate enough.
     pub(crate) keeps_lengths: bool,
 }
 
 impl Placing<'_> {
-    /// Accelerations to lean against in a step of so many seconds. A run leans into its turns, too; nobody leans out of a sidestep.
+    /// Returns the accelerations to lean against in a step of this duration. Runs lean into turns, too; sidesteps do not lean.
     pub(super) fn pull(&self, secs: f32) -> Pull {
         let Amplitude { from, to } = self.shape.amplitude;
         let [before, after] = [from * self.velocity_before_mps, to * self.velocity_mps];
@@ -44,18 +44,18 @@ impl Placing<'_> {
         }
     }
 
-    /// Change of speed from the step before to the end of this one.
+    /// Returns the change of speed from the previous step to the end of this one.
     pub(super) fn change(&self) -> SpeedChange {
         let Amplitude { from, to } = self.shape.amplitude;
         let change = SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps);
         if self.passed > 0.0 {
-            // Half a step has no surge of a step.
+            // A remainder has no surge of its own.
             return change.whole();
         }
         change
     }
 
-    /// The standing posture at part `s` of the step, and what there is of the walk on top of it.
+    /// Returns the standing posture at part `s` of the step, and its blend with the walk.
     pub(super) fn grown(&self, walking: &[f32], s: f32) -> (Posture, Posture) {
         let amplitude = self.shape.amplitude.at(s);
         let change = smooth_step(s);

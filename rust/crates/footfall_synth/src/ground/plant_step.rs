@@ -1,4 +1,4 @@
-//! A step on the ground, part by part: stances, travel and height of the hips, flight, the next plant, the swing, and the legs.
+//! Planting of a step, part by part: balance, stances, travel, height, flight, the next plant, the swing, and the legs.
 
 use super::course::Course;
 use super::frame::PlantedFrame;
@@ -11,7 +11,7 @@ use footfall_core::Side;
 use footfall_core::rotation::from_heading;
 
 impl Planter {
-    /// Turns a step that goes forwards to where it is to go; forwards it goes along +Z under the heading `own_facing`. A step in full walk leads `wanted_m` far, metres.
+    /// Turns a forward step to the direction of travel. Under the heading `own_facing` the forward step goes along +Z. A step inside a walk covers `wanted_m` metres.
     pub(crate) fn turn_step(
         &mut self,
         generated: &mut [GeneratedFrame],
@@ -40,7 +40,7 @@ impl Planter {
         }
     }
 
-    /// Way of the hips over the standing foot in a step forwards, were that foot flat throughout, metres.
+    /// Returns the travel of the hips over the standing foot in a forward step, if that foot were flat throughout, metres.
     fn flat_way(&self, timing: &StepTiming, generated: &[GeneratedFrame], own_facing: f32) -> f32 {
         let side = timing.leading.index();
         let level = from_heading(own_facing);
@@ -51,11 +51,11 @@ impl Planter {
         ahead(0) - ahead(timing.frames)
     }
 
-    /// Puts a step on the ground. `raw` and `out` have one frame more than the step: the next initial contact, which is the
+    /// Puts a step on the ground. `generated` and `out` have one frame more than the step: the next initial contact, which is the
     /// first frame of the next step. The poses in `out` hold the generated local rotations.
     ///
     /// The trailing foot leaves the ground at `timing.terminal`, or earlier when the generated leg takes it away, and in a run the leading foot at
-    /// `timing.take_off`; returns the timing as it came out.
+    /// `timing.take_off`. Returns the resulting timing.
     pub(crate) fn plant_step(
         &mut self,
         generated: &mut [GeneratedFrame],
@@ -85,7 +85,7 @@ impl Planter {
             ..*timing
         };
         if course.keeps_lengths {
-            // What a heel can give, the hips need not.
+            // A raised heel spares the hips.
             self.raise_heels(generated, timing, out);
         }
         self.bear(generated, timing, out);

@@ -1,4 +1,4 @@
-//! PlantedStep of one walker: steps of generated features become frames on the ground.
+//! The step on the ground: generated features become planted frames.
 
 use super::arrival::Arrival;
 use super::course::Course;
@@ -18,21 +18,21 @@ use footfall_ik::Plant;
 use footfall_model::layout;
 use glam::Vec3;
 
-/// Puts one step after another on the ground; allocates nothing after it was made.
+/// The step on the ground, and the feet from which the next one continues. Allocates only in [`new`](Self::new).
 #[derive(Debug)]
 pub(crate) struct PlantedStep {
     skeleton: Skeleton,
     frame_secs: f32,
-    /// Planter with the feet's last places; `None` before the first step.
+    /// Planter with the last places of the feet; `None` before the first step.
     planter: Option<Planter>,
-    /// Place of the body when the step on the ground ends.
+    /// Place of the body at the end of the step.
     pub(crate) arrival: Arrival,
-    /// The last step on the ground, at its own detail, one frame longer than the step; what lies beyond is left from others.
+    /// Frames of the step at its own detail, one more than the step has; frames beyond are leftovers of others.
     pub(crate) frames: Vec<PlantedFrame>,
 }
 
 impl PlantedStep {
-    /// For steps of at most `longest` frames, which come at `frame_rate_hz`.
+    /// Makes room for steps of at most `longest` frames at `frame_rate_hz`.
     pub(crate) fn new(skeleton: &Skeleton, frame_rate_hz: f64, longest: usize) -> Self {
         Self {
             skeleton: skeleton.clone(),
@@ -43,33 +43,33 @@ impl PlantedStep {
         }
     }
 
-    /// Working memory of [`put`](Self::put), for steps of at most `longest` frames.
+    /// Makes the working memory of [`put`](Self::put), for steps of at most `longest` frames.
     pub(crate) fn generated(longest: usize) -> Vec<GeneratedFrame> {
         vec![GeneratedFrame::default(); Detail::ground_room(longest) + 1]
     }
 
-    /// The next step is the first.
+    /// Forgets the feet: the next step is the first.
     pub(crate) fn clear(&mut self) {
         self.planter = None;
     }
 
-    /// The next step goes on from these feet.
+    /// Continues from these feet.
     pub(crate) fn resume(&mut self, state: &PlanterState) {
         self.planter = Some(Planter::resume(&self.skeleton, self.frame_secs, state));
     }
 
-    /// State that the next step begins with; `None` before the first.
+    /// Returns the state with which the next step begins; `None` before the first.
     pub(crate) fn planter_state(&self) -> Option<PlanterState> {
         self.planter.as_ref().map(Planter::state)
     }
 
-    /// Last plant of this foot; `None` before the first step.
+    /// Returns the last plant of this foot; `None` before the first step.
     pub(crate) fn plant(&self, side: Side) -> Option<&Plant> {
         self.planter.as_ref().map(|planter| planter.plant(side))
     }
 
-    /// State that the rest of the step on the ground goes on from when it is cut at a frame in which one foot is in the air; `None` where none is, and where frames
-    /// were left out. `begun` is what the step began with.
+    /// Returns the state from which the remainder continues if the step is cut at a frame; `None` if no foot is in the air there, and for steps
+    /// in less than full detail. `begun` is the state with which the step began.
     pub(crate) fn cut(
         &self,
         shape: &StepShape,
@@ -92,14 +92,14 @@ impl PlantedStep {
         (whole && cut.is_in_swing()).then(|| cut.state())
     }
 
-    /// Travel of the hips over the ground in the step that was put there.
+    /// Returns the travel of the hips over the ground in the step.
     pub(crate) fn travel(&self, shape: &StepShape) -> Vec3 {
         let last = shape.ground_frames();
         let [from, to] = [0, last].map(|frame| self.frames[frame].pose.root_position);
         (to - from) * Vec3::new(1.0, 0.0, 1.0)
     }
 
-    /// Puts a step on the ground: `rows` are the features of its frames, and of the first frame of the next step. `raw` has room for it.
+    /// Puts a step on the ground: `rows` are the features of its frames and of the first frame of the next step. `generated` is working memory.
     pub(crate) fn put<'a>(
         &mut self,
         rows: impl Iterator<Item = &'a [f32]>,
@@ -132,7 +132,7 @@ impl PlantedStep {
             layout::decode(&blended, rotations);
         }
         GeneratedFrame::fill(generated, frames, &self.skeleton, |index| {
-            // A foot that stands must not notice that another step has begun.
+            // The standing foot must not notice the beginning of another step.
             let s = (COUNTING + f32x8::splat(index as f32)) * (timing.frames as f32).recip();
             let share = lanes::smooth_step(s);
             let between = |from: f32, to: f32| share * (to - from) + f32x8::splat(from);

@@ -1,4 +1,4 @@
-//! Plants one step after another.
+//! Planter: feet, legs and the state that is carried from step to step.
 
 use super::generated::GeneratedFrame;
 use super::planter_state::{Lean, PlanterState};
@@ -9,7 +9,7 @@ use footfall_core::{Side, Skeleton};
 use footfall_ik::{Leg, Plant, RockerFoot};
 use glam::{Vec2, Vec3};
 
-/// Carries plants, hips and heading from step to step.
+/// Planter of one walker; its parts are in the files beside this one.
 #[derive(Clone, Debug)]
 pub(crate) struct Planter {
     pub(super) feet: [RockerFoot; 2],
@@ -20,8 +20,8 @@ pub(crate) struct Planter {
 }
 
 impl Planter {
-    /// Puts the first frame on the ground: both feet down, hips above the origin, under this heading. The hips are as high as the leg has them that bears
-    /// the body: in a run the one that lands.
+    /// Puts the first frame on the ground: both feet down, hips above the origin, under this heading. The bearing leg determines the height of the
+    /// hips: in a run the landing one.
     pub(crate) fn new(
         skeleton: &Skeleton,
         frame_secs: f32,
@@ -62,7 +62,7 @@ impl Planter {
         planter
     }
 
-    /// Goes on from a [`state`](Self::state).
+    /// Continues from a [`state`](Self::state).
     pub(crate) fn resume(skeleton: &Skeleton, frame_secs: f32, state: &PlanterState) -> Self {
         Self {
             feet: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
@@ -73,22 +73,22 @@ impl Planter {
         }
     }
 
-    /// From here on frames are so far apart, seconds.
+    /// Sets the time between two frames, seconds.
     pub(crate) fn set_frame_secs(&mut self, frame_secs: f32) {
         self.frame_secs = frame_secs;
     }
 
-    /// At the end of the next step the legs' reach has this factor on it.
+    /// Sets the factor on the legs' reach at the end of the next step.
     pub(crate) fn set_stride(&mut self, stride: f32) {
         self.state.stride = stride;
     }
 
-    /// State that the next step begins with.
+    /// Returns the state with which the next step begins.
     pub(crate) fn state(&self) -> PlanterState {
         self.state
     }
 
-    /// Last plant of this foot.
+    /// Returns the last plant of this foot.
     pub(crate) fn plant(&self, side: Side) -> &Plant {
         &self.state.plants[side.index()]
     }

@@ -1,15 +1,15 @@
-//! Feet, hips and heading as they are carried from step to step.
+//! State of feet, hips and heading between two steps.
 
 use super::strafe::Strafe;
 use footfall_ik::{FootTarget, Plant};
 use glam::{Quat, Vec2, Vec3};
 
-/// State that goes from step to step.
+/// State at the end of a step, with which the next one begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PlanterState {
     pub(crate) plants: [Plant; 2],
     pub(crate) hips: Vec3,
-    /// Velocity of the hips in the last frame, m/s; none before the first step.
+    /// Velocity of the hips in the last frame, m/s; `None` before the first step.
     pub(crate) hips_velocity: Option<Vec3>,
     pub(crate) heading: f32,
     pub(crate) turn_rate: f32,
@@ -19,9 +19,9 @@ pub(crate) struct PlanterState {
     pub(crate) stride: f32,
     /// Strafe of the last step.
     pub(crate) strafe: Strafe,
-    /// Shift of both feet with which it landed in balance, to the left and forwards.
+    /// Shift of both feet for the balance of the last landing, to the left and forwards.
     pub(crate) balance: Vec2,
-    /// The foot that took off in the last step, if that was one of a run.
+    /// Foot that is still in the air, after a step of a run or a cut.
     pub(crate) airborne: Option<Airborne>,
     /// Lean of the trunk.
     pub(crate) lean: Lean,
@@ -38,7 +38,7 @@ pub(crate) struct Airborne {
 }
 
 impl Airborne {
-    /// Place of the foot so long ago.
+    /// Returns the place of the foot this long ago.
     pub(super) fn earlier(&self, secs: f32) -> FootTarget {
         let share = secs / self.frame_secs;
         if (share - 1.0).abs() < 1e-3 {

@@ -1,8 +1,8 @@
-//! Thrust: the speed of a runner's hips over the ground, from landing to landing.
+//! Travel in a run: the speed of the hips over the ground, from landing to landing.
 //!
-//! Hips that follow the generated leg over a foot that may not slide sway by half a metre a second, gain speed where runners brake, and take the last of
-//! it into the flight, so that every step flies off in another direction. A runner's hips go where the run goes: they sway a little towards the foot
-//! that bears, are braked as it lands and pushed on as it leaves (Cavagna et al., The sources of external work in level walking and running, 1976).
+//! Hips that follow the generated leg over a fixed foot sway by half a metre a second, gain speed where runners brake, and carry the final velocity
+//! into the flight, so that every step flies off in another direction. A runner's hips follow the direction of the run: they sway a little towards the
+//! bearing foot, are braked as it lands and accelerated as it leaves (Cavagna et al., The sources of external work in level walking and running, 1976).
 
 use super::bounce::pushed;
 use super::course::Course;
@@ -21,7 +21,7 @@ const SWAY_MPS: f32 = 0.07;
 const BRAKING: f32 = 0.06;
 
 impl Planter {
-    /// Lets the hips go where the run goes, from flight to flight. What a [change of speed](super::SpeedChange) makes of their way along it stays.
+    /// Moves the hips along the direction of the run, from flight to flight. The effect of a [change of speed](super::SpeedChange) along it is kept.
     pub(super) fn thrust(&self, timing: &StepTiming, course: Course, out: &mut [PlantedFrame]) {
         let (Some(take_off), Some(direction)) = (timing.take_off, course.direction) else {
             return;
@@ -61,9 +61,9 @@ impl Planter {
     }
 }
 
-/// The way of a body whose leg pushes it as half a sine wave, and of its flight, in frames.
+/// Travel of a body pushed by its leg with half a sine wave, and then in flight, in frames.
 struct Stance {
-    /// Velocities as it begins and ends, metres a frame.
+    /// Velocities at the beginning and the end of the stance, metres per frame.
     before: Vec3,
     after: Vec3,
     frames: f32,

@@ -1,28 +1,28 @@
-//! Changes of speed: hips that are to be faster or slower by the end of a step gain or lose speed all through it.
+//! Changes of speed: the hips gain or lose speed throughout the step.
 //!
-//! An even step settles to its mean speed soon after it has begun, so that somebody who sets out would be as fast as the mean of the step and no faster.
-//! On a request for another speed, the way of the hips is instead the cubic that begins with the speed they have and ends with the one that is asked for.
+//! An even step soon settles to its mean speed, so that a walker that sets out would never exceed the mean of its first step.
+//! When the requested speed changes, the hips instead follow a cubic from their current speed to the requested one.
 
 use footfall_core::ease::smooth_step;
 use glam::Vec2;
 
-/// Changes of the asked velocity up to the first are none, and from the second on shape the step wholly, m/s.
+/// Change of the requested velocity from which the step is affected, and from which it is affected fully, m/s.
 const CHANGED_MPS: [f32; 2] = [0.2, 1.0];
 
-/// Travel in a step from which on a change of speed shapes it, as a share of the leg's length.
+/// Travel in a step from which a change of speed takes full effect, as a share of the leg's length.
 const LEAST_TRAVEL: f32 = 0.12;
 
-/// The speed that a step ends with, and how much it differs from the one before.
+/// Speed at the end of a step, and weight of its change.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SpeedChange {
     /// At the end of the step, m/s.
     pub(super) speed_mps: f32,
-    /// From 0, for a step like the one before, to 1.
+    /// From 0, for an unchanged speed, to 1.
     pub(super) weight: f32,
 }
 
 impl SpeedChange {
-    /// From one asked velocity to another; none from one direction to another, in which hips go a way of their own.
+    /// Returns the change between two requested velocities; none between opposite directions.
     pub(crate) fn between(before_mps: Vec2, after_mps: Vec2) -> Self {
         let change = before_mps.distance(after_mps);
         let changed = smooth_step((change - CHANGED_MPS[0]) / (CHANGED_MPS[1] - CHANGED_MPS[0]));
@@ -38,7 +38,7 @@ impl SpeedChange {
         }
     }
 
-    /// The same, which shapes a step wholly.
+    /// Returns the change with full weight.
     pub(crate) fn whole(self) -> Self {
         Self {
             weight: 1.0,
@@ -46,20 +46,20 @@ impl SpeedChange {
         }
     }
 
-    /// Weight in a step of this travel, as a share of the leg: a step on the spot goes nowhere.
+    /// Returns the weight in a step of this travel, as a share of the leg: a step on the spot has none.
     pub(super) fn weight_over(self, travel: f32) -> f32 {
         self.weight * smooth_step(travel / LEAST_TRAVEL)
     }
 }
 
-/// Lead of the hips over an even way at part `s` of a step that they begin and end faster by so much, in steps.
+/// Returns the lead of the hips over even travel at part `s` of a step, given the excess speeds at its beginning and end, in steps.
 pub(super) fn urge(begins: f32, ends: f32, s: f32) -> f32 {
     let left = 1.0 - s;
     s * left * (begins * left - ends * s)
 }
 
-/// By how much the end of a step is faster than an even way, nearest to `ends`, so that hips that begin it faster by `begins` slow down all the way through
-/// it, or gain speed all the way: feet that landed elsewhere than the new speed would have them leave more way than it takes, or less.
+/// Returns the excess speed at the end of a step, nearest to `ends`, for which hips with the initial excess `begins` slow down throughout
+/// the step, or accelerate throughout it: feet planted for another speed leave more travel than the new speed needs, or less.
 pub(super) fn steady(begins: f32, ends: f32) -> f32 {
     let bounds = [-0.5 * begins, -2.0 * begins];
     ends.clamp(bounds[0].min(bounds[1]), bounds[0].max(bounds[1]))

@@ -1,8 +1,8 @@
 //! Facing one way and going another: sidestepping, walking backwards and everything between.
 //!
-//! The model knows walking forwards only, so its steps are turned under the body. What a leg does is taken apart into the place of its
-//! foot, were it flat, and the roll of the foot about that place. The place's way to and fro is turned towards the travel; it is what
-//! carries the body, so the body then travels there. The roll is taken away for going sideways and turned round for going backwards, where
+//! The model only knows forward walking, so its steps are turned under the body. The motion of a leg is split into the place of its flat
+//! foot and the roll of the foot about that place. The excursion of the place is turned towards the direction of travel and carries the body
+//! there. The roll is removed for sideways steps and reversed for backward steps, in which
 //! people land on their toes and leave from their heels. Pelvis and feet turn part of the way, as people's do, and the back turns back.
 
 mod turner;
@@ -17,7 +17,7 @@ use glam::Vec2;
 use serde::{Deserialize, Serialize};
 pub(crate) use turner::Turner;
 
-/// Greatest factor that makes steps as long as they should be.
+/// Largest factor by which steps are lengthened to their intended length.
 const MOST_LENGTHENED: f32 = 1.8;
 
 /// Feet that pass each other sideways keep this far from the middle, as a share of the leg, so that legs do not cross.
@@ -35,12 +35,12 @@ pub(crate) struct Strafe {
     pub(crate) forwardness: f32,
     /// Turn of the pelvis towards the travel, radians.
     pub(crate) turn: f32,
-    /// By how much each foot is set further out, metres.
+    /// Outward shift of each foot, metres.
     pub(crate) widening: f32,
 }
 
 impl Strafe {
-    /// The walk as it is.
+    /// An unturned walk.
     pub(crate) const NONE: Self = Self {
         reach: [0.0, 1.0],
         forwardness: 1.0,
@@ -48,7 +48,7 @@ impl Strafe {
         widening: 0.0,
     };
 
-    /// For a step of this velocity (to the left and forwards, m/s) that lasts so long.
+    /// Returns the turn for a step of this velocity, to the left and forwards, m/s, and duration.
     pub(crate) fn of(velocity_mps: Vec2, step_secs: f32, skeleton: &Skeleton) -> Self {
         if velocity_mps.x == 0.0 && velocity_mps.y >= 0.0 {
             return Self::NONE;
@@ -64,7 +64,7 @@ impl Strafe {
         }
     }
 
-    /// Sets the feet of a step so far apart that they pass each other. `raw` is the step forwards.
+    /// Spreads the feet so that they pass each other. `generated` is the forward step.
     pub(crate) fn spread(mut self, generated: &[GeneratedFrame], leg_length: f32) -> Self {
         let (mut apart, mut step) = (0.0, 0.0_f32);
         for generated in generated {
@@ -81,8 +81,8 @@ impl Strafe {
         self
     }
 
-    /// Lengthens the legs' reach so that a step leads as far as it should: one of a quick walk that was made shorter leads less far forwards than its share of a whole one. `flat_m` is how far
-    /// it leads forwards, `wanted_m` how far it should, metres.
+    /// Lengthens the legs' reach to the intended length of the step: a shortened step of a quick walk covers less than its share of a whole one. `flat_m` is its length
+    /// forwards, `wanted_m` the intended one, metres.
     pub(crate) fn lengthened(mut self, flat_m: f32, wanted_m: Option<f32>) -> Self {
         if let Some(wanted_m) = wanted_m
             && flat_m > 0.0
@@ -98,13 +98,13 @@ impl Strafe {
         self.forwardness.max(0.0).powi(2)
     }
 
-    /// Every number of it.
+    /// Returns all values.
     pub(crate) const fn numbers(&self) -> [f32; 5] {
         let [left, forwards] = self.reach;
         [left, forwards, self.forwardness, self.turn, self.widening]
     }
 
-    /// At part `s` of a step, from what the step before was to what this one is.
+    /// Interpolates from the previous step to this one, at part `s` of the step.
     pub(crate) fn between(&self, next: &Self, s: f32) -> Self {
         let share = smooth_step(s);
         let mix = |from: f32, to: f32| from + share * (to - from);
@@ -117,8 +117,8 @@ impl Strafe {
     }
 }
 
-/// Share of the walk that is left of arms and trunk: they swing against the legs, so they stop for steps to the side and turn round for
-/// steps backwards. `middle` is the posture that they swing about.
+/// Reduces the swing of arms and trunk: they swing against the legs, so they stop in sideways steps and reverse in
+/// backward steps. `middle` is the posture about which they swing.
 pub(crate) fn sway(
     features: &mut [f32; FEATURE_COUNT],
     middle: &[f32; FEATURE_COUNT],

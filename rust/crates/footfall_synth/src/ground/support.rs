@@ -1,4 +1,4 @@
-//! Support: the feet that bear the body, and the height that their legs allow the hips.
+//! Support: stances of the bearing feet, and the height of the hips that their legs allow.
 
 use super::frame::PlantedFrame;
 use super::generated::{GeneratedFrame, GeneratedLeg, free_foot};
@@ -17,10 +17,10 @@ pub(super) const MAX_STANCE_EXTENSION: f32 = 0.998;
 /// Fraction of the straight leg beyond which a leaving foot is not held: its knee would snap straight.
 pub(super) const LET_GO_EXTENSION: f32 = 0.998;
 
-/// Over how many metres the pelvis yields to that limit.
+/// Distance over which the pelvis yields to that limit, metres.
 const REACH_SOFTNESS_M: f32 = 0.003;
 
-/// Over how long a leaving leg's reach ceases to bear on the pelvis, seconds.
+/// Time over which a leaving leg's reach ceases to limit the pelvis, seconds.
 const REACH_FADE_SECS: f32 = 0.07;
 
 /// Time constant with which the pelvis comes up again when such a leg lets go, seconds.
@@ -31,7 +31,7 @@ const REACH_RELEASE_SECS: f32 = 0.05;
 const RELEASE_SHARE: f32 = 0.03;
 
 impl Planter {
-    /// Fills where each foot stands while it may: on its plant, under the plant's heading, at the generated pitch.
+    /// Fills the targets of both feet in their stances: on the plant, under its heading, at the generated pitch.
     pub(super) fn fill_stances(&self, generated: &mut [GeneratedFrame], timing: &StepTiming) {
         let trailing = timing.leading.other();
         let stances = [
@@ -44,7 +44,7 @@ impl Planter {
         }
     }
 
-    /// Stands a foot on its plant, under the plant's heading, in those frames in which `pitch` gives it a pitch.
+    /// Puts a foot on its plant, under the plant's heading, in the frames for which `pitch` returns a pitch.
     pub(super) fn stand(
         &self,
         side: Side,
@@ -72,7 +72,7 @@ impl Planter {
         }
     }
 
-    /// The last frame up to `timing.terminal` in which the trailing foot can stay where it stands.
+    /// Returns the last frame up to `timing.terminal` in which the trailing foot can stay in place.
     pub(super) fn release(
         &self,
         generated: &[GeneratedFrame],
@@ -113,7 +113,7 @@ impl Planter {
             let bears = timing.trailing_bears(index);
             frame.contact[timing.leading.index()] = timing.leading_bears(index);
             frame.contact[trailing.index()] = bears || index == timing.frames;
-            // A leg that lets go of the pelvis does so smoothly, also when its contact is all but over as the step begins.
+            // A leg releases the pelvis smoothly, even if its contact is almost over as the step begins.
             drop *= release;
             if bears && let Some(limit) = self.reach_limit(trailing, hips, generated, frame) {
                 let fade = if index == 0 {
@@ -141,8 +141,8 @@ impl Planter {
         }
     }
 
-    /// Greatest height of the hips at which this leg reaches its foot; `None` when the foot is out of reach sideways at any
-    /// height: then the solver stretches the leg, and the pelvis stays human.
+    /// Returns the greatest height of the hips at which this leg reaches its foot; `None` when the foot is out of reach sideways at any
+    /// height: then the solver stretches the leg, and the pelvis keeps a human height.
     pub(super) fn reach_limit(
         &self,
         side: Side,

@@ -16,28 +16,28 @@ use glam::Vec3;
 /// Least clearance of the sole in the middle of the swing, metres.
 const CLEARANCE_M: f32 = 0.012;
 
-/// Over how many metres the foot yields to that clearance.
+/// Distance over which the foot yields to that clearance, metres.
 const CLEARANCE_SOFTNESS_M: f32 = 0.004;
 
 /// Rate at which the disagreement from the last stance dies away, per swing.
 const SETTLE_RATE: f32 = 8.0;
 
-/// A foot that walks and one that runs lands at most this fast, m/s: people brake their swing before the heel strikes.
+/// Maximum landing speed of a walking and of a running foot, m/s: people brake their swing before the heel strikes.
 const MOST_LANDING_MPS: [f32; 2] = [1.2, 2.2];
 
-/// Part of the swing by which a foot is free of how it stood.
+/// Part of the swing after which a foot is independent of its stance.
 const FREED_BY: f32 = 0.3;
 
-/// A foot that leaps has forgotten how it stood after so long, seconds: hips rise fast, and its leg is drawn after them at once.
+/// Time after which a leaping foot is independent of its stance, seconds: the hips rise fast and draw the leg with them at once.
 const LEAP_DEPARTURE_SECS: f32 = 0.5;
 
-/// Over this time at most a faster foot is braked, seconds.
+/// Longest time over which a faster foot is braked, seconds.
 const BRAKING_SECS: [f32; 2] = [0.16, 0.1];
 
 /// Share of the straight leg to which a swinging leg can be stretched.
 const SWING_EXTENSION: f32 = 0.9993;
 
-/// Disagreement between planted and generated foot, from the foot's last frame on the ground to its next first.
+/// Difference between planted and generated foot, from the last frame of one stance to the first of the next.
 pub(super) struct Swing {
     first: usize,
     frames: f32,
@@ -45,10 +45,10 @@ pub(super) struct Swing {
     rotation: Correction,
     /// The toes' own rotation.
     toes: Correction,
-    /// By how much the foot would land too fast, metres a frame, and over how many frames it is braked.
+    /// Excess of the landing speed, metres per frame, and the number of frames over which it is braked.
     excess: Vec3,
     braking: f32,
-    /// Frames of the swing after which the foot is free of how it stood.
+    /// Frames of the swing after which the foot is independent of its stance.
     freed_after: f32,
 }
 
@@ -60,7 +60,7 @@ struct Correction {
 }
 
 impl Correction {
-    /// A critically damped farewell to the start, and a smooth approach to the end.
+    /// Returns the correction: critically damped from the start, and a smooth approach to the end.
     fn at(&self, share: &Share) -> Vec3x8 {
         let going = Vec3x8::splat(self.departure + self.start * SETTLE_RATE) * share.s;
         let farewell = (Vec3x8::splat(self.start) + going) * share.left;
@@ -95,7 +95,7 @@ impl Swing {
         }
     }
 
-    /// The beginning of a swing that the next step ends: `ends` are the planted and the free foot one frame before it takes off and then.
+    /// Begins a swing that the next step ends: `ends` are the planted and the free foot one frame before the take-off and at it.
     pub(super) fn departing(
         ends: &[(FootTarget, FootTarget); 2],
         timing: &StepTiming,
@@ -117,7 +117,7 @@ impl Swing {
         }
     }
 
-    /// A swing of so many frames from the frame `first` on; without a landing it goes where the free foot goes.
+    /// Makes a swing of this many frames from the frame `first` on; without a landing it follows the free foot.
     fn between(
         starts: &[(FootTarget, FootTarget); 2],
         landing: Option<&(FootTarget, FootTarget)>,
@@ -148,7 +148,7 @@ impl Swing {
         }
     }
 
-    /// Eight frames of the step from `index` on: the feet from where they would be free.
+    /// Returns the feet in eight frames of the step from `index` on, given the free feet.
     pub(super) fn guide(
         &self,
         index: usize,
@@ -163,7 +163,7 @@ impl Swing {
             foot: rotation,
             toes: rotation * Quatx8::exp_map(self.toes.at(&share)),
         };
-        // Ahead at first, so as to arrive slower.
+        // Ahead at first, to arrive slower.
         let left = f32x8::splat(self.frames) - passed;
         let b = (f32x8::ONE - left * self.braking.recip()).fast_max(f32x8::ZERO);
         let ahead = b * b * (f32x8::ONE - b) * self.braking;
@@ -190,7 +190,7 @@ impl Swing {
 }
 
 impl Planter {
-    /// Fills where a foot is on its way in some frames, eight at a time.
+    /// Fills the targets of a swinging foot in a range of frames, eight at a time.
     pub(super) fn fill_swing(
         &self,
         generated: &mut [GeneratedFrame],
@@ -226,7 +226,7 @@ impl Planter {
         }
     }
 
-    /// Planted and free places of the trailing foot, at the ends of its swing.
+    /// Returns the planted and free places of the trailing foot at the ends of its swing.
     pub(super) fn swing_ends(
         &self,
         generated: &[GeneratedFrame],
@@ -256,11 +256,11 @@ impl Planter {
     }
 }
 
-/// Parts of the swing in eight frames, and what depends on them alone.
+/// Parts of the swing in eight frames, and values that depend on them alone.
 struct Share {
     s: f32x8,
     smooth: f32x8,
-    /// Remaining part of a farewell.
+    /// Remaining part of the initial correction.
     left: f32x8,
     /// From 0 at the ends to 1 in the middle.
     hump: f32x8,

@@ -1,4 +1,4 @@
-//! The way of the body over a step: hips above the foot that stands, heading, and the walker's place on the ground.
+//! Travel of the body in a step: hips above the standing foot, heading, and the walker's place on the ground.
 
 use super::course::Course;
 use super::frame::PlantedFrame;
@@ -15,11 +15,11 @@ use glam::{Quat, Vec3};
 /// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
 const SETTLE_SECS: f32 = 0.05;
 
-/// Steps that are made shorter, as on stairs, still lift and lower the hips as long ones do: in a step of no length they would take so
-/// much longer to settle, as a share.
+/// Relative increase of that time for a step of no length: shortened steps, as on stairs, still lift and lower the hips as long ones
+/// do.
 const SHORT_SETTLE_SHARE: f32 = 1.8;
 
-/// Speed of a fall, m/s, above that of any runner, beyond which it takes longer to take up, and by how much, seconds by m/s.
+/// Speed of a fall, m/s, above that of any runner, beyond which settling takes longer, and the increase, seconds per m/s.
 const SOFT_FALL_MPS: f32 = 1.3;
 const SETTLE_BY_FALL: f32 = 0.04;
 
@@ -32,7 +32,7 @@ const MEETING_SHARE: f32 = 0.5;
 pub(super) const MEETING_FROM: f32 = 0.4;
 
 impl Planter {
-    /// Fills hips, headings and ground position of every frame, and carries the latter two to the next step.
+    /// Fills hips, heading and ground position of every frame, and carries the last two on to the next step.
     pub(super) fn travel(
         &mut self,
         generated: &[GeneratedFrame],
@@ -82,7 +82,7 @@ impl Planter {
         self.glide(timing, out);
     }
 
-    /// Settling of the hips from their former way to that above the foot that has landed.
+    /// Returns the settling of the hips onto the path above the landed foot.
     fn settling(&self, generated: &[GeneratedFrame], timing: &StepTiming) -> Settling {
         let start = hips_above(
             &generated[0],
@@ -97,7 +97,7 @@ impl Planter {
                 velocity * self.frame_secs - (follow - start)
             }),
             decay: self.frame_secs / self.settle_secs(),
-            // Who flies falls onto the foot that lands.
+            // After a flight the body falls onto the landing foot.
             meeting: match timing.take_off {
                 Some(_) => 0.0,
                 None => MEETING_SHARE * self.landing_height_gap(generated, timing),
@@ -163,9 +163,9 @@ impl Planter {
     }
 }
 
-/// Settling of the hips onto another way, in frames of a step.
+/// Settling of the hips onto another path, in frames of a step.
 struct Settling {
-    /// Offset and velocity in the first frame, relative to the new way.
+    /// Offset and velocity in the first frame, relative to the new path.
     offset: Vec3,
     velocity: Vec3,
     decay: f32,
@@ -175,7 +175,7 @@ struct Settling {
 }
 
 impl Settling {
-    /// Distances of the hips from the new way at eight times.
+    /// Returns the offsets of the hips from the new path at eight times.
     fn at(&self, time: f32x8) -> Vec3x8 {
         // A critically damped return from where the hips were to where the landed foot has them.
         let pace = Vec3x8::splat(self.velocity + self.offset * self.decay);

@@ -1,4 +1,4 @@
-//! A body whose posture changes over feet that have their own places.
+//! Body whose posture changes over feet with their own places.
 
 use footfall_core::rotation::exp_map;
 use footfall_core::{Joint, Pose, Side, Skeleton};
@@ -9,29 +9,29 @@ use footfall_model::BESIDE_COUNT;
 use footfall_model::layout::feature_offset;
 use glam::Vec3;
 
-/// A posture beside standing: see [`BESIDE_COUNT`].
+/// Posture relative to standing: see [`BESIDE_COUNT`].
 pub(super) type Beside = [f32; BESIDE_COUNT];
 
-/// Fractions of the straight leg from which on heels rise as a leg pushes off, and that it uses at most.
+/// Fractions of the straight leg from which heels rise in a push-off, and at most.
 const STRETCHED: f32 = 0.95;
 const MOST_STRETCHED: f32 = 0.988;
 
-/// The same of a leg in the air, which straightens more.
+/// The same for a leg in the air, which straightens more.
 const STRETCHED_ALOFT: f32 = 0.975;
 const MOST_STRETCHED_ALOFT: f32 = 0.993;
 
-/// Steepest pitch of a foot on its toes, radians, and how often the interval in which a pitch lies is halved: to a ten-thousandth.
+/// Steepest pitch of a foot on its toes, radians, and number of bisections of a pitch, to a ten-thousandth.
 const STEEPEST: f32 = 1.1;
 const HALVINGS: usize = 13;
 
-/// One body, ready to be moved.
+/// Legs and feet of one body.
 #[derive(Clone, Debug)]
 pub(super) struct Body {
     legs: [Leg; 2],
     pub(super) feet: [RockerFoot; 2],
     hip_from_hips: [Vec3; 2],
     leg_lengths: [f32; 2],
-    /// Their mean, metres.
+    /// Mean length of the legs, metres.
     pub(super) leg_length: f32,
 }
 
@@ -46,12 +46,12 @@ impl Body {
         }
     }
 
-    /// Places of a pose's feet.
+    /// Returns the places of a pose's feet.
     pub(super) fn feet(&self, pose: &Pose) -> [FootTarget; 2] {
         self.legs.each_ref().map(|leg| leg.foot_of(pose))
     }
 
-    /// Turns the joints of a pose that stands by those of a posture beside standing.
+    /// Applies a posture relative to standing to a standing pose.
     pub(super) fn turn(beside: &Beside, pose: &mut Pose) {
         for joint in Joint::ALL {
             let at = feature_offset(joint);
@@ -60,7 +60,7 @@ impl Body {
         }
     }
 
-    /// Plants of a standing pose's feet.
+    /// Returns the plants of a standing pose's feet.
     pub(super) fn plants(&self, pose: &Pose) -> [Plant; 2] {
         let stood = self.feet(pose);
         core::array::from_fn(|side| {
@@ -69,8 +69,8 @@ impl Body {
         })
     }
 
-    /// Feet that stand on plants, moved by this much, at the pitch of a pose: nobody jumps on the heels. Where `rise` is 1, heels rise as far as the legs
-    /// need it to reach the hips without being straight; where it is 0, legs may be straight.
+    /// Returns feet on displaced plants, at the pitch of a pose but not on the heels. With a `rise` of 1, heels rise until the legs
+    /// reach the hips without being straight; with 0, legs may be straight.
     pub(super) fn on_toes(
         &self,
         plants: &[Plant; 2],
@@ -108,7 +108,7 @@ impl Body {
         })
     }
 
-    /// Greatest height of the hips of a pose from which both legs reach feet on the very tips of their toes, metres.
+    /// Returns the greatest height of the hips at which both legs reach feet on their toe tips, metres.
     pub(super) fn highest(&self, pose: &Pose, plants: &[Plant; 2]) -> f32 {
         let hips = pose.root_position;
         let limits = [0, 1].map(|side: usize| {
@@ -120,7 +120,7 @@ impl Body {
         limits[0].min(limits[1])
     }
 
-    /// Stretch of the legs to feet, as fractions of the straight leg.
+    /// Returns the stretch of the legs to their feet, as fractions of the straight leg.
     pub(super) fn stretched(&self, pose: &Pose, targets: &[FootTarget; 2]) -> [f32; 2] {
         core::array::from_fn(|side| {
             let hip = pose.root_position + pose.rotation(Joint::Hips) * self.hip_from_hips[side];
@@ -128,7 +128,7 @@ impl Body {
         })
     }
 
-    /// Lowers the hips of a pose to where no leg is stretched farther than this.
+    /// Lowers the hips of a pose until no leg is stretched beyond a limit.
     pub(super) fn lower_to(&self, pose: &mut Pose, targets: &[FootTarget; 2], stretched: [f32; 2]) {
         for side in 0..2 {
             let hip = pose.rotation(Joint::Hips) * self.hip_from_hips[side];
@@ -139,7 +139,7 @@ impl Body {
         }
     }
 
-    /// Draws feet in the air nearer to the hips of a pose where its legs would be straight.
+    /// Draws feet in the air towards the hips if the legs would be straight.
     pub(super) fn within_reach(&self, pose: &Pose, targets: &mut [FootTarget; 2]) {
         for (side, target) in targets.iter_mut().enumerate() {
             let hip = pose.root_position + pose.rotation(Joint::Hips) * self.hip_from_hips[side];
@@ -152,7 +152,7 @@ impl Body {
         }
     }
 
-    /// Solves the legs to where the feet have to be.
+    /// Solves the legs to their feet.
     pub(super) fn stand(&self, targets: &[FootTarget; 2], pose: &mut Pose) {
         let (hips, rotation) = (pose.root_position, pose.rotation(Joint::Hips));
         for (leg, target) in self.legs.iter().zip(targets) {
@@ -161,7 +161,7 @@ impl Body {
     }
 }
 
-/// Limits the stretch of a leg, as fractions of the straight leg: from the first bound on it gets ever harder to stretch, so that no knee
+/// Limits the stretch of a leg, as a fraction of the straight leg: progressively from the first bound on, so that no knee
 /// snaps, and never beyond the second.
 fn yielded(fraction: f32, [from, most]: [f32; 2]) -> f32 {
     let beyond = (fraction - from).max(0.0);

@@ -1,27 +1,27 @@
-//! Climbs: trunks lean into the way up and back from the way down.
+//! Climbs: the trunk leans forward uphill and back downhill.
 
 use footfall_core::ease::settled;
 use footfall_core::{Joint, Pose};
 use glam::Quat;
 
-/// Share of the slope's angle that a trunk leans by uphill and downhill, and what part of that the neck takes back: people keep their eyes level.
+/// Lean of the trunk uphill and downhill as a share of the slope's angle, and the part of it that the neck compensates: people keep their eyes level.
 const UPHILL: f32 = 0.2;
 const DOWNHILL: f32 = 0.1;
 const HEAD_KEPT: f32 = 0.5;
 
-/// Steeper ways bend nobody farther, rise by run.
+/// Steepest grade that has an effect, rise over run.
 const STEEPEST: f32 = 1.0;
 
 /// Rate of the critically damped spring by which the trunk follows, 1/s.
 const RATE: f32 = 4.0;
 
-/// Less is upright, radians and radians a second.
+/// Lean that counts as none, radians and rad/s.
 const LEAST: f32 = 1e-4;
 
 /// A trunk on a slope.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ClimbMoment {
-    /// The way's rise by run, positive uphill.
+    /// Grade of the way, rise over run, positive uphill.
     pub(crate) grade: f32,
     /// Forward lean of the trunk, radians, and its rate of change.
     pub(crate) lean: f32,
@@ -29,7 +29,7 @@ pub(crate) struct ClimbMoment {
 }
 
 impl ClimbMoment {
-    /// Goes on on a way of this grade; 0 where it is not finite.
+    /// Sets the grade of the way; 0 if it is not finite.
     pub(super) fn go_on(&mut self, grade: f32) {
         self.grade = if grade.is_finite() {
             grade.clamp(-STEEPEST, STEEPEST)

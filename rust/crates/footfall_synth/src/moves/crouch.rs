@@ -1,20 +1,20 @@
-//! Crouching: hips low over the same feet, trunk and arms as people hold them there.
+//! Crouch: hips low over the same feet, with trunk and arms of crouching people.
 
 use super::body::{Beside, Body};
 use footfall_core::ease::settled;
 use footfall_model::{CrouchModel, FEATURE_COUNT};
 use glam::Vec3;
 
-/// Rate of the critically damped spring by which somebody goes down and comes up, 1/s.
+/// Rate of the critically damped spring that moves the depth, 1/s.
 const RATE: f32 = 9.0;
 
-/// Less is standing upright.
+/// Depth that counts as upright.
 const LEAST: f32 = 1e-4;
 
 /// Depth of a crouch at a moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct CrouchMoment {
-    /// From 0, upright, to 1, and by how much more a second.
+    /// From 0, upright, to 1, and its rate, 1/s.
     pub(crate) amount: f32,
     pub(crate) speed: f32,
 }
@@ -23,13 +23,13 @@ pub(crate) struct CrouchMoment {
 #[derive(Clone, Debug)]
 pub(super) struct Crouch {
     beside: Option<Beside>,
-    /// Fastest that people go in the deepest crouch, m/s on this body.
+    /// Maximum speed in the deepest crouch, m/s on this body.
     fastest_mps: f32,
     pub(super) moment: CrouchMoment,
 }
 
 impl CrouchMoment {
-    /// So much later, for one who is asked for this amount.
+    /// Returns the depth after this time, for a requested amount.
     fn after(self, secs: f32, asked: f32) -> Self {
         if asked <= 0.0 && self == Self::default() {
             return self;
@@ -47,7 +47,7 @@ impl CrouchMoment {
 }
 
 impl Crouch {
-    /// That of a body with legs of this length; without a model it stays upright.
+    /// Creates the crouch of a body with legs of this length; without a model it stays upright.
     pub(super) fn new(model: Option<&CrouchModel>, leg_length: f32) -> Self {
         let row = |model: &CrouchModel| core::array::from_fn(|index| model.beside[index] as f32);
         Self {
@@ -57,13 +57,13 @@ impl Crouch {
         }
     }
 
-    /// Highest speed of somebody who crouches by this amount and would go at most this fast upright, m/s.
+    /// Returns the maximum speed at this depth, given the maximum upright, m/s.
     pub(super) fn fastest_mps(&self, amount: f32, upright_mps: f32) -> f32 {
         let low = self.fastest_mps.min(upright_mps);
         upright_mps + share(amount) * (low - upright_mps)
     }
 
-    /// Lets time pass for one who is asked for this amount.
+    /// Advances by a time towards a requested amount.
     pub(super) fn step(&mut self, secs: f32, asked: f32) {
         if self.beside.is_some() {
             self.moment = self.moment.after(secs, share(asked));
@@ -87,7 +87,7 @@ impl Crouch {
     }
 }
 
-/// An amount within bounds; none where it is not finite.
+/// Returns the amount within bounds; 0 if it is not finite.
 fn share(amount: f32) -> f32 {
     if amount.is_finite() {
         amount.clamp(0.0, 1.0)

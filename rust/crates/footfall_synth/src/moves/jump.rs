@@ -1,8 +1,8 @@
-//! Jumping off both feet, out of standing: down, off, through the air, down again and up.
+//! Two-footed jump out of standing: dip, push-off, flight, absorption and recovery.
 //!
-//! The body's posture comes from the model. The hips go as it says as long as the feet bear, with the speed at take-off and landing that the flight
-//! needs; in between nothing but gravity acts, and they are on a parabola. Feet roll off on their toes and land on them, where they were or on the place
-//! that was asked for.
+//! The body's posture comes from the model. The hips follow it while the feet bear, with the speed at take-off and landing that the flight
+//! requires; in between they are on a parabola. Feet roll off over their toes and land on them, in their old place or the
+//! requested one.
 
 mod course;
 
@@ -23,11 +23,11 @@ const FLIGHT: usize = 2;
 const ABSORPTION: usize = 3;
 const RECOVERY: usize = 4;
 
-/// Part of the flight in which the feet go over from where they stood into how the jump has them, and part from which on they go to where they land.
+/// Part of the flight by which the feet leave their stance for the jump's posture, and part from which they approach the landing.
 const FREED_BY: f32 = 0.5;
 const REACHING_FROM: f32 = 0.45;
 
-/// StepRequest for a jump.
+/// Request for a jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Leap {
     /// Rise of the hips above their height before the jump, metres.
@@ -65,7 +65,7 @@ pub(crate) struct Flown {
     pub(crate) bears: bool,
 }
 
-/// The model's jumps, ready to be jumped.
+/// Jumps of a model, prepared.
 #[derive(Clone, Debug)]
 pub(crate) struct JumpTables {
     /// Standing posture of the model's people.
@@ -73,9 +73,9 @@ pub(crate) struct JumpTables {
     secs: [[f32; JUMP_RESPONSES]; JUMP_PHASES],
     rise: [f32; 3],
     way: [f32; 3],
-    /// Knots of all phases; those in which two phases meet are there once.
+    /// Knots of all phases; knots between two phases occur once.
     knots: Vec<[Beside; JUMP_RESPONSES]>,
-    /// The knot that begins each phase, and the last of all.
+    /// First knot of each phase, and the last knot.
     begins: [usize; JUMP_PHASES + 1],
 }
 
@@ -110,7 +110,7 @@ impl JumpTables {
         }
     }
 
-    /// Difference of a jump of this rise and way, in leg lengths, from the mean jump: the factors of the slopes.
+    /// Returns the deviation of a jump of this rise and way, in leg lengths, from the mean jump: the factors of the slopes.
     fn factors(&self, rise: f32, way: f32) -> [f32; JUMP_RESPONSES] {
         let deviation = |value: f32, [least, mean, most]: [f32; 3]| value.clamp(least, most) - mean;
         [1.0, deviation(rise, self.rise), deviation(way, self.way)]
@@ -122,13 +122,13 @@ impl JumpTables {
         responses.map(|(secs, factor)| secs * factor).sum()
     }
 
-    /// A number of a knot's posture.
+    /// Returns a value of a knot's posture.
     fn number(&self, knot: usize, factors: [f32; JUMP_RESPONSES], dim: usize) -> f32 {
         let responses = self.knots[knot].iter().zip(factors);
         responses.map(|(row, factor)| row[dim] * factor).sum()
     }
 
-    /// The posture at part `s` of a phase, when phases last so long: a cubic curve through the knots.
+    /// Returns the posture at part `s` of a phase, for these durations: a cubic curve through the knots.
     fn beside(&self, phase: usize, s: f32, timing: &Timing) -> Beside {
         let Timing {
             factors,
@@ -146,7 +146,7 @@ impl JumpTables {
         };
         let last = self.knots.len() - 1;
         let here = spacing(knot);
-        // How much faster the knots before and after pass than these do.
+        // Ratios of the rates of the neighbouring knots to the rate of these.
         let slope = |from: usize, to: usize| {
             let secs: f32 = (from..to).map(spacing).sum();
             here / secs
@@ -174,7 +174,7 @@ impl JumpTables {
 pub(crate) struct Timing {
     /// Factors of the model's slopes.
     factors: [f32; JUMP_RESPONSES],
-    /// Scale of its postures: jumps lower than recorded ones have less of them.
+    /// Scale of the postures, smaller for jumps lower than recorded ones.
     scale: f32,
     secs: [f32; JUMP_PHASES],
 }
@@ -188,7 +188,7 @@ impl JumpMoment {
         }
     }
 
-    /// The phase, and the part of it that has passed.
+    /// Returns the phase, and the part of it that has passed.
     fn passed(&self) -> (usize, f32) {
         let mut left = self.secs;
         for (phase, secs) in self.course.timing.secs.into_iter().enumerate() {
@@ -208,7 +208,7 @@ impl JumpMoment {
         }
     }
 
-    /// Displacement at its end to the left, up and ahead.
+    /// Returns the displacement at the end, to the left, up and ahead.
     pub(super) fn way(&self) -> Vec3 {
         self.course.way()
     }
@@ -217,7 +217,7 @@ impl JumpMoment {
         self.secs >= self.course.timing.secs.iter().sum()
     }
 
-    /// Moves the pose of somebody who stands facing +Z. The pose is that of the character where it [has come](Flown).
+    /// Applies the jump to a standing pose that faces +Z. The pose is relative to the [displaced](Flown) character.
     pub(super) fn move_pose(&self, tables: &JumpTables, body: &Body, pose: &mut Pose) -> Flown {
         let (phase, s) = self.passed();
         let course = &self.course;
@@ -262,8 +262,8 @@ impl JumpMoment {
     }
 }
 
-/// A foot in flight: where the jump has it, coming from where it stood and going to where it lands. `ends` are where it is planted and where it would
-/// be free, at take-off and at landing.
+/// Returns a foot in flight: its place in the jump's posture, blended from its stance and to its landing. `ends` are the planted and the free
+/// foot, at take-off and at landing.
 fn in_flight(free: &FootTarget, ends: [(&FootTarget, &FootTarget); 2], s: f32) -> FootTarget {
     let shares = [
         1.0 - smooth_step(s / FREED_BY),

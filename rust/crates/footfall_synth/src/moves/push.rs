@@ -1,33 +1,33 @@
-//! Pushes: the body gives way over its feet, and who is pushed hard steps to where it falls.
+//! Pushes: the body yields over its feet, and follows a hard push with steps.
 
 use super::body::Body;
 use footfall_core::ease::settled;
 use footfall_core::{Joint, Pose};
 use glam::{Quat, Vec2, Vec3};
 
-/// A push fades so quickly: what is left of it is walked off, 1/s.
+/// Rate at which a push fades, 1/s; the rest of it is walked off.
 const FADING: f32 = 1.6;
 
-/// Less of a push than this is stood, m/s; more is a step, and beyond the second bound nobody would keep on the feet.
+/// Push up to which a body keeps standing, m/s, and largest push, beyond which nobody stays on the feet.
 const STEPPED_MPS: f32 = 0.3;
 const MOST_MPS: f32 = 2.0;
 
 /// Rate of the critically damped spring by which the body comes back over its feet, 1/s.
 const RETURN: f32 = 6.5;
 
-/// Share of a push that the body gives way with at once.
+/// Share of a push with which the hips start.
 const GIVEN_WAY: f32 = 0.45;
 
-/// Farther the body does not give way, leg lengths.
+/// Largest displacement of the hips, leg lengths.
 const FARTHEST: f32 = 0.12;
 
-/// Fraction of the straight leg to which a push stretches legs at most that were shorter.
+/// Largest fraction of the straight leg to which a push stretches a leg.
 const STRETCHED: f32 = 0.9985;
 
-/// Lag of the trunk behind hips that are pushed away, radians by leg length.
+/// Lag of the trunk behind the pushed hips, radians per leg length.
 const TRUNK_LAG: f32 = 0.9;
 
-/// A push that is being taken up; vectors are to the left and forwards.
+/// Push under way; vectors are to the left and forwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PushMoment {
     /// Velocity that remains to be walked off, m/s.
@@ -38,13 +38,13 @@ pub(crate) struct PushMoment {
 }
 
 impl PushMoment {
-    /// Pushes by a change of velocity.
+    /// Adds a push by a change of velocity.
     pub(super) fn push(&mut self, velocity: Vec2) {
         self.velocity = (self.velocity + velocity).clamp_length_max(MOST_MPS);
         self.speed += GIVEN_WAY * velocity.clamp_length_max(MOST_MPS);
     }
 
-    /// The velocity that has to be stepped off.
+    /// Returns the velocity to be followed with steps.
     pub(super) fn stepped(&self) -> Vec2 {
         if self.velocity.length() > STEPPED_MPS {
             self.velocity
@@ -67,7 +67,7 @@ impl PushMoment {
         }
     }
 
-    /// Lets a pose that faces +Z give way over its feet.
+    /// Displaces a pose that faces +Z over its feet.
     pub(super) fn give_way(&self, body: &Body, pose: &mut Pose) {
         if self.away == Vec2::ZERO {
             return;
@@ -76,7 +76,7 @@ impl PushMoment {
         let stretched = body.stretched(pose, &feet);
         let most = FARTHEST * body.leg_length;
         let away = self.away * (most / (most + self.away.length()));
-        // Hips over legs that lean go down as a pendulum does.
+        // Hips over leaning legs go down like a pendulum.
         let down = -0.5 * away.length_squared() / body.leg_length;
         pose.root_position += Vec3::new(away.x, down, away.y);
         body.lower_to(pose, &feet, stretched.map(|leg| leg.max(STRETCHED)));

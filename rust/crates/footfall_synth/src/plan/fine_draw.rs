@@ -1,13 +1,13 @@
-//! The part of a plan from which the fine motion of its step follows.
+//! Draw of a step's fine motion, part of its plan.
 
 use super::step_draw::{MAX_COMPONENTS, StepDraw};
 use crate::hash::mixed;
 use footfall_model::GaitModel;
 
-/// Strength of a walker's noise stays within this factor of the average's.
+/// Largest factor between a walker's strength of noise and the average's.
 const MAX_STRENGTH: f64 = 1.6;
 
-/// Facts of a step from which its fine motion follows.
+/// Draw of the fine motion of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FineDraw {
     /// The weights of the model's walker components.
@@ -19,7 +19,7 @@ pub(crate) struct FineDraw {
 }
 
 impl FineDraw {
-    /// That of a step of a walker; `variation` scales how far both stray.
+    /// Draws the fine motion of a step of a walker; `variation` scales the deviations of both.
     pub(crate) fn new(
         model: &GaitModel,
         walker: &[f64; MAX_COMPONENTS],
@@ -43,7 +43,7 @@ impl FineDraw {
     }
 }
 
-/// A number that no other step has, made of what chance decided about its stride and of its side; 0 for a step without chance.
+/// Returns a number unique to the step, derived from its random weights and its side; 0 for a step without chance.
 fn number_of(draw: &StepDraw, components: usize) -> u64 {
     let used = components.clamp(1, MAX_COMPONENTS);
     let weights = &draw.weights[..used];

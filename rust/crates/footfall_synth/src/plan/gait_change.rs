@@ -1,14 +1,14 @@
-//! Steps in which one gait goes over into another.
+//! Steps in which the gait changes.
 
 use super::step_plan::StepPlan;
 use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP};
 
-/// Shares by which the states of a step in which the gait changes have gone over into the new one.
+/// Share of the new gait in each state of a step in which the gait changes.
 const GONE_OVER: [f32; STATES_PER_STEP] = [0.15, 0.4, 0.7, 0.9, 1.0];
 
 impl StepPlan<f32> {
-    /// Makes this the step in which one gait goes over into another: it begins as the same step of the gait `before` does. The first
-    /// step of a run lasts as long as the walk's, whose foot has landed as far ahead; the first of a walk as long as the mean of both.
+    /// Turns this plan into a change of gait that begins like `before`, the same step in the previous gait. The first step of a run lasts
+    /// as long as the walk's, whose foot has landed as far ahead; the first of a walk as long as the mean of both.
     pub(crate) fn go_over_from(&mut self, before: &Self) {
         let runs = self.shape.timing.take_off.is_some();
         let longer = self.state_frames.iter_mut().zip(before.state_frames);

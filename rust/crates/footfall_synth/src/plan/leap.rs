@@ -5,18 +5,18 @@ use crate::detail::{Detail, MOST_GROUND_FRAMES};
 use crate::gait::{GRAVITY_MPS2, Gait};
 use footfall_model::STATES_PER_STEP;
 
-/// Hips of somebody who takes off from one foot are higher by about this than they were in walking and in running, metres; the rest of a leap's rise is
+/// Rise of the hips at the take-off from one foot above their height in walking and in running, metres. The rest of a leap's rise is
 /// flight, within these bounds.
 const LEAP_GAINS_M: [f32; 2] = [0.04, -0.01];
 const LEAST_LEAP_M: f32 = 0.02;
 const MOST_LEAP_M: f32 = 0.6;
 
-/// A leap's stance lasts at least so long, seconds: who rises high pushes off for longer than who runs.
+/// Minimum duration of a leap's stance, seconds: a high leap takes a longer push-off than a run.
 const LEAP_STANCE_SECS: f64 = 0.28;
 
 impl StepPlan<f32> {
-    /// Makes a step of a run a leap in which the hips rise this high above where they were in the steps before, of this gait: the stance lasts long enough to push off, and the
-    /// flight as long as the rise and the fall take.
+    /// Turns a step of a run into a leap in which the hips rise by `rise_m` above their height in the previous steps, of the gait `before`. The stance lasts long enough to push
+    /// off, and the flight as long as rise and fall take.
     pub(crate) fn leap(&mut self, rise_m: f32, before: Gait, frame_rate_hz: f64) {
         let Some(take_off) = self.shape.timing.take_off else {
             return;
@@ -26,7 +26,7 @@ impl StepPlan<f32> {
         let least = LEAP_STANCE_SECS * frame_rate_hz;
         let mut stance = (take_off as f64).max(least);
         if stance + flight > MOST_GROUND_FRAMES as f64 {
-            // Out of a slow step: nobody pushes off for so long, and parabolas need full detail.
+            // From a slow step: nobody pushes off for so long, and parabolas need full detail.
             let room = (MOST_GROUND_FRAMES - STATES_PER_STEP) as f64 - flight;
             stance = stance.min(room).max(least);
         }

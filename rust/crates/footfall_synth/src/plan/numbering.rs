@@ -4,14 +4,14 @@ use super::planner::Planner;
 use super::step_draw::StepDraw;
 use footfall_core::Side;
 
-/// Strides are counted so far; then the count begins anew.
+/// Mask of the count of strides, which wraps.
 const STRIDES: u32 = 0x7fff;
 
-/// Strides of chance that are drawn one by one to get to a later one; for more, and for earlier ones, chance begins anew.
+/// Maximum number of strides drawn to reach a later one; beyond it, and for earlier ones, drawing starts from the seed.
 const STRIDES_AHEAD: u32 = 64;
 
 impl Planner {
-    /// Takes chance to where it draws the step of this number; returns that. Even ones begin with the left foot's contact. `fresh` is the walker before its first step.
+    /// Advances chance to the step of this number and returns its draw. Even numbers begin with the left foot's contact. `fresh` makes the walker before its first step.
     pub(crate) fn draw_of(&mut self, number: u16, fresh: impl FnOnce() -> Self) -> StepDraw {
         let stride = u32::from(number / 2);
         let mut ahead = stride.wrapping_sub(self.strides()) & STRIDES;
@@ -19,14 +19,14 @@ impl Planner {
             *self = fresh();
             ahead = stride;
         }
-        // Every stride begins with the left foot; the right one draws nothing new.
+        // Only the left foot draws a new stride.
         for _ in 0..ahead {
             self.draw(Side::Left);
         }
         self.draw_again(number)
     }
 
-    /// The step of this number, of the stride that was drawn last.
+    /// Returns the draw of the step of this number, of the last drawn stride.
     pub(crate) fn draw_again(&mut self, number: u16) -> StepDraw {
         let side = if number.is_multiple_of(2) {
             Side::Left
@@ -39,7 +39,7 @@ impl Planner {
         }
     }
 
-    /// Returns whether a step of this number belongs to the stride before the last one that was drawn.
+    /// Returns true when the step of this number belongs to the stride before the last drawn one.
     pub(crate) fn is_one_ahead_of(&self, number: u16) -> bool {
         self.strides().wrapping_sub(u32::from(number / 2)) & STRIDES == 1
     }

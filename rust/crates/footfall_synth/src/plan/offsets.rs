@@ -7,10 +7,10 @@ use core::ops::Range;
 use footfall_core::Side;
 use footfall_model::StepOffset;
 
-/// Offsets that a step is the sum of: the speed's, the place's, the walker's and its own.
+/// Maximum number of offsets of a step: those of speed, position, walker and the step itself.
 const MAX_OFFSETS: usize = 2 + 2 * MAX_COMPONENTS;
 
-/// A weighted sum of offsets that is never written down: what is wanted of it is summed when it is wanted.
+/// A weighted sum of offsets, evaluated in parts on demand.
 pub(super) struct Offsets<'a> {
     parts: [(Part, &'a StepOffset, f64); MAX_OFFSETS],
     len: usize,

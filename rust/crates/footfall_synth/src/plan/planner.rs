@@ -1,4 +1,4 @@
-//! Planning of steps: chance, speed and manner become durations and means.
+//! Planning of steps: from chance, speed and manner to durations and means.
 
 use super::fine_draw::FineDraw;
 use super::offsets::Offsets;
@@ -15,10 +15,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 use std::sync::Arc;
 
-/// Weights of components stay within this many standard deviations, so that every walker is a plausible one.
+/// Largest weight of a walker component, standard deviations, so that every walker is plausible.
 const MAX_WALKER_WEIGHT: f64 = 2.0;
 
-/// The same for steps, which are many: cut off closer, they would be too alike.
+/// Largest weight of a step component; a lower limit would make steps too alike.
 const MAX_STEP_WEIGHT: f64 = 2.5;
 
 /// One walker: draws steps that vary as the corpus does.
@@ -31,12 +31,12 @@ pub(crate) struct Planner {
     walker: [f64; MAX_COMPONENTS],
     /// The last stride's weights.
     weights: [f64; MAX_COMPONENTS],
-    /// Strides that were drawn.
+    /// Number of strides drawn so far.
     strides: u32,
 }
 
 impl Planner {
-    /// A walker drawn by `seed`; `variation` scales how far it and its steps stray from the average.
+    /// Draws a walker by `seed`; `variation` scales its deviation, and that of its steps, from the average.
     pub(crate) fn new(model: &Arc<GaitModel>, seed: u64, variation: f64) -> Self {
         let mut planner = Self {
             model: Arc::clone(model),
@@ -66,7 +66,7 @@ impl Planner {
         numbers(self).eq(numbers(other))
     }
 
-    /// Is the walker that [`new`](Self::new) made of these, in another place of its walk: see [`resume`](Self::resume).
+    /// Becomes the walker that [`new`](Self::new) makes of these arguments; [`resume`](Self::resume) then restores its progress.
     pub(crate) fn become_walker(
         &mut self,
         model: &Arc<GaitModel>,
@@ -80,7 +80,7 @@ impl Planner {
         self.walker = walker;
     }
 
-    /// Wears another mixture of styles from the next step that is worked out.
+    /// Sets the mixture of styles of the next planned step.
     pub(crate) fn set_model(&mut self, model: &Arc<GaitModel>) {
         self.model = Arc::clone(model);
     }
@@ -91,17 +91,17 @@ impl Planner {
         self.rng.get_word_pos() as u64
     }
 
-    /// Strides that were drawn since chance began.
+    /// Number of strides drawn so far.
     pub(crate) const fn strides(&self) -> u32 {
         self.strides
     }
 
-    /// Takes the number of strides that were drawn for this.
+    /// Sets the number of strides drawn so far.
     pub(crate) const fn count_strides(&mut self, strides: u32) {
         self.strides = strides;
     }
 
-    /// Takes chance up where [`chance_position`](Self::chance_position) was, after these steps.
+    /// Restores the position of the random generator, after these steps.
     pub(crate) fn resume(&mut self, chance_position: u64, last: &[StepDraw]) {
         self.rng.set_word_pos(u128::from(chance_position));
         if let Some(draw) = last.last() {
@@ -109,8 +109,8 @@ impl Planner {
         }
     }
 
-    /// Draws the next step that begins with this foot's initial contact. A stride begins with the left foot's, and both its steps have
-    /// the same weights: drawn one by one, a slow step would be followed by a fast one as often as not, and the walker limp.
+    /// Draws the next step, which begins with the initial contact of `side`. A stride begins with the left foot's, and both its steps have
+    /// the same weights: independent draws would often pair a slow step with a fast one, and the walker would limp.
     pub(crate) fn draw(&mut self, side: Side) -> StepDraw {
         if side == Side::Left {
             self.strides = self.strides.wrapping_add(1);
@@ -135,7 +135,7 @@ impl Planner {
         Detail::Quarter.whole_frames(longest)
     }
 
-    /// The step of this walker without chance, for measuring.
+    /// Returns a draw without chance, for measurements.
     pub(crate) fn mean_draw(side: Side) -> StepDraw {
         StepDraw {
             side,
@@ -143,7 +143,7 @@ impl Planner {
         }
     }
 
-    /// Works out a drawn step; the statistics are those of the mixture that is worn.
+    /// Plans a drawn step; `statistics` are those of the current mixture of styles.
     pub(crate) fn plan_step<R: Sum>(
         &self,
         draw: &StepDraw,
@@ -154,7 +154,7 @@ impl Planner {
         self.plan_step_end(draw, manner, usize::MAX, statistics, plan);
     }
 
-    /// Works out how a drawn step ends: its shape, but only the means of the states that its last frames are in, so many.
+    /// Plans the end of a drawn step: its shape, and the means of the states of its last frames only.
     pub(crate) fn plan_step_end<R: Sum>(
         &self,
         draw: &StepDraw,
@@ -173,7 +173,7 @@ impl Planner {
         let deviation = pace.covariate_mps - model.speed.reference_mps;
         let mut offsets = Offsets::of(Part::Speed, &model.speed.slopes[side], deviation);
         if let Some(index) = model.context(position, draw.side) {
-            // Who turns on the spot hardly sets out.
+            // A walker that turns on the spot hardly sets out.
             let context = &model.contexts[index].offset;
             offsets.add(Part::Context(index), context, pace.stride.min(1.0));
         }

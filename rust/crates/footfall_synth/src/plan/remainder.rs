@@ -1,20 +1,20 @@
 //! Remainder of a step that is replanned while its foot is in the air.
 //!
-//! Controls may change in the middle of a swing. The rest of the step then becomes a step of its own: it begins with a foot in the air, continues the
+//! Controls may change in the middle of a swing. The remainder of the step then becomes a step of its own: it begins with a foot in the air, continues the
 //! frames already shown, and takes the states of the new plan that have not passed yet. It need not fit the previous plan.
 
 use super::step_plan::StepPlan;
 use super::window::TIE;
 use footfall_model::STATES_PER_STEP;
 
-/// A step is planned anew no later than in this state, and leaves so many frames at least.
+/// Last state in which a step can be replanned, and minimum number of frames left.
 const LAST_STATE: usize = 2;
 const LEAST_FRAMES: usize = 6;
 
-/// Part of a step that has passed when its rest begins.
+/// Position within a step at which its remainder begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Remainder {
-    /// The state that it is in, and the share of it that is left.
+    /// Current state, and the share of it that is left.
     pub(crate) state: usize,
     pub(crate) left: f32,
     /// Share of the whole step that has passed.
@@ -22,7 +22,7 @@ pub(crate) struct Remainder {
 }
 
 impl Remainder {
-    /// Remainder of a plan from a frame on, of which this much was left before; `None` where it is too late to change it.
+    /// Returns the remainder of a plan from a frame on, after `before`; `None` when it is too late to replan.
     pub(crate) fn of<R>(plan: &StepPlan<R>, frame: usize, before: Option<Self>) -> Option<Self> {
         let frames = plan.shape.timing.frames;
         if frame + LEAST_FRAMES > frames {
@@ -44,20 +44,20 @@ impl Remainder {
         })
     }
 
-    /// The share of the whole step that has passed at part `s` of its rest.
+    /// Returns the share of the whole step that has passed at part `s` of its remainder.
     pub(crate) fn phase(remainder: Option<Self>, s: f32) -> f32 {
         remainder.map_or(s, |remainder| {
             remainder.passed + (1.0 - remainder.passed) * s
         })
     }
 
-    /// Returns true when its numbers make sense.
+    /// Returns true when its values are valid.
     pub(crate) fn is_sensible(&self) -> bool {
         let shares = [self.left, self.passed];
         self.state <= LAST_STATE && shares.iter().all(|share| (0.0..=1.0).contains(share))
     }
 
-    /// Leaves of a whole step's plan what has not passed.
+    /// Reduces the plan of a whole step to the part that has not passed.
     pub(crate) fn keep<R>(&self, plan: &mut StepPlan<R>) {
         plan.state_frames[..self.state].fill(0);
         let own = &mut plan.state_frames[self.state];
@@ -70,7 +70,7 @@ impl Remainder {
         timing.terminal = 1;
     }
 
-    /// Makes of the plan of the step that was cut one of the frames that its rest is tied to.
+    /// Reduces the plan of the cut step to the frames that its remainder is tied to.
     pub(crate) fn hold<R>(&self, plan: &mut StepPlan<R>) {
         plan.state_frames.fill(0);
         plan.state_frames[self.state] = TIE - 1;

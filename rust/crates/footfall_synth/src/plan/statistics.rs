@@ -1,4 +1,4 @@
-//! Statistics that all trajectories of one model share, in the precision in which they are solved.
+//! Statistics of a model, in the precision in which trajectories are solved.
 
 use core::ops::Range;
 use footfall_core::Side;
@@ -24,7 +24,7 @@ pub(crate) enum Part {
     Walker(usize),
     /// A component in which steps differ.
     Step(usize),
-    /// Place in the walk: its index among the model's contexts.
+    /// Position in the walk: its index among the model's contexts.
     Context(usize),
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct Statistics<R> {
 }
 
 impl<R: Real> Statistics<R> {
-    /// Those of a model, without any pull.
+    /// Collects the statistics of a model, without pull.
     pub(crate) fn new(model: &GaitModel) -> Self {
         let narrow = |value: &f64| R::narrow(*value);
         let precisions = Side::BOTH.map(|side| {
@@ -76,7 +76,7 @@ impl<R: Real> Statistics<R> {
         }
     }
 
-    /// Sets the strength of the pull that keeps variance. It acts about the mean of what is loaded.
+    /// Sets the strength of the pull that preserves variance. It acts about the mean of the planned steps.
     pub(crate) fn set_pull(&mut self, strength: &[f64]) {
         let mut least = vec![f64::INFINITY; FEATURE_COUNT];
         let states = self.precisions.iter();
@@ -90,7 +90,7 @@ impl<R: Real> Statistics<R> {
         }
     }
 
-    /// Some of the means of one part of a step that begins with this foot.
+    /// Returns a range of the means of one part, for a step that begins with this foot.
     pub(crate) fn means(&self, side: Side, part: Part, within: Range<usize>) -> &[R] {
         let row = match part {
             Part::Average => 0,

@@ -2,7 +2,7 @@
 
 use footfall_core::Side;
 
-/// Components of the variation that a step can hold; a model has no more.
+/// Maximum number of components of variation in a model.
 pub(crate) const MAX_COMPONENTS: usize = 16;
 
 /// Random draw of a step; its pace may still change.

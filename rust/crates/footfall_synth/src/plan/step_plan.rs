@@ -9,19 +9,19 @@ use footfall_core::Side;
 use footfall_model::STATES_PER_STEP;
 use footfall_prob::mlpg::Real;
 
-/// Share of a running step that is spent in the air at most.
+/// Longest flight, as a share of a running step.
 const LONGEST_FLIGHT: f64 = 0.6;
 
-/// When the other foot leaves the ground in a running step that follows a walking one, as a fraction of it.
+/// Terminal contact of the other foot in a running step that follows a walking one, as a fraction of the step.
 const RUN_TERMINAL: f64 = 0.15;
 
-/// Least part of a starting step in which both feet stand.
+/// Minimum part of a starting step in which both feet stand.
 const START_TERMINAL: f64 = 0.22;
 
-/// A step lasts at most this long, seconds.
+/// Maximum duration of a step, seconds.
 pub(crate) const MAX_STEP_SECS: f64 = 3.0;
 
-/// Shape of a step as the ground has to know it.
+/// Shape of a step: the part of a plan that planting needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepShape {
     pub(crate) timing: StepTiming,
@@ -40,15 +40,15 @@ pub(crate) struct StepPlan<R> {
     pub(crate) state_frames: [usize; STATES_PER_STEP],
     /// The means of every state, state by state.
     pub(crate) means: Vec<R>,
-    /// Fine motion that is added after its trajectory is solved.
+    /// Fine motion, added after the trajectory is solved.
     pub(crate) fine: FineDraw,
 }
 
 impl StepShape {
-    /// A step of so many frames; `terminal` is when the other foot leaves the ground, as a fraction of it. Where that is before the step, it is one of
-    /// a run, and ends with a flight as long as that.
+    /// Makes the shape of a step of this many frames. `terminal` is the time at which the other foot leaves the ground, as a fraction of the step; a negative
+    /// one makes it a step of a run, which ends with a flight of that length.
     ///
-    /// Frames become a whole number of those that are put on the ground.
+    /// The length is rounded up to a whole number of planted frames.
     pub(crate) fn of_walk(
         leading: Side,
         frames: usize,
@@ -81,12 +81,12 @@ impl StepShape {
         }
     }
 
-    /// Frames that are put on the ground, without the first of the next step.
+    /// Number of planted frames, without the first of the next step.
     pub(crate) const fn ground_frames(&self) -> usize {
         self.timing.frames >> self.detail as u32
     }
 
-    /// The timing in frames that are put on the ground.
+    /// The timing in planted frames.
     pub(crate) fn ground_timing(&self) -> StepTiming {
         let stride = self.detail.stride();
         let frames = self.ground_frames();
@@ -113,7 +113,7 @@ impl StepShape {
 }
 
 impl<R: Real> StepPlan<R> {
-    /// A plan that [`Planner::plan_step`] can fill without allocating.
+    /// Makes a plan that the planner can fill without allocating.
     pub(crate) fn empty() -> Self {
         Self {
             shape: StepShape::of_walk(Side::Left, 1, 0.0, 1.0, Detail::Full),

@@ -11,11 +11,11 @@ pub(crate) struct StepTiming {
     pub(crate) frames: usize,
     /// The last frame in which the other foot is still on the ground from its step before.
     pub(crate) terminal: usize,
-    /// In a run the last frame in which the leading foot bears: from then until the step ends both are in the air.
+    /// Last frame in which the leading foot of a run bears; from then until the end of the step both feet are in the air.
     pub(crate) take_off: Option<usize>,
-    /// True when the other foot is in the air as the step begins: it took off in the step before.
+    /// True when the other foot is in the air as the step begins, after it took off in the previous step.
     pub(crate) airborne: bool,
-    /// True when both feet bear the body from its end on.
+    /// True when both feet bear the body from the end of the step on.
     pub(crate) rests: bool,
 }
 

@@ -1,13 +1,13 @@
-//! Size of the window of steps that is planned and solved at a time.
+//! Size of the window of steps that are planned and solved together.
 
 use footfall_model::FEATURE_COUNT;
 
-/// Steps in a window: the one before, the one to be put on the ground, and one ahead, which shapes its end. What lies
-/// beyond does not show: a frame's influence has died away after half a step.
+/// Steps in a window: the previous step, the one to be planted, and one ahead, which shapes its end. Steps farther ahead
+/// have no visible influence: that of a frame fades within half a step.
 pub(crate) const WINDOW: usize = 3;
 
-/// Frames that tie a window to the one before: the longest dynamic window couples no more.
+/// Frames that tie a window to the previous one: as many as the longest dynamic window couples.
 pub(crate) const TIE: usize = 4;
 
-/// Numbers that tie a window to the one before.
+/// Number of values that tie a window to the previous one.
 pub(crate) const TIE_LEN: usize = TIE * FEATURE_COUNT;

@@ -1,12 +1,12 @@
-//! The time at which what a sender did is done here: a little later than it is heard of, by as much as updates are late or get lost.
+//! Clock: from the sender's time to ours, with a delay that hides late and lost updates.
 
 /// Unit of a sender's time, seconds.
 pub(super) const TICK_SECS: f64 = 0.004;
 
-/// Sender's clocks that run slower than ours are followed by so many seconds a second.
+/// Rate at which a slower sender's clock is followed, seconds per second.
 const DRIFT: f64 = 0.01;
 
-/// Steps are made later than the quickest update comes by so many intervals between updates, so that three may be lost; and so many times what updates are late.
+/// Delay behind the quickest update: this many intervals between updates, so that three may be lost, plus this multiple of their lateness.
 const INTERVALS: f64 = 3.2;
 const LATENESSES: f64 = 1.5;
 const MARGIN_SECS: [f64; 2] = [0.03, 0.5];
@@ -15,15 +15,15 @@ const MARGIN_SECS: [f64; 2] = [0.03, 0.5];
 const INTERVAL_SECS: f64 = 0.05;
 const LONGEST_SECS: f64 = 0.25;
 
-/// Weight of news.
+/// Weight of a new value.
 const NEWS: f64 = 0.05;
 
-/// After so long a silence any time is a later one, seconds: half of what the ticks count.
+/// Silence after which any time counts as later, seconds: half of the range of the ticks.
 pub(super) const HALF_ROUND_SECS: f64 = 120.0;
 
 /// Sender's time and ours.
 ///
-/// A sender tells its time in [ticks](Self::ticks) of 4 ms, which wrap.
+/// A sender sends its time in [ticks](Self::ticks) of 4 ms, which wrap.
 #[derive(Clone, Copy, Debug)]
 pub struct ReplicaClock {
     heard: Option<Heard>,
@@ -48,7 +48,7 @@ impl Default for ReplicaClock {
 }
 
 impl ReplicaClock {
-    /// One that has heard of nobody.
+    /// Creates a clock without updates.
     pub const fn new() -> Self {
         Self {
             heard: None,
@@ -57,12 +57,12 @@ impl ReplicaClock {
         }
     }
 
-    /// A sender's time in seconds as it is told.
+    /// Returns a sender's time, seconds, in ticks.
     pub fn ticks(secs: f64) -> u16 {
         (secs / TICK_SECS) as u64 as u16
     }
 
-    /// An update comes at `now_secs` of our time; returns when it was sent, seconds of the sender's time. One that is overtaken by later ones says nothing new of the time.
+    /// Registers an update that arrives at `now_secs` of our time; returns the sender's time, seconds. An update overtaken by later ones does not change the clock.
     pub fn hear(&mut self, now_secs: f64, ticks: u16) -> f64 {
         let Some(last) = self.heard else {
             self.heard = Some(Heard {
@@ -84,7 +84,7 @@ impl ReplicaClock {
         let offset_secs = sample.min(drifted);
         let late = sample - offset_secs;
         if late > LONGEST_SECS {
-            // The sender stood still or its clock did: what it says from here on is another time.
+            // The sender or its clock was paused: a new time begins.
             self.heard = Some(Heard {
                 ticks,
                 sent_secs,
@@ -104,7 +104,7 @@ impl ReplicaClock {
         sent_secs
     }
 
-    /// Our time at which something is done that the sender did at a time of its own.
+    /// Returns our time at which an event of the sender's time is due.
     pub fn due_secs(&self, sent_secs: f64) -> f64 {
         let margin = INTERVALS * self.interval_secs + LATENESSES * self.lateness_secs;
         let [least, most] = MARGIN_SECS;
@@ -112,12 +112,12 @@ impl ReplicaClock {
         sent_secs + offset + margin.clamp(least, most)
     }
 
-    /// Our time at which the quickest update tells what the sender does at a time of its own.
+    /// Returns our time at which the quickest update about an event of the sender's time arrives.
     pub fn quickest_secs(&self, sent_secs: f64) -> f64 {
         sent_secs + self.heard.map_or(0.0, |heard| heard.offset_secs)
     }
 
-    /// Seconds of ours since the last update.
+    /// Returns the time since the last update, seconds.
     pub fn silent_secs(&self, now_secs: f64) -> f64 {
         self.heard.map_or(0.0, |heard| now_secs - heard.at_secs)
     }

@@ -1,4 +1,4 @@
-//! A walker that makes another's steps.
+//! Follower: a generator that repeats the steps of a walker on another machine.
 
 mod amended;
 
@@ -14,42 +14,42 @@ use crate::generator::GaitGenerator;
 use crate::source::Aim;
 use footfall_core::{GroundTransform, Pose};
 
-/// Walks go faster or slower by this share at most to keep their time, and by as much of it as makes good what they are late within this time, seconds.
+/// Largest relative change of tempo to stay in time, and time in which a delay is made up for, seconds.
 const MOST_HASTE: f64 = 0.12;
 const IN_TIME_SECS: f64 = 0.4;
 
-/// A walk that is farther from its place or later than this is set anew, metres, radians and seconds.
+/// Errors of place, heading and time beyond which a walk is restarted, metres, radians and seconds.
 const LOST_M: f32 = 0.75;
 const LOST_HEIGHT_M: f32 = 1.5;
 const LOST_RAD: f32 = 1.6;
 const LOST_SECS: f64 = 1.5;
 
-/// Whoever rests so far from the place steps over to it, metres and radians, after resting for so long, seconds.
+/// Errors beyond which a resting walker steps to its place, metres and radians, and the time of rest before it does, seconds.
 const OFF_M: f32 = 0.04;
 const OFF_RAD: f32 = 0.17;
 const OFF_SECS: f32 = 0.4;
 
-/// Turning that is hardly any: asked of whoever is to step on the spot, rad/s.
+/// Tiny turn rate that makes a walker step on the spot, rad/s.
 const ON_THE_SPOT_RADPS: f32 = 0.06;
 
-/// Without news for so long a walker stands, seconds.
+/// Silence after which a walker stands, seconds.
 const SILENCE_SECS: f64 = 3.0;
 
 /// Outcome of a frame of following.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Followed {
-    /// Nothing was heard yet; the walker stands where it is.
+    /// No update has arrived yet; the walker stands.
     Waiting,
-    /// The walk went on.
+    /// The walk continued.
     Walking,
-    /// The walk began anew, with its start at this place of the shared space. Whoever shows it lets the pose before fade.
+    /// The walk was restarted, with its start at this place of the shared space. The caller lets the previous pose fade.
     Anew(GroundTransform),
 }
 
 /// Leads a [`GaitGenerator`] through the steps of a walker on another machine.
 ///
-/// The generator has to be made with the identity's [`config`](WalkIdentity::config), the same model and a body of the same proportions. The follower takes the
-/// place of [`GaitGenerator::step`]: nothing else has to let time pass. It allocates nothing in [`step`](Self::step) and [`hear`](Self::hear).
+/// The generator has to be made with the identity's [`config`](WalkIdentity::config), the same model and a body of the same proportions. The follower replaces
+/// [`GaitGenerator::step`]: nothing else may advance the generator. It allocates nothing in [`step`](Self::step) and [`hear`](Self::hear).
 #[derive(Clone, Debug)]
 pub struct WalkFollower {
     gate: Gate,
@@ -58,21 +58,21 @@ pub struct WalkFollower {
     now_secs: f64,
     /// The last update.
     heard: Option<WalkUpdate>,
-    /// The step that is made, as the sender planned it.
+    /// Current step, as the sender planned it.
     made: Option<Planning>,
     /// True once the walker stands and waits for its first update.
     waits: bool,
     begun: bool,
-    /// The step that was planned anew to lead where it should.
+    /// Step that was replanned to correct its end.
     amended: Option<Planned>,
-    /// Since the walker came to rest, seconds.
+    /// Time since the walker came to rest, seconds.
     rested_secs: f32,
-    /// True while a jump that was heard of is made.
+    /// True during a jump of the sender.
     jumped: bool,
 }
 
 impl WalkFollower {
-    /// One that follows the walker of this identity.
+    /// Creates a follower of the walker of this identity.
     pub fn new(identity: &WalkIdentity) -> Self {
         Self {
             gate: Gate::new(identity.tag()),
@@ -89,8 +89,8 @@ impl WalkFollower {
         }
     }
 
-    /// Takes a new identity of the same walker, as after it was put elsewhere; the generator has to be made anew where
-    /// [`is_same_walker`](WalkIdentity::is_same_walker) says so.
+    /// Accepts a new identity of the walker, as after a teleport; create a new generator unless
+    /// [`is_same_walker`](WalkIdentity::is_same_walker) returns true.
     ///
     /// # Errors
     /// [`ReplicaError::Flood`] when identities come too often.
@@ -103,7 +103,7 @@ impl WalkFollower {
         Ok(())
     }
 
-    /// Hears an update.
+    /// Receives an update.
     ///
     /// # Errors
     /// [`ReplicaError`] when it is refused; then nothing changes.
@@ -121,12 +121,12 @@ impl WalkFollower {
         Ok(())
     }
 
-    /// Time between what the sender did and what is shown of it here, beyond the time that messages take, seconds.
+    /// Returns the delay of the replica beyond the latency of the messages, seconds.
     pub fn delay_secs(&self) -> f64 {
         self.clock.due_secs(0.0) - self.clock.quickest_secs(0.0)
     }
 
-    /// Lets time pass and writes the pose, as [`GaitGenerator::step`] does. `shared_from_start` is where the walk began in the space that all machines share.
+    /// Advances by a time and writes the pose, as [`GaitGenerator::step`] does. `shared_from_start` is the start of the walk in the space that all machines share.
     pub fn step(
         &mut self,
         dt_secs: f32,
@@ -174,12 +174,12 @@ impl WalkFollower {
         Followed::Walking
     }
 
-    /// Controls of the step that is made.
+    /// Returns the controls of the current step.
     fn controls(&self) -> Controls {
         self.made.map_or(Controls::STAND, |made| made.controls)
     }
 
-    /// Returns true when the walk is too far from where it should be to walk there.
+    /// Returns true when the walk is too far from its place to walk there.
     fn is_lost(&self, generator: &GaitGenerator, shared_from_start: &GroundTransform) -> bool {
         let late = self
             .queue
@@ -201,7 +201,7 @@ impl WalkFollower {
             || off.turn.abs() > LOST_RAD
     }
 
-    /// Begins anew with what was heard last.
+    /// Restarts from the last update.
     fn begin(
         &mut self,
         heard: &WalkUpdate,
@@ -236,7 +236,7 @@ impl WalkFollower {
         Followed::Anew(newest.start(generator))
     }
 
-    /// Share by which the walk has to go faster to be in time.
+    /// Returns the relative increase of tempo that brings the walk in time.
     fn haste(&self, generator: &GaitGenerator) -> f64 {
         if generator.is_standing() {
             return 0.0;
@@ -258,7 +258,7 @@ impl WalkFollower {
         (late / IN_TIME_SECS).clamp(-MOST_HASTE, MOST_HASTE)
     }
 
-    /// Goes on to the next step, where there is one.
+    /// Generates the next step, if there is one.
     fn next_step(
         &mut self,
         dt_secs: f32,
@@ -286,7 +286,7 @@ impl WalkFollower {
         self.rested_secs = 0.0;
         let out_of_step = next.map(|next| next.planned.steps_from(number));
         let number = match (next, out_of_step) {
-            // Whoever stands can go off with either foot.
+            // A standing walker can start with either foot.
             (Some(next), _) if rests => next.planned.number,
             (Some(next), Some(..=0)) if next.planned.steps_from(natural) % 2 == 0 => {
                 next.planned.number
@@ -315,7 +315,7 @@ impl WalkFollower {
         true
     }
 
-    /// Steps over to the place of whoever rests, where the walk has come to rest beside it.
+    /// Steps to the place of the resting sender, if the walk came to rest beside it.
     fn step_over(
         &mut self,
         number: u16,
@@ -341,7 +341,7 @@ impl WalkFollower {
         true
     }
 
-    /// Place of a sender who rests, and does not jump to another.
+    /// Returns the place of a sender that rests and does not jump.
     fn resting(&self, shared_from_start: &GroundTransform) -> Option<Aim> {
         let heard = self
             .heard

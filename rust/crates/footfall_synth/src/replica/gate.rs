@@ -1,28 +1,28 @@
-//! Guard against what no honest peer sends: other walkers, the past, floods, and places that nobody walks to.
+//! Gate against messages that no honest peer sends: other walkers, the past, floods, and places out of walking range.
 
 use super::ReplicaError;
 use super::clock::HALF_ROUND_SECS;
 use super::update::WalkUpdate;
 use glam::Vec3;
 
-/// Updates that are heard in a second, and at once.
+/// Accepted updates per second, and at once.
 const MOST_A_SECOND: u32 = 100;
 const MOST_AT_ONCE: f32 = 30.0;
 
-/// Speed that is believed, m/s, above that of runners; and the way that is believed at once and after silence, metres: a step that is planned anew ends elsewhere
-/// all at once.
+/// Accepted speed, m/s, above that of runners; and accepted distance at once and after silence, metres: a replanned step changes its end
+/// suddenly.
 const MOST_MPS: f32 = 8.0;
 const WAY_AT_ONCE_M: f32 = 5.0;
 const WAY_AFTER_SILENCE_M: f32 = 40.0;
 
-/// Share of that by which a sender knows that it will not be believed.
+/// Share of these limits beyond which a sender expects to be refused.
 const SURE: f32 = 0.8;
 
-/// Identities that are taken in a second, and at once.
+/// Accepted identities per second, and at once.
 const IDENTITIES_A_SECOND: f32 = 1.0;
 const IDENTITIES_AT_ONCE: f32 = 4.0;
 
-/// Allowance that grows with time and is used up.
+/// Allowance that grows with time and is consumed.
 #[derive(Clone, Copy, Debug)]
 struct Allowance {
     left: f32,
@@ -52,7 +52,7 @@ impl Allowance {
     }
 }
 
-/// Way that a walker is believed to have come.
+/// Distance that a walker may have covered.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Way {
     allowance: Allowance,
@@ -60,7 +60,7 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// As others believe it.
+    /// Creates the limits of a receiver.
     pub(super) const fn believed() -> Self {
         Self {
             allowance: Allowance::new(WAY_AT_ONCE_M, MOST_MPS, WAY_AFTER_SILENCE_M),
@@ -68,7 +68,7 @@ impl Way {
         }
     }
 
-    /// As the walker itself can be sure that others do.
+    /// Creates the stricter limits of a sender.
     pub(super) const fn sure() -> Self {
         let most = SURE * WAY_AT_ONCE_M;
         Self {
@@ -77,12 +77,12 @@ impl Way {
         }
     }
 
-    /// Lets time pass.
+    /// Advances by a time.
     pub(super) fn pass(&mut self, secs: f32) {
         self.allowance.grow(secs);
     }
 
-    /// Goes on to a place.
+    /// Moves to a place.
     ///
     /// # Errors
     /// The distance, when it is too far.
@@ -119,7 +119,7 @@ impl Gate {
         }
     }
 
-    /// Lets time pass.
+    /// Advances by a time.
     pub(super) fn pass(&mut self, secs: f32) {
         self.messages.grow(secs);
         self.identities.grow(secs);
@@ -127,7 +127,7 @@ impl Gate {
         self.silent_secs += secs;
     }
 
-    /// Takes an identity, with which a walker that is another may be anywhere; whether it is.
+    /// Accepts an identity; a different walker may be anywhere. Returns true if it is different.
     ///
     /// # Errors
     /// [`ReplicaError::Flood`].
@@ -143,7 +143,7 @@ impl Gate {
         Ok(another)
     }
 
-    /// Lets an update in.
+    /// Accepts an update.
     ///
     /// # Errors
     /// Reason to refuse it.

@@ -1,4 +1,4 @@
-//! Identity of a walker: told once, and whenever it changes.
+//! Identity of a walker, sent once and after each change.
 
 use super::ReplicaError;
 use super::update::FORMAT;
@@ -8,14 +8,14 @@ use crate::source::Steps;
 use footfall_core::hash::fnv1a;
 use serde::{Deserialize, Serialize};
 
-/// Styles that an identity can name, and the greatest weight of one.
+/// Maximum number of styles in an identity, and maximum weight of one.
 const MOST_STYLES: usize = 64;
 const MOST_WEIGHT: f32 = 16.0;
 const MOST_VARIATION: f32 = 16.0;
-/// Room for all but the styles.
+/// Maximum size without the styles, bytes.
 const UNSTYLED_BYTES: usize = 40;
 
-/// Seed, settings and styles of a walker, and the model that it walks by.
+/// Model, seed, settings and styles of a walker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WalkIdentity {
     format: u8,
@@ -29,7 +29,7 @@ pub struct WalkIdentity {
 }
 
 impl WalkIdentity {
-    /// That of a walker who was put elsewhere so many times.
+    /// Makes the identity of a walker; `times` counts its moves elsewhere.
     ///
     /// # Errors
     /// [`ReplicaError::Switching`].
@@ -48,7 +48,7 @@ impl WalkIdentity {
         })
     }
 
-    /// Settings to make the walker with.
+    /// Returns the settings for the walker.
     pub fn config(&self) -> GeneratorConfig {
         GeneratorConfig {
             seed: self.seed,
@@ -57,12 +57,12 @@ impl WalkIdentity {
         }
     }
 
-    /// Returns whether both are one walker, whatever styles it wears and wherever it is.
+    /// Returns true when both are the same walker, regardless of styles and place.
     pub fn is_same_walker(&self, other: &Self) -> bool {
         (self.model, self.config()) == (other.model, other.config())
     }
 
-    /// Checks that a walker goes by this identity's model.
+    /// Checks that a walker uses this identity's model.
     ///
     /// # Errors
     /// [`ReplicaError::OtherModel`] or [`ReplicaError::Switching`].
@@ -76,9 +76,9 @@ impl WalkIdentity {
         }
     }
 
-    /// Packs it: some 25 bytes, and four for every style.
+    /// Packs it: some 25 bytes, and four per style.
     pub fn to_bytes(&self) -> Vec<u8> {
-        // Writing to memory does not fail; nothing is refused like anything else that is no identity.
+        // Writing to memory does not fail; an empty message is refused like any other that is no identity.
         postcard::to_stdvec(self).unwrap_or_default()
     }
 
@@ -105,13 +105,13 @@ impl WalkIdentity {
         sensible.then_some(identity).ok_or(ReplicaError::Identity)
     }
 
-    /// A number that updates of this walker carry.
+    /// Returns the tag of this walker's updates.
     pub(super) fn tag(&self) -> u16 {
         tag(self.model, &self.config(), self.epoch)
     }
 }
 
-/// A number that updates of a walker carry: another where the model, the seed, a setting or the place that it was put to is another.
+/// Returns the tag of a walker's updates, which changes with the model, the seed, the settings and each move elsewhere.
 pub(super) fn tag(model: u32, config: &GeneratorConfig, epoch: u8) -> u16 {
     let numbers = [
         u64::from(model),

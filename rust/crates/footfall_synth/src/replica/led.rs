@@ -1,4 +1,4 @@
-//! Walks whose steps are another walker's: which step comes next, what it obeys and where it ends.
+//! Led walks: steps with the numbers, controls and ends of another walker's.
 
 use super::update::Planned;
 use crate::config::GeneratorConfig;
@@ -11,7 +11,7 @@ use crate::source::{Aim, StepSource as _, Steps, StyledSteps, planner_of};
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
 
-/// A walk in the middle of a step.
+/// Moment of a walk at which to begin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beginning {
     pub(super) number: u16,
@@ -22,14 +22,14 @@ pub(super) struct Beginning {
 }
 
 impl StyledSteps {
-    /// Number of the current step: even ones begin with the left foot's contact. It wraps.
+    /// Returns the number of the current step: even ones begin with the left foot's contact. It wraps.
     pub(super) fn number(&self) -> u16 {
         let strides = self.planner.strides() as u16;
         let right = self.window.step().timing.leading == Side::Right;
         strides.wrapping_mul(2).wrapping_sub(u16::from(right))
     }
 
-    /// Share of the current step that had passed when it was planned last.
+    /// Returns the share of the current step that had passed when it was last planned.
     pub(super) fn passed(&self) -> f32 {
         self.window
             .origin()
@@ -37,7 +37,7 @@ impl StyledSteps {
             .map_or(0.0, |rest| rest.passed)
     }
 
-    /// Takes chance to where it draws the step of this number; returns that.
+    /// Advances chance to the step of this number and returns its draw.
     fn draw_of(&mut self, config: &GeneratorConfig, number: u16) -> StepDraw {
         let Self {
             planner,
@@ -52,7 +52,7 @@ impl StyledSteps {
         })
     }
 
-    /// Starts over in the step of this number; whether it could.
+    /// Restarts in the step of this number; returns true on success.
     fn begin(
         &mut self,
         config: &GeneratorConfig,
@@ -99,7 +99,7 @@ impl GaitGenerator {
         }
     }
 
-    /// The current step, and the share of it that has passed.
+    /// Returns the number of the current step, and the share of it that has passed.
     pub(super) fn progress(&self) -> (u16, f32) {
         let Steps::Styled(steps) = &self.steps else {
             return (0, 0.0);
@@ -111,8 +111,8 @@ impl GaitGenerator {
         )
     }
 
-    /// Place where the current step leads, from where the walk began: that of the foot that lands, under the walker's heading. That of a walker who rests is
-    /// where it stands.
+    /// Returns the place where the current step ends, relative to the start of the walk: that of the landing foot, under the walker's heading, or that of a
+    /// resting walker.
     pub(super) fn start_from_aim(&self, rests: bool) -> GroundTransform {
         let source = self.steps.source();
         source
@@ -120,7 +120,7 @@ impl GaitGenerator {
             .aim(&self.plan_from_start, self.shape(), rests)
     }
 
-    /// Starts over at the origin, in the middle of a step; whether it could.
+    /// Restarts at the origin, in the middle of a step; returns true on success.
     pub(super) fn begin_led(&mut self, at: &Beginning) -> bool {
         let (config, detail) = (self.config, self.detail);
         let fastest = self.steps.source().fastest_mps();
@@ -148,7 +148,7 @@ impl GaitGenerator {
         begun
     }
 
-    /// Goes on to the step of this number.
+    /// Generates the step of this number.
     pub(super) fn next_led(&mut self, number: u16, controls: &Controls, rise_m: f32) {
         let config = self.config;
         if let Some(steps) = self.styled_mut()
@@ -161,11 +161,11 @@ impl GaitGenerator {
             self.jump(rise_m);
         }
         self.next_step(controls);
-        // A leap that this step is not is none at all.
+        // A jump that is not this step's leap is dropped.
         self.pending_jump = None;
     }
 
-    /// Plans the current step anew where its sender did, or later if it must be; whether it did. `before` is where the walk was in the frame before.
+    /// Replans the current step at the sender's frame, or later if necessary; returns true if it did. `before` is the position in the previous frame.
     pub(super) fn replan_led(
         &mut self,
         planned: Planned,
@@ -181,7 +181,7 @@ impl GaitGenerator {
         };
         let passed = steps.passed();
         let wanted = ((planned.share() - passed) / (1.0 - passed) * frames).round();
-        // What was shown stays as it was.
+        // Frames already shown stay.
         let in_time = wanted > before && wanted <= position;
         let frame = if in_time { wanted } else { position.floor() };
         let needed = in_time || must || steps.needs_replan(&step_controls);
@@ -193,12 +193,12 @@ impl GaitGenerator {
         replanned
     }
 
-    /// Way and turn from where the current step leads to where it should, seen from the start of the walk.
+    /// Returns the displacement from the end of the current step to its aim, relative to the start of the walk.
     pub(super) fn off(&self, aim: &Aim) -> Displacement {
         aim.off(&self.start_from_aim(aim.rests))
     }
 
-    /// Has the current step, which has just been planned, lead where it should, as far as one step can.
+    /// Displaces the current step, which has just been planned, towards its aim, as far as one step can.
     pub(super) fn aim_at(&mut self, aim: &Aim) {
         let plan_from_start = self.plan_from_start;
         if let Some(steps) = self.styled_mut() {
@@ -207,7 +207,7 @@ impl GaitGenerator {
         }
     }
 
-    /// Frames of the current step since it was at this share.
+    /// Returns the frames of the current step since this share of it.
     pub(super) fn frames_since(&self, share: f32) -> f32 {
         let Steps::Styled(steps) = &self.steps else {
             return self.position;
@@ -216,17 +216,17 @@ impl GaitGenerator {
         self.position + (steps.passed() - share) * whole
     }
 
-    /// Shows the walk after time has passed at another pace.
+    /// Advances the walk by frames, at a tempo of the follower's choice.
     pub(super) fn pass_led(&mut self, frames: f32) {
         self.position += frames;
     }
 
-    /// Returns true when the current step is over.
+    /// Returns true when the current step has ended.
     pub(super) fn has_ended(&self) -> bool {
         self.position >= self.shape().timing.frames as f32
     }
 
-    /// Leaves a step that is over; what is beyond it belongs to the next one.
+    /// Leaves an ended step; the excess time belongs to the next one.
     pub(super) fn leave_step(&mut self) {
         self.position -= self.shape().timing.frames as f32;
     }
@@ -241,7 +241,7 @@ impl GaitGenerator {
         self.shape().amplitude.to < 1.0
     }
 
-    /// Frames until the current step is over.
+    /// Returns the frames until the end of the current step.
     pub(super) fn frames_left(&self) -> f32 {
         self.shape().timing.frames as f32 - self.position
     }

@@ -1,4 +1,4 @@
-//! Steps that were heard of and are still to be made.
+//! Queue of received steps.
 
 use super::update::{Planned, WalkUpdate};
 use crate::controls::Controls;
@@ -6,34 +6,34 @@ use crate::generator::GaitGenerator;
 use crate::source::Aim;
 use footfall_core::GroundTransform;
 
-/// Steps that wait at most; the oldest gives way.
+/// Maximum number of waiting steps; the oldest is dropped.
 const ROOM: usize = 8;
 
-/// A step, or the rest of one, as the sender planned it.
+/// A step, or the remainder of one, as the sender planned it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Planning {
     pub(super) planned: Planned,
-    /// The sender's time when it did, seconds.
+    /// Sender's time of planning, seconds.
     pub(super) at_secs: f64,
     pub(super) controls: Controls,
     pub(super) rise_m: f32,
-    /// Place where the step leads, in the shared space.
+    /// Place where the step ends, in the shared space.
     aim: GroundTransform,
-    /// True where that is the place of a walker who rests.
+    /// True if that is the place of a resting walker.
     rests: bool,
 }
 
-/// A queue that allocates nothing.
+/// Creates a queue, which does not allocate later.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Queue {
     waiting: [Option<Planning>; ROOM],
     count: usize,
-    /// The last that came, which may have been taken since.
+    /// Last received step, possibly taken already.
     last: Option<Planned>,
 }
 
 impl Planning {
-    /// The step that an update tells of, sent at a time of the sender's.
+    /// Makes the step of an update that was sent at a sender's time.
     pub(super) fn of(update: &WalkUpdate, sent_secs: f64, frame_rate_hz: f32) -> Self {
         Self {
             planned: update.planned,
@@ -45,19 +45,19 @@ impl Planning {
         }
     }
 
-    /// Leads where the same step is said to lead later: the ground or a wall may have led the walker elsewhere.
+    /// Takes the end from a later update of the same step, which terrain or a wall may have changed.
     pub(super) fn correct(&mut self, later: &Self) {
         if self.rests == later.rests {
             self.aim = later.aim;
         }
     }
 
-    /// Leads to the place where the walker has come to rest.
+    /// Sets the end to the place of the resting walker.
     pub(super) fn rest(&mut self, place: GroundTransform) {
         (self.aim, self.rests) = (place, true);
     }
 
-    /// Aim of the step, for a walk that began there.
+    /// Returns the aim of the step, for a walk with this start.
     pub(super) fn aim(&self, shared_from_start: &GroundTransform) -> Aim {
         Aim {
             place: shared_from_start.local(&self.aim),
@@ -65,7 +65,7 @@ impl Planning {
         }
     }
 
-    /// Place where the walk has to begin for its step to lead where this one does.
+    /// Returns the start of a walk whose step ends where this one does.
     pub(super) fn start(&self, generator: &GaitGenerator) -> GroundTransform {
         let own = generator.start_from_aim(self.rests);
         self.aim.global(&own.local(&GroundTransform::default()))
@@ -73,7 +73,7 @@ impl Planning {
 }
 
 impl Queue {
-    /// Puts a step behind the others, or corrects the last of them when it is the same. Returns true when it is the last that came, and was taken already.
+    /// Appends a step, or corrects the last one if it is the same. Returns true when it is the last received one and was taken already.
     pub(super) fn hear(&mut self, planning: Planning) -> bool {
         if self.last == Some(planning.planned) {
             let Some(last) = self.count.checked_sub(1) else {
@@ -93,17 +93,17 @@ impl Queue {
         false
     }
 
-    /// The step that waits longest.
+    /// Returns the oldest waiting step.
     pub(super) fn next(&self) -> Option<&Planning> {
         self.waiting[0].as_ref()
     }
 
-    /// The one that came last of those that wait.
+    /// Returns the newest waiting step.
     pub(super) fn newest(&self) -> Option<&Planning> {
         self.waiting[self.count.checked_sub(1)?].as_ref()
     }
 
-    /// Takes the step that waits longest.
+    /// Takes the oldest waiting step.
     pub(super) fn take(&mut self) -> Option<Planning> {
         let taken = self.waiting[0].take()?;
         self.waiting.rotate_left(1);
@@ -111,7 +111,7 @@ impl Queue {
         Some(taken)
     }
 
-    /// Takes all that wait.
+    /// Drops all waiting steps.
     pub(super) fn pass_all(&mut self) {
         self.waiting = [None; ROOM];
         self.count = 0;

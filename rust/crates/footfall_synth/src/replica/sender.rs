@@ -1,4 +1,4 @@
-//! Messages of a walker to others.
+//! Sender of a walker's messages.
 
 use super::clock::ReplicaClock;
 use super::gate::Way;
@@ -18,7 +18,7 @@ use footfall_core::rotation::from_heading;
 pub struct WalkSender {
     secs: f64,
     way: Way,
-    /// Times that the walker was put elsewhere.
+    /// Number of times the walker was moved elsewhere.
     epoch: u8,
 }
 
@@ -29,7 +29,7 @@ impl Default for WalkSender {
 }
 
 impl WalkSender {
-    /// One that has told nothing yet.
+    /// Creates a sender.
     pub const fn new() -> Self {
         Self {
             secs: 0.0,
@@ -38,7 +38,7 @@ impl WalkSender {
         }
     }
 
-    /// Lets time pass; call it in every frame.
+    /// Advances by a time; call it in every frame.
     pub fn step(&mut self, dt_secs: f32) {
         if dt_secs > 0.0 && dt_secs.is_finite() {
             self.secs += f64::from(dt_secs);
@@ -46,8 +46,8 @@ impl WalkSender {
         }
     }
 
-    /// Identity of the walker, for whoever is to follow it. Send it reliably, and again when it changes: after [`update`](Self::update) found the walker far from
-    /// where it was, as after a jump through the level, when its styles change, and when it was restored from another walker's state.
+    /// Returns the identity of the walker for its followers. Send it reliably, and again when it changes: after [`update`](Self::update) found the walker far from
+    /// its last place, as after a teleport, when its styles change, and after a restore of another walker's state.
     ///
     /// # Errors
     /// [`ReplicaError::Switching`].
@@ -55,7 +55,7 @@ impl WalkSender {
         WalkIdentity::of(generator, self.epoch)
     }
 
-    /// An update about the walker, whose start is at `shared_from_start` in the space that all machines share. Any may be lost; send 15 to 30 a second.
+    /// Returns an update about the walker, whose start is at `shared_from_start` in the space that all machines share. Any may be lost; send 15 to 30 a second.
     ///
     /// # Errors
     /// [`ReplicaError::Switching`] or [`ReplicaError::OutOfRange`].
@@ -70,7 +70,7 @@ impl WalkSender {
         let rests = generator.is_standing();
         let mut aim = generator.start_from_aim(rests);
         if let Some((leap, _)) = jump(generator) {
-            // Where it lands.
+            // The landing place.
             aim.position += from_heading(aim.heading) * leap.way;
         }
         let aim = shared_from_start.global(&aim);
@@ -84,7 +84,7 @@ impl WalkSender {
             rise_m: rise_m(steps, generator),
             aim,
         };
-        // A place that nobody can be told is none that the walker went to.
+        // A place out of range cannot be sent, so it does not count as reached.
         update.pack()?;
         if self.way.go_on(aim.position).is_err() {
             self.epoch = self.epoch.wrapping_add(1);
@@ -95,7 +95,7 @@ impl WalkSender {
     }
 }
 
-/// Controls that the current step obeys.
+/// Returns the controls of the current step.
 fn controls(steps: &StyledSteps, generator: &GaitGenerator) -> Controls {
     let AppliedControls {
         velocity_mps,
@@ -107,7 +107,7 @@ fn controls(steps: &StyledSteps, generator: &GaitGenerator) -> Controls {
     let (velocity, turn_rate_radps) = if stops {
         (glam::Vec2::ZERO, 0.0)
     } else if steps.applied == AppliedControls::default() {
-        // The first step was not asked to be anything.
+        // The very first step has no controls.
         (steps.velocity_mps, 0.0)
     } else {
         (velocity_mps, turn_rate)
@@ -124,14 +124,14 @@ fn controls(steps: &StyledSteps, generator: &GaitGenerator) -> Controls {
     }
 }
 
-/// Rise of the jump that is made.
+/// Returns the rise of the current jump.
 fn rise_m(steps: &StyledSteps, generator: &GaitGenerator) -> f32 {
     let leap = steps.window.origin().request.leap_m;
     leap.or(jump(generator).map(|(leap, _)| leap.rise_m))
         .unwrap_or(0.0)
 }
 
-/// The jump off both feet that is made, and the time since it began.
+/// Returns the two-footed jump under way, and the time since its beginning.
 fn jump(generator: &GaitGenerator) -> Option<(Leap, f32)> {
     generator.moves.as_ref()?.moment().2
 }

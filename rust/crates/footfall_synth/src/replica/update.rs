@@ -1,4 +1,4 @@
-//! The form in which a walker's progress goes over a network.
+//! Updates: a walker's progress as it is sent over a network.
 //!
 //! | bytes | content | unit |
 //! | --- | --- | --- |
@@ -6,13 +6,13 @@
 //! | 1–2 | tag of the walker's identity | |
 //! | 3–4 | the sender's time, which wraps after 262 s | 4 ms |
 //! | 5–6 | number of the step: even ones begin with the left foot's contact | |
-//! | 7 | share of the step that had passed when it was planned last | 1/255 |
+//! | 7 | share of the step that had passed when it was last planned | 1/255 |
 //! | 8 | time since then | frame of the model |
 //! | 9–10 | speed | mm/s |
 //! | 11 | direction | π/128 |
 //! | 12 | turning | 1/36 rad/s |
 //! | 13 | rise of a jump | cm |
-//! | 14–16, 17–19 | where the step leads, or the walker rests: x and z | mm |
+//! | 14–16, 17–19 | place of the landing foot or the resting walker: x and z | mm |
 //! | 20–21 | its height | 4 cm |
 //! | 22–23 | the walker's heading there (12 bits), depth of the crouch (4 bits) | π/2048, 1/15 |
 
@@ -46,19 +46,19 @@ const CROUCH_UNITS: f32 = 15.0;
 const MOST_PLACE: f32 = 8_388_607.0;
 const MOST_HEIGHT: f32 = 32_767.0;
 
-/// Slowest speed of somebody who goes, m/s: less would be standing.
+/// Slowest speed of a walking walker, m/s; less would be standing.
 const LEAST_MPS: f32 = 0.1;
 
-/// A moment of a walk at which a step was planned.
+/// Moment of a walk at which a step was planned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Planned {
     /// Number of the step.
     pub(super) number: u16,
-    /// Share of it that had passed, in 255ths.
+    /// Share of the step that had passed, in 255ths.
     pub(super) passed: u8,
 }
 
-/// Progress of a walker, as it is told to others.
+/// Progress of a walker, as it is sent to others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WalkUpdate {
     pub(super) tag: u16,
@@ -67,13 +67,13 @@ pub(super) struct WalkUpdate {
     pub(super) planned: Planned,
     /// Frames of the model since then; 255 is that many or more.
     pub(super) age_frames: u8,
-    /// Controls that the step obeys; the gait is the one it has.
+    /// Controls of the step; the gait is its actual one.
     pub(super) controls: Controls,
-    /// The walker has come to a stand and rests.
+    /// True when the walker has stopped and rests.
     pub(super) rests: bool,
     /// Rise of the hips in a jump, metres; 0 is none.
     pub(super) rise_m: f32,
-    /// Place where the foot lands, or where the walker rests, and the walker's heading then, in the shared space.
+    /// Place of the landing foot or the resting walker, under the walker's heading then, in the shared space.
     pub(super) aim: GroundTransform,
 }
 
@@ -85,12 +85,12 @@ impl Planned {
         }
     }
 
-    /// Share of the step that had passed.
+    /// Returns the share of the step that had passed.
     pub(super) fn share(self) -> f32 {
         f32::from(self.passed) / PASSED_UNITS
     }
 
-    /// Steps from another number to this one; negative for those before.
+    /// Returns the number of steps from another number to this one; negative for earlier ones.
     pub(super) const fn steps_from(self, number: u16) -> i16 {
         self.number.wrapping_sub(number).cast_signed()
     }
@@ -105,7 +105,7 @@ impl WalkUpdate {
         let place = self.aim.position;
         let [x, z] = [place.x, place.z].map(|part| (PLACE_UNITS * part).round());
         let height = (HEIGHT_UNITS * place.y).round();
-        // What is not a number is within no range.
+        // NaN is outside any range.
         let fits = x.abs() <= MOST_PLACE && z.abs() <= MOST_PLACE && height.abs() <= MOST_HEIGHT;
         if !fits || !self.aim.heading.is_finite() {
             return Err(ReplicaError::OutOfRange(place.length()));

@@ -1,4 +1,4 @@
-//! Buffers in which steps are solved: nobody needs them between two steps, so all walkers share them.
+//! Buffers for solving a step, needed only during the step, so all walkers share them.
 
 use crate::error::SynthError;
 use crate::ground::{GeneratedFrame, PlantedStep};
@@ -9,25 +9,25 @@ use footfall_model::layout::feature_offset;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use std::sync::{Mutex, PoisonError};
 
-/// Features that are generated: all but those of the right toes, which come last. The planter turns toes.
+/// Number of generated features: all but those of the right toes, which come last. The planter turns toes.
 const WALKED: usize = feature_offset(Joint::RightToes);
 
-/// Buffers in which a step is solved and put on the ground.
+/// Buffers for solving and planting a step.
 #[derive(Debug)]
 pub(crate) struct StepBuffers {
     solver: TrajectorySolver<f32>,
     /// Features of the window that was solved last.
     pub(crate) trajectory: Vec<f32>,
     pub(crate) fine: FineBuffers,
-    /// Features of the step that is put on the ground, with its fine motion.
+    /// Features of the planted step, with its fine motion.
     pub(crate) shown: Vec<f32>,
     pub(crate) generated: Vec<GeneratedFrame>,
-    /// A step in the gait before, where that changes.
+    /// The step in the previous gait, if the gait changes.
     pub(crate) going_over: StepPlan<f32>,
 }
 
 impl StepBuffers {
-    /// For steps of this model, in any style.
+    /// Makes buffers for steps of this model, in any style.
     pub(crate) fn new(model: &GaitModel) -> Self {
         let longest = Planner::longest_step(model);
         let room = WINDOW * longest + TIE;
@@ -41,7 +41,7 @@ impl StepBuffers {
         }
     }
 
-    /// Solves a window that nothing comes before.
+    /// Solves the first window of a walk.
     ///
     /// # Errors
     /// [`SynthError::Inference`] when the model gives no trajectory.
@@ -56,7 +56,7 @@ impl StepBuffers {
             .solve(statistics, &mut self.trajectory, 0, WALKED)
     }
 
-    /// Solves a window from the last frames of its first step on, which are given. Where the gait changes, nothing is pulled away from the mean of either.
+    /// Solves a window from the last frames of its first step on, which are given. There is no pull while the gait changes.
     pub(crate) fn go_on(
         &mut self,
         statistics: &Statistics<f32>,
@@ -74,12 +74,12 @@ impl StepBuffers {
             .solve(statistics, &mut self.trajectory, TIE, WALKED);
         self.solver.pulls = true;
         if solved.is_err() {
-            // A checked model does not get here; were it to, a rough pose beats none.
+            // A checked model does not get here; if it did, a rough pose would beat none.
             self.solver.fill_with_means(&mut self.trajectory, TIE);
         }
     }
 
-    /// The frames from this one on that tie the next window to this one.
+    /// Returns the frames, from this one on, that tie the next window to this one.
     pub(crate) fn tie_at(&self, frame: usize) -> [f32; TIE_LEN] {
         let mut tie = [0.0; TIE_LEN];
         tie.copy_from_slice(&self.trajectory[frame * FEATURE_COUNT..][..TIE_LEN]);
@@ -90,12 +90,12 @@ impl StepBuffers {
     }
 }
 
-/// BufferPool that walkers of one model lend each other: as many as there ever were threads that worked steps out at the same time.
+/// Pool of buffers that the walkers of one model share: as many as threads have ever generated steps at the same time.
 #[derive(Debug, Default)]
 pub(crate) struct BufferPool(Mutex<Vec<StepBuffers>>);
 
 impl BufferPool {
-    /// Works at one of them. Allocates only when all are in use.
+    /// Runs work with one of them. Allocates only when all are in use.
     pub(crate) fn with_one<R>(
         &self,
         model: &GaitModel,

@@ -1,4 +1,4 @@
-//! A mixture of styles on one body, and the paces that are measured of it.
+//! A mixture of styles on one body, with its measured paces.
 
 use super::buffers::StepBuffers;
 use super::style_space::Blend;
@@ -16,7 +16,7 @@ const EXTRAPOLATION: f64 = 0.15;
 /// A mixture of styles, and its gaits on one body.
 #[derive(Clone, Debug)]
 pub(crate) struct MeasuredBlend {
-    /// The walk; the run is in it.
+    /// The walk, which contains its run.
     pub(crate) blend: Arc<Blend>,
     pub(crate) chooser: StepChooser,
 }
@@ -47,13 +47,13 @@ impl MeasuredBlend {
         Ok(Self { blend, chooser })
     }
 
-    /// The mixture that a step of this gait wears.
+    /// Returns the mixture for a step of this gait.
     pub(crate) fn blend_of(&self, gait: Gait) -> &Arc<Blend> {
         self.blend.of_gait(gait)
     }
 }
 
-/// Measures a walker in a mixture of styles over the model's range of speeds.
+/// Measures the paces of a walker in a mixture of styles over the model's range of speeds.
 pub(crate) fn measure_paces(
     planner: &Planner,
     skeleton: &Skeleton,
@@ -85,7 +85,7 @@ pub(crate) fn measure_paces(
     Ok(PaceTable::new(samples, leg_length, facing))
 }
 
-/// A walker that walks without chance, to be measured.
+/// Measurement of a walker without chance.
 struct Trial<'a> {
     planner: Planner,
     window: StepWindow,
@@ -94,7 +94,7 @@ struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// Travel over the ground and frames of the second stride.
+    /// Returns the travel over the ground and the frames of the second stride.
     fn travel(&mut self, covariate_mps: f64, facing: f32) -> Result<(Vec3, usize), SynthError> {
         let request = StepRequest {
             leap_m: None,

@@ -1,4 +1,4 @@
-//! A model and its styles, prepared once; mixtures are quick.
+//! Style space: a model and its styles, prepared once for fast mixtures.
 
 use super::buffers::{BufferPool, StepBuffers};
 use crate::error::SynthError;
@@ -16,7 +16,7 @@ pub struct StyleSpace {
     model: Arc<GaitModel>,
     fingerprint: u32,
     styles: Vec<Arc<GaitStyle>>,
-    /// Pull per feature that keeps the variance of the base walk and of each style.
+    /// Pull per feature that preserves the variance of the base walk and of each style.
     base_pull: Vec<f64>,
     style_pulls: Vec<Vec<f64>>,
     /// Parts of the model's run; `None` where it only walks.
@@ -41,7 +41,7 @@ struct RunningParts {
 /// One mixture of styles, ready to walk.
 #[derive(Debug)]
 pub(crate) struct Blend {
-    /// One weight a style.
+    /// One weight per style.
     pub(crate) weights: Vec<f32>,
     pub(crate) model: Arc<GaitModel>,
     pub(crate) statistics: Statistics<f32>,
@@ -133,7 +133,7 @@ impl StyleSpace {
         })
     }
 
-    /// Runs work at a bench that all walkers of the space share.
+    /// Runs work with buffers that all walkers of the space share.
     pub(crate) fn with_buffers<R>(&self, work: impl FnOnce(&mut StepBuffers) -> R) -> R {
         self.buffers.with_one(&self.model, work)
     }

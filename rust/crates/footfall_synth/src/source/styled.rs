@@ -14,7 +14,7 @@ use footfall_core::{Side, Skeleton};
 use glam::Vec2;
 use std::sync::Arc;
 
-/// A planner and a walker in a mixture of styles.
+/// Steps in a mixture of styles: a planner and a window of steps.
 #[derive(Debug)]
 pub(crate) struct StyledSteps {
     pub(crate) space: Arc<StyleSpace>,
@@ -22,16 +22,16 @@ pub(crate) struct StyledSteps {
     pub(crate) window: StepWindow,
     /// Mixture of styles of the next step.
     pub(crate) measured: MeasuredBlend,
-    /// A mixture that the next step lets go of, kept so that it is not freed there.
+    /// Mixture that the next step releases, kept so that the step does not free memory.
     retired: Option<Arc<Blend>>,
-    /// Velocity of the current step, as its request has it.
+    /// Requested velocity of the current step.
     pub(crate) velocity_mps: Vec2,
-    /// Requests that the current step was made to obey.
+    /// Controls that the current step follows.
     pub(crate) applied: AppliedControls,
 }
 
 impl StyledSteps {
-    /// Walking already, with the initial contact of the foot `first`.
+    /// Starts in the middle of a walk, with the initial contact of the foot `first`.
     ///
     /// # Errors
     /// [`SynthError::Inference`] when the model gives no trajectory.
@@ -64,7 +64,7 @@ impl StyledSteps {
         })
     }
 
-    /// The mixture that the next step wears.
+    /// Returns the mixture of the next step.
     pub(crate) fn blend(&self) -> &Blend {
         &self.measured.blend
     }
@@ -75,7 +75,7 @@ impl StyledSteps {
             return;
         }
         let blend = self.space.blend(weights);
-        // The planner of a checked model gives a trajectory; were it not to, the walker keeps its style.
+        // A checked model gives a trajectory; if it did not, the walker would keep its style.
         let measured = self.space.with_buffers(|buffers| {
             MeasuredBlend::measure(&self.planner, skeleton, blend, buffers)
         });
@@ -85,7 +85,7 @@ impl StyledSteps {
         }
     }
 
-    /// Has the rest of the current step, from a frame of it on, be what is asked for; whether it does.
+    /// Replans the current step from a frame on; returns true if it did.
     pub(crate) fn replan_from(&mut self, controls: &StepControls, frame: usize) -> bool {
         // Styles may have changed since the step began.
         self.planner.set_model(&self.window.blends()[1].model);
@@ -192,7 +192,7 @@ impl StepSource for StyledSteps {
     }
 }
 
-/// The walker that a seed draws.
+/// Draws the walker of a seed.
 pub(crate) fn planner_of(space: &StyleSpace, config: &GeneratorConfig) -> Planner {
     let variation = f64::from(config.variation.clamp(0.0, 2.0));
     Planner::new(space.model(), config.seed, variation)

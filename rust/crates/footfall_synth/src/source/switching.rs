@@ -20,31 +20,31 @@ use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 use system::{FeatureLanes, Pose, RunningSystem};
 
-/// A segment begins where one of so many nearest recorded ones began: the pose goes on, and still varies.
+/// Number of nearest recorded starts from which a segment's start is drawn: the pose continues, and still varies.
 const NEAREST: usize = 4;
 
-/// Time in which the jump of the pose at a switch dies away, seconds.
+/// Time constant with which the jump of the pose at a switch fades, seconds.
 const SETTLE_SECS: f64 = 0.06;
 
-/// A segment ends this many frames before or after the end of the recorded one, where the next one begins most alike.
+/// Maximum number of frames between the end of a segment and the recorded one, chosen for the best match with the next segment.
 const SWITCH_REACH: usize = 2;
 
 // Two frames beyond the end are looked at.
 const _: () = assert!(SWITCH_REACH + 2 <= SEGMENT_SLACK);
 
-/// Ratios of the recorded speed at which the way is measured, the recorded one last.
+/// Ratios of the recorded speed at which the direction is measured, the recorded speed last.
 const FACING_RATIOS: [f64; 2] = [0.4, 1.0];
 
-/// Steps of which the speed is measured: all of chance's in the long run, so that any walk keeps it.
+/// Number of steps for the measurement of the speed, enough to average out chance.
 const MEASURED_STEPS: usize = 80;
 
-/// Speeds up to this many times the recorded one are walked.
+/// Maximum ratio of the speed to the recorded one.
 const MAX_SPEED_RATIO: f64 = 1.4;
 
-/// Most by which steps to the side and backwards are quicker than those forwards of the same speed.
+/// Largest factor between the tempo of steps to the side or backwards and of forward steps of the same speed.
 const MAX_HASTE: f64 = 1.6;
 
-/// Two systems that take turns.
+/// Steps of two alternating systems.
 #[derive(Debug)]
 pub(crate) struct SwitchingSteps {
     pub(crate) model: Arc<DynamicsModel>,
@@ -69,11 +69,11 @@ pub(crate) struct SwitchingSteps {
     leg_length: f32,
     /// Headings under which the walk goes along +Z at each of [`FACING_RATIOS`], radians.
     facings: [f32; 2],
-    /// Velocity of the current step, to the left and forwards from where the walker faces.
+    /// Velocity of the current step, to the left and forwards relative to the facing direction.
     pub(crate) velocity_mps: Vec2,
 }
 
-/// Origin of the current step: with the model all that it takes to make it again.
+/// Origin of the current step: with the model, all data needed to generate it again.
 #[derive(Clone, Debug)]
 pub(crate) struct SwitchingOrigin {
     pub(crate) leading: Side,
@@ -85,14 +85,14 @@ pub(crate) struct SwitchingOrigin {
     pub(crate) facing: [f32; 2],
     /// Position in the sequence of random numbers.
     pub(crate) chance_position: u64,
-    /// The next two frames of the segment before, had nothing switched; empty for the first.
+    /// The two frames with which the previous segment would continue; empty for the first.
     pub(crate) expected: Vec<f32>,
-    /// The feet before the step; `None` for the first.
+    /// Feet before the step; `None` for the first.
     pub(crate) planter: Option<PlanterState>,
 }
 
 impl SwitchingSteps {
-    /// Walking already, with the initial contact of the foot `first`.
+    /// Starts in the middle of a walk, with the initial contact of the foot `first`.
     ///
     /// # Errors
     /// [`SynthError::Model`] when the model cannot be used.
@@ -148,13 +148,13 @@ impl SwitchingSteps {
         }
     }
 
-    /// From here on chance is that of a seed.
+    /// Sets the seed and the variation.
     fn draw_by(&mut self, config: &GeneratorConfig) {
         self.rng = ChaCha8Rng::seed_from_u64(config.seed);
         self.variation = f64::from(config.variation.clamp(0.0, 2.0));
     }
 
-    /// Walks some steps, to learn how fast and which way they go: first the ways, under which the speed is then measured.
+    /// Measures direction and speed on some steps: first the directions, under which the speed is then measured.
     fn measure(&mut self) {
         let mut own = 1.0;
         for _ in 0..2 {
@@ -169,7 +169,7 @@ impl SwitchingSteps {
         self.own_speed_mps = own.max(0.05);
     }
 
-    /// Travel over the ground and frames of some steps at this ratio of the own speed.
+    /// Returns the travel over the ground and the frames of some steps at this ratio of the own speed.
     fn travel(&mut self, ratio: f64) -> (Vec3, usize) {
         let speed = ratio * self.own_speed_mps;
         let controls = StepControls {
@@ -192,14 +192,14 @@ impl SwitchingSteps {
         (travel, frames)
     }
 
-    /// Heading under which the walk goes along +Z at a stride.
+    /// Returns the heading under which the walk goes along +Z at the current stride.
     fn facing(&self) -> f32 {
         let [low, high] = FACING_RATIOS.map(|ratio| pace_of(ratio).1);
         let share = ((self.origin.stride - low) / (high - low)).clamp(0.0, 1.0);
         self.facings[0] + share as f32 * (self.facings[1] - self.facings[0])
     }
 
-    /// Starts over: one step that does not show, then the first.
+    /// Restarts with a hidden step, then the first.
     fn begin(&mut self, first: Side, amplitude: Amplitude, speed_mps: f64, detail: Detail) {
         self.planted.clear();
         self.weights.clear();
@@ -215,7 +215,7 @@ impl SwitchingSteps {
         }
     }
 
-    /// Takes up an [`origin`](SwitchingOrigin) and makes its step again.
+    /// Restores an [`origin`](SwitchingOrigin) and generates its step again.
     pub(crate) fn resume(
         &mut self,
         config: &GeneratorConfig,
@@ -237,7 +237,7 @@ impl SwitchingSteps {
         self.generate_and_plant();
     }
 
-    /// The tempo and the stride that give a speed, shared between both.
+    /// Sets tempo and stride for the current velocity.
     fn set_pace(&mut self) {
         let ratio = f64::from(self.velocity_mps.length()) / self.own_speed_mps;
         let (tempo, stride) = pace_of(ratio);
@@ -247,7 +247,7 @@ impl SwitchingSteps {
         (self.origin.tempo, self.origin.stride) = (tempo * haste, stride / haste);
     }
 
-    /// Makes what the current step left behind the origin of the next.
+    /// Makes the end of the current step the origin of the next.
     fn take_over(&mut self, leading: Side) {
         self.origin.leading = leading;
         self.origin.chance_position = self.rng.get_word_pos() as u64;
@@ -258,7 +258,7 @@ impl SwitchingSteps {
         self.origin.expected.extend_from_slice(&self.weights[end..]);
     }
 
-    /// Works the step of the [`origin`](SwitchingOrigin) out and puts it on the ground.
+    /// Generates the step of the [`origin`](SwitchingOrigin) and plants it.
     fn generate_and_plant(&mut self) {
         self.generate();
         self.plant();
@@ -285,7 +285,7 @@ impl SwitchingSteps {
         );
     }
 
-    /// The next step's features, without putting it on the ground; returns how many frames they are for.
+    /// Generates the features of the next step without planting it; returns its number of frames.
     pub(crate) fn generate_next(&mut self) -> usize {
         self.take_over(self.origin.leading.other());
         self.generate();
@@ -323,7 +323,7 @@ impl SwitchingSteps {
         self.write_features(length);
     }
 
-    /// The frame, at most `reach` away from the recorded end, at which the other system takes over best: there the segment ends.
+    /// Returns the end of the segment: the frame within `reach` of the recorded end from which the other system continues best.
     fn switch_near(&mut self, drawn: usize, reach: usize) -> usize {
         let channels = self.model.components.len();
         let other = &self.systems[self.origin.leading.other().index()];
@@ -340,7 +340,7 @@ impl SwitchingSteps {
         length
     }
 
-    /// One of the recorded starts that go on best from where the pose is.
+    /// Draws one of the recorded starts that continue best from the current pose.
     fn draw_start(&mut self, side: Side) -> usize {
         let system = &self.systems[side.index()];
         let nearest = system.nearest::<NEAREST>(&self.origin.expected);
@@ -349,12 +349,12 @@ impl SwitchingSteps {
         } else {
             1
         };
-        // Drawn in any case, so that chance comes as far in either.
+        // Always drawn, so that chance advances equally.
         let drawn = self.rng.random_range(0..nearest.len());
         nearest.get(drawn.min(among - 1))
     }
 
-    /// The features of the step's frames and of the one after, at its own tempo.
+    /// Writes the features of the step's frames and of the next one, at the step's tempo.
     fn write_features(&mut self, length: usize) {
         let frames = self.shape.timing.frames;
         self.features.resize(frames + 1, FeatureLanes::default());

@@ -1,4 +1,4 @@
-//! One walker, step after step: planning, trajectory and planting in a row.
+//! Window of three steps of one walker, which moves from step to step.
 
 mod aim;
 mod displace;
@@ -20,18 +20,18 @@ use footfall_core::{Side, Skeleton, StepPosition};
 use glam::Vec2;
 use std::sync::Arc;
 
-/// One walker between the planner's draws and frames on the ground; allocates nothing after it was made.
+/// Window of steps between the planner's draws and the step on the ground. Allocates only in [`new`](Self::new).
 #[derive(Debug)]
 pub(crate) struct StepWindow {
     blend: Arc<Blend>,
-    /// The mixture of the step before.
+    /// Mixture of the previous step.
     blend_before: Arc<Blend>,
     draws: [StepDraw; WINDOW],
     plans: [StepPlan<f32>; WINDOW],
-    /// True when the steps ahead are not those of the last request.
+    /// True when the plans of the steps ahead are outdated.
     stale: bool,
     origin: Origin,
-    /// The last frames of the current step, which tie the next one to it.
+    /// Last frames of the current step, to which the next one is tied.
     end: [f32; TIE_LEN],
     planted: PlantedStep,
 }
@@ -72,7 +72,7 @@ impl StepWindow {
         }
     }
 
-    /// Starts over with these steps: the second is the first that shows, and the one before brings it into its stride.
+    /// Restarts with these steps: the second is the first to be shown, after a hidden one.
     ///
     /// # Errors
     /// [`SynthError::Inference`] when the model gives no trajectory.
@@ -106,7 +106,7 @@ impl StepWindow {
         Ok(())
     }
 
-    /// Goes on to the next step; `draw` is one that lies ahead of it.
+    /// Generates the next step; `draw` is that of the step after it.
     pub(crate) fn advance(
         &mut self,
         planner: &mut Planner,
@@ -115,7 +115,7 @@ impl StepWindow {
         request: StepRequest,
         buffers: &mut StepBuffers,
     ) {
-        // A new pace or style is taken up by every step ahead: what is asked now takes effect at once.
+        // A new pace or style applies to all steps ahead, so that it takes effect at once.
         let same = !self.stale
             && self.origin.request.manner == request.manner
             && request.manner.position == StepPosition::Inside
@@ -131,8 +131,8 @@ impl StepWindow {
         self.solve_and_plant(buffers);
     }
 
-    /// Puts the current step on the ground anew, quicker by the factor `haste` and shorter by as much, and then with the factors on the
-    /// legs' reach that `next` gives; returns what these make together. The first step came from nowhere and stays.
+    /// Plants the current step again, quicker by the factor `haste` and shorter by the same factor, and then with the factors on the
+    /// legs' reach that `next` returns. Returns their product. The very first step stays unchanged.
     pub(crate) fn stretch(
         &mut self,
         planner: &mut Planner,
@@ -163,7 +163,7 @@ impl StepWindow {
             if solved {
                 self.plant(1, TIE - 1, buffers);
             } else {
-                // Nobody kept what it was made of.
+                // The solved trajectory was not kept.
                 self.solve_and_plant(buffers);
                 solved = true;
             }
@@ -171,7 +171,7 @@ impl StepWindow {
         whole
     }
 
-    /// Origin of the step after the current one when this is requested of it.
+    /// Returns the origin of the step after the current one, for this request.
     pub(crate) fn next_origin(&self, request: StepRequest) -> Origin {
         Origin {
             request,
@@ -185,7 +185,7 @@ impl StepWindow {
         }
     }
 
-    /// Makes a step from where it comes from.
+    /// Generates a step again from its origin.
     ///
     /// # Errors
     /// [`SynthError::Inference`] when the model gives no trajectory.
@@ -203,7 +203,7 @@ impl StepWindow {
         };
         self.draws = draws;
         planner.set_model(&blend_before.model);
-        // Of the step before only the last frames count.
+        // Only the last frames of the previous step matter.
         planner.plan_step_end(
             &self.draws[0],
             origin.manner_before,
@@ -222,34 +222,34 @@ impl StepWindow {
         Ok(())
     }
 
-    /// The share of the current step that had passed when it was planned anew.
+    /// Returns the share of the current step that had passed when it was replanned.
     fn passed(&self) -> f64 {
         self.origin
             .remainder
             .map_or(0.0, |remainder| f64::from(remainder.passed))
     }
 
-    /// The step that is on the ground now.
+    /// Returns the shape of the current step.
     pub(crate) fn step(&self) -> &StepShape {
         &self.plans[1].shape
     }
 
-    /// The ground that it is on.
+    /// Returns the current step on the ground.
     pub(crate) fn planted(&self) -> &PlantedStep {
         &self.planted
     }
 
-    /// Origin of the current step.
+    /// Returns the origin of the current step.
     pub(crate) fn origin(&self) -> &Origin {
         &self.origin
     }
 
-    /// Random draws of the steps in the window.
+    /// Returns the random draws of the steps in the window.
     pub(crate) fn draws(&self) -> &[StepDraw; WINDOW] {
         &self.draws
     }
 
-    /// The mixtures of the step before and of the current one.
+    /// Returns the mixtures of the previous step and of the current one.
     pub(crate) fn blends(&self) -> [&Arc<Blend>; 2] {
         [&self.blend_before, &self.blend]
     }

@@ -1,4 +1,4 @@
-//! A standing body goes where its sway takes it, on feet that stay.
+//! Sway of a body over feet that stay in place.
 
 use super::sway::Sway;
 use footfall_core::ease::soft_min;
@@ -8,41 +8,41 @@ use footfall_ik::{FootTarget, Leg, reach_height};
 use footfall_model::FEATURE_COUNT;
 use glam::{Quat, Vec3};
 
-/// Beyond this no leg goes: its foot would leave its place.
+/// Largest stretch of a leg, beyond which its foot would leave its place.
 const MOST_STRETCHED: f32 = 0.9993;
 
-/// The hips of a body that walks give way, over some metres, before a leg is stretched to more than this: it would snap straight.
+/// Stretch before which the hips of a walking body yield, and the distance over which they do, metres: the leg would snap straight.
 const STRETCHED: f32 = 0.998;
 const YIELDING_M: f32 = 0.003;
 
-/// The pelvis tilts to the side by so much at most where one leg has farther to its foot, radians.
+/// Largest tilt of the pelvis when one foot is farther away, radians.
 const MOST_TILT: f32 = 0.06;
 
-/// It evens out this share of that: who has less to carry bends a little.
+/// Share of the difference between the legs that the tilt evens out; the leg with less weight bends a little.
 const TILT_SHARE: f32 = 0.8;
 
-/// Over how many metres the pelvis goes from the one leg's reach to the other's.
+/// Distance over which the pelvis changes from one leg's reach to the other's, metres.
 const REACH_SOFTNESS_M: f32 = 0.001;
 
-/// One body's legs, ready to carry it.
+/// Legs of one body.
 #[derive(Clone, Debug)]
 pub(crate) struct Carrier {
     legs: [Leg; 2],
     hip_from_hips: [Vec3; 2],
     lengths: [f32; 2],
-    /// Fraction of the straight leg that the leg which carries more uses.
+    /// Fraction of the straight leg that the leg with more weight uses.
     extension: f32,
 }
 
-/// One foot, and how the hip joint is to it.
+/// One foot and its hip joint.
 struct Foot {
     target: FootTarget,
-    /// The hip joint from the hips, in the pose's space.
+    /// The hip joint relative to the hips, in the pose's space.
     hip: Vec3,
 }
 
 impl Carrier {
-    /// For a body whose knees are bent by `knee` radians when it stands.
+    /// Makes the legs of a body whose knees are bent by `knee` radians in standing.
     pub(crate) fn new(skeleton: &Skeleton, knee: f32) -> Self {
         Self {
             extension: (0.5 * knee).cos().min(MOST_STRETCHED),
@@ -52,8 +52,8 @@ impl Carrier {
         }
     }
 
-    /// Moves a pose by a sway: joints turn, the hips go over the ground as seen under the rotation `level`, and both feet stay as they are. By `upright`
-    /// (0 to 1) the hips go to the height at which legs are bent as standing ones, and tilt to the side on which the way to the foot is longer.
+    /// Adds a sway to a pose: joints turn, the hips move over the ground, relative to the rotation `level`, and both feet stay in place. By the share `upright`
+    /// (0 to 1) the hips move to the height at which the legs are bent as in standing, and tilt to the side of the farther foot.
     pub(crate) fn carry(&self, sway: &Sway, upright: f32, level: Quat, pose: &mut Pose) {
         let feet = Side::BOTH.map(|side| self.foot(pose, side));
         let mut turns = [Quat::IDENTITY; JOINT_COUNT];
@@ -90,7 +90,7 @@ impl Carrier {
         }
     }
 
-    /// Distance by which the hips of a body on these feet give way, metres.
+    /// Returns the distance by which the hips of a body on these feet yield, metres.
     fn lacks(&self, hips: Vec3, feet: &[Foot; 2]) -> f32 {
         Side::BOTH
             .into_iter()
@@ -99,14 +99,14 @@ impl Carrier {
             .fold(0.0, f32::max)
     }
 
-    /// Puts the hip joints where the hips have them.
+    /// Updates the hip joints.
     fn hang(&self, hips: Quat, feet: &mut [Foot; 2]) {
         for (foot, hip) in feet.iter_mut().zip(self.hip_from_hips) {
             foot.hip = hips * hip;
         }
     }
 
-    /// By how much the pelvis has to tilt for both legs to reach their feet alike, positive with the left side up, radians.
+    /// Returns the tilt of the pelvis at which both legs are equally stretched, positive with the left side up, radians.
     fn tilt(&self, hips: Vec3, feet: &[Foot; 2]) -> f32 {
         let [left, right] =
             Side::BOTH.map(|side| self.height(hips, side, &feet[side.index()], self.extension));
@@ -125,7 +125,7 @@ impl Carrier {
         }
     }
 
-    /// Height of the hips on the legs: the lower of what each leg allows, rounded off. `None` where no leg reaches its foot.
+    /// Returns the height of the hips: a smooth minimum of the heights that the legs allow. `None` if no leg reaches its foot.
     fn reach(&self, hips: Vec3, feet: &[Foot; 2]) -> Option<f32> {
         let heights =
             Side::BOTH.map(|side| self.height(hips, side, &feet[side.index()], self.extension));

@@ -1,4 +1,4 @@
-//! Liveliness of one walker as it stands: it comes up at rest and dies away as a step begins.
+//! Standing motion of one walker, which fades in at rest and out as a step begins.
 
 use super::carry::Carrier;
 use super::sway::{Stander, StandingTables, Sway};
@@ -8,27 +8,27 @@ use footfall_core::{Pose, Skeleton};
 use glam::Quat;
 use std::sync::Arc;
 
-/// Rate at which it comes up and dies away: that of a critically damped spring, a second.
+/// Rates at which it fades in and out, those of a critically damped spring, 1/s.
 const RISE_RATE: f32 = 2.4;
 const FALL_RATE: f32 = 9.0;
 
-/// Less is nothing: a tenth of a millimetre.
+/// Share that counts as none: a tenth of a millimetre.
 const LEAST_SHARE: f32 = 2e-3;
 
-/// More of it than this is no standing any more.
+/// Largest amount that still looks like standing.
 const MOST_AMOUNT: f32 = 2.0;
 
-/// The moment of a walker's life that a state holds.
+/// Progress of a walker's standing motion, part of its state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Moment {
-    /// Time that it has been alive, seconds.
+    /// Total time of standing motion, seconds.
     pub(crate) secs: f64,
-    /// Present amount, 0 to 1, and its change a second.
+    /// Current share, 0 to 1, and its rate, 1/s.
     pub(crate) share: f32,
     pub(crate) speed: f32,
 }
 
-/// One walker's life as it stands.
+/// One walker's standing motion.
 #[derive(Clone, Debug)]
 pub(crate) struct Life {
     tables: Arc<StandingTables>,
@@ -39,7 +39,7 @@ pub(crate) struct Life {
 }
 
 impl Moment {
-    /// So much later, for one who stands all the while, or walks.
+    /// Returns the progress after this time, of a walker that stands or walks throughout.
     pub(crate) fn after(self, secs: f32, stands: bool) -> Self {
         let nothing = Self {
             secs: self.secs,
@@ -60,7 +60,7 @@ impl Moment {
             speed,
         };
         if !stands && later.share < LEAST_SHARE {
-            // Who walks does not grow older.
+            // Time stops while walking.
             return nothing;
         }
         later
@@ -68,7 +68,7 @@ impl Moment {
 }
 
 impl Life {
-    /// That of a walker of a model; `None` where the model stands still.
+    /// Creates the standing motion of a walker; `None` if the model stands still.
     pub(crate) fn new(
         tables: Option<&Arc<StandingTables>>,
         skeleton: &Skeleton,
@@ -84,13 +84,13 @@ impl Life {
         })
     }
 
-    /// Another seed's, at the same moment.
+    /// Becomes the standing motion of another seed, at the same moment.
     pub(crate) fn become_walker(&mut self, config: &GeneratorConfig) {
         let variation = config.variation.clamp(0.0, 2.0);
         self.stander = self.tables.stander(config.seed, variation);
     }
 
-    /// Share of it that shows: 0 nothing, 1 as in people.
+    /// Sets the amount: 0 none, 1 as in people.
     pub(crate) fn set_amount(&mut self, amount: f32) {
         self.amount = if amount.is_finite() {
             amount.clamp(0.0, MOST_AMOUNT)
@@ -99,7 +99,7 @@ impl Life {
         };
     }
 
-    /// Begins anew with somebody who has stood for a while.
+    /// Restarts, fully faded in.
     pub(crate) fn stand(&mut self) {
         self.moment = Moment {
             share: 1.0,
@@ -107,17 +107,17 @@ impl Life {
         };
     }
 
-    /// Lets time pass.
+    /// Advances by a time.
     pub(crate) fn step(&mut self, secs: f32, stands: bool) {
         self.moment = self.moment.after(secs, stands);
     }
 
-    /// Returns whether nothing of it shows now.
+    /// Returns true when nothing of it is visible.
     pub(crate) fn is_still(&self) -> bool {
         self.amount <= 0.0 || self.moment.share <= 0.0
     }
 
-    /// Moves the pose of a still standing person to that of the standing motion at a time. `level` is the rotation under which the walker faces +Z.
+    /// Adds the standing motion of a moment to a still pose. `level` is the rotation under which the walker faces +Z.
     pub(crate) fn move_pose(&self, moment: &Moment, level: Quat, pose: &mut Pose) {
         let share = self.amount * moment.share;
         if share.abs() <= 0.0 {

@@ -1,17 +1,17 @@
-//! Curves of seeded chance over time that nobody has to remember: every number of them follows from the walker, the curve and the moment.
+//! Seeded random curves over time without memory: every value follows from the walker, the curve and the time.
 
 use crate::hash::mixed;
 
-/// Knots that a moment's value is made of.
+/// Number of knots that influence a value.
 const SUPPORT: usize = 4;
 
-/// Numbers that come out of the generator at once.
+/// Number of values that one call of the generator gives.
 pub(crate) const AT_ONCE: usize = 4;
 
 /// Mean over a knot's time of the squared weights of cubic B-splines, 151/315: what the variance of unit weights becomes.
 const SPLINE_VARIANCE: f32 = 151.0 / 315.0;
 
-/// Curves of variance 1 that run side by side at one moment: cubic B-splines over independent numbers.
+/// Parallel curves of variance 1 at one time: cubic B-splines over independent values.
 pub(crate) struct Curves {
     /// The first knot, and the knots' weights.
     knot: i64,
@@ -19,7 +19,7 @@ pub(crate) struct Curves {
 }
 
 impl Curves {
-    /// At this time, counted in knots.
+    /// Evaluates the curves at a time, in knots.
     pub(crate) fn at(time: f64) -> Self {
         let knot = time.floor();
         let s = (time - knot) as f32;
@@ -37,7 +37,7 @@ impl Curves {
         }
     }
 
-    /// The next [`AT_ONCE`] curves of a walker's: `key` tells them from all others.
+    /// Returns the values of [`AT_ONCE`] curves, identified by `key`.
     pub(crate) fn values(&self, key: u64) -> [f32; AT_ONCE] {
         let mut sums = [0.0; AT_ONCE];
         for (weight, index) in self.weights.iter().zip(0_i64..) {
@@ -50,24 +50,24 @@ impl Curves {
     }
 }
 
-/// Independent numbers of variance 1, evenly spread over an interval.
+/// Returns independent uniform values of variance 1.
 pub(crate) fn numbers(key: u64, index: i64) -> [f32; AT_ONCE] {
     let width = 12.0_f32.sqrt();
     sixteens(mixed(key ^ mixed(index.cast_unsigned()))).map(|part| width * (part - 0.5))
 }
 
-/// A number of variance 1 that is nearly normal: at most 3.5 from 0.
+/// Returns a nearly normal value of variance 1, at most 3.5 from 0.
 pub(crate) fn normal(key: u64, index: i64) -> f32 {
     let numbers = numbers(key, index);
     0.5 * numbers.iter().sum::<f32>()
 }
 
-/// A number evenly spread over 0 to 1.
+/// Returns a uniform value between 0 and 1.
 pub(crate) fn share(key: u64, index: i64) -> f32 {
     sixteens(mixed(key ^ mixed(index.cast_unsigned())))[0]
 }
 
-/// A key that no other part of a walker's chance has.
+/// Returns a key unique to a part of a walker's chance.
 pub(crate) fn key(number: u64, part: u64) -> u64 {
     mixed(number ^ mixed(part))
 }

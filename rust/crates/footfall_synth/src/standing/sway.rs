@@ -1,4 +1,4 @@
-//! Deviation of a standing body from its posture at a moment: octaves of sway, looks about and breath.
+//! Sway: offset of a standing body from its posture at a time, from octaves of sway, glances and breathing.
 
 use super::noise::{AT_ONCE, Curves, key, normal, share};
 use crate::rows::Sum as _;
@@ -10,7 +10,7 @@ use footfall_model::{FEATURE_COUNT, LOOK_DIRECTIONS, SWAY_COUNT, StandingModel, 
 /// Offsets of a body from its posture, as [`SWAY_COUNT`] has them.
 pub(crate) type Sway = [f32; SWAY_COUNT];
 
-/// Parts of a walker's chance. Octaves come after the last.
+/// Keys of the parts of a walker's chance; octaves follow the last.
 const STRENGTH: u64 = 0;
 const BREATH: u64 = 1;
 const LOOK_TIMES: u64 = 2;
@@ -18,30 +18,30 @@ const LOOKS: u64 = 3;
 const STANCE: u64 = LOOKS + LOOK_DIRECTIONS as u64;
 const OCTAVES: u64 = STANCE + ROWS_AN_OCTAVE;
 
-/// Rows of curves that an octave has room for.
+/// Maximum number of rows of curves in an octave.
 const ROWS_AN_OCTAVE: u64 = 4;
 
-/// Within so many standard deviations people's strengths stay, and where their looks rest.
+/// Limits of people's strength and of the resting points of the gaze, standard deviations.
 const MOST_STRENGTH: f32 = 1.0;
 const MOST_LOOK: f32 = 2.0;
 
-/// Time is cut into cells in which the gaze jumps once or not at all; every so many cells it does, so that nobody has to look back farther.
+/// Length of a cell of time, in which the gaze jumps at most once, and number of cells after which it always does, so that the search for the last jump is bounded.
 const LOOK_CELL_SECS: f64 = 2.5;
 const LOOK_CELLS: i64 = 24;
 
-/// By how much, in radians, and how slowly breaths come early and late.
+/// Drift of the breath's phase, radians, and its time scale.
 const BREATH_DRIFT: f32 = 1.0;
 const BREATH_KNOT_SECS: f64 = 9.0;
-/// By how much people's rates of breathing differ, and the depths of their breaths.
+/// Spread of people's breathing rates and of the depths of their breaths.
 const BREATH_RATE_SPREAD: f64 = 0.1;
 const BREATH_DEPTH_SPREAD: f32 = 0.2;
-/// Breathing in is quicker than breathing out.
+/// Skew of the breath: breathing in is quicker than breathing out.
 const BREATH_SKEW: f32 = 0.35;
 
-/// Standing of a model's people, ready for many walkers.
+/// Standing motion of a model's people, prepared for many walkers.
 #[derive(Debug)]
 pub(crate) struct StandingTables {
-    /// Moves everybody alike.
+    /// Motion of equal strength for all people.
     stance: Octave,
     octaves: Vec<Octave>,
     hips_ahead: f32,
@@ -63,11 +63,11 @@ struct Octave {
     directions: Vec<[Sway; AT_ONCE]>,
 }
 
-/// Source of one walker's standing.
+/// One walker's draw of standing motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stander {
     number: u64,
-    /// Amplitude of its motion, 1 as people on average.
+    /// Amplitude of its motion; 1 is the average.
     strength: f32,
     breath_rate_hz: f64,
 }
@@ -94,7 +94,7 @@ impl StandingTables {
         }
     }
 
-    /// The one that a seed draws; `variation` scales how far people differ.
+    /// Draws the standing motion of a seed; `variation` scales the differences between people.
     pub(crate) fn stander(&self, seed: u64, variation: f32) -> Stander {
         let number = key(seed, u64::from_be_bytes(*b"standing"));
         let differs = |index: i64| {
@@ -109,7 +109,7 @@ impl StandingTables {
         }
     }
 
-    /// Deviation of the body so many seconds from the beginning.
+    /// Returns the offset of the body at a time, seconds from the beginning.
     pub(crate) fn at(&self, stander: &Stander, secs: f64) -> Sway {
         let mut sway = [0.0; SWAY_COUNT];
         self.stance
@@ -130,13 +130,13 @@ impl StandingTables {
         sway
     }
 
-    /// Direction of the gaze, in standard deviations from its rest.
+    /// Returns the direction of the gaze, in standard deviations from its rest.
     fn look(&self, stander: &Stander, secs: f64) -> [f32; LOOK_DIRECTIONS] {
         let times = key(stander.number, LOOK_TIMES);
         let jumps =
             |cell: i64| cell.rem_euclid(LOOK_CELLS) == 0 || share(times, cell) < self.look_chance;
         let rest = |cell: i64| {
-            // At most a whole round of cells back there is one.
+            // There is one within a round of cells.
             let cell = (0..LOOK_CELLS)
                 .map(|back| cell - back)
                 .find(|cell| jumps(*cell));
@@ -172,7 +172,7 @@ impl Octave {
         }
     }
 
-    /// Adds what a walker's curves make of it at a moment; the first rows of them are those of `part`.
+    /// Adds the walker's curves at a time; their first rows are those of `part`.
     fn add(&self, number: u64, part: u64, strength: f32, secs: f64, sway: &mut Sway) {
         let curves = Curves::at(secs * self.knots_hz);
         for (rows, row) in self.directions.iter().zip(0_u64..) {
@@ -183,13 +183,13 @@ impl Octave {
     }
 }
 
-/// From 0 at 0 to 1 at 1 with the least jerk (Flash and Hogan 1985).
+/// Returns the minimum-jerk curve from 0 at 0 to 1 at 1 (Flash and Hogan 1985).
 fn least_jerk(s: f32) -> f32 {
     let s = s.clamp(0.0, 1.0);
     s * s * s * (10.0 + s * (6.0 * s - 15.0))
 }
 
-/// Fill of the chest: 1 at the top of a usual breath, -1 when it is empty.
+/// Returns the filling of the chest: 1 at the top of a usual breath, -1 when empty.
 fn breath(stander: &Stander, secs: f64) -> f32 {
     let [drift, depth, ..] =
         Curves::at(secs / BREATH_KNOT_SECS).values(key(stander.number, BREATH));

@@ -1,8 +1,8 @@
-//! The detail that trajectories of states lack, added to a step that is solved: what steps have in common, and noise.
+//! Fine motion: the detail that trajectories of states lack, a common part and noise, added to a solved step.
 //!
-//! Both are known at points of the step's phase and smooth between them. Points before and after the step are those of its neighbours,
-//! so that steps join without a jump. Noise needs no memory: every step has a number of its own, from which its points' independent
-//! numbers follow, and a point's noise is a weighted sum of those around it.
+//! Both are given at points of the step's phase and interpolated smoothly. Points before and after the step are those of its neighbours,
+//! so that steps join without a jump. Noise needs no memory: the number of a step seeds independent values at its points,
+//! and the noise at a point is a weighted sum of the values around it.
 
 use crate::hash::mixed;
 use crate::plan::{FineDraw, StepPlan};
@@ -17,19 +17,19 @@ use multiversion::multiversion;
 /// Points that a step's curves go through: its own, one before and two after.
 const KNOTS: usize = FINE_POINTS + 3;
 
-/// Points whose independent numbers matter to them.
+/// Points whose independent values influence them.
 const SOURCES: usize = KNOTS + 2 * FINE_REACH;
 
-/// Independent numbers that come out of the generator at once.
+/// Independent values that one call of the generator gives.
 const AT_ONCE: usize = 4;
 
-/// A factor a feature.
+/// One factor per feature.
 pub(crate) type Scale = [f32; FEATURE_COUNT];
 
 /// The fine motion of a model, ready to be added.
 #[derive(Debug)]
 pub(crate) struct FineTables {
-    /// Per side, rows of the [`KNOTS`] of a step: what steps have in common, then each walker component.
+    /// Per side, rows of the [`KNOTS`] of a step: the common part, then each walker component.
     tables: [Vec<Vec<f32>>; 2],
     /// For each tap the weights of all directions.
     kernels: [[f32; MAX_FINE_DIRECTIONS]; FINE_TAPS],
@@ -37,7 +37,7 @@ pub(crate) struct FineTables {
     directions: Vec<[[f32; FEATURE_COUNT]; 4]>,
 }
 
-/// Three steps in a row: the one that is shown is in the middle. One that is not there has no noise.
+/// Previous, shown and next step. A missing one has no noise.
 pub(crate) type Neighbours = [FineDraw; 3];
 
 /// Working memory for a step's fine motion.
@@ -48,7 +48,7 @@ pub(crate) struct FineBuffers {
 }
 
 impl FineTables {
-    /// Those of a model; `None` where it has none.
+    /// Prepares the tables of a model; `None` if it has no fine motion.
     pub(crate) fn of(model: &GaitModel) -> Option<Self> {
         let fine = model.fine.as_ref()?;
         let all = core::iter::once(&fine.shared).chain(&fine.walker);
@@ -80,7 +80,7 @@ impl FineTables {
 }
 
 impl FineBuffers {
-    /// With room for any step.
+    /// Makes buffers for any step.
     pub(crate) fn new() -> Self {
         Self {
             sources: vec![[0.0; MAX_FINE_DIRECTIONS]; SOURCES],
@@ -110,7 +110,7 @@ impl FineBuffers {
         add_noise(&mut self.knots, &self.sources, tables);
     }
 
-    /// Adds the prepared step's motion to the features of the frame at part `s` of it. Scales are those before the step and after it.
+    /// Adds the prepared motion to the features of the frame at part `s` of the step. `scales` are those before and after the step.
     pub(crate) fn add(&self, s: f32, scales: [&Scale; 2], features: &mut [f32]) {
         let at = s * FINE_POINTS as f32;
         // A cast rounds towards zero, and a part is not below it.
@@ -178,7 +178,7 @@ fn add_noise(knots: &mut [f32], sources: &[[f32; MAX_FINE_DIRECTIONS]], tables: 
 
 /// Independent numbers of variance 1 at a point of a step.
 fn fill(source: &mut [f32; MAX_FINE_DIRECTIONS], step: &FineDraw, point: usize) {
-    // Evenly spread over an interval: sums of many of them are normal all the same.
+    // Uniform values suffice: sums of many are nearly normal.
     let width = step.strength * 12.0_f32.sqrt();
     let mut sixteens = [0_u16; MAX_FINE_DIRECTIONS];
     for (values, key) in sixteens.as_chunks_mut().0.iter_mut().zip(KEYS[point]) {
@@ -190,7 +190,7 @@ fn fill(source: &mut [f32; MAX_FINE_DIRECTIONS], step: &FineDraw, point: usize) 
     }
 }
 
-/// Keys of the numbers that come out of the generator for a point.
+/// Keys of the generator for each point.
 const KEYS: [[u64; MAX_FINE_DIRECTIONS / AT_ONCE]; FINE_POINTS] = {
     let mut keys = [[0; MAX_FINE_DIRECTIONS / AT_ONCE]; FINE_POINTS];
     let mut point = 0;

@@ -16,10 +16,10 @@ use footfall_prob::global_variance::{
 };
 use std::sync::Arc;
 
-/// Steps of the sample walk: enough that its ends do not count.
+/// Steps of the sample walk, enough for its ends to be negligible.
 const SAMPLE_STEPS: usize = 12;
 
-/// Bound on how much farther or less a walk swings than the corpus, as a ratio of variances: styles and speeds differ.
+/// Bounds of the ratio between the variance of a walk and that of the corpus: styles and speeds differ.
 const VARIANCE_RATIO: [f64; 2] = [0.25, 4.0];
 
 /// The pull per feature under which a walk of the model keeps the corpus' variance.
@@ -39,8 +39,8 @@ pub(crate) fn pull(model: &Arc<GaitModel>) -> Result<Vec<f64>, SynthError> {
 
 /// The trajectory of a whole walk, T × [`FEATURE_COUNT`].
 ///
-/// The corpus' variance belongs to its mean walk. A walk that is planned to swing farther or less than that, because it
-/// is faster or slower or another walker's, is given as much more or less variance.
+/// The corpus' variance belongs to its mean walk. A walk planned with a larger or smaller swing, because of its speed or
+/// walker, gets proportionally more or less variance.
 pub(crate) fn solve_walk(
     model: &Arc<GaitModel>,
     statistics: &Statistics<f64>,

@@ -17,7 +17,7 @@ impl Climbing {
         Self((!level).then_some([moment.grade, moment.lean, moment.speed]))
     }
 
-    /// Lets a walker go on from here.
+    /// Restores the lean of a walker.
     pub(super) fn resume(&self, generator: &mut GaitGenerator) {
         let [grade, lean, speed] = self.0.unwrap_or_default();
         if let Some(moves) = &mut generator.moves {

@@ -1,11 +1,11 @@
-//! Feet and hips as they are saved between two steps.
+//! Feet and hips in a saved state.
 
 use crate::ground::{Lean, PlanterState, Strafe};
 use footfall_ik::Plant;
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Feet and hips that a step takes over from the one before.
+/// Feet and hips at the beginning of a step.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Feet {
     /// Flat ankle and heading, left and right.

@@ -1,4 +1,4 @@
-//! Place in chance and corrections of the way in a saved state.
+//! Count of strides and displacement of the step in a saved state.
 
 use super::is_reasonable;
 use crate::generator::GaitGenerator;
@@ -6,11 +6,11 @@ use crate::ground::Displacement;
 use crate::source::Steps;
 use serde::{Deserialize, Serialize};
 
-/// Strides that chance has drawn, and how far the current step ends from where it was planned, behind a [`State`](super::State).
+/// Number of strides drawn, and displacement of the current step, behind a [`State`](super::State).
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Led {
     pub(super) strides: u32,
-    /// Way over the ground and turn; `None` where it ends as planned.
+    /// Way over the ground and turn; `None` when the step ends as planned.
     displacement: Option<[f32; 4]>,
 }
 

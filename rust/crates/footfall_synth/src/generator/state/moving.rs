@@ -12,13 +12,13 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Moving {
     /// Depth of the crouch, and its rate of change, 1/s.
     crouch: [f32; 2],
-    /// The push that is taken up: what is left of it, how far the hips have given way and how fast they do, to the left and forwards.
+    /// Push under way: its remaining velocity, and displacement and velocity of the hips, to the left and forwards.
     push: Option<[[f32; 2]; 3]>,
-    /// The jump off both feet that is under way (its rise, and its way to the left, up and ahead), and the time since it began.
+    /// Two-footed jump under way: rise, displacement to the left, up and ahead, and time since its beginning.
     jump: Option<([f32; 4], f32)>,
-    /// The jump that is waited for.
+    /// Pending jump.
     asked: Option<[f32; 4]>,
-    /// The rise of the leap that the current step is.
+    /// Rise of the current step if it is a leap.
     pub(super) leap_m: Option<f32>,
 }
 
@@ -41,7 +41,7 @@ impl Moving {
         }
     }
 
-    /// Lets a walker go on from here.
+    /// Restores the moves of a walker.
     pub(super) fn resume(&self, generator: &mut GaitGenerator) {
         generator.pending_jump = self.asked.map(leap_of);
         if let Some(moves) = &mut generator.moves {

@@ -1,4 +1,4 @@
-//! Saving a step that was made to obey in its middle.
+//! Replanned steps in a saved state.
 
 use super::{State, is_reasonable};
 use crate::gait::AppliedControls;
@@ -9,14 +9,14 @@ use crate::source::Steps;
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-/// Data needed to go on with a step that was made to obey in its middle.
+/// Data needed to continue a replanned step.
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Quick {
-    /// Velocity of the step before and of this one, as their requests had them.
+    /// Requested velocities of the previous step and of this one.
     pub(super) velocities_mps: [[f32; 2]; 2],
-    /// Requests that the step obeys: velocity and turning; true where it stops, and where it was stretched.
+    /// Applied controls: velocity and turn rate; true if the step stops, and if it was stretched.
     obeys: ([f32; 2], f32, bool, bool),
-    /// The state that its rest begins in, the share of that which is left, and the share of the whole step that had passed.
+    /// First state of the remainder, the share of it that is left, and the share of the whole step that had passed.
     remainder: Option<(u8, f32, f32)>,
     /// Lean of the trunk as the step begins, and its rate of change.
     lean: [[f32; 2]; 2],
@@ -55,7 +55,7 @@ impl Quick {
         }
     }
 
-    /// Of a state that knows no such steps: one whose speed does not change.
+    /// Default for earlier versions of states: a step of constant speed.
     pub(super) fn of_slow(state: &State) -> Self {
         Self {
             velocities_mps: [state.velocity_mps; 2],

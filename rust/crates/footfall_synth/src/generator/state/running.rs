@@ -9,10 +9,10 @@ use footfall_ik::FootTarget;
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Additions of a runner.
+/// Gaits and airborne foot, behind a [`State`](super::State).
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Running {
-    /// True for the step before and this one where they are of a run.
+    /// True for the previous step and this one if they are of a run.
     runs: [bool; 2],
     /// The foot in the air as the step begins: ankle, rotation of foot and toes, then and a frame earlier; and the time between.
     airborne: Option<([f32; 11], [f32; 11], f32)>,

@@ -1,4 +1,4 @@
-//! Parts of a state that each kind of steps adds, and their restoration.
+//! Parts of a state that depend on the source of steps, and their restoration.
 
 use super::{Led, Quick, Running, Source, State, StateError, detail_of};
 use crate::config::GeneratorConfig;
@@ -55,7 +55,7 @@ impl Source {
 }
 
 impl State {
-    /// Takes styled steps up from here; they stay as they are where that fails.
+    /// Restores styled steps; on failure they stay unchanged.
     pub(super) fn take_up(
         &self,
         steps: &mut StyledSteps,
@@ -139,7 +139,7 @@ impl State {
         let [gait_before, gait] = running.gaits();
         planner.resume(self.chance_position, &draws);
         planner.count_strides(led.strides);
-        // A walker that goes back a little, as in games that predict, is measured already.
+        // A walker that goes back a little, as in predictive netcode, is measured already.
         let known =
             planner.is_same_walker(&steps.planner) && Arc::ptr_eq(&next, &steps.measured.blend);
         space.with_buffers(|buffers| {
@@ -150,7 +150,7 @@ impl State {
             };
             let blends = [before.of_gait(gait_before), now.of_gait(gait)];
             if origin.planter.is_none() {
-                // The first step of all may fail, so it is tried on somebody else.
+                // The very first step may fail, so it is tried on another window.
                 steps.window = {
                     let mut window = StepWindow::new(skeleton, &now);
                     window.restore(&mut planner, blends, draws, origin, buffers)?;
@@ -172,7 +172,7 @@ impl State {
         Ok(())
     }
 
-    /// Takes switching steps up from here.
+    /// Restores switching steps.
     pub(super) fn resume(
         &self,
         steps: &mut SwitchingSteps,
@@ -215,7 +215,7 @@ impl State {
     }
 }
 
-/// Components of the variation that a step has at most, walked or run.
+/// Returns the largest number of step components, walked or run.
 fn components_of(model: &GaitModel) -> usize {
     let own = model.variation.step.len();
     let running = model.running.as_ref();

@@ -1,4 +1,4 @@
-//! Turning the legs and the trunk of one step.
+//! Turn of the legs and the trunk in one step.
 
 use super::Strafe;
 use crate::ground::frame::PlantedFrame;
@@ -13,8 +13,8 @@ use glam::{Vec2, Vec3};
 /// Greatest stretch of the standing leg in steps to the side, as a share of its length.
 const STANDING_EXTENSION: f32 = 0.97;
 
-/// Greatest stretch of a leg that lands to the side, from hips that are low enough for it, as a share of its length; and how much nearer its hip is to the foot than twice the widening, as a share of
-/// it as well.
+/// Greatest stretch of a leg that lands to the side, as a share of its length; and the distance by which its hip is nearer to the foot than twice the widening, as a share
+/// of the length.
 const LANDING_EXTENSION: f32 = 0.97;
 const HIP_SHARE: f32 = 0.06;
 
@@ -26,10 +26,10 @@ const LEAST_HEIGHT: f32 = 0.5;
 const BACKWARD_PITCH: f32 = 0.3;
 const BACKWARD_GAIN: f32 = 1.8;
 
-/// Part of the swing by which a foot is free of how it stood.
+/// Part of the swing after which a foot is independent of its stance.
 const FREED_BY: f32 = 0.35;
 
-/// The joints that turn the trunk back to where the walker faces.
+/// Joints that turn the trunk back to the facing direction.
 const BACK: [Joint; 3] = [Joint::Spine, Joint::Chest, Joint::UpperChest];
 
 /// The legs of a body, and the heading under which their walk goes along +Z.
@@ -46,12 +46,12 @@ pub(crate) struct Turner<'a> {
 struct Swing {
     /// Progress of the foot away from its stance, from 0 to 1.
     freed: f32,
-    /// Its pitch as long before the end of the swing as this is after its beginning: steps backwards swing as steps forwards do in reverse.
+    /// Pitch at the mirrored time of the swing: backward steps swing as forward steps in reverse.
     mirrored: f32,
 }
 
 impl Turner<'_> {
-    /// Turns a step that goes forwards to where it is to go, coming from a step that went as `before` says.
+    /// Turns a forward step to its direction of travel, after a step turned by `before`.
     pub(crate) fn turn_step(
         &self,
         generated: &mut [GeneratedFrame],
@@ -82,8 +82,8 @@ impl Turner<'_> {
         }
     }
 
-    /// Turns the leg that stands. In steps to the side its foot stays as far from the hip as it is, or comes as close as the leg reaches;
-    /// returns by how much the hips rise with it.
+    /// Turns the standing leg. In sideways steps its foot keeps its distance from the hip, within the reach of the leg.
+    /// Returns the rise of the hips.
     fn turn_standing(&self, strafe: &Strafe, side: Side, leg: &mut GeneratedLeg) -> f32 {
         let foot = &self.feet[side.index()];
         let flat = leg.ankle - foot.roll(leg.pitch);
@@ -101,7 +101,7 @@ impl Turner<'_> {
         flat.y - turned.y
     }
 
-    /// Height of a hip above the ankle from which a leg reaches as far to the side as it is to land.
+    /// Returns the height of a hip above the ankle at which the leg reaches its landing place to the side.
     fn landing_height(&self, strafe: &Strafe) -> f32 {
         let leg = self.leg_length;
         let aside = (2.0 * strafe.widening - HIP_SHARE * leg).max(0.0);
@@ -109,7 +109,7 @@ impl Turner<'_> {
         height.max(LEAST_HEIGHT * leg * leg).sqrt()
     }
 
-    /// Turns the other leg, of hips that have risen; `swing` while its foot is in the air.
+    /// Turns the other leg, below risen hips; `swing` is its state while its foot is in the air.
     fn turn_trailing(
         &self,
         strafe: &Strafe,
@@ -132,7 +132,7 @@ impl Turner<'_> {
         leg.put(ankle - rise * Vec3::Y, pitch, standing);
     }
 
-    /// Target of a flat foot's ankle, from the hips. Its excursion is that of the middle of the sole, which is as far ahead of the
+    /// Returns the target of a flat foot's ankle, relative to the hips. Its excursion is that of the middle of the sole, which is as far ahead of the
     /// hips as behind them in any walk.
     fn turn_place(&self, strafe: &Strafe, side: Side, ankle: Vec3) -> Vec3 {
         let middle = self.feet[side.index()].sole_middle();
@@ -154,7 +154,7 @@ fn standing_pitch(strafe: &Strafe, forwards: f32) -> f32 {
     turned_pitch(strafe, forwards, -BACKWARD_GAIN * forwards)
 }
 
-/// Pitch of a turned foot: less of it in steps to the side, another in steps backwards.
+/// Returns the pitch of a turned foot: reduced in sideways steps, replaced in backward steps.
 fn turned_pitch(strafe: &Strafe, forwards: f32, backwards: f32) -> f32 {
     if strafe.forwardness >= 0.0 {
         forwards * strafe.forwardness

@@ -1,4 +1,4 @@
-//! The way of the hips through a jump: as the legs have it before and after, and a parabola in between.
+//! Course of the hips in a jump: that of the legs before and after, and a parabola in between.
 
 use super::{ABSORPTION, DIP, FLIGHT, JumpTables, Leap, PUSH, RECOVERY, Timing};
 use crate::gait::GRAVITY_MPS2;
@@ -7,35 +7,35 @@ use footfall_core::ease::{hermite, smooth_step};
 use footfall_model::{BESIDE_COUNT, FEATURE_COUNT};
 use glam::Vec3;
 
-/// Dips and recoveries last so long, seconds: recorded ones are unhurried, players are not.
+/// Durations of dip and recovery, seconds: recorded ones are slow, players are impatient.
 const DIP_SECS: [f32; 2] = [0.15, 0.32];
 const RECOVERY_SECS: [f32; 2] = [0.25, 0.5];
 
-/// Pushes and absorptions are quick as they are; no jump makes them quicker, seconds.
+/// Minimum durations of push-off and absorption, seconds; recorded ones are quick already.
 const LEAST_SECS: f32 = 0.08;
 
-/// Rises of a jump, in leg lengths: less is none, more is beyond people.
+/// Bounds of the rise of a jump, leg lengths: less is no jump, more is beyond people.
 const RISES: [f32; 2] = [0.03, 0.8];
 
-/// Ways of a jump ahead, and to the side or back, in leg lengths at most.
+/// Maximum distance of a jump ahead, and to the side or back, leg lengths.
 const FARTHEST_AHEAD: f32 = 2.2;
 const FARTHEST_ASIDE: f32 = 0.7;
 
-/// Hips rise above where they are at landing by so much at least, metres.
+/// Minimum rise of the hips above their height at landing, metres.
 const LEAST_FALL_M: f32 = 0.02;
 
-/// Legs that take up a fall evenly need the time to do so on their way; they need at least this share of it.
+/// Minimum duration of the absorption, as a share of that of an even deceleration.
 const ABSORPTION_SHARE: f32 = 0.9;
 
-/// Falls faster than recorded ones, m/s, are taken up so much deeper, metres by m/s, and at most so much, leg lengths.
+/// Speed of recorded falls, m/s, extra depth for faster ones, metres per m/s, and its maximum, leg lengths.
 const USUAL_FALL_MPS: f32 = 2.8;
 const SINK_SECS: f32 = 0.09;
 const DEEPEST_SINK: f32 = 0.3;
 
-/// The character begins to go this long before take-off and is there as long after landing, seconds.
+/// Time before take-off at which the character begins to move, and after landing at which it arrives, seconds.
 const SHIFT_SECS: f32 = 0.12;
 
-/// Part of a phase over which a slope is measured.
+/// Part of a phase for numerical slopes.
 const SLOPE_PART: f32 = 0.02;
 
 /// The course of one jump.
@@ -48,16 +48,16 @@ pub(crate) struct Course {
     ends: [Vec3; 2],
     /// Velocities of the hips there, m/s.
     speeds: [Vec3; 2],
-    /// Errors of the model's own way in both, at the end of the push and at the beginning of the absorption: metres, and metres a phase.
+    /// Errors of the model's own course at the end of the push-off and at the beginning of the absorption: metres, and metres per phase.
     missing: [[Vec3; 2]; 2],
-    /// Extra depth, beyond that of recorded jumps, to which the legs take up the fall, metres.
+    /// Extra depth of the absorption beyond that of recorded jumps, metres.
     sink: f32,
     leg: f32,
 }
 
 impl Course {
-    /// That of a jump of a body. A rise that does not reach the place where the feet land becomes one that does; a place beyond reach becomes one
-    /// on the way to it, and the highest that can be reached.
+    /// Makes the course of a jump of a body. A rise too low for the landing place is raised; a place beyond reach is replaced by one
+    /// on the way to it, as high as can be reached.
     pub(super) fn new(tables: &JumpTables, leap: Leap, body: &Body) -> Self {
         let leg = body.leg_length;
         let rise = (leap.rise_m / leg).clamp(RISES[0], RISES[1]);
@@ -109,7 +109,7 @@ impl Course {
         }
     }
 
-    /// Position of the hips at part `s` of a phase in which the model holds the body so, from where they stand before the jump: metres.
+    /// Returns the position of the hips at part `s` of a phase with this posture, relative to standing before the jump, metres.
     pub(super) fn hips(&self, phase: usize, s: f32, beside: &Beside) -> Vec3 {
         let own = self.leg * hips_of(beside);
         let none = Vec3::ZERO;
@@ -130,12 +130,12 @@ impl Course {
         }
     }
 
-    /// Displacement of the feet from where they stood.
+    /// Returns the displacement of the feet from their stance.
     pub(super) fn way(&self) -> Vec3 {
         self.way
     }
 
-    /// Displacement of the character at part `s` of a phase: over the ground smoothly about the flight, and in the flight as high as the jump has it.
+    /// Returns the displacement of the character at part `s` of a phase: over the ground smoothly around the flight, and in height during the flight.
     pub(super) fn place(&self, phase: usize, s: f32) -> Vec3 {
         let secs = &self.timing.secs;
         let take_off = secs[DIP] + secs[PUSH];
@@ -153,7 +153,7 @@ impl Course {
     }
 }
 
-/// Greatest height of the hips in a posture beside standing, on feet that bear, from their height in standing.
+/// Returns the greatest height of the hips in a posture on bearing feet, relative to their height in standing.
 fn highest(tables: &JumpTables, body: &Body, beside: &Beside, end: Vec3) -> f32 {
     let mut pose = tables.standing.clone();
     let feet = body.feet(&pose);
@@ -167,7 +167,7 @@ fn highest(tables: &JumpTables, body: &Body, beside: &Beside, end: Vec3) -> f32 
 }
 
 impl JumpTables {
-    /// The timing of a jump of this rise and way, in leg lengths; that of its flight follows later.
+    /// Returns the timing of a jump of this rise and way, in leg lengths; that of its flight follows later.
     fn timing(&self, rise: f32, way: f32) -> Timing {
         let factors = self.factors(rise, way);
         let secs = core::array::from_fn(|phase| {
@@ -186,7 +186,7 @@ impl JumpTables {
     }
 }
 
-/// A way over the ground, shortened to what people jump on legs of this length.
+/// Limits a way over the ground to the distance that people jump on legs of this length.
 fn within_reach(way: Vec3, leg: f32) -> Vec3 {
     let ahead = if way.z > 0.0 {
         FARTHEST_AHEAD
@@ -197,7 +197,7 @@ fn within_reach(way: Vec3, leg: f32) -> Vec3 {
     way / beyond.max(1.0)
 }
 
-/// The hips' way of a posture beside standing, leg lengths.
+/// Returns the hips' displacement in a posture, leg lengths.
 fn hips_of(beside: &Beside) -> Vec3 {
     Vec3::new(0.0, beside[FEATURE_COUNT], beside[FEATURE_COUNT + 1])
 }

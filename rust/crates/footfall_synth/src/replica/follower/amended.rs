@@ -1,4 +1,4 @@
-//! Changes of the step that is made: what the sender was asked for in its middle, and jumps.
+//! Changes of the current step: replanning as by the sender, and jumps.
 
 use super::WalkFollower;
 use crate::generator::GaitGenerator;
@@ -6,11 +6,11 @@ use crate::moves::Leap;
 use crate::replica::update::WalkUpdate;
 use footfall_core::GroundTransform;
 
-/// A step that was heard of late is planned anew when it ends so far from where it should, metres.
+/// Error of the end from which a step received late is replanned, metres.
 const LATE_OFF_M: f32 = 0.03;
 
 impl WalkFollower {
-    /// Takes up what the sender was asked for in the middle of the step that is made.
+    /// Applies the sender's new controls in the middle of the current step.
     pub(super) fn obey(
         &mut self,
         generator: &mut GaitGenerator,
@@ -33,7 +33,7 @@ impl WalkFollower {
         self.amend(generator, shared_from_start);
     }
 
-    /// Plans the step that is made anew where it leads elsewhere than it should: it was heard of late, or what came between was lost.
+    /// Replans the current step if its end is wrong because an update was late or lost.
     fn amend(&mut self, generator: &mut GaitGenerator, shared_from_start: &GroundTransform) {
         let (number, _) = generator.progress();
         let made = self.made.filter(|made| made.planned.number == number);
@@ -48,7 +48,7 @@ impl WalkFollower {
         }
     }
 
-    /// Jumps when the sender does, who stands.
+    /// Jumps when the standing sender does.
     pub(super) fn jump(
         &mut self,
         heard: &WalkUpdate,

@@ -1,4 +1,4 @@
-//! The steps of a switching model, one after the other.
+//! Switching steps as a source of steps.
 
 use super::super::step_source::{StepSource, Stretches};
 use super::SwitchingSteps;
@@ -9,7 +9,7 @@ use crate::ground::PlantedStep;
 use crate::plan::StepShape;
 use glam::Vec2;
 
-/// A step's velocity differs by at most this much from that of the step before, m/s: two systems know one way of walking and are harder to bend.
+/// Largest change of velocity between consecutive steps, m/s: two systems know one way of walking and adapt less.
 const MOST_CHANGE_MPS: f32 = 0.5;
 
 impl StepSource for SwitchingSteps {

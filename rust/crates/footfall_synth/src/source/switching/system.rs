@@ -1,4 +1,4 @@
-//! One linear system as it runs: f32, laid out for the loop that runs it.
+//! One linear system in f32, laid out for its inner loop.
 
 #![expect(
     clippy::inline_always,
@@ -9,7 +9,7 @@ use footfall_model::{DynamicsModel, FEATURE_COUNT, Regime};
 use multiversion::multiversion;
 use multiversion::target::match_target;
 
-/// Numbers that are worked on side by side.
+/// Number of lanes.
 const LANES: usize = 8;
 type Lanes = [f32; LANES];
 
@@ -31,7 +31,7 @@ pub(super) struct RunningSystem {
     /// Room for a state, and for what follows from it: the next state, then outputs.
     state: Vec<Lanes>,
     next: Vec<Lanes>,
-    /// Room for what the outputs jump by at the switch, and how fast that changes a frame.
+    /// Room for the jump of the outputs at the switch, and its change per frame.
     jump: Vec<[f32; 2]>,
 }
 
@@ -62,7 +62,7 @@ impl<const N: usize> Nearest<N> {
     }
 }
 
-/// Fills up to whole lanes with zeros.
+/// Pads to whole lanes with zeros.
 fn lanes(values: impl Iterator<Item = f64>) -> Vec<Lanes> {
     let values: Vec<f32> = values.map(|value| value as f32).collect();
     let blocks = values.chunks(LANES).map(|chunk| {
@@ -109,7 +109,7 @@ impl RunningSystem {
         let starts = begins.chunks_exact(2 * channels).collect::<Vec<_>>();
         for starts in starts.chunks(LANES) {
             for number in 0..2 * channels {
-                // What fills the last block up is never near.
+                // The padding of the last block is never near.
                 let mut block = [f32::INFINITY; LANES];
                 for (lane, start) in block.iter_mut().zip(starts) {
                     *lane = start[number];
@@ -121,7 +121,7 @@ impl RunningSystem {
         running
     }
 
-    /// The starts whose outputs, and the way they go, are nearest to two expected frames; the first ones when there are none.
+    /// Returns the starts whose first outputs and their change are nearest to two expected frames; the first starts without expected frames.
     pub(super) fn nearest<const N: usize>(&self, expected: &[f32]) -> Nearest<N> {
         let mut nearest = Nearest {
             found: [(f32::INFINITY, 0); N],
@@ -150,7 +150,7 @@ impl RunningSystem {
         least.into_iter().fold(f32::INFINITY, f32::min)
     }
 
-    /// Puts out `frames` frames from a start into `weights`. They go on from two `expected` frames: what lies between dies away,
+    /// Writes `frames` frames of output from a start into `weights`. They continue from two `expected` frames: the difference fades,
     /// critically damped with a time constant of `settle` frames.
     pub(super) fn run(
         &mut self,
@@ -178,7 +178,7 @@ impl RunningSystem {
     }
 }
 
-/// Squared distances of a group of starts from what is expected.
+/// Returns the squared distances of a group of starts from the expected frames.
 #[multiversion(targets("x86_64+avx2+fma", "aarch64+neon"))]
 fn distances(begins: &[Lanes], expected: &[f32]) -> Lanes {
     let mut sums = [0.0; LANES];

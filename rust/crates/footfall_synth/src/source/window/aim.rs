@@ -1,4 +1,4 @@
-//! Steps that are made to lead where another walker's do.
+//! Aim: steps end where another walker's do.
 
 use super::super::buffers::StepBuffers;
 use super::StepWindow;
@@ -9,30 +9,30 @@ use footfall_core::GroundTransform;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use glam::Vec3;
 
-/// A step ends as planned when it ends so near, metres and radians.
+/// Tolerance of the end of a step, metres and radians.
 const SAME_PLACE_M: f32 = 0.002;
 const SAME_HEADING_RAD: f32 = 0.004;
 
-/// Way and turn that one step corrects at most, metres and radians.
+/// Largest displacement and turn by one step, metres and radians.
 const MOST_DISPLACEMENT_M: f32 = 0.2;
 const MOST_TURN_RAD: f32 = 0.35;
 
-/// Trials in which a step is made to end where it should: a turn moves its end, too, and so does a hip that is led aside.
+/// Maximum number of trials: a turn and displaced hips both move the end of a step.
 const TRIALS: usize = 3;
 
-/// Least and greatest way of a step's end for a metre that it is led aside: in fast steps the leg swings farther, too.
+/// Bounds of the movement of a step's end per metre of displacement: in fast steps the leg swings farther, too.
 const GAINS: [f32; 2] = [1.0, 4.0];
 
-/// Aim of a step, seen from where the walk began.
+/// Aim of a step, relative to the start of the walk.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
-    /// Place of the foot that lands, or of the walker who rests, under the walker's heading.
+    /// Place of the landing foot, or of the resting walker, under the walker's heading.
     pub(crate) place: GroundTransform,
     pub(crate) rests: bool,
 }
 
 impl Aim {
-    /// Way and turn to the aim from where a step leads.
+    /// Returns the displacement from the end of a step to the aim.
     pub(crate) fn off(&self, leads: &GroundTransform) -> Displacement {
         Displacement {
             way: (self.place.position - leads.position).with_y(0.0),
@@ -42,8 +42,8 @@ impl Aim {
 }
 
 impl PlantedStep {
-    /// Place where the step on it leads, from where the walk began: that of the foot that lands, under the walker's heading. That of a walker who rests is where
-    /// it stands.
+    /// Returns the place where the step ends, relative to the start of the walk: that of the landing foot, under the walker's heading, or that of a
+    /// resting walker.
     pub(crate) fn aim(
         &self,
         plan_from_start: &GroundTransform,
@@ -67,7 +67,7 @@ impl PlantedStep {
 }
 
 impl StepWindow {
-    /// Has the current step, which has just been planned, lead where it should, as far as one step can.
+    /// Displaces the current step, which has just been planned, towards its aim, as far as one step can.
     pub(crate) fn aim_at(
         &mut self,
         aim: &Aim,
@@ -88,7 +88,7 @@ impl StepWindow {
                 },
                 Some(last) => last.next(off.way),
             };
-            // Where the body turns to, it is after the first trial.
+            // The first trial already turns the body.
             let turn = if trial.is_none() { most.turn } else { 0.0 };
             let near = next.off.length() < SAME_PLACE_M && turn.abs() < SAME_HEADING_RAD;
             let more = Displacement {
@@ -103,19 +103,19 @@ impl StepWindow {
     }
 }
 
-/// A step that is led aside for its end to be where it should.
+/// One trial of a displacement.
 #[derive(Clone, Copy)]
 struct Trial {
-    /// Way to there, as far as one step can.
+    /// Way to the aim, as far as one step can go.
     off: Vec3,
-    /// Way by which the hips are led aside for it.
+    /// Displacement of the hips.
     led: Vec3,
-    /// Rest of the way, which is left to the steps after it.
+    /// Remaining way, left to later steps.
     beyond: Vec3,
 }
 
 impl Trial {
-    /// The trial after this one, with the whole way that it has left.
+    /// Returns the next trial, given the way that is left.
     fn next(self, off: Vec3) -> Self {
         let off = off - self.beyond;
         Self {
@@ -126,7 +126,7 @@ impl Trial {
     }
 }
 
-/// Way of the step's end along that which it was led aside, as a multiple of it.
+/// Returns the movement of the step's end along its displacement, as a multiple of it.
 fn gain(led: Vec3, went: Vec3) -> f32 {
     let square = led.length_squared();
     if square < SAME_PLACE_M * SAME_PLACE_M {

@@ -1,4 +1,4 @@
-//! Steps that are made to end elsewhere, and draws that are not the next of chance.
+//! Changes of a step by another walker's: a displaced end, and another draw.
 
 use super::super::buffers::StepBuffers;
 use super::StepWindow;
@@ -6,14 +6,14 @@ use crate::ground::Displacement;
 use crate::plan::{StepDraw, TIE, WINDOW};
 
 impl StepWindow {
-    /// Has the current step end elsewhere than it would; whether it does. The first step came from nowhere and stays.
+    /// Displaces the end of the current step; returns true if it did. The very first step stays unchanged.
     pub(crate) fn displace(&mut self, more: Displacement, buffers: &mut StepBuffers) -> bool {
         let Some(feet) = self.origin.planter else {
             return false;
         };
         self.origin.displacement = self.origin.displacement.and(more);
         self.planted.resume(&feet);
-        // Nobody kept what it was made of.
+        // The solved trajectory was not kept.
         let changes = self.blend_before.gait != self.blend.gait;
         buffers.go_on(
             &self.blend.statistics,
@@ -25,7 +25,7 @@ impl StepWindow {
         true
     }
 
-    /// Has the step after the current one be this.
+    /// Replaces the draw of the step after the current one.
     pub(crate) fn redraw_next(&mut self, draw: StepDraw) {
         self.draws[WINDOW - 1] = draw;
         self.stale = true;

@@ -1,4 +1,4 @@
-//! The way of a step through the window: planned, solved as a trajectory, and planted.
+//! The way of a step: planned, solved as a trajectory, and planted.
 
 use super::super::buffers::StepBuffers;
 use super::super::style_space::Blend;
@@ -30,7 +30,7 @@ impl StepWindow {
             planner.plan_step(&self.draws[1], manner, before, &mut buffers.going_over);
             planner.set_model(&self.blend.model);
         }
-        // The step ahead is that of someone who walks on.
+        // The step ahead is planned as if the walk continued.
         let ahead = match request.manner.position {
             StepPosition::First => StepPosition::Second,
             _ => StepPosition::Inside,
@@ -69,7 +69,7 @@ impl StepWindow {
         }
     }
 
-    /// Solves the current step and the one ahead, tied to the step before, and puts the current one on the ground.
+    /// Solves the current step and the one ahead, tied to the previous step, and plants the current one.
     pub(super) fn solve_and_plant(&mut self, buffers: &mut StepBuffers) {
         let changes = self.blend_before.gait != self.blend.gait;
         buffers.go_on(
@@ -81,7 +81,7 @@ impl StepWindow {
         self.plant(1, TIE - 1, buffers);
     }
 
-    /// Puts a step of the window, which begins with frame `first` of what was solved, on the ground.
+    /// Plants a step of the window, which begins at frame `first` of the solved trajectory.
     pub(super) fn plant(&mut self, step: usize, first: usize, buffers: &mut StepBuffers) {
         let shape = &self.plans[step].shape;
         let remainder = self.origin.remainder.filter(|_| step == 1);
@@ -97,7 +97,7 @@ impl StepWindow {
         } = buffers;
         let trajectory = &trajectory[first * FEATURE_COUNT..];
         let [before, now] = [&self.blend_before, &self.blend];
-        // A gait has a fine motion of its own: that of the one before goes as that of the other comes.
+        // Each gait has its own fine motion; they cross-fade in a change of gait.
         let fading = (before.gait != now.gait).then_some((before, [&before.fine_scale, &NO_SCALE]));
         let scale_before = if fading.is_some() {
             &NO_SCALE
@@ -124,7 +124,7 @@ impl StepWindow {
     }
 }
 
-/// Placing of a step of the window on the ground, after a step in one mixture and in another.
+/// Returns the placing of a step of the window, between two mixtures.
 pub(super) fn placing<'a>(
     origin: &Origin,
     plans: &'a [StepPlan<f32>; WINDOW],

@@ -1,4 +1,4 @@
-//! Planning of the rest of a step anew.
+//! Replanning of the remainder of a step.
 
 use super::super::buffers::StepBuffers;
 use super::generate::placing;
@@ -11,8 +11,8 @@ use footfall_core::ease::smooth_step;
 use std::sync::Arc;
 
 impl StepWindow {
-    /// Plans the rest of the current step anew from a frame of it on, where one foot is in the air and enough is left; whether it did. `request` makes of
-    /// the current request what is asked for now.
+    /// Replans the current step from a frame on, if one foot is in the air and enough of the step is left; returns true if it did. `request` derives the new
+    /// request from the current one, the frames of the whole step and the share that has passed.
     pub(crate) fn replan(
         &mut self,
         planner: &mut Planner,
@@ -35,7 +35,7 @@ impl StepWindow {
         let Some(feet) = self.planted.cut(&shape, frame, &begun, &placing) else {
             return false;
         };
-        // Nobody kept the trajectory.
+        // The solved trajectory was not kept.
         buffers.go_on(&self.blend.statistics, &self.plans, &self.origin.tie, false);
         let tie = buffers.tie_at(frame);
         let whole = shape.timing.frames as f64 / (1.0 - self.passed());
