@@ -6,15 +6,19 @@
 //! ([`shared`]), and only keeps its place among them ([`stroll`]).
 
 mod alone;
+mod ending;
 mod feet;
 mod frames;
 mod led;
+mod led_step;
 mod own;
 mod own_step;
 mod recorded;
 mod rest;
 mod shared;
 mod stroll;
+mod styled_body;
+mod tools;
 mod workshop;
 
 use crate::config::{GeneratorConfig, MAX_DT_SECS};
@@ -22,13 +26,15 @@ use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
+use ending::Chance;
 use footfall_core::GroundTransform;
 pub use frames::CrowdPose;
-pub use led::{LedAim, LedBeginning, LedStep};
-use own::{Chance, OwnWalk};
+pub use led_step::{LedAim, LedBeginning, LedStep};
+use own::OwnWalk;
 pub use stroll::SharedPose;
 use stroll::Stroll;
-pub use workshop::{StyledBody, Workshop};
+pub use styled_body::StyledBody;
+pub use workshop::Workshop;
 
 /// One walker of a crowd: walks as a [`GaitGenerator`](crate::GaitGenerator) of its seed would, in a hundredth of the memory, or in steps that it shares with others, in a hundredth of
 /// that.
@@ -67,7 +73,7 @@ impl CrowdWalker {
         standing: bool,
         workshop: &mut Workshop,
     ) -> Result<Self, SynthError> {
-        let own = OwnWalk::new(styled, config, standing, workshop)?;
+        let own = OwnWalk::new(styled, config, standing, &mut workshop.tools)?;
         Ok(Self {
             own: Some(Box::new(own)),
             stroll: None,
@@ -157,7 +163,7 @@ impl CrowdWalker {
     /// Advances in its own steps; returns the remaining time if shared steps are to follow, seconds.
     fn step_own(&mut self, secs: f32, controls: Controls, workshop: &mut Workshop) -> Option<f32> {
         let own = self.own.as_mut()?;
-        let left = own.step(secs, controls, self.repeating, workshop);
+        let left = own.step(secs, controls, self.repeating, &mut workshop.tools);
         self.footstep = own.footstep.or(self.footstep);
         let left = left?;
         let end = own.start_from_character();
@@ -209,7 +215,7 @@ impl CrowdWalker {
         if let Some(life) = &mut own.life {
             life.set_amount(self.standing_motion);
         }
-        own.live(0.0, workshop);
+        own.live(0.0, &mut workshop.tools);
         self.own = Some(own);
         self.stroll = None;
         Some(())

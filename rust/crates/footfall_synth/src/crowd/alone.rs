@@ -1,10 +1,11 @@
 //! Change from shared steps to own steps.
 
+use super::ending::{Chance, variation};
 use super::frames::{CrowdPlace, POSE_NUMBERS};
-use super::own::{Chance, OwnWalk, variation};
+use super::own::OwnWalk;
 use super::rest::Rest;
 use super::shared::Shared;
-use super::workshop::StyledBody;
+use super::styled_body::StyledBody;
 use crate::config::GeneratorConfig;
 use crate::detail::Detail;
 use crate::plan::{MAX_COMPONENTS, Planner};

@@ -1,75 +1,18 @@
 //! Replication in a crowd: a walker that repeats the steps of one with the same seed on another machine.
 
-use super::own::{Chance, OwnWalk, variation};
-use super::{CrowdWalker, Workshop};
+use super::CrowdWalker;
+use super::ending::{Chance, variation};
+use super::led_step::{LedBeginning, LedStep};
+use super::own::OwnWalk;
+use super::tools::StepTools;
+use super::workshop::Workshop;
 use crate::config::MAX_DT_SECS;
-use crate::controls::{Controls, GaitChoice};
+use crate::controls::GaitChoice;
 use crate::footstep::Footstep;
 use crate::gait::{Amplitude, Gait, StepControls};
 use crate::plan::{Planner, StepDraw, WINDOW};
-use crate::source::{Aim, StepBuffers, StepWindow};
 use footfall_core::{GroundTransform, Side};
 use std::sync::Arc;
-
-/// Aim of a led step. A place is that of the landing foot, under the walker's heading at the end of the step, relative to the start of the walk.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LedAim {
-    /// The step keeps its own end.
-    None,
-    /// The foot lands at this place.
-    Place(GroundTransform),
-    /// The walker comes to rest at this place.
-    Rest(GroundTransform),
-    /// The end of the step is moved by this transform, by which the previous one ended elsewhere.
-    Moved(GroundTransform),
-}
-
-/// A step to repeat.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LedStep {
-    /// [Number](CrowdWalker::number) of the step.
-    pub number: u16,
-    /// Controls of the step.
-    pub controls: Controls,
-    /// Aim of the step. One step deviates by at most 0.2 m and 20°.
-    pub aim: LedAim,
-}
-
-/// Moment of a walk at which to begin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LedBeginning {
-    /// [Number](CrowdWalker::number) of the step.
-    pub number: u16,
-    /// Share of the step that has passed, from 0 to 1.
-    pub share: f32,
-    /// Controls of the step. Their gait is used unchanged.
-    pub controls: Controls,
-    /// True for a resting walker.
-    pub rests: bool,
-}
-
-impl LedAim {
-    /// Displaces a step that was just generated towards the aim.
-    pub(super) fn take(
-        &self,
-        plan_from_start: &GroundTransform,
-        window: &mut StepWindow,
-        buffers: &mut StepBuffers,
-    ) {
-        let place = match self {
-            Self::None => return,
-            Self::Place(place) | Self::Rest(place) => *place,
-            Self::Moved(by) => {
-                by.global(&window.planted().aim(plan_from_start, window.step(), false))
-            }
-        };
-        let aim = Aim {
-            place,
-            rests: matches!(self, Self::Rest(_)),
-        };
-        window.aim_at(&aim, plan_from_start, buffers);
-    }
-}
 
 impl CrowdWalker {
     /// Returns true when it walks in shared steps, which cannot be replicated.
@@ -146,11 +89,11 @@ impl CrowdWalker {
                 own.stay();
                 break;
             };
-            own.go_on(led.controls, Some(&led), workshop);
+            own.go_on(led.controls, Some(&led), &mut workshop.tools);
         }
         if let Some(own) = &mut self.own {
             if secs > 0.0 {
-                own.live(secs, workshop);
+                own.live(secs, &mut workshop.tools);
             }
             self.footstep = own.footstep;
             self.start_from_character = own.start_from_character();
@@ -164,7 +107,7 @@ impl CrowdWalker {
             return;
         }
         if let Some(own) = &mut self.own
-            && own.begin_led(at, workshop).is_some()
+            && own.begin_led(at, &mut workshop.tools).is_some()
         {
             self.start_from_character = GroundTransform::default();
         }
@@ -191,7 +134,7 @@ impl OwnWalk {
     }
 
     /// Creates a walk at the origin in the middle of a step; `None` if the model gives no trajectory.
-    fn begin_led(&mut self, at: &LedBeginning, workshop: &mut Workshop) -> Option<()> {
+    fn begin_led(&mut self, at: &LedBeginning, tools: &mut StepTools) -> Option<()> {
         let styled = Arc::clone(&self.styled.0);
         let measured = &styled.measured;
         let step_controls = StepControls {
@@ -216,12 +159,12 @@ impl OwnWalk {
                 .request(&step_controls, gait, &mut velocity_mps)
         };
         let blend = measured.blend_of(gait);
-        let Workshop {
+        let StepTools {
             planner,
             window,
             buffers,
             ..
-        } = &mut *workshop;
+        } = &mut *tools;
         let model = &blend.model;
         planner.become_walker(
             model,
@@ -250,7 +193,7 @@ impl OwnWalk {
         } else {
             at.share.clamp(0.0, 0.95)
         };
-        self.settle(share, workshop);
+        self.settle(share, tools);
         Some(())
     }
 

@@ -1,58 +1,22 @@
 //! Own steps of a crowd's walker, the same as those of a generator of its seed, in a few kilobytes.
 
+use super::ending::{Chance, Ending, variation};
 use super::frames::{CrowdFrames, CrowdPose};
-use super::led::LedStep;
+use super::led_step::LedStep;
 use super::rest::Rest;
-use super::workshop::{StyledBody, Workshop};
+use super::styled_body::StyledBody;
+use super::tools::StepTools;
 use crate::config::{GeneratorConfig, check};
 use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
 use crate::ground::Arrival;
-use crate::plan::{MAX_COMPONENTS, Planner, StepDraw, StepShape, WINDOW};
-use crate::source::{Blend, Origin};
+use crate::plan::{MAX_COMPONENTS, Planner, StepShape};
 use crate::standing::Life;
 use footfall_core::{GroundTransform, Side};
 use footfall_ik::Plant;
-use glam::Vec2;
 use std::sync::Arc;
-
-/// End of a step: all data from which the next one is generated.
-#[derive(Clone, Debug)]
-pub(super) struct Ending {
-    /// The mixture of the step.
-    pub(super) blend: Arc<Blend>,
-    pub(super) draws: [StepDraw; WINDOW],
-    /// Origin of the next step, all but its request.
-    pub(super) next: Origin,
-    pub(super) velocity_mps: Vec2,
-    /// Place of the body when the step ends.
-    pub(super) arrival: Arrival,
-}
-
-/// Progress of a walker's chance: position of the random generator, and number of strides drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Chance {
-    pub(super) position: u64,
-    pub(super) strides: u32,
-}
-
-impl Chance {
-    /// Returns the progress of a planner.
-    pub(super) fn of(planner: &Planner) -> Self {
-        Self {
-            position: planner.chance_position(),
-            strides: planner.strides(),
-        }
-    }
-
-    /// Restores the progress of a planner, after these steps.
-    pub(super) fn resume(self, planner: &mut Planner, last: &[StepDraw]) {
-        planner.resume(self.position, last);
-        planner.count_strides(self.strides);
-    }
-}
 
 /// Walk of one walker in own steps.
 #[derive(Debug)]
@@ -91,16 +55,16 @@ impl OwnWalk {
         styled: &StyledBody,
         config: &GeneratorConfig,
         standing: bool,
-        workshop: &mut Workshop,
+        tools: &mut StepTools,
     ) -> Result<Self, SynthError> {
         let first = check(&styled.0.skeleton, config)?;
         let measured = &styled.0.measured;
-        let Workshop {
+        let StepTools {
             planner,
             window,
             buffers,
             ..
-        } = &mut *workshop;
+        } = &mut *tools;
         *planner = Planner::new(&measured.blend.model, config.seed, variation(config));
         let request = if standing {
             measured.chooser.standing_request(Detail::Full)
@@ -128,7 +92,7 @@ impl OwnWalk {
         } else {
             (2.0 * config.phase.rem_euclid(1.0)).fract()
         };
-        made.settle(share, workshop);
+        made.settle(share, tools);
         Ok(made)
     }
 
@@ -160,12 +124,12 @@ impl OwnWalk {
     }
 
     /// Keeps the first step and begins in the middle of it.
-    pub(super) fn settle(&mut self, share: f32, workshop: &mut Workshop) {
-        self.take_over(workshop);
+    pub(super) fn settle(&mut self, share: f32, tools: &mut StepTools) {
+        self.take_over(tools);
         self.position = share * self.shape.timing.frames as f32;
         self.landing = self.landing_of_step();
         self.plan_from_start = self.plan_from_character();
-        self.live(0.0, workshop);
+        self.live(0.0, tools);
     }
 
     /// Advances by `dt_secs`. Allocates only for a step longer than all previous ones and for the first rest. If `ends` is true, the walk stays at the end of the current step,
@@ -175,7 +139,7 @@ impl OwnWalk {
         dt_secs: f32,
         controls: Controls,
         ends: bool,
-        workshop: &mut Workshop,
+        tools: &mut StepTools,
     ) -> Option<f32> {
         self.pass(dt_secs);
         let mut left = None;
@@ -188,10 +152,10 @@ impl OwnWalk {
                 self.stay();
                 break;
             }
-            self.go_on(controls, None, workshop);
+            self.go_on(controls, None, tools);
         }
         if dt_secs > 0.0 {
-            self.live(dt_secs, workshop);
+            self.live(dt_secs, tools);
         }
         left
     }
@@ -222,10 +186,10 @@ impl OwnWalk {
         &mut self,
         controls: Controls,
         led: Option<&LedStep>,
-        workshop: &mut Workshop,
+        tools: &mut StepTools,
     ) {
         self.position -= self.shape.timing.frames as f32;
-        self.next_step(controls, led, workshop);
+        self.next_step(controls, led, tools);
     }
 
     /// Returns the time until the next step begins, seconds; 0 for a resting walker.
@@ -280,13 +244,13 @@ impl OwnWalk {
     }
 
     /// Advances the standing motion of a walker that stands, or has just begun to walk.
-    pub(super) fn live(&mut self, dt_secs: f32, workshop: &mut Workshop) {
+    pub(super) fn live(&mut self, dt_secs: f32, tools: &mut StepTools) {
         let stands = self.is_standing();
         let Some(life) = &mut self.life else { return };
         life.step(dt_secs, stands);
         if let Some(rest) = self.rest.as_mut().filter(|_| stands && !life.is_still()) {
             let skeleton = &self.styled.0.skeleton;
-            rest.reach(life, self.detail, skeleton, &mut workshop.rest);
+            rest.reach(life, self.detail, skeleton, &mut tools.rest);
         }
     }
 
@@ -328,8 +292,4 @@ impl OwnWalk {
             heading: from.heading + weight * (to.heading - from.heading),
         }
     }
-}
-
-pub(super) fn variation(config: &GeneratorConfig) -> f64 {
-    f64::from(config.variation.clamp(0.0, 2.0))
 }

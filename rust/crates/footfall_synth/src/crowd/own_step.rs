@@ -1,9 +1,10 @@
 //! Generation of the next own step in a workshop.
 
-use super::led::LedStep;
-use super::own::{Chance, OwnWalk, variation};
+use super::ending::{Chance, variation};
+use super::led_step::LedStep;
+use super::own::OwnWalk;
 use super::rest::{Rest, RestBuffers, leave};
-use super::workshop::Workshop;
+use super::tools::StepTools;
 use crate::controls::Controls;
 use crate::gait::{Amplitude, StepControls};
 use crate::plan::{Planner, WINDOW};
@@ -16,7 +17,7 @@ impl OwnWalk {
         &mut self,
         controls: Controls,
         led: Option<&LedStep>,
-        workshop: &mut Workshop,
+        tools: &mut StepTools,
     ) {
         let natural = self.number().wrapping_add(1);
         let styled = Arc::clone(&self.styled.0);
@@ -38,12 +39,12 @@ impl OwnWalk {
             request,
             ..ending.next.clone()
         };
-        let Workshop {
+        let StepTools {
             planner,
             window,
             buffers,
             ..
-        } = &mut *workshop;
+        } = &mut *tools;
         let model = &ending.blend.model;
         planner.become_walker(
             model,
@@ -75,18 +76,18 @@ impl OwnWalk {
         ending.draws.clone_from(window.draws());
         ending.next = window.next_origin(request);
         self.shape = *window.step();
-        self.take_over(workshop);
+        self.take_over(tools);
         self.landing = self.landing_of_step();
         self.footstep = self.footstep_at(self.landing);
     }
 
     /// Keeps the step that was just generated.
-    pub(super) fn take_over(&mut self, workshop: &mut Workshop) {
-        self.chance = Chance::of(&workshop.planner);
-        self.ending.arrival = workshop.window.planted().arrival;
+    pub(super) fn take_over(&mut self, tools: &mut StepTools) {
+        self.chance = Chance::of(&tools.planner);
+        self.ending.arrival = tools.window.planted().arrival;
         let timing = self.shape.ground_timing();
-        let step = &workshop.window.planted().frames[..=timing.frames];
-        let RestBuffers { planted, frames } = &mut workshop.rest;
+        let step = &tools.window.planted().frames[..=timing.frames];
+        let RestBuffers { planted, frames } = &mut tools.rest;
         let mut shown = step;
         if let Some(life) = &self.life {
             if let (true, Some(last)) = (self.shape.amplitude.to < 1.0, step.last()) {

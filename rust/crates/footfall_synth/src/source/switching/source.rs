@@ -1,12 +1,12 @@
 //! Switching steps as a source of steps.
 
-use super::super::step_source::{StepSource, Stretches};
 use super::SwitchingSteps;
 use crate::controls::STANDING_SPEED_MPS;
 use crate::detail::Detail;
 use crate::gait::{Amplitude, FASTEST_WALK_MPS, Gait, StepControls, pelvis_turn};
 use crate::ground::PlantedStep;
 use crate::plan::StepShape;
+use crate::source::step_source::{StepSource, Stretches};
 use glam::Vec2;
 
 /// Largest change of velocity between consecutive steps, m/s: two systems know one way of walking and adapt less.

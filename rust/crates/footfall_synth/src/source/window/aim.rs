@@ -1,10 +1,10 @@
 //! Aim: steps end where another walker's do.
 
-use super::super::buffers::StepBuffers;
 use super::StepWindow;
 use crate::footstep::Footstep;
 use crate::ground::{Displacement, PlantedStep};
 use crate::plan::StepShape;
+use crate::source::buffers::StepBuffers;
 use footfall_core::GroundTransform;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use glam::Vec3;

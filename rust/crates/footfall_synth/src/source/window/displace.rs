@@ -1,9 +1,9 @@
 //! Changes of a step by another walker's: a displaced end, and another draw.
 
-use super::super::buffers::StepBuffers;
 use super::StepWindow;
 use crate::ground::Displacement;
 use crate::plan::{StepDraw, TIE, WINDOW};
+use crate::source::buffers::StepBuffers;
 
 impl StepWindow {
     /// Displaces the end of the current step; returns true if it did. The very first step stays unchanged.

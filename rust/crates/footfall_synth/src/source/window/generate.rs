@@ -1,12 +1,12 @@
 //! The way of a step: planned, solved as a trajectory, and planted.
 
-use super::super::buffers::StepBuffers;
-use super::super::style_space::Blend;
 use super::StepWindow;
 use super::origin::Origin;
 use crate::gait::{Gait, Manner};
 use crate::ground::{Displacement, Placing};
 use crate::plan::{Planner, Remainder, StepPlan, TIE, WINDOW};
+use crate::source::buffers::StepBuffers;
+use crate::source::style_space::Blend;
 use crate::trajectory::{Scale, neighbours};
 use footfall_core::StepPosition;
 use footfall_model::FEATURE_COUNT;

@@ -1,12 +1,12 @@
 //! Replanning of the remainder of a step.
 
-use super::super::buffers::StepBuffers;
 use super::generate::placing;
 use super::{Origin, StepWindow};
 use crate::detail::Detail;
 use crate::gait::{Amplitude, StepRequest};
 use crate::ground::Displacement;
 use crate::plan::{Planner, Remainder};
+use crate::source::buffers::StepBuffers;
 use footfall_core::ease::smooth_step;
 use std::sync::Arc;
 
