@@ -289,8 +289,8 @@ impl CrowdWalker {
         }
     }
 
-    /// Its pose so many seconds ago, fewer than a step takes, among those that all who wear the same [share](StyledBody::shared_pose), and the number of the [`StyledBody`]; `None` while it
-    /// takes steps of its own.
+    /// Returns the pose among the [shared](StyledBody::shared_pose) ones a number of seconds ago, less than a step, and the number of the [`StyledBody`]; `None` while it
+    /// walks in own steps.
     pub fn shared_pose(&self, ago_secs: f32) -> Option<(u32, SharedPose)> {
         let stroll = self.stroll.as_ref()?;
         let look = stroll.look(ago_secs, self.styled.0.shared());

@@ -19,14 +19,13 @@ pub enum Detail {
 /// by half a pixel a second.
 const LEAST_PIXELS: [(Detail, f32); 2] = [(Detail::Full, 150.0), (Detail::Half, 40.0)];
 
-/// Share of such a height down to which a body keeps the detail that it has.
+/// Share of such a height down to which a body keeps its detail.
 const KEPT_SHARE: f32 = 0.8;
 
-/// Frames of a step that are put on the ground at least.
+/// Minimum number of planted frames of a step.
 const LEAST_GROUND_FRAMES: usize = 4;
 
-/// The same at most, as far as coarser detail keeps to it: every walker has room for so many. Longer steps are slow ones, between whose
-/// frames little moves.
+/// Maximum number of planted frames of a step, for which every walker has room; longer steps, which are slow, get coarser detail.
 pub(crate) const MOST_GROUND_FRAMES: usize = 64;
 
 impl Detail {
@@ -49,12 +48,12 @@ impl Detail {
             .map_or(Self::Quarter, |(detail, _)| detail)
     }
 
-    /// Frames of the model from one that is put on the ground to the next.
+    /// Returns the frames of the model from one planted frame to the next.
     pub(crate) const fn stride(self) -> usize {
         1 << self as usize
     }
 
-    /// This detail, or as much less that a step of so many frames needs no more room than [`ground_room`](Self::ground_room).
+    /// Returns this detail, or a coarser one if a step of this many frames would need more room than [`ground_room`](Self::ground_room).
     pub(crate) fn holding(self, frames: usize) -> Self {
         let holds =
             |detail: &Self| detail.whole_frames(frames) <= MOST_GROUND_FRAMES * detail.stride();
@@ -62,14 +61,14 @@ impl Detail {
         coarser.find(holds).unwrap_or(Self::Quarter)
     }
 
-    /// Frames that are put on the ground of any step, when the longest has so many.
+    /// Returns the maximum number of planted frames of a step, given the frames of the longest step.
     pub(crate) fn ground_room(longest: usize) -> usize {
         longest
             .div_ceil(Self::Quarter.stride())
             .max(MOST_GROUND_FRAMES)
     }
 
-    /// So many frames of the model or a few more: a step ends with a frame that is put on the ground.
+    /// Returns the number of frames rounded up so that a step ends with a planted frame.
     pub(crate) fn whole_frames(self, frames: usize) -> usize {
         let stride = self.stride();
         frames

@@ -1,4 +1,4 @@
-//! Footsteps as they are reported.
+//! Footsteps, the reported initial contacts.
 
 use footfall_core::{GroundTransform, Side};
 use footfall_ik::{Plant, RockerFoot};
@@ -16,7 +16,7 @@ pub struct Footstep {
 }
 
 impl Footstep {
-    /// A foot that was put there, as it is seen from a place of the same space.
+    /// Makes the footstep of a plant, relative to a place of the same space.
     pub(crate) fn seen_from(from: &GroundTransform, side: Side, plant: &Plant) -> Self {
         let place = from.local(&GroundTransform {
             position: RockerFoot::footprint(plant),

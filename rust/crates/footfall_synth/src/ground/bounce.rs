@@ -17,7 +17,7 @@ pub(super) struct Bounce {
 }
 
 impl Bounce {
-    /// From a height, with speeds upwards at its begin and at its end, for so long.
+    /// Makes a stance of this duration from a height, with the upward speeds at its beginning and its end.
     pub(super) fn new(begin: f32, [fall_mps, rise_mps]: [f32; 2], secs: f32) -> Self {
         Self {
             begin,
@@ -27,7 +27,7 @@ impl Bounce {
         }
     }
 
-    /// Height so long after the landing, metres.
+    /// Returns the height at a time after the landing, metres.
     pub(super) fn height(&self, t: f32) -> f32 {
         let pushed = self.push_mps * pushed(t, self.secs);
         self.begin + self.fall_mps * t - 0.5 * GRAVITY_MPS2 * t * t + pushed

@@ -153,7 +153,7 @@ impl Asked {
 #[derive(Clone, Copy, Default)]
 struct Factors {
     diagonal: f64,
-    /// Shares of the unknowns so many rows before that are in this one.
+    /// Coefficients of the preceding rows, nearest first.
     below: [f64; BAND],
 }
 
@@ -191,7 +191,7 @@ fn smooth(values: &mut [f64], system: &System<'_>, fixed: usize, factors: &mut [
     }
 }
 
-/// Eliminates the unknowns of so many rows before from a row.
+/// Eliminates the unknowns of the preceding rows from a row.
 #[inline(always)]
 #[expect(
     clippy::inline_always,
@@ -230,7 +230,7 @@ fn eliminate(
 struct System<'a> {
     weights: &'a [f64],
     stiffness: f64,
-    /// Entries so far to the right of the diagonal in rows that have all jerks, without the rows' own weights.
+    /// Entries right of the diagonal, by distance, in rows with all jerks, without the rows' own weights.
     inner: [f64; BAND + 1],
 }
 
@@ -244,7 +244,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// The entry so far to the right of the diagonal.
+    /// Returns the entry at a distance to the right of the diagonal.
     #[inline]
     fn entry(&self, row: usize, aside: usize) -> f64 {
         let own = if aside == 0 { self.weights[row] } else { 0.0 };
@@ -257,7 +257,7 @@ impl<'a> System<'a> {
     }
 }
 
-/// Sum of the products of two jerks' coefficients, so many frames apart: those of the first within these.
+/// Returns the sum of the products of two jerks' coefficients at a distance in frames, over this range of the first.
 fn overlap(aside: usize, within: RangeInclusive<usize>) -> f64 {
     within.map(|index| JERK[index] * JERK[index - aside]).sum()
 }

@@ -73,7 +73,7 @@ fn a_walker_of_a_crowd_walks_as_a_generator_does() {
         let mut joints = CrowdPose::default();
         let mut controls = asked(0);
         for frame in 0..1300 {
-            // A generator's steps obey in their middle, a crowd's wait for the next: something new is asked for as a step begins.
+            // A generator replans within a step, a crowd waits for the next one: controls change as a step begins.
             let lands = generator.next_footstep();
             if lands.is_none_or(|(_, secs)| secs < DT) {
                 controls = asked(frame);

@@ -341,7 +341,7 @@ fn a_state_holds_what_a_follower_is_made_of() {
                 restored.step(DT, &controls, &mut pose);
                 assert!(body.pose == pose, "frame {frame}");
             }
-            // What it tells others goes on, too.
+            // Its own updates continue, too.
             let start = GroundTransform::default();
             let told = [&body.generator, &restored]
                 .map(|walker| WalkSender::new().update(walker, &start).unwrap());

@@ -6,7 +6,7 @@ use footfall_synth::GaitGenerator;
 use footfall_synth::replica::{ReplicaError, UPDATE_BYTES, WalkFollower, WalkIdentity, WalkSender};
 use glam::Vec3;
 
-/// A change that makes an update another, and what is said of that.
+/// A change to an update, and the expected error.
 type Spoil = Box<dyn Fn(&[u8; UPDATE_BYTES]) -> Vec<u8>>;
 type Expected = fn(&ReplicaError) -> bool;
 
@@ -219,7 +219,7 @@ fn a_walker_that_cannot_be_told_says_so() {
         Err(ReplicaError::Switching)
     );
     assert_eq!(link.identity.check(&link.here.generator), Ok(()));
-    // A follower that was told nothing stands.
+    // A follower without updates stands.
     let mut follower = WalkFollower::new(&link.identity);
     let mut walker = crate::link::generator(&config);
     let mut pose = Pose::default();

@@ -1,4 +1,4 @@
-//! Climbs: who is told the grade of the way leans into it.
+//! Climbs: walkers lean into the grade that is set.
 
 use crate::world::{DT, Kind, assert_continuous, config, generator, run, space, walking};
 use footfall_core::{Joint, Pose, Skeleton};

@@ -69,7 +69,7 @@ fn a_stop_takes_a_second_at_most() {
     }
 }
 
-/// At every moment of a stride; asked early in a step, that very step closes beside the standing foot.
+/// Stops requested at every moment of a stride: early in a step, that very step closes beside the standing foot.
 #[test]
 fn a_stop_from_a_walk_takes_half_a_second() {
     let skeleton = Skeleton::standard();
@@ -97,7 +97,7 @@ fn a_stop_from_a_walk_takes_half_a_second() {
     assert!(closed > 20, "{closed} of {} close at once", secs.len());
 }
 
-/// Something new is asked for at every moment of a stride.
+/// Controls change at every moment of a stride.
 #[test]
 fn a_change_in_the_middle_of_a_step_is_obeyed_without_a_pop() {
     let skeleton = Skeleton::standard();

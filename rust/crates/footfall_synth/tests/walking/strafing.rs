@@ -22,7 +22,7 @@ fn directions() -> impl Iterator<Item = f32> {
     (1..8).map(|eighth| eighth as f32 * FRAC_PI_4)
 }
 
-/// Walkers differ in how wide their sidesteps are: together they go as fast as they are asked to.
+/// Walkers differ in the width of their sidesteps; their mean speed is the requested one.
 #[test]
 fn walkers_go_at_the_speed_that_was_asked_for_in_any_direction() {
     const SEEDS: u64 = 7;

@@ -1,4 +1,4 @@
-//! Walkers to be watched, and what is asked of any walk.
+//! Walkers under test, and checks that hold for any walk.
 
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_model::{DynamicsModel, GaitModel};

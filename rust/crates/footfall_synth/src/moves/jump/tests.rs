@@ -78,7 +78,7 @@ fn the_course_goes_through_every_knot_and_is_smooth_where_phases_meet() {
     }
 }
 
-/// Whatever is asked: hips rise as high, fall freely, and arrive without a jump.
+/// Checks that the hips rise as requested, fall freely, and arrive without a jolt.
 #[test]
 fn hips_go_on_where_the_phase_before_left_them() {
     let tables = tables();
