@@ -20,7 +20,7 @@ pub enum LedAim {
 /// A step to repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LedStep {
-    /// [Number](CrowdWalker::number) of the step.
+    /// [Number](crate::CrowdWalker::number) of the step.
     pub number: u16,
     /// Controls of the step.
     pub controls: Controls,
@@ -31,7 +31,7 @@ pub struct LedStep {
 /// Moment of a walk at which to begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LedBeginning {
-    /// [Number](CrowdWalker::number) of the step.
+    /// [Number](crate::CrowdWalker::number) of the step.
     pub number: u16,
     /// Share of the step that has passed, from 0 to 1.
     pub share: f32,
