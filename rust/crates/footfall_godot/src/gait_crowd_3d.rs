@@ -280,7 +280,7 @@ impl GaitCrowd3D {
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
-        self.model = shipped::instead_of_new(model, shipped::WALK, |model| model.bind().is_new());
+        self.model = shipped::instead_of_new(model);
         self.restart();
     }
 
@@ -394,17 +394,5 @@ impl GaitCrowd3D {
     fn set_material(&mut self, material: Option<Gd<ShaderMaterial>>) {
         self.material = material;
         self.restart();
-    }
-}
-
-impl GaitCrowd3D {
-    fn forget(&mut self) {
-        if let Some(scene) = self.scene.take() {
-            scene.free();
-        }
-        self.walkers = None;
-        self.replica.renew();
-        self.mesh = None;
-        self.problem = None;
     }
 }

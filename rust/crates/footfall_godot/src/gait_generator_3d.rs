@@ -6,18 +6,18 @@ mod beside;
 mod detail;
 mod fit;
 mod following;
-#[cfg(feature = "editor")]
-mod foresight;
 mod gait_choice;
 mod leaving;
 mod methods;
 mod moves;
+mod observed_motion;
+mod ownership;
+#[cfg(feature = "editor")]
+mod preview_path;
 mod problems;
-mod reign;
 mod replica;
 mod rival;
 mod seed;
-mod seen;
 mod session;
 mod source;
 mod walk;
@@ -27,6 +27,7 @@ use crate::bones;
 use crate::convert::finite_or;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
+use crate::modifier::BodyModifier as _;
 use crate::root_motion::RootMotion;
 use crate::shipped::{self, Fallback};
 use crate::walk_source::WalkSource;
@@ -36,11 +37,11 @@ use gait_choice::GaitMode;
 use glam::Vec3;
 use godot::classes::{BoneMap, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
-use problems::Told;
-use reign::{Reign, Wish};
+use ownership::{Ownership, Request};
+use problems::Announced;
 use replica::Replica;
 use rival::Rivals;
-use session::Session;
+use session::WalkSession;
 
 /// Walks a character: poses the parent `Skeleton3D` in every frame with steps generated from a trained model.
 ///
@@ -227,15 +228,15 @@ pub(crate) struct GaitGenerator3D {
     preview_paused: Option<bool>,
     pending: Pending,
     /// The walk under way; `None` until the next frame that can start it.
-    session: Option<Session>,
+    session: Option<WalkSession>,
     /// The walk that went on before the node left the tree or its skeleton.
     absent: Option<Absent>,
-    told: Told,
+    announced: Announced,
     travelled: RootMotion,
     /// Velocity of the character on the ground in the last frame: metres and radians a second.
     velocity: (Vec3, f32),
-    reign: Reign,
-    wish: Option<Wish>,
+    ownership: Ownership,
+    request: Option<Request>,
     rivals: Rivals,
     /// Share of the speed that is left on the ground at hand: 1 on level ground.
     #[init(val = 1.0)]
@@ -256,7 +257,7 @@ impl ISkeletonModifier3D for GaitGenerator3D {
     }
 
     fn process_modification_with_delta(&mut self, delta: f64) {
-        self.pass_frame(delta);
+        self.process_frame(delta);
     }
 
     fn get_configuration_warnings(&self) -> PackedStringArray {
@@ -304,7 +305,7 @@ impl GaitGenerator3D {
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
-        self.model = shipped::instead_of_new(model, shipped::WALK, |model| model.bind().is_new());
+        self.model = shipped::instead_of_new(model);
         self.renew();
     }
 
@@ -344,24 +345,24 @@ impl GaitGenerator3D {
 
     #[func]
     fn get_replica_identity(&self) -> PackedByteArray {
-        self.tell_identity()
+        self.identity_bytes()
     }
 
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_replica_identity(&mut self, identity: PackedByteArray) {
-        self.hear_identity(&identity);
+        self.receive_identity(&identity);
     }
 
     #[func]
     fn get_replica_state(&self) -> PackedByteArray {
-        self.tell_state()
+        self.state_bytes()
     }
 
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_replica_state(&mut self, state: PackedByteArray) {
-        self.hear_state(&state);
+        self.receive_state(&state);
     }
 
     #[func]
@@ -394,8 +395,7 @@ impl GaitGenerator3D {
 
     #[func]
     fn set_bone_map(&mut self, bone_map: Option<Gd<BoneMap>>) {
-        bones::complete(bone_map.as_ref());
-        self.bone_map = bone_map;
+        self.bone_map = bones::completed(bone_map);
         self.restart();
     }
 }

@@ -24,7 +24,7 @@ pub(crate) const CLASSES: &str =
 const SILENT_SECS: f64 = 0.5;
 
 /// Samples that a source gives in a frame.
-pub(crate) enum Heard {
+pub(crate) enum SourceSamples {
     /// A recording, and whether it begins anew at its end.
     Recording(Arc<ImuRecording>, bool),
     /// A sensor that is heard live.
@@ -38,26 +38,28 @@ pub(crate) enum Heard {
 }
 
 /// Asks a source for what it gives to a node; live ones open their ports.
-pub(crate) fn hear(source: &Gd<Resource>, listener: &Gd<Node>) -> Heard {
+pub(crate) fn hear(source: &Gd<Resource>, listener: &Gd<Node>) -> SourceSamples {
     if let Ok(replay) = source.clone().try_cast::<ReplayImuSource>() {
         let replay = replay.bind();
         let recording = replay.recording();
-        return recording.map_or(Heard::Nothing, |recording| {
-            Heard::Recording(recording, replay.repeats())
+        return recording.map_or(SourceSamples::Nothing, |recording| {
+            SourceSamples::Recording(recording, replay.repeats())
         });
     }
     if source.clone().try_cast::<DeviceImuSource>().is_ok() {
-        return device_imu_source::measure().map_or(Heard::Nothing, Heard::Now);
+        return device_imu_source::measure().map_or(SourceSamples::Nothing, SourceSamples::Now);
     }
     if let Ok(source) = source.clone().try_cast::<NodeImuSource>() {
         let pose = source.bind().pose(listener);
-        return pose.map_or(Heard::Nothing, |(place, turn)| Heard::Pose(place, turn));
+        return pose.map_or(SourceSamples::Nothing, |(place, turn)| {
+            SourceSamples::Pose(place, turn)
+        });
     }
     let live = |live: &dyn LiveSource| {
         live.live().open(|| live.opened());
         live.live()
             .device(live.place())
-            .map_or(Heard::Nothing, Heard::Device)
+            .map_or(SourceSamples::Nothing, SourceSamples::Device)
     };
     if let Ok(source) = source.clone().try_cast::<PhoneImuSource>() {
         return live(&*source.bind());
@@ -68,7 +70,7 @@ pub(crate) fn hear(source: &Gd<Resource>, listener: &Gd<Node>) -> Heard {
     if let Ok(source) = source.clone().try_cast::<NetworkImuSource>() {
         return live(&*source.bind());
     }
-    Heard::Nothing
+    SourceSamples::Nothing
 }
 
 /// A footstep of the character whom a source drives, for what can be felt.

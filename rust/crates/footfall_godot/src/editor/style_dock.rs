@@ -56,16 +56,16 @@ impl IEditorDock for FootfallStyleDock {
 
     fn process(&mut self, _delta: f64) {
         let Some(job) = &self.job else { return };
-        let told = job.progress();
+        let progress = job.progress();
         if let Some(form) = &mut self.form {
-            form.show_progress(&told);
+            form.show_progress(&progress);
         }
         let Some(ended) = finished(&mut self.job).map(Result::flatten) else {
             return;
         };
         match ended {
             Ok(made) => self.take(&made),
-            Err(problem) => self.tell(&problem),
+            Err(problem) => self.show_message(&problem),
         }
         self.refresh();
     }
@@ -91,7 +91,7 @@ impl FootfallStyleDock {
                 Err(problem) => problems.push(problem),
             }
         }
-        self.tell(&problems.join("\n"));
+        self.show_message(&problems.join("\n"));
         self.refresh();
     }
 
@@ -140,11 +140,11 @@ impl FootfallStyleDock {
         }
         match self.order() {
             Ok(order) => {
-                self.tell("");
+                self.show_message("");
                 self.made = None;
                 self.job = Some(order.start());
             }
-            Err(problem) => self.tell(&problem),
+            Err(problem) => self.show_message(&problem),
         }
         self.refresh();
     }
@@ -193,7 +193,7 @@ impl FootfallStyleDock {
                 Err(problem) => problem,
             }
         };
-        self.tell(&problem);
+        self.show_message(&problem);
     }
 }
 
@@ -262,7 +262,7 @@ impl FootfallStyleDock {
             60.0 * style.cadence_hz,
             made.remarks
         );
-        self.tell(text.trim_end());
+        self.show_message(text.trim_end());
         if let Some(mut files) = EditorInterface::singleton().get_resource_filesystem() {
             files.scan();
         }
@@ -277,9 +277,9 @@ impl FootfallStyleDock {
             .ok_or_else(|| format!("{file} no longer exists. Make the style again."))
     }
 
-    fn tell(&mut self, message: &str) {
+    fn show_message(&mut self, message: &str) {
         if let Some(form) = &mut self.form {
-            form.tell(message);
+            form.show_message(message);
         }
     }
 

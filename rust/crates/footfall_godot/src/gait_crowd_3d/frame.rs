@@ -2,7 +2,7 @@
 
 use super::behaviour::MOST_AGENTS;
 use super::navigation::Navigation;
-use super::scene::{CrowdScene, Look};
+use super::scene::{CrowdScene, DrawSettings};
 use super::{GaitCrowd3D, ground};
 use crate::convert;
 use footfall_rig::crowd::{Crowd, Limits};
@@ -18,7 +18,7 @@ impl GaitCrowd3D {
         let limits = self.limits();
         let (avoidance, repeat_far, mask) = (self.avoidance, self.repeat_far, self.ground_mask);
         let standing_motion = self.standing_motion as f32;
-        let look = Look {
+        let look = DrawSettings {
             character: self.character.clone(),
             material: self.material.clone(),
             culls: self.culling,

@@ -4,14 +4,14 @@ use super::behaviour::CrowdBehaviour;
 use super::crowd_mesh::CrowdMesh;
 use super::{GaitCrowd3D, NO_CHARACTER};
 use crate::convert;
-use crate::gait_model::{self, NO_MODEL};
+use crate::gait_model;
 use crate::gait_style;
-use crate::shipped;
+use crate::report;
 use footfall_model::{GaitModel, GaitStyle};
 use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdSettings, Path, Way};
 use footfall_synth::StyleSpace;
 use glam::Vec2;
-use godot::classes::{Engine, Node3D, Path3D};
+use godot::classes::{Node3D, Path3D};
 use godot::prelude::*;
 use std::sync::Arc;
 
@@ -19,10 +19,9 @@ use std::sync::Arc;
 type CrowdWalk = (Arc<GaitModel>, Vec<Arc<GaitStyle>>, Option<Arc<StyleSpace>>);
 
 impl GaitCrowd3D {
-    /// The way of walking, the add-on's own where none was given.
+    /// The model, or the add-on's own if none is set.
     pub(super) fn used_model(&self) -> Result<Gd<gait_model::GaitModel>, String> {
-        let used = self.fallback.model(self.model.as_ref(), shipped::WALK);
-        used.ok_or_else(|| NO_MODEL.to_owned())
+        self.fallback.model(self.model.as_ref())
     }
 
     /// The walk and the styles that walkers are made of.
@@ -89,15 +88,22 @@ impl GaitCrowd3D {
         made
     }
 
+    /// Removes walkers and scene; the next frame makes them again.
+    pub(super) fn forget(&mut self) {
+        if let Some(scene) = self.scene.take() {
+            scene.free();
+        }
+        self.walkers = None;
+        self.replica.renew();
+        self.mesh = None;
+        self.problem = None;
+    }
+
     /// There is no crowd, for this reason, until something changes.
     pub(super) fn fail(&mut self, problem: String) {
         self.forget();
-        if !Engine::singleton().is_editor_hint() {
-            let node = self.base().get_path();
-            godot_warn!("{node}: {problem}");
-        }
-        self.problem = Some(problem);
-        self.base_mut().update_configuration_warnings();
+        self.problem = Some(problem.clone());
+        report::warn(&self.base_mut().clone().upcast(), &problem);
     }
 
     /// Problems that keep the crowd from walking, as far as they are known.

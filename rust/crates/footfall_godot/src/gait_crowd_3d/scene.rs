@@ -21,7 +21,7 @@ const CHOOSE_EVERY: u64 = 8;
 const MARGIN_M: f32 = 3.0;
 
 /// Settings of a crowd's look.
-pub(super) struct Look {
+pub(super) struct DrawSettings {
     pub(super) character: Option<Gd<PackedScene>>,
     pub(super) material: Option<Gd<ShaderMaterial>>,
     pub(super) culls: bool,
@@ -59,7 +59,7 @@ pub(super) struct CrowdScene {
 
 impl CrowdScene {
     /// Without room for anybody yet.
-    pub(super) fn new(host: &Gd<Node3D>, mesh: CrowdMesh, look: &Look) -> Option<Self> {
+    pub(super) fn new(host: &Gd<Node3D>, mesh: CrowdMesh, look: &DrawSettings) -> Option<Self> {
         Some(Self {
             near: near(host, &mesh, 1, look)?,
             far: (0..GROUPS)
@@ -81,7 +81,7 @@ impl CrowdScene {
     }
 
     /// Gives it room for everybody; where many come at once, within some frames.
-    fn fit(&mut self, host: &Gd<Node3D>, walkers: &Crowd, limits: &Limits, look: &Look) {
+    fn fit(&mut self, host: &Gd<Node3D>, walkers: &Crowd, limits: &Limits, look: &DrawSettings) {
         let (room, each) = rooms(walkers, limits);
         let places = walkers.agents().len();
         for shown in &mut self.shown {
@@ -133,7 +133,7 @@ impl CrowdScene {
         walkers: &mut Crowd,
         host: &Gd<Node3D>,
         limits: &Limits,
-        look: &Look,
+        look: &DrawSettings,
     ) {
         self.drawn += 1;
         self.fit(host, walkers, limits, look);
@@ -184,7 +184,7 @@ impl CrowdScene {
         }
     }
 
-    fn lend(&mut self, walkers: &Crowd, host: &Gd<Node3D>, look: &Look) {
+    fn lend(&mut self, walkers: &Crowd, host: &Gd<Node3D>, look: &DrawSettings) {
         if let Some(character) = &look.character {
             let mut host = host.clone();
             self.lacking = self.actors.lend(
@@ -348,12 +348,12 @@ fn rooms(walkers: &Crowd, limits: &Limits) -> (usize, usize) {
     (near.max(1), far.max(1))
 }
 
-fn near(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &Look) -> Option<Flock> {
+fn near(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &DrawSettings) -> Option<Flock> {
     let node = host.clone().upcast::<Node>();
     Flock::new(&node, mesh, 0, room, room, look.material.as_ref())
 }
 
-fn far(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &Look) -> Option<Flock> {
+fn far(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &DrawSettings) -> Option<Flock> {
     let node = host.clone().upcast::<Node>();
     Flock::new(&node, mesh, 1, room, 2 * room, look.material.as_ref())
 }

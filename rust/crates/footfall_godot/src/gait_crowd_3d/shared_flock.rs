@@ -4,7 +4,7 @@ use super::bounds::Bounds;
 use super::crowd_mesh::CrowdMesh;
 use super::flock::{Flock, POSE_BYTES, write_pose};
 use super::instances::{INSTANCE_NUMBERS, draws_in_srgb, write_instance};
-use super::scene::{Look, is_seen};
+use super::scene::{DrawSettings, is_seen};
 use footfall_core::{JOINT_COUNT, Joint};
 use footfall_rig::crowd::{Crowd, FETCHED, GROUPS, Tier};
 use footfall_synth::{CrowdPose, StyledBody};
@@ -51,7 +51,7 @@ struct Shown<'a> {
 
 impl SharedFlock {
     /// Without room for anybody yet.
-    pub(super) fn new(host: &Gd<Node3D>, mesh: &CrowdMesh, look: &Look) -> Option<Self> {
+    pub(super) fn new(host: &Gd<Node3D>, mesh: &CrowdMesh, look: &DrawSettings) -> Option<Self> {
         Some(Self {
             flock: flock(host, mesh, 1, look)?,
             poses: 1,
@@ -65,7 +65,7 @@ impl SharedFlock {
     }
 
     /// Gives everybody room, and takes in what was not worn before.
-    fn fit(&mut self, walkers: &Crowd, host: &Gd<Node3D>, mesh: &CrowdMesh, look: &Look) {
+    fn fit(&mut self, walkers: &Crowd, host: &Gd<Node3D>, mesh: &CrowdMesh, look: &DrawSettings) {
         let rows = walkers.agents().len();
         let part = Part {
             shown: Vec::with_capacity(ROWS),
@@ -116,7 +116,7 @@ impl SharedFlock {
         &mut self,
         walkers: &Crowd,
         (planes, small): (&[Vec4], &[bool]),
-        (host, mesh, look): (&Gd<Node3D>, &CrowdMesh, &Look),
+        (host, mesh, look): (&Gd<Node3D>, &CrowdMesh, &DrawSettings),
     ) {
         self.fit(walkers, host, mesh, look);
         let (tiers, drawn) = (walkers.tiers(), walkers.drawn());
@@ -211,7 +211,7 @@ impl Shown<'_> {
     }
 }
 
-fn flock(host: &Gd<Node3D>, mesh: &CrowdMesh, poses: usize, look: &Look) -> Option<Flock> {
+fn flock(host: &Gd<Node3D>, mesh: &CrowdMesh, poses: usize, look: &DrawSettings) -> Option<Flock> {
     let node = host.clone().upcast::<Node>();
     Flock::new(&node, mesh, 1, poses, poses, look.material.as_ref())
 }

@@ -3,6 +3,7 @@
 mod clip;
 
 use super::GaitGenerator3D;
+use crate::modifier::BodyModifier as _;
 use crate::skeleton_binding::SkeletonBinding;
 use crate::walk_source::WalkSource;
 use clip::Clips;

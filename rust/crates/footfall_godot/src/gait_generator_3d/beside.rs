@@ -1,28 +1,12 @@
 //! Interface of the generator to the nodes beside it and to the editor.
 
 use super::GaitGenerator3D;
-use super::reign::Reign;
-use crate::character;
+use super::ownership::Ownership;
 use crate::skeleton_binding::LayerWeights;
 use footfall_ik::placement::Landing;
-use godot::classes::{BoneMap, Skeleton3D};
 use godot::prelude::*;
 
 impl GaitGenerator3D {
-    /// The node that travels.
-    ///
-    /// # Errors
-    /// Property to set, when there is none.
-    pub(crate) fn find_character(&self, skeleton: &Gd<Skeleton3D>) -> Result<Gd<Node3D>, String> {
-        let node = self.base().clone().upcast::<Node>();
-        character::find(&node, skeleton, &self.character)
-    }
-
-    /// Map from joints to bones.
-    pub(crate) fn bones(&self) -> Option<Gd<BoneMap>> {
-        self.bone_map.clone()
-    }
-
     /// Returns whether the editor holds the walk.
     pub(crate) fn is_preview_paused(&self) -> bool {
         self.preview_paused.unwrap_or(!self.playing)
@@ -39,7 +23,7 @@ impl GaitGenerator3D {
         let session = self
             .session
             .as_ref()
-            .filter(|_| self.reign == Reign::Walking)?;
+            .filter(|_| self.ownership == Ownership::Walking)?;
         let landings = session.generator.landings();
         Some((session.generator.feet_in_contact(), landings))
     }

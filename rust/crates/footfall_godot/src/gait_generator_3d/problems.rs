@@ -1,16 +1,15 @@
 //! Problems that keep a character from walking, for the editor, scripts and the log.
 
 use super::GaitGenerator3D;
-use crate::bones;
 use crate::gait_model::NO_STYLES;
-use crate::report;
+use crate::modifier::BodyModifier as _;
 use footfall_core::Side;
 use footfall_synth::Gait;
 use godot::prelude::*;
 
 /// Facts that were told last, so that each is told once.
 #[derive(Default)]
-pub(super) struct Told {
+pub(super) struct Announced {
     pub(super) gait: Gait,
     /// The foot whose next landing was announced.
     pub(super) landing: Option<Side>,
@@ -35,27 +34,14 @@ impl GaitGenerator3D {
             );
             problems.push(&GString::from(&problem));
         }
-        let Some(skeleton) = self.base().get_skeleton() else {
-            problems.push(&bones::no_skeleton(&self.to_gd().upcast()));
-            return problems;
-        };
-        if skeleton.is_inside_tree()
-            && let Err(problem) = self.bind(&skeleton)
+        if let Some(problem) = self.skeleton_problem() {
+            problems.push(&problem);
+        }
+        if let Some(skeleton) = self.base().get_skeleton()
+            && let Some(problem) = self.find_rivalry(&skeleton)
         {
             problems.push(&GString::from(&problem));
         }
-        if let Some(problem) = self.find_rivalry(&skeleton) {
-            problems.push(&GString::from(&problem));
-        }
         problems
-    }
-
-    /// Logs what keeps the character from walking, once.
-    pub(super) fn report(&mut self, problem: String) {
-        if self.told.problem.as_ref() == Some(&problem) {
-            return;
-        }
-        report::tell(&self.base_mut(), &problem);
-        self.told.problem = Some(problem);
     }
 }

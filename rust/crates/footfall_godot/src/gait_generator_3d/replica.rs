@@ -1,8 +1,9 @@
 //! The walk over a network: told to other peers, or made as another peer tells.
 
 use super::GaitGenerator3D;
-use super::session::Session;
+use super::session::WalkSession;
 use crate::character;
+use crate::modifier::BodyModifier as _;
 use core::cell::Cell;
 use footfall_synth::GeneratorConfig;
 use footfall_synth::replica::{ReplicaError, WalkFollower, WalkIdentity, WalkSender};
@@ -47,7 +48,7 @@ impl GaitGenerator3D {
 
 impl GaitGenerator3D {
     /// Identity of the walk, for other peers.
-    pub(super) fn tell_identity(&self) -> PackedByteArray {
+    pub(super) fn identity_bytes(&self) -> PackedByteArray {
         let told = match (&self.replica.led, &self.session) {
             (Some(led), _) => led.identity.to_bytes(),
             // Of a walk that another peer is about to lead there is nothing to tell.
@@ -63,17 +64,17 @@ impl GaitGenerator3D {
     }
 
     /// Takes the identity of another peer's walker.
-    pub(super) fn hear_identity(&mut self, identity: &PackedByteArray) {
+    pub(super) fn receive_identity(&mut self, identity: &PackedByteArray) {
         if identity.is_empty() || self.leads() {
             return;
         }
-        if let Err(error) = self.become_replica(identity.as_slice()) {
+        if let Err(error) = self.begin_replica(identity.as_slice()) {
             self.replica.refuse(error);
         }
     }
 
     /// Progress of the walk, for other peers.
-    pub(super) fn tell_state(&self) -> PackedByteArray {
+    pub(super) fn state_bytes(&self) -> PackedByteArray {
         let session = self.session.as_ref();
         let Some(session) = session.filter(|_| !self.replica.is_led()) else {
             return PackedByteArray::new();
@@ -91,7 +92,7 @@ impl GaitGenerator3D {
     }
 
     /// Takes the progress of another peer's walker.
-    pub(super) fn hear_state(&mut self, state: &PackedByteArray) {
+    pub(super) fn receive_state(&mut self, state: &PackedByteArray) {
         if state.is_empty() || self.leads() {
             return;
         }
@@ -128,7 +129,7 @@ impl GaitGenerator3D {
         carrier.is_multiplayer_authority()
     }
 
-    fn become_replica(&mut self, bytes: &[u8]) -> Result<(), ReplicaError> {
+    fn begin_replica(&mut self, bytes: &[u8]) -> Result<(), ReplicaError> {
         let identity = WalkIdentity::from_bytes(bytes)?;
         if let Some(led) = &mut self.replica.led
             && led.identity.is_same_walker(&identity)
@@ -154,7 +155,7 @@ impl GaitGenerator3D {
     }
 
     /// Emits what was refused since the last frame.
-    pub(super) fn tell_refusal(&mut self) {
+    pub(super) fn emit_refusal(&mut self) {
         if let Some(error) = self.replica.untold.take() {
             let node = self.base().get_path();
             godot_warn!("{node}: {error}");
@@ -170,7 +171,7 @@ impl GaitGenerator3D {
     }
 
     /// Lets time pass for other peers' sake, and dresses the walk as theirs.
-    pub(super) fn pass_replica(&mut self, session: &mut Session, dt_secs: f64) {
+    pub(super) fn advance_replica(&mut self, session: &mut WalkSession, dt_secs: f64) {
         if self.replica.led.is_some() && self.leads() {
             // The authority has come to this peer: its walk goes on from here.
             self.replica = Replica::default();

@@ -2,7 +2,7 @@
 
 use super::fit::{Fitting, Maker};
 use super::leaving::Leaving;
-use super::seen::{Seen, lower, raise};
+use super::observed_motion::{ObservedMotion, lower, raise};
 use crate::convert;
 use crate::skeleton_binding::{LayerWeights, SkeletonBinding};
 use crate::travel::{Travel, Traveller};
@@ -18,7 +18,7 @@ use godot::prelude::*;
 const SETTLED_FRAMES: u8 = 12;
 
 /// A generator, the skeleton that it poses and the node that travels.
-pub(super) struct Session {
+pub(crate) struct WalkSession {
     pub(super) generator: GaitGenerator,
     pub(super) traveller: Traveller,
     /// Since the walk began.
@@ -27,7 +27,7 @@ pub(super) struct Session {
     /// In the space above the ground under the character.
     pub(super) pose: Pose,
     /// Motion that the skeleton showed last, in the space where the walk began.
-    pub(super) shown: Seen,
+    pub(super) shown: ObservedMotion,
     /// Handover from the motion before.
     pub(super) handover: Option<Handover>,
     /// Since somebody else began to pose the skeleton.
@@ -43,7 +43,7 @@ struct Size {
     frames: u8,
 }
 
-impl Session {
+impl WalkSession {
     /// Starts a walk where the character stands; when `controls` ask for none, it stands there.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl Session {
             elapsed_secs: 0.0,
             source: source.clone(),
             traveller: Traveller::new(character, binding, start_from_ground),
-            shown: Seen::default(),
+            shown: ObservedMotion::default(),
             handover: None,
             watched: super::watch::Watch::default(),
             leaving: None,
@@ -115,7 +115,7 @@ impl Session {
     /// Reason of the generator's refusal, for the user.
     pub(super) fn go_on_from(
         &mut self,
-        from: &Seen,
+        from: &ObservedMotion,
         style_weights: &[f32],
         config: &GeneratorConfig,
         controls: Controls,
@@ -149,9 +149,9 @@ impl Session {
     }
 
     /// Motion that the skeleton showed last, on the ground under the character, in metres of the world.
-    pub(super) fn shown_here(&self) -> Seen {
+    pub(super) fn shown_here(&self) -> ObservedMotion {
         let place = Frame::from(self.traveller.ground_place());
-        self.shown.seen_from(&place, self.traveller.scale())
+        self.shown.relative_to(&place, self.traveller.scale())
     }
 
     /// Height of the hips above the floor in the rest pose, metres of the world.
@@ -190,7 +190,7 @@ impl Session {
             );
         }
         if dt_secs > 0.0 {
-            self.shown.see(&self.pose, stands, dt_secs);
+            self.shown.observe(&self.pose, stands, dt_secs);
         }
         lower(&ground, &mut self.pose);
         travel

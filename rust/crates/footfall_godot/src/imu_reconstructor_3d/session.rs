@@ -1,7 +1,7 @@
 //! A reconstructor on a skeleton, and the sensors that it hears.
 
-use super::worn::Worn;
-use crate::imu_source::Heard;
+use super::worn_sensor::WornSensor;
+use crate::imu_source::SourceSamples;
 use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose};
 use footfall_imu::ImuSample;
@@ -13,16 +13,16 @@ use footfall_recon::{
 use glam::Quat;
 use std::sync::Arc;
 
-/// Somebody has stood for so long before anything is heard: a second.
+/// Somebody has stood for so long before anything is samples: a second.
 const STANDING_SAMPLES: u32 = 50;
 const STANDING_RATE_HZ: f64 = 50.0;
 
 /// A reconstructor on a skeleton.
-pub(super) struct Session {
+pub(crate) struct SensorSession {
     pub(super) reconstructor: Reconstructor,
     pub(super) prepared: Arc<Prepared>,
     pub(super) traveller: Traveller,
-    pub(super) sensors: [Worn; MAX_SENSORS],
+    pub(super) sensors: [WornSensor; MAX_SENSORS],
     /// True when it is found out how sensors are worn.
     pub(super) finds_mountings: bool,
     /// Pose of the body before anything is heard.
@@ -51,7 +51,7 @@ pub(super) fn standing(reconstructor: &Reconstructor) -> Pose {
     pose
 }
 
-impl Session {
+impl SensorSession {
     /// Takes a sample that a script gives.
     pub(super) fn push(&mut self, sensor: usize, sample: ImuSample) {
         let Some(worn) = self.sensors.get_mut(sensor) else {
@@ -64,9 +64,9 @@ impl Session {
     }
 
     /// Takes what a source gives in a frame.
-    pub(super) fn hear(&mut self, sensor: usize, heard: Heard, delta: f64) {
+    pub(super) fn hear(&mut self, sensor: usize, samples: SourceSamples, delta: f64) {
         let mut worn = core::mem::take(&mut self.sensors[sensor]);
-        worn.hear(heard, delta, |sample| self.take(sensor, sample));
+        worn.hear(samples, delta, |sample| self.take(sensor, sample));
         self.sensors[sensor] = worn;
     }
 
