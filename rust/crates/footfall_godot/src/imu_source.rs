@@ -185,7 +185,7 @@ impl Live {
         if let Some(Err(problem)) = &*self.opened.borrow() {
             return problem.clone();
         }
-        let told = self.with(|opened| opened.link().state().message().to_owned());
+        let message = self.with(|opened| opened.link().state().message().to_owned());
         match (self.state(place), self.status(place)) {
             ("silent", Some(status)) => format!(
                 "no samples from {} for {:.0} s",
@@ -193,10 +193,10 @@ impl Live {
                 status.silent_secs()
             ),
             ("receiving", Some(status)) => status.fault.unwrap_or_default(),
-            ("listening", _) if told.as_deref() == Some("") => {
+            ("listening", _) if message.as_deref() == Some("") => {
                 "waiting for one more sensor".to_owned()
             }
-            _ => told.unwrap_or_default(),
+            _ => message.unwrap_or_default(),
         }
     }
 }

@@ -4,7 +4,7 @@
 //! carries a swinging foot from one foothold to the next, moves the pelvis so that both legs reach, and solves the legs. Whatever
 //! supports a foot may move: its foothold moves along.
 //!
-//! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `lie`, `foothold`, `profile`, `aim`, `told`,
+//! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `lie`, `foothold`, `profile`, `aim`, `landings`,
 //! `contact`, `foot`, `wall`, `guard`, `swing`, `pelvis`, `carry`.
 
 mod aim;
@@ -17,12 +17,12 @@ mod foot;
 mod foothold;
 mod frame;
 mod guard;
+mod landings;
 mod lie;
 mod pelvis;
 mod profile;
 mod swing;
 mod terrain;
-mod told;
 mod wall;
 
 use crate::leg::{FootTarget, Leg};

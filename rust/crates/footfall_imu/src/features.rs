@@ -135,7 +135,7 @@ impl FeatureStream {
     }
 
     fn give_frame(&mut self, give: &mut impl FnMut(FeatureFrame)) {
-        // A frame of which less than half was seen tells too little.
+        // A frame of which less than half was measured has no features.
         let values = (self.covered_secs > 0.5 * self.period_secs).then(|| {
             let secs = self.covered_secs as f32;
             let parts = [self.rate / secs, self.force / secs, self.filter.up()];

@@ -30,7 +30,7 @@ const LONGEST_GAP_SECS: f64 = 0.1;
 /// A foot that has come to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// The stride that brought it there; `None` when it did not rest before, or too long ago to tell.
+    /// The stride that brought it there; `None` when it did not rest before, or too long ago to be known.
     pub stride: Option<SensorStride>,
 }
 
@@ -145,7 +145,7 @@ impl StrideMeter {
 struct Integral {
     start_secs: f64,
     secs: f32,
-    /// `level_from_sensor`, as far as the gyroscope tells.
+    /// `level_from_sensor`, as integrated from the gyroscope.
     turn: Quat,
     gravity_mps2: f32,
     velocity: Vec3,

@@ -12,7 +12,7 @@ use foot::StandingFoot;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_ik::{FootTarget, Leg, RockerFoot};
-use footfall_imu::ToldContact;
+use footfall_imu::SensorContact;
 use footfall_model::imu_model::{CONTACT, TURN, WAY};
 use glam::{Quat, Vec3};
 use limit::Limit;
@@ -59,7 +59,7 @@ pub struct Ground {
 /// Input of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundInput {
-    /// Heading that the sensor gives the body, from an unknown direction on, radians; `None` where it tells nothing.
+    /// Heading that the sensor gives the body, from an unknown direction on, radians; `None` if it is unknown.
     pub heading: Option<f32>,
     /// Number of the model's frames that have passed.
     pub frames: f32,
@@ -68,7 +68,7 @@ pub struct GroundInput {
     /// Factor on the length of the recordings' steps.
     pub stride: f32,
     /// Contacts of the left and the right foot where a sensor on the foot reports them; the body has those of the others.
-    pub contacts: [Option<ToldContact>; 2],
+    pub contacts: [Option<SensorContact>; 2],
 }
 
 impl Ground {
@@ -204,13 +204,13 @@ impl Ground {
 
     /// Moves the body along the ground so that standing feet keep their places.
     fn bear(&mut self, body: &BodyFrame, input: &GroundInput, pose: &mut Pose) {
-        let told = input.contacts;
+        let measured = input.contacts;
         let (mut shift, mut weights) = (Vec3::ZERO, 0.0);
         for side in Side::BOTH {
             if let Some(plant) = self.feet[side.index()].plant {
                 let target = self.standing(side, &plant);
-                let weight = match told[side.index()] {
-                    Some(told) if told.stands => 1.0,
+                let weight = match measured[side.index()] {
+                    Some(measured) if measured.stands => 1.0,
                     _ => body[CONTACT + side.index()].clamp(0.05, 1.0),
                 };
                 shift += (target.ankle - self.ankle(side)).with_y(0.0) * weight;

@@ -1,6 +1,6 @@
 //! Strangeness of a wearer: mean squared distance of what sensors measure from what they measured on the people in the model.
 //!
-//! People in the model, and those who move like them, are shown as they were recorded. Of a stranger a sensor tells less, so that the mean of several people is nearer.
+//! People in the model, and those who move like them, are shown as they were recorded. A sensor predicts less of a stranger, so that the mean of several people is closer.
 //! Means over walks, a simulated sensor, [`KNOWN`] chosen between the first two rows and the third:
 //!
 //! | | right foot | right thigh |
@@ -75,7 +75,7 @@ mod tests {
         let mut wearer = Strangeness::UNKNOWN;
         assert_eq!(wearer.share(), 1.0);
         wearer.step(0.0, 0.0);
-        assert_eq!(wearer.share(), 1.0, "standing tells nothing");
+        assert_eq!(wearer.share(), 1.0, "standing is no evidence");
         assert_eq!(after(&mut wearer, 0.6, 3.0), 0.0);
         // A stumble is no other wearer; a walk of some seconds is.
         assert!(after(&mut wearer, 5.0, 0.3) < 0.1);

@@ -9,7 +9,7 @@ use footfall_imu::stride_meter::Rest;
 use footfall_imu::{ImuSample, StrideMeter};
 use glam::Vec3;
 
-/// Shorter strides tell nothing of how long steps are, metres.
+/// Shortest stride from which the length of steps is estimated, metres.
 const LEAST_STRIDE_M: f32 = 0.4;
 
 /// A stride of which the shown one differs by more is another one.

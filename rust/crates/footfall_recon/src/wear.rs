@@ -32,7 +32,7 @@ const RIDE_RADPS: f32 = 0.35;
 /// No lift accelerates for so long, seconds: gravity by this sensor's scale is another than was thought.
 const LONGEST_RIDE_SECS: f32 = 4.0;
 
-/// A ride is told for so long after it was felt, seconds: between its start and its end a lift goes evenly.
+/// Time for which a ride is reported after it was detected, seconds: between its start and its end a lift moves evenly.
 const RIDE_HELD_SECS: f32 = 3.0;
 
 /// Posture of a sensor that is worn, in the site's axes.
@@ -53,7 +53,7 @@ pub(crate) struct WearMonitor {
 /// Posture of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Posture {
-    /// It is worn, as far as can be told.
+    /// It is worn, as far as is known.
     Worn,
     /// It lies.
     Lies,

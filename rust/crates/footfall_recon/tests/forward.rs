@@ -199,17 +199,17 @@ fn check_against_the_whole_matrix(config: TrackerConfig) {
 #[test]
 fn what_fits_nothing_tells_nothing() {
     let prepared = Arc::new(Prepared::new(Arc::new(model())).unwrap());
-    let mut told = Tracker::new(&prepared, TrackerConfig::default());
+    let mut heard = Tracker::new(&prepared, TrackerConfig::default());
     for n in 0..20 {
-        told.step(Some(&measured(n)));
+        heard.step(Some(&measured(n)));
     }
-    let mut silent = told.clone();
+    let mut silent = heard.clone();
     let mut odd = measured(20);
     odd.values[3] = 1e3;
-    told.step(Some(&odd));
+    heard.step(Some(&odd));
     silent.step(None);
-    for (told, silent) in told.probabilities().iter().zip(silent.probabilities()) {
-        assert!((told - silent).abs() < 0.01, "{told} is not {silent}");
+    for (heard, silent) in heard.probabilities().iter().zip(silent.probabilities()) {
+        assert!((heard - silent).abs() < 0.01, "{heard} is not {silent}");
     }
 }
 

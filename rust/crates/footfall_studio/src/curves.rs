@@ -118,7 +118,7 @@ impl CurvePanel {
             }
             if let Some(ghost) = ghost {
                 let clip = ghost.clip();
-                // A ghost has no number of its own: its length and name tell it from another.
+                // A ghost has no number of its own: its length and name distinguish it from another.
                 let key = clip.poses.len() as u64 ^ ((ghost.name.len() as u64) << 32);
                 let offset = motion.start_secs() - ghost.start_secs();
                 if let Some(values) = self.ghost.values(key, clip, *curve, &mut is_late) {

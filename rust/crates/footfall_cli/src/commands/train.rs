@@ -327,7 +327,7 @@ impl Report<'_> {
     }
 }
 
-/// Shows what the trainer tells.
+/// Shows the progress of training.
 pub(super) struct TrainingProgress(pub(super) output::Progress);
 
 impl footfall_train::Progress for TrainingProgress {

@@ -30,11 +30,11 @@ impl GaitCrowd3D {
             return;
         };
         let leads = !walkers.is_following();
-        // Shared steps cannot be told.
+        // Shared steps cannot be sent.
         walkers.repeats = repeat_far && leads && !self.replica.is_told();
         self.replica.pass(dt_secs);
         walkers.standing_motion = standing_motion;
-        let is_navigated = walkers.way().is_navigated();
+        let is_navigated = walkers.routing().is_navigated();
         if leads
             && (is_navigated || self.sends)
             && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)

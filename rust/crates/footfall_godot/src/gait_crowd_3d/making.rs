@@ -8,7 +8,7 @@ use crate::gait_model;
 use crate::gait_style;
 use crate::report;
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdSettings, Path, Way};
+use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdSettings, Path, Routing};
 use footfall_synth::StyleSpace;
 use glam::Vec2;
 use godot::classes::{Node3D, Path3D};
@@ -32,11 +32,11 @@ impl GaitCrowd3D {
         Ok((trained, styles, space))
     }
 
-    pub(super) fn way(&self) -> Result<Way, String> {
+    pub(super) fn routing(&self) -> Result<Routing, String> {
         match self.behaviour {
-            CrowdBehaviour::Scripted => Ok(Way::Told),
-            CrowdBehaviour::Navigate => Ok(Way::Navigate),
-            CrowdBehaviour::Wander => Ok(Way::Wander {
+            CrowdBehaviour::Scripted => Ok(Routing::Scripted),
+            CrowdBehaviour::Navigate => Ok(Routing::Navigate),
+            CrowdBehaviour::Wander => Ok(Routing::Wander {
                 half: 0.5 * Vec2::new(self.area.x, self.area.y),
             }),
             CrowdBehaviour::Path => {
@@ -55,7 +55,7 @@ impl GaitCrowd3D {
                     Vec2::new(place.x, place.z)
                 });
                 Path::new(points.collect())
-                    .map(Way::Path)
+                    .map(Routing::Path)
                     .ok_or_else(|| "The Path3D has no length. Draw its curve.".to_owned())
             }
         }
@@ -124,7 +124,7 @@ impl GaitCrowd3D {
             problems.push(NO_CHARACTER.to_owned());
         }
         if self.behaviour == CrowdBehaviour::Path
-            && let Err(problem) = self.way()
+            && let Err(problem) = self.routing()
         {
             problems.push(problem);
         }
@@ -139,7 +139,7 @@ impl GaitCrowd3D {
     fn made(&mut self) -> Result<(Crowd, CrowdMesh), String> {
         let (model, styles, space) = self.walk()?;
         let character = self.character.clone().ok_or(NO_CHARACTER)?;
-        let way = self.way()?;
+        let routing = self.routing()?;
         let mut host = self.to_gd().upcast::<Node3D>();
         let mesh = {
             let _released = self.base_mut();
@@ -165,7 +165,7 @@ impl GaitCrowd3D {
             space,
             body: mesh.body.clone(),
         };
-        let mut walkers = Crowd::new(recipe, way, settings);
+        let mut walkers = Crowd::new(recipe, routing, settings);
         if self.replica.follows {
             walkers.follow();
         } else {

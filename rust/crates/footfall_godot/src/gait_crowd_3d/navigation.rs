@@ -32,9 +32,9 @@ impl Navigation {
     pub(super) fn of(crowd: &Gd<Node3D>, layers: u32) -> Option<Self> {
         let map = crowd.get_world_3d()?.get_navigation_map().to_variant();
         let mut server = Engine::singleton().get_singleton("NavigationServer3D")?;
-        let told = server.call("map_get_iteration_id", core::slice::from_ref(&map));
+        let found = server.call("map_get_iteration_id", core::slice::from_ref(&map));
         let world_from_crowd = crowd.get_global_transform();
-        (told.try_to::<i64>().unwrap_or(0) > 0).then_some(Self {
+        (found.try_to::<i64>().unwrap_or(0) > 0).then_some(Self {
             server,
             map,
             layers,
@@ -150,10 +150,10 @@ impl Navigation {
             .call("map_get_regions", core::slice::from_ref(&self.map));
         let regions: Array<Rid> = regions.try_to().unwrap_or_default();
         let boxes = regions.iter_shared().filter_map(|region| {
-            let told = self
+            let found = self
                 .server
                 .call("region_get_bounds", &[region.to_variant()]);
-            told.try_to::<Aabb>().ok()
+            found.try_to::<Aabb>().ok()
         });
         boxes.reduce(Aabb::merge).unwrap_or_default()
     }

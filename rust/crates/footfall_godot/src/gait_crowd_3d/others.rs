@@ -30,7 +30,7 @@ pub(super) struct Others {
 }
 
 impl Others {
-    /// Looks where the group's nodes are, and tells the crowd. A crowd in the group counts with everybody in it.
+    /// Gives the crowd the places of the group's nodes. A crowd in the group counts with all its walkers.
     pub(super) fn watch(
         &mut self,
         walkers: &mut Crowd,

@@ -1,11 +1,11 @@
-//! A crowd over a network: told to other peers, or following another peer's.
+//! A crowd over a network: sent to other peers, or following another peer's.
 
 use super::GaitCrowd3D;
 use footfall_rig::crowd::{Crowd, CrowdReplicaError, CrowdSender};
 use godot::global::randi;
 use godot::prelude::*;
 
-/// Refusals are told no more often than this, seconds.
+/// Shortest time between two refusals that are reported, seconds.
 const QUIET_SECS: f64 = 5.0;
 
 /// Warning where walkers are added to a crowd that is another peer's.
@@ -15,22 +15,22 @@ const FOLLOWS: &str = "This crowd follows another peer's, which alone says who i
 #[derive(Debug, Default)]
 pub(super) struct Replica {
     pub(super) follows: bool,
-    /// Peers that are told.
+    /// Peers that follow the crowd.
     peers: Vec<i32>,
     sender: Option<CrowdSender>,
     /// The crowd's time when its messages were taken last, seconds.
     taken_secs: f64,
-    /// Time until another refusal is told, seconds.
+    /// Time until another refusal is reported, seconds.
     quiet_secs: f64,
 }
 
 impl Replica {
-    /// Returns true while anybody is told.
+    /// Returns true while any peer follows the crowd.
     pub(super) const fn is_told(&self) -> bool {
         !self.peers.is_empty()
     }
 
-    /// Forgets what was told: the crowd is made anew.
+    /// Forgets what was sent: the crowd is created again.
     pub(super) fn renew(&mut self) {
         self.sender = None;
     }
@@ -46,7 +46,7 @@ impl GaitCrowd3D {
     /// Has another peer of a multiplayer game told of this crowd from now on: who is in it, and every step. `take_messages()` has what is to be sent. Called again it tells
     /// everything again, once a second. `controller/crowd_synchronizer.tscn` does all this.
     ///
-    /// While anybody is told, walkers far away share no steps: 5,000 walkers take two fifths of a core.
+    /// While any peer follows, distant walkers share no steps: 5,000 walkers take two fifths of a core.
     #[func]
     fn tell_peer(&mut self, peer: i32) {
         if !self.replica.peers.contains(&peer) {
@@ -57,7 +57,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Has a peer told no more.
+    /// Stops sending the crowd to a peer.
     #[func]
     fn forget_peer(&mut self, peer: i32) {
         self.replica.peers.retain(|other| *other != peer);
@@ -66,13 +66,13 @@ impl GaitCrowd3D {
         }
     }
 
-    /// The peers that are told this crowd.
+    /// Returns the peers to which this crowd is sent.
     #[func]
     fn get_told_peers(&self) -> PackedInt32Array {
         self.replica.peers.as_slice().into()
     }
 
-    /// The messages about this crowd since the last call, to be sent in this order: dictionaries of `peer` (`int`, 0 for all that are told), `reliable` (`bool`) and
+    /// The messages about this crowd since the last call, to be sent in this order: dictionaries of `peer` (`int`, 0 for all that follow), `reliable` (`bool`) and
     /// `bytes` (`PackedByteArray`, at most 1200). Call it in every frame.
     ///
     /// At most `bytes_per_second` of them say how walkers step, those first of whom others would err most, and as many introduce walkers to each peer that has come. 100 a

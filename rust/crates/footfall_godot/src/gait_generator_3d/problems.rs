@@ -7,14 +7,14 @@ use footfall_core::Side;
 use footfall_synth::Gait;
 use godot::prelude::*;
 
-/// Facts that were told last, so that each is told once.
+/// Facts that were announced last, so that each is announced once.
 #[derive(Default)]
 pub(super) struct Announced {
     pub(super) gait: Gait,
     /// The foot whose next landing was announced.
     pub(super) landing: Option<Side>,
     pub(super) problem: Option<String>,
-    /// True when other animation has got the body at once, and nobody was told.
+    /// True when other animation has taken the body at once and `handed_over` is still to be emitted.
     pub(super) left: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The walk over a network: told to other peers, or made as another peer tells.
+//! The walk over a network: sent to other peers, or generated from what another peer sends.
 
 use super::GaitGenerator3D;
 use super::session::WalkSession;
@@ -10,21 +10,21 @@ use footfall_synth::replica::{ReplicaError, WalkFollower, WalkIdentity, WalkSend
 use godot::classes::multiplayer_peer::ConnectionStatus;
 use godot::prelude::*;
 
-/// Refusals are told no more often than this, seconds.
+/// Shortest time between two refusals that are reported, seconds.
 const QUIET_SECS: f32 = 5.0;
-/// Updates come before the identity that they belong to, as after a teleport, for so long at most, seconds: identities are sent again where they are lost.
+/// Longest time that updates may come before their identity, as after a teleport, seconds: lost identities are sent again.
 const EARLY_SECS: f32 = 2.0;
 
-/// Walk's part in a multiplayer game.
+/// Part of the walk in a multiplayer game.
 #[derive(Debug, Default)]
 pub(super) struct Replica {
-    /// Asked for by a getter of a property, which may change nothing else.
+    /// In a cell, because the getter of a property reads it.
     sender: Cell<WalkSender>,
     led: Option<Led>,
-    /// Refusal that waits to be told, and the time until another is, seconds.
-    untold: Cell<Option<ReplicaError>>,
+    /// Refusal that waits to be reported, and the time until another may be, seconds.
+    refusal: Cell<Option<ReplicaError>>,
     quiet_secs: Cell<f32>,
-    /// Time since an update belonged to the walker, seconds.
+    /// Time since the last update of the same walker, seconds.
     strange_secs: f32,
 }
 
@@ -33,7 +33,7 @@ pub(super) struct Replica {
 struct Led {
     identity: WalkIdentity,
     follower: WalkFollower,
-    /// True where the walk under way goes by the same model; nothing before that is known.
+    /// True if the walk under way uses the same model; `None` before that is known.
     fits: Option<bool>,
 }
 
@@ -49,9 +49,9 @@ impl GaitGenerator3D {
 impl GaitGenerator3D {
     /// Identity of the walk, for other peers.
     pub(super) fn identity_bytes(&self) -> PackedByteArray {
-        let told = match (&self.replica.led, &self.session) {
+        let bytes = match (&self.replica.led, &self.session) {
             (Some(led), _) => led.identity.to_bytes(),
-            // Of a walk that another peer is about to lead there is nothing to tell.
+            // A walk that another peer is about to lead has no identity here.
             (None, Some(session)) if self.leads() => {
                 let identity = self.replica.sender.get().identity(&session.generator);
                 identity
@@ -60,7 +60,7 @@ impl GaitGenerator3D {
             }
             (None, _) => Vec::new(),
         };
-        told.as_slice().into()
+        bytes.as_slice().into()
     }
 
     /// Takes the identity of another peer's walker.
@@ -109,7 +109,7 @@ impl GaitGenerator3D {
         }
     }
 
-    /// Returns whether this peer walks the character itself: it has the authority of the node that is put elsewhere. Nodes that are added below that later do not have it.
+    /// Returns whether this peer walks the character itself: it has the authority over the node that travels. Nodes that are added below that one later do not inherit it.
     fn leads(&self) -> bool {
         let skeleton = self.base().get_skeleton();
         let travels = skeleton.and_then(|skeleton| self.find_character(&skeleton).ok());
@@ -138,7 +138,7 @@ impl GaitGenerator3D {
             led.identity = identity;
             return Ok(());
         }
-        // How often it becomes another counts on.
+        // The new follower keeps the count of how often the walker was replaced.
         let mut follower = self
             .replica
             .led
@@ -156,7 +156,7 @@ impl GaitGenerator3D {
 
     /// Emits what was refused since the last frame.
     pub(super) fn emit_refusal(&mut self) {
-        if let Some(error) = self.replica.untold.take() {
+        if let Some(error) = self.replica.refusal.take() {
             let node = self.base().get_path();
             godot_warn!("{node}: {error}");
             let reason = GString::from(&error.to_string());
@@ -170,7 +170,7 @@ impl GaitGenerator3D {
         Some(led.identity.config())
     }
 
-    /// Lets time pass for other peers' sake, and dresses the walk as theirs.
+    /// Advances the part of the walk that belongs to the network, and takes over another peer's style weights.
     pub(super) fn advance_replica(&mut self, session: &mut WalkSession, dt_secs: f64) {
         if self.replica.led.is_some() && self.leads() {
             // The authority has come to this peer: its walk goes on from here.
@@ -196,15 +196,15 @@ impl GaitGenerator3D {
 }
 
 impl Replica {
-    /// Notes a problem with what came, or was to be sent; who sends many is not told of as often.
+    /// Keeps a problem of what was received or was to be sent; of many in a row, one in a while is reported.
     fn refuse(&self, error: ReplicaError) {
         if self.quiet_secs.get() <= 0.0 {
             self.quiet_secs.set(QUIET_SECS);
-            self.untold.set(Some(error));
+            self.refusal.set(Some(error));
         }
     }
 
-    /// Leader of the walk, where that is another peer's.
+    /// Follower of the walk, if another peer leads it.
     pub(super) fn follower(&mut self) -> Option<&mut WalkFollower> {
         let led = self.led.as_mut()?;
         (led.fits == Some(true)).then_some(&mut led.follower)

@@ -18,20 +18,20 @@ pub(super) struct Changes {
 }
 
 impl SensorSession {
-    /// Changes to be told now.
+    /// Changes since the last frame, to be emitted.
     pub(super) fn changes(&mut self) -> Changes {
         let mut changes = Changes {
             problems: [(None, false); MAX_SENSORS],
             step: None,
         };
-        for (n, told) in self.problems.iter_mut().enumerate() {
+        for (n, emitted) in self.problems.iter_mut().enumerate() {
             let problem = self.reconstructor.problem(n);
-            let alike = match (&problem, &*told) {
-                (Some(now), Some(told)) => now.is_alike(told),
-                (now, told) => now.is_none() && told.is_none(),
+            let alike = match (&problem, &*emitted) {
+                (Some(now), Some(emitted)) => now.is_alike(emitted),
+                (now, emitted) => now.is_none() && emitted.is_none(),
             };
             changes.problems[n] = (problem, !alike);
-            *told = problem;
+            *emitted = problem;
         }
         let step = self.guide.map(|guide| guide.step());
         changes.step = step.filter(|_| step != self.asked);

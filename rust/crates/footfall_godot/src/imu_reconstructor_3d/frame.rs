@@ -115,7 +115,7 @@ impl ImuReconstructor3D {
         }
         let state = session.reconstructor.sensor_state();
         let behaviour = session.reconstructor.behaviour();
-        let told = (session.state, session.behaviour);
+        let before = (session.state, session.behaviour);
         (session.state, session.behaviour) = (state, behaviour);
         let changes = session.changes();
         self.session = Some(session);
@@ -128,13 +128,13 @@ impl ImuReconstructor3D {
                     .emit(&StringName::from(side.name()), place);
             }
         }
-        if told.0 != state && state == SensorState::Lost {
+        if before.0 != state && state == SensorState::Lost {
             self.signals().sensor_lost().emit();
         }
-        if told.0 != state && state == SensorState::Tracking {
+        if before.0 != state && state == SensorState::Tracking {
             self.signals().sensor_found().emit();
         }
-        if told.1 != behaviour {
+        if before.1 != behaviour {
             let name = StringName::from(behaviour.name());
             self.signals().behaviour_changed().emit(&name);
         }

@@ -32,7 +32,7 @@ pub(crate) struct SensorSession {
     /// The calibration under way, and what was asked of the player last.
     pub(super) guide: Option<CalibrationGuide>,
     pub(super) asked: Option<GuideStep>,
-    /// Problems of the sensors that were told last.
+    /// Problems of the sensors that were emitted last.
     pub(super) problems: [Option<SensorProblem>; MAX_SENSORS],
     pub(super) state: SensorState,
 }

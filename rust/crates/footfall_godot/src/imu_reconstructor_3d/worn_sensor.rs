@@ -223,7 +223,7 @@ impl WornSensor {
         if let Some(recorder) = &mut self.recorder
             && recorder.push(sample).is_err()
         {
-            // The disk is full: what was written stays, and `stop_recording` tells.
+            // The disk is full: the file keeps what was written, and `stop_recording` returns false.
             self.recorder = None;
         }
     }

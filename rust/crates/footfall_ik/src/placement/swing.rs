@@ -67,8 +67,8 @@ impl Foot {
         self.held = 0.0;
         // In the frame of the contact itself there is nothing more to land.
         let here = (animated.flat, 0.0);
-        let told = animated.landing.map(|landing| (landing.flat, landing.secs));
-        let ends = told.or_else(|| animated.contact.then_some(here));
+        let announced = animated.landing.map(|landing| (landing.flat, landing.secs));
+        let ends = announced.or_else(|| animated.contact.then_some(here));
         let planned = ends.and_then(|end| Some((end, self.toward(scene, animated, &end.0)?)));
         if let Some(((_, secs), (toward, height))) = planned {
             self.over_ground = true;

@@ -24,7 +24,7 @@ const CLEARED_SPEEDS: [f32; 2] = [1.5, 3.5];
 const CLEARED_AFTER_SECS: f32 = 0.05;
 
 /// A foot whose own sensor says that it stands may drift so much further.
-const TOLD_DRIFT: f32 = 2.0;
+const MEASURED_DRIFT: f32 = 2.0;
 
 /// Half-life of what remains of a correction when a foot lands, seconds.
 const SETTLE_HALF_LIFE_SECS: f32 = 0.01;
@@ -118,20 +118,22 @@ impl Ground {
         if let Some(plant) = own.plant {
             let drift = self.standing(side, &plant).ankle.distance(ankle);
             let leaves = match input.contacts[index] {
-                Some(told) => !told.stands || drift > TOLD_DRIFT * MAX_DRIFT_M,
+                Some(measured) => !measured.stands || drift > MEASURED_DRIFT * MAX_DRIFT_M,
                 None => body[CONTACT + index] < STANDS[1] || drift > MAX_DRIFT_M,
             };
             if leaves {
                 own.plant = None;
                 // The frame in which it left counts from when it did.
                 own.free_secs = match input.contacts[index] {
-                    Some(told) if !told.stands => told.for_secs.min(input.dt_secs) - input.dt_secs,
+                    Some(measured) if !measured.stands => {
+                        measured.for_secs.min(input.dt_secs) - input.dt_secs
+                    }
                     _ => 0.0,
                 };
             }
-        } else if input.contacts[index]
-            .map_or(body[CONTACT + index] > STANDS[0], |told| told.stands)
-        {
+        } else if input.contacts[index].map_or(body[CONTACT + index] > STANDS[0], |measured| {
+            measured.stands
+        }) {
             let pitch = settled_pitch(foot_pitch(foot));
             let settled = own.last.0.with_y(0.0);
             let heading = foot_heading(foot);
@@ -143,7 +145,7 @@ impl Ground {
         } else {
             let mut free = FootTarget { ankle, foot, toes };
             own.free_secs += input.dt_secs;
-            if input.contacts[index].is_some_and(|told| !told.stands) {
+            if input.contacts[index].is_some_and(|measured| !measured.stands) {
                 let clearance = self.clearance_m(ankle - own.free, input.dt_secs)
                     * smooth_step(own.free_secs / CLEARED_AFTER_SECS);
                 free.ankle.y += (clearance - self.rockers[index].lowest_point(&free)).max(0.0);
@@ -163,7 +165,7 @@ impl Ground {
             own.toes = own.last.2 * wanted.2.inverse();
         }
         let settles_secs = match input.contacts[index] {
-            Some(told) if own.landed => told.for_secs.min(input.dt_secs),
+            Some(measured) if own.landed => measured.for_secs.min(input.dt_secs),
             _ => input.dt_secs,
         };
         own.settle(settles_secs);

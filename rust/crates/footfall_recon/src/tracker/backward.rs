@@ -1,4 +1,4 @@
-//! The backward algorithm: what later frames tell of a recording as a whole.
+//! The backward algorithm: evidence of later frames, for whole recordings.
 
 use super::{Measurement, Tracker};
 use crate::kernels::{scale, weigh};
@@ -24,7 +24,7 @@ impl Tracker {
         self.weigh_segments();
     }
 
-    /// Goes back by a frame: `later` tells of each frame how well it explains all that was measured after the frame of `sensor`, up to a factor,
+    /// Goes back by a frame: `later` holds the likelihood, for each frame, of all that was measured after the frame of `sensor`, up to a factor,
     /// and then what was measured in that frame and after it, given the frame before: the backward variable. All frames are looked at.
     pub(crate) fn step_back(&mut self, sensor: Option<&Measurement>, later: &mut [f32]) {
         let prepared = Arc::clone(&self.prepared);

@@ -2,7 +2,9 @@
 
 use crate::link::{GUEST, Link, places, wander};
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdReplicaError, CrowdSender, CrowdSettings, Way};
+use footfall_rig::crowd::{
+    Crowd, CrowdRecipe, CrowdReplicaError, CrowdSender, CrowdSettings, Routing,
+};
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -112,7 +114,7 @@ fn crowds_of_other_styles_are_refused() {
         space: None,
         body,
     };
-    let mut styled = Crowd::new(recipe, Way::Told, CrowdSettings::default());
+    let mut styled = Crowd::new(recipe, Routing::Scripted, CrowdSettings::default());
     assert_eq!(styled.hear(people), Ok(Vec::new()), "it follows nobody");
     styled.follow();
     assert_eq!(styled.hear(people), Err(CrowdReplicaError::OtherModel));

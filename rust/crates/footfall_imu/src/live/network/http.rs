@@ -94,7 +94,7 @@ async fn batch(
     let Some(device) = senders.device(sender, |_| false, name, "sensor_logger") else {
         return StatusCode::TOO_MANY_REQUESTS;
     };
-    // A batch tells each sensor in turn; samples need them in the order of their times.
+    // A batch holds one sensor after the other; samples need the order of their times.
     readings.sort_by(|a, b| {
         a.time_secs
             .unwrap_or(0.0)

@@ -97,7 +97,7 @@ fn receive(link: &LinkWriter, socket: &UdpSocket, config: &UdpConfig) -> String 
                 io::ErrorKind::WouldBlock
                 | io::ErrorKind::TimedOut
                 | io::ErrorKind::Interrupted
-                // On Windows an answer that could not be delivered is told here.
+                // Windows reports an answer that could not be delivered here.
                 | io::ErrorKind::ConnectionReset => {}
                 _ => return format!("UDP port {}: {error}", address.port()),
             },

@@ -156,7 +156,7 @@ async fn page() -> Response {
 }
 
 /// State that the page shows, as JSON.
-fn told(status: &DeviceStatus) -> String {
+fn status_text(status: &DeviceStatus) -> String {
     let fault = serde_json::to_string(&status.fault).unwrap_or_default();
     format!(
         "{{\"samples\":{},\"lost\":{},\"rate\":{:.1},\"fault\":{fault}}}",
@@ -172,7 +172,7 @@ async fn samples(
 ) -> Response {
     let page: String = page.chars().take(LONGEST_PAGE).collect();
     match shared.slots.take(&shared.link, player, &page, &body) {
-        Ok(status) => told(&status).into_response(),
+        Ok(status) => status_text(&status).into_response(),
         Err(problem) => (StatusCode::CONFLICT, problem).into_response(),
     }
 }
@@ -208,9 +208,9 @@ async fn converse(mut socket: WebSocket, shared: Shared, player: usize, page: St
                 match shared.slots.take(&shared.link, player, &page, &bytes) {
                     Ok(known) => status = Some(known),
                     Err(problem) => {
-                        let told = serde_json::json!({ "problem": problem }).to_string();
+                        let answer = serde_json::json!({ "problem": problem }).to_string();
                         // The page is gone or will go.
-                        drop(socket.send(Message::Text(told.into())).await);
+                        drop(socket.send(Message::Text(answer.into())).await);
                         return;
                     }
                 }
@@ -225,7 +225,7 @@ async fn converse(mut socket: WebSocket, shared: Shared, player: usize, page: St
                     text = Some("{\"vibrate\":30}".to_owned());
                 } else if since_told >= TELL_EVERY {
                     since_told = 0;
-                    text = status.as_ref().map(told);
+                    text = status.as_ref().map(status_text);
                 }
                 if silent > SILENT_LOOKS {
                     return;
