@@ -82,8 +82,8 @@ pub(crate) struct GaitGenerator3D {
 
     /// Walking or running speed in metres per second. Cadence and step length follow as in people; `gait` sets when the character runs.
     ///
-    /// A change applies at once while a foot of a walk is in the air, otherwise with the next step. `GaitModel.get_speed_range()` returns the speeds that the model was
-    /// trained on. At 0 the character stops within two steps and stands, or turns on the spot by `turn_rate`.
+    /// A change applies at once while a foot of a walk is in the air, otherwise with the next step. `GaitModel.get_speed_range()` returns the speeds that the model
+    /// was trained on. At 0 the character stops within two steps and stands, or turns on the spot by `turn_rate`.
     #[export(range = (0.0, 5.0, 0.01, or_greater, suffix = "m/s"))]
     #[var(set = set_speed)]
     #[init(val = 1.3)]
@@ -96,9 +96,8 @@ pub(crate) struct GaitGenerator3D {
 
     /// Direction of travel relative to the facing direction, in radians: 0 forwards, 90° to the left, -90° to the right, 180° backwards.
     ///
-    /// For characters that look elsewhere than where they go. Changes apply as for `speed`; large changes take several
-    /// steps. Steps sideways and backwards are shorter than forward steps, as in people: a character reaches about 1.6 m/s sideways and
-    /// 2.0 m/s backwards, whatever `speed` is.
+    /// For characters that look elsewhere than where they go. Changes apply as for `speed`; large changes take several steps. Steps sideways and backwards are
+    /// shorter than forward steps, as in people: a character reaches about 1.6 m/s sideways and 2.0 m/s backwards, whatever `speed` is.
     #[export(range = (-180.0, 180.0, 1.0, radians_as_degrees, suffix = "°"))]
     #[var(set = set_direction)]
     direction: f64,
@@ -145,9 +144,9 @@ pub(crate) struct GaitGenerator3D {
 
     /// Seed of the walk. Equal seeds give equal walks.
     ///
-    /// 0 derives the seed and the initial phase from the node's path in its scene: the walk is the same whenever the scene runs, and
-    /// differs between nodes. `get_effective_seed()` returns the seed in use. A saved state
-    /// holds the seed, so a loaded walk continues alike wherever the node is. Changing it starts the walk anew.
+    /// 0 derives the seed and the initial phase from the node's path in its scene: the walk is the same whenever the scene runs, and differs between nodes.
+    /// `get_effective_seed()` returns the seed in use. A saved state holds the seed, so a loaded walk continues alike wherever the node is. Changing it starts the
+    /// walk anew.
     #[export]
     #[var(set = set_seed)]
     seed: i64,
@@ -178,8 +177,8 @@ pub(crate) struct GaitGenerator3D {
     /// Resolution of the walk: every frame of the model, every second (half) or every fourth (quarter).
     ///
     /// Lower it for characters far from the camera. The walk is the same, but feet slip slightly between frames. Auto chooses by the character's height in the
-    /// viewport of the current camera: full from 150 pixels, half from 40, quarter below, and full without a camera; `get_current_detail()` returns its choice. Changes apply with
-    /// the next step.
+    /// viewport of the current camera: full from 150 pixels, half from 40, quarter below, and full without a camera; `get_current_detail()` returns its choice.
+    /// Changes apply with the next step.
     #[export]
     detail: GaitDetail,
 

@@ -14,7 +14,7 @@ use std::sync::{Arc, Weak};
 /// Problem of a resource without a file.
 const EMPTY: &str = "the gait model is empty. Load a .footfall or .footdyn file instead";
 
-/// Problem of a model without styles.
+/// Problem of styles for a model that has none.
 pub(crate) const NO_STYLES: &str = "A switching model (.footdyn) has no styles and walks without them. Clear Styles, or load a .footfall file into Model.";
 
 /// Gait model learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
@@ -38,9 +38,9 @@ pub(crate) struct GaitModel {
 
     /// The model in `data`, or why there is none.
     loaded: Loaded<WalkModel>,
-    /// The slowest and the fastest walk, once they were asked for: those of a switching model have to be walked.
+    /// The slowest and the fastest walk, computed on demand: those of a switching model have to be generated.
     speeds: OnceCell<[f32; 2]>,
-    /// Spaces that characters in the same styles share.
+    /// Style spaces that characters with the same styles share.
     spaces: Vec<Weak<StyleSpace>>,
     base: Base<Resource>,
 }
@@ -124,10 +124,10 @@ impl GaitModel {
         self.loaded.content(EMPTY)
     }
 
-    /// The model with these styles, prepared once for all characters that wear the same.
+    /// The model with these styles, prepared once for all characters with the same styles.
     ///
     /// # Errors
-    /// Text for the user that says what is wrong with the model, or why it cannot wear the styles.
+    /// Text for the user that says what is wrong with the model, or with the styles.
     pub(crate) fn source(&mut self, styles: &[Arc<TrainedStyle>]) -> Result<WalkSource, String> {
         let trained = match &*self.trained()? {
             WalkModel::Gait(model) => Arc::clone(model),
@@ -145,7 +145,7 @@ impl GaitModel {
         Ok(WalkSource::Styled(space))
     }
 
-    /// The trained walk, and with these styles if some character walks so already.
+    /// The trained walk, and its style space for these styles if a character uses it already.
     ///
     /// # Errors
     /// Text for the user that says what is wrong with the model.
@@ -161,7 +161,7 @@ impl GaitModel {
         Ok((Arc::clone(model), self.space_with(styles)))
     }
 
-    /// Shares a model with styles, prepared elsewhere, with characters that wear the same.
+    /// Shares a model with styles, prepared elsewhere, with characters of the same styles.
     pub(crate) fn share(&mut self, space: &Arc<StyleSpace>) {
         self.spaces.retain(|space| space.strong_count() > 0);
         self.spaces.push(Arc::downgrade(space));

@@ -83,7 +83,7 @@ impl GaitStyle {
 }
 
 impl GaitStyle {
-    /// The style, shared with every character that wears it.
+    /// The style, shared with every character that has it.
     ///
     /// # Errors
     /// Text for the user that says what is wrong with the file.

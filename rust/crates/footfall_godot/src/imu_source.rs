@@ -20,14 +20,14 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 pub(crate) const CLASSES: &str =
     "ReplayImuSource,PhoneImuSource,SerialImuSource,NetworkImuSource,DeviceImuSource,NodeImuSource";
 
-/// A device that says nothing for so long is silent, seconds.
+/// Time without samples after which a device counts as silent, seconds.
 const SILENT_SECS: f64 = 0.5;
 
 /// Samples that a source gives in a frame.
 pub(crate) enum SourceSamples {
     /// A recording, and whether it begins anew at its end.
     Recording(Arc<ImuRecording>, bool),
-    /// A sensor that is heard live.
+    /// A live sensor.
     Device(Device),
     /// Measurement of the device that the game runs on.
     Now(ImuSample),
@@ -37,7 +37,7 @@ pub(crate) enum SourceSamples {
     Nothing,
 }
 
-/// Asks a source for what it gives to a node; live ones open their ports.
+/// Asks a source for its samples; live sources open their ports.
 pub(crate) fn hear(source: &Gd<Resource>, listener: &Gd<Node>) -> SourceSamples {
     if let Ok(replay) = source.clone().try_cast::<ReplayImuSource>() {
         let replay = replay.bind();
@@ -174,7 +174,7 @@ impl Live {
                     "silent"
                 }
             }
-            // Others are heard at the port, but not this one.
+            // Other devices send to the port, but not this one.
             None if state.name() == receiving => "listening",
             _ => state.name(),
         }

@@ -51,8 +51,8 @@ fn load<T: Inherits<Resource>>(name: &str) -> Option<Gd<T>> {
     loader.load(&path)?.try_cast().ok()
 }
 
-/// Value for a node's property. In the editor the add-on's model stands in for a new one, which nobody could fill there: that is what a
-/// node gets that is added to a scene, and what *New* in the inspector gives.
+/// Value for a node's property. In the editor the add-on's model replaces a new, empty one, which cannot be filled there: a node that is
+/// added to a scene gets one, and *New* in the inspector creates one.
 pub(crate) fn instead_of_new<T: Shipped>(given: Option<Gd<T>>) -> Option<Gd<T>> {
     let is_new = |model: &Gd<T>| model.bind().is_new();
     let replaced = Engine::singleton().is_editor_hint() && given.as_ref().is_some_and(is_new);

@@ -65,7 +65,7 @@ pub struct Stance {
     pub hip_from_ankle: [Vec3; PHASES],
 }
 
-/// Source of a skeleton, as far as its joints tell.
+/// Source of a skeleton, as far as its joints show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Origin {
     /// A skeleton that may have been made in any way: only strong evidence moves its joints.
@@ -96,7 +96,7 @@ impl Origin {
         }
     }
 
-    /// Fewer strides, or none of one leg, tell nothing.
+    /// Fewer strides, or none of one leg, give no estimate.
     const fn least_strides(self) -> usize {
         match self {
             Self::Unknown => 3,
@@ -142,7 +142,7 @@ pub enum HipVerdict {
     AsRecorded,
     /// The body is the canonical one; there is nothing to fit.
     OwnBody,
-    /// Too few strides of plain walking to tell.
+    /// Too few strides of plain walking.
     TooLittleWalking,
     /// The knees bend as people's do, or nearly so.
     Natural,

@@ -18,7 +18,7 @@ const APART_SECS: f64 = 0.3;
 /// Within that time the foot moves at least so far along the walk against the hips, metres.
 const LEAST_EXCURSION_M: f32 = 0.1;
 
-/// Steady walking is told from so long before and after a frame, seconds.
+/// Time before and after a frame from which steady walking is detected, seconds.
 const STEADY_SECS: f64 = 0.5;
 
 /// Slowest and fastest hips of a walk, metres a second.

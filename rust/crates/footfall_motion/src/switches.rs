@@ -255,7 +255,7 @@ pub struct SwitchResidual {
 }
 
 /// The frames in which each foot certainly bears on the ground: from its switch until the last one of the other foot before its own next. When it
-/// leaves the ground after that, switches do not tell.
+/// leaves the ground after that is not determined by switches.
 pub fn stances(switches: &[Switch], frames: usize) -> [Vec<FrameSpan>; 2] {
     let mut stances = [Vec::new(), Vec::new()];
     for (index, switch) in switches.iter().enumerate() {
@@ -275,7 +275,7 @@ pub fn stances(switches: &[Switch], frames: usize) -> [Vec<FrameSpan>; 2] {
 }
 
 /// The steps between switches, as walks; steps shorter than 0.15 s or longer than 1.5 s break a walk. Which steps begin and end a
-/// walk, and when feet leave the ground, switches do not tell.
+/// walk, and when feet leave the ground, is not determined by switches.
 pub fn walks(switches: &[Switch], frame_rate_hz: f64) -> Vec<Walk> {
     let mut walks: Vec<Walk> = Vec::new();
     let mut last_end = None;

@@ -1,6 +1,6 @@
 //! Live reconstruction: samples to poses.
 
-mod worn;
+mod sensors;
 
 use crate::blend::{Blend, Blending};
 use crate::confidence::Confidence;

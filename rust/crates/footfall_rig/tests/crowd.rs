@@ -160,13 +160,13 @@ fn rows_that_meet_pass_through_each_other_without_bumping() {
 }
 
 /// Least distance of a walker from somebody who stands in its way and is not of the crowd.
-fn nearest_to_other(tells: bool) -> f32 {
+fn nearest_to_other(is_given: bool) -> f32 {
     let mut crowd = crowd(Routing::Scripted);
     crowd.add([(Vec3::ZERO, 0.0)].into_iter());
     walk(&mut crowd, 0.1, |_| {});
     crowd.agents_mut()[0].go_to(Vec2::new(0.0, 9.0));
     let other = Vec2::new(0.05, 5.0);
-    if tells {
+    if is_given {
         crowd.set_others([other, Vec2::NAN].into_iter().map(|place| Passerby {
             place,
             velocity: Vec2::ZERO,
@@ -183,9 +183,9 @@ fn nearest_to_other(tells: bool) -> f32 {
 
 #[test]
 fn whoever_else_is_about_is_walked_around() {
-    let [told, untold] = [true, false].map(nearest_to_other);
-    assert!(untold < 0.2, "it would walk through: {untold} m");
-    assert!(told > 0.45, "{told} m");
+    let [avoided, ignored] = [true, false].map(nearest_to_other);
+    assert!(ignored < 0.2, "it would walk through: {ignored} m");
+    assert!(avoided > 0.45, "{avoided} m");
 }
 
 #[test]

@@ -36,7 +36,7 @@ impl core::fmt::Debug for Reporter {
 
 impl Reporter {
     /// Reports the current stage; returns whether to continue.
-    pub fn tell(&self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
+    pub fn report(&self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
         self.update(|progress| {
             task.clone_into(&mut progress.task);
             progress.done = done;
@@ -62,7 +62,7 @@ impl Reporter {
 
 impl Progress for Reporter {
     fn advance(&mut self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
-        self.tell(task, done, total)
+        self.report(task, done, total)
     }
 
     fn fit(&mut self, log_likelihood: f64) {

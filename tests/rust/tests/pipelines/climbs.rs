@@ -135,7 +135,7 @@ fn stairs(body: f32, rise: f32, count: usize) -> Vec<Climb> {
                 },
                 distance_m,
                 origin: ORIGINS[index / 4 % 2],
-                told: true,
+                announced: true,
                 seed: index as u64,
             });
         }
@@ -234,7 +234,7 @@ fn nobody_falls_through_stairs() {
             },
             distance_m,
             origin: ORIGINS[index / 7 % 2],
-            told: true,
+            announced: true,
             seed: index as u64,
         });
     }
@@ -301,7 +301,7 @@ fn an_animation_that_tells_nothing_does_not_lose_the_ground() {
         .collect();
     climbs.retain(|climb| climb.speed_mps < 1.5);
     for climb in &mut climbs {
-        climb.told = false;
+        climb.announced = false;
     }
     let survey = Survey::of(&climbs);
     survey.show();

@@ -308,7 +308,7 @@ fn skeletons_in_view() -> Vec<Gd<Skeleton3D>> {
         .collect()
 }
 
-/// Adds a style to what a walker wears, or gives it full weight if it is worn already.
+/// Adds a style to a walker, or gives it full weight if the walker has it already.
 fn wear(walker: &Gd<GaitGenerator3D>, style: &Gd<GaitStyle>) {
     let Some(mut undo) = EditorInterface::singleton().get_editor_undo_redo() else {
         return;
@@ -319,8 +319,8 @@ fn wear(walker: &Gd<GaitGenerator3D>, style: &Gd<GaitStyle>) {
     let mut weights = old_weights.clone();
     weights.resize(styles.len());
     let path = style.get_path();
-    let place = styles.iter_shared().position(|worn| {
-        worn.is_some_and(|worn| &worn == style || (!path.is_empty() && worn.get_path() == path))
+    let place = styles.iter_shared().position(|known| {
+        known.is_some_and(|known| &known == style || (!path.is_empty() && known.get_path() == path))
     });
     if let Some(place) = place {
         weights.as_mut_slice()[place] = 1.0;

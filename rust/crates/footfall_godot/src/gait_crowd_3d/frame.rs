@@ -1,4 +1,4 @@
-//! One frame of a crowd: time passes, everybody is drawn, and signals are emitted.
+//! One frame of a crowd: walkers move and are drawn, and signals are emitted.
 
 use super::behaviour::MOST_AGENTS;
 use super::navigation::Navigation;
@@ -10,7 +10,7 @@ use godot::classes::{Engine, Node3D};
 use godot::prelude::*;
 
 impl GaitCrowd3D {
-    /// Lets time pass; `waits` for walkers that are being made, or leaves them for a later frame.
+    /// Advances the crowd; `waits` for pending walkers, or leaves them for a later frame.
     pub(super) fn advance_by(&mut self, dt_secs: f32, waits: bool) {
         if !self.make() || !self.begin_walkers(waits) {
             return;
@@ -67,7 +67,7 @@ impl GaitCrowd3D {
         });
         let landed = self.landed(&walkers);
         let began: PackedInt32Array = walkers.began().iter().copied().collect();
-        // A script that was called in between may have made everything anew.
+        // A script that was called in between may have created the crowd again.
         if self.walkers.is_none() && self.base().is_inside_tree() {
             self.walkers = Some(walkers);
             self.scene = drawn;
@@ -82,7 +82,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Lets those begin who were made meanwhile; whether there is a crowd still.
+    /// Starts walkers that were made meanwhile; returns whether there still is a crowd.
     fn begin_walkers(&mut self, waits: bool) -> bool {
         let Some(walkers) = &mut self.walkers else {
             return false;
@@ -123,7 +123,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Arguments of the signal `footsteps`, if any feet landed and anybody listens; nothing in the editor.
+    /// Arguments of the signal `footsteps`; `None` if no foot landed, in the editor, and without a connection.
     fn landed(
         &self,
         walkers: &Crowd,

@@ -15,7 +15,7 @@ use godot::classes::{Node3D, Path3D};
 use godot::prelude::*;
 use std::sync::Arc;
 
-/// A walk, its styles, and both prepared if somebody walks so already.
+/// A model, its styles, and both prepared together if they are in use already.
 type CrowdWalk = (Arc<GaitModel>, Vec<Arc<GaitStyle>>, Option<Arc<StyleSpace>>);
 
 impl GaitCrowd3D {
@@ -61,7 +61,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Makes the walkers if there are none yet; whether there are.
+    /// Creates the crowd if there is none yet; returns whether there is one.
     pub(super) fn make(&mut self) -> bool {
         if self.walkers.is_some() {
             return true;
@@ -79,7 +79,7 @@ impl GaitCrowd3D {
         self.walkers.is_some()
     }
 
-    /// As [`make`](Self::make), with a row for everybody who was added.
+    /// As [`make`](Self::make), with a row for every added walker.
     pub(super) fn make_whole(&mut self) -> bool {
         let made = self.make();
         if let Some(walkers) = &mut self.walkers {
@@ -99,7 +99,7 @@ impl GaitCrowd3D {
         self.problem = None;
     }
 
-    /// There is no crowd, for this reason, until something changes.
+    /// Removes the crowd and reports the reason; it is not created again until a setting changes.
     pub(super) fn fail(&mut self, problem: String) {
         self.forget();
         self.problem = Some(problem.clone());
@@ -110,7 +110,7 @@ impl GaitCrowd3D {
     pub(super) fn problems(&self) -> PackedStringArray {
         let mut problems: Vec<String> = Vec::new();
         let checked = self.walk().and_then(|(model, styles, space)| {
-            // Checked already when somebody walks so.
+            // In use already, and so checked.
             if space.is_some() {
                 return Ok(());
             }

@@ -6,12 +6,12 @@ use glam::{Vec2, Vec3, Vec3Swizzles as _};
 use godot::classes::{Engine, Node3D, Object};
 use godot::prelude::*;
 
-/// Ways that are looked for in one frame at most: each costs tens of microseconds.
+/// Most routes that are computed in one frame: each takes tens of microseconds.
 const MOST_A_FRAME: usize = 32;
-/// Walkers who are looked at in one frame, lest they walk into walls: so many, or as many as it takes to look at everybody within so many frames.
+/// Walkers whose ground is checked in one frame, to keep them off walls: this many, or as many as are needed to check all of them within this many frames.
 const MOST_KEPT: usize = 32;
 const MOST_FRAMES: usize = 60;
-/// The ground is looked at so far ahead of them and as far as this beside that, metres.
+/// Distances of the checked ground ahead of a walker, and beside that, metres.
 const AHEAD_M: f32 = 1.0;
 const ASIDE_M: f32 = 1.5;
 /// A place counts as on the map when it is no farther off, metres. A map keeps clear of walls by the radius of its agents.

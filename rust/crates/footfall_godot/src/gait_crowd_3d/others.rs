@@ -1,4 +1,4 @@
-//! Everybody else about: nodes of a group that a crowd's walkers keep clear of.
+//! Nodes of a group that a crowd's walkers avoid.
 
 use super::GaitCrowd3D;
 use crate::convert;

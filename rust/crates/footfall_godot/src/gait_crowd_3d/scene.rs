@@ -80,7 +80,7 @@ impl CrowdScene {
         })
     }
 
-    /// Gives it room for everybody; where many come at once, within some frames.
+    /// Makes space for all walkers; for many new ones at once, within some frames.
     fn fit(&mut self, host: &Gd<Node3D>, walkers: &Crowd, limits: &Limits, look: &DrawSettings) {
         let (room, each) = rooms(walkers, limits);
         let places = walkers.agents().len();
@@ -104,7 +104,7 @@ impl CrowdScene {
                 core::mem::replace(flock, made).free();
                 left -= 1;
                 self.unwritten[group] = true;
-                // Nobody's pose is in it yet.
+                // It holds no pose yet.
                 for tick in self.ticks.iter_mut().skip(group).step_by(GROUPS) {
                     *tick = 0;
                 }
@@ -127,7 +127,7 @@ impl CrowdScene {
         &self.actors
     }
 
-    /// Draws everybody as they are now.
+    /// Draws all walkers.
     pub(super) fn draw(
         &mut self,
         walkers: &mut Crowd,
@@ -138,7 +138,7 @@ impl CrowdScene {
         self.drawn += 1;
         self.fit(host, walkers, limits, look);
         if !walkers.began().is_empty() && self.frame == walkers.frame() {
-            // While time stands still it is nobody's turn.
+            // While time stands still no group is due.
             self.unwritten = [true; GROUPS];
         }
         self.frame = walkers.frame();
@@ -197,7 +197,7 @@ impl CrowdScene {
         }
     }
 
-    /// Everybody with a new pose in every frame, and those for whom there was no scene.
+    /// Draws walkers with a new pose in every frame, and those for which there was no scene.
     fn draw_near(&mut self, walkers: &Crowd, planes: &[Vec4]) {
         let (agents, tiers, drawn) = (walkers.agents(), walkers.tiers(), walkers.drawn());
         for shown in &mut self.shown {
@@ -249,8 +249,8 @@ impl CrowdScene {
         });
     }
 
-    /// Everybody far away: the group that has just moved gets the poses where it was and where it is, and is drawn on its way from
-    /// the one to the other.
+    /// Draws distant walkers: the group that has just moved gets its previous and its new poses, and is drawn between
+    /// the two.
     fn draw_far(&mut self, walkers: &Crowd, planes: &[Vec4]) {
         let (tiers, drawn) = (walkers.tiers(), walkers.drawn());
         let frame = walkers.frame();

@@ -64,7 +64,7 @@ impl SharedFlock {
         })
     }
 
-    /// Gives everybody room, and takes in what was not worn before.
+    /// Makes space for all walkers and for new style mixtures.
     fn fit(&mut self, walkers: &Crowd, host: &Gd<Node3D>, mesh: &CrowdMesh, look: &DrawSettings) {
         let rows = walkers.agents().len();
         let part = Part {
@@ -90,7 +90,7 @@ impl SharedFlock {
         self.write_poses(&mesh.turned_by);
     }
 
-    /// Writes the poses of what has come to be worn.
+    /// Writes the poses of new style mixtures.
     fn write_poses(&mut self, turned_by: &[Joint; JOINT_COUNT]) {
         let all = self.bodies.len();
         if self.written.contains(&all) || self.taken > self.poses {
@@ -111,7 +111,7 @@ impl SharedFlock {
         self.flock.upload_poses();
     }
 
-    /// Draws everybody who shares poses and is seen, those who are small with the stand-in.
+    /// Draws the visible walkers with shared poses, the small ones with the stand-in.
     pub(super) fn draw(
         &mut self,
         walkers: &Crowd,

@@ -92,7 +92,7 @@ impl GaitGenerator3D {
         }
     }
 
-    /// Has the editor draw the way ahead anew. Games without the editor's half have nobody who draws it.
+    /// Makes the editor redraw the path ahead. Exported games have no such drawing.
     pub(super) fn redraw_way(&mut self) {
         if cfg!(feature = "editor") {
             self.base_mut().update_gizmos();

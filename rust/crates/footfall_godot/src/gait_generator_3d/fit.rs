@@ -26,7 +26,7 @@ pub(super) struct Fitting {
     pub(super) seen: ObservedMotion,
 }
 
-/// Maker of walks.
+/// Settings of the walks that are compared with a motion.
 pub(super) struct Maker<'a> {
     pub(super) source: &'a WalkSource,
     pub(super) style_weights: &'a [f32],

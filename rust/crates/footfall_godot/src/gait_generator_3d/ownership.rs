@@ -1,4 +1,4 @@
-//! Control of the skeleton: by the walk, by other animation, or on the way from one to the other.
+//! Ownership of the skeleton: by the walk, by other animation, or in transition.
 
 use super::GaitGenerator3D;
 use super::session::WalkSession;
@@ -9,19 +9,19 @@ use glam::Vec3;
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
-/// A character whose hips are farther from where it walks is moved to them, metres: a ragdoll lies where it fell.
+/// Distance between hips and walk beyond which the character is moved to its hips, metres: a ragdoll lies where it fell.
 const FAR_M: f32 = 0.4;
-/// Longer than this nobody goes over, seconds.
+/// Longest transition, seconds.
 const MOST_SECS: f64 = 10.0;
 /// Time of the transition of a walk that was measured again, seconds.
 const RESIZE_SECS: f64 = 0.3;
 
-/// States of control of the skeleton.
+/// Owner of the skeleton.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Ownership {
     #[default]
     Walking,
-    /// The walk gives the body away.
+    /// Other animation fades in.
     Leaving,
     /// Other animation poses the skeleton.
     Away,
@@ -74,7 +74,7 @@ impl GaitGenerator3D {
 }
 
 impl GaitGenerator3D {
-    /// Carries out what was asked for, as soon as enough is known.
+    /// Carries out a request as soon as the motion is known.
     pub(super) fn fulfil(
         &mut self,
         session: &mut WalkSession,
@@ -83,7 +83,7 @@ impl GaitGenerator3D {
     ) -> Result<(), String> {
         match (self.ownership, self.request) {
             (Ownership::Away, request) => {
-                // Only what was shown before this frame counts: a ragdoll may just have been switched off.
+                // Only frames before this one count: a ragdoll may just have been switched off.
                 if let Some(Request::TakeOver(secs)) = request
                     && session.watched.in_world.is_known()
                 {
@@ -177,7 +177,7 @@ impl GaitGenerator3D {
     /// The controls that a walk follows now.
     pub(super) fn controls(&self) -> Controls {
         if self.replica.is_led() {
-            // Until its walker is heard of.
+            // Until the first update of its walker.
             return Controls::STAND;
         }
         Controls {

@@ -1,4 +1,4 @@
-//! Preview of the walk's way, for the editor to draw.
+//! Preview of the walk's path, which the editor draws.
 
 use super::GaitGenerator3D;
 use crate::convert;
@@ -24,7 +24,7 @@ pub(crate) struct PreviewPath {
 }
 
 impl GaitGenerator3D {
-    /// The way of the walk from its beginning, under the controls as they are; `None` where nobody can walk.
+    /// Path of the walk from its beginning, with the current controls; `None` if the character cannot walk.
     pub(crate) fn preview_path(&self) -> Option<PreviewPath> {
         let controls = self.controls();
         let skeleton = self.base().get_skeleton()?;

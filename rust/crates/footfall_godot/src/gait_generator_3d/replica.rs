@@ -96,7 +96,7 @@ impl GaitGenerator3D {
         if state.is_empty() || self.leads() {
             return;
         }
-        // Without an identity or a walk it belongs to nobody yet; the next one will.
+        // Without an identity or a walk the update has no walker yet; a later one will.
         let (Some(led), Some(session)) = (&mut self.replica.led, &self.session) else {
             return;
         };

@@ -26,11 +26,11 @@ pub(crate) struct WalkSession {
     source: WalkSource,
     /// In the space above the ground under the character.
     pub(super) pose: Pose,
-    /// Motion that the skeleton showed last, in the space where the walk began.
+    /// Last motion of the skeleton, in the space where the walk began.
     pub(super) shown: ObservedMotion,
     /// Handover from the motion before.
     pub(super) handover: Option<Handover>,
-    /// Since somebody else began to pose the skeleton.
+    /// Observed motion since other animation began to pose the skeleton.
     pub(super) watched: super::watch::Watch,
     pub(super) leaving: Option<Leaving>,
     size: Size,
@@ -44,7 +44,7 @@ struct Size {
 }
 
 impl WalkSession {
-    /// Starts a walk where the character stands; when `controls` ask for none, it stands there.
+    /// Starts a walk at the character's place; the character stands if `controls` request no motion.
     ///
     /// # Errors
     /// Reason of the generator's refusal, for the user.
@@ -77,12 +77,12 @@ impl WalkSession {
         })
     }
 
-    /// Returns whether this walk still is one of the model, its styles, the skeleton and the character.
+    /// Returns whether the walk still has this model with its styles, this skeleton and its character.
     pub(super) fn is_for(&mut self, source: &WalkSource, skeleton: &Gd<Skeleton3D>) -> bool {
         self.source.is(source) && self.traveller.is_for(skeleton)
     }
 
-    /// Returns whether the character has another size than it was measured with, and keeps it.
+    /// Returns whether the character has changed its size and keeps the new one.
     pub(super) fn has_new_size(&mut self) -> bool {
         let scale = self.traveller.scale();
         let kept = (scale - self.size.scale).abs() < 1e-4 * scale;
@@ -108,8 +108,8 @@ impl WalkSession {
         Ok(())
     }
 
-    /// Goes on from another motion, given on the ground under the character in metres of the body: begins where the walk fits that,
-    /// and lets what parts them die away.
+    /// Continues from another motion, given on the ground under the character in metres of the body: begins at the best matching phase
+    /// and lets the difference fade out.
     ///
     /// # Errors
     /// Reason of the generator's refusal, for the user.
@@ -148,7 +148,7 @@ impl WalkSession {
         Ok(())
     }
 
-    /// Motion that the skeleton showed last, on the ground under the character, in metres of the world.
+    /// Last motion of the skeleton, on the ground under the character, in metres of the world.
     pub(super) fn shown_here(&self) -> ObservedMotion {
         let place = Frame::from(self.traveller.ground_place());
         self.shown.relative_to(&place, self.traveller.scale())
@@ -196,7 +196,7 @@ impl WalkSession {
         travel
     }
 
-    /// Returns whether the motion before has just died away.
+    /// Returns whether the previous motion has just faded out.
     pub(super) fn has_arrived(&mut self) -> bool {
         self.handover
             .take_if(|handover| handover.is_over())
@@ -205,7 +205,7 @@ impl WalkSession {
 
     /// Lets time pass without travelling.
     pub(super) fn skip(&mut self, secs: f64, controls: Controls) {
-        // The generator takes no more of it at once.
+        // The generator limits a single step to this.
         const MOST_SECS: f64 = 5.0;
         let mut left = secs;
         while left > 0.0 {
@@ -218,7 +218,7 @@ impl WalkSession {
         self.traveller.place(self.generator.start_from_character());
     }
 
-    /// Poses the skeleton, but for what the weights leave to other animation.
+    /// Poses the skeleton, except for the parts that the weights leave to other animation.
     pub(super) fn write(&mut self, skeleton: &mut Gd<Skeleton3D>, weights: &LayerWeights) {
         self.traveller
             .binding

@@ -14,7 +14,7 @@ impl GaitGenerator3D {
         self.fallback.model(self.model.as_ref())
     }
 
-    /// Returns whether there are styles that the model cannot wear.
+    /// Returns whether there are styles although the model supports none.
     pub(super) fn passes_over_styles(&self) -> bool {
         !self.styles.is_empty()
             && self

@@ -1,4 +1,4 @@
-//! Watching how somebody else poses the skeleton.
+//! Observation of other animation on the skeleton.
 
 use super::observed_motion::{ObservedMotion, raise};
 use super::session::WalkSession;

@@ -77,7 +77,7 @@ impl BodyModifier for ImuReconstructor3D {
 }
 
 impl ImuReconstructor3D {
-    /// One frame: samples are heard, the character travels, bones are posed, signals are emitted.
+    /// One frame: takes samples, moves the character, poses bones, emits signals.
     fn drive(&mut self, mut session: SensorSession, skeleton: &Gd<Skeleton3D>, delta: f64) {
         let in_editor = Engine::singleton().is_editor_hint();
         let delta = if in_editor { 0.0 } else { delta.max(0.0) };

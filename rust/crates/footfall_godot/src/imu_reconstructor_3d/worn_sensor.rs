@@ -1,4 +1,4 @@
-//! One sensor as it is worn: what is heard of it, and how its axes lie.
+//! One worn sensor: its samples and its mounting.
 
 use crate::imu_source::SourceSamples;
 use footfall_imu::live::Device;
@@ -15,7 +15,7 @@ use std::thread::JoinHandle;
 /// Samples that are window to find the mounting from, seconds.
 const KEPT_SECS: f64 = 8.0;
 
-/// The mounting is looked for when so much was measured since the last time, seconds: the first time sooner.
+/// Length of the measurement before the mounting is estimated for the first time, and before each further time, seconds.
 const FIRST_SECS: f64 = 4.0;
 const AGAIN_SECS: f64 = 12.0;
 
@@ -27,33 +27,33 @@ const MOST_SAMPLES: usize = 4096;
 pub(super) struct WornSensor {
     replay: Option<Replay>,
     device: Option<Device>,
-    /// When the newest sample of a live sensor was measured, by our clock.
+    /// Time of a live sensor's newest sample, by our clock.
     live_secs: Option<f64>,
     tracked: Tracked,
     recorder: Option<Recorder>,
     window: SampleWindow,
     looked_at_secs: Option<f64>,
-    /// The thread that looks, and whether it was asked to.
+    /// The thread that estimates the mounting, and whether the calibration asked for it.
     worker: Option<(JoinHandle<Outcome>, bool)>,
-    /// The best that was found, or the one that was calibrated.
+    /// The best estimate so far, or the calibrated mounting.
     pub(super) mounting: Option<Mounting>,
-    /// True when the mounting is a calibration's, which nothing replaces.
+    /// True if the mounting comes from a calibration, which nothing replaces.
     calibrated: bool,
 }
 
-/// Result of a thread's look at the last samples: nothing when there was too little motion.
+/// Result of an estimate from the last samples; `None` if there was too little motion.
 type Outcome = Option<(Examination, Option<Rest>)>;
 
-/// Changes about how a sensor is worn.
+/// Result of an estimate of the mounting.
 #[derive(Debug, Default)]
 pub(super) struct MountingReport {
-    /// True for a look that was asked for, which saw all that was measured by then.
+    /// True for an estimate that the calibration asked for, which includes all samples up to then.
     pub(super) asked: bool,
     /// A mounting to take over.
     pub(super) mounting: Option<Mounting>,
     /// Measurement at rest.
     pub(super) rest: Option<Rest>,
-    /// Problem with how it is worn.
+    /// Problem with the mounting.
     pub(super) finding: Option<SensorProblem>,
 }
 
@@ -105,7 +105,7 @@ struct Replay {
 }
 
 impl Replay {
-    /// The next sample, when its time has come.
+    /// The next sample, if it is due.
     fn next_sample(&mut self, repeats: bool) -> Option<ImuSample> {
         let samples = &self.recording.samples;
         let length = self.recording.duration_secs();
@@ -128,7 +128,7 @@ impl Replay {
 }
 
 impl WornSensor {
-    /// Gives the samples of the time that passes, and keeps them.
+    /// Passes on the samples of a frame, and keeps them.
     pub(super) fn hear(
         &mut self,
         samples: SourceSamples,
@@ -146,7 +146,7 @@ impl WornSensor {
             }
             SourceSamples::Device(device) => {
                 if !self.device.as_ref().is_some_and(|known| known.is(&device)) {
-                    // What came while nobody listened is past.
+                    // Samples from before this node listened are dropped.
                     device.take(|_| {});
                     self.device = Some(device.clone());
                 }
@@ -205,7 +205,7 @@ impl WornSensor {
         }
     }
 
-    /// Gives the recording's samples of the time that passes.
+    /// Passes on the recording's samples of a frame.
     fn replay(&mut self, dt_secs: f64, repeats: bool, mut give: impl FnMut(&mut Self, ImuSample)) {
         let Some(mut replay) = self.replay.take() else {
             return;
@@ -217,7 +217,7 @@ impl WornSensor {
         self.replay = Some(replay);
     }
 
-    /// Keeps a sample for finding the mounting, and for the recording.
+    /// Keeps a sample for the estimate of the mounting, and for the recording.
     pub(super) fn keep(&mut self, sample: ImuSample) {
         self.window.push(sample);
         if let Some(recorder) = &mut self.recorder
@@ -228,7 +228,7 @@ impl WornSensor {
         }
     }
 
-    /// Name of the live sensor that is heard, without the port of an address; empty for others.
+    /// Name of the live sensor, without the port of an address; empty for other sources.
     pub(super) fn device_name(&self) -> String {
         let Some(device) = &self.device else {
             return String::new();
@@ -241,7 +241,7 @@ impl WornSensor {
         }
     }
 
-    /// Is worn as it was calibrated.
+    /// Takes over a calibrated mounting.
     pub(super) fn calibrate(&mut self, calibrated: &CalibratedSensor) {
         self.forget_mounting();
         self.mounting = Some(Mounting {
@@ -251,8 +251,8 @@ impl WornSensor {
         self.calibrated = true;
     }
 
-    /// Looks for the mounting on another thread, now and then or at once if `asked` to; gives what was found, once. A mounting that was calibrated, or is said to be
-    /// `aligned`, is examined only.
+    /// Estimates the mounting on another thread, at intervals or at once if `asked` to; returns each result once. A calibrated mounting, or an
+    /// `aligned` one, is only checked.
     pub(super) fn look(
         &mut self,
         prepared: &Arc<Prepared>,
@@ -286,20 +286,20 @@ impl WornSensor {
                 let found = examine(&prepared, sensor, &recording, believed, &config).ok()?;
                 Some((found, find_rest(&recording)))
             };
-            // Without a thread the axes stay as they are; the next look may have one.
+            // Without a thread the mounting stays; the next estimate may get one.
             let thread = std::thread::Builder::new().name("footfall mounting".to_owned());
             self.worker = thread.spawn(look).ok().map(|worker| (worker, asked));
         }
         None
     }
 
-    /// Takes over what was found where it is better than what is known.
+    /// Takes over an estimate that is better than the known mounting.
     fn weigh(&mut self, found: Outcome, believed: bool) -> MountingReport {
         let Some((found, rest)) = found else {
             return MountingReport::default();
         };
         let finding = found.finding;
-        // A later look replaces what is less certain.
+        // A later estimate replaces a less certain one.
         let better = |known: Mounting| found.mounting.certainty >= 0.9 * known.certainty;
         if believed || !self.mounting.is_none_or(better) {
             return MountingReport {

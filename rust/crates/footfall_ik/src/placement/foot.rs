@@ -8,7 +8,7 @@ use crate::placement::correction::{Correction, Residual};
 use crate::placement::foothold::{Foothold, MOST_ASIDE_M, Search};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::Follower;
-use crate::placement::swing::Plan;
+use crate::placement::swing::PlannedFoothold;
 use crate::placement::terrain::Terrain;
 use crate::rocker::{Plant, RockerFoot};
 use footfall_core::rotation::{heading, wrap_angle};
@@ -66,7 +66,7 @@ pub(super) struct Foot {
     pub(super) sole: Frame,
     /// Place at which it will stand next, relative to the floor of the animation, as far as that is known.
     pub(super) lands: Option<Vec3>,
-    pub(super) plan: Option<Plan>,
+    pub(super) plan: Option<PlannedFoothold>,
     /// Place in the world of the animation's landing when no ground was found for it.
     pub(super) missed_at: Option<Vec3>,
     /// Correction on the way to a foothold that was given up in this frame.

@@ -44,7 +44,7 @@ const SAME_LANDING_M: f32 = 0.1;
 
 /// A place chosen for the end of a swing.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plan {
+pub(super) struct PlannedFoothold {
     pub(super) foothold: Foothold,
     /// By how much the ground rises from there to the next foothold, about, metres.
     pub(super) next_rise_m: f32,
@@ -166,7 +166,7 @@ impl Foot {
             Some(lift_m) => lift_m,
             None => self.way_lift(scene, animated, &sole),
         };
-        self.plan = Some(Plan {
+        self.plan = Some(PlannedFoothold {
             lift_m: Some(lift_m),
             ..plan
         });
@@ -207,7 +207,7 @@ impl Foot {
 
     /// Takes a place for the end of the next swing, or none.
     pub(super) fn set_plan(&mut self, aim: Option<&Aim>) {
-        self.plan = aim.map(|aim| Plan {
+        self.plan = aim.map(|aim| PlannedFoothold {
             foothold: aim.foothold,
             next_rise_m: aim.next_rise_m,
             flat_from_sole: None,
@@ -268,7 +268,7 @@ impl Foot {
             let share = (scene.config.max_tilt / angle.max(1e-4)).min(1.0);
             toward.tilt = Quat::IDENTITY.slerp(tilt, share);
             if let (Some((heel, _)), Some((tip, _))) = (heel, tip) {
-                // Told under the ankle, which is not the middle of the sole.
+                // Announced under the ankle, which is not the middle of the sole.
                 let [back, _, front] = rocker.sole_points();
                 toward.shift.y = heel - (tip - heel) * back.z / (front.z - back.z);
             }

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 use std::path::{Path, PathBuf};
 
-/// Styles whose clips tell of knees: acted walks bend them on purpose.
+/// Styles whose clips show a person's knees: acted walks bend them on purpose.
 const PLAIN: [&str; 2] = ["neutral", "normal"];
 
 /// A person of a corpus.
@@ -35,7 +35,7 @@ pub struct PersonFile<'a> {
     pub path: &'a Path,
     /// The person.
     pub subject: &'a str,
-    /// True when nobody acts in it; recordings of acted walks do not tell of hip joints.
+    /// True if it is not acted; acted walks are no evidence for hip joints.
     pub is_plain: bool,
 }
 

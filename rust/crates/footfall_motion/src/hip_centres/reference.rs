@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 pub const PHASES: usize = 12;
 
 /// Their times: shares of the stride that begins with the foot's own initial contact. Later the knee bends for the swing,
-/// and hardly tells where the hip is. The time of [`FARTHEST`] is where it is usually.
+/// and hardly constrains the hip. The time of [`FARTHEST`] is where it is usually.
 pub const STRIDE_SHARES: [f32; PHASES] = [
     -0.04, 0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5,
 ];

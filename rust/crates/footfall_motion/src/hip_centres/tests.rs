@@ -202,7 +202,7 @@ fn two_strides_tell_only_of_a_known_family() {
     evidence = fitted(evidence);
     let finding = find_hip_centres(&[&evidence]);
     assert!(finding.verdict.correction().is_some());
-    // Many strides of one leg do not tell of the other.
+    // Many strides of one leg are no evidence for the other.
     let left = evidence.stances[0].clone();
     evidence.stances = vec![left; 9];
     assert_eq!(

@@ -1,6 +1,6 @@
 //! Brings a real sensor's recording onto the time of a clip that was captured at the same time, and into the axes of its site.
 //!
-//! Nobody starts two devices at once. What tells when one began on the other's clock is how fast the site turns: its magnitude does not depend on how
+//! Nobody starts two devices at once. The angular rate of the site shows when one began on the other's clock: its magnitude does not depend on how
 //! the sensor is worn, and on a real foot a simulated one agrees with it to r = 0.996 (specific force to 0.53 to 0.73 only). Both clocks are taken to run
 //! alike: over a minute, crystals part by some milliseconds.
 
@@ -25,7 +25,7 @@ const LEAST_CORRELATION: f64 = 0.95;
 /// A recording that begins or ends with the clip may lack so much of it, seconds.
 const MARGIN_SECS: f64 = 0.1;
 
-/// Fewer samples in common tell nothing: a second.
+/// Least number of common samples for an estimate: a second.
 const LEAST_SAMPLES: usize = 120;
 
 /// A recording that goes with a clip.

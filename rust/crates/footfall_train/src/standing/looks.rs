@@ -28,7 +28,7 @@ struct Jump {
     to: usize,
 }
 
-/// Takes looks out of all offsets, and tells what they were.
+/// Removes looks from all offsets, and returns them.
 pub(super) fn take_out(people: &[Person], offsets: &mut [Vec<Offsets>]) -> Looks {
     let paths: Vec<Vec<Vec<[f64; 2]>>> = people
         .iter()

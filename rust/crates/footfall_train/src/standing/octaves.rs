@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 const KNOTS_SECS: [f64; OCTAVES] = [8.0, 3.2, 1.28, 0.5, 0.2];
 const OCTAVES: usize = 5;
 
-/// Time between the knots of what tells one leg from the other for long.
+/// Time between the knots of the slow difference between the legs.
 const STANCE_KNOT_SECS: f64 = 40.0;
 
 /// The deviation of the Gaussian that leaves an octave and all slower ones, by the time between its knots.

@@ -140,7 +140,7 @@ fn with_limits(clips: &[Recording], published: &[PublishedEvents], limits: Limit
     people
 }
 
-/// Mean and least F1 over those agreements that know enough events to tell; `None` without any.
+/// Mean and least F1 over those agreements with enough events; `None` without any.
 pub fn mean_and_worst_f1<'a>(agreements: impl Iterator<Item = &'a Agreement>) -> Option<[f64; 2]> {
     let telling = agreements.filter(|agreement| agreement.known >= LEAST_EVENTS);
     let f1: Vec<f64> = telling.map(|agreement| agreement.f1).collect();

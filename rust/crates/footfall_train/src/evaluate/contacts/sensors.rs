@@ -69,15 +69,15 @@ pub(super) fn compare(
             ("swings", worn, swings.collect()),
         ];
         if let Some(bodies) = bodies {
-            let told = bodies.events(&row.path, &recording, worn)?;
-            let swings = events_of(&told.swings).into_iter();
+            let found = bodies.events(&row.path, &recording, worn)?;
+            let swings = events_of(&found.swings).into_iter();
             let swings = swings.map(|event| (event.time_secs, event.kind));
             detectors.push(("swings as they come", worn, swings.collect()));
             for (name, side, found) in [
-                ("body live", worn, &told.live),
-                ("body whole", worn, &told.whole),
-                ("other foot live", worn.other(), &told.live),
-                ("other foot whole", worn.other(), &told.whole),
+                ("body live", worn, &found.live),
+                ("body whole", worn, &found.whole),
+                ("other foot live", worn.other(), &found.live),
+                ("other foot whole", worn.other(), &found.whole),
             ] {
                 let own = found.iter().filter(|event| event.side == side);
                 let own = own.map(|event| (event.time_secs, event.kind));
