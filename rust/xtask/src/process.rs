@@ -25,7 +25,7 @@ pub(crate) fn cargo_by(program: &Path) -> Command {
     let mut cargo = Command::new(program);
     cargo.current_dir(crate::paths::workspace());
     // What the cargo that runs this program says of it: build scripts that look at it would run anew, and with them half of all crates be
-    // built anew, whenever somebody calls cargo now by way of this program and now directly.
+    // built anew, whenever cargo is called alternately through this program and directly.
     for (name, _) in std::env::vars_os() {
         let name = name.to_string_lossy();
         if ["CARGO_PKG_", "CARGO_MANIFEST_"]

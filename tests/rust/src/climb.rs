@@ -87,7 +87,7 @@ impl Climb {
         walker.carrier = self.origin;
         let controls = Controls {
             speed_mps: self.speed_mps,
-            // Grades are walked, as beside `FootPlacement3D`, whoever has legs short enough to run at this speed.
+            // Grades are walked, as beside `FootPlacement3D`, even with legs short enough to run at this speed.
             gait: GaitChoice::Walk,
             ..Controls::STAND
         };
@@ -275,7 +275,7 @@ fn depth(terrain: &Relief, point: Vec3) -> f32 {
     out.fold(below, f32::min)
 }
 
-/// Adults, a child and somebody tall: sizes of the body.
+/// Sizes of the body: adults, a child and a tall person.
 pub const BODIES: [f32; 3] = [0.68, 1.0, 1.13];
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ mod session;
 use crate::bones;
 use crate::character;
 use crate::gait_generator_3d::GaitGenerator3D;
-use crate::modifier::BodyModifier;
+use crate::modifier::{BodyModifier, engine_calls};
 use crate::physics_ground::{PhysicsGround, own_bodies};
 use footfall_core::Pose;
 use footfall_ik::placement::{ContactThresholds, FootPlacer, Landing, PlacementConfig};
@@ -126,28 +126,7 @@ pub(crate) struct FootPlacement3D {
     base: Base<SkeletonModifier3D>,
 }
 
-#[godot_api]
-impl ISkeletonModifier3D for FootPlacement3D {
-    fn enter_tree(&mut self) {
-        self.forget();
-    }
-
-    fn exit_tree(&mut self) {
-        self.marks.remove();
-    }
-
-    fn skeleton_changed(&mut self, _old: Option<Gd<Skeleton3D>>, _new: Option<Gd<Skeleton3D>>) {
-        self.forget();
-    }
-
-    fn process_modification_with_delta(&mut self, delta: f64) {
-        self.process_frame(delta);
-    }
-
-    fn get_configuration_warnings(&self) -> PackedStringArray {
-        self.problems()
-    }
-}
+engine_calls!(FootPlacement3D);
 
 #[godot_api]
 impl FootPlacement3D {
@@ -197,25 +176,6 @@ impl FootPlacement3D {
     pub(crate) fn forget(&mut self) {
         self.session = None;
         self.reported = None;
-    }
-
-    fn problems(&self) -> PackedStringArray {
-        let mut problems = PackedStringArray::new();
-        if self.collision_mask == 0 {
-            problems.push("Collision Mask is empty. Choose the physics layers that are ground.");
-        }
-        if let Some(problem) = self.skeleton_problem() {
-            problems.push(&problem);
-        }
-        if let Some(skeleton) = self.base().get_skeleton()
-            && let Some(generator) = generator_beside(&skeleton)
-            && generator.get_index() > self.base().get_index()
-        {
-            problems.push(
-                "Move this node below the GaitGenerator3D. Modifiers run from top to bottom.",
-            );
-        }
-        problems
     }
 
     fn config(&self) -> PlacementConfig {
@@ -289,6 +249,33 @@ impl BodyModifier for FootPlacement3D {
 
     fn advance(&mut self, session: PlacementSession, skeleton: Gd<Skeleton3D>, delta: f64) {
         self.place(session, skeleton, delta);
+    }
+
+    fn interrupt(&mut self) {
+        self.forget();
+    }
+
+    fn leave_tree(&mut self) {
+        self.marks.remove();
+    }
+
+    fn problems(&self) -> PackedStringArray {
+        let mut problems = PackedStringArray::new();
+        if self.collision_mask == 0 {
+            problems.push("Collision Mask is empty. Choose the physics layers that are ground.");
+        }
+        if let Some(problem) = self.skeleton_problem() {
+            problems.push(&problem);
+        }
+        if let Some(skeleton) = self.base().get_skeleton()
+            && let Some(generator) = generator_beside(&skeleton)
+            && generator.get_index() > self.base().get_index()
+        {
+            problems.push(
+                "Move this node below the GaitGenerator3D. Modifiers run from top to bottom.",
+            );
+        }
+        problems
     }
 }
 

@@ -27,7 +27,7 @@ use crate::bones;
 use crate::convert::finite_or;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
-use crate::modifier::BodyModifier as _;
+use crate::modifier::{BodyModifier as _, engine_calls};
 use crate::root_motion::RootMotion;
 use crate::shipped::{self, Fallback};
 use crate::walk_source::WalkSource;
@@ -245,24 +245,7 @@ pub(crate) struct GaitGenerator3D {
     base: Base<SkeletonModifier3D>,
 }
 
-#[godot_api]
-impl ISkeletonModifier3D for GaitGenerator3D {
-    fn enter_tree(&mut self) {
-        self.put_aside();
-    }
-
-    fn skeleton_changed(&mut self, _old: Option<Gd<Skeleton3D>>, _new: Option<Gd<Skeleton3D>>) {
-        self.put_aside();
-    }
-
-    fn process_modification_with_delta(&mut self, delta: f64) {
-        self.process_frame(delta);
-    }
-
-    fn get_configuration_warnings(&self) -> PackedStringArray {
-        self.problems()
-    }
-}
+engine_calls!(GaitGenerator3D);
 
 #[godot_api]
 impl GaitGenerator3D {

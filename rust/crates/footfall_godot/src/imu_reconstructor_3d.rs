@@ -9,7 +9,7 @@ mod worn_sensor;
 use crate::bones;
 use crate::imu_model::ImuModel;
 use crate::imu_source;
-use crate::modifier::BodyModifier as _;
+use crate::modifier::{BodyModifier as _, engine_calls};
 use crate::root_motion::RootMotion;
 use crate::shipped::{self, Fallback};
 use footfall_recon::Prepared;
@@ -68,6 +68,8 @@ pub(crate) struct ImuReconstructor3D {
 
     /// The body under way; `None` until the next frame that can start it.
     session: Option<SensorSession>,
+    /// True until the next frame after the nodes around this one have changed.
+    is_moved: bool,
     /// True when a calibration is to begin with the next session.
     calibrates: bool,
     /// The add-on's own sensor model, where `model` is empty.
@@ -90,24 +92,7 @@ pub(crate) enum ImuMounting {
     Aligned = 1,
 }
 
-#[godot_api]
-impl ISkeletonModifier3D for ImuReconstructor3D {
-    fn enter_tree(&mut self) {
-        self.forget();
-    }
-
-    fn skeleton_changed(&mut self, _old: Option<Gd<Skeleton3D>>, _new: Option<Gd<Skeleton3D>>) {
-        self.forget();
-    }
-
-    fn process_modification_with_delta(&mut self, delta: f64) {
-        self.process_frame(delta);
-    }
-
-    fn get_configuration_warnings(&self) -> PackedStringArray {
-        self.problems()
-    }
-}
+engine_calls!(ImuReconstructor3D);
 
 #[godot_api]
 impl ImuReconstructor3D {
@@ -174,22 +159,6 @@ impl ImuReconstructor3D {
         self.session.as_mut()?.sensors.get_mut(sensor)
     }
 
-    fn problems(&self) -> PackedStringArray {
-        let mut problems = PackedStringArray::new();
-        for problem in self
-            .prepared()
-            .err()
-            .into_iter()
-            .chain(self.source_problems())
-        {
-            problems.push(&GString::from(&problem));
-        }
-        if let Some(problem) = self.skeleton_problem() {
-            problems.push(&problem);
-        }
-        problems
-    }
-
     /// Problems with the sources' settings.
     fn source_problems(&self) -> Vec<String> {
         let sources = [&self.source, &self.second_source];
@@ -200,14 +169,9 @@ impl ImuReconstructor3D {
             .collect()
     }
 
-    /// Begins anew with the next frame.
-    fn forget(&mut self) {
+    fn restart(&mut self) {
         self.session = None;
         self.reported = None;
-    }
-
-    fn restart(&mut self) {
-        self.forget();
         self.base_mut().update_configuration_warnings();
     }
 

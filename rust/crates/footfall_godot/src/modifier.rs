@@ -31,6 +31,15 @@ pub(crate) trait BodyModifier:
     /// Advances the session by a frame, poses the skeleton and keeps the session.
     fn advance(&mut self, session: Self::Session, skeleton: Gd<Skeleton3D>, delta: f64);
 
+    /// Drops or sets aside what a change of the surrounding nodes invalidates: the node has entered a tree, or has another skeleton.
+    fn interrupt(&mut self);
+
+    /// Removes what the node has added to the tree, before it leaves.
+    fn leave_tree(&mut self) {}
+
+    /// Problems that keep the body from being posed, each with what to do, for the editor and for scripts.
+    fn problems(&self) -> PackedStringArray;
+
     /// Finds the node that travels.
     ///
     /// # Errors
@@ -96,3 +105,32 @@ pub(crate) trait BodyModifier:
         Some(GString::from(&problem))
     }
 }
+
+/// Passes the engine's calls on to [`BodyModifier`]. A macro, because gdext needs this implementation in every class.
+macro_rules! engine_calls {
+    ($Node:ident) => {
+        #[godot_api]
+        impl ISkeletonModifier3D for $Node {
+            fn enter_tree(&mut self) {
+                self.interrupt();
+            }
+
+            fn exit_tree(&mut self) {
+                self.leave_tree();
+            }
+
+            fn skeleton_changed(&mut self, _: Option<Gd<Skeleton3D>>, _: Option<Gd<Skeleton3D>>) {
+                self.interrupt();
+            }
+
+            fn process_modification_with_delta(&mut self, delta: f64) {
+                self.process_frame(delta);
+            }
+
+            fn get_configuration_warnings(&self) -> PackedStringArray {
+                self.problems()
+            }
+        }
+    };
+}
+pub(crate) use engine_calls;

@@ -101,6 +101,11 @@ impl Traveller {
         true
     }
 
+    /// Returns whether this is the character, in the same physics body.
+    pub(crate) fn carries(&self, character: &Gd<Node3D>) -> bool {
+        self.character == *character && self.carrier == character::carrier(character)
+    }
+
     /// Returns whether the character has another size than when it was measured.
     pub(crate) fn has_grown(&self) -> bool {
         (self.scale - 1.0).abs() >= LEAST_GROWTH

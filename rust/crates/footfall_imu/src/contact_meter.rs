@@ -203,7 +203,7 @@ impl ContactMeter {
             match (lifted, meter.state) {
                 (None, State::Swing { .. }) => lifted = Some(meter.since_secs),
                 (Some(terminal_secs), State::Contact { .. }) => {
-                    // After a gap nobody knows when the swing ended.
+                    // After a gap the end of the swing is unknown.
                     if meter.since_secs.is_finite() {
                         swings.push(Swing {
                             terminal_secs,

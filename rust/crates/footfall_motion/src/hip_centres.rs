@@ -71,8 +71,8 @@ pub enum Origin {
     /// A skeleton that may have been made in any way: only strong evidence moves its joints.
     #[default]
     Unknown,
-    /// A skeleton of the family of the CMU library's, fitted to markers by a procedure that is known to misplace hip
-    /// joints of everybody: only strong evidence leaves them.
+    /// A skeleton of the family of the CMU library's, fitted to markers by a procedure that is known to misplace all hip
+    /// joints: they are corrected unless there is strong evidence against it.
     MarkerFit,
 }
 
@@ -189,7 +189,7 @@ impl HipFinding {
     }
 }
 
-/// Logarithm of the odds that somebody who is said to walk plainly has a manner of walking all the same.
+/// Logarithm of the odds of a peculiar manner in a walk that is labelled as plain.
 const LN_MANNER_ODDS: f64 = -2.0;
 /// No fit of a skeleton is farther off: up and forwards, in leg lengths, and the factor on the legs.
 const MOST_UP: f32 = 0.05;

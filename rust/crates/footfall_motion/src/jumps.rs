@@ -8,7 +8,7 @@ use glam::Vec3;
 const LIFTED_M: f32 = 0.045;
 /// Share of the frames in which a foot that jumps now and then is lower than on the ground, by noise.
 const BELOW_GROUND_SHARE: f64 = 0.05;
-/// Flights last so long, seconds: what is shorter is a hop on the spot or noise, and nobody flies longer.
+/// Range of the duration of flights, seconds: shorter ones are hops on the spot or noise, longer ones do not occur.
 const FLIGHT_SECS: [f64; 2] = [0.18, 0.9];
 /// Both feet leave the ground, and land, within so short a time, seconds.
 const TOGETHER_SECS: f64 = 0.1;
@@ -221,7 +221,7 @@ mod tests {
 
     const RATE: f64 = 60.0;
 
-    /// Somebody whose hips go so high above standing: below it the knees of those legs bend on which they jump, the others are held up all the time.
+    /// A body whose hips follow these heights above standing: below it the knees of the jumping legs bend, the other leg is held up all the time.
     fn clip(heights: &[f32], jumps_on: [bool; 2]) -> Clip {
         let skeleton = Skeleton::standard();
         let [thigh, shank] =

@@ -24,7 +24,7 @@ const STEADY_SECS: f64 = 0.5;
 /// Slowest and fastest hips of a walk, metres a second.
 const WALKING_SPEEDS_MPS: [f32; 2] = [0.4, 2.3];
 
-/// Nobody walks who falls freely within this time, seconds.
+/// Time around a free fall in which a body does not walk, seconds.
 const RUNNING_SECS: f64 = 0.35;
 
 /// More than this between the ways before and after a frame is a turn, radians.

@@ -171,7 +171,7 @@ impl Motion<'_> {
             .map(|stance| stance.last)
             .rfind(|last| (first..end).contains(last));
         let heel = &self.contacts.foot(side).heel;
-        // Somebody who runs on the toes has no heel contact to rise from: then the whole step is without it.
+        // A run on the toes has no heel contact to rise from: then the whole step is without it.
         let heel_rise = (first..end)
             .rev()
             .take_while(|&frame| !heel[frame])

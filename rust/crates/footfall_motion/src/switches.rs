@@ -6,7 +6,7 @@
 //! knee angles say more plainly is where the legs are:
 //!
 //! 1. Hip and knee angles put the ankles somewhere below the hips. Every half cycle of one ankle ahead of the other holds one switch, onto the leg
-//!    that was lifted in it: the leg ahead, or of somebody who walks backwards the leg behind.
+//!    that was lifted in it: the leg ahead, or in backward walks the leg behind.
 //! 2. The ankle reaches farthest ahead of its hip, and about then the landing knee is straightest. Which of the two comes first depends on the
 //!    person; halfway between them differs little from person to person, and the foot lands [a few milliseconds](SwitchConfig) later.
 //! 3. A leg that is lifted without a half cycle, to put the feet together or to turn on the spot, lands when the ankles no longer move against each

@@ -236,7 +236,7 @@ mod tests {
         let mut segments = vec![(0, 0.0, 1.2, 0.0), (1, 0.0, 1.2, 1.0)];
         segments.extend([(2, 0.0, 1.2, 5.0); 4]);
         assert!((first(&segments) - SHARE * 2.0).abs() < 1e-4);
-        // Whoever is alone in a model moves as they do.
+        // The only person of a model is not changed.
         let alone = [(0, 0.0, 1.2, 3.0), (0, 0.0, 1.2, 3.0)];
         assert!((first(&alone) - 3.0).abs() < 1e-4);
     }

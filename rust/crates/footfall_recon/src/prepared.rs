@@ -216,7 +216,7 @@ fn laid_out(model: &ImuModel, padded: usize, phases: &[[f32; PHASE_COUNT]]) -> (
     (numbers, columns)
 }
 
-/// Returns the mean vertical in the axes of a site of standing people; the site's own if nobody stands or the model has no such site.
+/// Returns the mean vertical in the axes of a site of standing people; the site's own without standing frames or without such a site.
 fn standing_up(model: &ImuModel, sensor: usize) -> Vec3 {
     if sensor >= model.sites.len() {
         return Vec3::Y;

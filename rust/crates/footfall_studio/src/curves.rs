@@ -189,7 +189,7 @@ enum Drawn {
     },
 }
 
-/// The frames in view: all when nobody knows yet.
+/// The frames in view; all before the first layout.
 fn drawn(values: &[f32], rate_hz: f64, offset_secs: f64, in_view: Option<[f64; 2]>) -> Drawn {
     let [from, to] = in_view.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let frame = |secs: f64| ((secs - offset_secs) * rate_hz).clamp(0.0, values.len() as f64);

@@ -123,7 +123,7 @@ impl<T: Send + 'static> Job<T> {
                 .name(name.to_owned())
                 .spawn(move || {
                     let made = work(&mut Reporter(Arc::clone(&worker)));
-                    // Nobody waits any more when the receiver is gone.
+                    // Without a receiver the result is dropped.
                     drop(sender.send(made));
                     (worker.wake)();
                 }),
@@ -131,8 +131,8 @@ impl<T: Send + 'static> Job<T> {
         Self { shared, receiver }
     }
 
-    /// Outcome: `None` while it goes on, an error when it broke off. Whoever cancels gets nothing, even where it was
-    /// done by then.
+    /// Outcome: `None` while the job runs, an error if it failed. A cancelled job has no result, even if it was
+    /// finished by then.
     pub fn poll(&self) -> Option<Result<T, String>> {
         match self.receiver.try_recv() {
             Ok(_) if self.shared.cancelled.load(Ordering::Relaxed) => {

@@ -15,7 +15,7 @@ const CROWD: usize = 12;
 const LEAST_STEPS: usize = 8;
 /// Hips go no faster than this, m/s: those of a run, and a correction.
 const FASTEST_MPS: f32 = 7.0;
-/// Nobody believes a liar who is farther away than he can have run, metres.
+/// Distance beyond which a liar's place is refused, metres: farther than a run can reach.
 const FARTHEST_M: f32 = 120.0;
 
 /// A footstep as a peer has printed it.
@@ -114,14 +114,14 @@ fn judge_end(viewer: &str, said: &str) -> Result<()> {
         if walker != "liar" && hips > FASTEST_MPS {
             bail!("`{viewer}` has seen the hips of `{walker}` at {hips} m/s");
         }
-        // Whoever comes while he lies has no earlier place of his to go by.
+        // A peer that joins while it lies has no earlier place of it for comparison.
         if far > FARTHEST_M && viewer != "late" {
             bail!("`{viewer}` has seen `{walker}` {far} m away");
         }
         ends += 1;
     }
     if ends == 0 {
-        bail!("`{viewer}` has seen nobody");
+        bail!("`{viewer}` has shown no walker");
     }
     Ok(())
 }

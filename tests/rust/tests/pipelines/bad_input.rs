@@ -295,7 +295,7 @@ fn wrong_signs_and_exchanged_people_throw_nobody() {
     }
 }
 
-/// A sensor that measures this after somebody has stood for some time.
+/// A sensor with these measurements after some time of standing.
 fn after_standing(measured: impl Fn(f32) -> (Vec3, Vec3)) -> ImuRecording {
     let samples = (0..1600_u16).map(|n| {
         let secs = f32::from(n) * 0.01;

@@ -3,6 +3,7 @@
 use super::GaitGenerator3D;
 use super::detail::GaitDetail;
 use super::gait_choice::name_of;
+use crate::modifier::BodyModifier as _;
 use crate::root_motion;
 use footfall_core::Side;
 use footfall_synth::Gait;

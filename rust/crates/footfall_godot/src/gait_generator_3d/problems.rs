@@ -19,7 +19,8 @@ pub(super) struct Announced {
 }
 
 impl GaitGenerator3D {
-    pub(super) fn problems(&self) -> PackedStringArray {
+    /// Problems of the model, its styles, the skeleton and the node's place.
+    pub(super) fn find_problems(&self) -> PackedStringArray {
         let mut problems = PackedStringArray::new();
         if let Err(problem) = self.find_source() {
             problems.push(&GString::from(&problem));

@@ -46,6 +46,14 @@ impl BodyModifier for GaitGenerator3D {
     fn advance(&mut self, session: WalkSession, skeleton: Gd<Skeleton3D>, delta: f64) {
         self.walk(session, skeleton, delta);
     }
+
+    fn interrupt(&mut self) {
+        self.put_aside();
+    }
+
+    fn problems(&self) -> PackedStringArray {
+        self.find_problems()
+    }
 }
 
 impl GaitGenerator3D {

@@ -8,7 +8,7 @@ use crate::travel::Traveller;
 use crate::{convert, imu_source};
 use footfall_core::{Behaviour, Pose, Side};
 use footfall_model::imu_model::MAX_SENSORS;
-use footfall_recon::{CalibrationGuide, ReconConfig, Reconstructor, SensorState};
+use footfall_recon::{CalibrationGuide, Prepared, ReconConfig, Reconstructor, SensorState};
 use footfall_synth::GroundTransform;
 use glam::Vec3;
 use godot::classes::{BoneMap, Engine, Skeleton3D};
@@ -32,12 +32,67 @@ impl BodyModifier for ImuReconstructor3D {
 
     fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<SensorSession, String> {
         let prepared = self.prepared()?;
-        if let Some(mut session) = self.session.take()
-            && Arc::ptr_eq(&session.prepared, &prepared)
+        let is_moved = core::mem::take(&mut self.is_moved);
+        let Some(mut session) = self.session.take() else {
+            return self.new_session(skeleton, prepared);
+        };
+        let fits = Arc::ptr_eq(&session.prepared, &prepared)
             && session.traveller.is_for(skeleton)
-        {
+            && (!is_moved || self.travels_as(&session, skeleton));
+        if fits {
             return Ok(session);
         }
+        match self.new_session(skeleton, prepared) {
+            Ok(mut new) => {
+                new.take_over(session);
+                Ok(new)
+            }
+            Err(problem) => {
+                // A character that is being reparented is out of place for a moment: its sensors stay.
+                self.session = Some(session);
+                Err(problem)
+            }
+        }
+    }
+
+    fn advance(&mut self, session: SensorSession, skeleton: Gd<Skeleton3D>, delta: f64) {
+        self.drive(session, &skeleton, delta);
+    }
+
+    fn interrupt(&mut self) {
+        self.reported = None;
+        self.is_moved = true;
+    }
+
+    fn problems(&self) -> PackedStringArray {
+        let mut problems = PackedStringArray::new();
+        for problem in self
+            .prepared()
+            .err()
+            .into_iter()
+            .chain(self.source_problems())
+        {
+            problems.push(&GString::from(&problem));
+        }
+        if let Some(problem) = self.skeleton_problem() {
+            problems.push(&problem);
+        }
+        problems
+    }
+}
+
+impl ImuReconstructor3D {
+    /// Returns whether the node that travels, and the body that carries it, are still those of a session.
+    fn travels_as(&self, session: &SensorSession, skeleton: &Gd<Skeleton3D>) -> bool {
+        let character = self.find_character(skeleton);
+        character.is_ok_and(|character| session.traveller.carries(&character))
+    }
+
+    fn new_session(
+        &mut self,
+        skeleton: &Gd<Skeleton3D>,
+        prepared: Arc<Prepared>,
+    ) -> Result<SensorSession, String> {
         let (character, binding) = self.bind(skeleton)?;
         for problem in self.source_problems() {
             self.warn(&problem);
@@ -71,12 +126,6 @@ impl BodyModifier for ImuReconstructor3D {
         })
     }
 
-    fn advance(&mut self, session: SensorSession, skeleton: Gd<Skeleton3D>, delta: f64) {
-        self.drive(session, &skeleton, delta);
-    }
-}
-
-impl ImuReconstructor3D {
     /// One frame: takes samples, moves the character, poses bones, emits signals.
     fn drive(&mut self, mut session: SensorSession, skeleton: &Gd<Skeleton3D>, delta: f64) {
         let in_editor = Engine::singleton().is_editor_hint();

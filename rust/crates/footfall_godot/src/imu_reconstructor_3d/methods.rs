@@ -3,6 +3,7 @@
 use super::worn_sensor::WornSensor;
 use super::{ImuMounting, ImuReconstructor3D};
 use crate::convert;
+use crate::modifier::BodyModifier as _;
 use crate::root_motion;
 use footfall_core::Behaviour;
 use footfall_imu::ImuSample;

@@ -52,6 +52,22 @@ pub(super) fn standing(reconstructor: &Reconstructor) -> Pose {
 }
 
 impl SensorSession {
+    /// Takes over the sensors of an earlier session of the same skeleton and model: their sources, recordings and mountings.
+    pub(super) fn take_over(&mut self, before: Self) {
+        let same = Arc::ptr_eq(&self.prepared, &before.prepared)
+            && self.traveller.skeleton() == before.traveller.skeleton();
+        if !same {
+            return;
+        }
+        if let Some(calibration) = before.reconstructor.calibration()
+            && self.reconstructor.calibrate(&calibration).is_err()
+        {
+            return;
+        }
+        self.sensors = before.sensors;
+        (self.guide, self.asked) = (before.guide, before.asked);
+    }
+
     /// Takes a sample from a script.
     pub(super) fn push(&mut self, sensor: usize, sample: ImuSample) {
         let Some(worn) = self.sensors.get_mut(sensor) else {

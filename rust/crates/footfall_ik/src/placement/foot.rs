@@ -17,7 +17,7 @@ pub(super) use heel::MAX_PITCH;
 
 /// Time constant with which what is left of a jump fades, seconds.
 const RESIDUAL_SECS: f32 = 0.06;
-/// Time constant with which a foot that goes nobody knows where follows the ground under it, seconds.
+/// Time constant with which a foot without a known landing follows the ground under it, seconds.
 pub(super) const FOLLOW_SECS: f32 = 0.08;
 /// A foot that slid too far from its lock is put anew, for at least so long, seconds.
 pub(super) const REPLANT_SECS: f32 = 0.22;
@@ -332,7 +332,7 @@ impl Foot {
         world_target(&self.sole, &on_sole)
     }
 
-    /// The pitch on its foothold of a foot at this pitch: nobody lands on a heel under which there is nothing.
+    /// Pitch on the foothold for a foot at this pitch: a heel without ground under it does not land first.
     fn on_ball(&self, pitch: f32) -> f32 {
         let hangs = self.hold.is_some_and(|hold| hold.on_ball);
         if hangs { pitch.max(0.0) } else { pitch }

@@ -17,7 +17,7 @@ const HIGHER_M: f32 = 0.03;
 /// A sole follows heel and toes rather than the ground under its ball by so much at most, radians.
 const MAX_BRIDGE: f32 = 0.3;
 
-/// Height above a sole, metres, from which on ground beside it is a wall: nobody stands on it.
+/// Height above a sole, metres, from which on ground beside it is a wall.
 const WALL_M: f32 = 0.25;
 
 /// A sole on the ground.

@@ -1,4 +1,4 @@
-//! A foot on its way: to a planned foothold, or over ground that nobody planned for.
+//! Swing of a foot: to a planned foothold, or over unplanned ground.
 
 use crate::leg::FootTarget;
 use crate::placement::aim::{Aim, Step};
@@ -245,7 +245,7 @@ impl Foot {
         lift.min(MOST_LIFT_SHARE * highest)
     }
 
-    /// Follows the ground under a foot of which nobody knows where it will land.
+    /// Follows the ground under a foot without a known landing.
     fn follow<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,

@@ -1,7 +1,7 @@
 //! Running: steps whose end both feet spend in the air.
 //!
 //! Contacts that are read from feet overlook most of a slow run's flight, as shoes drag. Hips do not: who has no foot on the ground falls,
-//! and nobody who walks comes near free fall.
+//! and walks never come near free fall.
 
 use super::{Step, Walk};
 use footfall_core::Clip;
@@ -16,7 +16,7 @@ const GRAVITY_MPS2: f64 = 9.81;
 const LEAST_FALL_SECS: f64 = 0.025;
 /// A fall that ends longer before the landing is noise, too.
 const LANDING_SECS: f64 = 0.06;
-/// Nobody who runs is longer in the air than this share of a step; a body that is jumps.
+/// Longest flight of a run, as a share of a step; a longer one is a jump.
 const LONGEST_FLIGHT_SHARE: f64 = 0.6;
 /// Steps of one run are so alike in speed, as a share, and turn so slowly, radians a second.
 const STEADY_SPEED_SHARE: f32 = 0.06;

@@ -89,7 +89,7 @@ impl Legs {
         }
     }
 
-    /// The landing at the end of a half cycle. `None` if neither leg is lifted on the way there: somebody sways.
+    /// The landing at the end of a half cycle. `None` if neither leg is lifted, as in swaying.
     ///
     /// The lifted leg swings. Where that is the leg ahead it lands ahead; else the body walks backwards, and the other leg lands behind.
     /// The first half cycle goes the way of the second.

@@ -1,6 +1,6 @@
 //! Brings a real sensor's recording onto the time of a clip that was captured at the same time, and into the axes of its site.
 //!
-//! Nobody starts two devices at once. The angular rate of the site shows when one began on the other's clock: its magnitude does not depend on how
+//! Two devices never start at the same time. The angular rate of the site shows when one began on the other's clock: its magnitude does not depend on how
 //! the sensor is worn, and on a real foot a simulated one agrees with it to r = 0.996 (specific force to 0.53 to 0.73 only). Both clocks are taken to run
 //! alike: over a minute, crystals part by some milliseconds.
 

@@ -68,7 +68,7 @@ pub(super) fn estimate(people: &[Vec<Offsets>], weights: &[f64]) -> Swayed {
     let count = people.len() as f64;
     let freed = count / (count - 1.0).max(1.0);
     let bands: Bands = core::array::from_fn(|band| {
-        // Everybody as strong as the geometric mean: who fidgets would be all that is seen otherwise.
+        // Each person is scaled to the geometric mean: restless people would dominate otherwise.
         let own_strengths: Vec<f64> = strengths.iter().map(|own| own[band]).collect();
         let usual = mean(&own_strengths);
         let mut sum = DMatrix::zeros(SWAY_COUNT, SWAY_COUNT);

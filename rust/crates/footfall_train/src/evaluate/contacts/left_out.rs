@@ -4,7 +4,7 @@ use super::Agreement;
 use super::people::mean_and_worst_f1;
 use std::collections::BTreeMap;
 
-/// Limits, and how everybody fares under them.
+/// Limits, and the agreement of all people under them.
 pub(super) type Trial<L, P> = (L, BTreeMap<String, P>);
 
 /// The trial with the greatest mean F1 of all people but one, each of their agreements counting once; of equal ones the first.

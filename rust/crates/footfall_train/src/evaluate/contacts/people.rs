@@ -53,7 +53,7 @@ pub struct Person {
 
 type People = BTreeMap<String, Person>;
 
-/// Judges everybody in the recordings.
+/// Judges all people in the recordings.
 pub(super) fn judge(
     clips: &[Recording],
     tolerance_ms: f64,
@@ -96,7 +96,7 @@ pub(super) fn judge(
     Ok(people)
 }
 
-/// Contacts of everybody under some limits.
+/// Contacts of all people under some limits.
 fn with_limits(clips: &[Recording], published: &[PublishedEvents], limits: Limits) -> People {
     let mut people = People::new();
     for (clip, published) in clips.iter().zip(published) {

@@ -167,7 +167,7 @@ fn run_trial(
     })
 }
 
-/// The share of its speed at which somebody goes who has yet to turn so far: nobody keeps all of it who turns back.
+/// Share of the speed that a walker keeps with this much still to turn: a walker that turns back slows down.
 fn pace(left: f32) -> f32 {
     let [full, slow] = SLOWS_RAD;
     let share = (left.abs() - full) / (slow - full);
