@@ -254,7 +254,7 @@ impl Level {
     }
 }
 
-/// The places so far to the left and to the right of points.
+/// The places to the left and to the right of points, at their breadths.
 fn beside(points: [Vec3; 3], breadths: [f32; 3], left: [Vec3; 3]) -> [[Vec3; 2]; 3] {
     core::array::from_fn(|index| {
         let aside = left[index] * breadths[index];

@@ -42,13 +42,13 @@ const BACK_RADPS: f32 = 2.1;
 /// A foot that moves for longer has left the ground, seconds.
 const MOVES_SECS: f32 = 0.1;
 
-/// Contact lasts at least so long, seconds: a landing shakes the sensor.
+/// Least duration of a contact, seconds: a landing shakes the sensor.
 const LEAST_CONTACT_SECS: f64 = 0.27;
 
-/// A swing turns the foot back by at least so much, radians.
+/// Least backward rotation of the foot in a swing, radians.
 const LEAST_SWING: f32 = 0.07;
 
-/// A foot that has turned back and turns down for so long is on the ground, seconds.
+/// Time of downward rotation after the backward one after which a foot is on the ground, seconds.
 const LANDS_SECS: f64 = 0.05;
 
 /// A foot that turns no faster than this, down or back, lands flat where the ground jolts it by so much, m/s²: deviation of the specific force from its mean over about
@@ -57,14 +57,14 @@ const FLAT_RADPS: [f32; 2] = [2.0, 0.4];
 const JOLT_MPS2: f32 = 15.0;
 const JOLT_MEAN_SECS: f32 = 0.02;
 
-/// Rests of a swing begin so long after it at the earliest, seconds.
+/// Least time from a swing to the following rest, seconds.
 const LEAST_SWING_SECS: f64 = 0.1;
 
 /// Peaks of push-off and landing of a usual step, rad/s, and how much of a new one is learned.
 const USUAL_RADPS: f32 = 3.0;
 const LEARNED: f32 = 0.15;
 
-/// The peak of a landing is looked for so long after it, seconds.
+/// Time after a landing within which its peak is searched for, seconds.
 const STRIKE_SECS: f64 = 0.15;
 
 /// After a gap of this length nothing is known of the foot, seconds.

@@ -14,7 +14,7 @@ const MEAN_SECS: f32 = 0.05;
 /// A foot comes to rest below the first and leaves it above the second: squared rad/s, and squared deviation of the specific force from gravity.
 const REST: [f32; 2] = [1.0, 4.0];
 
-/// The quietest moment is looked for so long after a foot has come to rest, seconds.
+/// Time after a foot has come to rest within which the quietest moment is searched for, seconds.
 const SETTLE_SECS: f64 = 0.3;
 
 /// A gyroscope's bias is what it reads while the foot moves less than this, and follows it with this time constant, seconds.

@@ -195,7 +195,7 @@ const LN_MANNER_ODDS: f64 = -2.0;
 const MOST_UP: f32 = 0.05;
 const MOST_FORWARD: f32 = 0.1;
 const MOST_LENGTHENED: f32 = 0.035;
-/// By so many leg lengths the ankles of a person's own recordings lie out of reach at most: noise of markers.
+/// Greatest distance of the ankles of a person's own recordings out of reach, in leg lengths: noise of markers.
 const MOST_OVERSTRETCHED: f32 = 0.008;
 
 /// Finds one person's hip joints from all recordings of one skeleton.

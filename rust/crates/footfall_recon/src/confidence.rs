@@ -110,7 +110,7 @@ pub(crate) fn standing_body(model: &ImuModel) -> Option<BodyFrame> {
     (count > 0.0).then_some(body)
 }
 
-/// The rows, of so many numbers, of the frames in which a model's people stand.
+/// The rows, of this width, of the frames in which a model's people stand.
 pub(crate) fn standing_rows<'a>(
     model: &'a ImuModel,
     rows: &'a [f32],

@@ -23,7 +23,7 @@ const HEIGHT_HALF_LIFE_SECS: f32 = 0.05;
 /// Standing feet move the body so fast at most, m/s: what they want beyond, their legs take up.
 const MOST_SHIFT_MPS: f32 = 4.0;
 
-/// A leg that steps are lengthened for reaches at most so far from below the hip, as a share of its length.
+/// Greatest reach from below the hip of a leg whose steps are lengthened, as a share of its length.
 const MOST_SPREAD: f32 = 0.6;
 
 /// Added to the bend of a knee before legs are weighed by it, radians.
@@ -32,7 +32,7 @@ const KNEE_SLACK: f32 = 0.1;
 /// The heading follows the sensor's with this half-life, seconds.
 const HEADING_HALF_LIFE_SECS: f32 = 0.2;
 
-/// For so long the heading of the sensor is compared with the body's before the body follows it, seconds: what is probable is not settled at first.
+/// Time for which the heading of the sensor is compared with the body's before the body follows it, seconds: probabilities take time to settle.
 const HEADING_ANCHOR_SECS: f32 = 2.0;
 
 /// Travel, heading and feet of one body.

@@ -84,7 +84,7 @@ fn resampled(model: &ImuModel) -> Vec<Resampled> {
     segments.collect()
 }
 
-/// Rows of so many numbers at [`TIMES`] times.
+/// Rows of this width at [`TIMES`] times.
 fn at_times(rows: &[f32], width: usize, frames: usize) -> Vec<f32> {
     let places = (0..TIMES).map(|time| Place::of((time as f32 + 0.5) / TIMES as f32, frames));
     places
@@ -156,7 +156,7 @@ struct Place {
 }
 
 impl Place {
-    /// After this share of so many rows, each of which stands for the middle of its time.
+    /// Interpolation at a share of this many rows, each of which is at the middle of its time.
     fn of(share: f32, count: usize) -> Self {
         let at = (share * count as f32 - 0.5).clamp(0.0, count as f32 - 1.0);
         let first = at as usize;

@@ -214,7 +214,7 @@ fn contact_at(swings: &[Swing], time_secs: f64) -> SensorContact {
 
 /// Writer of the frames that are shown.
 struct Shown<'a> {
-    /// Those of the sensor that measures strides which were not heard yet.
+    /// Swings of the sensor that measures strides that were not used yet.
     samples: &'a [ImuSample],
     travel: Travel,
     prepared: &'a Prepared,

@@ -13,7 +13,7 @@ const MOST_WAITING: usize = 6;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frames {
     stream: FeatureStream,
-    /// Of a sensor on a foot.
+    /// Contact meter of a sensor on a foot.
     contact: Option<ContactMeter>,
 }
 

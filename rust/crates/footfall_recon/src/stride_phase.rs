@@ -262,7 +262,7 @@ mod tests {
         }
     }
 
-    /// Walks of these phases, each of so many frames, one after the other.
+    /// Walks of these phases and their numbers of frames, one after the other.
     fn walks(kinds: &[(PhaseStart, Side)], walks: &[&[(u16, u16)]]) -> ImuModel {
         let frames = walks.iter().copied().flatten();
         let frames: usize = frames.map(|(_, n)| usize::from(*n)).sum();

@@ -39,7 +39,7 @@ pub(crate) struct Travel {
 }
 
 impl Travel {
-    /// For sensors at these sites, on a wearer whose steps are thought to be so long beside those of the recordings.
+    /// Creates it for sensors at these sites, on a wearer with this expected step length relative to the recordings.
     pub(crate) fn new(sites: &[Site], stride: f32) -> Self {
         let mut feet = sites.iter().enumerate();
         let mut travel = Self {

@@ -193,7 +193,7 @@ mod tests {
         (steps, contexts, report)
     }
 
-    /// Asks to stop after so many iterations, and keeps how well each explained the walks.
+    /// Stops after a number of iterations, and keeps the likelihood of each.
     struct StopsAfter {
         iterations: usize,
         fits: Vec<f64>,

@@ -13,7 +13,7 @@ const CROUCHED_SHARE: f32 = 0.9;
 /// The deepest crouch is that of this quantile of crouched frames, and so is the fastest.
 const QUANTILE: f64 = 0.9;
 
-/// Speed is that of the hips over so long, seconds.
+/// Time over which the hips give the speed, seconds.
 const SPEED_SECS: f64 = 1.0;
 
 /// Less is no crouch to learn from, seconds; nor are fewer upright ones to compare with.

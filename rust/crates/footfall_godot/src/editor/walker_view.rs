@@ -63,7 +63,7 @@ impl FootfallWalkerView {
         view
     }
 
-    /// Lets a walker of the only style of a space walk, at the speed that suits it.
+    /// Shows a walker with the only style of a space, at the speed that suits the style.
     pub(super) fn show(&mut self, space: &Arc<StyleSpace>) {
         if let Some(walk) = self.walk.take() {
             walk.body.free();

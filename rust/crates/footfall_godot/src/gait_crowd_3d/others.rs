@@ -9,7 +9,7 @@ use godot::prelude::*;
 
 /// Time constant of a node's velocity, seconds: bodies move in physics frames, which are not those in which they are looked at.
 const VELOCITY_SECS: f32 = 0.1;
-/// A node that goes so far in a frame was put there, metres.
+/// Motion of a node in a frame beyond which it was teleported, metres.
 const PUT_M: f32 = 2.0;
 
 /// A node of the group, as it was seen last.

@@ -35,7 +35,7 @@ impl Replica {
         self.sender = None;
     }
 
-    /// Lets time pass.
+    /// Advances the time between reports.
     pub(super) fn pass(&mut self, secs: f32) {
         self.quiet_secs -= f64::from(secs);
     }

@@ -15,7 +15,7 @@ use godot::classes::{Node, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
 use rayon::prelude::*;
 
-/// Tiers are chosen anew in every so many frames.
+/// Number of frames after which tiers are chosen again.
 const CHOOSE_EVERY: u64 = 8;
 /// Margin around the camera's view in which walkers count as seen, metres: poses must be there before they are needed.
 const MARGIN_M: f32 = 3.0;

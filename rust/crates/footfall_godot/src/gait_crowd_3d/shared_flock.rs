@@ -18,7 +18,7 @@ const ROWS: usize = 1024;
 /// Room grows by half.
 const GROWTH: (usize, usize) = (3, 2);
 
-/// Those of so many rows who are drawn with the same mesh.
+/// Walkers that are drawn with the same mesh, and the number of their rows.
 #[derive(Debug, Clone)]
 struct Part {
     shown: Vec<u32>,

@@ -28,7 +28,7 @@ impl GaitGenerator3D {
         Some((session.generator.feet_in_contact(), landings))
     }
 
-    /// Has the step that has just begun land at this share of its way.
+    /// Changes the length of the step that has just begun to this share.
     pub(crate) fn stretch_step(&mut self, share: f32) {
         // A replica's foothold was chosen by the walker that it is one of.
         if let Some(session) = &mut self.session

@@ -8,14 +8,14 @@ use footfall_ik::placement::Frame;
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, SynthError};
 use glam::Vec3;
 
-/// The stride is looked at so often, and for so long at most.
+/// Interval of the compared moments of a stride, seconds, and their greatest number.
 const LOOK_SECS: f32 = 1.0 / 30.0;
 const MOST_LOOKS: usize = 75;
 /// A difference of speed counts as the place that it makes within this time, seconds.
 const SPEED_SECS: f32 = 0.12;
-/// A foot that stands in one motion and not in the other counts as so far away, metres.
+/// Distance that equals a contact in one motion only, metres.
 const CONTACT_M: f32 = 0.15;
-/// The distance of feet that stand in both counts so many times: such a foot stays where it is, and the body has to come along.
+/// Weight of the distance of feet that stand in both motions: such a foot keeps its place, and the body has to follow.
 const STANDING_WEIGHT: f32 = 4.0;
 /// From standing, the foot that is lifted by then goes first, seconds.
 const LIFTED_SECS: f32 = 0.4;

@@ -21,7 +21,7 @@ impl WalkSession {
             .global(&ground_from_start)
     }
 
-    /// Lets time pass as another peer's walker has it. With `dt_secs` 0 the pose stays and nothing travels.
+    /// Advances the walk in the steps of another peer's walker. With `dt_secs` 0 the pose stays and nothing travels.
     pub(super) fn follow(&mut self, dt_secs: f64, follower: &mut WalkFollower) -> Travel {
         self.elapsed_secs += dt_secs;
         let dt_secs = dt_secs as f32;

@@ -11,7 +11,7 @@ use glam::Vec3;
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
-/// A foot that cannot find its place is let go so long after the end, seconds.
+/// Time after the end at which a foot that cannot reach its place is released, seconds.
 const PATIENCE_SECS: f32 = 2.0;
 
 /// Remaining motion of a character whose walk gives the body away: it dies away.
@@ -42,7 +42,7 @@ impl WalkSession {
         });
     }
 
-    /// Lets time pass on the way out. Returns the travel, and whether the animation has the body for itself now.
+    /// Advances the transition to other animation. Returns the travel, and whether the animation now has the whole body.
     pub(super) fn go_out(&mut self, skeleton: &Gd<Skeleton3D>, dt_secs: f64) -> (Travel, bool) {
         let dt_secs = dt_secs as f32;
         let mut place = self.traveller.ground_place();

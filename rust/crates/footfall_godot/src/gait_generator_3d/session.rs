@@ -165,7 +165,7 @@ impl WalkSession {
         controls
     }
 
-    /// Lets time pass. With `dt_secs` 0 the pose stays and nothing travels.
+    /// Advances the walk. With `dt_secs` 0 the pose stays and nothing travels.
     pub(super) fn advance(&mut self, dt_secs: f64, controls: Controls) -> Travel {
         self.elapsed_secs += dt_secs;
         let dt_secs = dt_secs as f32;
@@ -203,7 +203,7 @@ impl WalkSession {
             .is_some()
     }
 
-    /// Lets time pass without travelling.
+    /// Advances the walk without travelling.
     pub(super) fn skip(&mut self, secs: f64, controls: Controls) {
         // The generator limits a single step to this.
         const MOST_SECS: f64 = 5.0;

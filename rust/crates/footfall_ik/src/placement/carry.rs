@@ -1,4 +1,4 @@
-//! Way of the pelvis: as high as the ground under it has it, and no higher than the legs reach.
+//! Height of the pelvis: above the ground under it, within the reach of the legs.
 
 use crate::leg::{FootTarget, reach_height};
 use crate::placement::correction::Correction;
@@ -11,13 +11,13 @@ use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Pose, Side};
 use glam::{Quat, Vec3};
 
-/// Legs are stretched to this share of their length for the pelvis' sake, unless the animation stretches them more.
+/// Greatest extension of legs by the pelvis, as a share of their length, unless the animation extends them further.
 const EASY_EXTENSION: f32 = 0.98;
-/// A standing foot raises its heel rather than have its leg stretched to more, unless the animation stretches it more.
+/// Extension of its leg beyond which a standing foot raises its heel, unless the animation extends the leg further.
 const FIRM_EXTENSION: f32 = 0.995;
-/// Legs are never stretched more.
+/// Greatest extension of a leg, as a share of its length.
 const MAX_EXTENSION: f32 = 0.999;
-/// A step takes so long, about, and its rise is reckoned over this time at least, seconds.
+/// Typical duration of a step, and the least time over which its rise is spread, seconds.
 const STEP_SECS: f32 = 0.6;
 const LEAST_STEP_SECS: f32 = 0.2;
 /// Height below which a foot without a known landing is about to land, metres.

@@ -1,4 +1,4 @@
-//! One foot: locked where it was put, or on its way to the next place.
+//! One foot: locked to its place, or swinging to the next.
 
 mod heel;
 
@@ -15,11 +15,11 @@ use footfall_core::rotation::{heading, wrap_angle};
 use glam::{Quat, Vec3};
 pub(super) use heel::MAX_PITCH;
 
-/// Time constant with which what is left of a jump fades, seconds.
+/// Time constant with which a discontinuity fades, seconds.
 const RESIDUAL_SECS: f32 = 0.06;
 /// Time constant with which a foot without a known landing follows the ground under it, seconds.
 pub(super) const FOLLOW_SECS: f32 = 0.08;
-/// A foot that slid too far from its lock is put anew, for at least so long, seconds.
+/// Least time between two new plants of a foot that has drifted from its lock, seconds.
 pub(super) const REPLANT_SECS: f32 = 0.22;
 
 /// Place where the animation will put a foot, relative to the animation's floor now.
@@ -95,7 +95,7 @@ pub(super) struct Foot {
     /// Residual between the locked foot and the animated one, beyond its correction.
     pub(super) at_lock: Residual,
     pub(super) begun: bool,
-    /// True when it was let go before the animation lifts it.
+    /// True if it was released before the animation lifts it.
     pub(super) let_go_early: bool,
 }
 
@@ -248,7 +248,7 @@ impl Foot {
         }
     }
 
-    /// Goes over to a mode; where it is to land next stays.
+    /// Changes the mode; the next landing stays.
     fn let_go(&mut self, mode: Mode) {
         self.mode = mode;
         self.hold = None;
@@ -263,7 +263,7 @@ impl Foot {
         self.pushed = Vec3::ZERO;
     }
 
-    /// Locks the foot to the ground where it is put, if there is any.
+    /// Locks the foot to the ground at its place, if there is any.
     fn put<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,

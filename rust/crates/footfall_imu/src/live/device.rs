@@ -17,7 +17,7 @@ const MOST_WAITING: usize = 4096;
 const MOST_A_SECOND: f64 = 5000.0;
 const MOST_AT_ONCE: f64 = 10_000.0;
 
-/// Units and axes are checked over so long, and so often, seconds.
+/// Length of the checks of units and axes, and their interval, seconds.
 const CHECKED_SECS: f64 = 4.0;
 const CHECK_EVERY_SECS: f64 = 2.0;
 const MOST_CHECKED: usize = 4000;

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 /// Heel, ball and toe tip of both feet.
 const POINTS: usize = 6;
-/// A point bears fully at the level at which it rests, and hardly any more so high above it, metres.
+/// Height above its resting level at which a point hardly bears, metres; at that level it bears fully.
 const BEARING_HEIGHT_M: f32 = 0.004;
 /// Points higher above their level do not bear, metres.
 const MOST_HEIGHT_M: f32 = 0.04;

@@ -42,7 +42,7 @@ pub enum GltfError {
         path: PathBuf,
         /// The problem with what was asked for.
         wrong: String,
-        /// Those that there are.
+        /// Names of the existing animations.
         names: Vec<String>,
     },
 }

@@ -10,7 +10,7 @@ fn walks(bent: f64, strides: usize) -> WalkingEvidence {
     walks_with(strides, |_| bent)
 }
 
-/// The same with so many degrees more than normal gait at each share of the stride.
+/// The same with a difference from normal gait at each share of the stride, degrees.
 fn walks_with(strides: usize, bent: impl Fn(f64) -> f64) -> WalkingEvidence {
     let stances = (0..2 * strides)
         .map(|n| {

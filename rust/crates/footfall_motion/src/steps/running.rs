@@ -7,7 +7,7 @@ use super::{Step, Walk};
 use footfall_core::Clip;
 use glam::Vec3;
 
-/// The hips' acceleration is that of a parabola fitted over so long on either side, seconds.
+/// Time on either side over which a parabola is fitted for the hips' acceleration, seconds.
 const FIT_SECS: f64 = 0.033;
 /// Share of the acceleration of gravity beyond which nothing bears the body. Fast walks of the corpora reach 0.5.
 const FALLING_SHARE: f64 = 0.85;
@@ -99,7 +99,7 @@ fn falls_freely(clip: &Clip, frame: usize, reach: usize) -> bool {
     vertical_acceleration(clip, frame, reach) < -FALLING_SHARE * GRAVITY_MPS2
 }
 
-/// Of the hips, m/s²: twice the curvature of the parabola fitted by least squares to the heights of `reach` frames on either side.
+/// Vertical acceleration of the hips, m/s²: twice the curvature of the parabola fitted by least squares to the heights of `reach` frames on either side.
 fn vertical_acceleration(clip: &Clip, frame: usize, reach: usize) -> f64 {
     let count = (2 * reach + 1) as f64;
     let offsets = || (0..=2 * reach).map(|index| index as f64 - reach as f64);

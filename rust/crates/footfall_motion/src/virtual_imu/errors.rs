@@ -98,7 +98,7 @@ impl Errors {
         Vec3::new(x, y, z)
     }
 
-    /// Place on the body, up to so far from the site.
+    /// Place on the body, up to this distance from the site.
     pub(super) fn place(&mut self, off_m: f32) -> Vec3 {
         let far: f32 = self.random.random();
         // As many places in every part of the ball.

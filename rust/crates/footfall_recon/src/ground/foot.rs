@@ -12,7 +12,7 @@ use glam::{Quat, Vec3};
 /// A foot comes to stand above the first of these probabilities and leaves the ground below the second.
 const STANDS: [f32; 2] = [0.55, 0.4];
 
-/// A foot whose leg would have to stretch so far to where it stands is put anew, metres.
+/// Stretch of a leg to its standing foot beyond which the foot is planted again, metres.
 const MAX_DRIFT_M: f32 = 0.15;
 
 /// A foot whose own sensor says that it is in the air is held so far off the ground, as a share of the leg's length, where the body moves it as slowly
@@ -20,10 +20,10 @@ const MAX_DRIFT_M: f32 = 0.15;
 const CLEARANCE: f32 = 0.08;
 const CLEARED_SPEEDS: [f32; 2] = [1.5, 3.5];
 
-/// It is raised so far within this time from when it left the ground, seconds.
+/// Time within which it is raised that far after it has left the ground, seconds.
 const CLEARED_AFTER_SECS: f32 = 0.05;
 
-/// A foot whose own sensor says that it stands may drift so much further.
+/// Factor on the drift that is allowed to a foot whose own sensor reports contact.
 const MEASURED_DRIFT: f32 = 2.0;
 
 /// Half-life of what remains of a correction when a foot lands, seconds.
@@ -66,7 +66,7 @@ impl StandingFoot {
         free: Vec3::ZERO,
     };
 
-    /// Lets what remains of a correction die away for some time.
+    /// Fades the rest of a correction.
     fn settle(&mut self, dt_secs: f32) {
         let (left, of_toes) = if self.plant.is_some() {
             let left = 1.0 - follow_share(SETTLE_HALF_LIFE_SECS, dt_secs);
@@ -91,7 +91,7 @@ impl Ground {
         self.rockers[side.index()].stand(plant, pitch)
     }
 
-    /// Height at which a foot that is known to be in the air is held, when the body moves its ankle so far in a step, metres.
+    /// Height at which a foot that is known to be in the air is held, for a motion of its ankle in a frame, metres.
     fn clearance_m(&self, moved: Vec3, dt_secs: f32) -> f32 {
         let [least, most] = CLEARED_SPEEDS.map(|speed| speed * self.leg_length_m * dt_secs);
         let slow = (most - moved.with_y(0.0).length()) / (most - least).max(f32::MIN_POSITIVE);

@@ -235,7 +235,7 @@ impl Shared {
         }
     }
 
-    /// Carries out so many orders on the caller's thread.
+    /// Carries out this many orders on the caller's thread.
     fn work_at_most(&self, most: usize) {
         let Ok(mixtures) = self.prepared() else {
             return;

@@ -8,7 +8,7 @@ use crate::shell::{Purpose, Shell};
 use eframe::egui::{Panel, Ui, vec2};
 use footfall_core::Side;
 
-/// Footprints are shown so long before and after the playhead, seconds.
+/// Time around the playhead for which footprints are shown, seconds.
 const PRINTS_SECS: f64 = 4.0;
 
 #[derive(Default)]

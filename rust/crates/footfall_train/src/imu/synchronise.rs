@@ -15,14 +15,14 @@ use std::ops::Range;
 /// Samples a second at which both are compared.
 const RATE_HZ: f64 = 120.0;
 
-/// The real sensor is smoothed over so many samples, for a clip shows nothing faster.
+/// Number of samples over which the real sensor is smoothed: a clip contains nothing faster.
 const SMOOTHED: usize = 5;
 
 /// With less than this the recording is of something else, or of another site. Two people's walks at the same pace can come to 0.96, so this finds
 /// no mistake between those.
 const LEAST_CORRELATION: f64 = 0.95;
 
-/// A recording that begins or ends with the clip may lack so much of it, seconds.
+/// Greatest part of a clip that a recording may lack at its beginning or end, seconds.
 const MARGIN_SECS: f64 = 0.1;
 
 /// Least number of common samples for an estimate: a second.

@@ -39,7 +39,7 @@ impl Cycle {
     }
 }
 
-/// The cycles of these chains, in order: all of them, or those that stand best for all within so many frames.
+/// The cycles of these chains, in order: all of them, or the most representative ones within a number of frames.
 pub(super) fn choose(
     chains: &[&Chain],
     deviations: &[f32],
@@ -146,7 +146,7 @@ impl Choice {
         choice
     }
 
-    /// Leaves cycles out until so many frames are left, or one cycle.
+    /// Leaves cycles out until this many frames are left, or one cycle.
     fn reduce(mut self, most_frames: usize) -> Vec<Cycle> {
         let mut left: usize = self.frames.iter().sum();
         let mut losses = vec![0.0; self.cycles.len()];
@@ -293,7 +293,7 @@ mod tests {
         }
     }
 
-    /// A recording of steps, each of two phases, in which a joint is turned so far.
+    /// A recording of steps, each of two phases, with a joint turned by an angle.
     fn chain(behaviour: Behaviour, steps: &[f32]) -> Chain {
         let mut chain = Chain {
             subject: "somebody".to_owned(),

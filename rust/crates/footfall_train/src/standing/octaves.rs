@@ -35,7 +35,7 @@ const LEAST_VARIANCE: f64 = 1e-14;
 /// Rounds of the fit of covariances.
 const ROUNDS: usize = 20;
 
-/// Frequencies at which spectra are compared: so many of them up to this one, hertz.
+/// Number of frequencies at which spectra are compared, and the highest of them, hertz.
 const FREQUENCIES: usize = 6000;
 const MOST_HZ: f64 = 12.0;
 

@@ -105,7 +105,7 @@ fn people(clips: &[StandingClip]) -> Vec<Person> {
         .collect()
 }
 
-/// Generated people, a seed each, who move by so much.
+/// Generated people, one for each seed, with this amount of motion.
 fn seeds(
     model: &Arc<GaitModel>,
     args: &StandingArgs,

@@ -28,7 +28,7 @@ pub(super) struct MotionFacts {
     metres_per_unit: f32,
     /// Median height of the hips above the floor, on the canonical body.
     hip_height_m: f32,
-    /// On the canonical body.
+    /// Value on the canonical body.
     mean_speed_mps: f64,
     walks: usize,
     steps: usize,

@@ -22,7 +22,7 @@ pub const DEFAULT_PORT: u16 = 8080;
 /// Longest batch, bytes: a second of eight sensors at 200 Hz is shorter.
 const LONGEST: usize = 512 * 1024;
 
-/// A port that is taken is tried again after so long.
+/// Time after which a port in use is tried again.
 const RETRY: Duration = Duration::from_secs(2);
 
 type Batches = Arc<Mutex<Senders<(IpAddr, String)>>>;

@@ -25,14 +25,14 @@ const PAGE: &str = include_str!("page.html");
 /// Content policy of the page: it may load itself alone.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// A wrong code is answered after so long: guessing takes for ever.
+/// Delay of the answer to a wrong code, against guessing.
 const WRONG_CODE_DELAY: Duration = Duration::from_millis(500);
 
 /// Interval of the server's looks at footsteps, and the number of looks after which the page is sent its state.
 const LOOK: Duration = Duration::from_millis(25);
 const TELL_EVERY: u32 = 20;
 
-/// A page of which nothing is heard so long is taken for gone, in looks.
+/// Number of checks without a message after which a page counts as gone.
 const SILENT_LOOKS: u32 = 400;
 
 /// Longest number by which a page calls itself.
@@ -116,7 +116,7 @@ fn tls_config(
     ))
 }
 
-/// Lets in who is on the local network and knows a player's code.
+/// Admits clients on the local network that know a player's code.
 async fn guard(
     State(slots): State<Arc<Slots>>,
     ConnectInfo(from): ConnectInfo<SocketAddr>,

@@ -12,7 +12,7 @@ use glam::Vec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Bodies are looked at so many times a second: between frames they go on evenly.
+/// Rate at which bodies are sampled, hertz: they are interpolated between frames.
 const LOOK_RATE_HZ: f64 = 100.0;
 
 /// Contact of one foot of a body, on the recording's clock.

@@ -27,7 +27,7 @@ pub(super) fn best_without<'a, L, P>(
 mod tests {
     use super::*;
 
-    /// Ten events, so many of which are found.
+    /// Ten events, this many of which are found.
     fn agreement(matched: usize) -> Agreement {
         let known: Vec<f64> = (0..10).map(f64::from).collect();
         let found = known[..matched].to_vec();

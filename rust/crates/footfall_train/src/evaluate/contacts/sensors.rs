@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Events so far outside of the known ones are not judged, seconds: the reference may not have looked there.
+/// Time outside of the known events beyond which events are not judged, seconds: the reference may not cover it.
 const MARGIN_SECS: f64 = 0.2;
 
 /// The column that names a recording's events.
@@ -32,7 +32,7 @@ struct Events {
 #[derive(Deserialize)]
 struct Event {
     time_s: f64,
-    /// Of the foot that wears the sensor when absent.
+    /// The foot that wears the sensor if absent.
     foot: Option<String>,
     kind: String,
 }

@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Weight of a new sample in the mean force, whose direction gives the axis that points up.
 const MEAN_GAIN: f32 = 0.02;
 
-/// A device is silent when nothing was heard for so long, seconds.
+/// Time without samples after which a device counts as silent, seconds.
 const SILENT_SECS: f64 = 0.5;
 
 /// Report that is printed as JSON.
