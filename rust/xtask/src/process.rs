@@ -20,6 +20,14 @@ pub(crate) fn cargo() -> Command {
     ))
 }
 
+/// A command of cargo for all crates but the nodes', which need Godot; with the same features, so that nothing is built twice.
+pub(crate) fn cargo_without_nodes(command: &str) -> Command {
+    let mut cargo = cargo();
+    cargo.args([command, "--locked", "--workspace", "--exclude"]);
+    cargo.args(["footfall_godot", "--features", "footfall/live"]);
+    cargo
+}
+
 /// Another program in cargo's place, which calls cargo itself.
 pub(crate) fn cargo_by(program: &Path) -> Command {
     let mut cargo = Command::new(program);

@@ -117,7 +117,7 @@ pub(crate) struct FootPlacement3D {
     #[export]
     debug_draw: bool,
 
-    /// PlacementSession that is bound to the skeleton; `None` until the next frame that can bind one.
+    /// Feet that are bound to the skeleton; `None` until the next frame that can bind one.
     session: Option<PlacementSession>,
     reported: Option<String>,
     /// Contacts and landings that were given for this frame.

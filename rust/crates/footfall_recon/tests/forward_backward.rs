@@ -148,18 +148,24 @@ fn likelihood(config: &TrackerConfig, squares: f64) -> f64 {
     (-0.5 * f64::from(config.evidence) * squares.min(12.0)).exp()
 }
 
-/// The project's transitions and the published ones.
-fn configs() -> [TrackerConfig; 2] {
+/// The project's transitions and the published ones: settings, whole matrix and tracker.
+fn cases(model: &ImuModel) -> [(TrackerConfig, Vec<Vec<f64>>, Tracker); 2] {
     let mut published = ReconConfig::default();
     Published::Transitions.set(&mut published);
     let own = TrackerConfig {
         exit: 0.0,
         ..TrackerConfig::default()
     };
-    // Some of the measured frames are farther, and some are not.
-    [own, published.tracker].map(|config| TrackerConfig {
-        farthest: 12.0,
-        ..config
+    let prepared =
+        Arc::new(Prepared::new(Arc::new(model.clone())).expect("a model that fits together"));
+    [own, published.tracker].map(|config| {
+        // Some of the measured frames are farther, and some are not.
+        let config = TrackerConfig {
+            farthest: 12.0,
+            ..config
+        };
+        let matrix = transitions(model, &config);
+        (config, matrix, Tracker::new(&prepared, config))
     })
 }
 
@@ -171,11 +177,8 @@ fn sensor(n: usize) -> Option<Measurement> {
 #[test]
 fn the_forward_algorithm_is_that_of_the_whole_matrix() {
     let model = model();
-    let prepared = Arc::new(Prepared::new(Arc::new(model.clone())).unwrap());
-    for config in configs() {
-        let matrix = transitions(&model, &config);
+    for (config, matrix, mut tracker) in cases(&model) {
         let frames = matrix.len();
-        let mut tracker = Tracker::new(&prepared, config);
         let mut slow = vec![1.0 / frames as f64; frames];
         let (mut near, mut far) = (0, 0);
         for n in 0..60 {
@@ -207,11 +210,8 @@ fn the_forward_algorithm_is_that_of_the_whole_matrix() {
 #[test]
 fn the_backward_algorithm_is_that_of_the_whole_matrix() {
     let model = model();
-    let prepared = Arc::new(Prepared::new(Arc::new(model.clone())).unwrap());
-    for config in configs() {
-        let matrix = transitions(&model, &config);
+    for (config, matrix, mut tracker) in cases(&model) {
         let frames = matrix.len();
-        let mut tracker = Tracker::new(&prepared, config);
         let mut fast = vec![1.0_f32; frames];
         let mut slow = vec![1.0_f64; frames];
         for n in (0..60).rev() {
@@ -230,7 +230,9 @@ fn the_backward_algorithm_is_that_of_the_whole_matrix() {
             });
             slow = before.collect();
             let mean = slow.iter().sum::<f64>() / frames as f64;
-            slow.iter_mut().for_each(|value| *value /= mean);
+            for value in &mut slow {
+                *value /= mean;
+            }
             for (fast, slow) in fast.iter().zip(&slow) {
                 assert!(
                     (f64::from(*fast) - slow).abs() < 2e-3 * slow.max(1.0),

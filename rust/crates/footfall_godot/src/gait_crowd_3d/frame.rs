@@ -102,7 +102,7 @@ impl GaitCrowd3D {
                 true
             }
             Err(error) => {
-                self.fail(format!("The walk cannot start: {error}"));
+                self.fail(&format!("The walk cannot start: {error}"));
                 false
             }
         }

@@ -74,7 +74,7 @@ impl GaitCrowd3D {
                 self.walkers = Some(walkers);
                 self.mesh = Some(mesh);
             }
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.fail(&problem),
         }
         self.walkers.is_some()
     }
@@ -100,10 +100,10 @@ impl GaitCrowd3D {
     }
 
     /// Removes the crowd and reports the reason; it is not created again until a setting changes.
-    pub(super) fn fail(&mut self, problem: String) {
+    pub(super) fn fail(&mut self, problem: &str) {
         self.forget();
-        self.problem = Some(problem.clone());
-        report::warn(&self.base_mut().clone().upcast(), &problem);
+        self.problem = Some(problem.to_owned());
+        report::warn(&self.base_mut().clone().upcast(), problem);
     }
 
     /// Problems that keep the crowd from walking, as far as they are known.
