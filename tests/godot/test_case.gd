@@ -66,3 +66,25 @@ func until(holds: Callable) -> bool:
 			return true
 		OS.delay_msec(5)
 	return false
+
+
+## Adds a character on flat ground; `configure` gets it before its skeleton is made.
+func add_walker(configure := Callable()) -> Walker:
+	var walker := Walker.new()
+	if configure.is_valid():
+		configure.call(walker)
+	add_child(walker.build())
+	return walker
+
+
+## Adds a crowd of skinned bodies that only `advance()` moves; `configure` gets it before it enters the tree.
+func add_crowd(count: int, configure := Callable()) -> GaitCrowd3D:
+	var crowd := GaitCrowd3D.new()
+	crowd.model = load(Walker.MODEL)
+	crowd.character = Skinned.scene()
+	crowd.count = count
+	crowd.playing = false
+	if configure.is_valid():
+		configure.call(crowd)
+	add_child(crowd)
+	return crowd

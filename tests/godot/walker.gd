@@ -72,6 +72,16 @@ func build(with_model := true) -> Walker:
 	return self
 
 
+## Adds a foot placement below the generator. Connect `_read_bones` to the signal after which bones are to be read.
+func add_placement() -> FootPlacement3D:
+	var placement := FootPlacement3D.new()
+	placement.name = "FootPlacement3D"
+	placement.follow_ground = true
+	skeleton.add_child(placement)
+	gait.modification_processed.disconnect(_read_bones)
+	return placement
+
+
 func _add_bones() -> void:
 	# Asking the skeleton for global rests would freeze its poses until they are set in the tree, so they are kept here.
 	var global_rests: Array[Transform3D] = []

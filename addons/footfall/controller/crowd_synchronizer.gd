@@ -1,26 +1,26 @@
 class_name GaitCrowdSynchronizer
 extends Node
-## A crowd that one peer of a multiplayer game walks is shown by all others: drop `crowd_synchronizer.tscn` below a [GaitCrowd3D].
+## Replicates a crowd to all peers of a multiplayer game: drop `crowd_synchronizer.tscn` below a [GaitCrowd3D].
 ##
-## The peer with this node's multiplayer authority, the server if you set none, walks the crowd; the others' follows it, whatever their [code]count[/code] says. It works with
-## any [MultiplayerPeer]. The crowd has to have the same path, model and styles on all peers.
+## The peer with this node's multiplayer authority, by default the server, walks the crowd; the crowds of the others follow it and ignore their [code]count[/code]. It works with
+## any [MultiplayerPeer]. The crowd must have the same path, model and styles on all peers.
 
-## A peer without the authority has told of the crowd, and is not believed.
+## Emitted when a message of a peer without the authority is refused.
 signal stranger_refused(peer: int)
 
-## Time after which a crowd that has heard of nobody asks again, seconds.
+## Time after which a crowd that has received no walkers asks again, seconds.
 const ASK_SECS := 2.0
-## Strangers are told of no more often, seconds.
+## Shortest time between two reports of refused messages, seconds.
 const QUIET_SECS := 5.0
 
-## The bytes that are sent to each peer in a second at most. 100 a walker tell every step as often as a lossy network needs; with fewer, walkers who go straight on
-## are told of less often, and what is off is walked off.
+## Limit of the data that is sent to each peer. 100 bytes per second and walker repeat every step as often as a lossy network needs; with less, steps of walkers that go
+## straight on are sent less often, and later steps walk off the error.
 @export_range(1000, 1000000, 1000, "or_greater", "suffix:B/s") var bytes_per_second := 131072
 
 var _crowd: GaitCrowd3D
 var _asks_in := 0.0
 var _quiet := 0.0
-## The peer that this one is, and whom it follows.
+## This peer, and the peer that it follows.
 var _known := Vector2i.ZERO
 
 
@@ -30,7 +30,7 @@ func _ready() -> void:
 	if _crowd == null:
 		push_warning("%s: put it below a GaitCrowd3D." % get_path())
 	elif OS.has_feature("dedicated_server"):
-		# Nobody looks: no poses, no skeletons.
+		# Without a viewer: no poses, no skeletons.
 		_crowd.visible = false
 	multiplayer.peer_disconnected.connect(_leave)
 
@@ -45,13 +45,13 @@ func _process(delta: float) -> void:
 	if known != _known:
 		_known = known
 		_asks_in = 0.0
-		for told in _crowd.get_told_peers():
-			_crowd.forget_peer(told)
+		for follower in _crowd.get_told_peers():
+			_crowd.forget_peer(follower)
 		_crowd.follows = not is_multiplayer_authority()
 	if _crowd.follows:
 		_ask(delta)
 	else:
-		_tell()
+		_send()
 
 
 func _ask(delta: float) -> void:
@@ -63,7 +63,7 @@ func _ask(delta: float) -> void:
 		_asks_in = ASK_SECS
 
 
-func _tell() -> void:
+func _send() -> void:
 	for message in _crowd.take_messages(bytes_per_second):
 		var peers: PackedInt32Array = [message.peer] if message.peer else _crowd.get_told_peers()
 		for peer in peers:
@@ -78,14 +78,14 @@ func _leave(peer: int) -> void:
 		_crowd.forget_peer(peer)
 
 
-## A peer shows the crowd from now on.
+## Called by a peer that begins to follow the crowd.
 @rpc("any_peer", "call_remote", "reliable")
 func _join() -> void:
 	if _crowd != null and is_multiplayer_authority():
 		_crowd.tell_peer(multiplayer.get_remote_sender_id())
 
 
-# A message of no bytes comes without an argument.
+# An empty message arrives without an argument.
 @rpc("any_peer", "call_remote", "reliable")
 func _introduce(message := PackedByteArray()) -> void:
 	_hear(message)
@@ -102,5 +102,5 @@ func _hear(message: PackedByteArray) -> void:
 		_crowd.hear_message(message)
 	elif _quiet <= 0.0:
 		_quiet = QUIET_SECS
-		push_warning("%s: peer %d tells of a crowd that is not its own; only the peer with the multiplayer authority of this node does." % [get_path(), sender])
+		push_warning("%s: a message of peer %d about the crowd was refused. Only the peer with the multiplayer authority of this node may send the crowd." % [get_path(), sender])
 		stranger_refused.emit(sender)

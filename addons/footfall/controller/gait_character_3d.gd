@@ -27,14 +27,14 @@ const LEAST_TURN := 0.15
 const EDGE_REACH := 0.08
 ## Ground that is lower by less is level, metres.
 const EDGE_SLACK := 0.001
-## A crouching character's capsule has this share of its height, after so long, seconds.
+## Share of its height that a crouching character's capsule has, and the time until then, seconds.
 const CROUCHED_HEIGHT := 0.65
 const CROUCH_SECS := 0.3
-## A wall that is nearer than this is jumped onto, metres.
+## Distance within which a jump goes onto a wall, metres.
 const WALL_REACH := 0.7
-## Somebody whom the wall's side has held up is where the jump goes after so long, seconds.
+## Time within which a character that a wall has held back in a jump returns to the jump's path, seconds.
 const CATCH_UP_SECS := 0.1
-## From the ground to what the camera looks at, as a share of the height.
+## Height of the camera's target above the ground, as a share of the character's height.
 const EYE_HEIGHT := 0.8
 
 ## Your character: an imported glTF or FBX file, or a scene made from one. It may contain a [GaitGenerator3D] and a [FootPlacement3D];
@@ -112,7 +112,7 @@ var _due := false
 var _steps := Transform3D.IDENTITY
 var _wish := Vector3.ZERO
 var _leaps := false
-## True while the generator has the body in the air, in a jump of its own, and the distance by which a wall has kept it from going with that.
+## True while the generator's jump has the body in the air, and the distance by which a wall has held it back from that.
 var _soars := false
 var _behind := Vector3.ZERO
 var _air_secs := 0.0
@@ -125,7 +125,7 @@ var _air_secs := 0.0
 func _enter_tree() -> void:
 	if Engine.is_editor_hint() or is_multiplayer_authority():
 		return
-	# Another peer's character: nobody steers it here, or looks with its eyes. Once its camera were in the tree, the view would be that camera's.
+	# Another peer's character is not steered here and needs no camera. Its camera in the tree would take over the view.
 	player_controlled = false
 	for path: NodePath in [^"Camera", ^"TouchStick"]:
 		if has_node(path):
@@ -148,7 +148,7 @@ func _physics_process(delta: float) -> void:
 	if Engine.is_editor_hint():
 		return
 	if _due:
-		# Nobody has walked since the last frame: there is no character, or no model.
+		# The generator has not walked since the last frame: there is no character, or no model.
 		_travel()
 	_due = true
 	_wish = _wished()
@@ -166,7 +166,7 @@ func jump() -> void:
 	if not is_on_floor() or jump_height <= 0.0:
 		return
 	var top := _wall_ahead() if gait else Vector3.INF
-	# It bends its knees first, and tells when it leaves the ground.
+	# It bends its knees first, and emits a signal when it leaves the ground.
 	if gait and (gait.jump_to(top) if top.is_finite() else gait.jump(jump_height)):
 		return
 	_take_off()
@@ -240,7 +240,7 @@ func _steer() -> void:
 		gait.turn_rate = 0.0
 
 
-## Turns towards where it is to face. The step under way obeys, too, while its foot is in the air.
+## Turns towards the requested direction. The current step also turns while its foot is in the air.
 func _turn_by(angle: float) -> void:
 	var left := wrapf(angle, -PI, PI)
 	var idle := gait.speed == 0.0 and absf(left) < LEAST_TURN
@@ -300,7 +300,7 @@ func _travel() -> void:
 	_stay_or_land(-fall, delta)
 
 
-## The velocity along the ground of somebody in the air.
+## Velocity along the ground in the air.
 func _flight(delta: float) -> Vector3:
 	var level := Vector3(velocity.x, 0.0, velocity.z)
 	return level.move_toward(_wish * walk_speed, air_acceleration * delta) if _wish != Vector3.ZERO else level
@@ -318,7 +318,7 @@ func _rise() -> void:
 	jumped.emit()
 
 
-## A foot of the generator's jump is where it was to land. Where there is no ground, the character falls on.
+## Called when a foot of the generator's jump reaches its landing. Without ground there, the character falls on.
 func _come_down(_foot: StringName) -> void:
 	if _soars and (is_on_floor() or test_move(global_transform, Vector3.DOWN * step_height)):
 		landed.emit(-velocity.y)
@@ -332,7 +332,7 @@ func _wall_ahead() -> Vector3:
 	var ahead := _figure.global_basis.z.normalized()
 	if not test_move(global_transform.translated(Vector3.UP * step_height), ahead * WALL_REACH):
 		return Vector3.INF
-	# Nothing may be in the way above it, and it must be there to stand on.
+	# The space above it must be free, and there must be ground to stand on.
 	var over := global_transform.translated(Vector3.UP * (jump_height + step_height))
 	var onto := ahead * (WALL_REACH + radius)
 	var down := KinematicCollision3D.new()
@@ -361,7 +361,7 @@ func _stay_or_land(fall: float, delta: float) -> void:
 	if placement and placement.in_air != airborne:
 		placement.in_air = airborne
 	if gait:
-		# It knows how to jump, but not how to fall.
+		# The generator has jumps, but no falls.
 		gait.playing = not _flies()
 
 

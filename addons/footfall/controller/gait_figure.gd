@@ -3,18 +3,18 @@ extends Node3D
 ## Visible part of a character: your scene, with the nodes that walk it, above a capsule that it follows smoothly.
 
 const MODEL := "res://addons/footfall/models/locomotion.footfall"
-## The highest bone is a head's joint or its end: a body is so much higher.
+## Factor from the highest bone, a head's joint or its end, to the body's height.
 const HEIGHT_PER_BONE := 1.08
-## From one upper arm's joint to the other, against a body's width.
+## Factor from the distance of the upper arms' joints to the body's width.
 const WIDTH_PER_SHOULDERS := 1.4
-## Without shoulders to measure, a body is so wide.
+## Width of a body without shoulder joints.
 const WIDTH_PER_HEIGHT := 0.3
 const MOST_WIDTH_PER_HEIGHT := 0.6
 
 ## The generator that walks the character and the foot placement below it; [code]null[/code] without a skeleton.
 var gait: GaitGenerator3D
 var placement: FootPlacement3D
-## Distance from where it belongs and the speed at which that changes: metres, upwards.
+## Distance from its place, upwards, metres, and its rate of change.
 var _off := 0.0
 var _off_speed := 0.0
 
@@ -81,7 +81,7 @@ func follow(half_life: float, delta: float) -> void:
 	position.y = _off
 
 
-## Is where the capsule is, at once.
+## Moves to the capsule's place at once.
 func catch_up() -> void:
 	_off = 0.0
 	_off_speed = 0.0

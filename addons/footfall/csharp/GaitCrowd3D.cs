@@ -307,7 +307,7 @@ namespace Footfall
             set => Native.Set(PropertyName.Material, value);
         }
 
-        /// <summary>If <c>true</c>, the crowd is another peer's of a multiplayer game: walkers come, go and step as <see cref="HearMessage"/> tells, by the same ids; <see cref="Count"/>, <see cref="Behaviour"/> and what scripts ask of walkers do nothing. Set back to <c>false</c> it goes on by itself with those who are there. <c>controller/crowd_synchronizer.tscn</c> sets it.</summary>
+        /// <summary>If <c>true</c>, the crowd repeats another peer's crowd of a multiplayer game: <see cref="HearMessage"/> adds, removes and moves walkers with the same ids, while <see cref="Count"/>, <see cref="Behaviour"/> and calls that steer walkers have no effect. If set back to <c>false</c>, it continues by itself with the same walkers. <c>controller/crowd_synchronizer.tscn</c> sets it.</summary>
         public bool Follows
         {
             get => Native.Get(PropertyName.Follows).AsBool();
@@ -330,7 +330,7 @@ namespace Footfall
             remove => Native.Disconnect(SignalName.Footsteps, Callable.From(value));
         }
 
-        /// <summary>A message about the crowd that this one follows was refused, for this reason: see <see cref="HearMessage"/>.</summary>
+        /// <summary>Emitted when a message about the crowd that this one follows is refused: <c>reason</c> gives the cause and what to do. See <see cref="HearMessage"/>.</summary>
         /// <value>Handlers take <c>reason</c>.</value>
         public event Action<string> MessageRefused
         {
@@ -351,7 +351,7 @@ namespace Footfall
         /// <summary>Returns the id of the walker nearest to a point in global space, within <c>max_distance</c>, or -1.</summary>
         public int FindNearest(Vector3 position, double maxDistance = double.PositiveInfinity) => Native.Call(MethodName.FindNearest, position, maxDistance).AsInt32();
 
-        /// <summary>Has a peer told no more.</summary>
+        /// <summary>Stops sending the crowd to a peer.</summary>
         public void ForgetPeer(int peer) => Native.Call(MethodName.ForgetPeer, peer);
 
         /// <summary>Returns the number of walkers, including pending ones.</summary>
@@ -388,16 +388,16 @@ namespace Footfall
         /// <summary>Returns the tiers of walkers: 0 for a full scene, 1 for a new pose in every frame, 2 for a distant walker, or one that is not created yet. Shapes and ids as of <see cref="GetPositions"/>; 2 for an unknown id.</summary>
         public byte[] GetTiers(int[] agents) => Native.Call(MethodName.GetTiers, agents).AsByteArray();
 
-        /// <summary>The peers that are told this crowd.</summary>
+        /// <summary>Returns the peers to which this crowd is sent.</summary>
         public int[] GetToldPeers() => Native.Call(MethodName.GetToldPeers).AsInt32Array();
 
         /// <summary>Returns <c>true</c> if a walker has this id.</summary>
         public bool HasAgent(int agent) => Native.Call(MethodName.HasAgent, agent).AsBool();
 
-        /// <summary>Hears a message of the crowd that this one follows. One that makes no sense is refused: nothing changes, and <see cref="MessageRefused"/> says why, every five seconds at most.</summary>
+        /// <summary>Takes a message of the crowd that this one follows. An invalid message is refused: nothing changes, and <see cref="MessageRefused"/> gives the reason, every five seconds at most.</summary>
         public void HearMessage(byte[] bytes) => Native.Call(MethodName.HearMessage, bytes);
 
-        /// <summary>Returns whether the crowd follows another peer's and has heard who is in it.</summary>
+        /// <summary>Returns <c>true</c> if the crowd follows another peer's crowd and has received its walkers.</summary>
         public bool IsIntroduced() => Native.Call(MethodName.IsIntroduced).AsBool();
 
         /// <summary>Returns <c>true</c> while walkers are pending.</summary>
@@ -434,12 +434,12 @@ namespace Footfall
         /// <summary>Sets the turn rates of walkers, in radians per second, positive to their left, and clears their goals. For <see cref="Behaviour"/> scripted. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
         public void SetTurnRates(float[] turnRates, int[] agents) => Native.Call(MethodName.SetTurnRates, turnRates, agents);
 
-        /// <summary>The messages about this crowd since the last call, to be sent in this order: dictionaries of <c>peer</c> (<c>int</c>, 0 for all that are told), <c>reliable</c> (<c>bool</c>) and <c>bytes</c> (<c>PackedByteArray</c>, at most 1200). Call it in every frame.</summary>
-        /// <remarks>At most <c>bytes_per_second</c> of them say how walkers step, those first of whom others would err most, and as many introduce walkers to each peer that has come. 100 a walker tell everything as often as lossy networks need. Of a crowd that follows another one there is nothing to tell.</remarks>
+        /// <summary>Returns the messages about this crowd since the last call, to be sent in this order: dictionaries of <c>peer</c> (<c>int</c>, 0 for all that follow), <c>reliable</c> (<c>bool</c>) and <c>bytes</c> (<c>PackedByteArray</c>, at most 1200). Call it in every frame.</summary>
+        /// <remarks>At most <c>bytes_per_second</c> carry steps, first those whose absence would cause the largest errors, and as many introduce walkers to each new peer. 100 bytes per second and walker repeat steps as often as lossy networks need. A crowd that follows another one has no messages.</remarks>
         public Godot.Collections.Array<Godot.Collections.Dictionary> TakeMessages(long bytesPerSecond) => Native.Call(MethodName.TakeMessages, bytesPerSecond).AsGodotArray<Godot.Collections.Dictionary>();
 
-        /// <summary>Has another peer of a multiplayer game told of this crowd from now on: who is in it, and every step. <see cref="TakeMessages"/> has what is to be sent. Called again it tells everything again, once a second. <c>controller/crowd_synchronizer.tscn</c> does all this.</summary>
-        /// <remarks>While anybody is told, walkers far away share no steps: 5,000 walkers take two fifths of a core.</remarks>
+        /// <summary>Begins to send this crowd to another peer of a multiplayer game: its walkers, and every step. <see cref="TakeMessages"/> returns the messages. A repeated call sends all walkers again, at most once a second. <c>controller/crowd_synchronizer.tscn</c> does all this.</summary>
+        /// <remarks>While any peer follows, distant walkers share no steps: 5,000 walkers take two fifths of a core.</remarks>
         public void TellPeer(int peer) => Native.Call(MethodName.TellPeer, peer);
     }
 }

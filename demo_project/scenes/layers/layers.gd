@@ -140,7 +140,7 @@ func close_ups() -> Dictionary[String, Array]:
 	}
 
 
-## Checks that a clip's bones are as the clip has them, and that everybody walks.
+## Checks that a clip's bones are as the clip has them, and that all characters walk.
 func problems(frames: int) -> PackedStringArray:
 	var found := super(frames)
 	var skeleton: Skeleton3D = gait_of(walkers[1]).get_parent()

@@ -92,7 +92,7 @@ func sensor() -> Dictionary:
 
 
 ## Message about the connection.
-func told() -> String:
+func connection_text() -> String:
 	if _source is DeviceImuSource:
 		return "" if DeviceImuSource.is_available() else "This device delivers no motion: it has no sensors, or the project settings turn them off."
 	return sentence(_source.get_message())
@@ -112,7 +112,7 @@ func show_state(driven: ImuReconstructor3D) -> void:
 		%Figures.text = "%s: %.0f samples a second, %d lost" % [known.name, known.rate, known.lost]
 	else:
 		%Figures.text = "nothing is heard yet"
-	var connection := told()
+	var connection := connection_text()
 	%Message.text = connection if connection != "" or not heard else sentence(driven.get_sensor_message())
 	%Message.visible = %Message.text != ""
 	var step := driven.get_calibration_step()

@@ -112,7 +112,7 @@ func problems(frames: int) -> PackedStringArray:
 	var found := PackedStringArray()
 	var sensor := _panel.sensor()
 	if sensor.is_empty() or sensor.samples < 0.8 * (frames - 30) or sensor.lost > 0:
-		found.append("of %d frames was heard: %s %s" % [frames, sensor, _panel.told()])
+		found.append("of %d frames was heard: %s %s" % [frames, sensor, _panel.connection_text()])
 	var walked_secs := frames / 60.0 - 6.0
 	var went := _character.global_position.distance_to(_start)
 	if went < 0.7 * walked_secs:

@@ -1,5 +1,5 @@
 extends Node3D
-## Two machines, one crowd: host a game or join one, and everybody makes the same steps everywhere.
+## Two machines, one crowd: host a game or join one; all characters take the same steps on both.
 ##
 ## Without a user the scene is both: a host who walks in circles, and beside it a guest's machine that shows the same people.
 
@@ -7,14 +7,14 @@ const PORT_OF_CHECK := 24_681
 ## The guest's machine shows the host's character where it was so long ago at most, seconds, within so much, metres.
 const BEHIND_SECS := 0.5
 const OFF_ITS_WAY := 0.1
-## The player goes no farther in a frame, metres, whoever comes in the way.
+## Longest travel of the player in a frame, metres, even in a collision.
 const IN_A_FRAME := 0.1
 ## Place of the guest's machine beside the host's.
 const BESIDE := Vector3(26, 0, 0)
 ## Footsteps of the crowd are at the same place on both machines within this, metres, from so long after the guest has come, seconds.
 const SAME_PLACE := 0.05
 const JOINED_SECS := 2.0
-## Of so many footsteps one may be elsewhere: frames of a check do not wait for the network, and whoever is heard of late is corrected.
+## One of this many footsteps may be elsewhere: frames of a check do not wait for the network, and late walkers are corrected.
 const CORRECTED_OF := 20
 
 var _guest: NetworkWorld
@@ -35,7 +35,7 @@ var _made_up := 0
 
 
 func _ready() -> void:
-	_world.told.connect(func(text: String) -> void: %Told.text = text)
+	_world.status_changed.connect(func(text: String) -> void: %Status.text = text)
 	%Host.pressed.connect(func() -> void: _offer(not _world.host()))
 	%Join.pressed.connect(func() -> void: _offer(not _world.join(%Address.text.strip_edges())))
 	%Leave.pressed.connect(func() -> void:
@@ -90,7 +90,7 @@ func problems(frames: int) -> PackedStringArray:
 	if _shown < frames / 60.0 - 2.0:
 		found.append("the guest's machine has shown %d of its footsteps in %d frames" % [_shown, frames])
 	if _thrown > IN_A_FRAME:
-		found.append("somebody has thrown the host's character by %.2f m" % _thrown)
+		found.append("the host's character was thrown by %.2f m" % _thrown)
 	var people := _people_of(_world)
 	if people.is_empty() or people != _people_of(_guest):
 		found.append("the guest's machine has other people than the host: %s, not %s" % [_people_of(_guest), people])

@@ -27,7 +27,7 @@ func _process(_delta: float) -> void:
 	%Behaviour.text = "the sensor says: %s" % _driven.get_behaviour()
 
 
-## Everybody's own character, with a reconstructor in place of the generator.
+## A character with a reconstructor in place of the generator.
 func _add_driven() -> void:
 	var character: Node3D = WALKER.instantiate()
 	character.name = "Driven"

@@ -6,7 +6,7 @@ extends Node
 ## `--frames N` runs N frames, checks what the scene promises, prints `DEMO OK` and quits; the exit code is 1 when it did not keep it.
 ## `--every-scene N` goes to the menu, which looks into all of them.
 ##
-## The scene tells what is to be seen and checked: `close_ups()`, name → [place, heading and height in degrees, distance in metres] of
+## The scene defines what is shown and checked: `close_ups()`, name → [place, heading and height in degrees, distance in metres] of
 ## the camera; `FRAMES_BEFORE_PICTURES`, when half a second is too early; `begin_check()`; and `problems(frames)`, what is wrong after so many of them;
 ## `FRAMES_OF_CHECK`, when what is checked takes longer than it is asked to run.
 ## A scene with `is_getting_ready()` is waited for. One with a tour has `TOUR_SECS` and `tour(seconds)`, which does what is due by then.

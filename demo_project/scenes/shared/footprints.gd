@@ -31,7 +31,7 @@ func _process(delta: float) -> void:
 func mark(foot: StringName, place: Vector3, character: Node3D) -> void:
 	var forward := character.global_basis.z.normalized()
 	var turned := Basis(character.global_basis.x.normalized(), Vector3.UP, forward) * Basis(Vector3.UP, PI)
-	# The contact is told under the ankle; the sole reaches further to the front than to the back.
+	# The contact is given under the ankle; the sole reaches further to the front than to the back.
 	var middle := place + forward * 0.055 + Vector3.UP * 0.004
 	multimesh.set_instance_transform(_next, Transform3D(turned, middle))
 	multimesh.set_instance_custom_data(_next, Color(_now_secs, 1.0 if foot == &"left" else -1.0, 0.0))

@@ -8,7 +8,7 @@ const MOST := 8
 const REACH_M := 3.0
 const HEIGHT_M := 1.75
 const RADIUS_M := 0.2
-## Whoever walks into the player has no body from this near on, metres: farther than anybody comes in a frame.
+## Distance within which a walker on a collision course with the player has no body, metres: more than its travel in a frame.
 const GAP_M := 0.1
 const AWAY := Vector3(0, -50, 0)
 
@@ -16,7 +16,7 @@ const AWAY := Vector3(0, -50, 0)
 @export var player: GaitCharacter3D
 
 var _free: Array[AnimatableBody3D] = []
-## Somebody nearby → the body. It stays the same: one that changed hands would hit the player on its way.
+## Nearby walker → its body, which stays the same: a reassigned body would hit the player on its way.
 var _bodies: Dictionary[int, AnimatableBody3D] = {}
 
 
@@ -66,6 +66,6 @@ func _physics_process(_delta: float) -> void:
 	_bodies = nearby
 
 
-## Returns whether the player walks towards somebody. Whoever comes to a player who does not goes through, and pushes nobody.
+## Returns whether the player walks towards a walker. A walker that comes to a standing player passes through without a push.
 func _walks_to(place: Vector3) -> bool:
 	return player.velocity.dot(place - player.global_position) > 0.0

@@ -1,11 +1,11 @@
 class_name NetworkWorld
 extends Node3D
-## One machine's part of a multiplayer game: it hosts or joins, and has a character for everybody who plays, and a crowd that all see alike.
+## One machine's part of a multiplayer game: it hosts or joins, and has a character for each player, and a crowd that is the same everywhere.
 ##
 ## It has a multiplayer interface of its own, so that a scene may hold several: a host and its guests on one screen.
 
 ## News of hosting, joining and the others, for the player.
-signal told(text: String)
+signal status_changed(text: String)
 ## This machine's own character has come.
 signal came(player: GaitCharacter3D)
 ## The host has left, and the game has ended.
@@ -43,11 +43,11 @@ func _ready() -> void:
 	_spawner.spawn_function = _make
 	multiplayer.peer_connected.connect(_come)
 	multiplayer.peer_disconnected.connect(_go)
-	multiplayer.connected_to_server.connect(func() -> void: told.emit("Joined. WASD walks."))
-	multiplayer.connection_failed.connect(func() -> void: told.emit("No answer. Check that Host is pressed there and that UDP port %d is open." % DEFAULT_PORT))
+	multiplayer.connected_to_server.connect(func() -> void: status_changed.emit("Joined. WASD walks."))
+	multiplayer.connection_failed.connect(func() -> void: status_changed.emit("No answer. Check that Host is pressed there and that UDP port %d is open." % DEFAULT_PORT))
 	multiplayer.server_disconnected.connect(func() -> void:
 		leave()
-		told.emit("The host has left. Host a game yourself, or join another.")
+		status_changed.emit("The host has left. Host a game yourself, or join another.")
 		# Its listeners may free this node, whose network is in the middle of a message.
 		ended.emit.call_deferred())
 
@@ -56,22 +56,22 @@ func _ready() -> void:
 func host(port := DEFAULT_PORT) -> bool:
 	var peer := ENetMultiplayerPeer.new()
 	if peer.create_server(port, MOST_GUESTS) != OK:
-		told.emit("Port %d is taken: this machine already hosts a game. Join 127.0.0.1." % port)
+		status_changed.emit("Port %d is taken: this machine already hosts a game. Join 127.0.0.1." % port)
 		return false
 	multiplayer.multiplayer_peer = peer
 	_come(1)
-	told.emit("Hosting. Others join %s." % _own_address())
+	status_changed.emit("Hosting. Others join %s." % _own_address())
 	return true
 
 
-## Joins a game that somebody hosts. Returns whether it is on its way there.
+## Joins a hosted game. Returns whether the connection was started.
 func join(address: String, port := DEFAULT_PORT) -> bool:
 	var peer := ENetMultiplayerPeer.new()
 	if peer.create_client(address, port) != OK:
-		told.emit("\"%s\" is no address: write the host's, such as 192.168.0.7." % address)
+		status_changed.emit("\"%s\" is no address: write the host's, such as 192.168.0.7." % address)
 		return false
 	multiplayer.multiplayer_peer = peer
-	told.emit("Joining %s …" % address)
+	status_changed.emit("Joining %s …" % address)
 	return true
 
 
@@ -101,14 +101,14 @@ func _come(peer: int) -> void:
 	_spawner.spawn({"peer": peer, "place": Vector3(APART * (_count % 5), 0.05, -APART * (_count / 5)), "colour": COLOURS[_count % COLOURS.size()]})
 	_count += 1
 	if peer != 1:
-		told.emit("A guest has come.")
+		status_changed.emit("A guest has come.")
 
 
 func _go(peer: int) -> void:
 	var player := player_of(peer)
 	if multiplayer.is_server() and player:
 		player.queue_free()
-		told.emit("A guest has left.")
+		status_changed.emit("A guest has left.")
 
 
 ## Makes a character, on every machine alike. Whose it is walks it; on all others it makes the same steps.
@@ -133,7 +133,7 @@ func _make(data: Dictionary) -> Node:
 		player.get_node(^"TouchStick").free()
 	player.ready.connect(func() -> void:
 		Paint.apply(player.gait.get_skeleton(), data.colour)
-		player.gait.replica_refused.connect(func(reason: String) -> void: told.emit(reason))
+		player.gait.replica_refused.connect(func(reason: String) -> void: status_changed.emit(reason))
 		if player == own_player():
 			came.emit(player))
 	return player

@@ -5,7 +5,7 @@ extends Camera3D
 @export var heading := deg_to_rad(32.0)
 @export var height := deg_to_rad(13.0)
 
-## Point that it looks at; whoever moves it sets it every frame.
+## Point that it looks at, to be set in every frame.
 var target_position := Vector3.ZERO
 
 var _seen := Vector3.INF

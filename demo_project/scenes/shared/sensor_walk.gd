@@ -65,6 +65,6 @@ func _physics_process(delta: float) -> void:
 	player.walk_speed = _speed
 
 
-## Turns the way to where somebody looks, radians about +Y.
+## Turn of the path, radians about +Y.
 func look(heading: float) -> void:
 	_heading = heading

@@ -1,6 +1,6 @@
 class_name VirtualImu
 extends RefCounted
-## An inertial sensor in the game's world: what one would measure that moves as it is told.
+## A simulated inertial sensor in the game's world, from its position and orientation in each frame.
 
 const GRAVITY_MPS2 := 9.80665
 

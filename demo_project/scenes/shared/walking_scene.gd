@@ -58,7 +58,7 @@ func follow(panel: Control) -> void:
 	set_all(&"speed", panel.SPEED)
 
 
-## Views that pictures show closely: walkers whom nobody hides.
+## Close-up views for pictures: walkers that are not hidden by others.
 func close_ups() -> Dictionary[String, Array]:
 	var at := func(index: int) -> Vector3: return walkers[index].global_position + Vector3.UP * 0.9
 	return {
@@ -77,7 +77,7 @@ func begin_check() -> void:
 func problems(frames: int) -> PackedStringArray:
 	var found := PackedStringArray()
 	if _starts.is_empty():
-		found.append("nobody is there")
+		found.append("there are no walkers")
 	for index: int in _starts.size():
 		var walked := walkers[index].global_position.distance_to(_starts[index])
 		# Half of what the speed promises, after a second to get going.

@@ -6,7 +6,7 @@ extends Node3D
 signal measured(time: float, force: Vector3, rate: Vector3)
 
 const OUT_OF_SIGHT := Vector3(0, -60, 0)
-## Worn anyhow: nobody ties a sensor on straight.
+## Arbitrary mounting: a sensor is never strapped on straight.
 const WORN := Quaternion(0.2, 0.6, 0.3, 0.714143)
 ## Places of a sensor on a part of the body, metres from the joint in the T-pose: on a foot, and in a trousers' pocket.
 const PLACES: Dictionary[String, Vector3] = {

@@ -23,10 +23,10 @@ func _ready() -> void:
 	%Host.pressed.connect(func() -> void: _offer(not world.host()))
 	%Join.pressed.connect(func() -> void: _offer(not world.join(%Address.text.strip_edges())))
 	%Leave.pressed.connect(_close.bind("You have left."))
-	world.told.connect(_tell)
+	world.status_changed.connect(_show_status)
 	world.ended.connect(func() -> void: _close(%News.text))
 	_offer(true)
-	_tell(_news)
+	_show_status(_news)
 	_news = ""
 
 
@@ -46,7 +46,7 @@ func _process(_delta: float) -> void:
 	%Code.visible = not heard
 	%Ahead.visible = heard
 	%Code.show_page(_phone)
-	_tell(_next_step(heard))
+	_show_status(_next_step(heard))
 
 
 ## Returns what is wrong with the phone, or what its owner does next.
@@ -68,7 +68,7 @@ func _use_phone(on: bool) -> void:
 		_phone = null
 		%Code.hide()
 		%Ahead.hide()
-		_tell("")
+		_show_status("")
 		return
 	_phone = PhoneImuSource.new()
 	_walk = SensorWalk.new(THIGH, _player)
@@ -91,7 +91,7 @@ func _close(news: String) -> void:
 	closed.emit()
 
 
-func _tell(text: String) -> void:
+func _show_status(text: String) -> void:
 	%News.text = text
 	%News.visible = text != ""
 

@@ -49,13 +49,13 @@ func slab(from: Vector3, to: Vector3, colour: Color) -> void:
 	bar([Vector2(from.x, from.y), Vector2(to.x, from.y), Vector2(to.x, to.y), Vector2(from.x, to.y)], from.z, to.z, colour)
 
 
-## A slab that nobody walks through.
+## A slab that blocks walkers.
 func block(from: Vector3, to: Vector3, colour: Color) -> void:
 	slab(from, to, colour)
 	stop_box(Transform3D(Basis.IDENTITY, 0.5 * (from + to)), to - from)
 
 
-## A round piece about an upright axis, as many-sided as told, narrower or wider at the top.
+## A round piece about an upright axis with a given number of sides, narrower or wider at the top.
 func drum(foot: Vector3, low_radius: float, high_radius: float, height: float, sides: int, colour: Color) -> void:
 	var top := PackedVector3Array()
 	for side: int in sides:

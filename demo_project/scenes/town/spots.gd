@@ -24,7 +24,7 @@ func _init() -> void:
 	_out_of_sight()
 
 
-## A spot that nobody has taken and that is some way off.
+## A free spot at some distance.
 func draw(chance: RandomNumberGenerator, from: Vector3) -> Spot:
 	for attempt: int in 40:
 		var spot := all[chance.randi() % all.size()]

@@ -34,7 +34,7 @@ func _floor() -> void:
 	mason.finish(self, "Floor", paving, TownMason.GROUND | TownMason.SOLID)
 
 
-## The terrace with its stair and its ramp: what people walk on. Balustrades are apart, because nobody walks on them.
+## The terrace with its stair and its ramp: what people walk on. Balustrades are separate, because they are not walked on.
 func _terrace() -> void:
 	var half := TownPlan.HALF_WIDTH
 	var front := TownPlan.TERRACE_FRONT

@@ -13,12 +13,12 @@ const FRAMES_OF_CHECK := 900
 ## The player stands there at first.
 const START := Vector3(0, 0, 14.5)
 const VIEW := Vector3(deg_to_rad(-9.0), 0.0, 0.0)
-## Begin of a check, and the place to which the player goes when nobody plays.
+## Start of a check, and the place to which the player walks without input.
 const FOOT_OF_STAIR := Vector3(0.8, 0, -7.0)
 const TERRACE := Vector3(1.5, TownPlan.RISE, -15.5)
 ## Start of a character that a sensor steers, with a free way ahead.
 const BESIDE_START := Vector3(-17.0, 0, -9.0)
-## Nobody may be deeper in a wall, metres: half a body's breadth.
+## Greatest depth of a walker in a wall, metres: half a body's width.
 const MOST_DEPTH := 0.25
 const TOUR_SECS := TownTour.SECS
 
@@ -103,7 +103,7 @@ func is_getting_ready() -> bool:
 
 func begin_check() -> void:
 	_player.teleport(Transform3D(Basis(Vector3.UP, PI), FOOT_OF_STAIR))
-	# Straight on, whoever comes down: an agent goes back for places of its way that others kept it from.
+	# Straight on, even against others: an agent returns to places of its path that others kept it from.
 	_player.autopilot = Vector3.FORWARD
 	_starts = _crowd.get_positions()
 	_checks = true
@@ -121,7 +121,7 @@ func problems(frames: int) -> PackedStringArray:
 	if went < 0.4 * _starts.size() or _starts.size() != PEOPLE:
 		found.append("%d of %d people went anywhere in %d frames" % [went, _starts.size(), frames])
 	if _deepest > MOST_DEPTH:
-		found.append("somebody was %.2f m deep in a wall, at %s" % [_deepest, _deepest_at])
+		found.append("a walker was %.2f m deep in a wall, at %s" % [_deepest, _deepest_at])
 	found.append_array(_pocket.problems())
 	if _player.global_position.y < TownPlan.RISE - 0.1:
 		found.append("the player did not get up the stair: it is at %s" % _player.global_position)

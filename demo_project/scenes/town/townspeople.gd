@@ -25,12 +25,12 @@ const RUN_MPS := Vector2(2.5, 3.1)
 const STAYING := 0.4
 ## In each frame every so-manyth person thinks.
 const THINKS_EVERY := 8
-## Somebody is there from this near on, metres; it faces what it looks at, or where it sets out to, from these angles on, radians.
+## Distance within which a walker has arrived, metres, and angles within which it faces its sight, or its next place, radians.
 const THERE_M := 0.8
 const FACING := 0.2
 const SETTING_OUT := 1.0
 const TURNING := 1.2
-## Time without coming nearer after which somebody goes elsewhere, seconds.
+## Time without progress after which a walker gets another place, seconds.
 const PATIENCE := 5.0
 ## Runners look so far ahead on their round, metres.
 const AHEAD_M := 3.5
@@ -105,7 +105,7 @@ func _process(delta: float) -> void:
 		_think(people[index], places[index], headings[index], THINKS_EVERY * delta)
 
 
-## Puts somebody where it stays, or on the way there.
+## Puts a walker at its place, or on the way there.
 func _begin(person: Person, places: PackedVector3Array, headings: PackedFloat32Array) -> void:
 	person.spot = _spots.draw(_chance, Vector3.INF)
 	person.spot.is_taken = true
@@ -159,7 +159,7 @@ func _go(person: Person, place: Vector3, secs: float) -> void:
 		_leave(person, place)
 
 
-## Sends somebody elsewhere.
+## Sends a walker to another place.
 func _leave(person: Person, place: Vector3) -> void:
 	var next := _spots.draw(_chance, place)
 	if next == null:
@@ -172,7 +172,7 @@ func _leave(person: Person, place: Vector3) -> void:
 	_turn(person, Doing.SETS_OUT, atan2(way.x, way.z))
 
 
-## Turns on the spot: whoever looks at a wall would walk into it while turning.
+## Turns on the spot: a walker that faces a wall would walk into it while turning.
 func _turn(person: Person, doing: Doing, heading: float) -> void:
 	person.doing = doing
 	person.faces = heading

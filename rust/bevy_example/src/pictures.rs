@@ -60,7 +60,7 @@ pub(crate) fn take(app: &mut App, folder: &Path) -> Result<AppExit> {
     load(app)?;
     for frame in 0..FRAMES {
         let is_shown = frame % EVERY == EVERY - 1;
-        // Frames that nobody sees need not be drawn.
+        // Frames without a picture need not be drawn.
         let mut cameras = app.world_mut().query::<&mut Camera>();
         cameras.single_mut(app.world_mut())?.is_active = is_shown;
         if is_shown {

@@ -40,7 +40,7 @@ pub(crate) fn judged(command: &mut Command, log: &Path) -> Result<String> {
     judged_by(command, log, complaint)
 }
 
-/// Runs Godot as [`judged`] does, but fails on any error, whoever it names.
+/// Runs Godot as [`judged`] does, but fails on any error, whatever it names.
 ///
 /// # Errors
 /// As [`judged`].

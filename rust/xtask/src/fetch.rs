@@ -103,7 +103,7 @@ mod tests {
             once(&name, version, |folder| {
                 made += 1;
                 fs::write(folder.join(format!("left_by_{made}")), "")?;
-                anyhow::ensure!(!fail, "as told");
+                anyhow::ensure!(!fail, "as the test demands");
                 Ok(())
             })
         };

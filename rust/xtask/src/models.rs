@@ -35,7 +35,7 @@ const SENSORS: [&str; 2] = ["right_foot", "right_thigh"];
 const SENSOR_FRAMES: &str = "6000";
 
 /// Recordings that sensor models learn from: everything that is free for commercial use but the dancer's manner of subject 131, a take whose floor is not at 0
-/// (its contacts read as flights), and one of crouching, which a sensor cannot tell from standing upright.
+/// (its contacts read as flights), and one of crouching, which a sensor cannot distinguish from standing upright.
 const SENSOR_RECORDINGS: [&str; 8] = [
     "--where",
     "path!=bandai/*",
@@ -58,7 +58,7 @@ const WALKS_OF_ONE: [&str; 4] = [
 /// The recordings that are free for commercial use: neutral walks.
 const NEUTRAL_WALKS: [&str; 4] = ["--where", "category=neutral_walk", "--where", "path=cmu/*"];
 
-/// Runs of one actor at an even speed on the straight. Other people's runs are too few to tell their manner from their skeletons: CMU's misplace ankles by
+/// Runs of one actor at an even speed on the straight. Other people's runs are too few to separate their manner from errors of their skeletons: CMU's misplace ankles by
 /// another angle.
 const RUNNING: [&str; 6] = [
     "--running",

@@ -47,7 +47,7 @@ impl Mono {
             Self::Installed => Command::new("mono"),
             Self::Unpacked(root) => {
                 let mut command = Command::new(root.join(RUNTIME));
-                // Tells which native library is which.
+                // Maps names to native libraries.
                 command.env("MONO_CFG_DIR", root.join("etc"));
                 command
             }

@@ -109,7 +109,7 @@ fn start(
         .context("cannot start a thread")
 }
 
-/// A port that nobody listens at.
+/// A free port.
 fn free_port() -> Result<u16> {
     let socket = UdpSocket::bind(("127.0.0.1", 0)).context("cannot open a port")?;
     let address = socket.local_addr().context("cannot ask for the port")?;

@@ -51,7 +51,7 @@ pub(crate) fn check() -> Result<()> {
     Ok(())
 }
 
-/// Somebody who has the archive, a Godot and a folder.
+/// A newcomer with the archive, a Godot and a folder.
 struct Newcomer {
     engine: Engine,
     /// Folder of the archive and of the logs.
@@ -116,7 +116,7 @@ impl Newcomer {
         self.says(&mut editor, "running_editor", DONE_IN_EDITOR)
     }
 
-    /// Whoever has no library reads which one is missing, whoever has no models reads it at the node, and whoever has files of two versions in the editor.
+    /// Checks the messages without the library, without models at a node, and with files of two versions in the editor.
     fn has_half_an_addon(&self) -> Result<()> {
         let project = self.project("no_library")?;
         fs::remove_dir_all(project.join("addons/footfall/bin"))?;
@@ -155,7 +155,7 @@ impl Newcomer {
         )
     }
 
-    /// The newcomer's project with the add-on in it, as nobody has opened it yet.
+    /// The newcomer's project with the add-on in it, before it is opened for the first time.
     fn project(&self, name: &str) -> Result<PathBuf> {
         let project = self.work.join(name);
         copy(

@@ -20,12 +20,20 @@ pub(crate) fn cargo() -> Command {
     ))
 }
 
+/// A command of cargo for all crates but the nodes', which need Godot; with the same features, so that nothing is built twice.
+pub(crate) fn cargo_without_nodes(command: &str) -> Command {
+    let mut cargo = cargo();
+    cargo.args([command, "--locked", "--workspace", "--exclude"]);
+    cargo.args(["footfall_godot", "--features", "footfall/live"]);
+    cargo
+}
+
 /// Another program in cargo's place, which calls cargo itself.
 pub(crate) fn cargo_by(program: &Path) -> Command {
     let mut cargo = Command::new(program);
     cargo.current_dir(crate::paths::workspace());
     // What the cargo that runs this program says of it: build scripts that look at it would run anew, and with them half of all crates be
-    // built anew, whenever somebody calls cargo now by way of this program and now directly.
+    // built anew, whenever cargo is called alternately through this program and directly.
     for (name, _) in std::env::vars_os() {
         let name = name.to_string_lossy();
         if ["CARGO_PKG_", "CARGO_MANIFEST_"]

@@ -142,16 +142,7 @@ fn clippy() -> Result<()> {
 
 /// Runs all tests but the nodes', which need Godot.
 fn tests() -> Result<()> {
-    let mut cargo = process::cargo();
-    cargo.args([
-        "test",
-        "--locked",
-        "--workspace",
-        "--exclude",
-        "footfall_godot",
-        "--features",
-        "footfall/live",
-    ]);
+    let mut cargo = process::cargo_without_nodes("test");
     cargo.env(skipped::LIST, skipped::list());
     let status = cargo.status().context("cannot start cargo")?;
     if !status.success() {

@@ -6,18 +6,6 @@ const PROUD := preload("res://addons/footfall/models/proud.footstyle")
 const DT := 1.0 / 60.0
 
 
-func _crowd(count: int, configure := Callable()) -> GaitCrowd3D:
-	var crowd := GaitCrowd3D.new()
-	crowd.model = MODEL
-	crowd.character = Skinned.scene()
-	crowd.count = count
-	crowd.playing = false
-	if configure.is_valid():
-		configure.call(crowd)
-	add_child(crowd)
-	return crowd
-
-
 func _advance(crowd: GaitCrowd3D, frames: int, each := Callable()) -> void:
 	for frame: int in frames:
 		crowd.advance(DT)
@@ -33,7 +21,7 @@ func _mean_resultant(phases: PackedFloat32Array) -> float:
 
 
 func test_everybody_walks_and_nobody_marches_in_step() -> void:
-	var crowd := _crowd(100)
+	var crowd := add_crowd(100)
 	var starts := crowd.get_positions()
 	check_equal(starts.size(), 100, "walkers")
 	var footsteps := [0]
@@ -54,7 +42,7 @@ func test_everybody_walks_and_nobody_marches_in_step() -> void:
 
 
 func test_speeds_sizes_and_turns_are_what_a_script_asks() -> void:
-	var crowd := _crowd(0, func(made: GaitCrowd3D) -> void:
+	var crowd := add_crowd(0, func(made: GaitCrowd3D) -> void:
 		made.behaviour = GaitCrowd3D.SCRIPTED
 		made.size_range = Vector2.ONE)
 	crowd.add_agents([Vector3.ZERO, Vector3(5, 0, 0), Vector3(10, 0, 0), Vector3(15, 0, 0)], [0.0, 0.0, PI, 0.0])
@@ -87,7 +75,7 @@ func test_walkers_go_where_they_are_sent_and_keep_apart() -> void:
 
 ## Two rows that have to pass through each other; returns how near two of them come.
 func _two_rows(seed_of_crowd: int) -> float:
-	var crowd := _crowd(0, func(made: GaitCrowd3D) -> void:
+	var crowd := add_crowd(0, func(made: GaitCrowd3D) -> void:
 		made.behaviour = GaitCrowd3D.SCRIPTED
 		made.seed = seed_of_crowd)
 	var places := PackedVector3Array()
@@ -133,7 +121,7 @@ func _rooms() -> NavigationRegion3D:
 func test_walkers_find_their_way_over_the_navigation_map() -> void:
 	var region := _rooms()
 	add_child(region)
-	var crowd := _crowd(0, func(made: GaitCrowd3D) -> void: made.behaviour = GaitCrowd3D.SCRIPTED)
+	var crowd := add_crowd(0, func(made: GaitCrowd3D) -> void: made.behaviour = GaitCrowd3D.SCRIPTED)
 	crowd.add_agents([Vector3(-6, 0, -4), Vector3(7, 0, 4)], [0.0, 0.0])
 	check(not crowd.set_destinations([Vector3(6, 0, -4), Vector3(NAN, 0, 0)]), "there is no map yet")
 	var sent := func() -> bool: return crowd.set_destinations([Vector3(6, 0, -4), Vector3(NAN, 0, 0)])
@@ -146,7 +134,7 @@ func test_walkers_find_their_way_over_the_navigation_map() -> void:
 	check_below(crowd.get_positions()[0].distance_to(Vector3(6, 0, -4)), 1.5, "it arrives")
 	check_below(widest[0], 1.6, "it goes through the door")
 
-	var wanderers := _crowd(20, func(made: GaitCrowd3D) -> void:
+	var wanderers := add_crowd(20, func(made: GaitCrowd3D) -> void:
 		made.behaviour = GaitCrowd3D.NAVIGATE
 		made.area = Vector2(4, 4))
 	var left := {}
@@ -167,7 +155,7 @@ func test_a_path_is_followed() -> void:
 		path.curve.add_point(corner)
 	path.name = "Round"
 	add_child(path)
-	var crowd := _crowd(20, func(made: GaitCrowd3D) -> void:
+	var crowd := add_crowd(20, func(made: GaitCrowd3D) -> void:
 		made.behaviour = GaitCrowd3D.PATH
 		made.path = ^"../Round"
 		made.path_width = 2.0)
@@ -178,7 +166,7 @@ func test_a_path_is_followed() -> void:
 
 
 func test_equal_seeds_give_equal_crowds() -> void:
-	var crowds := [_crowd(40), _crowd(40), _crowd(40, func(made: GaitCrowd3D) -> void: made.seed = 5)]
+	var crowds := [add_crowd(40), add_crowd(40), add_crowd(40, func(made: GaitCrowd3D) -> void: made.seed = 5)]
 	for crowd: GaitCrowd3D in crowds:
 		_advance(crowd, 240)
 	check_equal(crowds[0].get_positions(), crowds[1].get_positions(), "equal seeds")
@@ -186,13 +174,13 @@ func test_equal_seeds_give_equal_crowds() -> void:
 
 
 func test_a_saved_crowd_goes_on() -> void:
-	var crowd := _crowd(30)
+	var crowd := add_crowd(30)
 	_advance(crowd, 200)
 	var state: PackedByteArray = crowd.get_state()
 	var places := crowd.get_positions()
 	var phases := crowd.get_phases()
 	_advance(crowd, 100)
-	var other := _crowd(0)
+	var other := add_crowd(0)
 	other.set_state(state)
 	check_equal(other.get_agent_count(), 30, "walkers")
 	for index: int in 30:
@@ -211,7 +199,7 @@ func test_tiers_follow_the_camera() -> void:
 	add_child(camera)
 	camera.look_at_from_position(Vector3(0, 1.7, -25), Vector3(0, 1, 0))
 	camera.make_current()
-	var crowd := _crowd(150, func(made: GaitCrowd3D) -> void:
+	var crowd := add_crowd(150, func(made: GaitCrowd3D) -> void:
 		made.full_count = 5
 		made.full_distance = 15.0
 		made.near_count = 30
@@ -241,7 +229,7 @@ func test_walkers_far_away_find_the_ground() -> void:
 	add_child(camera)
 	camera.look_at_from_position(Vector3(0, 2, -60), Vector3(0, 1, 0))
 	camera.make_current()
-	var crowd := _crowd(0, func(made: GaitCrowd3D) -> void:
+	var crowd := add_crowd(0, func(made: GaitCrowd3D) -> void:
 		made.behaviour = GaitCrowd3D.SCRIPTED
 		made.ground_mask = 1
 		made.full_count = 0
@@ -267,7 +255,7 @@ func test_full_skeletons_walk_as_their_walkers_do() -> void:
 	var camera := Camera3D.new()
 	add_child(camera)
 	camera.make_current()
-	var crowd := _crowd(1, func(made: GaitCrowd3D) -> void:
+	var crowd := add_crowd(1, func(made: GaitCrowd3D) -> void:
 		made.full_distance = 1000.0
 		made.area = Vector2.ZERO)
 	_advance(crowd, 60)
@@ -292,7 +280,7 @@ func test_full_skeletons_walk_as_their_walkers_do() -> void:
 
 
 func test_styles_are_worn() -> void:
-	var crowd := _crowd(20, func(made: GaitCrowd3D) -> void: made.styles = [PROUD] as Array[GaitStyle])
+	var crowd := add_crowd(20, func(made: GaitCrowd3D) -> void: made.styles = [PROUD] as Array[GaitStyle])
 	crowd.set_agent_style(0, [1.0])
 	crowd.set_agent_style(99, [1.0])
 	_advance(crowd, 120)
@@ -316,7 +304,7 @@ func test_warnings_say_what_to_do() -> void:
 
 func test_nonsense_is_survived() -> void:
 	begin_expected_errors()
-	var crowd := _crowd(0)
+	var crowd := add_crowd(0)
 	_advance(crowd, 5)
 	check_equal(crowd.get_agent_count(), 0, "nobody")
 	crowd.count = 1_000_000

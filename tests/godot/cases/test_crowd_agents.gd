@@ -10,18 +10,6 @@ const MANY := 10_000
 const FRAME_SHARE_MS := 4.0
 
 
-func _crowd(count: int, configure := Callable()) -> GaitCrowd3D:
-	var crowd := GaitCrowd3D.new()
-	crowd.model = MODEL
-	crowd.character = Skinned.scene()
-	crowd.count = count
-	crowd.playing = false
-	if configure.is_valid():
-		configure.call(crowd)
-	add_child(crowd)
-	return crowd
-
-
 func _advance(crowd: GaitCrowd3D, frames: int) -> void:
 	for frame: int in frames:
 		crowd.advance(DT)
@@ -35,7 +23,7 @@ func _grid(count: int) -> PackedVector3Array:
 
 
 func test_ids_last_while_others_come_and_go() -> void:
-	var crowd := _crowd(10)
+	var crowd := add_crowd(10)
 	check_equal(crowd.get_agents(), PackedInt32Array(range(10)), "ids of a fresh crowd count up")
 	var more: PackedInt32Array = crowd.add_agents([Vector3(50, 0, 0), Vector3(NAN, 0, 0), Vector3(60, 0, 0)], [])
 	check_equal(more, PackedInt32Array([10, 11]), "who is nowhere gets none")
@@ -61,7 +49,7 @@ func test_ids_last_while_others_come_and_go() -> void:
 
 
 func test_batches_reach_those_who_are_named() -> void:
-	var crowd := _crowd(0, func(made: GaitCrowd3D) -> void: made.behaviour = GaitCrowd3D.SCRIPTED)
+	var crowd := add_crowd(0, func(made: GaitCrowd3D) -> void: made.behaviour = GaitCrowd3D.SCRIPTED)
 	var ids: PackedInt32Array = crowd.add_agents([Vector3.ZERO, Vector3(5, 0, 0), Vector3(10, 0, 0)], [0.0, 0.0, 0.0])
 	crowd.remove_agents([ids[0]])
 	crowd.set_speeds([0.0, 1.2])
@@ -74,8 +62,8 @@ func test_batches_reach_those_who_are_named() -> void:
 
 
 func test_a_change_of_count_leaves_the_others_alone() -> void:
-	var crowd := _crowd(20)
-	var other := _crowd(20)
+	var crowd := add_crowd(20)
+	var other := add_crowd(20)
 	_advance(crowd, 100)
 	_advance(other, 100)
 	var added: PackedInt32Array = crowd.add_agents([Vector3(100, 0, 100)], [])
@@ -91,7 +79,7 @@ func test_a_change_of_count_leaves_the_others_alone() -> void:
 
 
 func test_walkers_are_found_by_ray_and_by_place() -> void:
-	var crowd := _crowd(0, func(made: GaitCrowd3D) -> void: made.size_range = Vector2.ONE)
+	var crowd := add_crowd(0, func(made: GaitCrowd3D) -> void: made.size_range = Vector2.ONE)
 	crowd.position = Vector3(100, 5, 0)
 	crowd.rotation.y = 0.5 * PI
 	var ids: PackedInt32Array = crowd.add_agents([Vector3(0, 0, 4), Vector3(0, 0, 8), Vector3(3, 0, 4)], [])
@@ -111,7 +99,7 @@ func test_a_scene_tells_whom_it_shows() -> void:
 	var camera := Camera3D.new()
 	add_child(camera)
 	camera.make_current()
-	var crowd := _crowd(5, func(made: GaitCrowd3D) -> void:
+	var crowd := add_crowd(5, func(made: GaitCrowd3D) -> void:
 		made.full_distance = 1000.0
 		made.full_count = 3
 		made.area = Vector2(10, 10))
@@ -140,12 +128,12 @@ func test_a_scene_tells_whom_it_shows() -> void:
 
 
 func test_a_saved_crowd_keeps_its_ids() -> void:
-	var crowd := _crowd(12)
+	var crowd := add_crowd(12)
 	crowd.remove_agents([2, 5])
 	var late: PackedInt32Array = crowd.add_agents([Vector3(30, 0, 0)], [])
 	_advance(crowd, 60)
 	var state := crowd.get_state()
-	var other := _crowd(3)
+	var other := add_crowd(3)
 	_advance(other, 5)
 	other.set_state(state)
 	check_equal(other.get_agents(), crowd.get_agents(), "ids")
@@ -187,7 +175,7 @@ func _clock_ms() -> float:
 
 
 func _styled_crowd() -> GaitCrowd3D:
-	return _crowd(0, func(made: GaitCrowd3D) -> void:
+	return add_crowd(0, func(made: GaitCrowd3D) -> void:
 		made.playing = true
 		made.styles = [PROUD, SAD] as Array[GaitStyle])
 
@@ -258,7 +246,7 @@ func test_ten_thousand_are_made_in_the_background() -> void:
 
 
 func test_whoever_was_added_can_be_told_at_once() -> void:
-	var crowd := _crowd(0, func(made: GaitCrowd3D) -> void: made.behaviour = GaitCrowd3D.SCRIPTED)
+	var crowd := add_crowd(0, func(made: GaitCrowd3D) -> void: made.behaviour = GaitCrowd3D.SCRIPTED)
 	var ids: PackedInt32Array = crowd.add_agents(_grid(3000), [])
 	check_equal(crowd.get_positions(), _grid(3000), "places")
 	check_equal(crowd.add_agents([Vector3(500, 0, 0)], []).size(), 1, "one more")
@@ -277,8 +265,8 @@ func test_who_they_are_does_not_depend_on_when_they_are_made() -> void:
 	var configure := func(made: GaitCrowd3D) -> void:
 		made.styles = [PROUD, SAD] as Array[GaitStyle]
 		made.full_count = 0
-	var waits := _crowd(300, configure)
-	var lets_come := _crowd(300, configure)
+	var waits := add_crowd(300, configure)
+	var lets_come := add_crowd(300, configure)
 	waits.advance(0.0)
 	check(not waits.is_making(), "it waits")
 	while lets_come.get_agent_count() == 0 or lets_come.is_making():
@@ -293,7 +281,7 @@ func test_who_they_are_does_not_depend_on_when_they_are_made() -> void:
 
 
 func test_changes_while_walkers_are_made_are_survived() -> void:
-	var crowd := _crowd(2000, func(made: GaitCrowd3D) -> void: made.playing = true)
+	var crowd := add_crowd(2000, func(made: GaitCrowd3D) -> void: made.playing = true)
 	await get_tree().process_frame
 	crowd.remove_agents(range(0, 2000, 2))
 	check_equal(crowd.get_agent_count(), 1000, "half of them left before they were made")

@@ -1,21 +1,14 @@
 extends TestCase
 ## A crowd among what is not of it: somebody else, and walls beside which walkers step aside.
 
-const MODEL := preload("res://addons/footfall/models/locomotion.footfall")
 const DT := 1.0 / 60.0
 const GROUP := &"avoided"
 
 
 func _crowd(configure: Callable) -> GaitCrowd3D:
-	var crowd := GaitCrowd3D.new()
-	crowd.model = MODEL
-	crowd.character = Skinned.scene()
-	crowd.count = 0
-	crowd.behaviour = GaitCrowd3D.SCRIPTED
-	crowd.playing = false
-	configure.call(crowd)
-	add_child(crowd)
-	return crowd
+	return add_crowd(0, func(crowd: GaitCrowd3D) -> void:
+		crowd.behaviour = GaitCrowd3D.SCRIPTED
+		configure.call(crowd))
 
 
 ## The least distance of a walker on its way from a node that goes at this velocity.

@@ -4,15 +4,6 @@ extends TestCase
 const DT := 1.0 / 60.0
 
 
-func _walker(configure := Callable()) -> Walker:
-	var walker := Walker.new()
-	walker.gait.seed = 1
-	if configure.is_valid():
-		configure.call(walker)
-	add_child(walker.build())
-	return walker
-
-
 func _pose(walker: Walker, joint: String, turn: Quaternion) -> void:
 	walker.skeleton.set_bone_pose_rotation(walker.skeleton.find_bone(joint), turn)
 
@@ -54,7 +45,7 @@ func _watch(walker: Walker, frames: int, each := Callable()) -> Dictionary:
 
 
 func test_a_walk_begins_from_a_stand_and_feet_stay() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.gait.hand_over(0.0)
 	walker.walk(5, func() -> void: _idle(walker))
 	check(walker.gait.is_handed_over(), "the animation has the body")
@@ -76,13 +67,13 @@ func test_a_walk_begins_from_a_stand_and_feet_stay() -> void:
 func test_a_walk_takes_over_what_moves() -> void:
 	# A dash by the game: the character travels at 1.5 m/s while another walk poses it, as a clip would. Nothing is jerked more than in a
 	# walk that goes on.
-	var own: float = _watch(_walker(), 240).acceleration
+	var own: float = _watch(add_walker(), 240).acceleration
 	check_below(own, 110.0, "a walk that goes on")
 	for begin: int in [60, 67, 74, 81, 88]:
-		var clip := _walker()
+		var clip := add_walker()
 		clip.gait.speed = 1.5
 		clip.gait.seed = 7
-		var walker := _walker()
+		var walker := add_walker()
 		walker.gait.hand_over(0.0)
 		var copy := func() -> void:
 			clip.step(DT)
@@ -108,7 +99,7 @@ func test_a_walk_takes_over_what_moves() -> void:
 
 func test_a_walk_ends_in_an_animation() -> void:
 	for begin: int in [60, 75, 90, 105]:
-		var walker := _walker()
+		var walker := add_walker()
 		walker.walk(begin)
 		var handed := [0]
 		walker.gait.handed_over.connect(func() -> void: handed[0] += 1)
@@ -127,7 +118,7 @@ func test_a_walk_ends_in_an_animation() -> void:
 
 
 func test_there_and_back_and_there_again() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.walk(60)
 	for round: int in 3:
 		walker.gait.hand_over(0.2)
@@ -150,7 +141,7 @@ func test_there_and_back_and_there_again() -> void:
 
 
 func test_a_body_that_fell_elsewhere_walks_from_there() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.gait.hand_over(0.0)
 	walker.walk(5)
 	var lie := func() -> void:

@@ -10,12 +10,7 @@ const FASTEST_MPS := 7.0
 func _walker() -> Walker:
 	var walker := Walker.new()
 	walker.gait.seed = 1
-	walker.build()
-	var placement := FootPlacement3D.new()
-	placement.name = "FootPlacement3D"
-	placement.follow_ground = true
-	walker.skeleton.add_child(placement)
-	walker.gait.modification_processed.disconnect(walker._read_bones)
+	walker.build().add_placement()
 	walker.skeleton.skeleton_updated.connect(walker._read_bones)
 	add_child(walker)
 	return walker

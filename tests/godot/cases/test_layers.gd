@@ -6,15 +6,6 @@ const SPINE: PackedStringArray = ["Spine", "Chest", "UpperChest"]
 const LEGS: PackedStringArray = ["Hips", "LeftUpperLeg", "LeftLowerLeg", "LeftFoot", "LeftToes", "RightUpperLeg", "RightLowerLeg", "RightFoot", "RightToes"]
 
 
-func _walker(configure := Callable()) -> Walker:
-	var walker := Walker.new()
-	walker.gait.seed = 1
-	if configure.is_valid():
-		configure.call(walker)
-	add_child(walker.build())
-	return walker
-
-
 ## Sets a bone's own rotation as an animation would, before the modifiers.
 func _pose(walker: Walker, joint: String, turn: Quaternion) -> void:
 	walker.skeleton.set_bone_pose_rotation(walker.skeleton.find_bone(joint), turn)
@@ -50,8 +41,8 @@ func _aim(walker: Walker, time: float) -> void:
 
 
 func test_at_zero_an_arm_is_the_animations_and_at_one_the_gaits() -> void:
-	var plain := _walker()
-	var waving := _walker()
+	var plain := add_walker()
+	var waving := add_walker()
 	waving.gait.right_arm_weight = 0.0
 	for frame: int in 240:
 		var time := frame / 60.0
@@ -74,7 +65,7 @@ func test_at_zero_an_arm_is_the_animations_and_at_one_the_gaits() -> void:
 
 
 func test_the_arm_sits_on_the_walking_chest() -> void:
-	var waving := _walker(func(made: Walker) -> void: made.gait.speed = 1.6)
+	var waving := add_walker(func(made: Walker) -> void: made.gait.speed = 1.6)
 	waving.gait.right_arm_weight = 0.0
 	waving.walk(200, func() -> void:
 		_wave(waving, 0.0)
@@ -85,7 +76,7 @@ func test_the_arm_sits_on_the_walking_chest() -> void:
 
 
 func test_both_arms_carry() -> void:
-	var carrying := _walker(func(made: Walker) -> void: made.gait.turn_rate = 0.5)
+	var carrying := add_walker(func(made: Walker) -> void: made.gait.turn_rate = 0.5)
 	carrying.gait.left_arm_weight = 0.0
 	carrying.gait.right_arm_weight = 0.0
 	var hands := [INF, -INF]
@@ -101,7 +92,7 @@ func test_both_arms_carry() -> void:
 
 
 func test_an_aimed_rifle_points_where_the_animation_points_it() -> void:
-	var aiming := _walker(func(made: Walker) -> void:
+	var aiming := add_walker(func(made: Walker) -> void:
 		made.gait.turn_rate = 0.4
 		made.gait.speed = 1.6)
 	for weight: String in ["spine_weight", "head_weight", "left_arm_weight", "right_arm_weight"]:
@@ -119,8 +110,8 @@ func test_an_aimed_rifle_points_where_the_animation_points_it() -> void:
 
 
 func test_legs_and_planted_feet_know_nothing_of_layers() -> void:
-	var plain := _walker(func(made: Walker) -> void: made.gait.turn_rate = 0.5)
-	var attacking := _walker(func(made: Walker) -> void: made.gait.turn_rate = 0.5)
+	var plain := add_walker(func(made: Walker) -> void: made.gait.turn_rate = 0.5)
+	var attacking := add_walker(func(made: Walker) -> void: made.gait.turn_rate = 0.5)
 	for weight: String in ["spine_weight", "head_weight", "left_arm_weight", "right_arm_weight"]:
 		attacking.gait.set(weight, 0.0)
 	for frame: int in 300:
@@ -138,7 +129,7 @@ func test_legs_and_planted_feet_know_nothing_of_layers() -> void:
 
 func test_a_layer_is_faded_without_a_pop() -> void:
 	for keyed: float in [0.2, 0.1]:
-		var walker := _walker()
+		var walker := add_walker()
 		walker.walk(30)
 		var before := {}
 		var most := {}
@@ -163,7 +154,7 @@ func test_a_layer_is_faded_without_a_pop() -> void:
 
 
 func test_weights_that_make_no_sense_are_harmless() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	for weight: float in [NAN, INF, -3.0, 7.0]:
 		walker.gait.spine_weight = weight
 		walker.gait.left_arm_weight = weight
@@ -173,7 +164,7 @@ func test_weights_that_make_no_sense_are_harmless() -> void:
 
 
 func test_bodies_without_some_joints_have_layers_too() -> void:
-	var walker := _walker(func(made: Walker) -> void:
+	var walker := add_walker(func(made: Walker) -> void:
 		made.missing = ["UpperChest", "Neck", "LeftShoulder", "RightShoulder"]
 		made.between = {"RightLowerArm": "Twist"})
 	for weight: String in ["spine_weight", "head_weight", "left_arm_weight", "right_arm_weight"]:
@@ -187,7 +178,7 @@ func test_bodies_without_some_joints_have_layers_too() -> void:
 
 
 func test_an_animation_player_waves_and_a_look_at_looks() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_IDLE
 	walker.skeleton.name = "Skeleton"
 	walker.gait.right_arm_weight = 0.0

@@ -7,13 +7,7 @@ const RATE := 60.0
 ## A walker with a `FootPlacement3D` below its generator.
 func _walker(configure := Callable()) -> Walker:
 	var walker := Walker.new()
-	walker.build()
-	var placement := FootPlacement3D.new()
-	placement.name = "FootPlacement3D"
-	placement.follow_ground = true
-	walker.skeleton.add_child(placement)
-	walker.gait.modification_processed.disconnect(walker._read_bones)
-	placement.modification_processed.connect(walker._read_bones)
+	walker.build().add_placement().modification_processed.connect(walker._read_bones)
 	if configure.is_valid():
 		configure.call(walker)
 	add_child(walker)

@@ -27,17 +27,8 @@ class Asker:
 		by_skeleton *= gait.get_root_motion_delta()
 
 
-func _walker(configure := Callable()) -> Walker:
-	var walker := Walker.new()
-	walker.gait.seed = 1
-	if configure.is_valid():
-		configure.call(walker)
-	add_child(walker.build())
-	return walker
-
-
 func _asked(mode: Skeleton3D.ModifierCallbackModeProcess, seconds: float) -> Asker:
-	var walker := _walker(func(made: Walker) -> void:
+	var walker := add_walker(func(made: Walker) -> void:
 		made.gait.root_motion = false
 		made.gait.turn_rate = 0.6)
 	walker.skeleton.modifier_callback_mode_process = mode
@@ -87,7 +78,7 @@ func test_slow_motion_shortens_the_way_by_as_much() -> void:
 
 
 func test_by_hand_it_is_the_last_advance() -> void:
-	var walker := _walker(func(made: Walker) -> void: made.gait.root_motion = false)
+	var walker := add_walker(func(made: Walker) -> void: made.gait.root_motion = false)
 	var told := Transform3D.IDENTITY
 	var ways := [Transform3D.IDENTITY]
 	walker.gait.modification_processed.connect(func() -> void: ways[0] *= walker.gait.get_root_motion_delta())
@@ -99,7 +90,7 @@ func test_by_hand_it_is_the_last_advance() -> void:
 
 
 func test_without_influence_nothing_travels() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.gait.influence = 0.0
 	walker.walk(60, func() -> void:
 		check_equal(walker.gait.get_root_motion_delta(), Transform3D.IDENTITY, "no delta"))
@@ -114,8 +105,8 @@ func test_without_influence_nothing_travels() -> void:
 
 
 func test_the_first_of_two_generators_walks() -> void:
-	var alone := _walker()
-	var both := _walker()
+	var alone := add_walker()
+	var both := add_walker()
 	var second := GaitGenerator3D.new()
 	second.name = "Second"
 	second.model = both.gait.model
@@ -175,10 +166,10 @@ func _march(scene: Node3D, count: int) -> Dictionary:
 
 
 func test_a_saved_walk_keeps_its_seed_elsewhere() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.gait.seed = 0
 	walker.walk(100)
-	var other := _walker()
+	var other := add_walker()
 	other.gait.seed = 0
 	check(walker.gait.get_effective_seed() != other.gait.get_effective_seed(), "two walks")
 	other.gait.set_state(walker.gait.get_state())
@@ -193,7 +184,7 @@ func test_a_saved_walk_keeps_its_seed_elsewhere() -> void:
 
 
 func test_a_size_that_is_animated_is_walked_through() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	var placement := FootPlacement3D.new()
 	walker.skeleton.add_child(placement)
 	walker.walk(60)
@@ -220,7 +211,7 @@ func test_a_size_that_is_animated_is_walked_through() -> void:
 
 
 func test_a_character_that_is_born_with_no_size_walks_once_it_has_one() -> void:
-	var walker := _walker(func(made: Walker) -> void: made.scale = Vector3.ZERO)
+	var walker := add_walker(func(made: Walker) -> void: made.scale = Vector3.ZERO)
 	walker.walk(10)
 	for frame: int in 30:
 		walker.scale = Vector3.ONE * (frame + 1) / 30.0
@@ -232,7 +223,7 @@ func test_a_character_that_is_born_with_no_size_walks_once_it_has_one() -> void:
 
 
 func test_growing_does_not_pop() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.walk(60)
 	var knee := walker.bone_poses[walker.skeleton.find_bone("LeftLowerLeg")].basis.get_rotation_quaternion()
 	for frame: int in 120:

@@ -97,7 +97,15 @@ func test_a_replay_in_any_mounting_is_found_out() -> void:
 	check(node.get_mounting_certainty(0) > 0.9, "certain of the mounting: %.2f" % node.get_mounting_certainty(0))
 	check_equal(String(node.get_behaviour()), "walk", "the behaviour")
 	check(body.global_position.length() > 5.0, "it walks: %s" % body.global_position)
-	body.free()
+	# In a physics body this travels, and the sensor stays as it is worn.
+	var carrier := CharacterBody3D.new()
+	add_child(carrier)
+	body.reparent(carrier)
+	for frame: int in 120:
+		body.step(DELTA)
+	check(node.get_mounting_certainty(0) > 0.9, "the mounting is kept: %.2f" % node.get_mounting_certainty(0))
+	check(carrier.position.length() > 0.5, "the physics body travels: %s" % carrier.position)
+	carrier.free()
 	walker.free()
 
 

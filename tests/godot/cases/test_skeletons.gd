@@ -6,17 +6,9 @@ const OPTIONAL: PackedStringArray = [
 ]
 
 
-func _walker(configure := Callable()) -> Walker:
-	var walker := Walker.new()
-	if configure.is_valid():
-		configure.call(walker)
-	add_child(walker.build())
-	return walker
-
-
 ## Walks both and compares the directions of the limbs and the places of the joints, frame by frame.
 func _compare(walker: Walker, joints: Array, tolerance: float, frames := 90) -> void:
-	var reference := _walker()
+	var reference := add_walker()
 	for frame: int in frames:
 		reference.step(1.0 / 60.0)
 		walker.step(1.0 / 60.0)
@@ -30,7 +22,7 @@ func _compare(walker: Walker, joints: Array, tolerance: float, frames := 90) -> 
 
 func test_profile_axes_walk_the_same() -> void:
 	var profile := SkeletonProfileHumanoid.new()
-	var walker := _walker(func(made: Walker) -> void:
+	var walker := add_walker(func(made: Walker) -> void:
 		for joint: String in Walker.BODY:
 			made.rest_rotations[joint] = _profile_rotation(profile, joint))
 	check(walker.rest("LeftUpperArm").basis.y.dot(Vector3.RIGHT) > 0.99, "the profile's +Y points to the child")
@@ -40,7 +32,7 @@ func test_profile_axes_walk_the_same() -> void:
 func test_arbitrary_axes_walk_the_same() -> void:
 	var random := RandomNumberGenerator.new()
 	random.seed = 3
-	var walker := _walker(func(made: Walker) -> void:
+	var walker := add_walker(func(made: Walker) -> void:
 		for joint: String in Walker.BODY:
 			made.rest_rotations[joint] = Quaternion.from_euler(
 				Vector3(random.randf_range(-3, 3), random.randf_range(-3, 3), random.randf_range(-3, 3))))
@@ -48,10 +40,10 @@ func test_arbitrary_axes_walk_the_same() -> void:
 
 
 func test_bones_turn_as_the_joints_do_whatever_their_axes() -> void:
-	var walker := _walker(func(made: Walker) -> void:
+	var walker := add_walker(func(made: Walker) -> void:
 		for joint: String in Walker.BODY:
 			made.rest_rotations[joint] = Quaternion.from_euler(Vector3(0.4, -1.0, 2.0)))
-	var reference := _walker()
+	var reference := add_walker()
 	for frame: int in 60:
 		walker.step(1.0 / 60.0)
 		reference.step(1.0 / 60.0)
@@ -60,13 +52,13 @@ func test_bones_turn_as_the_joints_do_whatever_their_axes() -> void:
 
 
 func test_unmapped_bones_between_are_no_obstacle() -> void:
-	var walker := _walker(func(made: Walker) -> void:
+	var walker := add_walker(func(made: Walker) -> void:
 		made.between = {"Hips": "Root", "Spine": "Pelvis", "LeftLowerLeg": "LeftThighTwist"})
 	_compare(walker, Walker.BODY.keys(), 2e-4)
 
 
 func test_an_a_pose_rest_walks_the_same() -> void:
-	var walker := _walker(func(made: Walker) -> void:
+	var walker := add_walker(func(made: Walker) -> void:
 		for side: float in [1.0, -1.0]:
 			var name_of_side := "Left" if side > 0 else "Right"
 			var shoulder: Vector3 = Walker.BODY[name_of_side + "UpperArm"][1]
@@ -94,10 +86,10 @@ func test_a_bone_map_names_foreign_bones() -> void:
 
 
 func test_optional_bones_are_folded_in() -> void:
-	var walker := _walker(func(made: Walker) -> void: made.missing = OPTIONAL)
+	var walker := add_walker(func(made: Walker) -> void: made.missing = OPTIONAL)
 	check_equal(walker.gait.get_problems(), PackedStringArray(), "no problem")
 	# Feet without toes make other steps: the reference has none either.
-	var reference := _walker(func(made: Walker) -> void: made.missing = ["LeftToes", "RightToes"])
+	var reference := add_walker(func(made: Walker) -> void: made.missing = ["LeftToes", "RightToes"])
 	var trunk_bends := 0.0
 	for frame: int in 240:
 		walker.step(1.0 / 60.0)
@@ -114,7 +106,7 @@ func test_optional_bones_are_folded_in() -> void:
 
 func test_each_optional_bone_may_be_missing_alone() -> void:
 	for bone: String in OPTIONAL:
-		var walker := _walker(func(made: Walker) -> void: made.missing = [bone])
+		var walker := add_walker(func(made: Walker) -> void: made.missing = [bone])
 		check_equal(walker.gait.get_problems(), PackedStringArray(), "no problem without " + bone)
 		walker.walk(60)
 		check(walker.global_position.z > 0.5, "it walks without " + bone)
@@ -190,8 +182,8 @@ func test_a_rig_with_its_z_axis_up_walks_the_same() -> void:
 
 
 func test_a_child_takes_shorter_steps_at_the_same_speed() -> void:
-	var adult := _walker()
-	var child := _walker(func(made: Walker) -> void: made.scale = Vector3.ONE * 0.6)
+	var adult := add_walker()
+	var child := add_walker(func(made: Walker) -> void: made.scale = Vector3.ONE * 0.6)
 	for walker: Walker in [adult, child]:
 		walker.walk(900)
 		check_near(walker.global_position.z / 15.0, 1.3, 0.2, "speed in metres of the world")
@@ -234,7 +226,7 @@ func test_fingers_and_other_bones_keep_their_pose() -> void:
 
 func test_the_pose_of_the_scene_is_left_alone() -> void:
 	# Modifiers pose for the frame only: nothing is left that a scene would save.
-	var walker := _walker()
+	var walker := add_walker()
 	var before: Array[Transform3D] = []
 	for bone: int in walker.skeleton.get_bone_count():
 		before.append(walker.skeleton.get_bone_pose(bone))

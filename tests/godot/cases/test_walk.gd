@@ -4,16 +4,8 @@ extends TestCase
 const RATE := 60.0
 
 
-func _walker(configure := Callable()) -> Walker:
-	var walker := Walker.new()
-	if configure.is_valid():
-		configure.call(walker)
-	add_child(walker.build())
-	return walker
-
-
 func test_pose_changes_and_hips_stay_at_a_human_height() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.step(1.0 / RATE)
 	var knee := walker.turn_of("LeftLowerLeg")
 	var most_turned := [0.0]
@@ -27,7 +19,7 @@ func test_pose_changes_and_hips_stay_at_a_human_height() -> void:
 
 
 func test_arms_hang_and_the_head_stays_up() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.walk(60, func() -> void:
 		for side: String in ["Left", "Right"]:
 			check(walker.joint(side + "Hand").y < walker.joint(side + "UpperArm").y - 0.3, "hands hang")
@@ -35,7 +27,7 @@ func test_arms_hang_and_the_head_stays_up() -> void:
 
 
 func test_without_speed_it_stands_and_with_speed_it_walks_off() -> void:
-	var walker := _walker(func(made: Walker) -> void:
+	var walker := add_walker(func(made: Walker) -> void:
 		made.gait.speed = 0.0
 		made.gait.standing_motion = 0.0)
 	walker.walk(2)
@@ -57,7 +49,7 @@ func test_without_speed_it_stands_and_with_speed_it_walks_off() -> void:
 
 
 func test_left_is_left_and_forward_is_forward() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.walk(120, func() -> void:
 		check(walker.joint("LeftUpperLeg").x > walker.joint("RightUpperLeg").x, "left hip joint at +X"))
 	check(walker.global_position.z > 1.0, "it walks along +Z: %s" % walker.global_position)
@@ -65,7 +57,7 @@ func test_left_is_left_and_forward_is_forward() -> void:
 
 
 func test_standing_feet_do_not_move() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.gait.seed = 5
 	walker.gait.turn_rate = 0.3
 	walker.walk(2)
@@ -90,7 +82,7 @@ func test_standing_feet_do_not_move() -> void:
 
 
 func test_one_footstep_for_every_contact_feet_alternate() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.walk(1)
 	walker.footsteps.clear()
 	var contacts := [0]
@@ -108,7 +100,7 @@ func test_one_footstep_for_every_contact_feet_alternate() -> void:
 
 
 func test_footsteps_are_told_where_the_foot_is() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.position = Vector3(7, 2, -3)
 	walker.rotation.y = 2.0
 	walker.gait.turn_rate = -0.4
@@ -129,7 +121,7 @@ func test_footsteps_are_told_where_the_foot_is() -> void:
 
 
 func test_time_zero_changes_and_tells_nothing() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.walk(200)
 	var place := walker.global_transform
 	var pose := walker.bones.duplicate()
@@ -142,15 +134,15 @@ func test_time_zero_changes_and_tells_nothing() -> void:
 
 
 func test_footsteps_are_not_doubled_by_a_second_update_in_a_frame() -> void:
-	var once := _walker()
-	var twice := _walker()
+	var once := add_walker()
+	var twice := add_walker()
 	once.walk(300)
 	twice.walk(300, func() -> void: twice.skeleton.notification(Skeleton3D.NOTIFICATION_UPDATE_SKELETON))
 	check_equal(twice.footsteps, once.footsteps, "the same footsteps")
 
 
 func test_not_playing_holds_the_pose() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.walk(100)
 	var pose := walker.bones.duplicate()
 	var told := walker.footsteps.size()
@@ -164,8 +156,8 @@ func test_not_playing_holds_the_pose() -> void:
 
 
 func test_root_motion_by_the_node_and_by_the_game_agree() -> void:
-	var moved := _walker()
-	var told := _walker()
+	var moved := add_walker()
+	var told := add_walker()
 	var start := Transform3D(Basis(Vector3.UP, 0.8).scaled(Vector3.ONE * 1.25), Vector3(3, 1, -2))
 	for walker: Walker in [moved, told]:
 		walker.global_transform = start
@@ -186,7 +178,7 @@ func test_root_motion_by_the_node_and_by_the_game_agree() -> void:
 
 
 func test_without_root_motion_it_walks_in_place() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.gait.root_motion = false
 	var travelled := [0.0]
 	walker.walk(300, func() -> void:
@@ -199,7 +191,7 @@ func test_without_root_motion_it_walks_in_place() -> void:
 func test_equal_seeds_walk_alike_and_others_do_not() -> void:
 	var walkers: Array[Walker] = []
 	for index: int in 3:
-		var walker := _walker()
+		var walker := add_walker()
 		walker.gait.seed = [4, 4, 5][index]
 		walkers.append(walker)
 	var apart := [0.0]
@@ -212,8 +204,8 @@ func test_equal_seeds_walk_alike_and_others_do_not() -> void:
 
 
 func test_phase_shifts_the_walk() -> void:
-	var left_first := _walker()
-	var right_first := _walker()
+	var left_first := add_walker()
+	var right_first := add_walker()
 	right_first.gait.phase = 0.5
 	left_first.walk(2)
 	right_first.walk(2)
@@ -226,7 +218,7 @@ func test_phase_shifts_the_walk() -> void:
 
 func test_speed_is_realised() -> void:
 	for speed: float in [0.8, 1.3, 1.7]:
-		var walker := _walker()
+		var walker := add_walker()
 		walker.gait.speed = speed
 		walker.walk(120)
 		var start := walker.global_position
@@ -236,7 +228,7 @@ func test_speed_is_realised() -> void:
 
 func test_turning_is_realised_and_positive_is_left() -> void:
 	for turn_rate: float in [0.5, -0.3]:
-		var walker := _walker()
+		var walker := add_walker()
 		walker.gait.turn_rate = turn_rate
 		walker.walk(120)
 		var turned := [0.0]
@@ -249,7 +241,7 @@ func test_turning_is_realised_and_positive_is_left() -> void:
 
 func test_it_goes_one_way_and_faces_another() -> void:
 	for direction: float in [PI / 2.0, -PI / 2.0, PI]:
-		var walker := _walker()
+		var walker := add_walker()
 		walker.gait.speed = 0.6
 		walker.gait.direction = direction
 		walker.walk(240)
@@ -262,9 +254,9 @@ func test_it_goes_one_way_and_faces_another() -> void:
 
 
 func test_seeking_goes_where_walking_gets() -> void:
-	var walked := _walker()
+	var walked := add_walker()
 	walked.walk(180)
-	var sought := _walker()
+	var sought := add_walker()
 	var place := sought.global_position
 	sought.gait.seek(3.0)
 	check_equal(sought.gait.get_time(), 0.0, "it is gone to in the next frame")
@@ -280,7 +272,7 @@ func test_seeking_goes_where_walking_gets() -> void:
 
 
 func test_a_long_turning_walk_keeps_the_scale() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.scale = Vector3.ONE * 1.5
 	walker.gait.turn_rate = 1.0
 	walker.walk(3000)
@@ -289,7 +281,7 @@ func test_a_long_turning_walk_keeps_the_scale() -> void:
 
 
 func test_bad_settings_are_harmless() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	for value: float in [NAN, INF, -INF]:
 		walker.gait.speed = value
 		walker.gait.turn_rate = value
@@ -310,7 +302,7 @@ func test_bad_settings_are_harmless() -> void:
 
 
 func test_freeing_while_running() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.gait.footstep.connect(func(_foot: StringName, _place: Vector3) -> void: walker.gait.queue_free())
 	walker.walk(120)
 	check(walker.gait.is_queued_for_deletion(), "freed by its own signal")
@@ -319,7 +311,7 @@ func test_freeing_while_running() -> void:
 	check(not is_instance_valid(walker.gait), "gone")
 	walker.skeleton.advance(0.1)
 	await get_tree().process_frame
-	var other := _walker()
+	var other := add_walker()
 	other.skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_IDLE
 	await get_tree().process_frame
 	other.free()
@@ -328,7 +320,7 @@ func test_freeing_while_running() -> void:
 
 
 func test_scripts_may_change_the_node_from_its_own_signal() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.gait.footstep.connect(func(_foot: StringName, _place: Vector3) -> void:
 		walker.gait.speed = 0.9
 		walker.gait.seed += 1
@@ -350,7 +342,7 @@ func test_time_zero_before_ready() -> void:
 
 
 func test_it_runs_by_itself_every_frame() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.skeleton.modifier_callback_mode_process = Skeleton3D.MODIFIER_CALLBACK_MODE_PROCESS_IDLE
 	var start := Time.get_ticks_msec()
 	while Time.get_ticks_msec() - start < 600:
@@ -359,9 +351,9 @@ func test_it_runs_by_itself_every_frame() -> void:
 
 
 func test_moving_to_another_skeleton() -> void:
-	var walker := _walker()
+	var walker := add_walker()
 	walker.walk(30)
-	var other := _walker(func(made: Walker) -> void: made.position = Vector3(5, 0, 0))
+	var other := add_walker(func(made: Walker) -> void: made.position = Vector3(5, 0, 0))
 	other.gait.free()
 	walker.gait.modification_processed.disconnect(walker._read_bones)
 	walker.gait.reparent(other.skeleton)
@@ -371,7 +363,7 @@ func test_moving_to_another_skeleton() -> void:
 
 
 func test_it_jumps_when_it_is_asked_to_and_tells() -> void:
-	var walker := _walker(func(made: Walker) -> void: made.gait.speed = 0.0)
+	var walker := add_walker(func(made: Walker) -> void: made.gait.speed = 0.0)
 	walker.walk(30)
 	var told: Array[StringName] = []
 	walker.gait.took_off.connect(func() -> void: told.append(&"up"))
@@ -391,7 +383,7 @@ func test_it_jumps_when_it_is_asked_to_and_tells() -> void:
 
 
 func test_it_crouches_and_gives_way_to_pushes() -> void:
-	var walker := _walker(func(made: Walker) -> void: made.gait.speed = 0.0)
+	var walker := add_walker(func(made: Walker) -> void: made.gait.speed = 0.0)
 	walker.walk(30)
 	var upright := walker.joint("Hips").y
 	walker.gait.crouch = 1.0

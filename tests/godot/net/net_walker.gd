@@ -11,7 +11,7 @@ const SYNCHRONIZER: PackedScene = preload("res://addons/footfall/controller/gait
 
 var title := ""
 var lies := false
-## Set before its peer leaves, so that nobody shows steps that it did not live to make.
+## Set before its peer leaves, so that others do not show steps that were never finished.
 var rests := false
 ## Time since it came and was heard of, and the greatest speed of its hips since it first was where it should be, and distance from where it came.
 var secs := 0.0
@@ -54,7 +54,7 @@ func _process(delta: float) -> void:
 		secs += delta
 	if is_multiplayer_authority():
 		var asked := COURSE[int(secs / EACH_SECS) % COURSE.size()]
-		# Nobody's stick is still.
+		# A stick is never still.
 		gait.speed = asked.x + (0.15 * sin(9.0 * secs) if asked.x > 0.0 else 0.0)
 		if rests:
 			gait.speed = 0.0

@@ -66,7 +66,7 @@ func _process(delta: float) -> void:
 		set_process(false)
 
 
-## Somebody has come and gets a character.
+## A peer has joined and gets a character.
 @rpc("any_peer", "call_remote", "reliable")
 func _come(title: String) -> void:
 	var id := multiplayer.get_remote_sender_id()

@@ -1,6 +1,6 @@
 @tool
 extends EditorPlugin
-## Unzips the archive that the command line names, as somebody does beside a running editor, and looks whether the add-on works.
+## Unzips the archive that the command line names, as a user does beside a running editor, and checks whether the add-on works.
 ##
 ## Names none of the add-on's classes: there are none when this is compiled. Goes by what the project holds, for the engine compiles scripts
 ## anew when an extension comes, and what they were waiting for is lost.

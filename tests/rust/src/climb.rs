@@ -45,7 +45,7 @@ pub struct Climb {
     /// Carrier of the character's origin over the ground.
     pub origin: Origin,
     /// True when the placer knows contacts and landings.
-    pub told: bool,
+    pub announced: bool,
     /// Of the walker.
     pub seed: u64,
 }
@@ -68,7 +68,7 @@ impl Climb {
             way,
             distance_m,
             origin: Origin::Follows,
-            told: true,
+            announced: true,
             seed: 7,
         }
     }
@@ -87,7 +87,7 @@ impl Climb {
         walker.carrier = self.origin;
         let controls = Controls {
             speed_mps: self.speed_mps,
-            // Grades are walked, as beside `FootPlacement3D`, whoever has legs short enough to run at this speed.
+            // Grades are walked, as beside `FootPlacement3D`, even with legs short enough to run at this speed.
             gait: GaitChoice::Walk,
             ..Controls::STAND
         };
@@ -100,7 +100,7 @@ impl Climb {
         let mut between = 0;
         let longest = ((10.0 + 4.0 * goal) / DT) as usize;
         for frame in 0..longest {
-            walker.climb(DT, controls, &mut terrain, self.told);
+            walker.climb(DT, controls, &mut terrain, self.announced);
             show(frame, &walker);
             watcher.see(frame, &walker, &terrain);
             between += usize::from(watcher.between.contains(&walker.hips().z));
@@ -275,7 +275,7 @@ fn depth(terrain: &Relief, point: Vec3) -> f32 {
     out.fold(below, f32::min)
 }
 
-/// Adults, a child and somebody tall: sizes of the body.
+/// Sizes of the body: adults, a child and a tall person.
 pub const BODIES: [f32; 3] = [0.68, 1.0, 1.13];
 
 #[cfg(test)]

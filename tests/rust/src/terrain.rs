@@ -122,7 +122,13 @@ impl PlacedWalker {
     }
 
     /// Lets time pass for a character that a game carries over the ground and that slows down on slopes.
-    pub fn climb(&mut self, dt_secs: f32, controls: Controls, terrain: &mut Relief, told: bool) {
+    pub fn climb(
+        &mut self,
+        dt_secs: f32,
+        controls: Controls,
+        terrain: &mut Relief,
+        announced: bool,
+    ) {
         let slowed = Controls {
             speed_mps: controls.speed_mps * self.placer.pace(),
             ..controls
@@ -144,7 +150,7 @@ impl PlacedWalker {
                 self.height = under.into_iter().fold(ground, f32::max);
             }
         }
-        self.put(dt_secs, terrain, told);
+        self.put(dt_secs, terrain, announced);
     }
 
     /// Feet that the animation has on the ground.
@@ -152,10 +158,16 @@ impl PlacedWalker {
         self.generator.feet_in_contact()
     }
 
-    /// Lets time pass. Without `told` the placer finds contacts by itself and knows no footholds.
-    pub fn step(&mut self, dt_secs: f32, controls: Controls, terrain: &mut Relief, told: bool) {
+    /// Lets time pass. Without `announced` the placer finds contacts by itself and knows no footholds.
+    pub fn step(
+        &mut self,
+        dt_secs: f32,
+        controls: Controls,
+        terrain: &mut Relief,
+        announced: bool,
+    ) {
         let ground = terrain.at(self.origin(dt_secs, controls).position);
-        self.place(dt_secs, terrain, told, ground.position.y);
+        self.place(dt_secs, terrain, announced, ground.position.y);
     }
 
     /// As [`step`](Self::step), with the character's origin at this height.
@@ -164,11 +176,11 @@ impl PlacedWalker {
         dt_secs: f32,
         controls: Controls,
         terrain: &mut Relief,
-        told: bool,
+        announced: bool,
         height: f32,
     ) {
         self.origin(dt_secs, controls);
-        self.place(dt_secs, terrain, told, height);
+        self.place(dt_secs, terrain, announced, height);
     }
 
     /// Place of the character after another frame of its walk, at the height where it began.
@@ -182,24 +194,24 @@ impl PlacedWalker {
         self.world_from_floor
     }
 
-    fn place(&mut self, dt_secs: f32, terrain: &mut Relief, told: bool, ground: f32) {
+    fn place(&mut self, dt_secs: f32, terrain: &mut Relief, announced: bool, ground: f32) {
         if self.height.is_nan() {
             self.height = ground;
         }
         self.height += (ground - self.height) * (1.0 - (-dt_secs / 0.15).exp());
-        self.put(dt_secs, terrain, told);
+        self.put(dt_secs, terrain, announced);
     }
 
-    fn put(&mut self, dt_secs: f32, terrain: &mut Relief, told: bool) {
+    fn put(&mut self, dt_secs: f32, terrain: &mut Relief, announced: bool) {
         let mut floor = self.world_from_floor;
         floor.position.y = self.height;
         let mut input = PlacementInput {
             world_from_floor: floor,
-            contacts: told.then(|| self.generator.feet_in_contact()),
+            contacts: announced.then(|| self.generator.feet_in_contact()),
             landings: [None; 2],
             airborne: false,
         };
-        if told {
+        if announced {
             if self.placer.pace() < 1.0 {
                 // As `FootPlacement3D` does on a grade.
                 self.generator.keep_step();

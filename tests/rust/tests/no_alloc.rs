@@ -66,7 +66,7 @@ fn allocations() -> usize {
 /// A body that a sensor drives: samples in time, late, missing and not finite, then silence.
 fn assert_driving_allocates_nothing(mut body: Reconstructor) {
     let mut pose = Pose::default();
-    let mut told = 0;
+    let mut reported = 0;
     let before = allocations();
     for n in 0..2000_u32 {
         let time = f64::from(n) * 0.01;
@@ -88,14 +88,14 @@ fn assert_driving_allocates_nothing(mut body: Reconstructor) {
             body.push(0, sample);
         }
         body.step(0.01, &mut pose);
-        told += u32::from(body.problem(0).is_some());
+        reported += u32::from(body.problem(0).is_some());
         assert!(
             pose.rotations.iter().all(|turn| turn.is_finite()),
             "at {time} s"
         );
     }
     assert_eq!(allocations(), before, "a driven body allocates");
-    assert!(told > 100, "an axis that stays the same is told");
+    assert!(reported > 100, "an axis with a constant value is reported");
 }
 
 /// Faster and slower, left and right, small and large steps in time, and nonsense.
@@ -174,7 +174,7 @@ fn assert_going_over_allocates_nothing(mut generator: GaitGenerator, skeleton: &
     }
 }
 
-/// A walker that makes another's steps: joined late, led back to its place, set anew, and told nonsense.
+/// A walker that follows another: joined late, led back to its place, teleported, and sent nonsense.
 #[expect(clippy::unwrap_used, reason = "tests may fail")]
 fn assert_following_allocates_nothing(mut walker: GaitGenerator, mut other: GaitGenerator) {
     const DT_SECS: f32 = 1.0 / 60.0;

@@ -39,11 +39,11 @@
 //!
 //! # Whole crowds
 //!
-//! A [`Crowd`] also directs its walkers. A [`CrowdRecipe`] holds what they are made of, on threads of its own; [`CrowdSettings`] set their differences. A
-//! [`Way`] leads them over an area, along a [`Path`], or as each [`Agent`] is told. They avoid each other.
+//! A [`Crowd`] also directs its walkers. It creates them from a [`CrowdRecipe`] on separate threads; [`CrowdSettings`] set their differences. A
+//! [`Routing`] sets their goals: places of an area, a [`Path`], or what the game sets for each [`Agent`]. They avoid each other.
 //!
 //! ```
-//! use footfall::crowd::{Crowd, CrowdRecipe, CrowdSettings, Limits, Tier, Way};
+//! use footfall::crowd::{Crowd, CrowdRecipe, CrowdSettings, Limits, Routing, Tier};
 //! use footfall::glam::{Vec2, Vec3};
 //! use footfall::model::GaitModel;
 //! use std::sync::Arc;
@@ -52,7 +52,7 @@
 //! let model = Arc::new(GaitModel::from_bytes(&std::fs::read("addons/footfall/models/locomotion.footfall")?)?);
 //! let body = model.skeleton.clone();
 //! let recipe = CrowdRecipe { model, styles: Vec::new(), space: None, body };
-//! let wander = Way::Wander { half: Vec2::splat(20.0) };
+//! let wander = Routing::Wander { half: Vec2::splat(20.0) };
 //! let mut crowd = Crowd::new(recipe, wander, CrowdSettings { seed: 7, ..CrowdSettings::default() });
 //! crowd.set_count(50);
 //!
@@ -76,7 +76,7 @@
 //!
 //! ```
 //! # use footfall::crowd::{CrowdRecipe, CrowdSettings};
-//! use footfall::crowd::{Crowd, SavedCrowd, Way};
+//! use footfall::crowd::{Crowd, Routing, SavedCrowd};
 //! use footfall::glam::{Vec2, Vec3};
 //! # use footfall::model::GaitModel;
 //! # use std::sync::Arc;
@@ -85,7 +85,7 @@
 //! # let body = model.skeleton.clone();
 //! # let recipe = CrowdRecipe { model, styles: Vec::new(), space: None, body };
 //!
-//! let mut crowd = Crowd::new(recipe, Way::Told, CrowdSettings::default());
+//! let mut crowd = Crowd::new(recipe, Routing::Scripted, CrowdSettings::default());
 //! let names = crowd.add([(Vec3::ZERO, 0.0), (Vec3::X, 0.0)].into_iter());
 //! crowd.begin_all()?;
 //! let row = crowd.roster().place(names[1]).expect("it is there");
@@ -110,6 +110,6 @@
 
 pub use footfall_rig::crowd::{
     Agent, Crowd, CrowdRecipe, CrowdSettings, CrowdStateError, Drawn, FETCHED, GROUPS, Goal,
-    Limits, MOST_AGENTS, Path, Roster, SavedCrowd, Tier, Way,
+    Limits, MOST_AGENTS, Path, Roster, Routing, SavedCrowd, Tier,
 };
 pub use footfall_synth::{CrowdPose, CrowdWalker, SharedPose, StyledBody, Workshop};

@@ -21,10 +21,10 @@
 //! let start = GroundTransform::default();
 //! let mut sender = WalkSender::new();
 //! // Sent reliably, once.
-//! let told = sender.identity(&walker)?.to_bytes();
+//! let message = sender.identity(&walker)?.to_bytes();
 //!
-//! // There: the same walker, by another's will.
-//! let identity = WalkIdentity::from_bytes(&told)?;
+//! // There: a walker that follows it.
+//! let identity = WalkIdentity::from_bytes(&message)?;
 //! let mut replica = GaitGenerator::new(&styles, &identity.style_weights, &body, &identity.config())?;
 //! identity.check(&replica)?;
 //! let mut follower = WalkFollower::new(&identity);
@@ -36,7 +36,7 @@
 //!     walker.step(1.0 / 60.0, &controls, &mut pose);
 //!     sender.step(1.0 / 60.0);
 //!     if frame % 3 == 0 {
-//!         // Sent as it comes; it may be late or lost.
+//!         // Sent unreliably: it may be late or lost.
 //!         let update = sender.update(&walker, &start)?;
 //!         follower.hear(&update, &replica)?;
 //!     }
@@ -46,7 +46,7 @@
 //! }
 //! let here = start.global(&walker.start_from_character());
 //! let there = replica_start.global(&replica.start_from_character());
-//! // As far behind as it is later.
+//! // The replica is as far behind as its delay.
 //! assert!((here.position.z - there.position.z - 0.2).abs() < 0.06, "{here:?} {there:?}");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -57,7 +57,7 @@
 //! allows. There, the crowd [follows](crate::crowd::Crowd::follow): its walkers have the same names, and take the same steps a third of a second after the messages arrive.
 //!
 //! ```
-//! use footfall::crowd::{Crowd, CrowdRecipe, CrowdSettings, Way};
+//! use footfall::crowd::{Crowd, CrowdRecipe, CrowdSettings, Routing};
 //! use footfall::glam::Vec2;
 //! use footfall::model::GaitModel;
 //! use footfall::network::CrowdSender;
@@ -66,7 +66,7 @@
 //! # std::env::set_current_dir("../../..")?;
 //! let model = Arc::new(GaitModel::from_bytes(&std::fs::read("addons/footfall/models/locomotion.footfall")?)?);
 //! let recipe = CrowdRecipe { body: model.skeleton.clone(), model, styles: Vec::new(), space: None };
-//! let wander = Way::Wander { half: Vec2::splat(20.0) };
+//! let wander = Routing::Wander { half: Vec2::splat(20.0) };
 //!
 //! // Here: a crowd that wanders, and a peer that shows it.
 //! let mut here = Crowd::new(recipe.clone(), wander, CrowdSettings::default());
@@ -76,7 +76,7 @@
 //! sender.join(2);
 //!
 //! // There: the crowd that follows.
-//! let mut there = Crowd::new(recipe, Way::Told, CrowdSettings::default());
+//! let mut there = Crowd::new(recipe, Routing::Scripted, CrowdSettings::default());
 //! there.follow();
 //! for _ in 0..180 {
 //!     here.begin_all()?;

@@ -71,7 +71,7 @@
 //! ```
 //!
 //! [`examine()`] finds the mounting and its problems: an [`Examination`] with a [`SensorProblem`] if the sensor is on the other side of the body, or turned from the assumed
-//! mounting. [`find_exchange`] does so for two sensors that may be swapped. Each problem tells the wearer what to do; [`Reconstructor::problem`] returns the current one.
+//! mounting. [`find_exchange`] does so for two sensors that may be swapped. The message of each problem says what to do; [`Reconstructor::problem`] returns the current one.
 //!
 //! ```
 //! use footfall::glam::Quat;

@@ -9,7 +9,7 @@ use serde::Serialize;
 #[derive(Serialize)]
 pub(crate) struct HipFacts {
     verdict: &'static str,
-    /// Strides of plain walking that tell where the joints are.
+    /// Strides of plain walking from which the joints are estimated.
     strides: usize,
     /// Probability that the recording misplaces them.
     probability: Option<f32>,

@@ -121,14 +121,14 @@ pub(crate) fn read_recording(path: &Path, options: &RetargetOptions) -> Result<R
 }
 
 /// Figures that describe a recording's walking.
-pub(crate) struct Walking {
+pub(crate) struct WalkFigures {
     /// Mean speed of the hips along the ground over the motion, m/s on the canonical body.
     pub(crate) speed_mps: f64,
     /// Steps per minute while walking; `None` without a step.
     pub(crate) cadence_per_min: Option<f64>,
 }
 
-impl Walking {
+impl WalkFigures {
     /// Measures a recording by its contacts.
     pub(crate) fn of(recording: &Recording) -> Self {
         let clip = &recording.retargeted.clip;

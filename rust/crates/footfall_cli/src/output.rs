@@ -81,7 +81,7 @@ pub(crate) fn note(text: &str) {
         }
         _ => text.to_owned(),
     };
-    // Nobody is left to tell when stderr is gone.
+    // Without stderr nobody reads a message.
     drop(writeln!(io::stderr().lock(), "{text}"));
 }
 

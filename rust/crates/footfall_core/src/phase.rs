@@ -22,7 +22,7 @@ pub enum PhaseStart {
     Apex,
     /// A foot that swings sideways is fastest.
     Fastest,
-    /// So much time has passed in standing.
+    /// A time has passed in standing.
     Interval,
 }
 

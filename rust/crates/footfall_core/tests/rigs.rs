@@ -189,7 +189,7 @@ fn a_bone_of_the_same_name_outside_the_limb_is_passed_over() {
 }
 
 #[test]
-fn two_bones_that_fit_equally_well_are_left_out_and_told() {
+fn two_bones_that_fit_equally_well_are_left_out_and_message() {
     let mut listed = Listed::named("mixamo");
     let forearm = listed.bone("mixamorig:LeftForeArm");
     let second = listed.add("mixamorig:LeftHand", Some(forearm));
@@ -201,10 +201,10 @@ fn two_bones_that_fit_equally_well_are_left_out_and_told() {
         panic!("{:?}", found.doubts);
     };
     assert!(*joint == Joint::LeftHand && bones.contains(&second) && bones.len() == 2);
-    let told = found.doubts[0].describe(&rig);
+    let message = found.doubts[0].describe(&rig);
     assert!(
-        told.contains("LeftHand may be any of mixamorig:LeftHand"),
-        "{told}"
+        message.contains("LeftHand may be any of mixamorig:LeftHand"),
+        "{message}"
     );
 }
 
@@ -216,10 +216,10 @@ fn hips_that_do_not_carry_the_legs_are_no_hips() {
     let rig = listed.rig();
     let found = recognise(&rig);
     assert_eq!(found.placement.joint(Joint::Hips), None);
-    let told = found.doubts[0].describe(&rig);
+    let message = found.doubts[0].describe(&rig);
     assert!(
-        told.contains("DEF-spine") && told.contains("DEF-thigh.L"),
-        "{told}"
+        message.contains("DEF-spine") && message.contains("DEF-thigh.L"),
+        "{message}"
     );
 }
 

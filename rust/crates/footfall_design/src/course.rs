@@ -1,4 +1,4 @@
-//! The way over the ground, without sway: what feet and hips are told apart from.
+//! The way over the ground, without sway: the reference for the motion of feet and hips.
 
 use crate::chance::{drift, normal};
 use crate::curve::smoothed;

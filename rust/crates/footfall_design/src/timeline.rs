@@ -48,7 +48,7 @@ impl Timeline {
         let landing = steps[0].first;
         let end = steps[steps.len() - 1].end;
         let step_frames = (end - landing) as f64 / steps.len() as f64;
-        // Beyond the walk as far as a step, where the cycle can still be told.
+        // Beyond the walk as far as a step, where the cycle is still defined.
         let from = (landing as f64 - step_frames).max(contacts.first_frame as f64);
         let to = (end as f64 + step_frames).min(last_frame as f64);
 

@@ -28,16 +28,15 @@ pub(crate) fn mapped(skeleton: &Gd<Skeleton3D>, bone_map: Option<&Gd<BoneMap>>) 
     })
 }
 
-/// Gives a bone map without a profile the humanoid one, so that the inspector shows what there is to fill in.
-pub(crate) fn complete(bone_map: Option<&Gd<BoneMap>>) {
-    if let Some(bone_map) = bone_map
+/// A bone map for a property: one without a profile gets the humanoid one, so that the inspector shows the bones to fill in.
+pub(crate) fn completed(mut bone_map: Option<Gd<BoneMap>>) -> Option<Gd<BoneMap>> {
+    if let Some(bone_map) = &mut bone_map
         && Engine::singleton().is_editor_hint()
         && bone_map.get_profile().is_none()
     {
-        bone_map
-            .clone()
-            .set_profile(&SkeletonProfileHumanoid::new_gd());
+        bone_map.set_profile(&SkeletonProfileHumanoid::new_gd());
     }
+    bone_map
 }
 
 /// The problem of a modifier that is not the child of a `Skeleton3D`, with the skeletons of its scene.

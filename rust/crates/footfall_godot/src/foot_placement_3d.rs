@@ -7,17 +7,15 @@ mod session;
 
 use crate::bones;
 use crate::character;
-use crate::convert;
 use crate::gait_generator_3d::GaitGenerator3D;
+use crate::modifier::{BodyModifier, engine_calls};
 use crate::physics_ground::{PhysicsGround, own_bodies};
-use crate::report;
-use crate::skeleton_binding::SkeletonBinding;
 use footfall_core::Pose;
 use footfall_ik::placement::{ContactThresholds, FootPlacer, Landing, PlacementConfig};
 use godot::classes::{BoneMap, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
 use marks::Marks;
-use session::Session;
+use session::PlacementSession;
 
 /// Time constant with which the character rises and falls with the ground, seconds.
 const RISE_SECS: f32 = 0.12;
@@ -119,8 +117,8 @@ pub(crate) struct FootPlacement3D {
     #[export]
     debug_draw: bool,
 
-    /// Session that is bound to the skeleton; `None` until the next frame that can bind one.
-    session: Option<Session>,
+    /// Feet that are bound to the skeleton; `None` until the next frame that can bind one.
+    session: Option<PlacementSession>,
     reported: Option<String>,
     /// Contacts and landings that were given for this frame.
     fed: Option<([bool; 2], [Option<Landing>; 2])>,
@@ -128,38 +126,7 @@ pub(crate) struct FootPlacement3D {
     base: Base<SkeletonModifier3D>,
 }
 
-#[godot_api]
-impl ISkeletonModifier3D for FootPlacement3D {
-    fn enter_tree(&mut self) {
-        self.forget();
-    }
-
-    fn exit_tree(&mut self) {
-        self.marks.remove();
-    }
-
-    fn skeleton_changed(&mut self, _old: Option<Gd<Skeleton3D>>, _new: Option<Gd<Skeleton3D>>) {
-        self.forget();
-    }
-
-    fn process_modification_with_delta(&mut self, delta: f64) {
-        let Some(skeleton) = self.base().get_skeleton() else {
-            return;
-        };
-        if !skeleton.is_inside_tree() || convert::is_flat(skeleton.get_global_transform()) {
-            return;
-        }
-        match self.take_session(&skeleton) {
-            Ok(session) => self.place(session, skeleton, delta),
-            Err(problem) if delta > 0.0 => self.report(problem),
-            Err(_) => {}
-        }
-    }
-
-    fn get_configuration_warnings(&self) -> PackedStringArray {
-        self.problems()
-    }
-}
+engine_calls!(FootPlacement3D);
 
 #[godot_api]
 impl FootPlacement3D {
@@ -194,8 +161,7 @@ impl FootPlacement3D {
 
     #[func]
     fn set_bone_map(&mut self, bone_map: Option<Gd<BoneMap>>) {
-        bones::complete(bone_map.as_ref());
-        self.bone_map = bone_map;
+        self.bone_map = bones::completed(bone_map);
         self.reset();
     }
 }
@@ -210,30 +176,6 @@ impl FootPlacement3D {
     pub(crate) fn forget(&mut self) {
         self.session = None;
         self.reported = None;
-    }
-
-    fn problems(&self) -> PackedStringArray {
-        let mut problems = PackedStringArray::new();
-        let Some(skeleton) = self.base().get_skeleton() else {
-            problems.push(&bones::no_skeleton(&self.to_gd().upcast()));
-            return problems;
-        };
-        if self.collision_mask == 0 {
-            problems.push("Collision Mask is empty. Choose the physics layers that are ground.");
-        }
-        if skeleton.is_inside_tree()
-            && let Err(problem) = self.bind(&skeleton)
-        {
-            problems.push(&GString::from(&problem));
-        }
-        if let Some(generator) = generator_beside(&skeleton)
-            && generator.get_index() > self.base().get_index()
-        {
-            problems.push(
-                "Move this node below the GaitGenerator3D. Modifiers run from top to bottom.",
-            );
-        }
-        problems
     }
 
     fn config(&self) -> PlacementConfig {
@@ -256,28 +198,37 @@ impl FootPlacement3D {
             contact: ContactThresholds::default(),
         }
     }
+}
 
-    fn bind(&self, skeleton: &Gd<Skeleton3D>) -> Result<(Gd<Node3D>, SkeletonBinding), String> {
-        let node = self.base().clone().upcast::<Node>();
-        let mut bone_map = self.bone_map.clone();
-        let mut found = None;
-        if let Some(generator) = generator_beside(skeleton) {
-            let generator = generator.bind();
-            bone_map = bone_map.or_else(|| generator.bones());
-            if self.character.is_empty() {
-                found = Some(generator.find_character(skeleton)?);
-            }
-        }
-        let character = match found {
-            Some(character) => character,
-            None => character::find(&node, skeleton, &self.character)?,
-        };
-        let binding = SkeletonBinding::new(skeleton, &character, bone_map.as_ref())
-            .map_err(|error| error.to_string())?;
-        Ok((character, binding))
+impl BodyModifier for FootPlacement3D {
+    type Session = PlacementSession;
+
+    fn character_path(&self) -> &NodePath {
+        &self.character
     }
 
-    fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
+    fn bone_map_for(&self, skeleton: &Gd<Skeleton3D>) -> Option<Gd<BoneMap>> {
+        let own = self.bone_map.clone();
+        own.or_else(|| generator_beside(skeleton)?.bind().bone_map_for(skeleton))
+    }
+
+    fn find_character(&self, skeleton: &Gd<Skeleton3D>) -> Result<Gd<Node3D>, String> {
+        match generator_beside(skeleton) {
+            Some(generator) if self.character.is_empty() => {
+                generator.bind().find_character(skeleton)
+            }
+            _ => {
+                let node = self.base().clone().upcast::<Node>();
+                character::find(&node, skeleton, &self.character)
+            }
+        }
+    }
+
+    fn last_problem(&mut self) -> &mut Option<String> {
+        &mut self.reported
+    }
+
+    fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<PlacementSession, String> {
         if let Some(session) = self.session.take()
             && session.character.is_instance_valid()
             && session.character.is_inside_tree()
@@ -287,7 +238,7 @@ impl FootPlacement3D {
         }
         let (character, binding) = self.bind(skeleton)?;
         let exclude = own_bodies(&character);
-        Ok(Session {
+        Ok(PlacementSession {
             placer: FootPlacer::new(&binding.body, &self.config()),
             pose: Pose::rest(&binding.body),
             ground: PhysicsGround::new(self.collision_mask, self.cast_radius as f32, &exclude),
@@ -296,13 +247,35 @@ impl FootPlacement3D {
         })
     }
 
-    /// Logs what keeps the feet from being placed, once.
-    fn report(&mut self, problem: String) {
-        if self.reported.as_ref() == Some(&problem) {
-            return;
+    fn advance(&mut self, session: PlacementSession, skeleton: Gd<Skeleton3D>, delta: f64) {
+        self.place(session, skeleton, delta);
+    }
+
+    fn interrupt(&mut self) {
+        self.forget();
+    }
+
+    fn leave_tree(&mut self) {
+        self.marks.remove();
+    }
+
+    fn problems(&self) -> PackedStringArray {
+        let mut problems = PackedStringArray::new();
+        if self.collision_mask == 0 {
+            problems.push("Collision Mask is empty. Choose the physics layers that are ground.");
         }
-        report::tell(&self.base_mut(), &problem);
-        self.reported = Some(problem);
+        if let Some(problem) = self.skeleton_problem() {
+            problems.push(&problem);
+        }
+        if let Some(skeleton) = self.base().get_skeleton()
+            && let Some(generator) = generator_beside(&skeleton)
+            && generator.get_index() > self.base().get_index()
+        {
+            problems.push(
+                "Move this node below the GaitGenerator3D. Modifiers run from top to bottom.",
+            );
+        }
+        problems
     }
 }
 

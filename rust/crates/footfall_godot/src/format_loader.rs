@@ -119,7 +119,7 @@ impl IResourceFormatLoader for FootfallFormatLoader {
 /// Only their numbers: when the library is loaded anew, what Rust knows of its objects is gone before they are taken back.
 static REGISTERED: [AtomicI64; Kind::ALL.len()] = [const { AtomicI64::new(0) }; Kind::ALL.len()];
 
-/// Has the engine load our files.
+/// Registers the loader of Footfall's files.
 ///
 /// Before all other loaders, so that no `.import` file of the days when they were imported stands before the file itself.
 pub(crate) fn register() {

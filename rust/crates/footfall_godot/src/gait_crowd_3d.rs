@@ -200,8 +200,8 @@ pub(crate) struct GaitCrowd3D {
     #[var(set = set_material)]
     material: Option<Gd<ShaderMaterial>>,
 
-    /// If `true`, the crowd is another peer's of a multiplayer game: walkers come, go and step as `hear_message()` tells, by the same ids; `count`, `behaviour` and what
-    /// scripts ask of walkers do nothing. Set back to `false` it goes on by itself with those who are there. `controller/crowd_synchronizer.tscn` sets it.
+    /// If `true`, the crowd repeats another peer's crowd of a multiplayer game: `hear_message()` adds, removes and moves walkers with the same ids, while `count`, `behaviour` and calls
+    /// that steer walkers have no effect. If set back to `false`, it continues by itself with the same walkers. `controller/crowd_synchronizer.tscn` sets it.
     #[var(get = get_follows, set = set_follows)]
     follows: PhantomVar<bool>,
 
@@ -213,11 +213,11 @@ pub(crate) struct GaitCrowd3D {
     scene: Option<CrowdScene>,
     others: Others,
     replica: Replica,
-    /// True when walkers were sent over the navigation map.
+    /// True if scripts sent walkers over the navigation map.
     sends: bool,
-    /// Row of the walker who is looked at next, lest it leaves the map.
+    /// Row of the walker whose place on the map is checked next.
     kept: usize,
-    /// Why the crowd could not be made, as long as nothing has changed since.
+    /// Problem that kept the crowd from being created, until a setting changes.
     problem: Option<String>,
     base: Base<Node3D>,
 }
@@ -274,13 +274,13 @@ impl GaitCrowd3D {
     #[signal]
     fn agents_ready(agents: PackedInt32Array);
 
-    /// A message about the crowd that this one follows was refused, for this reason: see `hear_message()`.
+    /// Emitted when a message about the crowd that this one follows is refused: `reason` gives the cause and what to do. See `hear_message()`.
     #[signal]
     fn message_refused(reason: GString);
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
-        self.model = shipped::instead_of_new(model, shipped::WALK, |model| model.bind().is_new());
+        self.model = shipped::instead_of_new(model);
         self.restart();
     }
 
@@ -394,17 +394,5 @@ impl GaitCrowd3D {
     fn set_material(&mut self, material: Option<Gd<ShaderMaterial>>) {
         self.material = material;
         self.restart();
-    }
-}
-
-impl GaitCrowd3D {
-    fn forget(&mut self) {
-        if let Some(scene) = self.scene.take() {
-            scene.free();
-        }
-        self.walkers = None;
-        self.replica.renew();
-        self.mesh = None;
-        self.problem = None;
     }
 }

@@ -6,18 +6,18 @@ mod beside;
 mod detail;
 mod fit;
 mod following;
-#[cfg(feature = "editor")]
-mod foresight;
 mod gait_choice;
 mod leaving;
 mod methods;
 mod moves;
+mod observed_motion;
+mod ownership;
+#[cfg(feature = "editor")]
+mod preview_path;
 mod problems;
-mod reign;
 mod replica;
 mod rival;
 mod seed;
-mod seen;
 mod session;
 mod source;
 mod walk;
@@ -27,6 +27,7 @@ use crate::bones;
 use crate::convert::finite_or;
 use crate::gait_model::GaitModel;
 use crate::gait_style::GaitStyle;
+use crate::modifier::{BodyModifier as _, engine_calls};
 use crate::root_motion::RootMotion;
 use crate::shipped::{self, Fallback};
 use crate::walk_source::WalkSource;
@@ -36,11 +37,11 @@ use gait_choice::GaitMode;
 use glam::Vec3;
 use godot::classes::{BoneMap, ISkeletonModifier3D, Skeleton3D, SkeletonModifier3D};
 use godot::prelude::*;
-use problems::Told;
-use reign::{Reign, Wish};
+use ownership::{Ownership, Request};
+use problems::Announced;
 use replica::Replica;
 use rival::Rivals;
-use session::Session;
+use session::WalkSession;
 
 /// Walks a character: poses the parent `Skeleton3D` in every frame with steps generated from a trained model.
 ///
@@ -81,8 +82,8 @@ pub(crate) struct GaitGenerator3D {
 
     /// Walking or running speed in metres per second. Cadence and step length follow as in people; `gait` sets when the character runs.
     ///
-    /// A change applies at once while a foot of a walk is in the air, otherwise with the next step. `GaitModel.get_speed_range()` returns the speeds that the model was
-    /// trained on. At 0 the character stops within two steps and stands, or turns on the spot by `turn_rate`.
+    /// A change applies at once while a foot of a walk is in the air, otherwise with the next step. `GaitModel.get_speed_range()` returns the speeds that the model
+    /// was trained on. At 0 the character stops within two steps and stands, or turns on the spot by `turn_rate`.
     #[export(range = (0.0, 5.0, 0.01, or_greater, suffix = "m/s"))]
     #[var(set = set_speed)]
     #[init(val = 1.3)]
@@ -95,9 +96,8 @@ pub(crate) struct GaitGenerator3D {
 
     /// Direction of travel relative to the facing direction, in radians: 0 forwards, 90° to the left, -90° to the right, 180° backwards.
     ///
-    /// For characters that look elsewhere than where they go. Changes apply as for `speed`; large changes take several
-    /// steps. Steps sideways and backwards are shorter than forward steps, as in people: a character reaches about 1.6 m/s sideways and
-    /// 2.0 m/s backwards, whatever `speed` is.
+    /// For characters that look elsewhere than where they go. Changes apply as for `speed`; large changes take several steps. Steps sideways and backwards are
+    /// shorter than forward steps, as in people: a character reaches about 1.6 m/s sideways and 2.0 m/s backwards, whatever `speed` is.
     #[export(range = (-180.0, 180.0, 1.0, radians_as_degrees, suffix = "°"))]
     #[var(set = set_direction)]
     direction: f64,
@@ -144,9 +144,9 @@ pub(crate) struct GaitGenerator3D {
 
     /// Seed of the walk. Equal seeds give equal walks.
     ///
-    /// 0 derives the seed and the initial phase from the node's path in its scene: the walk is the same whenever the scene runs, and
-    /// differs between nodes. `get_effective_seed()` returns the seed in use. A saved state
-    /// holds the seed, so a loaded walk continues alike wherever the node is. Changing it starts the walk anew.
+    /// 0 derives the seed and the initial phase from the node's path in its scene: the walk is the same whenever the scene runs, and differs between nodes.
+    /// `get_effective_seed()` returns the seed in use. A saved state holds the seed, so a loaded walk continues alike wherever the node is. Changing it starts the
+    /// walk anew.
     #[export]
     #[var(set = set_seed)]
     seed: i64,
@@ -177,8 +177,8 @@ pub(crate) struct GaitGenerator3D {
     /// Resolution of the walk: every frame of the model, every second (half) or every fourth (quarter).
     ///
     /// Lower it for characters far from the camera. The walk is the same, but feet slip slightly between frames. Auto chooses by the character's height in the
-    /// viewport of the current camera: full from 150 pixels, half from 40, quarter below, and full without a camera; `get_current_detail()` returns its choice. Changes apply with
-    /// the next step.
+    /// viewport of the current camera: full from 150 pixels, half from 40, quarter below, and full without a camera; `get_current_detail()` returns its choice.
+    /// Changes apply with the next step.
     #[export]
     detail: GaitDetail,
 
@@ -227,15 +227,15 @@ pub(crate) struct GaitGenerator3D {
     preview_paused: Option<bool>,
     pending: Pending,
     /// The walk under way; `None` until the next frame that can start it.
-    session: Option<Session>,
+    session: Option<WalkSession>,
     /// The walk that went on before the node left the tree or its skeleton.
     absent: Option<Absent>,
-    told: Told,
+    announced: Announced,
     travelled: RootMotion,
     /// Velocity of the character on the ground in the last frame: metres and radians a second.
     velocity: (Vec3, f32),
-    reign: Reign,
-    wish: Option<Wish>,
+    ownership: Ownership,
+    request: Option<Request>,
     rivals: Rivals,
     /// Share of the speed that is left on the ground at hand: 1 on level ground.
     #[init(val = 1.0)]
@@ -245,24 +245,7 @@ pub(crate) struct GaitGenerator3D {
     base: Base<SkeletonModifier3D>,
 }
 
-#[godot_api]
-impl ISkeletonModifier3D for GaitGenerator3D {
-    fn enter_tree(&mut self) {
-        self.put_aside();
-    }
-
-    fn skeleton_changed(&mut self, _old: Option<Gd<Skeleton3D>>, _new: Option<Gd<Skeleton3D>>) {
-        self.put_aside();
-    }
-
-    fn process_modification_with_delta(&mut self, delta: f64) {
-        self.pass_frame(delta);
-    }
-
-    fn get_configuration_warnings(&self) -> PackedStringArray {
-        self.problems()
-    }
-}
+engine_calls!(GaitGenerator3D);
 
 #[godot_api]
 impl GaitGenerator3D {
@@ -304,7 +287,7 @@ impl GaitGenerator3D {
 
     #[func]
     fn set_model(&mut self, model: Option<Gd<GaitModel>>) {
-        self.model = shipped::instead_of_new(model, shipped::WALK, |model| model.bind().is_new());
+        self.model = shipped::instead_of_new(model);
         self.renew();
     }
 
@@ -344,24 +327,24 @@ impl GaitGenerator3D {
 
     #[func]
     fn get_replica_identity(&self) -> PackedByteArray {
-        self.tell_identity()
+        self.identity_bytes()
     }
 
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_replica_identity(&mut self, identity: PackedByteArray) {
-        self.hear_identity(&identity);
+        self.receive_identity(&identity);
     }
 
     #[func]
     fn get_replica_state(&self) -> PackedByteArray {
-        self.tell_state()
+        self.state_bytes()
     }
 
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_replica_state(&mut self, state: PackedByteArray) {
-        self.hear_state(&state);
+        self.receive_state(&state);
     }
 
     #[func]
@@ -394,8 +377,7 @@ impl GaitGenerator3D {
 
     #[func]
     fn set_bone_map(&mut self, bone_map: Option<Gd<BoneMap>>) {
-        bones::complete(bone_map.as_ref());
-        self.bone_map = bone_map;
+        self.bone_map = bones::completed(bone_map);
         self.restart();
     }
 }

@@ -1,6 +1,7 @@
 //! `GaitModel`: a trained walk as a Godot resource.
 
-use crate::loaded::Loaded;
+use crate::loaded::{Loaded, sources};
+use crate::shipped::Shipped;
 use crate::walk_source::WalkSource;
 use footfall_core::Side;
 use footfall_model::{GaitModel as TrainedWalk, GaitStyle as TrainedStyle, WalkModel};
@@ -10,11 +11,11 @@ use godot::prelude::*;
 use std::cell::OnceCell;
 use std::sync::{Arc, Weak};
 
-/// Problem of a model that cannot wear styles.
-pub(crate) const NO_STYLES: &str = "A switching model (.footdyn) has no styles and walks without them. Clear Styles, or load a .footfall file into Model.";
+/// Problem of a resource without a file.
+const EMPTY: &str = "the gait model is empty. Load a .footfall or .footdyn file instead";
 
-/// Warning where there is no model.
-pub(crate) const NO_MODEL: &str = "There is no gait model, and the add-on's own, models/locomotion.footfall, is missing. Unzip the add-on again, or load a .footfall file into Model.";
+/// Problem of styles for a model that has none.
+pub(crate) const NO_STYLES: &str = "A switching model (.footdyn) has no styles and walks without them. Clear Styles, or load a .footfall file into Model.";
 
 /// Gait model learned from recordings: a trained walk (`.footfall`, made by `footfall train`) or a switching model
 /// (`.footdyn`, made by `footfall dynamics fit`).
@@ -37,9 +38,9 @@ pub(crate) struct GaitModel {
 
     /// The model in `data`, or why there is none.
     loaded: Loaded<WalkModel>,
-    /// The slowest and the fastest walk, once they were asked for: those of a switching model have to be walked.
+    /// The slowest and the fastest walk, computed on demand: those of a switching model have to be generated.
     speeds: OnceCell<[f32; 2]>,
-    /// Spaces that characters in the same styles share.
+    /// Style spaces that characters with the same styles share.
     spaces: Vec<Weak<StyleSpace>>,
     base: Base<Resource>,
 }
@@ -79,8 +80,7 @@ impl GaitModel {
     /// Returns the problem of the model's file, with what to do next; empty if there is none.
     #[func]
     fn get_error(&self) -> GString {
-        self.trained()
-            .map_or_else(|error| GString::from(&error), |_| GString::new())
+        self.loaded.error(EMPTY)
     }
 
     /// Returns the slowest and the fastest walk that the model was trained on, in metres per second. Zero for an invalid model; a switching
@@ -102,12 +102,16 @@ impl GaitModel {
     }
 }
 
-impl GaitModel {
-    /// Returns whether it was made by *New* and holds nothing yet.
-    pub(crate) fn is_new(&self) -> bool {
+impl Shipped for GaitModel {
+    const FILE: &'static str = "locomotion.footfall";
+    const MISSING: &'static str = "There is no gait model, and the add-on's own, models/locomotion.footfall, is missing. Unzip the add-on again, or load a .footfall file into Model.";
+
+    fn is_new(&self) -> bool {
         self.data.is_empty()
     }
+}
 
+impl GaitModel {
     fn speeds_of(&self, model: &WalkModel) -> [f32; 2] {
         *self.speeds.get_or_init(|| speed_range(model))
     }
@@ -117,14 +121,13 @@ impl GaitModel {
     /// # Errors
     /// Text for the user that says what is wrong with the file.
     pub(crate) fn trained(&self) -> Result<Arc<WalkModel>, String> {
-        self.loaded
-            .content("the gait model is empty. Load a .footfall or .footdyn file instead")
+        self.loaded.content(EMPTY)
     }
 
-    /// The model with these styles, prepared once for all characters that wear the same.
+    /// The model with these styles, prepared once for all characters with the same styles.
     ///
     /// # Errors
-    /// Text for the user that says what is wrong with the model, or why it cannot wear the styles.
+    /// Text for the user that says what is wrong with the model, or with the styles.
     pub(crate) fn source(&mut self, styles: &[Arc<TrainedStyle>]) -> Result<WalkSource, String> {
         let trained = match &*self.trained()? {
             WalkModel::Gait(model) => Arc::clone(model),
@@ -142,7 +145,7 @@ impl GaitModel {
         Ok(WalkSource::Styled(space))
     }
 
-    /// The trained walk, and with these styles if some character walks so already.
+    /// The trained walk, and its style space for these styles if a character uses it already.
     ///
     /// # Errors
     /// Text for the user that says what is wrong with the model.
@@ -158,7 +161,7 @@ impl GaitModel {
         Ok((Arc::clone(model), self.space_with(styles)))
     }
 
-    /// Shares a model with styles, prepared elsewhere, with characters that wear the same.
+    /// Shares a model with styles, prepared elsewhere, with characters of the same styles.
     pub(crate) fn share(&mut self, space: &Arc<StyleSpace>) {
         self.spaces.retain(|space| space.strong_count() > 0);
         self.spaces.push(Arc::downgrade(space));
@@ -206,8 +209,5 @@ fn describe(model: &WalkModel, [slowest, fastest]: [f32; 2]) -> String {
             from.clips
         ),
     };
-    format!(
-        "{what}\nCorpus: {}\nTerms: {}\nMade by: {}",
-        from.corpus, from.terms, from.command
-    )
+    format!("{what}\n{}", sources(from))
 }

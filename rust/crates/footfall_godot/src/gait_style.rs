@@ -1,10 +1,13 @@
 //! `GaitStyle`: a way of walking as a Godot resource.
 
-use crate::loaded::Loaded;
+use crate::loaded::{Loaded, sources};
 use footfall_model::GaitStyle as TrainedStyle;
 use godot::classes::{IResource, Resource};
 use godot::prelude::*;
 use std::sync::Arc;
+
+/// Problem of a resource without a file.
+const EMPTY: &str = "the gait style is empty. Load a .footstyle file instead";
 
 /// Style of walking, made by `footfall adapt` from about a dozen steps and stored in a `.footstyle` file.
 ///
@@ -60,8 +63,7 @@ impl GaitStyle {
     /// Returns the problem of the style's file, with what to do next; empty if there is none.
     #[func]
     fn get_error(&self) -> GString {
-        self.trained()
-            .map_or_else(|error| GString::from(&error), |_| GString::new())
+        self.loaded.error(EMPTY)
     }
 
     /// Returns the name of the style, such as `proud`. Empty for an invalid style.
@@ -81,13 +83,12 @@ impl GaitStyle {
 }
 
 impl GaitStyle {
-    /// The style, shared with every character that wears it.
+    /// The style, shared with every character that has it.
     ///
     /// # Errors
     /// Text for the user that says what is wrong with the file.
     pub(crate) fn trained(&self) -> Result<Arc<TrainedStyle>, String> {
-        self.loaded
-            .content("the gait style is empty. Load a .footstyle file instead")
+        self.loaded.content(EMPTY)
     }
 }
 
@@ -115,13 +116,11 @@ pub(crate) fn trained_all(
 fn describe(style: &TrainedStyle) -> String {
     let from = &style.provenance;
     format!(
-        "{}: {} steps, at {:.2} m/s and {:.0} steps a minute.\nCorpus: {}\nTerms: {}\nMade by: {}",
+        "{}: {} steps, at {:.2} m/s and {:.0} steps a minute.\n{}",
         style.name,
         from.steps,
         style.speed_mps,
         60.0 * style.cadence_hz,
-        from.corpus,
-        from.terms,
-        from.command
+        sources(from)
     )
 }

@@ -1,14 +1,15 @@
-//! `ImuModel`: what sensors on a body mean, as a Godot resource.
+//! `ImuModel`: a sensor model as a Godot resource.
 
-use crate::loaded::Loaded;
+use crate::loaded::{Loaded, sources};
+use crate::shipped::Shipped;
 use footfall_model::ImuModel as TrainedModel;
 use footfall_recon::Prepared;
 use godot::classes::{IResource, Resource};
 use godot::prelude::*;
 use std::sync::Arc;
 
-/// Warning where there is no model.
-pub(crate) const NO_MODEL: &str = "There is no sensor model, and the add-on's own, models/right_foot.footimu, is missing. Unzip the add-on again, or load a .footimu file into Model.";
+/// Problem of a resource without a file.
+const EMPTY: &str = "the sensor model is empty. Load a .footimu file instead";
 
 /// Sensor model that maps one or two inertial sensors on a body to the whole body (`.footimu`, made by `footfall imu train`).
 ///
@@ -67,8 +68,7 @@ impl ImuModel {
     /// Returns the problem of the model's file, with what to do next; empty if there is none.
     #[func]
     fn get_error(&self) -> GString {
-        self.prepared()
-            .map_or_else(|error| GString::from(&error), |_| GString::new())
+        self.loaded.error(EMPTY)
     }
 
     /// Returns the sites of the sensors, in order, for example `right_foot`. Empty for an invalid model.
@@ -85,19 +85,22 @@ impl ImuModel {
     }
 }
 
-impl ImuModel {
-    /// Returns whether it was made by *New* and holds nothing yet.
-    pub(crate) fn is_new(&self) -> bool {
+impl Shipped for ImuModel {
+    const FILE: &'static str = "right_foot.footimu";
+    const MISSING: &'static str = "There is no sensor model, and the add-on's own, models/right_foot.footimu, is missing. Unzip the add-on again, or load a .footimu file into Model.";
+
+    fn is_new(&self) -> bool {
         self.data.is_empty()
     }
+}
 
+impl ImuModel {
     /// The model, laid out, shared with every character that it drives.
     ///
     /// # Errors
     /// Text for the user that says what is wrong with the file.
     pub(crate) fn prepared(&self) -> Result<Arc<Prepared>, String> {
-        self.loaded
-            .content("the sensor model is empty. Load a .footimu file instead")
+        self.loaded.content(EMPTY)
     }
 }
 
@@ -106,14 +109,12 @@ fn describe(model: &TrainedModel) -> String {
     let from = &model.provenance;
     let sites: Vec<&str> = model.sites.iter().map(|site| site.name()).collect();
     format!(
-        "{}: {} frames of {} people in {} recordings, at {} frames a second.\nCorpus: {}\nTerms: {}\nMade by: {}",
+        "{}: {} frames of {} people in {} recordings, at {} frames a second.\n{}",
         sites.join(" and "),
         model.frame_count(),
         from.subjects,
         from.clips,
         model.frame_rate_hz,
-        from.corpus,
-        from.terms,
-        from.command
+        sources(from)
     )
 }

@@ -20,14 +20,14 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 pub(crate) const CLASSES: &str =
     "ReplayImuSource,PhoneImuSource,SerialImuSource,NetworkImuSource,DeviceImuSource,NodeImuSource";
 
-/// A device that says nothing for so long is silent, seconds.
+/// Time without samples after which a device counts as silent, seconds.
 const SILENT_SECS: f64 = 0.5;
 
 /// Samples that a source gives in a frame.
-pub(crate) enum Heard {
+pub(crate) enum SourceSamples {
     /// A recording, and whether it begins anew at its end.
     Recording(Arc<ImuRecording>, bool),
-    /// A sensor that is heard live.
+    /// A live sensor.
     Device(Device),
     /// Measurement of the device that the game runs on.
     Now(ImuSample),
@@ -37,27 +37,29 @@ pub(crate) enum Heard {
     Nothing,
 }
 
-/// Asks a source for what it gives to a node; live ones open their ports.
-pub(crate) fn hear(source: &Gd<Resource>, listener: &Gd<Node>) -> Heard {
+/// Asks a source for its samples; live sources open their ports.
+pub(crate) fn hear(source: &Gd<Resource>, listener: &Gd<Node>) -> SourceSamples {
     if let Ok(replay) = source.clone().try_cast::<ReplayImuSource>() {
         let replay = replay.bind();
         let recording = replay.recording();
-        return recording.map_or(Heard::Nothing, |recording| {
-            Heard::Recording(recording, replay.repeats())
+        return recording.map_or(SourceSamples::Nothing, |recording| {
+            SourceSamples::Recording(recording, replay.repeats())
         });
     }
     if source.clone().try_cast::<DeviceImuSource>().is_ok() {
-        return device_imu_source::measure().map_or(Heard::Nothing, Heard::Now);
+        return device_imu_source::measure().map_or(SourceSamples::Nothing, SourceSamples::Now);
     }
     if let Ok(source) = source.clone().try_cast::<NodeImuSource>() {
         let pose = source.bind().pose(listener);
-        return pose.map_or(Heard::Nothing, |(place, turn)| Heard::Pose(place, turn));
+        return pose.map_or(SourceSamples::Nothing, |(place, turn)| {
+            SourceSamples::Pose(place, turn)
+        });
     }
     let live = |live: &dyn LiveSource| {
         live.live().open(|| live.opened());
         live.live()
             .device(live.place())
-            .map_or(Heard::Nothing, Heard::Device)
+            .map_or(SourceSamples::Nothing, SourceSamples::Device)
     };
     if let Ok(source) = source.clone().try_cast::<PhoneImuSource>() {
         return live(&*source.bind());
@@ -68,7 +70,7 @@ pub(crate) fn hear(source: &Gd<Resource>, listener: &Gd<Node>) -> Heard {
     if let Ok(source) = source.clone().try_cast::<NetworkImuSource>() {
         return live(&*source.bind());
     }
-    Heard::Nothing
+    SourceSamples::Nothing
 }
 
 /// A footstep of the character whom a source drives, for what can be felt.
@@ -172,7 +174,7 @@ impl Live {
                     "silent"
                 }
             }
-            // Others are heard at the port, but not this one.
+            // Other devices send to the port, but not this one.
             None if state.name() == receiving => "listening",
             _ => state.name(),
         }
@@ -183,7 +185,7 @@ impl Live {
         if let Some(Err(problem)) = &*self.opened.borrow() {
             return problem.clone();
         }
-        let told = self.with(|opened| opened.link().state().message().to_owned());
+        let message = self.with(|opened| opened.link().state().message().to_owned());
         match (self.state(place), self.status(place)) {
             ("silent", Some(status)) => format!(
                 "no samples from {} for {:.0} s",
@@ -191,10 +193,10 @@ impl Live {
                 status.silent_secs()
             ),
             ("receiving", Some(status)) => status.fault.unwrap_or_default(),
-            ("listening", _) if told.as_deref() == Some("") => {
+            ("listening", _) if message.as_deref() == Some("") => {
                 "waiting for one more sensor".to_owned()
             }
-            _ => told.unwrap_or_default(),
+            _ => message.unwrap_or_default(),
         }
     }
 }

@@ -5,7 +5,7 @@
 //! Sources of samples: `replay_imu_source` for recordings,
 //! `serial_`, `network_`, `phone_` and `device_imu_source` for live sensors, `imu_source` as their common interface. `loaded` holds a resource's parsed file,
 //! `format_loader` loads files, `shipped` finds the add-on's models.
-//! `skeleton_binding` (bones), `character` and `travel` (the node that travels, and its motion), `physics_ground` (ground) and `convert` (vectors) connect the engine with the runtime, which for bones and crowds is `footfall_rig`.
+//! `skeleton_binding` (bones), `character` and `travel` (the node that travels, and its motion), `modifier` (binding and problems, common to all modifiers), `physics_ground` (ground) and `convert` (vectors) connect the engine with the runtime, which for bones and crowds is `footfall_rig`.
 //!
 //! The library is built in two flavours. The feature `editor` adds `editor` (a dock, gizmos, a preview bar) and the
 //! class reference that Godot shows; exported games get the library without it. Both register the same runtime classes.
@@ -35,6 +35,7 @@ mod imu_model;
 mod imu_reconstructor_3d;
 mod imu_source;
 mod loaded;
+mod modifier;
 mod network_imu_source;
 mod node_imu_source;
 mod phone_imu_source;

@@ -1,5 +1,6 @@
 //! Content of a resource: what was read from a file's bytes.
 
+use footfall_model::Provenance;
 use godot::prelude::*;
 use std::fmt::Display;
 use std::sync::Arc;
@@ -36,6 +37,12 @@ impl<T> Loaded<T> {
         self.0.clone().unwrap_or_else(|| Err(empty.to_owned()))
     }
 
+    /// The problem of the file, or nothing; `empty` when there was no file.
+    pub(crate) fn error(&self, empty: &str) -> GString {
+        self.content(empty)
+            .map_or_else(|error| GString::from(&error), |_| GString::new())
+    }
+
     /// The content in words, or what is wrong with it.
     pub(crate) fn describe(&self, describe: impl Fn(&T) -> String) -> GString {
         match &self.0 {
@@ -44,4 +51,12 @@ impl<T> Loaded<T> {
             None => GString::new(),
         }
     }
+}
+
+/// The recordings, terms and command that a model was made from, for the inspector.
+pub(crate) fn sources(from: &Provenance) -> String {
+    format!(
+        "Corpus: {}\nTerms: {}\nMade by: {}",
+        from.corpus, from.terms, from.command
+    )
 }

@@ -95,7 +95,7 @@ impl PhoneImuSource {
         self.live.with(look).flatten()
     }
 
-    /// Lets the phone vibrate, when it is to.
+    /// Makes the phone vibrate, if the setting is on.
     pub(crate) fn vibrate(&self) {
         if self.vibrate_on_footsteps {
             self.live.with(|opened| {

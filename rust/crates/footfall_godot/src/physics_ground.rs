@@ -58,8 +58,8 @@ impl PhysicsGround {
     }
 }
 
-/// The bodies that belong to a character: itself, those below it, and those above that move as characters do. Who is carried by a
-/// platform may hang from it, and stands on it.
+/// The bodies that belong to a character: itself, those below it, and those above that move as characters do. A character that a platform carries may be
+/// its child, and stands on it.
 pub(crate) fn own_bodies(character: &Gd<Node3D>) -> Array<Rid> {
     let mut bodies = Array::new();
     let mut above = character.get_parent();

@@ -1,10 +1,10 @@
 //! Problems of a node, reported to its developer.
 
-use godot::classes::{Engine, SkeletonModifier3D};
+use godot::classes::Engine;
 use godot::prelude::*;
 
-/// Warns in the log of a game. The editor shows problems at the node instead, where they are asked for anew.
-pub(crate) fn tell(node: &Gd<SkeletonModifier3D>, problem: &str) {
+/// Warns in the log of a game. The editor shows problems at the node instead, where it asks for them again.
+pub(crate) fn warn(node: &Gd<Node>, problem: &str) {
     let mut node = node.clone();
     if Engine::singleton().is_editor_hint() {
         node.update_configuration_warnings();

@@ -19,7 +19,7 @@ pub(crate) fn frame_clock() -> FrameClock {
 }
 
 /// Moment within a frame at which a skeleton moves.
-pub(crate) fn advance_of(skeleton: &Gd<Skeleton3D>) -> Advance {
+fn advance_of(skeleton: &Gd<Skeleton3D>) -> Advance {
     let mode = skeleton.get_modifier_callback_mode_process();
     if mode == ModifierCallbackModeProcess::PHYSICS {
         Advance::InPhysics
@@ -28,4 +28,14 @@ pub(crate) fn advance_of(skeleton: &Gd<Skeleton3D>) -> Advance {
     } else {
         Advance::InProcess
     }
+}
+
+/// Travel since the last frame of a skeleton's character, for a script; none without a skeleton.
+pub(crate) fn delta_for(
+    travelled: &mut RootMotion,
+    skeleton: Option<Gd<Skeleton3D>>,
+) -> Transform3D {
+    skeleton.map_or(Transform3D::IDENTITY, |skeleton| {
+        travelled.since_last_frame(advance_of(&skeleton), frame_clock())
+    })
 }

@@ -29,7 +29,7 @@ impl ScreenScale {
         })
     }
 
-    /// Height of a metre so far from the camera, pixels, in view or not.
+    /// Height of a metre at a distance from the camera, pixels, in view or not.
     pub(crate) fn metre_at(self, distance_m: f32) -> f32 {
         if self.is_parallel {
             self.metre_px

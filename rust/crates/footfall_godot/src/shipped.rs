@@ -1,13 +1,20 @@
 //! The models that come with the add-on, for nodes that were given none.
 
 use godot::classes::{Engine, GDExtensionManager, Resource, ResourceLoader};
+use godot::obj::WithBaseField;
 use godot::prelude::*;
 use std::cell::OnceCell;
 
-/// The walk of nodes without a `model`.
-pub(crate) const WALK: &str = "locomotion.footfall";
-/// The sensor model of nodes without one.
-pub(crate) const RIGHT_FOOT: &str = "right_foot.footimu";
+/// A kind of model of which the add-on ships one, for nodes without a `model`.
+pub(crate) trait Shipped: WithBaseField + Inherits<Resource> {
+    /// Name of the shipped file.
+    const FILE: &'static str;
+    /// Problem of a node whose add-on lacks that file, with what to do.
+    const MISSING: &'static str;
+
+    /// Returns whether it was made by *New* in the inspector and holds nothing yet.
+    fn is_new(&self) -> bool;
+}
 
 /// End of the path of the add-on's extension file.
 const EXTENSION: &str = "/footfall.gdextension";
@@ -44,15 +51,12 @@ fn load<T: Inherits<Resource>>(name: &str) -> Option<Gd<T>> {
     loader.load(&path)?.try_cast().ok()
 }
 
-/// Value for a node's property. In the editor the add-on's model stands in for a new one, which nobody could fill there: that is what a
-/// node gets that is added to a scene, and what *New* in the inspector gives.
-pub(crate) fn instead_of_new<T: Inherits<Resource>>(
-    given: Option<Gd<T>>,
-    name: &str,
-    is_new: impl Fn(&Gd<T>) -> bool,
-) -> Option<Gd<T>> {
+/// Value for a node's property. In the editor the add-on's model replaces a new, empty one, which cannot be filled there: a node that is
+/// added to a scene gets one, and *New* in the inspector creates one.
+pub(crate) fn instead_of_new<T: Shipped>(given: Option<Gd<T>>) -> Option<Gd<T>> {
+    let is_new = |model: &Gd<T>| model.bind().is_new();
     let replaced = Engine::singleton().is_editor_hint() && given.as_ref().is_some_and(is_new);
-    replaced.then(|| load(name)).flatten().or(given)
+    replaced.then(|| load(T::FILE)).flatten().or(given)
 }
 
 /// The add-on's model for a node that has none of its own, loaded when it is first needed.
@@ -65,16 +69,16 @@ impl<T: GodotClass> Default for Fallback<T> {
     }
 }
 
-impl<T: Inherits<Resource>> Fallback<T> {
-    /// The node's own model, or else the add-on's of this name.
-    pub(crate) fn model(&self, own: Option<&Gd<T>>, name: &str) -> Option<Gd<T>> {
-        if own.is_some() {
-            return own.cloned();
+impl<T: Shipped> Fallback<T> {
+    /// The node's own model, or else the add-on's.
+    ///
+    /// # Errors
+    /// Text for the user when the node has none and the add-on's is missing.
+    pub(crate) fn model(&self, own: Option<&Gd<T>>) -> Result<Gd<T>, String> {
+        if let Some(model) = own.or(self.0.get()) {
+            return Ok(model.clone());
         }
-        if self.0.get().is_none() {
-            let loaded = load(name)?;
-            return Some(self.0.get_or_init(|| loaded).clone());
-        }
-        self.0.get().cloned()
+        let loaded = load(T::FILE).ok_or(T::MISSING)?;
+        Ok(self.0.get_or_init(|| loaded).clone())
     }
 }

@@ -1,4 +1,4 @@
-//! The node that travels, and how it does.
+//! The node that travels, and its motion.
 
 use crate::skeleton_binding::SkeletonBinding;
 use crate::{character, convert};
@@ -18,7 +18,7 @@ const SAME_FLOOR_M: f32 = 0.3;
 /// A body on a skeleton, and the character that it carries along.
 pub(crate) struct Traveller {
     character: Gd<Node3D>,
-    /// The body of the physics that the character is in, or the character itself: who is put elsewhere.
+    /// The physics body around the character, or the character itself: the node that is teleported.
     carrier: Gd<Node3D>,
     pub(crate) binding: SkeletonBinding,
     start_from_ground: GroundTransform,
@@ -101,6 +101,11 @@ impl Traveller {
         true
     }
 
+    /// Returns whether this is the character, in the same physics body.
+    pub(crate) fn carries(&self, character: &Gd<Node3D>) -> bool {
+        self.character == *character && self.carrier == character::carrier(character)
+    }
+
     /// Returns whether the character has another size than when it was measured.
     pub(crate) fn has_grown(&self) -> bool {
         (self.scale - 1.0).abs() >= LEAST_GROWTH
@@ -163,7 +168,7 @@ impl Traveller {
         }
     }
 
-    /// Puts the carrier elsewhere: the ground under the body to a place of the space of its parent. Somebody who is hardly higher or lower stays on the floor.
+    /// Puts the carrier elsewhere: the ground under the body to a place of the space of its parent. A body that is only slightly higher or lower stays on the floor.
     pub(crate) fn put(&mut self, parent_from_ground: &GroundTransform) {
         let parent = self.parent();
         let before = self.parent_from_ground();

@@ -49,7 +49,7 @@ impl WalkSource {
         }
     }
 
-    /// The styles that its walkers can wear.
+    /// The styles that its walkers can have.
     pub(crate) fn styles(&self) -> &[Arc<GaitStyle>] {
         match self {
             Self::Styled(space) => space.styles(),

@@ -17,25 +17,24 @@ use footfall_core::rotation::{exp_map, log_map};
 use footfall_core::{JOINT_COUNT, Joint, Pose, Side, Skeleton};
 use glam::Vec3;
 
-/// A leg is stretched to this share of its length at most while its foot is held, unless the new motion stretches it more, or the old one did
-/// just now: the knee of a straight leg snaps when its foot leaves, and when it is bent at once.
+/// Greatest extension of a leg whose foot is held, as a share of its length, unless the new motion extends it further, or the old one has
+/// just done so: the knee of a straight leg snaps when its foot leaves, and when it bends at once.
 const EASY_EXTENSION: f32 = 0.985;
-/// It is never stretched more than to this share.
+/// Greatest extension of a leg, as a share of its length.
 const MAX_EXTENSION: f32 = 0.999;
-/// The pelvis begins to give way so far before that, metres, for a foot that is held farther away than it; else sooner than not at all.
+/// Distance before that extension from which the pelvis yields to a foot that is held too far away, metres.
 const YIELD_M: f32 = 0.03;
-/// It does so from the first part of the way on: by one through this.
+/// Rate of that yielding: it is complete after 1/3 of the handover.
 const YIELD_RATE: f32 = 3.0;
-/// A foot that would pull it down by more makes a step of its own to its new place, metres.
+/// Greatest descent of the pelvis, metres; a foot that would need more takes a step of its own to its new place.
 const MOST_YIELD_M: f32 = 0.15;
-/// A leg that lies does not pull the pelvis down to its foot: the nearer its foot is to its whole length to the side, the less it does, from
-/// this share of the length on.
+/// Share of a leg's length above which the horizontal distance of its foot reduces the pull on the pelvis: a lying leg does not pull it down.
 const UPRIGHT_SHARE: f32 = 0.25;
-/// Nor does any leg pull it down or let it go faster than this, m/s.
+/// Greatest vertical speed of the pelvis by that pull, m/s.
 const MOST_YIELD_MPS: f32 = 0.8;
-/// Nor does that begin or end at once, m/s².
+/// Greatest acceleration of the same, m/s².
 const MOST_YIELD_MPS2: f32 = 40.0;
-/// Speeds beyond these are no body's: a clip that jumped, or a character that was put elsewhere. Metres and radians a second.
+/// Limits of the speeds of a body, metres and radians a second: beyond them a clip has jumped, or the character was teleported.
 const MAX_SPEED_MPS: f32 = 6.0;
 const MAX_TURN_RADPS: f32 = 25.0;
 
@@ -180,7 +179,7 @@ impl Handover {
         self.hips.is_over() && self.feet.iter().all(HeldFoot::is_over)
     }
 
-    /// Has the pelvis give way by so much, as far as it can within this time.
+    /// Lowers the pelvis by this much, as far as possible within this time.
     fn yield_to(&mut self, lacks_m: f32, dt_secs: f32) {
         if dt_secs <= 0.0 {
             return;
@@ -192,7 +191,7 @@ impl Handover {
         self.yielded_m += self.yielding_mps * dt_secs;
     }
 
-    /// Has the foot that stands farther from its place go there, if both stand.
+    /// Makes the standing foot that is farther from its place step there, if both stand.
     fn step_over(&mut self) {
         if !self.feet.iter().all(HeldFoot::has_landed) {
             return;

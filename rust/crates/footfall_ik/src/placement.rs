@@ -1,10 +1,10 @@
-//! Feet on real ground: any animation of a walk over a flat floor, put on slopes, stairs and things that move.
+//! Feet on real ground: any animation of a walk over a flat floor, adapted to slopes, stairs and moving platforms.
 //!
 //! The animation moves over its own flat floor. [`FootPlacer`] looks for the ground under each foot, locks a foot that stands to it,
 //! carries a swinging foot from one foothold to the next, moves the pelvis so that both legs reach, and solves the legs. Whatever
 //! supports a foot may move: its foothold moves along.
 //!
-//! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `lie`, `foothold`, `profile`, `aim`, `told`,
+//! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `lie`, `foothold`, `profile`, `aim`, `landings`,
 //! `contact`, `foot`, `wall`, `guard`, `swing`, `pelvis`, `carry`.
 
 mod aim;
@@ -17,12 +17,12 @@ mod foot;
 mod foothold;
 mod frame;
 mod guard;
+mod landings;
 mod lie;
 mod pelvis;
 mod profile;
 mod swing;
 mod terrain;
-mod told;
 mod wall;
 
 use crate::leg::{FootTarget, Leg};
@@ -39,7 +39,7 @@ use glam::{Quat, Vec3};
 use pelvis::Ride;
 pub use terrain::{Ground, SupportId, Terrain};
 
-/// A character that moved farther than this in a frame was put somewhere else, metres.
+/// Motion of a character in a frame beyond which it was teleported, metres.
 const TELEPORT_M: f32 = 1.0;
 
 /// State of a foot after a step.
@@ -47,18 +47,18 @@ const TELEPORT_M: f32 = 1.0;
 pub struct PlacedFoot {
     /// True when it is locked to the ground.
     pub locked: bool,
-    /// `world_from_sole`: the ground under the ankle of the flat foot, +Y the ground's normal, +Z to the toes. For a foot
-    /// on its way, of the place over which it is.
+    /// `world_from_sole`: the ground under the ankle of the flat foot, +Y the ground's normal, +Z to the toes. For a swinging
+    /// foot, the ground below it.
     pub sole: Frame,
     /// Support that it is locked to.
     pub support: Option<SupportId>,
-    /// True when it was locked in this very frame.
+    /// True if it was locked in this frame.
     pub landed: bool,
-    /// True when it was let go in this very frame.
+    /// True if it was released in this frame.
     pub left: bool,
 }
 
-/// Places the feet of one character. Allocates nothing after it was made.
+/// Places the feet of one character. Does not allocate after its creation.
 #[derive(Clone, Debug)]
 pub struct FootPlacer {
     config: PlacementConfig,
@@ -89,7 +89,7 @@ struct Memory {
 }
 
 impl FootPlacer {
-    /// For a body with these proportions.
+    /// Creates a placer for a body with these proportions.
     pub fn new(skeleton: &Skeleton, config: &PlacementConfig) -> Self {
         let placed = PlacedFoot {
             locked: false,
@@ -115,12 +115,12 @@ impl FootPlacer {
         }
     }
 
-    /// Takes other settings from now on.
+    /// Changes the settings.
     pub fn set_config(&mut self, config: &PlacementConfig) {
         self.config = *config;
     }
 
-    /// Forgets where the feet were put.
+    /// Forgets the places of the feet.
     pub fn reset(&mut self) {
         self.memory = None;
         self.feet = [Foot::default(); 2];
@@ -156,7 +156,7 @@ impl FootPlacer {
 
     /// Puts hips and legs of a pose, given over the animation's floor, on the ground; the rest of the pose stays.
     ///
-    /// With `dt_secs` 0 nothing moves on, and what is placed is the pose as it is given.
+    /// With `dt_secs` 0 no time passes, and the given pose is placed.
     pub fn step(
         &mut self,
         dt_secs: f32,

@@ -2,7 +2,7 @@
 //!
 //! Samples are in the site's axes, so that a foot pitches about x and a rising heel turns it forwards. Contact ends when the rate of pitch has fallen
 //! from the peak of push-off to a share of it. Contact begins when the swing has turned the foot back and the ground turns it down. Feet that are lifted
-//! flat, in turns and half steps, tell less: contact ends when they have moved for a moment, and begins when the ground jolts them or they rest.
+//! flat, in turns and half steps, are less distinct: contact ends when they have moved for a moment, and begins when the ground jolts them or they rest.
 //!
 //! Against the events of public recordings of real sensors, mounting found, hits within 50 ms (negative: ours is earlier):
 //!
@@ -42,13 +42,13 @@ const BACK_RADPS: f32 = 2.1;
 /// A foot that moves for longer has left the ground, seconds.
 const MOVES_SECS: f32 = 0.1;
 
-/// Contact lasts at least so long, seconds: a landing shakes the sensor.
+/// Least duration of a contact, seconds: a landing shakes the sensor.
 const LEAST_CONTACT_SECS: f64 = 0.27;
 
-/// A swing turns the foot back by at least so much, radians.
+/// Least backward rotation of the foot in a swing, radians.
 const LEAST_SWING: f32 = 0.07;
 
-/// A foot that has turned back and turns down for so long is on the ground, seconds.
+/// Time of downward rotation after the backward one after which a foot is on the ground, seconds.
 const LANDS_SECS: f64 = 0.05;
 
 /// A foot that turns no faster than this, down or back, lands flat where the ground jolts it by so much, m/s²: deviation of the specific force from its mean over about
@@ -57,14 +57,14 @@ const FLAT_RADPS: [f32; 2] = [2.0, 0.4];
 const JOLT_MPS2: f32 = 15.0;
 const JOLT_MEAN_SECS: f32 = 0.02;
 
-/// Rests of a swing begin so long after it at the earliest, seconds.
+/// Least time from a swing to the following rest, seconds.
 const LEAST_SWING_SECS: f64 = 0.1;
 
 /// Peaks of push-off and landing of a usual step, rad/s, and how much of a new one is learned.
 const USUAL_RADPS: f32 = 3.0;
 const LEARNED: f32 = 0.15;
 
-/// The peak of a landing is looked for so long after it, seconds.
+/// Time after a landing within which its peak is searched for, seconds.
 const STRIKE_SECS: f64 = 0.15;
 
 /// After a gap of this length nothing is known of the foot, seconds.
@@ -72,7 +72,7 @@ const LONGEST_GAP_SECS: f64 = 0.1;
 
 /// Contact of a foot at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ToldContact {
+pub struct SensorContact {
     /// True while the foot is on the ground.
     pub stands: bool,
     /// Time since it landed or lifted, seconds; infinite while unknown.
@@ -144,17 +144,17 @@ impl ContactMeter {
     }
 
     /// Returns the contact at a time, on the samples' clock; `None` before the first sample.
-    pub fn told(&self, now_secs: f64) -> Option<ToldContact> {
+    pub fn contact_at(&self, now_secs: f64) -> Option<SensorContact> {
         let stands = self.stands()?;
-        Some(ToldContact {
+        Some(SensorContact {
             stands,
             for_secs: (now_secs - self.since_secs).max(0.0) as f32,
         })
     }
 
     /// Returns the contact at the last sample; `None` before the first.
-    pub fn contact(&self) -> Option<ToldContact> {
-        self.told(self.last_secs?)
+    pub fn contact(&self) -> Option<SensorContact> {
+        self.contact_at(self.last_secs?)
     }
 
     /// Adds a sample in the site's axes. Samples that are not finite or late are ignored.
@@ -203,7 +203,7 @@ impl ContactMeter {
             match (lifted, meter.state) {
                 (None, State::Swing { .. }) => lifted = Some(meter.since_secs),
                 (Some(terminal_secs), State::Contact { .. }) => {
-                    // After a gap nobody knows when the swing ended.
+                    // After a gap the end of the swing is unknown.
                     if meter.since_secs.is_finite() {
                         swings.push(Swing {
                             terminal_secs,
@@ -308,7 +308,7 @@ mod tests {
     fn feet_that_turn_flat_lift_and_rest_and_a_gap_is_a_contact() {
         let mut meter = ContactMeter::default();
         assert_eq!(meter.stands(), None);
-        let mut told = Vec::new();
+        let mut contacts = Vec::new();
         for n in 0..300 {
             let turns = (100..150).contains(&n);
             meter.push(ImuSample {
@@ -316,11 +316,11 @@ mod tests {
                 force: Vec3::Y * GRAVITY_MPS2,
                 rate: Vec3::Y * if turns { 4.0 } else { 0.0 },
             });
-            told.push(meter.stands());
+            contacts.push(meter.stands());
         }
-        assert_eq!(told[90], Some(true));
-        assert_eq!(told[145], Some(false));
-        assert_eq!(told[175], Some(true));
+        assert_eq!(contacts[90], Some(true));
+        assert_eq!(contacts[145], Some(false));
+        assert_eq!(contacts[175], Some(true));
         for (time_secs, force) in [(3.1, f32::NAN), (2.0, 1.0), (9.0, GRAVITY_MPS2)] {
             meter.push(ImuSample {
                 time_secs,

@@ -33,7 +33,7 @@ use glam::Vec3;
 /// Cut-off of the low-pass filter, Hz.
 const CUT_OFF_HZ: f64 = 12.0;
 
-/// A swing turns the foot back by at least so much, radians.
+/// Least backward rotation of the foot in a swing, radians.
 const LEAST_SWING: f32 = 0.2;
 
 /// Push-off turns the heel up at least so fast, rad/s, within this time before the swing, seconds.

@@ -10,7 +10,7 @@ use glam::{Quat, Vec3};
 /// Numbers a sensor gives in a frame: angular rate (rad/s), specific force (m/s²), and up, each x, y, z in the sensor's axes.
 pub const SENSOR_FEATURES: usize = 9;
 
-/// A gap up to so long is bridged by a line, seconds; in a longer one frames are missing.
+/// Longest gap that is interpolated linearly, seconds; in a longer one frames are missing.
 const LONGEST_BRIDGE_SECS: f64 = 0.1;
 
 /// After a gap of this length nothing is known any more, seconds.
@@ -43,7 +43,7 @@ pub struct FeatureStream {
 }
 
 impl FeatureStream {
-    /// A stream of so many frames a second.
+    /// Creates a stream with this frame rate.
     pub fn new(frame_rate_hz: f64) -> Self {
         Self {
             period_secs: 1.0 / frame_rate_hz,
@@ -135,7 +135,7 @@ impl FeatureStream {
     }
 
     fn give_frame(&mut self, give: &mut impl FnMut(FeatureFrame)) {
-        // A frame of which less than half was seen tells too little.
+        // A frame of which less than half was measured has no features.
         let values = (self.covered_secs > 0.5 * self.period_secs).then(|| {
             let secs = self.covered_secs as f32;
             let parts = [self.rate / secs, self.force / secs, self.filter.up()];

@@ -33,7 +33,7 @@ pub fn low_pass(values: &[Vec3], rate_hz: f64, cut_off_hz: f64) -> Vec<Vec3> {
     smooth
 }
 
-/// Of each value the mean with as many before and after it; at the ends with those that there are.
+/// Moving average over `reach` values on both sides; at the ends over the existing ones.
 pub(crate) fn means_around(values: &[f32], reach: usize) -> Vec<f32> {
     let around = |n: usize| {
         let window = &values[n.saturating_sub(reach)..(n + reach + 1).min(values.len())];

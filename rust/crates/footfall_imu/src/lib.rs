@@ -25,7 +25,7 @@ pub mod strides;
 mod zero_velocity;
 
 pub use checks::{RecordingFault, check_recording};
-pub use contact_meter::{ContactMeter, ToldContact};
+pub use contact_meter::{ContactMeter, SensorContact};
 pub use csv::ImuCsvError;
 pub use features::{FeatureFrame, FeatureStream, SENSOR_FEATURES};
 pub use orientation::OrientationFilter;

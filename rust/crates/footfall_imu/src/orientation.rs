@@ -12,7 +12,7 @@ use glam::{Quat, Vec3};
 /// Deviation of the vertical before anything is known, radians.
 const INITIAL_TILT: f32 = 1.0;
 
-/// By so much the vertical becomes less certain, radians a root second: bias and scale of a consumer's gyroscope.
+/// Growth of the vertical's uncertainty, radians per root second: bias and scale errors of a consumer gyroscope.
 const TILT_DRIFT: f32 = 0.02;
 
 /// Deviation of what specific force says of the vertical, radians: always, for each unit of gravity that its magnitude is off, and

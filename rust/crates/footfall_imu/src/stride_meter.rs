@@ -14,7 +14,7 @@ const MEAN_SECS: f32 = 0.05;
 /// A foot comes to rest below the first and leaves it above the second: squared rad/s, and squared deviation of the specific force from gravity.
 const REST: [f32; 2] = [1.0, 4.0];
 
-/// The quietest moment is looked for so long after a foot has come to rest, seconds.
+/// Time after a foot has come to rest within which the quietest moment is searched for, seconds.
 const SETTLE_SECS: f64 = 0.3;
 
 /// A gyroscope's bias is what it reads while the foot moves less than this, and follows it with this time constant, seconds.
@@ -30,7 +30,7 @@ const LONGEST_GAP_SECS: f64 = 0.1;
 /// A foot that has come to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// The stride that brought it there; `None` when it did not rest before, or too long ago to tell.
+    /// The stride that brought it there; `None` when it did not rest before, or too long ago to be known.
     pub stride: Option<SensorStride>,
 }
 
@@ -145,7 +145,7 @@ impl StrideMeter {
 struct Integral {
     start_secs: f64,
     secs: f32,
-    /// `level_from_sensor`, as far as the gyroscope tells.
+    /// `level_from_sensor`, as integrated from the gyroscope.
     turn: Quat,
     gravity_mps2: f32,
     velocity: Vec3,

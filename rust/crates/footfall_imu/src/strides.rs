@@ -9,7 +9,7 @@ use crate::sample::{GRAVITY_MPS2, ImuRecording};
 use crate::zero_velocity::{REST_SECS, displacement};
 use glam::Vec3;
 
-/// The quietest moment of a stance is looked for so near the swing, seconds.
+/// Time from the swing within which the quietest moment of a stance is searched for, seconds.
 const REST_REACH_SECS: f64 = 0.8;
 
 /// A stride is no longer than this, seconds.

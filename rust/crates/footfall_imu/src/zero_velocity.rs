@@ -5,7 +5,7 @@
 use footfall_core::rotation::{exp_map, shortest_arc};
 use glam::{Quat, Vec3};
 
-/// A foot rests for so long at each end, seconds.
+/// Duration of the rest of a foot at each end, seconds.
 pub(crate) const REST_SECS: f64 = 0.08;
 
 /// Displacement between two rests.

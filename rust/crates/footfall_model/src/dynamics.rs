@@ -10,7 +10,7 @@ use footfall_core::{Side, Skeleton};
 use footfall_prob::subspace::AffineSystem;
 use nalgebra::DVector;
 
-/// A segment is run for at most so many frames more than were recorded.
+/// Most frames of a segment beyond its recorded length.
 pub const SEGMENT_SLACK: usize = 6;
 
 /// Frames of a segment.

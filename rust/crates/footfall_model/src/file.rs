@@ -172,7 +172,7 @@ impl GaitModel {
         })
     }
 
-    /// A number that tells this model from others: the CRC-32 of its payload in format version 1. It says nothing of the
+    /// A number that identifies this model: the CRC-32 of its payload in format version 1. It says nothing of the
     /// provenance, of the steps at the ends of a walk, of the fine motion, of standing, running, jumping nor crouching, and is the same before writing and after reading.
     ///
     /// # Errors
@@ -233,7 +233,7 @@ impl DynamicsModel {
         Ok(model)
     }
 
-    /// A number that tells this model from others: the CRC-32 of its payload in format version 1.
+    /// A number that identifies this model: the CRC-32 of its payload in format version 1.
     ///
     /// # Errors
     /// [`ModelError::Value`] when the model cannot be encoded.

@@ -29,7 +29,7 @@ pub struct SkippedClip {
 pub struct CorpusReport {
     /// Rows that meet all conditions.
     pub selected: usize,
-    /// Those among them that could not be used, in the order of the index.
+    /// Clips among them that could not be used, in the order of the index.
     pub skipped: Vec<SkippedClip>,
     /// The people and the findings about their hip joints; empty where the caller said where these are.
     pub people: Vec<Person>,
@@ -74,7 +74,7 @@ pub enum CorpusError {
         index: PathBuf,
         /// The column that is not there.
         column: String,
-        /// Those that are.
+        /// Columns that exist.
         columns: Vec<String>,
     },
     /// A row has nothing where a value is needed.

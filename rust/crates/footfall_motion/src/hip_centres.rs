@@ -65,14 +65,14 @@ pub struct Stance {
     pub hip_from_ankle: [Vec3; PHASES],
 }
 
-/// Source of a skeleton, as far as its joints tell.
+/// Source of a skeleton, as far as its joints show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Origin {
     /// A skeleton that may have been made in any way: only strong evidence moves its joints.
     #[default]
     Unknown,
-    /// A skeleton of the family of the CMU library's, fitted to markers by a procedure that is known to misplace hip
-    /// joints of everybody: only strong evidence leaves them.
+    /// A skeleton of the family of the CMU library's, fitted to markers by a procedure that is known to misplace all hip
+    /// joints: they are corrected unless there is strong evidence against it.
     MarkerFit,
 }
 
@@ -96,7 +96,7 @@ impl Origin {
         }
     }
 
-    /// Fewer strides, or none of one leg, tell nothing.
+    /// Fewer strides, or none of one leg, give no estimate.
     const fn least_strides(self) -> usize {
         match self {
             Self::Unknown => 3,
@@ -142,7 +142,7 @@ pub enum HipVerdict {
     AsRecorded,
     /// The body is the canonical one; there is nothing to fit.
     OwnBody,
-    /// Too few strides of plain walking to tell.
+    /// Too few strides of plain walking.
     TooLittleWalking,
     /// The knees bend as people's do, or nearly so.
     Natural,
@@ -189,13 +189,13 @@ impl HipFinding {
     }
 }
 
-/// Logarithm of the odds that somebody who is said to walk plainly has a manner of walking all the same.
+/// Logarithm of the odds of a peculiar manner in a walk that is labelled as plain.
 const LN_MANNER_ODDS: f64 = -2.0;
 /// No fit of a skeleton is farther off: up and forwards, in leg lengths, and the factor on the legs.
 const MOST_UP: f32 = 0.05;
 const MOST_FORWARD: f32 = 0.1;
 const MOST_LENGTHENED: f32 = 0.035;
-/// By so many leg lengths the ankles of a person's own recordings lie out of reach at most: noise of markers.
+/// Greatest distance of the ankles of a person's own recordings out of reach, in leg lengths: noise of markers.
 const MOST_OVERSTRETCHED: f32 = 0.008;
 
 /// Finds one person's hip joints from all recordings of one skeleton.

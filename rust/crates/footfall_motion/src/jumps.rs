@@ -4,15 +4,15 @@ use footfall_core::rotation::{heading, wrap_angle};
 use footfall_core::{Clip, Joint, ModelPose, Pose, Side, forward_kinematics};
 use glam::Vec3;
 
-/// A ball of a foot that is so much higher than on the ground is in the air, metres: at take-off the tips of the toes leave last.
+/// Height of the ball of a foot above its standing level at which it is in the air, metres: at take-off the tips of the toes leave last.
 const LIFTED_M: f32 = 0.045;
 /// Share of the frames in which a foot that jumps now and then is lower than on the ground, by noise.
 const BELOW_GROUND_SHARE: f64 = 0.05;
-/// Flights last so long, seconds: what is shorter is a hop on the spot or noise, and nobody flies longer.
+/// Range of the duration of flights, seconds: shorter ones are hops on the spot or noise, longer ones do not occur.
 const FLIGHT_SECS: [f64; 2] = [0.18, 0.9];
 /// Both feet leave the ground, and land, within so short a time, seconds.
 const TOGETHER_SECS: f64 = 0.1;
-/// Loads and landings last at most so long, seconds.
+/// Longest duration of loads and landings, seconds.
 const LONGEST_PHASE_SECS: f64 = 1.3;
 /// Hips that are so much lower than in standing have left it, as a share of their height in the T-pose, and hips of those who stand are at least as
 /// high as the second share.
@@ -22,7 +22,7 @@ const STANDING_SHARE: f32 = 0.88;
 const PUSHING_MPS: f32 = 0.1;
 /// Hips of a standing person go no faster over the ground, m/s.
 const STANDING_MPS: f32 = 0.4;
-/// Hips rise above standing by so much at least, as a share of their height in the T-pose: feet that are drawn up are no jump.
+/// Least rise of the hips above standing, as a share of their height in the T-pose: feet that are drawn up are no jump.
 const LEAST_RISE_SHARE: f32 = 0.08;
 /// Largest turn within a jump, radians: farther turns make another kind of jump.
 const MOST_TURN_RAD: f32 = 0.5;
@@ -221,7 +221,7 @@ mod tests {
 
     const RATE: f64 = 60.0;
 
-    /// Somebody whose hips go so high above standing: below it the knees of those legs bend on which they jump, the others are held up all the time.
+    /// A body whose hips follow these heights above standing: below it the knees of the jumping legs bend, the other leg is held up all the time.
     fn clip(heights: &[f32], jumps_on: [bool; 2]) -> Clip {
         let skeleton = Skeleton::standard();
         let [thigh, shank] =

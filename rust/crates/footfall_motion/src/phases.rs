@@ -14,7 +14,7 @@ use behaviours::behaviours_of;
 use footfall_core::{Behaviour, Clip, FrameSpan, PhaseKind, PhaseStart, Side};
 use track::{Track, flights, last_standing};
 
-/// A phase is at least so long, seconds: an event that follows another more closely begins none.
+/// Least duration of a phase, seconds: an event that follows another more closely begins none.
 const LEAST_SECS: f64 = 0.05;
 
 /// Standing is cut at this interval, seconds.

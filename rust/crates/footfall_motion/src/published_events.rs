@@ -9,22 +9,22 @@ use crate::steps::free_falls;
 use footfall_core::{Clip, EventKind, GaitEvent, Joint, ModelPose, Side, forward_kinematics};
 use glam::Vec3;
 
-/// The walk's direction is that of the hips over so long before and after a frame, seconds.
+/// Time before and after a frame over which the hips give the walk's direction, seconds.
 const DIRECTION_SECS: f64 = 0.25;
 
-/// An event is an extreme over so long before and after it, seconds.
+/// Time before and after an event over which it is an extreme, seconds.
 const APART_SECS: f64 = 0.3;
 
-/// Within that time the foot moves at least so far along the walk against the hips, metres.
+/// Least motion of the foot along the walk, relative to the hips, within that time, metres.
 const LEAST_EXCURSION_M: f32 = 0.1;
 
-/// Steady walking is told from so long before and after a frame, seconds.
+/// Time before and after a frame from which steady walking is detected, seconds.
 const STEADY_SECS: f64 = 0.5;
 
 /// Slowest and fastest hips of a walk, metres a second.
 const WALKING_SPEEDS_MPS: [f32; 2] = [0.4, 2.3];
 
-/// Nobody walks who falls freely within this time, seconds.
+/// Time around a free fall in which a body does not walk, seconds.
 const RUNNING_SECS: f64 = 0.35;
 
 /// More than this between the ways before and after a frame is a turn, radians.

@@ -91,7 +91,7 @@ pub fn retarget(file: &BvhFile, options: &RetargetOptions) -> Result<Retargeted,
     retarget_with_way(file, options, |_, _| None)
 }
 
-/// As [`retarget`], for a body that may walk in place: `way` tells from the clip and its first frame where the root is to be moved in every
+/// As [`retarget`], for a body that may walk in place: `way` returns, from the clip and its first frame, the place of the root in every
 /// frame from there on.
 ///
 /// Ground and feet are found from feet that stand, which those of a body in place do not; so it is put on the canonical body again with its way.
@@ -111,7 +111,7 @@ pub(crate) fn retarget_with_way(
 }
 
 /// As [`retarget_with_way`], with the joints as the file has them, and the file's evidence about its skeleton's legs: of all files of a
-/// person, [`find_hip_centres`] tells whether the joints are to be corrected.
+/// person, [`find_hip_centres`] decides whether the joints are corrected.
 pub(crate) fn retarget_as_recorded(
     file: &BvhFile,
     options: &RetargetOptions,

@@ -1,7 +1,7 @@
 //! Ground contacts from one inertial sensor on a foot: where its signals switch.
 //!
 //! The projection residual ([`footfall_prob::switching`]) of specific force and angular rate peaks when the foot lands and when it
-//! leaves the ground. Which of both it was is told by the angular rate: a foot that lands turns less afterwards than before. Axes,
+//! leaves the ground. The angular rate distinguishes the two: a foot that lands turns less afterwards than before. Axes,
 //! mounting and units of force or rate do not matter, and nothing is compared with a fixed height, speed or force.
 //!
 //! Against the reference events of public recordings, within 33 ms (`footfall evaluate contacts --sensors`):

@@ -66,7 +66,7 @@ pub(crate) const LONGEST_STEP_SECS: f64 = 1.5;
 const LONGEST_STEP_M: f32 = 3.0;
 /// Initial contacts of both feet so close together are a landing from a jump.
 const JUMP_SECS: f64 = 0.1;
-/// Both feet on the ground for so long, with hips slower than [`STANDING_SPEED`], is standing.
+/// Time with both feet on the ground, and hips slower than [`STANDING_SPEED`], from which on a body stands.
 const STANDING_SECS: f64 = 0.2;
 /// As a share of the walk's speed, and at least [`LEAST_STANDING_SPEED_MPS`].
 const STANDING_SPEED: f32 = 0.3;
@@ -171,7 +171,7 @@ impl Motion<'_> {
             .map(|stance| stance.last)
             .rfind(|last| (first..end).contains(last));
         let heel = &self.contacts.foot(side).heel;
-        // Somebody who runs on the toes has no heel contact to rise from: then the whole step is without it.
+        // A run on the toes has no heel contact to rise from: then the whole step is without it.
         let heel_rise = (first..end)
             .rev()
             .take_while(|&frame| !heel[frame])

@@ -6,7 +6,7 @@
 //! knee angles say more plainly is where the legs are:
 //!
 //! 1. Hip and knee angles put the ankles somewhere below the hips. Every half cycle of one ankle ahead of the other holds one switch, onto the leg
-//!    that was lifted in it: the leg ahead, or of somebody who walks backwards the leg behind.
+//!    that was lifted in it: the leg ahead, or in backward walks the leg behind.
 //! 2. The ankle reaches farthest ahead of its hip, and about then the landing knee is straightest. Which of the two comes first depends on the
 //!    person; halfway between them differs little from person to person, and the foot lands [a few milliseconds](SwitchConfig) later.
 //! 3. A leg that is lifted without a half cycle, to put the feet together or to turn on the spot, lands when the ankles no longer move against each
@@ -255,7 +255,7 @@ pub struct SwitchResidual {
 }
 
 /// The frames in which each foot certainly bears on the ground: from its switch until the last one of the other foot before its own next. When it
-/// leaves the ground after that, switches do not tell.
+/// leaves the ground after that is not determined by switches.
 pub fn stances(switches: &[Switch], frames: usize) -> [Vec<FrameSpan>; 2] {
     let mut stances = [Vec::new(), Vec::new()];
     for (index, switch) in switches.iter().enumerate() {
@@ -275,7 +275,7 @@ pub fn stances(switches: &[Switch], frames: usize) -> [Vec<FrameSpan>; 2] {
 }
 
 /// The steps between switches, as walks; steps shorter than 0.15 s or longer than 1.5 s break a walk. Which steps begin and end a
-/// walk, and when feet leave the ground, switches do not tell.
+/// walk, and when feet leave the ground, is not determined by switches.
 pub fn walks(switches: &[Switch], frame_rate_hz: f64) -> Vec<Walk> {
     let mut walks: Vec<Walk> = Vec::new();
     let mut last_end = None;

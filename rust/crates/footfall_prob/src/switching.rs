@@ -9,10 +9,10 @@
 
 mod peaks;
 mod residual;
+mod simplest_walker;
 mod streaming;
-mod walker;
 
 pub use peaks::{PeakConfig, choose_window, median, peaks};
 pub use residual::ProjectionResidual;
+pub use simplest_walker::{SimplestWalker, WalkerRecord};
 pub use streaming::StreamingResidual;
-pub use walker::{SimplestWalker, WalkerRecord};

@@ -17,7 +17,7 @@ const PARTED: [f32; 2] = [0.08, 0.16];
 /// Far courses count as far with this time constant, seconds.
 const PARTED_SECS: f32 = 0.2;
 
-/// For so long a body that has just begun goes over to any course as to a near one, seconds: what it shows is a guess.
+/// Time after the beginning for which any transition counts as a near one, seconds: the body shown first is a guess.
 const BEGINNING_SECS: f32 = 0.5;
 
 /// Transition of the body between segments of the recordings.
@@ -54,7 +54,7 @@ pub struct Blend {
 }
 
 impl Blend {
-    /// For so many frames a second.
+    /// Creates it for a frame rate.
     pub const fn new(blending: Blending, frame_rate_hz: f32) -> Self {
         Self {
             blending,

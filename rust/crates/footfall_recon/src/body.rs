@@ -29,7 +29,7 @@ impl Course {
     };
 }
 
-/// Writes the pose of a body that faces +Z above the origin, so many times as large as the model's.
+/// Writes the pose of a body that faces +Z above the origin, scaled from the model's size.
 pub fn pose_of(body: &BodyFrame, scale: f32, pose: &mut Pose) {
     exp_maps(&body[..FEATURE_COUNT], &mut pose.rotations);
     pose.root_position = Vec3::Y * body[HEIGHT] * scale;

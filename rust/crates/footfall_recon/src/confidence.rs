@@ -94,7 +94,7 @@ impl Confidence {
     }
 }
 
-/// The mean body of the frames in which a model's people stand, at rest on both feet; `None` where nobody stands.
+/// The mean body of the frames in which a model's people stand, at rest on both feet; `None` without any.
 pub(crate) fn standing_body(model: &ImuModel) -> Option<BodyFrame> {
     let (mut sum, mut count) = ([0.0_f64; BODY_COUNT], 0.0);
     for row in standing_rows(model, &model.body, BODY_COUNT) {
@@ -110,7 +110,7 @@ pub(crate) fn standing_body(model: &ImuModel) -> Option<BodyFrame> {
     (count > 0.0).then_some(body)
 }
 
-/// The rows, of so many numbers, of the frames in which a model's people stand.
+/// The rows, of this width, of the frames in which a model's people stand.
 pub(crate) fn standing_rows<'a>(
     model: &'a ImuModel,
     rows: &'a [f32],

@@ -12,7 +12,7 @@ use foot::StandingFoot;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_core::{ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_ik::{FootTarget, Leg, RockerFoot};
-use footfall_imu::ToldContact;
+use footfall_imu::SensorContact;
 use footfall_model::imu_model::{CONTACT, TURN, WAY};
 use glam::{Quat, Vec3};
 use limit::Limit;
@@ -23,7 +23,7 @@ const HEIGHT_HALF_LIFE_SECS: f32 = 0.05;
 /// Standing feet move the body so fast at most, m/s: what they want beyond, their legs take up.
 const MOST_SHIFT_MPS: f32 = 4.0;
 
-/// A leg that steps are lengthened for reaches at most so far from below the hip, as a share of its length.
+/// Greatest reach from below the hip of a leg whose steps are lengthened, as a share of its length.
 const MOST_SPREAD: f32 = 0.6;
 
 /// Added to the bend of a knee before legs are weighed by it, radians.
@@ -32,7 +32,7 @@ const KNEE_SLACK: f32 = 0.1;
 /// The heading follows the sensor's with this half-life, seconds.
 const HEADING_HALF_LIFE_SECS: f32 = 0.2;
 
-/// For so long the heading of the sensor is compared with the body's before the body follows it, seconds: what is probable is not settled at first.
+/// Time for which the heading of the sensor is compared with the body's before the body follows it, seconds: probabilities take time to settle.
 const HEADING_ANCHOR_SECS: f32 = 2.0;
 
 /// Travel, heading and feet of one body.
@@ -59,7 +59,7 @@ pub struct Ground {
 /// Input of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundInput {
-    /// Heading that the sensor gives the body, from an unknown direction on, radians; `None` where it tells nothing.
+    /// Heading that the sensor gives the body, from an unknown direction on, radians; `None` if it is unknown.
     pub heading: Option<f32>,
     /// Number of the model's frames that have passed.
     pub frames: f32,
@@ -68,7 +68,7 @@ pub struct GroundInput {
     /// Factor on the length of the recordings' steps.
     pub stride: f32,
     /// Contacts of the left and the right foot where a sensor on the foot reports them; the body has those of the others.
-    pub contacts: [Option<ToldContact>; 2],
+    pub contacts: [Option<SensorContact>; 2],
 }
 
 impl Ground {
@@ -204,13 +204,13 @@ impl Ground {
 
     /// Moves the body along the ground so that standing feet keep their places.
     fn bear(&mut self, body: &BodyFrame, input: &GroundInput, pose: &mut Pose) {
-        let told = input.contacts;
+        let measured = input.contacts;
         let (mut shift, mut weights) = (Vec3::ZERO, 0.0);
         for side in Side::BOTH {
             if let Some(plant) = self.feet[side.index()].plant {
                 let target = self.standing(side, &plant);
-                let weight = match told[side.index()] {
-                    Some(told) if told.stands => 1.0,
+                let weight = match measured[side.index()] {
+                    Some(measured) if measured.stands => 1.0,
                     _ => body[CONTACT + side.index()].clamp(0.05, 1.0),
                 };
                 shift += (target.ankle - self.ankle(side)).with_y(0.0) * weight;

@@ -163,7 +163,7 @@ mod tests {
 
     const DT_SECS: f64 = 0.01;
 
-    /// Goes on for so long with a sensor that turns so fast; the time after which the step changed.
+    /// Runs the guide for a time with a sensor of this angular rate; returns the time at which the step changed.
     fn go(guide: &mut CalibrationGuide, now: &mut f64, secs: f64, radps: f32) -> Option<f64> {
         let begin = (*now, guide.step());
         while *now < begin.0 + secs {

@@ -84,7 +84,7 @@ fn resampled(model: &ImuModel) -> Vec<Resampled> {
     segments.collect()
 }
 
-/// Rows of so many numbers at [`TIMES`] times.
+/// Rows of this width at [`TIMES`] times.
 fn at_times(rows: &[f32], width: usize, frames: usize) -> Vec<f32> {
     let places = (0..TIMES).map(|time| Place::of((time as f32 + 0.5) / TIMES as f32, frames));
     places
@@ -156,7 +156,7 @@ struct Place {
 }
 
 impl Place {
-    /// After this share of so many rows, each of which stands for the middle of its time.
+    /// Interpolation at a share of this many rows, each of which is at the middle of its time.
     fn of(share: f32, count: usize) -> Self {
         let at = (share * count as f32 - 0.5).clamp(0.0, count as f32 - 1.0);
         let first = at as usize;
@@ -181,12 +181,12 @@ mod tests {
     use footfall_model::imu_model::{SENSOR_COUNT, Segment};
 
     /// A segment: its subject, a number that its sensor measures, its speed, and a number of its body.
-    type Told = (u16, f32, f32, f32);
+    type SegmentSpec = (u16, f32, f32, f32);
 
     /// A model of one phase.
-    fn model(segments: &[Told]) -> ImuModel {
+    fn model(segments: &[SegmentSpec]) -> ImuModel {
         const FRAMES: usize = 3;
-        let rows = |row: &dyn Fn(&Told) -> Vec<f32>| {
+        let rows = |row: &dyn Fn(&SegmentSpec) -> Vec<f32>| {
             let rows = segments.iter().flat_map(|s| vec![row(s); FRAMES].concat());
             rows.collect()
         };
@@ -223,7 +223,7 @@ mod tests {
     }
 
     /// The body of the first segment.
-    fn first(segments: &[Told]) -> f32 {
+    fn first(segments: &[SegmentSpec]) -> f32 {
         let body = drawn_to_others(&model(segments));
         // What is no manner stays.
         assert!((body[WAY] - segments[0].3).abs() < 1e-6);
@@ -236,7 +236,7 @@ mod tests {
         let mut segments = vec![(0, 0.0, 1.2, 0.0), (1, 0.0, 1.2, 1.0)];
         segments.extend([(2, 0.0, 1.2, 5.0); 4]);
         assert!((first(&segments) - SHARE * 2.0).abs() < 1e-4);
-        // Whoever is alone in a model moves as they do.
+        // The only person of a model is not changed.
         let alone = [(0, 0.0, 1.2, 3.0), (0, 0.0, 1.2, 3.0)];
         assert!((first(&alone) - 3.0).abs() < 1e-4);
     }
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn those_who_feel_different_or_go_faster_do_not_count() {
         let near = (1, 0.0, 1.2, 1.0);
-        let with = |other: Told| first(&[(0, 0.0, 1.2, 0.0), near, other]);
+        let with = |other: SegmentSpec| first(&[(0, 0.0, 1.2, 0.0), near, other]);
         let drawn = SHARE * 0.5;
         for other in [(2, 5.0, 1.2, 9.0), (2, 0.0, 4.0, 9.0)] {
             assert!((with(other) - drawn).abs() < 1e-3, "{}", with(other));

@@ -4,7 +4,7 @@ use crate::body::BodyFrame;
 use crate::stride_phase::StridePhase;
 use crate::tracker::Measurement;
 use footfall_core::rotation::heading;
-use footfall_imu::{FeatureFrame, SENSOR_FEATURES, ToldContact};
+use footfall_imu::{FeatureFrame, SENSOR_FEATURES, SensorContact};
 use footfall_model::ImuModel;
 use footfall_model::imu_model::{MAX_SENSORS, MAX_WIDTH, SENSOR_COUNT, SENSOR_HEADING};
 use glam::Vec3;
@@ -14,14 +14,14 @@ const _: () = assert!(SENSOR_FEATURES == SENSOR_COUNT, "one layout of features")
 /// A sensor that lies so flat has no heading: the least height of its up axis.
 const LEAST_UPRIGHT: f32 = 0.6;
 
-/// A vertical that is less certain tells no heading, radians.
+/// Largest uncertainty of the vertical for a heading, radians.
 const TILT_KNOWN: f32 = 0.12;
 
 /// A sensor's frame, and the contact of the foot that wears it when the frame ends; `None` while unknown.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensorFrame {
     pub(crate) frame: FeatureFrame,
-    pub(crate) contact: Option<ToldContact>,
+    pub(crate) contact: Option<SensorContact>,
 }
 
 /// Frames of all sensors.

@@ -122,7 +122,7 @@ impl<'a> Finder<'a> {
         frames: &'a [FeatureFrame],
         config: &TrackerConfig,
     ) -> Self {
-        // How far off a wrong rotation is tells as much as what the right one explains.
+        // The misfit of a wrong rotation is as informative as the fit of the right one.
         let config = TrackerConfig {
             farthest: f32::INFINITY,
             ..*config

@@ -8,7 +8,7 @@ use crate::published::PhaseDeviations;
 use crate::stride_phase::{PHASE_COUNT, PHASE_DEVIATION, phases_of, without_stride};
 use crate::watch::{Watch, WornRecording};
 use footfall_core::Side;
-use footfall_imu::{ImuRecording, ToldContact};
+use footfall_imu::{ImuRecording, SensorContact};
 use footfall_model::ModelError;
 use footfall_model::imu_model::{MAX_SENSORS, SENSOR_COUNT};
 use footfall_model::{CalibratedSensor, ImuModel};
@@ -126,13 +126,13 @@ impl Prepared {
     }
 
     /// Returns the contacts of the left and the right foot from the numbered sensors on them; `None` without a sensor or before the contact is known.
-    pub(crate) fn told_contacts(
+    pub(crate) fn sensor_contacts(
         &self,
-        told: impl Fn(usize) -> Option<ToldContact>,
-    ) -> [Option<ToldContact>; 2] {
+        contact_of: impl Fn(usize) -> Option<SensorContact>,
+    ) -> [Option<SensorContact>; 2] {
         let mut contacts = [None; 2];
         for WornFoot { sensor, side } in &self.worn_feet {
-            contacts[side.index()] = told(*sensor);
+            contacts[side.index()] = contact_of(*sensor);
         }
         contacts
     }
@@ -216,7 +216,7 @@ fn laid_out(model: &ImuModel, padded: usize, phases: &[[f32; PHASE_COUNT]]) -> (
     (numbers, columns)
 }
 
-/// Returns the mean vertical in the axes of a site of standing people; the site's own if nobody stands or the model has no such site.
+/// Returns the mean vertical in the axes of a site of standing people; the site's own without standing frames or without such a site.
 fn standing_up(model: &ImuModel, sensor: usize) -> Vec3 {
     if sensor >= model.sites.len() {
         return Vec3::Y;

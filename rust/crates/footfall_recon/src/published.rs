@@ -53,6 +53,23 @@ impl Published {
         }
     }
 
+    /// One line about it, for the command line's help.
+    pub const fn summary(self) -> &'static str {
+        match self {
+            Self::Transitions => {
+                "Equal transitions: a frame is kept, followed or skipped, and phases end at any time"
+            }
+            Self::Gaussians => {
+                "A Gaussian for each phase, refined by its segments, with every frame in full"
+            }
+            Self::Interpolation => "Five segments of the most probable phase",
+            Self::Regression => "Regression of the body on the sensor",
+            Self::Blending => "Velocity-based blending",
+            Self::Manner => "Bodies of single people, not drawn to those of others",
+            Self::Strides => "Sensors alone, without the time since a foot landed",
+        }
+    }
+
     /// Sets this part.
     pub const fn set(self, recon: &mut ReconConfig) {
         let config = &mut recon.tracker;

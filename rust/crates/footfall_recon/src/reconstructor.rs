@@ -1,6 +1,6 @@
 //! Live reconstruction: samples to poses.
 
-mod worn;
+mod sensors;
 
 use crate::blend::{Blend, Blending};
 use crate::confidence::Confidence;
@@ -15,7 +15,7 @@ use crate::tracker::{Measurement, Tracker, TrackerConfig};
 use crate::travel::Travel;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Behaviour, Pose, Skeleton, SkeletonError};
-use footfall_imu::{ImuSample, ToldContact};
+use footfall_imu::{ImuSample, SensorContact};
 use footfall_model::imu_model::MAX_SENSORS;
 use glam::Vec3;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ const ONE_CLOCK_SECS: f64 = 2.0;
 const UNEXPLAINED: f32 = 0.1;
 
 /// Time for which a contact that a sensor has reported holds, seconds.
-const TOLD_FOR_SECS: f32 = 0.1;
+const CONTACT_VALID_SECS: f32 = 0.1;
 
 /// Settings of a reconstructor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -324,7 +324,7 @@ impl Reconstructor {
             frames: dt_secs * rate,
             dt_secs,
             stride: self.travel.step(dt_secs),
-            contacts: self.told_contacts(),
+            contacts: self.sensor_contacts(),
         };
         self.ground.step(&body, &input, pose);
         if let Some(side) = self.travel.side() {
@@ -334,16 +334,16 @@ impl Reconstructor {
     }
 
     /// Contacts of the feet, if sensors on them report them.
-    fn told_contacts(&self) -> [Option<ToldContact>; 2] {
-        let heard = self.silent_secs < TOLD_FOR_SECS && self.confidence.is_trusted();
-        let told = |sensor: usize| {
+    fn sensor_contacts(&self) -> [Option<SensorContact>; 2] {
+        let heard = self.silent_secs < CONTACT_VALID_SECS && self.confidence.is_trusted();
+        let contact_of = |sensor: usize| {
             let contact = self.sensors[sensor].contact().filter(|_| heard)?;
-            Some(ToldContact {
+            Some(SensorContact {
                 for_secs: contact.for_secs + self.silent_secs,
                 ..contact
             })
         };
-        self.prepared.told_contacts(told)
+        self.prepared.sensor_contacts(contact_of)
     }
 
     /// Splits a pose from [`step`](Self::step) into the place and heading of the body on the ground, and the pose above it, which faces +Z.

@@ -3,7 +3,7 @@
 use crate::measure::SensorFrame;
 use crate::problem::SensorProblem;
 use crate::watch::Watch;
-use footfall_imu::{ContactMeter, FeatureStream, ImuRecording, ImuSample, ToldContact};
+use footfall_imu::{ContactMeter, FeatureStream, ImuRecording, ImuSample, SensorContact};
 use glam::{Quat, Vec3};
 
 /// Frames of one sensor that wait for the other's; more mean that the other has stopped.
@@ -13,7 +13,7 @@ const MOST_WAITING: usize = 6;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frames {
     stream: FeatureStream,
-    /// Of a sensor on a foot.
+    /// Contact meter of a sensor on a foot.
     contact: Option<ContactMeter>,
 }
 
@@ -46,13 +46,13 @@ impl Frames {
         }
         let contact = &self.contact;
         self.stream.push(sample, |frame| {
-            let contact = contact.as_ref().and_then(|c| c.told(frame.time_secs));
+            let contact = contact.as_ref().and_then(|c| c.contact_at(frame.time_secs));
             give(SensorFrame { frame, contact });
         });
     }
 
     /// Returns the contact of the foot that wears the sensor.
-    pub(crate) fn contact(&self) -> Option<ToldContact> {
+    pub(crate) fn contact(&self) -> Option<SensorContact> {
         self.contact.as_ref().and_then(ContactMeter::contact)
     }
 }
@@ -216,7 +216,7 @@ impl Sensor {
     }
 
     /// Returns the contact of the foot that wears it, as of the last sample.
-    pub(crate) fn contact(&self) -> Option<ToldContact> {
+    pub(crate) fn contact(&self) -> Option<SensorContact> {
         self.frames.contact()
     }
 

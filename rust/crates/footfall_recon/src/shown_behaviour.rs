@@ -46,7 +46,7 @@ impl ShownBehaviour {
     }
 }
 
-/// Gives runs of less than so many frames to what comes before them, or after at the beginning.
+/// Merges runs of fewer frames than this with the run before them, or after them at the beginning.
 pub(crate) fn drop_short_runs(behaviours: &mut [Behaviour], least: usize) {
     let mut first = 0;
     while let Some(&own) = behaviours.get(first) {

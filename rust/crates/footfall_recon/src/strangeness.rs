@@ -1,6 +1,6 @@
 //! Strangeness of a wearer: mean squared distance of what sensors measure from what they measured on the people in the model.
 //!
-//! People in the model, and those who move like them, are shown as they were recorded. Of a stranger a sensor tells less, so that the mean of several people is nearer.
+//! People in the model, and those who move like them, are shown as they were recorded. A sensor predicts less of a stranger, so that the mean of several people is closer.
 //! Means over walks, a simulated sensor, [`KNOWN`] chosen between the first two rows and the third:
 //!
 //! | | right foot | right thigh |
@@ -39,14 +39,14 @@ impl Strangeness {
         moved_secs: 0.0,
     };
 
-    /// Goes on by a frame with a squared distance; `moved_secs` is the part of it in which the body moved: whoever stands measures the same as everybody.
+    /// Adds a frame with its squared distance; `moved_secs` is the time in it in which the body moved: standing is the same for all people.
     pub(crate) fn step(&mut self, distance: f32, moved_secs: f32) {
         self.moved_secs += moved_secs;
         let counted_secs = (self.moved_secs + UNKNOWN_SECS).min(MEAN_SECS);
         self.mean += moved_secs / counted_secs * (distance - self.mean);
     }
 
-    /// Share of a stranger: 0 for one of the people in the model, 1 for whoever moves like none of them.
+    /// Strangeness of the wearer: 0 for one of the people in the model, 1 for a person who moves like none of them.
     pub(crate) fn share(self) -> f32 {
         smooth_step((self.mean - KNOWN[0]) / (KNOWN[1] - KNOWN[0]))
     }
@@ -54,10 +54,7 @@ impl Strangeness {
 
 #[cfg(test)]
 mod tests {
-    #![expect(
-        clippy::float_cmp,
-        reason = "the share of whoever is known or a stranger is exact"
-    )]
+    #![expect(clippy::float_cmp, reason = "both ends of the range are exact")]
 
     use super::*;
 
@@ -75,7 +72,7 @@ mod tests {
         let mut wearer = Strangeness::UNKNOWN;
         assert_eq!(wearer.share(), 1.0);
         wearer.step(0.0, 0.0);
-        assert_eq!(wearer.share(), 1.0, "standing tells nothing");
+        assert_eq!(wearer.share(), 1.0, "standing is no evidence");
         assert_eq!(after(&mut wearer, 0.6, 3.0), 0.0);
         // A stumble is no other wearer; a walk of some seconds is.
         assert!(after(&mut wearer, 5.0, 0.3) < 0.1);

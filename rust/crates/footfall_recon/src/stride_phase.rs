@@ -1,6 +1,6 @@
 //! Phase of the stride: the share of its way from one landing to the next that a foot with a sensor has behind it.
 //!
-//! A standing foot measures nothing but gravity: only the time since it landed tells that the other leg leaves the ground, passes, or lands. People who walk or run
+//! A standing foot measures nothing but gravity: only the time since it landed indicates when the other leg leaves the ground, passes, or lands. People who walk or run
 //! repeat their strides, so this time, as a share of the strides before, shows where in the stride they are.
 
 use crate::measure::SensorFrames;
@@ -8,7 +8,7 @@ use crate::prepared::{Prepared, WornFoot};
 use core::f32::consts::TAU;
 use core::ops::Range;
 use footfall_core::{Behaviour, PhaseStart};
-use footfall_imu::ToldContact;
+use footfall_imu::SensorContact;
 use footfall_model::ImuModel;
 
 /// Numbers of a phase: its cosine and its sine, so that the end of a stride is near the beginning of the next. Both are 0 where there are no strides.
@@ -95,7 +95,7 @@ impl StrideClock {
         self.phase().unwrap_or_default()
     }
 
-    fn hear(&mut self, contact: ToldContact) {
+    fn hear(&mut self, contact: SensorContact) {
         self.since_secs = self.since_secs.map(|secs| secs + self.frame_secs);
         if contact.stands && !self.stood && contact.for_secs.is_finite() {
             let stride = self.since_secs.map(|secs| secs - contact.for_secs);
@@ -237,7 +237,7 @@ mod tests {
                 time < 0.4 * landings[n] + 0.6 * next
             });
             let for_secs = last.map_or(f32::INFINITY, |n| time - landings[n]);
-            clock.hear(ToldContact { stands, for_secs });
+            clock.hear(SensorContact { stands, for_secs });
             clock.phase().unwrap_or_default()
         });
         phases.collect()
@@ -262,7 +262,7 @@ mod tests {
         }
     }
 
-    /// Walks of these phases, each of so many frames, one after the other.
+    /// Walks of these phases and their numbers of frames, one after the other.
     fn walks(kinds: &[(PhaseStart, Side)], walks: &[&[(u16, u16)]]) -> ImuModel {
         let frames = walks.iter().copied().flatten();
         let frames: usize = frames.map(|(_, n)| usize::from(*n)).sum();

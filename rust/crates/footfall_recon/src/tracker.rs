@@ -82,7 +82,7 @@ pub struct Measurement {
 pub struct Tracker {
     prepared: Arc<Prepared>,
     config: TrackerConfig,
-    /// Of each frame; sums to one.
+    /// Probability of each frame; sums to one.
     probability: Vec<f32>,
     /// Segments that hold some of it.
     active: Vec<u32>,
@@ -93,7 +93,7 @@ pub struct Tracker {
     listed: Vec<bool>,
     /// The next of the others whose turn it is.
     turn: usize,
-    /// Of each frame, in whole blocks.
+    /// Value of each frame, in whole blocks.
     predicted: Vec<f32>,
     distance: Vec<f32>,
     weighed: Vec<f32>,

@@ -9,7 +9,7 @@ use footfall_imu::stride_meter::Rest;
 use footfall_imu::{ImuSample, StrideMeter};
 use glam::Vec3;
 
-/// Shorter strides tell nothing of how long steps are, metres.
+/// Shortest stride from which the length of steps is estimated, metres.
 const LEAST_STRIDE_M: f32 = 0.4;
 
 /// A stride of which the shown one differs by more is another one.
@@ -39,7 +39,7 @@ pub(crate) struct Travel {
 }
 
 impl Travel {
-    /// For sensors at these sites, on a wearer whose steps are thought to be so long beside those of the recordings.
+    /// Creates it for sensors at these sites, on a wearer with this expected step length relative to the recordings.
     pub(crate) fn new(sites: &[Site], stride: f32) -> Self {
         let mut feet = sites.iter().enumerate();
         let mut travel = Self {

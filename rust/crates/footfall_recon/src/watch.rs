@@ -135,7 +135,7 @@ impl WornRecording {
     }
 }
 
-/// Notes a problem that is told at a time.
+/// Adds a problem that is reported at a time.
 fn note(problems: &mut Vec<ProblemSpan>, time_secs: f64, problem: SensorProblem) {
     let goes_on = |span: &&mut ProblemSpan| {
         span.problem.is_alike(&problem) && time_secs - span.end_secs <= ONE_SECS
@@ -158,9 +158,9 @@ mod tests {
 
     #[test]
     fn whoever_walks_with_a_stuck_axis_does_not_ride() {
-        let told = |stuck: bool| {
+        let reported = |stuck: bool| {
             let mut watch = Watch::new(Vec3::Y, Some(100.0));
-            let mut told = Vec::new();
+            let mut reported = Vec::new();
             for n in 0..600_u32 {
                 let secs = f64::from(n) * 0.01;
                 let walks = n >= 200;
@@ -175,14 +175,14 @@ mod tests {
                 };
                 watch.push(&sample, Some(&sample));
                 let kind = watch.problem();
-                if told.last() != Some(&kind) {
-                    told.push(kind);
+                if reported.last() != Some(&kind) {
+                    reported.push(kind);
                 }
             }
-            told
+            reported
         };
-        assert_eq!(told(false), [None]);
-        let problems = told(true);
+        assert_eq!(reported(false), [None]);
+        let problems = reported(true);
         let [
             None,
             Some(SensorProblem::Stream(StreamFault::StuckAxis { .. })),

@@ -7,11 +7,11 @@ use crate::half_life::follow_share;
 use footfall_imu::{GRAVITY_MPS2, ImuSample};
 use glam::Vec3;
 
-/// A still sensor turns more slowly than this, rad/s, and measures gravity to within so much, m/s².
+/// Greatest angular rate of a still sensor, rad/s, and greatest deviation from gravity, m/s².
 const STILL_RADPS: f32 = 0.25;
 const STILL_MPS2: f32 = 1.0;
 
-/// For so long it is still before it lies, seconds: a foot in a slow walk stands for a second.
+/// Time of stillness after which it lies, seconds: a foot in a slow walk stands for a second.
 const LIES_SECS: f32 = 1.5;
 
 /// Angle from up on a standing person to up on a sensor that lies; cosine. Trousers' pockets tilt by 30°, feet in high heels by 45.
@@ -24,15 +24,15 @@ const STRENGTH_HALF_LIFE_SECS: f32 = 0.15;
 /// Half-life with which the strength of gravity by this sensor's scale is learned where it is still, seconds.
 const GRAVITY_HALF_LIFE_SECS: f32 = 1.5;
 
-/// A ride changes the strength of specific force by more than this, m/s², for so long, seconds, while the sensor is turned by less than this, rad/s.
+/// Least change of the magnitude of specific force in a ride, m/s², its least duration, seconds, and the greatest angular rate meanwhile, rad/s.
 const RIDE_MPS2: f32 = 0.5;
 const RIDE_SECS: f32 = 0.6;
 const RIDE_RADPS: f32 = 0.35;
 
-/// No lift accelerates for so long, seconds: gravity by this sensor's scale is another than was thought.
+/// Duration beyond which an acceleration is no lift's, seconds: the sensor's scale differs from the assumed one.
 const LONGEST_RIDE_SECS: f32 = 4.0;
 
-/// A ride is told for so long after it was felt, seconds: between its start and its end a lift goes evenly.
+/// Time for which a ride is reported after it was detected, seconds: between its start and its end a lift moves evenly.
 const RIDE_HELD_SECS: f32 = 3.0;
 
 /// Posture of a sensor that is worn, in the site's axes.
@@ -53,11 +53,11 @@ pub(crate) struct WearMonitor {
 /// Posture of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Posture {
-    /// It is worn, as far as can be told.
+    /// The sensor is worn, as far as is known.
     Worn,
-    /// It lies.
+    /// The sensor lies still.
     Lies,
-    /// It rides.
+    /// The sensor moves without steps, as in a vehicle or a lift.
     Rides,
 }
 

@@ -1,48 +1,52 @@
-//! Crowds: thousands of walkers who come and go, find their ways round each other, and are drawn by how near they are.
+//! Crowds: thousands of walkers that come and go, avoid each other, and are drawn by their distance from the camera.
 //!
-//! A [`Crowd`] is one row for each walker: an [`Agent`], its [`Tier`] and what is [`Drawn`] of it. Names last while rows are used again. In every frame a game lets walkers
-//! begin ([`Crowd::begin_some`]), lets time pass ([`Crowd::advance`]) and draws the rows.
+//! A [`Crowd`] has one row for each walker: an [`Agent`], its [`Tier`] and its [`Drawn`] places. Names stay unique while rows are reused. In every frame, a game starts new walkers
+//! ([`Crowd::begin_some`]), advances time ([`Crowd::advance`]) and draws the rows.
 
 mod agent;
 mod avoidance;
 mod begin;
+mod decision;
+mod drawn;
 mod eyesight;
 mod goal;
-mod kit;
 mod maker;
 mod members;
+mod mixtures;
 mod motion;
 mod neighbours;
 mod pick;
 mod replica;
 mod roster;
+mod routing;
 mod save;
 mod tiers;
-mod way;
 
-pub use agent::{Agent, Drawn, Passerby};
+pub use agent::Agent;
+pub use drawn::Drawn;
 pub use eyesight::Eyesight;
 use footfall_core::{ModelPose, Pose, Skeleton};
 use glam::{Vec2, Vec3};
 pub use goal::Goal;
-pub use kit::CrowdRecipe;
-use kit::Kit;
 use maker::Maker;
 use members::Coming;
+pub use mixtures::CrowdRecipe;
+use mixtures::Mixtures;
 use motion::Stir;
 pub use motion::{FETCHED, GROUPS};
 use neighbours::Neighbours;
+pub use neighbours::Passerby;
 use replica::Following;
 pub use replica::{CrowdMessage, CrowdReplicaError, CrowdSender, STEP_BYTES};
 pub use roster::Roster;
+pub use routing::{Path, Routing};
 pub use save::{CrowdStateError, SavedCrowd};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use tiers::Chooser;
 pub use tiers::{Limits, Tier};
-pub use way::{Path, Way};
 
-/// Most walkers of a crowd: names hold no more places.
+/// Most walkers of a crowd: the rows that fit into a name.
 pub const MOST_AGENTS: u32 = 100_000;
 
 /// Settings by which walkers differ.
@@ -56,7 +60,7 @@ pub struct CrowdSettings {
     pub sizes: [f32; 2],
     /// Greatest weight of a walker's style.
     pub style_amount: f32,
-    /// Tints of which each walker gets one: red, green, blue and opacity. None is white.
+    /// Tints, one of which each walker gets: red, green, blue and opacity. White if empty.
     pub tints: Vec<[f32; 4]>,
     /// Half the sides of the rectangle about the origin in which walkers begin, metres.
     pub half_area: Vec2,
@@ -78,14 +82,14 @@ impl Default for CrowdSettings {
     }
 }
 
-/// Everybody. Whoever is in the crowd has a row in [`agents`](Self::agents), [`tiers`](Self::tiers) and [`drawn`](Self::drawn) for as long as it is there.
+/// A crowd. Each of its walkers has a row in [`agents`](Self::agents), [`tiers`](Self::tiers) and [`drawn`](Self::drawn).
 #[derive(Debug)]
 pub struct Crowd {
     agents: Vec<Agent>,
     tiers: Vec<Tier>,
     drawn: Vec<Drawn>,
     stirs: Vec<Stir>,
-    /// Everybody as others see them; nowhere who is not made.
+    /// All walkers as others see them; at no place those that are not made.
     seen: Vec<Passerby>,
     roster: Roster,
     began: Vec<i32>,
@@ -93,29 +97,29 @@ pub struct Crowd {
     time_secs: f64,
     /// Height of the character's highest joint in the T-pose.
     height_m: f32,
-    kit: Option<Arc<Kit>>,
+    mixtures: Option<Arc<Mixtures>>,
     neighbours: Neighbours,
     others: Vec<Passerby>,
-    way: Way,
+    routing: Routing,
     chooser: Chooser,
-    /// True when walkers far away walk in steps that they share instead of taking their own. Those of a crowd that follows never do; those of one that is [told](CrowdSender) must not.
+    /// True when walkers far away walk in steps that they share instead of taking their own. In a crowd that follows another they never do; in a crowd that is [sent](CrowdSender) to others they must not.
     pub repeats: bool,
-    /// Amount of motion of those who stand: 0 rests in a still pose, 1 moves as people do.
+    /// Motion of standing walkers: 0 is a still pose, 1 moves as people do.
     pub standing_motion: f32,
     maker: Maker,
     settings: CrowdSettings,
-    /// Number of walkers that there ever were: the number of the next, which identifies it.
+    /// Number of walkers so far, which identifies the next one.
     made: u64,
     tickets: u64,
-    /// Walkers who have names and no rows yet, in the order in which they came.
+    /// Walkers with names and no rows yet, in the order in which they came.
     coming: VecDeque<Coming>,
     /// Another machine's crowd that this one follows.
     following: Option<Following>,
 }
 
 impl Crowd {
-    /// A crowd of nobody yet; what its walkers are made with is prepared meanwhile.
-    pub fn new(recipe: CrowdRecipe, way: Way, settings: CrowdSettings) -> Self {
+    /// An empty crowd; other threads prepare its model and styles meanwhile.
+    pub fn new(recipe: CrowdRecipe, routing: Routing, settings: CrowdSettings) -> Self {
         Self {
             agents: Vec::new(),
             tiers: Vec::new(),
@@ -124,14 +128,14 @@ impl Crowd {
             seen: Vec::new(),
             roster: Roster::default(),
             began: Vec::new(),
-            // So that nobody's pose seems to have been written just now.
+            // Not 0, so that no pose counts as just written.
             frame: 1000,
             time_secs: 0.0,
             height_m: height_m(&recipe.body),
-            kit: None,
+            mixtures: None,
             neighbours: Neighbours::default(),
             others: Vec::new(),
-            way,
+            routing,
             chooser: Chooser::default(),
             repeats: true,
             standing_motion: 1.0,
@@ -191,12 +195,12 @@ impl Crowd {
         self.time_secs
     }
 
-    /// Ways that walkers take by themselves.
-    pub fn way(&self) -> &Way {
-        &self.way
+    /// Source of the walkers' goals.
+    pub fn routing(&self) -> &Routing {
+        &self.routing
     }
 
-    /// Chooses everybody's tier by the distance from the camera, given in the crowd's space.
+    /// Chooses the tier of each walker by its distance from the camera, given in the crowd's space.
     pub fn choose_tiers(&mut self, camera: Vec3, limits: &Limits) {
         let agents = self.agents.iter();
         let places = agents.map(|agent| agent.is_made().then_some(agent.place));

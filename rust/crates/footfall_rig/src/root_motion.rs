@@ -139,7 +139,7 @@ mod tests {
         for advance in [Advance::InProcess, Advance::InPhysics] {
             for (physics_hz, drawn_hz) in [(60, 30), (60, 60), (60, 120), (30, 144), (120, 50)] {
                 let [physics, process, moved] = read(advance, physics_hz, drawn_hz);
-                // What moved last is told in the frame to come: up to five drawn frames for one of the physics.
+                // The last motion is returned in the next frame: up to five drawn frames for one of the physics.
                 assert!(
                     physics <= moved && physics + 5 >= moved,
                     "{advance:?} {physics_hz} {drawn_hz}: {physics} of {moved}"
@@ -185,7 +185,7 @@ mod tests {
                 .since_last_frame(Advance::ByHand, now(7, 1, false))
                 .abs_diff_eq(delta(), 1e-6)
         );
-        // Told in its own frame already.
+        // Returned in its own frame already.
         assert_eq!(
             motion.since_last_frame(Advance::ByHand, now(7, 2, false)),
             still

@@ -1,4 +1,4 @@
-//! Stand-ins: a few tubes around a body in the colours of its character, for walkers of whom only some pixels are seen.
+//! Stand-ins: a few tubes around a body in the colours of its character, for walkers of a few pixels.
 //!
 //! [`StandIn::new`] measures a character's surface in the T-pose. Each part of the body (trunk, head, arms, legs, feet) becomes a tube of four sides whose
 //! rings have the place, the mean width and the colours of the surface there. The rings move with the joints of the body, so that a

@@ -5,7 +5,7 @@
 use footfall_core::Side;
 use footfall_model::GaitModel;
 use footfall_rig::crowd::{
-    Crowd, CrowdRecipe, CrowdSettings, Limits, Passerby, SavedCrowd, Tier, Way,
+    Crowd, CrowdRecipe, CrowdSettings, Limits, Passerby, Routing, SavedCrowd, Tier,
 };
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
@@ -26,14 +26,14 @@ static MODEL: LazyLock<Arc<GaitModel>> = LazyLock::new(|| {
     Arc::new(GaitModel::from_bytes(&bytes).expect("a walk"))
 });
 
-fn crowd(way: Way) -> Crowd {
+fn crowd(routing: Routing) -> Crowd {
     let recipe = CrowdRecipe {
         model: Arc::clone(&MODEL),
         styles: Vec::new(),
         space: None,
         body: MODEL.skeleton.clone(),
     };
-    Crowd::new(recipe, way, CrowdSettings::default())
+    Crowd::new(recipe, routing, CrowdSettings::default())
 }
 
 fn places(crowd: &Crowd) -> Vec<Vec3> {
@@ -57,14 +57,14 @@ fn walk_with(crowd: &mut Crowd, secs: f32, avoidance: bool, mut look: impl FnMut
 #[test]
 fn equal_seeds_give_equal_crowds_that_wander_and_others_do_not() {
     let half = Vec2::splat(20.0);
-    let mut twins = [0, 1].map(|_| crowd(Way::Wander { half }));
+    let mut twins = [0, 1].map(|_| crowd(Routing::Wander { half }));
     for twin in &mut twins {
         twin.set_count(30);
         walk(twin, 3.0, |_| {});
     }
     assert_eq!(places(&twins[0]), places(&twins[1]));
     let begin = {
-        let mut crowd = crowd(Way::Wander { half });
+        let mut crowd = crowd(Routing::Wander { half });
         crowd.set_count(30);
         places(&crowd)
     };
@@ -75,7 +75,7 @@ fn equal_seeds_give_equal_crowds_that_wander_and_others_do_not() {
 
 #[test]
 fn names_and_places_outlast_saving_and_others_who_leave() {
-    let mut first = crowd(Way::Told);
+    let mut first = crowd(Routing::Scripted);
     let starts = (0..5_u8).map(|index| (Vec3::X * f32::from(index) * 3.0, 0.5));
     let names = first.add(starts);
     walk(&mut first, 0.2, |_| {});
@@ -84,7 +84,7 @@ fn names_and_places_outlast_saving_and_others_who_leave() {
 
     let bytes = first.save();
     let saved = SavedCrowd::from_bytes(&bytes).expect("a crowd");
-    let mut second = crowd(Way::Told);
+    let mut second = crowd(Routing::Scripted);
     second.restore(&saved);
     assert_eq!(second.names().collect::<Vec<_>>(), [0, 2, 3, 4]);
     assert_eq!(places(&second), places(&first));
@@ -98,7 +98,7 @@ fn names_and_places_outlast_saving_and_others_who_leave() {
 
 #[test]
 fn who_is_sent_somewhere_arrives_there_by_way_of_the_places_between() {
-    let mut crowd = crowd(Way::Told);
+    let mut crowd = crowd(Routing::Scripted);
     let names = crowd.add([(Vec3::ZERO, 0.0)].into_iter());
     walk(&mut crowd, 0.1, |_| {});
     crowd.choose_tiers(Vec3::ZERO, &LIMITS);
@@ -127,7 +127,7 @@ fn who_is_sent_somewhere_arrives_there_by_way_of_the_places_between() {
 
 /// Seconds for which two of eight walkers touch, of two rows that pass through each other.
 fn touching_secs(avoidance: bool) -> f32 {
-    let mut crowd = crowd(Way::Told);
+    let mut crowd = crowd(Routing::Scripted);
     let row = |z: f32, heading: f32| {
         (0..4_u8).map(move |index| (Vec3::new(1.5 * f32::from(index), 0.0, z), heading))
     };
@@ -160,13 +160,13 @@ fn rows_that_meet_pass_through_each_other_without_bumping() {
 }
 
 /// Least distance of a walker from somebody who stands in its way and is not of the crowd.
-fn nearest_to_other(tells: bool) -> f32 {
-    let mut crowd = crowd(Way::Told);
+fn nearest_to_other(is_given: bool) -> f32 {
+    let mut crowd = crowd(Routing::Scripted);
     crowd.add([(Vec3::ZERO, 0.0)].into_iter());
     walk(&mut crowd, 0.1, |_| {});
     crowd.agents_mut()[0].go_to(Vec2::new(0.0, 9.0));
     let other = Vec2::new(0.05, 5.0);
-    if tells {
+    if is_given {
         crowd.set_others([other, Vec2::NAN].into_iter().map(|place| Passerby {
             place,
             velocity: Vec2::ZERO,
@@ -183,14 +183,14 @@ fn nearest_to_other(tells: bool) -> f32 {
 
 #[test]
 fn whoever_else_is_about_is_walked_around() {
-    let [told, untold] = [true, false].map(nearest_to_other);
-    assert!(untold < 0.2, "it would walk through: {untold} m");
-    assert!(told > 0.45, "{told} m");
+    let [avoided, ignored] = [true, false].map(nearest_to_other);
+    assert!(ignored < 0.2, "it would walk through: {ignored} m");
+    assert!(avoided > 0.45, "{avoided} m");
 }
 
 #[test]
 fn whoever_arrives_slows_down_and_stops_at_the_goal() {
-    let mut crowd = crowd(Way::Told);
+    let mut crowd = crowd(Routing::Scripted);
     crowd.add((0..6).map(|n| (Vec3::new(3.0 * n as f32, 0.0, 0.0), 0.0)));
     walk(&mut crowd, 0.1, |_| {});
     for (n, agent) in crowd.agents_mut().iter_mut().enumerate() {
@@ -205,7 +205,7 @@ fn whoever_arrives_slows_down_and_stops_at_the_goal() {
 
 #[test]
 fn ground_that_ends_leads_along_itself() {
-    let mut crowd = crowd(Way::Told);
+    let mut crowd = crowd(Routing::Scripted);
     crowd.repeats = false;
     crowd.add([(Vec3::ZERO, 0.0)].into_iter());
     walk(&mut crowd, 0.1, |_| {});
@@ -235,7 +235,7 @@ fn ground_that_ends_leads_along_itself() {
 
 #[test]
 fn the_nearest_are_drawn_best_and_all_have_poses() {
-    let mut crowd = crowd(Way::Told);
+    let mut crowd = crowd(Routing::Scripted);
     let starts = (0..12_u8).map(|index| (Vec3::Z * f32::from(index), 0.0));
     crowd.add(starts);
     walk(&mut crowd, 0.2, |_| {});
@@ -260,7 +260,7 @@ fn passed_by(seed: u64) -> Crowd {
         seed,
         ..CrowdSettings::default()
     };
-    let mut crowd = Crowd::new(recipe, Way::Wander { half }, settings);
+    let mut crowd = Crowd::new(recipe, Routing::Wander { half }, settings);
     crowd.set_count(60);
     for second in 0..8_u8 {
         walk(&mut crowd, 1.0, |_| {});
@@ -284,7 +284,7 @@ fn equal_crowds_stay_equal_as_walkers_come_near_and_go_away() {
 
 #[test]
 fn whoever_comes_near_or_goes_away_does_not_jump() {
-    let mut crowd = crowd(Way::Told);
+    let mut crowd = crowd(Routing::Scripted);
     crowd.add([(Vec3::ZERO, 0.0)].into_iter());
     walk(&mut crowd, 0.1, |_| {});
     crowd.agents_mut()[0].turn(0.1);

@@ -118,7 +118,7 @@ impl CurvePanel {
             }
             if let Some(ghost) = ghost {
                 let clip = ghost.clip();
-                // A ghost has no number of its own: its length and name tell it from another.
+                // A ghost has no number of its own: its length and name distinguish it from another.
                 let key = clip.poses.len() as u64 ^ ((ghost.name.len() as u64) << 32);
                 let offset = motion.start_secs() - ghost.start_secs();
                 if let Some(values) = self.ghost.values(key, clip, *curve, &mut is_late) {
@@ -189,7 +189,7 @@ enum Drawn {
     },
 }
 
-/// The frames in view: all when nobody knows yet.
+/// The frames in view; all before the first layout.
 fn drawn(values: &[f32], rate_hz: f64, offset_secs: f64, in_view: Option<[f64; 2]>) -> Drawn {
     let [from, to] = in_view.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let frame = |secs: f64| ((secs - offset_secs) * rate_hz).clamp(0.0, values.len() as f64);

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Kinds of evaluation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum EvaluateKind {
-    /// Are styles told apart?
+    /// Classification of styles.
     #[default]
     Style,
     /// Bodies from one sensor.

@@ -61,7 +61,7 @@ pub fn run(options: StudioOptions) -> Result<(), String> {
     })
 }
 
-/// Returns true when pictures are painted by more than the processor, as far as can be told before there is a window.
+/// Returns true when pictures are painted by more than the processor, as far as that is known before a window opens.
 fn has_graphics_device() -> bool {
     cfg!(not(target_os = "linux")) || std::path::Path::new("/dev/dri").exists()
 }

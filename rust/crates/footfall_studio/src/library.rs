@@ -71,7 +71,7 @@ impl Library {
         self.scans.push(Scan::start(context, path.to_owned()));
     }
 
-    /// Adds a file that is read elsewhere, by whoever [tells](Self::update) what it holds.
+    /// Adds a file that another thread reads; [`update`](Self::update) sets its content.
     pub(crate) fn add(&mut self, path: &Path) {
         let entry = scan::entry(path);
         self.entries.entry(path.to_owned()).or_insert(entry);

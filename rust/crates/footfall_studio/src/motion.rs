@@ -96,7 +96,7 @@ pub(crate) struct Curve {
 impl Curve {
     pub(crate) const AXES: [&'static str; 3] = ["pitch", "yaw", "roll"];
 
-    /// The curves that tell most of a walk: hips and knees.
+    /// The most informative curves of a walk: hips and knees.
     pub(crate) const USUAL: [Self; 4] = [
         Self::new(Joint::LeftUpperLeg, 0),
         Self::new(Joint::RightUpperLeg, 0),

@@ -1,4 +1,4 @@
-//! Colours, the same as in contact sheets: told apart by colour-blind eyes, too.
+//! Colours, the same as in contact sheets; colour-blind people can distinguish them.
 
 use eframe::egui::Color32;
 use footfall_core::Side;

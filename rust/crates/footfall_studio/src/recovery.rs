@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// Unsaved labels of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Kept {
+pub(crate) struct UnsavedLabels {
     /// The recording.
     pub(crate) recording: PathBuf,
     frames: usize,
@@ -15,7 +15,7 @@ pub(crate) struct Kept {
     stances: [Vec<[usize; 2]>; 2],
 }
 
-impl Kept {
+impl UnsavedLabels {
     pub(crate) fn new(recording: &Path, frames: usize, stances: &[Vec<FrameSpan>; 2]) -> Self {
         let pairs = |spans: &Vec<FrameSpan>| -> Vec<[usize; 2]> {
             spans.iter().map(|span| [span.first, span.last]).collect()
@@ -54,7 +54,7 @@ fn file_of(folder: &Path, recording: &Path) -> PathBuf {
 }
 
 /// Keeps labels until they are [forgotten](forget).
-pub(crate) fn keep(folder: &Path, kept: &Kept) -> Result<(), String> {
+pub(crate) fn keep(folder: &Path, kept: &UnsavedLabels) -> Result<(), String> {
     let file = file_of(folder, &kept.recording);
     let text = serde_json::to_vec(kept).map_err(|error| error.to_string())?;
     std::fs::create_dir_all(folder)
@@ -74,11 +74,11 @@ pub(crate) fn forget(folder: &Path, recording: &Path) {
 }
 
 /// Everything that was kept; files that make no sense are passed over.
-pub(crate) fn read_all(folder: &Path) -> Vec<Kept> {
+pub(crate) fn read_all(folder: &Path) -> Vec<UnsavedLabels> {
     let Ok(files) = std::fs::read_dir(folder) else {
         return Vec::new();
     };
-    let mut kept: Vec<Kept> = files
+    let mut kept: Vec<UnsavedLabels> = files
         .flatten()
         .filter(|file| file.file_name().to_string_lossy().starts_with("unsaved-"))
         .filter_map(|file| std::fs::read(file.path()).ok())
@@ -97,7 +97,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let recording = Path::new("walk.bvh");
         let stances = [vec![FrameSpan { first: 2, last: 9 }], Vec::new()];
-        let kept = Kept::new(recording, 20, &stances);
+        let kept = UnsavedLabels::new(recording, 20, &stances);
         keep(folder.path(), &kept).unwrap();
         std::fs::write(folder.path().join("unsaved-x.json"), "{").unwrap();
         assert_eq!(read_all(folder.path()), std::slice::from_ref(&kept));

@@ -8,4 +8,4 @@ mod floor;
 mod solid;
 mod view;
 
-pub(crate) use view::{Body, Footprint, Look, Scene, SceneView, SensorBox, soles};
+pub(crate) use view::{Body, BodyPaint, Footprint, Scene, SceneView, SensorBox, soles};

@@ -49,7 +49,7 @@ pub(crate) enum Purpose {
     SaveChart,
 }
 
-/// A line that tells what happened.
+/// A message about the last action.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Message {
     pub(crate) text: String,

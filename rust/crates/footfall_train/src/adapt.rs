@@ -58,7 +58,7 @@ pub enum AdaptMethod {
 pub struct AdaptConfig {
     /// Estimation of the transforms.
     pub method: AdaptMethod,
-    /// Use the first so many steps of the clips; all when absent.
+    /// Number of the clips' first steps to use; all if absent.
     pub steps: Option<usize>,
 }
 

@@ -96,7 +96,7 @@ impl AverageWalk {
     /// The states of one step, as the model stores them.
     ///
     /// # Errors
-    /// [`TrainError::Inference`] when a duration cannot be told, which a trained walk excludes.
+    /// [`TrainError::Inference`] when a duration is undetermined, which a trained walk excludes.
     pub fn states(&self, side: Side) -> Result<Vec<StateModel>, TrainError> {
         (0..STATES_PER_STEP)
             .map(|state| {

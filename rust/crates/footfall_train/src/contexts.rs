@@ -23,7 +23,7 @@ const CONTEXTS: usize = 2 * StepPosition::ALL.len();
 /// Number of times that steps are cut into states and the tied states estimated anew.
 const ROUNDS: usize = 4;
 
-/// A context of which fewer steps were seen counts as unseen: they tell of one person's whim.
+/// Least number of steps of a context: fewer may reflect one person's whim, and the context counts as unseen.
 const LEAST_STEPS: f64 = 4.0;
 
 /// A shorter walk between two stands is a shuffle: it says nothing of how walks begin and end.
@@ -193,7 +193,7 @@ mod tests {
         (steps, contexts, report)
     }
 
-    /// Asks to stop after so many iterations, and keeps how well each explained the walks.
+    /// Stops after a number of iterations, and keeps the likelihood of each.
     struct StopsAfter {
         iterations: usize,
         fits: Vec<f64>,

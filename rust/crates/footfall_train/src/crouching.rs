@@ -5,7 +5,7 @@ use footfall_core::{Clip, Joint};
 use footfall_model::layout::feature_offset;
 use footfall_model::{BESIDE_COUNT, CrouchModel, FEATURE_COUNT};
 
-/// Hips of somebody upright are at least as high as this, and of somebody who crouches at most as high as the second, as shares of their height
+/// Least height of upright hips, and greatest height of crouching hips, as shares of their height
 /// in the T-pose.
 const UPRIGHT_SHARE: f32 = 0.95;
 const CROUCHED_SHARE: f32 = 0.9;
@@ -13,7 +13,7 @@ const CROUCHED_SHARE: f32 = 0.9;
 /// The deepest crouch is that of this quantile of crouched frames, and so is the fastest.
 const QUANTILE: f64 = 0.9;
 
-/// Speed is that of the hips over so long, seconds.
+/// Time over which the hips give the speed, seconds.
 const SPEED_SECS: f64 = 1.0;
 
 /// Less is no crouch to learn from, seconds; nor are fewer upright ones to compare with.
@@ -29,7 +29,7 @@ pub struct LearnedCrouching {
     pub secs: f64,
 }
 
-/// Sums over the frames of somebody who crouches.
+/// Sums over the frames of a crouching person.
 #[derive(Default)]
 struct Sums {
     /// Of each number of a posture times how low it is, and of that squared.
@@ -40,8 +40,8 @@ struct Sums {
     secs: f64,
 }
 
-/// Learns how people crouch; each clip comes with its leading frames to leave out, and shows somebody both upright and low. `None` when nobody
-/// crouches for some seconds.
+/// Learns how people crouch; each clip comes with its leading frames to leave out, and shows a person both upright and low. `None` if no clip
+/// has some seconds of crouching.
 ///
 /// Every number of a posture goes with how low the hips are: a regression through the upright posture, for people crouch in between as well.
 pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedCrouching> {

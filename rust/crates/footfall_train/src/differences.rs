@@ -8,7 +8,7 @@ use footfall_model::{
 };
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Components of a walker and of a step that a model holds at most. With six of a walker, generated people are told from others by lying in
+/// Components of a walker and of a step that a model holds at most. With six of a walker, generated people are recognised by lying in
 /// the plane of the few (by shape 0.85 of the time, with twelve 0.81); sixteen change nothing more.
 const WALKER_COMPONENTS: usize = 12;
 const STEP_COMPONENTS: usize = 6;

@@ -73,7 +73,7 @@ pub struct FittedDynamics {
 /// Fits both systems. `provenance` gets the counts of clips, subjects and steps filled in.
 ///
 /// # Errors
-/// [`TrainError`] when the clips show too few steps, or the systems cannot be told from them.
+/// [`TrainError`] when the clips show too few steps, or they do not determine the systems.
 pub fn fit_dynamics(
     clips: &[Recording],
     config: &DynamicsConfig,
@@ -163,7 +163,7 @@ pub struct FittedSystem {
 /// in closed form, then refined, first left to itself, then the gain alone.
 ///
 /// # Errors
-/// [`TrainError`] when the system cannot be told from the segments.
+/// [`TrainError`] when the segments do not determine the system.
 pub fn fit_segments(
     segments: &[&[f64]],
     config: &DynamicsConfig,
@@ -188,7 +188,7 @@ pub fn fit_segments(
     })
 }
 
-/// Of the systems that windows of different lengths tell of, the one that comes closest to the segments when left to itself: short
+/// Of the systems estimated with windows of different lengths, the one whose free simulation comes closest to the segments: short
 /// windows take noise for the system, long ones leave few columns.
 fn identify_best(segments: &[&[f64]], config: &DynamicsConfig) -> Result<AffineSystem, TrainError> {
     let mut best: Option<(f64, AffineSystem)> = None;

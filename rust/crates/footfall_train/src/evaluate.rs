@@ -1,4 +1,4 @@
-//! Objective evaluation of styles: are they told apart, do they resemble their model, do they move like people?
+//! Objective evaluation of styles: classification, likeness to their model and to human motion.
 //!
 //! Questions that Tilmanne et al. (2012, section 6) asked a hundred people, asked of measures. A classifier that is trained on strides
 //! of real recordings names the style of real strides that it has not seen and of synthesised ones ([`confusion`], the

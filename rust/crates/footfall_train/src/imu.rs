@@ -1,6 +1,6 @@
 //! From recordings of bodies to a model of what a sensor on them means (Mousas 2017, sections 4 and 5).
 //!
-//! [`synchronise`] brings a real sensor's recording onto the time of a clip; [`observe`] turns a clip into a chain of phases with what sensors measure in each frame; [`train_imu`] puts chains together, all that they hold or what represents it; [`evaluate`] tells how
+//! [`synchronise`] brings a real sensor's recording onto the time of a clip; [`observe`] turns a clip into a chain of phases with what sensors measure in each frame; [`train_imu`] combines chains to a model, whole or by representative segments; [`evaluate`] measures how
 //! close the bodies come that a model makes.
 
 mod align;

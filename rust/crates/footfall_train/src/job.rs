@@ -36,7 +36,7 @@ impl core::fmt::Debug for Reporter {
 
 impl Reporter {
     /// Reports the current stage; returns whether to continue.
-    pub fn tell(&self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
+    pub fn report(&self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
         self.update(|progress| {
             task.clone_into(&mut progress.task);
             progress.done = done;
@@ -62,7 +62,7 @@ impl Reporter {
 
 impl Progress for Reporter {
     fn advance(&mut self, task: &str, done: usize, total: usize) -> ControlFlow<()> {
-        self.tell(task, done, total)
+        self.report(task, done, total)
     }
 
     fn fit(&mut self, log_likelihood: f64) {
@@ -123,7 +123,7 @@ impl<T: Send + 'static> Job<T> {
                 .name(name.to_owned())
                 .spawn(move || {
                     let made = work(&mut Reporter(Arc::clone(&worker)));
-                    // Nobody waits any more when the receiver is gone.
+                    // Without a receiver the result is dropped.
                     drop(sender.send(made));
                     (worker.wake)();
                 }),
@@ -131,8 +131,8 @@ impl<T: Send + 'static> Job<T> {
         Self { shared, receiver }
     }
 
-    /// Outcome: `None` while it goes on, an error when it broke off. Whoever cancels gets nothing, even where it was
-    /// done by then.
+    /// Outcome: `None` while the job runs, an error if it failed. A cancelled job has no result, even if it was
+    /// finished by then.
     pub fn poll(&self) -> Option<Result<T, String>> {
         match self.receiver.try_recv() {
             Ok(_) if self.shared.cancelled.load(Ordering::Relaxed) => {

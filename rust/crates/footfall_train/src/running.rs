@@ -18,7 +18,7 @@ const TEMPO_SHARE: f64 = 0.5;
 /// walk's components between walkers becomes one of the run, of how the body is held and of tempo.
 ///
 /// # Errors
-/// [`TrainError`] when nobody runs in the recordings, or they cannot be explained.
+/// [`TrainError`] if the recordings have no runs, or training on them fails.
 pub fn learn_running(
     walk: &GaitModel,
     clips: &[Recording],

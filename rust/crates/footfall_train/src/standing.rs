@@ -87,7 +87,7 @@ impl StandingClip {
     }
 }
 
-/// Learns how people stand; `None` if nobody stands.
+/// Learns how people stand; `None` without standing.
 pub fn learn(clips: &[StandingClip]) -> Option<LearnedStanding> {
     let people = people(clips);
     if people.is_empty() {

@@ -92,7 +92,7 @@ fn mean_log_variance(walk: &AverageWalk) -> f64 {
     variances().map(|variance| variance.ln()).sum::<f64>() / variances().count() as f64
 }
 
-/// Log-likelihood of a walker's recordings, each under the transform that the others tell.
+/// Log-likelihood of a walker's recordings, each under the transform estimated from the others.
 fn adapted_score(walk: &AverageWalk, own: &[Sequence]) -> Result<f64, TrainError> {
     let mut score = 0.0;
     for (unseen, sequence) in own.iter().enumerate() {

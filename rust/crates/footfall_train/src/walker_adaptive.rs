@@ -2,7 +2,7 @@
 //!
 //! The simplest form of the speaker-adaptive training that Tilmanne et al. 2012 take over (section 5.1.2): one scale and one
 //! offset per feature and walker, shared by the feature's time differences. What it takes out comes back as variation between
-//! walkers ([`crate::differences`]). A diagonal is what the ten or twenty steps of one walker can tell.
+//! walkers ([`crate::differences`]). The ten or twenty steps of one walker determine no more than a diagonal.
 
 mod average_swing;
 
@@ -214,7 +214,7 @@ pub(crate) fn train(
         let last = walk.log_likelihoods.last().copied().unwrap_or_default();
         log_likelihoods.push(last + gained);
     }
-    // The course of training that is told is that of the first, whole run.
+    // The reported course of training is that of the first, whole run.
     walk.log_likelihoods = core::mem::take(&mut first);
     Ok(WalkerAdaptive {
         walk,

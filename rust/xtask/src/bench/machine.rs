@@ -93,8 +93,8 @@ pub(super) fn kept(folder: &Path) -> Result<Vec<Machine>> {
 
 /// Name of the processor, where the system says it.
 fn processor() -> Option<String> {
-    let told = fs::read_to_string("/proc/cpuinfo").ok()?;
-    let line = told.lines().find(|line| line.starts_with("model name"))?;
+    let info = fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = info.lines().find(|line| line.starts_with("model name"))?;
     let name = line.split_once(':')?.1;
     Some(name.split_whitespace().collect::<Vec<_>>().join(" "))
 }

@@ -291,7 +291,7 @@ mod tests {
     use super::*;
     use crate::csharp::reference::Reference;
 
-    const TOLD: &str = r#"{"classes": [{"name": "Walker", "base": "Node3D", "can_be_made": true,
+    const REFERENCE: &str = r#"{"classes": [{"name": "Walker", "base": "Node3D", "can_be_made": true,
         "properties": [
             {"name": "pace", "type": 3, "class_name": "", "hint": 1, "hint_string": "0,2", "usage": 6, "writable": true},
             {"name": "detail", "type": 2, "class_name": "", "hint": 2, "hint_string": "Full:0,Half:1", "usage": 6, "writable": true}],
@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn members_have_their_types_and_texts() {
-        let reference = Reference::read(TOLD).unwrap();
+        let reference = Reference::read(REFERENCE).unwrap();
         let enums = types::enums(&reference).unwrap();
         let types = Types {
             reference: &reference,

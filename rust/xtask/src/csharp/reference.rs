@@ -15,7 +15,7 @@ pub(super) struct Reference {
 
 /// The file that `class_reference.gd` writes.
 #[derive(Deserialize)]
-struct Told {
+struct ReferenceFile {
     classes: Vec<Class>,
     documents: Vec<String>,
 }
@@ -142,9 +142,10 @@ impl Reference {
     }
 
     pub(super) fn read(text: &str) -> Result<Self> {
-        let told: Told = serde_json::from_str(text).context("the class reference is damaged")?;
-        let documents = Documents::read(&told.documents)?;
-        let mut classes = told.classes;
+        let file: ReferenceFile =
+            serde_json::from_str(text).context("the class reference is damaged")?;
+        let documents = Documents::read(&file.documents)?;
+        let mut classes = file.classes;
         // Other extensions are not ours; the add-on's own tools are named after it.
         classes.retain(|class| {
             documents.class(&class.name).is_some() && !class.name.starts_with("Footfall")

@@ -4,7 +4,7 @@ use anyhow::{Context as _, Result, bail};
 
 /// Footsteps of a character agree on all machines within this, metres.
 const SAME_PLACE_M: f32 = 0.05;
-/// Of so many steps one may be elsewhere: a machine that is busy with other things stands still at times, and steps that it has told nothing of are corrected
+/// Of so many steps one may be elsewhere: a busy machine pauses at times, and steps that it has not sent are corrected
 /// by the next ones.
 const CORRECTED_OF: usize = 20;
 /// So long after a character has come to a machine its steps agree, seconds.
@@ -15,7 +15,7 @@ const CROWD: usize = 12;
 const LEAST_STEPS: usize = 8;
 /// Hips go no faster than this, m/s: those of a run, and a correction.
 const FASTEST_MPS: f32 = 7.0;
-/// Nobody believes a liar who is farther away than he can have run, metres.
+/// Distance beyond which a liar's place is refused, metres: farther than a run can reach.
 const FARTHEST_M: f32 = 120.0;
 
 /// A footstep as a peer has printed it.
@@ -93,7 +93,7 @@ pub(super) fn judge(said: &[(&str, String)]) -> Result<String> {
     }
     for peer in ["host", "early", "late"] {
         if !of(peer)?.contains("STRANGER ") {
-            bail!("`{peer}` has not noticed that the liar tells of a crowd that is not its own");
+            bail!("`{peer}` has not refused the liar's messages about a crowd that is not its own");
         }
     }
     Ok(format!(
@@ -114,14 +114,14 @@ fn judge_end(viewer: &str, said: &str) -> Result<()> {
         if walker != "liar" && hips > FASTEST_MPS {
             bail!("`{viewer}` has seen the hips of `{walker}` at {hips} m/s");
         }
-        // Whoever comes while he lies has no earlier place of his to go by.
+        // A peer that joins while it lies has no earlier place of it for comparison.
         if far > FARTHEST_M && viewer != "late" {
             bail!("`{viewer}` has seen `{walker}` {far} m away");
         }
         ends += 1;
     }
     if ends == 0 {
-        bail!("`{viewer}` has seen nobody");
+        bail!("`{viewer}` has shown no walker");
     }
     Ok(())
 }
@@ -192,7 +192,7 @@ mod tests {
         assert!(judge(&apart).is_err(), "a walker of the crowd is missing");
         let mut deaf = game(0.01, true);
         deaf[1].1 = deaf[1].1.replace("STRANGER 5", "");
-        assert!(judge(&deaf).is_err(), "a liar who tells of the crowd");
+        assert!(judge(&deaf).is_err(), "a liar who sends the crowd");
         let mut far = game(0.01, true);
         far[1].1 += "END liar hips 2.0 far 4000.0 secs 9.0\n";
         assert!(judge(&far).is_err(), "a liar far away");

@@ -32,7 +32,7 @@ pub(super) fn ask(start: impl Fn() -> Command, library: &Path) -> Result<String>
     let run = |version: [&str; 3]| {
         let mut command = start();
         command.arg(library).arg("footfall_init").args(version);
-        // What a panic would write of its way helps nobody here.
+        // The backtrace of a panic would not help here.
         command.env("RUST_BACKTRACE", "0");
         process::captured(&mut command)
     };

@@ -1,4 +1,4 @@
-//! Rules on what Clippy is told: the workspace's lints hold in every crate, and all crates that touch nothing outside have one set of limits.
+//! Rules on Clippy's settings: the workspace's lints apply in every crate, and all crates without access to the system share one set of limits.
 
 use super::Violation;
 

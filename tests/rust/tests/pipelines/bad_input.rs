@@ -1,4 +1,4 @@
-//! Sensors that fail, are worn wrongly or ride a lift: each is told, and the body stands or walks and is never thrown about.
+//! Sensors that fail, are worn wrongly or ride a lift: each problem is reported, and the body stands or walks without jumps.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
 
@@ -36,8 +36,8 @@ struct Driven {
     turns: Vec<f32>,
     /// Fastest way of the hips over the ground, m/s.
     fastest_mps: f32,
-    /// Names of the problems, and when each was told first, seconds after the fault.
-    told: Vec<(&'static str, f64)>,
+    /// Names of the problems, and the time of the first report of each, seconds after the fault.
+    reported: Vec<(&'static str, f64)>,
     /// When the body moved first, seconds after the fault.
     moves_secs: f64,
     /// Frames, and those in which it stands.
@@ -49,10 +49,10 @@ struct Driven {
 }
 
 impl Driven {
-    /// Time at which a problem was told first, seconds after the fault.
-    fn told_secs(&self, name: &str) -> Option<f64> {
-        let told = self.told.iter().find(|(own, _)| *own == name);
-        told.map(|(_, secs)| *secs)
+    /// Time of a problem's first report, seconds after the fault.
+    fn reported_secs(&self, name: &str) -> Option<f64> {
+        let reported = self.reported.iter().find(|(own, _)| *own == name);
+        reported.map(|(_, secs)| *secs)
     }
 
     /// The turn of the fastest joint that one frame in a hundred exceeds.
@@ -80,7 +80,7 @@ fn drive(prepared: &Arc<Prepared>, recording: &ImuRecording, mounting: Quat) -> 
     let mut driven = Driven {
         turns: Vec::new(),
         fastest_mps: 0.0,
-        told: Vec::new(),
+        reported: Vec::new(),
         moves_secs: f64::INFINITY,
         frames: 0,
         stood: 0,
@@ -116,9 +116,9 @@ fn drive(prepared: &Arc<Prepared>, recording: &ImuRecording, mounting: Quat) -> 
             driven.last_turn = driven.last_turn.max(turn);
         }
         if let Some(problem) = body.problem(0)
-            && driven.told_secs(problem.name()).is_none()
+            && driven.reported_secs(problem.name()).is_none()
         {
-            driven.told.push((problem.name(), secs - FAULTY_SECS));
+            driven.reported.push((problem.name(), secs - FAULTY_SECS));
         }
     }
     driven.turns.sort_by(f32::total_cmp);
@@ -157,7 +157,7 @@ fn faulty(
 /// Change of a sample by its number, in a recording of so many samples a second.
 type Change = fn(usize, f64, &mut ImuSample) -> bool;
 
-/// Faults of a stream: the name of each, whether the body stands then, and within how many seconds of motion it is told.
+/// Faults of a stream: the name of each, whether the body stands then, and the seconds of motion within which it is reported.
 const FAULTS: [(&str, bool, f64, Change); 8] = [
     ("stuck_axis", true, 3.0, |_, _, s| {
         s.rate.x = 0.2;
@@ -194,7 +194,7 @@ fn assert_faults_are_borne(prepared: &Arc<Prepared>, recording: &ImuRecording, m
     let sound = drive(prepared, recording, mounting);
     sound.assert_calm("sound");
     assert!(sound.stood < sound.frames / 2, "a walk");
-    assert!(sound.told.is_empty(), "{:?}", sound.told);
+    assert!(sound.reported.is_empty(), "{:?}", sound.reported);
     for (n, (name, stands, within_secs, change)) in FAULTS.into_iter().enumerate() {
         let what = format!("{n}, {name}");
         let rate_hz = recording.rate_hz();
@@ -207,11 +207,11 @@ fn assert_faults_are_borne(prepared: &Arc<Prepared>, recording: &ImuRecording, m
             driven.high_turn(),
             sound.high_turn()
         );
-        let told = driven.told_secs(name);
+        let reported = driven.reported_secs(name);
         assert!(
-            told.is_some_and(|secs| secs < sound.moves_secs + within_secs),
+            reported.is_some_and(|secs| secs < sound.moves_secs + within_secs),
             "{what}: {:?}",
-            driven.told
+            driven.reported
         );
         if stands {
             assert_eq!(driven.behaviour, Behaviour::Stand, "{what}");
@@ -224,14 +224,14 @@ fn assert_faults_are_borne(prepared: &Arc<Prepared>, recording: &ImuRecording, m
 }
 
 #[test]
-fn a_simulated_sensor_that_fails_is_told_and_throws_nobody() {
+fn a_simulated_sensor_that_fails_is_reported_and_throws_nobody() {
     let worn = Quat::from_rotation_x(0.3);
     let recording = walk(Site::RightFoot, worn);
     assert_faults_are_borne(&shipped("right_foot"), &recording, worn);
 }
 
 #[test]
-fn a_real_sensor_that_fails_is_told_and_throws_nobody() {
+fn a_real_sensor_that_fails_is_reported_and_throws_nobody() {
     let Some(data) = recordings("bad_input") else {
         return;
     };
@@ -245,10 +245,10 @@ fn a_real_sensor_that_fails_is_told_and_throws_nobody() {
     }
 }
 
-/// Change of a sample that cannot be told from it alone.
+/// Change of a sample that a single sample does not reveal.
 type Wrong<'a> = dyn Fn(&mut ImuSample) + 'a;
 
-/// Signs and axes that are wrong, and streams of two people that are exchanged, cannot be told from samples alone; the body bears them.
+/// Samples alone do not reveal wrong signs and axes, or exchanged streams of two people; the body survives them.
 #[test]
 fn wrong_signs_and_exchanged_people_throw_nobody() {
     let Some(data) = recordings("bad_input") else {
@@ -287,15 +287,15 @@ fn wrong_signs_and_exchanged_people_throw_nobody() {
         );
         if ["force", "upside down"].contains(&what) {
             assert!(
-                driven.told_secs("unexplained").is_some(),
+                driven.reported_secs("unexplained").is_some(),
                 "{what}: {:?}",
-                driven.told
+                driven.reported
             );
         }
     }
 }
 
-/// A sensor that measures this after somebody has stood for some time.
+/// A sensor with these measurements after some time of standing.
 fn after_standing(measured: impl Fn(f32) -> (Vec3, Vec3)) -> ImuRecording {
     let samples = (0..1600_u16).map(|n| {
         let secs = f32::from(n) * 0.01;
@@ -322,7 +322,7 @@ fn after_standing(measured: impl Fn(f32) -> (Vec3, Vec3)) -> ImuRecording {
 }
 
 #[test]
-fn whoever_lies_down_or_rides_a_lift_is_told_and_stands() {
+fn whoever_lies_down_or_rides_a_lift_is_reported_and_stands() {
     for site in ["right_foot", "right_thigh"] {
         let prepared = shipped(site);
         // Over a second it is turned over, and lies.
@@ -346,11 +346,11 @@ fn whoever_lies_down_or_rides_a_lift_is_told_and_stands() {
         });
         for (name, recording, within_secs) in [("lies", lies, 3.0), ("rides", lift, 2.5)] {
             let driven = drive(&prepared, &recording, Quat::IDENTITY);
-            let told = driven.told_secs(name);
+            let reported = driven.reported_secs(name);
             assert!(
-                told.is_some_and(|secs| secs < within_secs),
+                reported.is_some_and(|secs| secs < within_secs),
                 "{site}: {:?}",
-                driven.told
+                driven.reported
             );
             driven.assert_calm(name);
             // Who turns a sensor over takes a leg along, once.
@@ -380,7 +380,7 @@ fn whoever_lies_down_or_rides_a_lift_is_told_and_stands() {
 }
 
 #[test]
-fn silence_is_told_until_samples_come() {
+fn silence_is_reported_until_samples_come() {
     let prepared = shipped("right_foot");
     let skeleton = prepared.model().skeleton.clone();
     let mut body = Reconstructor::new(&prepared, &skeleton, &ReconConfig::default()).unwrap();

@@ -1,4 +1,4 @@
-//! Climbs from many distances: nobody loses the ground, sinks in, or jerks.
+//! Climbs from many distances: feet neither lose the ground nor sink in, and bodies do not jerk.
 #![expect(
     clippy::print_stdout,
     clippy::expect_used,
@@ -135,7 +135,7 @@ fn stairs(body: f32, rise: f32, count: usize) -> Vec<Climb> {
                 },
                 distance_m,
                 origin: ORIGINS[index / 4 % 2],
-                told: true,
+                announced: true,
                 seed: index as u64,
             });
         }
@@ -234,14 +234,14 @@ fn nobody_falls_through_stairs() {
             },
             distance_m,
             origin: ORIGINS[index / 7 % 2],
-            told: true,
+            announced: true,
             seed: index as u64,
         });
     }
     Survey::of(&climbs).expect_no_fault();
 }
 
-/// Adults of 1.3 m/s on the level go up and down stairs at 0.5 to 0.7 m/s along the slope, one tread a step; nobody dawdles on them.
+/// Adults of 1.3 m/s on the level go up and down stairs at 0.5 to 0.7 m/s along the slope, one tread a step, without dawdling.
 #[test]
 fn stairs_are_climbed_at_the_pace_of_people() {
     const TREADS: [f32; 2] = [0.17, 0.29];
@@ -272,7 +272,7 @@ fn nobody_is_lost_on_rough_ground() {
     Survey::of(&climbs.collect::<Vec<Climb>>()).expect_no_fault();
 }
 
-/// Of everybody, from a stroll to a hurry.
+/// All sizes, from a stroll to a hurry.
 #[test]
 fn hips_go_smoothly_over_rough_ground() {
     for body in BODIES {
@@ -301,7 +301,7 @@ fn an_animation_that_tells_nothing_does_not_lose_the_ground() {
         .collect();
     climbs.retain(|climb| climb.speed_mps < 1.5);
     for climb in &mut climbs {
-        climb.told = false;
+        climb.announced = false;
     }
     let survey = Survey::of(&climbs);
     survey.show();

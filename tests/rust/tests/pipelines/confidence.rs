@@ -32,7 +32,7 @@ fn fastest_radps(before: &Pose, after: &Pose) -> f32 {
     turns.fold(0.0, f32::max) / (APART as f32 * DT_SECS)
 }
 
-/// A sensor that somebody shakes, out of any rhythm of legs.
+/// A shaken sensor, without the rhythm of legs.
 fn shaken(time_secs: f64, seed: f32) -> ImuSample {
     let time = time_secs as f32;
     let wave = |n: f32| {
@@ -57,7 +57,7 @@ fn a_walk_is_explained() {
         body.step(DT_SECS, &mut pose);
     }
     assert!(body.confidence() > 0.6, "{}", body.confidence());
-    // Nobody is heard any more.
+    // No more samples come.
     for _ in 0..100 {
         body.step(DT_SECS, &mut pose);
     }

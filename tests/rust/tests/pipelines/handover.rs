@@ -11,7 +11,7 @@ use glam::{Quat, Vec3};
 const DT: f32 = 1.0 / 60.0;
 /// A walk that goes on undisturbed accelerates the knee of a leg that is almost straight by 103 m/s² already.
 const MOST_ACCELERATION: f32 = 105.0;
-/// The same for the hips of somebody who gets up.
+/// The same for the hips of a body that gets up.
 const MOST_OF_HIPS: f32 = 60.0;
 /// A foot that rolls onto its toes and is about to leave is the fastest that stands.
 const MOST_SLIP: f32 = 0.12;

@@ -93,7 +93,7 @@ fn the_version_of_a_switching_model_loads() {
     let again = DynamicsModel::from_bytes(&model.to_bytes().unwrap()).unwrap();
     assert_eq!(again, model);
     assert_eq!(again.fingerprint().unwrap(), model.fingerprint().unwrap());
-    // Any model that walks is told by its header.
+    // The header identifies any model that walks.
     let dynamics = WalkModel::from_bytes(&bytes).unwrap();
     assert_eq!(dynamics, WalkModel::Dynamics(Arc::new(model.clone())));
     let gait = WalkModel::from_bytes(&bytes_of(1)).unwrap();

@@ -43,7 +43,7 @@ struct Seen {
 struct Test {
     secs: f32,
     controls: Controls,
-    told: bool,
+    announced: bool,
     carried: fn(f32) -> Frame,
 }
 
@@ -55,7 +55,7 @@ impl Test {
                 speed_mps,
                 ..Controls::STAND
             },
-            told: true,
+            announced: true,
             carried: |_| Frame::IDENTITY,
         }
     }
@@ -70,7 +70,7 @@ impl Test {
         for frame in 0..(self.secs / DT) as usize {
             terrain.support = (self.carried)(frame as f32 * DT);
             walker.world_from_start = terrain.support;
-            walker.step(DT, self.controls, &mut terrain, self.told);
+            walker.step(DT, self.controls, &mut terrain, self.announced);
             let soles = Side::BOTH.map(|side| walker.sole(side));
             for side in Side::BOTH {
                 let foot = walker.placer.feet()[side.index()];
@@ -195,7 +195,7 @@ fn someone_who_stands_on_a_slope_stands() {
 #[test]
 fn an_animation_that_tells_nothing_is_placed_on_slopes() {
     let mut test = Test::walk(1.3);
-    test.told = false;
+    test.announced = false;
     for (what, height) in [
         ("flat", (|_, _| 0.0) as fn(f32, f32) -> f32),
         ("up", |_, z| SLOPE * z),

@@ -99,9 +99,9 @@ impl Game {
         }
     }
 
-    /// Hears a recording; names of the problems that were told, in order.
+    /// Feeds a recording; returns the names of the reported problems, in order.
     fn hear(&mut self, recording: &ImuRecording) -> Vec<&'static str> {
-        let mut told: Vec<&'static str> = Vec::new();
+        let mut problems: Vec<&'static str> = Vec::new();
         for sample in &recording.samples {
             self.now_secs += 1.0 / RATE_HZ;
             let time_secs = self.now_secs;
@@ -114,16 +114,16 @@ impl Game {
             );
             self.body.step((1.0 / RATE_HZ) as f32, &mut self.pose);
             let name = self.body.problem(0).map_or("", |problem| problem.name());
-            if told.last() != Some(&name) {
-                told.push(name);
+            if problems.last() != Some(&name) {
+                problems.push(name);
             }
         }
-        told
+        problems
     }
 }
 
 #[test]
-fn a_phone_that_is_taken_out_laid_down_and_put_back_is_told_at_every_step() {
+fn a_phone_that_is_taken_out_laid_down_and_put_back_is_problems_at_every_step() {
     let prepared = prepared();
     let config = TrackerConfig::default();
     let (first, second) = (Quat::from_rotation_y(0.4), Quat::from_rotation_z(2.8));
@@ -135,18 +135,18 @@ fn a_phone_that_is_taken_out_laid_down_and_put_back_is_told_at_every_step() {
     game.body.set_mounting(0, mounting);
     assert_eq!(game.hear(&pocket), [""], "in the pocket");
     assert_eq!(game.body.behaviour(), Behaviour::Walk);
-    let told = game.hear(&handled(4.0));
-    assert_eq!(told.last(), Some(&"unexplained"), "{told:?}");
+    let problems = game.hear(&handled(4.0));
+    assert_eq!(problems.last(), Some(&"unexplained"), "{problems:?}");
     assert_eq!(game.body.behaviour(), Behaviour::Stand);
     // On its back, which is no way to stand in a pocket.
     let up = mounting.inverse() * Quat::from_rotation_x(FRAC_PI_2) * Vec3::Y;
-    let told = game.hear(&on_the_table(4.0, up));
-    assert_eq!(told.last(), Some(&"lies"), "{told:?}");
+    let problems = game.hear(&on_the_table(4.0, up));
+    assert_eq!(problems.last(), Some(&"lies"), "{problems:?}");
     assert_eq!(game.body.behaviour(), Behaviour::Stand);
-    // Back in the pocket the other way up: it is told that it is turned, and found out how.
+    // Back in the pocket upside down: the turn is reported, and the mounting found.
     let again = walk(Site::RightThigh, second);
-    let told = game.hear(&again);
-    assert!(told.contains(&"unexplained"), "{told:?}");
+    let problems = game.hear(&again);
+    assert!(problems.contains(&"unexplained"), "{problems:?}");
     let seen = examine(&prepared, 0, &again, Some(mounting), &config).unwrap();
     assert!(
         matches!(seen.finding, Some(SensorProblem::Turned { .. })),

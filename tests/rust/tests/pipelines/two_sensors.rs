@@ -122,14 +122,14 @@ fn recordings_on_one_clock_are_laid_side_by_side() {
 }
 
 #[test]
-fn exchanged_sensors_are_told_and_ordered_ones_are_not() {
+fn exchanged_sensors_are_exchange_and_ordered_ones_are_not() {
     let (prepared, [foot, hand]) = prepare();
-    let told =
+    let exchange =
         |recordings| find_exchange(&prepared, recordings, &TrackerConfig::default()).unwrap();
-    assert_eq!(told([&foot, &hand]), None);
+    assert_eq!(exchange([&foot, &hand]), None);
     let [first, second] = SITES;
     assert_eq!(
-        told([&hand, &foot]),
+        exchange([&hand, &foot]),
         Some(SensorProblem::Exchanged { first, second })
     );
 }

@@ -76,7 +76,7 @@ struct Report<'a> {
     bytes: usize,
     skipped: Vec<Skipped>,
     warnings: Vec<String>,
-    /// Of the adaptation alone, without reading the recordings.
+    /// Duration of the adaptation alone, without reading the recordings.
     adaptation_seconds: f64,
     seconds: f64,
 }

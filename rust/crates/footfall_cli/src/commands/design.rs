@@ -1,4 +1,4 @@
-//! `footfall design`: a captured walk in a style that nobody acted.
+//! `footfall design`: a style from a sheet and captured walks.
 
 mod corpus_run;
 mod reference;

@@ -146,7 +146,7 @@ struct FileFacts {
 }
 
 impl FileFacts {
-    /// Of a file that was read as a model.
+    /// Facts of a file that was read as a model.
     fn of(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).with_context(|| path.display().to_string())?;
         let (format_version, header) =

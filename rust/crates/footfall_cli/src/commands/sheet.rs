@@ -1,6 +1,6 @@
 //! `footfall sheet`: motion on one page.
 
-use crate::motion_input::{MapArgs, Walking, read_recording};
+use crate::motion_input::{MapArgs, WalkFigures, read_recording};
 use crate::output;
 use crate::sheet::{SheetOptions, Subject, draw_sheet};
 use anyhow::{Context as _, Result, ensure};
@@ -122,7 +122,7 @@ fn file_name(path: &Path) -> String {
 }
 
 fn facts(recording: &Recording) -> String {
-    let (motion, walking) = (&recording.retargeted, Walking::of(recording));
+    let (motion, walking) = (&recording.retargeted, WalkFigures::of(recording));
     let clip = &motion.clip;
     let mut facts = vec![
         motion.report.map.clone(),

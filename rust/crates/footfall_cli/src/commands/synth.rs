@@ -168,7 +168,7 @@ pub(crate) fn run(args: &SynthArgs) -> Result<()> {
     )
 }
 
-/// Returns a warning where nobody walked, or ran if the model runs and the gait may be that, as fast or as slowly as this.
+/// Returns a warning if a speed is outside the recorded range of walks, or of runs where the gait may be a run.
 fn beyond_recordings(model: &GaitModel, gait: GaitArg, speed_mps: f32) -> Option<String> {
     let running = model.running.as_deref();
     let runs = running.filter(|_| gait != GaitArg::Walk);
@@ -189,7 +189,7 @@ fn beyond_recordings(model: &GaitModel, gait: GaitArg, speed_mps: f32) -> Option
     ))
 }
 
-/// Somebody who does what a table says.
+/// A walk with the controls of a table.
 fn follow(
     args: &SynthArgs,
     table: &Path,

@@ -95,7 +95,7 @@ struct Report<'a> {
     standing_seconds: BTreeMap<String, f64>,
     /// Running; nothing where the model only walks.
     running: Option<RunningFacts>,
-    /// Jumps off both feet and crouching; nothing where nobody does.
+    /// Jumps off both feet and crouching; empty if there are none.
     jumping: Option<JumpFacts>,
     crouching: Option<CrouchFacts>,
     /// Recordings that could not be used, and why.
@@ -205,7 +205,7 @@ fn learn_standing(corpus: &Corpus, args: &TrainArgs) -> Result<LearnedStanding> 
         .collect();
     standing::learn(&clips).with_context(|| {
         format!(
-            "{}: in the recordings of --standing nobody stands upright with hanging arms for several seconds; widen it",
+            "{}: the recordings of --standing have no several seconds of upright standing with hanging arms; widen it",
             args.corpus.index.display()
         )
     })
@@ -327,7 +327,7 @@ impl Report<'_> {
     }
 }
 
-/// Shows what the trainer tells.
+/// Shows the progress of training.
 pub(super) struct TrainingProgress(pub(super) output::Progress);
 
 impl footfall_train::Progress for TrainingProgress {

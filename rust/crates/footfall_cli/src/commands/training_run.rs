@@ -31,7 +31,7 @@ pub(super) struct Skipped {
 
 impl<'a> TrainingRun<'a> {
     /// Begins a run; its output must not be the index.
-    #[expect(clippy::disallowed_methods, reason = "a tool tells how long it took")]
+    #[expect(clippy::disallowed_methods, reason = "a tool reports its running time")]
     pub(super) fn begin(
         corpus: &'a CorpusArgs,
         words: Option<&'a str>,

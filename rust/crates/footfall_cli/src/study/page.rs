@@ -59,7 +59,7 @@ struct ClipData<'a> {
     data: String,
 }
 
-/// Makes the page of a study. The two walks of a pair have equally many steps, so that length tells nothing.
+/// Makes the page of a study. The two walks of a pair have equally many steps, so that length is no clue.
 pub(crate) fn page(
     real: &[Excerpt<'_>],
     synthesised: &[Excerpt<'_>],

@@ -102,7 +102,7 @@ fn a_corpus_that_nothing_matches_or_that_is_broken() {
     train("category=run").fails_with(&["index.csv", "category", "walk"]);
     train("mood=glad").fails_with(&["mood", "category"]);
     train("subject=two").fails_with(&["absent.bvh"]);
-    // One broken recording among good ones is told, not fatal.
+    // One broken recording among good ones is reported, not fatal.
     let run = train("category=walk");
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(

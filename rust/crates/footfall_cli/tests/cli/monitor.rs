@@ -178,9 +178,9 @@ fn a_phone_is_shown_a_code_to_scan() {
         .spawn()
         .expect("the program starts");
     let output = child.wait_with_output().expect("it ends");
-    let told = String::from_utf8_lossy(&output.stderr);
+    let message = String::from_utf8_lossy(&output.stderr);
     assert!(
-        told.contains("https://") && told.contains("/p/") && told.contains('█'),
-        "{told}"
+        message.contains("https://") && message.contains("/p/") && message.contains('█'),
+        "{message}"
     );
 }

@@ -44,8 +44,8 @@ impl GaitStyleMaker {
         name: GString,
     ) -> Option<Gd<GaitStyle>> {
         match self.made(model, &clips, &name) {
-            Ok((style, told)) => {
-                self.message = GString::from(&told);
+            Ok((style, message)) => {
+                self.message = GString::from(&message);
                 Some(style)
             }
             Err(problem) => {

@@ -2,7 +2,7 @@
 //!
 //! An editor that meets an extension for the first time makes its class reference anew, on a thread whose last act is to call the main
 //! thread. A headless editor has imported or exported by then, and deleted the reference: the call ends it with exit code 134, when all is
-//! done. Nobody reads the reference there, so that it need not be made.
+//! done. It needs no class reference.
 
 use godot::classes::{DisplayServer, GDExtensionManager};
 use godot::init::is_singleton_available;

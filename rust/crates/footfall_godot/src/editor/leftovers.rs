@@ -1,4 +1,4 @@
-//! Leftovers of importers of earlier versions beside models: `.import` files, which nobody needs any more and which an export would follow.
+//! Leftovers of importers of earlier versions beside models: `.import` files, which are no longer needed and which an export would follow.
 
 use godot::classes::{
     ConfigFile, DirAccess, EditorExportPlugin, EditorFileSystemDirectory, EditorInterface,

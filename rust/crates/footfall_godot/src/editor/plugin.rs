@@ -5,7 +5,8 @@ use super::leftovers::{self, FootfallExportPlugin};
 use super::preview_bar::FootfallPreviewInspector;
 use super::style_dock::FootfallStyleDock;
 use super::walk_gizmo::FootfallWalkGizmo;
-use crate::shipped;
+use crate::gait_model::GaitModel;
+use crate::shipped::{self, Shipped as _};
 use godot::classes::{EditorFileSystem, EditorInterface, EditorPlugin, IEditorPlugin};
 use godot::prelude::*;
 
@@ -58,7 +59,7 @@ impl IEditorPlugin for FootfallEditorPlugin {
         installation::check();
         // An editor that ran when the add-on was unzipped went through the project before it knew the library: our files were nothing to it.
         if files
-            .get_file_type(&shipped::path(shipped::WALK))
+            .get_file_type(&shipped::path(GaitModel::FILE))
             .is_empty()
         {
             files.scan();

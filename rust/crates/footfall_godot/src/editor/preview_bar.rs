@@ -39,7 +39,7 @@ pub(crate) struct FootfallPreviewBar {
     walker: Option<Gd<GaitGenerator3D>>,
     play: Option<Gd<Button>>,
     time: Option<Gd<HSlider>>,
-    told: Option<Gd<Label>>,
+    time_label: Option<Gd<Label>>,
     base: Base<HBoxContainer>,
 }
 
@@ -57,11 +57,11 @@ impl FootfallPreviewBar {
         time.set_v_size_flags(control::SizeFlags::SHRINK_CENTER);
         time.set_tooltip_text("Go to a time of the walk, computed with the settings below");
         time.connect("value_changed", &bar.callable("scrub"));
-        let told = Label::new_alloc();
+        let time_label = Label::new_alloc();
         for child in [
             play.clone().upcast::<Control>(),
             time.clone().upcast(),
-            told.clone().upcast(),
+            time_label.clone().upcast(),
         ] {
             bar.add_child(&child);
         }
@@ -70,7 +70,7 @@ impl FootfallPreviewBar {
             bar.walker = Some(walker.clone());
             bar.play = Some(play);
             bar.time = Some(time);
-            bar.told = Some(told);
+            bar.time_label = Some(time_label);
         }
         bar
     }
@@ -120,8 +120,8 @@ impl IHBoxContainer for FootfallPreviewBar {
         {
             time.set_value_no_signal(secs % SHOWN_SECS);
         }
-        if let Some(told) = &mut self.told {
-            told.set_text(&format!("{secs:.2} s"));
+        if let Some(time_label) = &mut self.time_label {
+            time_label.set_text(&format!("{secs:.2} s"));
         }
     }
 }

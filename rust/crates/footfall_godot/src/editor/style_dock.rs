@@ -56,16 +56,16 @@ impl IEditorDock for FootfallStyleDock {
 
     fn process(&mut self, _delta: f64) {
         let Some(job) = &self.job else { return };
-        let told = job.progress();
+        let progress = job.progress();
         if let Some(form) = &mut self.form {
-            form.show_progress(&told);
+            form.show_progress(&progress);
         }
         let Some(ended) = finished(&mut self.job).map(Result::flatten) else {
             return;
         };
         match ended {
             Ok(made) => self.take(&made),
-            Err(problem) => self.tell(&problem),
+            Err(problem) => self.show_message(&problem),
         }
         self.refresh();
     }
@@ -91,7 +91,7 @@ impl FootfallStyleDock {
                 Err(problem) => problems.push(problem),
             }
         }
-        self.tell(&problems.join("\n"));
+        self.show_message(&problems.join("\n"));
         self.refresh();
     }
 
@@ -140,11 +140,11 @@ impl FootfallStyleDock {
         }
         match self.order() {
             Ok(order) => {
-                self.tell("");
+                self.show_message("");
                 self.made = None;
                 self.job = Some(order.start());
             }
-            Err(problem) => self.tell(&problem),
+            Err(problem) => self.show_message(&problem),
         }
         self.refresh();
     }
@@ -193,7 +193,7 @@ impl FootfallStyleDock {
                 Err(problem) => problem,
             }
         };
-        self.tell(&problem);
+        self.show_message(&problem);
     }
 }
 
@@ -262,7 +262,7 @@ impl FootfallStyleDock {
             60.0 * style.cadence_hz,
             made.remarks
         );
-        self.tell(text.trim_end());
+        self.show_message(text.trim_end());
         if let Some(mut files) = EditorInterface::singleton().get_resource_filesystem() {
             files.scan();
         }
@@ -277,9 +277,9 @@ impl FootfallStyleDock {
             .ok_or_else(|| format!("{file} no longer exists. Make the style again."))
     }
 
-    fn tell(&mut self, message: &str) {
+    fn show_message(&mut self, message: &str) {
         if let Some(form) = &mut self.form {
-            form.tell(message);
+            form.show_message(message);
         }
     }
 
@@ -308,7 +308,7 @@ fn skeletons_in_view() -> Vec<Gd<Skeleton3D>> {
         .collect()
 }
 
-/// Adds a style to what a walker wears, or gives it full weight if it is worn already.
+/// Adds a style to a walker, or gives it full weight if the walker has it already.
 fn wear(walker: &Gd<GaitGenerator3D>, style: &Gd<GaitStyle>) {
     let Some(mut undo) = EditorInterface::singleton().get_editor_undo_redo() else {
         return;
@@ -319,8 +319,8 @@ fn wear(walker: &Gd<GaitGenerator3D>, style: &Gd<GaitStyle>) {
     let mut weights = old_weights.clone();
     weights.resize(styles.len());
     let path = style.get_path();
-    let place = styles.iter_shared().position(|worn| {
-        worn.is_some_and(|worn| &worn == style || (!path.is_empty() && worn.get_path() == path))
+    let place = styles.iter_shared().position(|known| {
+        known.is_some_and(|known| &known == style || (!path.is_empty() && known.get_path() == path))
     });
     if let Some(place) = place {
         weights.as_mut_slice()[place] = 1.0;

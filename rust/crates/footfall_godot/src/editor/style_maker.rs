@@ -54,8 +54,8 @@ impl Order {
             &self.base, recordings, &self.name, &config, made_from, reporter,
         )
         .map_err(message)?;
-        // Whoever cancelled by now wants no file.
-        if reporter.tell("writing", 0, 1).is_break() {
+        // After a cancellation no file is written.
+        if reporter.report("writing", 0, 1).is_break() {
             return Err(TrainError::Cancelled.to_string());
         }
         let bytes = adapted
@@ -80,7 +80,7 @@ impl Order {
 #[derive(Default)]
 pub(super) struct Walks {
     pub(super) recordings: Vec<Recording>,
-    /// Labels and lengths of the clips in which nobody does.
+    /// Labels and lengths of the clips without a walk.
     left_out: Vec<String>,
 }
 
@@ -88,7 +88,7 @@ impl Walks {
     /// Reads clips of `walker`.
     ///
     /// # Errors
-    /// Names the clip that cannot be read; all of them when nobody walks in any.
+    /// Names the clip that cannot be read; all clips if none holds a walk.
     pub(super) fn read(
         clips: &[Clip],
         walker: &str,

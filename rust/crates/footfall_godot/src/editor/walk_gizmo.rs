@@ -62,7 +62,7 @@ impl IEditorNode3DGizmoPlugin for FootfallWalkGizmo {
         let Some(node) = node.and_then(|node| node.try_cast::<GaitGenerator3D>().ok()) else {
             return;
         };
-        let Some(way) = node.bind().foresee() else {
+        let Some(way) = node.bind().preview_path() else {
             return;
         };
         let node_from_ground =

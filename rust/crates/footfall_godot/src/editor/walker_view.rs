@@ -20,12 +20,12 @@ const TARGET: Vector3 = Vector3::new(0.0, 0.86, 0.0);
 #[derive(GodotClass)]
 #[class(tool, init, internal, base = SubViewportContainer)]
 pub(super) struct FootfallWalkerView {
-    walking: Option<Walking>,
+    walk: Option<PreviewWalk>,
     base: Base<SubViewportContainer>,
 }
 
 /// The one that walks.
-struct Walking {
+struct PreviewWalk {
     generator: GaitGenerator,
     skeleton: Skeleton,
     controls: Controls,
@@ -63,10 +63,10 @@ impl FootfallWalkerView {
         view
     }
 
-    /// Lets a walker of the only style of a space walk, at the speed that suits it.
+    /// Shows a walker with the only style of a space, at the speed that suits the style.
     pub(super) fn show(&mut self, space: &Arc<StyleSpace>) {
-        if let Some(walking) = self.walking.take() {
-            walking.body.free();
+        if let Some(walk) = self.walk.take() {
+            walk.body.free();
         }
         let skeleton = space.model().skeleton.clone();
         let config = GeneratorConfig {
@@ -87,7 +87,7 @@ impl FootfallWalkerView {
             .map(|limb| LimbNodes::hang(limb, &mut body))
             .collect();
         viewport.add_child(&body);
-        self.walking = Some(Walking {
+        self.walk = Some(PreviewWalk {
             controls: Controls {
                 speed_mps: generator.usual_speed_mps(),
                 ..Controls::STAND
@@ -103,15 +103,15 @@ impl FootfallWalkerView {
 #[godot_api]
 impl ISubViewportContainer for FootfallWalkerView {
     fn process(&mut self, delta: f64) {
-        let Some(walking) = &mut self.walking else {
+        let Some(walk) = &mut self.walk else {
             return;
         };
         let mut pose = Pose::default();
-        let controls = walking.controls;
-        walking.generator.step(delta as f32, &controls, &mut pose);
-        let model = ModelPose::of(&walking.skeleton, &pose);
-        let now = limbs(&walking.skeleton, &model);
-        for (nodes, limb) in walking.limbs.iter_mut().zip(&now) {
+        let controls = walk.controls;
+        walk.generator.step(delta as f32, &controls, &mut pose);
+        let model = ModelPose::of(&walk.skeleton, &pose);
+        let now = limbs(&walk.skeleton, &model);
+        for (nodes, limb) in walk.limbs.iter_mut().zip(&now) {
             nodes.place(limb);
         }
     }

@@ -1,6 +1,6 @@
 //! One frame of feet on the ground.
 
-use super::session::Session;
+use super::session::PlacementSession;
 use super::{FootPlacement3D, RISE_SECS, generator_beside};
 use crate::convert;
 use footfall_core::Side;
@@ -10,8 +10,12 @@ use godot::prelude::*;
 
 impl FootPlacement3D {
     /// One frame: the pose is read, put on the ground and written.
-    pub(super) fn place(&mut self, mut session: Session, skeleton: Gd<Skeleton3D>, delta: f64) {
-        self.reported = None;
+    pub(super) fn place(
+        &mut self,
+        mut session: PlacementSession,
+        skeleton: Gd<Skeleton3D>,
+        delta: f64,
+    ) {
         let space = skeleton
             .get_world_3d()
             .and_then(|world| world.get_direct_space_state());

@@ -2,6 +2,7 @@
 
 use super::FootPlacement3D;
 use crate::convert;
+use crate::modifier::BodyModifier as _;
 use footfall_core::Side;
 use footfall_ik::placement::PlacedFoot;
 use godot::prelude::*;

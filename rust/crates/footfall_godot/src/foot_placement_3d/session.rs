@@ -10,7 +10,7 @@ use godot::classes::Node3D;
 use godot::prelude::*;
 
 /// The feet of one skeleton.
-pub(super) struct Session {
+pub(crate) struct PlacementSession {
     pub(super) binding: SkeletonBinding,
     pub(super) character: Gd<Node3D>,
     pub(super) placer: FootPlacer,
@@ -18,7 +18,7 @@ pub(super) struct Session {
     pub(super) pose: Pose,
 }
 
-impl Session {
+impl PlacementSession {
     /// The floor of the animation in the world.
     pub(super) fn world_from_floor(&self) -> Frame {
         let world = convert::frame(self.character.get_global_transform());

@@ -37,8 +37,8 @@ pub(super) struct Actors {
 }
 
 impl Actors {
-    /// Lends scenes to the walkers of this tier, and takes them back from all others. Who has one keeps it. At most so
-    /// many scenes are made in one call; returns whether there are walkers still without.
+    /// Lends scenes to the walkers of this tier, and takes them back from all others. A walker keeps its scene. One call creates a limited
+    /// number of scenes; returns whether walkers are left without one.
     pub(super) fn lend(
         &mut self,
         tiers: &[Tier],
@@ -186,7 +186,7 @@ impl Actors {
 }
 
 impl Actor {
-    /// Plays nobody.
+    /// Shows no walker.
     fn rest(&mut self) {
         self.plays = None;
         if self.node.is_instance_valid() {

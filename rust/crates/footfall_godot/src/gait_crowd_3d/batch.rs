@@ -173,7 +173,7 @@ impl GaitCrowd3D {
 }
 
 impl GaitCrowd3D {
-    /// The rows of those who are named, or of everybody when nobody is.
+    /// Rows of the named walkers, or of all if none is named.
     pub(super) fn places(&self, agents: &PackedInt32Array) -> Vec<Option<usize>> {
         let Some(walkers) = &self.walkers else {
             return vec![None; agents.len()];

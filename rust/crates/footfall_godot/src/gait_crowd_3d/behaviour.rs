@@ -5,7 +5,7 @@ use godot::prelude::*;
 /// More walkers than this are refused.
 pub(super) const MOST_AGENTS: i64 = footfall_rig::crowd::MOST_AGENTS as i64;
 
-/// Nobody walks or runs faster, m/s.
+/// Highest speed of a walker, m/s.
 pub(super) const FASTEST_MPS: f32 = 6.0;
 
 /// Behaviours of walkers by themselves.

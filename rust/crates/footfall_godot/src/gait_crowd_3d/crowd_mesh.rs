@@ -288,7 +288,7 @@ pub(super) fn crowd_material(own: Option<Gd<Material>>) -> Option<Gd<ShaderMater
     Some(material)
 }
 
-/// Lets the shaders of a mesh read these poses.
+/// Gives the shaders of a mesh these poses.
 pub(super) fn give_poses(
     mesh: &Gd<ArrayMesh>,
     rest: &[Vec3; JOINT_COUNT],

@@ -25,7 +25,7 @@ pub(super) const POSE_BYTES: usize = POSE_NUMBERS * size_of::<f16>();
 
 /// A group of instances and their poses.
 pub(super) struct Flock {
-    /// Those with the character's mesh, and those with its stand-in, where there is one.
+    /// Instances with the character's mesh, and with its stand-in if there is one.
     instances: [Option<Instances>; 2],
     image: Gd<Image>,
     texture: Gd<ImageTexture>,
@@ -39,7 +39,7 @@ pub(super) struct Flock {
 }
 
 impl Flock {
-    /// Room for so many walkers and so many poses.
+    /// Creates space for these numbers of walkers and poses.
     pub(super) fn new(
         host: &Gd<Node>,
         body: &CrowdMesh,

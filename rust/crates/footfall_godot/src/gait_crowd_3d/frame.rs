@@ -1,8 +1,8 @@
-//! One frame of a crowd: time passes, everybody is drawn, and signals are emitted.
+//! One frame of a crowd: walkers move and are drawn, and signals are emitted.
 
 use super::behaviour::MOST_AGENTS;
 use super::navigation::Navigation;
-use super::scene::{CrowdScene, Look};
+use super::scene::{CrowdScene, DrawSettings};
 use super::{GaitCrowd3D, ground};
 use crate::convert;
 use footfall_rig::crowd::{Crowd, Limits};
@@ -10,7 +10,7 @@ use godot::classes::{Engine, Node3D};
 use godot::prelude::*;
 
 impl GaitCrowd3D {
-    /// Lets time pass; `waits` for walkers that are being made, or leaves them for a later frame.
+    /// Advances the crowd; `waits` for pending walkers, or leaves them for a later frame.
     pub(super) fn advance_by(&mut self, dt_secs: f32, waits: bool) {
         if !self.make() || !self.begin_walkers(waits) {
             return;
@@ -18,7 +18,7 @@ impl GaitCrowd3D {
         let limits = self.limits();
         let (avoidance, repeat_far, mask) = (self.avoidance, self.repeat_far, self.ground_mask);
         let standing_motion = self.standing_motion as f32;
-        let look = Look {
+        let look = DrawSettings {
             character: self.character.clone(),
             material: self.material.clone(),
             culls: self.culling,
@@ -30,11 +30,11 @@ impl GaitCrowd3D {
             return;
         };
         let leads = !walkers.is_following();
-        // Shared steps cannot be told.
+        // Shared steps cannot be sent.
         walkers.repeats = repeat_far && leads && !self.replica.is_told();
         self.replica.pass(dt_secs);
         walkers.standing_motion = standing_motion;
-        let is_navigated = walkers.way().is_navigated();
+        let is_navigated = walkers.routing().is_navigated();
         if leads
             && (is_navigated || self.sends)
             && let Some(mut navigation) = Navigation::of(&host, self.navigation_layers)
@@ -67,7 +67,7 @@ impl GaitCrowd3D {
         });
         let landed = self.landed(&walkers);
         let began: PackedInt32Array = walkers.began().iter().copied().collect();
-        // A script that was called in between may have made everything anew.
+        // A script that was called in between may have created the crowd again.
         if self.walkers.is_none() && self.base().is_inside_tree() {
             self.walkers = Some(walkers);
             self.scene = drawn;
@@ -82,7 +82,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Lets those begin who were made meanwhile; whether there is a crowd still.
+    /// Starts walkers that were made meanwhile; returns whether there still is a crowd.
     fn begin_walkers(&mut self, waits: bool) -> bool {
         let Some(walkers) = &mut self.walkers else {
             return false;
@@ -102,7 +102,7 @@ impl GaitCrowd3D {
                 true
             }
             Err(error) => {
-                self.fail(format!("The walk cannot start: {error}"));
+                self.fail(&format!("The walk cannot start: {error}"));
                 false
             }
         }
@@ -123,7 +123,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Arguments of the signal `footsteps`, if any feet landed and anybody listens; nothing in the editor.
+    /// Arguments of the signal `footsteps`; `None` if no foot landed, in the editor, and without a connection.
     fn landed(
         &self,
         walkers: &Crowd,

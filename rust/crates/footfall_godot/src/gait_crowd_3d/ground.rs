@@ -8,7 +8,7 @@ use glam::Vec3;
 use godot::classes::Node3D;
 use godot::prelude::*;
 
-/// Ground is looked for so far above and below a walker, metres.
+/// Range above and below a walker in which ground is searched for, metres.
 const GROUND_REACH_M: f32 = 1.5;
 
 /// Finds the ground under walkers that have just put a foot down.

@@ -57,7 +57,7 @@ impl Instances {
         }
     }
 
-    /// The numbers of so many instances, [`INSTANCE_NUMBERS`] each, to be written anew.
+    /// The numbers of this many instances, [`INSTANCE_NUMBERS`] each, to be overwritten.
     pub(super) fn numbers(&mut self, count: usize) -> &mut [f32] {
         if count > self.room {
             self.room = count.max(self.room * GROWTH.0 / GROWTH.1);
@@ -69,7 +69,7 @@ impl Instances {
         &mut self.numbers[self.turn].as_mut_slice()[..count * INSTANCE_NUMBERS]
     }
 
-    /// Hands so many instances, which lie in this box of the crowd's space, to the renderer.
+    /// Passes this many instances, which lie in this box of the crowd's space, to the renderer.
     pub(super) fn upload(&mut self, count: usize, bounds: Aabb) {
         let id = self.multimesh.get_rid();
         if count > 0 {

@@ -4,25 +4,24 @@ use super::behaviour::CrowdBehaviour;
 use super::crowd_mesh::CrowdMesh;
 use super::{GaitCrowd3D, NO_CHARACTER};
 use crate::convert;
-use crate::gait_model::{self, NO_MODEL};
+use crate::gait_model;
 use crate::gait_style;
-use crate::shipped;
+use crate::report;
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdSettings, Path, Way};
+use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdSettings, Path, Routing};
 use footfall_synth::StyleSpace;
 use glam::Vec2;
-use godot::classes::{Engine, Node3D, Path3D};
+use godot::classes::{Node3D, Path3D};
 use godot::prelude::*;
 use std::sync::Arc;
 
-/// A walk, its styles, and both prepared if somebody walks so already.
+/// A model, its styles, and both prepared together if they are in use already.
 type CrowdWalk = (Arc<GaitModel>, Vec<Arc<GaitStyle>>, Option<Arc<StyleSpace>>);
 
 impl GaitCrowd3D {
-    /// The way of walking, the add-on's own where none was given.
+    /// The model, or the add-on's own if none is set.
     pub(super) fn used_model(&self) -> Result<Gd<gait_model::GaitModel>, String> {
-        let used = self.fallback.model(self.model.as_ref(), shipped::WALK);
-        used.ok_or_else(|| NO_MODEL.to_owned())
+        self.fallback.model(self.model.as_ref())
     }
 
     /// The walk and the styles that walkers are made of.
@@ -33,11 +32,11 @@ impl GaitCrowd3D {
         Ok((trained, styles, space))
     }
 
-    pub(super) fn way(&self) -> Result<Way, String> {
+    pub(super) fn routing(&self) -> Result<Routing, String> {
         match self.behaviour {
-            CrowdBehaviour::Scripted => Ok(Way::Told),
-            CrowdBehaviour::Navigate => Ok(Way::Navigate),
-            CrowdBehaviour::Wander => Ok(Way::Wander {
+            CrowdBehaviour::Scripted => Ok(Routing::Scripted),
+            CrowdBehaviour::Navigate => Ok(Routing::Navigate),
+            CrowdBehaviour::Wander => Ok(Routing::Wander {
                 half: 0.5 * Vec2::new(self.area.x, self.area.y),
             }),
             CrowdBehaviour::Path => {
@@ -56,13 +55,13 @@ impl GaitCrowd3D {
                     Vec2::new(place.x, place.z)
                 });
                 Path::new(points.collect())
-                    .map(Way::Path)
+                    .map(Routing::Path)
                     .ok_or_else(|| "The Path3D has no length. Draw its curve.".to_owned())
             }
         }
     }
 
-    /// Makes the walkers if there are none yet; whether there are.
+    /// Creates the crowd if there is none yet; returns whether there is one.
     pub(super) fn make(&mut self) -> bool {
         if self.walkers.is_some() {
             return true;
@@ -75,12 +74,12 @@ impl GaitCrowd3D {
                 self.walkers = Some(walkers);
                 self.mesh = Some(mesh);
             }
-            Err(problem) => self.fail(problem),
+            Err(problem) => self.fail(&problem),
         }
         self.walkers.is_some()
     }
 
-    /// As [`make`](Self::make), with a row for everybody who was added.
+    /// As [`make`](Self::make), with a row for every added walker.
     pub(super) fn make_whole(&mut self) -> bool {
         let made = self.make();
         if let Some(walkers) = &mut self.walkers {
@@ -89,22 +88,29 @@ impl GaitCrowd3D {
         made
     }
 
-    /// There is no crowd, for this reason, until something changes.
-    pub(super) fn fail(&mut self, problem: String) {
-        self.forget();
-        if !Engine::singleton().is_editor_hint() {
-            let node = self.base().get_path();
-            godot_warn!("{node}: {problem}");
+    /// Removes walkers and scene; the next frame makes them again.
+    pub(super) fn forget(&mut self) {
+        if let Some(scene) = self.scene.take() {
+            scene.free();
         }
-        self.problem = Some(problem);
-        self.base_mut().update_configuration_warnings();
+        self.walkers = None;
+        self.replica.renew();
+        self.mesh = None;
+        self.problem = None;
+    }
+
+    /// Removes the crowd and reports the reason; it is not created again until a setting changes.
+    pub(super) fn fail(&mut self, problem: &str) {
+        self.forget();
+        self.problem = Some(problem.to_owned());
+        report::warn(&self.base_mut().clone().upcast(), problem);
     }
 
     /// Problems that keep the crowd from walking, as far as they are known.
     pub(super) fn problems(&self) -> PackedStringArray {
         let mut problems: Vec<String> = Vec::new();
         let checked = self.walk().and_then(|(model, styles, space)| {
-            // Checked already when somebody walks so.
+            // In use already, and so checked.
             if space.is_some() {
                 return Ok(());
             }
@@ -118,7 +124,7 @@ impl GaitCrowd3D {
             problems.push(NO_CHARACTER.to_owned());
         }
         if self.behaviour == CrowdBehaviour::Path
-            && let Err(problem) = self.way()
+            && let Err(problem) = self.routing()
         {
             problems.push(problem);
         }
@@ -133,7 +139,7 @@ impl GaitCrowd3D {
     fn made(&mut self) -> Result<(Crowd, CrowdMesh), String> {
         let (model, styles, space) = self.walk()?;
         let character = self.character.clone().ok_or(NO_CHARACTER)?;
-        let way = self.way()?;
+        let routing = self.routing()?;
         let mut host = self.to_gd().upcast::<Node3D>();
         let mesh = {
             let _released = self.base_mut();
@@ -159,7 +165,7 @@ impl GaitCrowd3D {
             space,
             body: mesh.body.clone(),
         };
-        let mut walkers = Crowd::new(recipe, way, settings);
+        let mut walkers = Crowd::new(recipe, routing, settings);
         if self.replica.follows {
             walkers.follow();
         } else {

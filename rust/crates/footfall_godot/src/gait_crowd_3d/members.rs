@@ -1,4 +1,4 @@
-//! Members of a crowd, as scripts see them: walkers come, go, are named, found and saved.
+//! Methods for scripts that add, remove, find and save walkers.
 
 use super::GaitCrowd3D;
 use crate::convert;
@@ -6,7 +6,7 @@ use footfall_rig::crowd::{Crowd, MOST_AGENTS, SavedCrowd};
 use godot::classes::{Node, Node3D};
 use godot::prelude::*;
 
-/// The id of nobody.
+/// The id that stands for no walker.
 const NOBODY: i32 = -1;
 
 #[godot_api(secondary)]
@@ -221,7 +221,7 @@ impl GaitCrowd3D {
         walkers.map_or(NOBODY, |(walkers, place)| walkers.roster().name(place))
     }
 
-    /// Those who had these places are gone.
+    /// Removes the walkers of these rows from the scene.
     pub(super) fn left(&mut self, places: &[usize]) {
         if let Some(scene) = &mut self.scene {
             scene.leave(places);

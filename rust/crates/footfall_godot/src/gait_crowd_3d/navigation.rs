@@ -6,12 +6,12 @@ use glam::{Vec2, Vec3, Vec3Swizzles as _};
 use godot::classes::{Engine, Node3D, Object};
 use godot::prelude::*;
 
-/// Ways that are looked for in one frame at most: each costs tens of microseconds.
+/// Most routes that are computed in one frame: each takes tens of microseconds.
 const MOST_A_FRAME: usize = 32;
-/// Walkers who are looked at in one frame, lest they walk into walls: so many, or as many as it takes to look at everybody within so many frames.
+/// Walkers whose ground is checked in one frame, to keep them off walls: this many, or as many as are needed to check all of them within this many frames.
 const MOST_KEPT: usize = 32;
 const MOST_FRAMES: usize = 60;
-/// The ground is looked at so far ahead of them and as far as this beside that, metres.
+/// Distances of the checked ground ahead of a walker, and beside that, metres.
 const AHEAD_M: f32 = 1.0;
 const ASIDE_M: f32 = 1.5;
 /// A place counts as on the map when it is no farther off, metres. A map keeps clear of walls by the radius of its agents.
@@ -32,9 +32,9 @@ impl Navigation {
     pub(super) fn of(crowd: &Gd<Node3D>, layers: u32) -> Option<Self> {
         let map = crowd.get_world_3d()?.get_navigation_map().to_variant();
         let mut server = Engine::singleton().get_singleton("NavigationServer3D")?;
-        let told = server.call("map_get_iteration_id", core::slice::from_ref(&map));
+        let found = server.call("map_get_iteration_id", core::slice::from_ref(&map));
         let world_from_crowd = crowd.get_global_transform();
-        (told.try_to::<i64>().unwrap_or(0) > 0).then_some(Self {
+        (found.try_to::<i64>().unwrap_or(0) > 0).then_some(Self {
             server,
             map,
             layers,
@@ -150,10 +150,10 @@ impl Navigation {
             .call("map_get_regions", core::slice::from_ref(&self.map));
         let regions: Array<Rid> = regions.try_to().unwrap_or_default();
         let boxes = regions.iter_shared().filter_map(|region| {
-            let told = self
+            let found = self
                 .server
                 .call("region_get_bounds", &[region.to_variant()]);
-            told.try_to::<Aabb>().ok()
+            found.try_to::<Aabb>().ok()
         });
         boxes.reduce(Aabb::merge).unwrap_or_default()
     }

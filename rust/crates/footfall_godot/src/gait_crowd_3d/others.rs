@@ -1,4 +1,4 @@
-//! Everybody else about: nodes of a group that a crowd's walkers keep clear of.
+//! Nodes of a group that a crowd's walkers avoid.
 
 use super::GaitCrowd3D;
 use crate::convert;
@@ -9,7 +9,7 @@ use godot::prelude::*;
 
 /// Time constant of a node's velocity, seconds: bodies move in physics frames, which are not those in which they are looked at.
 const VELOCITY_SECS: f32 = 0.1;
-/// A node that goes so far in a frame was put there, metres.
+/// Motion of a node in a frame beyond which it was teleported, metres.
 const PUT_M: f32 = 2.0;
 
 /// A node of the group, as it was seen last.
@@ -30,7 +30,7 @@ pub(super) struct Others {
 }
 
 impl Others {
-    /// Looks where the group's nodes are, and tells the crowd. A crowd in the group counts with everybody in it.
+    /// Gives the crowd the places of the group's nodes. A crowd in the group counts with all its walkers.
     pub(super) fn watch(
         &mut self,
         walkers: &mut Crowd,

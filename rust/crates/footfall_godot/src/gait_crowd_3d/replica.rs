@@ -1,11 +1,11 @@
-//! A crowd over a network: told to other peers, or following another peer's.
+//! A crowd over a network: sent to other peers, or following another peer's.
 
 use super::GaitCrowd3D;
 use footfall_rig::crowd::{Crowd, CrowdReplicaError, CrowdSender};
 use godot::global::randi;
 use godot::prelude::*;
 
-/// Refusals are told no more often than this, seconds.
+/// Shortest time between two refusals that are reported, seconds.
 const QUIET_SECS: f64 = 5.0;
 
 /// Warning where walkers are added to a crowd that is another peer's.
@@ -15,27 +15,27 @@ const FOLLOWS: &str = "This crowd follows another peer's, which alone says who i
 #[derive(Debug, Default)]
 pub(super) struct Replica {
     pub(super) follows: bool,
-    /// Peers that are told.
+    /// Peers that follow the crowd.
     peers: Vec<i32>,
     sender: Option<CrowdSender>,
     /// The crowd's time when its messages were taken last, seconds.
     taken_secs: f64,
-    /// Time until another refusal is told, seconds.
+    /// Time until another refusal is reported, seconds.
     quiet_secs: f64,
 }
 
 impl Replica {
-    /// Returns true while anybody is told.
+    /// Returns true while any peer follows the crowd.
     pub(super) const fn is_told(&self) -> bool {
         !self.peers.is_empty()
     }
 
-    /// Forgets what was told: the crowd is made anew.
+    /// Forgets what was sent: the crowd is created again.
     pub(super) fn renew(&mut self) {
         self.sender = None;
     }
 
-    /// Lets time pass.
+    /// Advances the time between reports.
     pub(super) fn pass(&mut self, secs: f32) {
         self.quiet_secs -= f64::from(secs);
     }
@@ -43,10 +43,10 @@ impl Replica {
 
 #[godot_api(secondary)]
 impl GaitCrowd3D {
-    /// Has another peer of a multiplayer game told of this crowd from now on: who is in it, and every step. `take_messages()` has what is to be sent. Called again it tells
-    /// everything again, once a second. `controller/crowd_synchronizer.tscn` does all this.
+    /// Begins to send this crowd to another peer of a multiplayer game: its walkers, and every step. `take_messages()` returns the messages. A repeated call sends
+    /// all walkers again, at most once a second. `controller/crowd_synchronizer.tscn` does all this.
     ///
-    /// While anybody is told, walkers far away share no steps: 5,000 walkers take two fifths of a core.
+    /// While any peer follows, distant walkers share no steps: 5,000 walkers take two fifths of a core.
     #[func]
     fn tell_peer(&mut self, peer: i32) {
         if !self.replica.peers.contains(&peer) {
@@ -57,7 +57,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Has a peer told no more.
+    /// Stops sending the crowd to a peer.
     #[func]
     fn forget_peer(&mut self, peer: i32) {
         self.replica.peers.retain(|other| *other != peer);
@@ -66,17 +66,17 @@ impl GaitCrowd3D {
         }
     }
 
-    /// The peers that are told this crowd.
+    /// Returns the peers to which this crowd is sent.
     #[func]
     fn get_told_peers(&self) -> PackedInt32Array {
         self.replica.peers.as_slice().into()
     }
 
-    /// The messages about this crowd since the last call, to be sent in this order: dictionaries of `peer` (`int`, 0 for all that are told), `reliable` (`bool`) and
+    /// Returns the messages about this crowd since the last call, to be sent in this order: dictionaries of `peer` (`int`, 0 for all that follow), `reliable` (`bool`) and
     /// `bytes` (`PackedByteArray`, at most 1200). Call it in every frame.
     ///
-    /// At most `bytes_per_second` of them say how walkers step, those first of whom others would err most, and as many introduce walkers to each peer that has come. 100 a
-    /// walker tell everything as often as lossy networks need. Of a crowd that follows another one there is nothing to tell.
+    /// At most `bytes_per_second` carry steps, first those whose absence would cause the largest errors, and as many introduce walkers to each new peer. 100 bytes per second and
+    /// walker repeat steps as often as lossy networks need. A crowd that follows another one has no messages.
     #[func]
     fn take_messages(&mut self, bytes_per_second: i64) -> Array<VarDictionary> {
         let Some(walkers) = self
@@ -90,7 +90,7 @@ impl GaitCrowd3D {
         let now_secs = walkers.time_secs();
         let taken_secs = &mut self.replica.taken_secs;
         let sender = self.replica.sender.get_or_insert_with(|| {
-            // Another one than that of a crowd, or of a server, before.
+            // A session number other than that of an earlier crowd, or of an earlier server.
             let mut sender = CrowdSender::new(randi() as u16);
             for peer in peers {
                 sender.join(*peer);
@@ -113,7 +113,7 @@ impl GaitCrowd3D {
         messages.collect()
     }
 
-    /// Hears a message of the crowd that this one follows. One that makes no sense is refused: nothing changes, and `message_refused` says why, every five seconds at most.
+    /// Takes a message of the crowd that this one follows. An invalid message is refused: nothing changes, and `message_refused` gives the reason, every five seconds at most.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn hear_message(&mut self, bytes: PackedByteArray) {
@@ -127,7 +127,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Returns whether the crowd follows another peer's and has heard who is in it.
+    /// Returns `true` if the crowd follows another peer's crowd and has received its walkers.
     #[func]
     fn is_introduced(&self) -> bool {
         let walkers = self.walkers.as_ref();
@@ -136,7 +136,7 @@ impl GaitCrowd3D {
 }
 
 impl GaitCrowd3D {
-    /// Follows another peer's crowd from now on, or no more.
+    /// Begins or stops to follow another peer's crowd.
     pub(super) fn let_follow(&mut self, follows: bool) {
         if follows == self.replica.follows {
             return;
@@ -152,7 +152,7 @@ impl GaitCrowd3D {
         }
     }
 
-    /// Returns true, and warns, where walkers come from another peer alone.
+    /// Returns true, and warns, if the crowd follows another peer's.
     pub(super) fn is_others(&self) -> bool {
         if self.replica.follows {
             let node = self.base().get_path();

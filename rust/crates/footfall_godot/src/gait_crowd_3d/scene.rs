@@ -15,13 +15,13 @@ use godot::classes::{Node, Node3D, PackedScene, ShaderMaterial};
 use godot::prelude::*;
 use rayon::prelude::*;
 
-/// Tiers are chosen anew in every so many frames.
+/// Number of frames after which tiers are chosen again.
 const CHOOSE_EVERY: u64 = 8;
 /// Margin around the camera's view in which walkers count as seen, metres: poses must be there before they are needed.
 const MARGIN_M: f32 = 3.0;
 
 /// Settings of a crowd's look.
-pub(super) struct Look {
+pub(super) struct DrawSettings {
     pub(super) character: Option<Gd<PackedScene>>,
     pub(super) material: Option<Gd<ShaderMaterial>>,
     pub(super) culls: bool,
@@ -59,7 +59,7 @@ pub(super) struct CrowdScene {
 
 impl CrowdScene {
     /// Without room for anybody yet.
-    pub(super) fn new(host: &Gd<Node3D>, mesh: CrowdMesh, look: &Look) -> Option<Self> {
+    pub(super) fn new(host: &Gd<Node3D>, mesh: CrowdMesh, look: &DrawSettings) -> Option<Self> {
         Some(Self {
             near: near(host, &mesh, 1, look)?,
             far: (0..GROUPS)
@@ -80,8 +80,8 @@ impl CrowdScene {
         })
     }
 
-    /// Gives it room for everybody; where many come at once, within some frames.
-    fn fit(&mut self, host: &Gd<Node3D>, walkers: &Crowd, limits: &Limits, look: &Look) {
+    /// Makes space for all walkers; for many new ones at once, within some frames.
+    fn fit(&mut self, host: &Gd<Node3D>, walkers: &Crowd, limits: &Limits, look: &DrawSettings) {
         let (room, each) = rooms(walkers, limits);
         let places = walkers.agents().len();
         for shown in &mut self.shown {
@@ -104,7 +104,7 @@ impl CrowdScene {
                 core::mem::replace(flock, made).free();
                 left -= 1;
                 self.unwritten[group] = true;
-                // Nobody's pose is in it yet.
+                // It holds no pose yet.
                 for tick in self.ticks.iter_mut().skip(group).step_by(GROUPS) {
                     *tick = 0;
                 }
@@ -127,18 +127,18 @@ impl CrowdScene {
         &self.actors
     }
 
-    /// Draws everybody as they are now.
+    /// Draws all walkers.
     pub(super) fn draw(
         &mut self,
         walkers: &mut Crowd,
         host: &Gd<Node3D>,
         limits: &Limits,
-        look: &Look,
+        look: &DrawSettings,
     ) {
         self.drawn += 1;
         self.fit(host, walkers, limits, look);
         if !walkers.began().is_empty() && self.frame == walkers.frame() {
-            // While time stands still it is nobody's turn.
+            // While time stands still no group is due.
             self.unwritten = [true; GROUPS];
         }
         self.frame = walkers.frame();
@@ -184,7 +184,7 @@ impl CrowdScene {
         }
     }
 
-    fn lend(&mut self, walkers: &Crowd, host: &Gd<Node3D>, look: &Look) {
+    fn lend(&mut self, walkers: &Crowd, host: &Gd<Node3D>, look: &DrawSettings) {
         if let Some(character) = &look.character {
             let mut host = host.clone();
             self.lacking = self.actors.lend(
@@ -197,7 +197,7 @@ impl CrowdScene {
         }
     }
 
-    /// Everybody with a new pose in every frame, and those for whom there was no scene.
+    /// Draws walkers with a new pose in every frame, and those for which there was no scene.
     fn draw_near(&mut self, walkers: &Crowd, planes: &[Vec4]) {
         let (agents, tiers, drawn) = (walkers.agents(), walkers.tiers(), walkers.drawn());
         for shown in &mut self.shown {
@@ -249,8 +249,8 @@ impl CrowdScene {
         });
     }
 
-    /// Everybody far away: the group that has just moved gets the poses where it was and where it is, and is drawn on its way from
-    /// the one to the other.
+    /// Draws distant walkers: the group that has just moved gets its previous and its new poses, and is drawn between
+    /// the two.
     fn draw_far(&mut self, walkers: &Crowd, planes: &[Vec4]) {
         let (tiers, drawn) = (walkers.tiers(), walkers.drawn());
         let frame = walkers.frame();
@@ -348,12 +348,12 @@ fn rooms(walkers: &Crowd, limits: &Limits) -> (usize, usize) {
     (near.max(1), far.max(1))
 }
 
-fn near(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &Look) -> Option<Flock> {
+fn near(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &DrawSettings) -> Option<Flock> {
     let node = host.clone().upcast::<Node>();
     Flock::new(&node, mesh, 0, room, room, look.material.as_ref())
 }
 
-fn far(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &Look) -> Option<Flock> {
+fn far(host: &Gd<Node3D>, mesh: &CrowdMesh, room: usize, look: &DrawSettings) -> Option<Flock> {
     let node = host.clone().upcast::<Node>();
     Flock::new(&node, mesh, 1, room, 2 * room, look.material.as_ref())
 }

@@ -4,7 +4,7 @@ use super::bounds::Bounds;
 use super::crowd_mesh::CrowdMesh;
 use super::flock::{Flock, POSE_BYTES, write_pose};
 use super::instances::{INSTANCE_NUMBERS, draws_in_srgb, write_instance};
-use super::scene::{Look, is_seen};
+use super::scene::{DrawSettings, is_seen};
 use footfall_core::{JOINT_COUNT, Joint};
 use footfall_rig::crowd::{Crowd, FETCHED, GROUPS, Tier};
 use footfall_synth::{CrowdPose, StyledBody};
@@ -18,7 +18,7 @@ const ROWS: usize = 1024;
 /// Room grows by half.
 const GROWTH: (usize, usize) = (3, 2);
 
-/// Those of so many rows who are drawn with the same mesh.
+/// Walkers that are drawn with the same mesh, and the number of their rows.
 #[derive(Debug, Clone)]
 struct Part {
     shown: Vec<u32>,
@@ -51,7 +51,7 @@ struct Shown<'a> {
 
 impl SharedFlock {
     /// Without room for anybody yet.
-    pub(super) fn new(host: &Gd<Node3D>, mesh: &CrowdMesh, look: &Look) -> Option<Self> {
+    pub(super) fn new(host: &Gd<Node3D>, mesh: &CrowdMesh, look: &DrawSettings) -> Option<Self> {
         Some(Self {
             flock: flock(host, mesh, 1, look)?,
             poses: 1,
@@ -64,8 +64,8 @@ impl SharedFlock {
         })
     }
 
-    /// Gives everybody room, and takes in what was not worn before.
-    fn fit(&mut self, walkers: &Crowd, host: &Gd<Node3D>, mesh: &CrowdMesh, look: &Look) {
+    /// Makes space for all walkers and for new style mixtures.
+    fn fit(&mut self, walkers: &Crowd, host: &Gd<Node3D>, mesh: &CrowdMesh, look: &DrawSettings) {
         let rows = walkers.agents().len();
         let part = Part {
             shown: Vec::with_capacity(ROWS),
@@ -90,7 +90,7 @@ impl SharedFlock {
         self.write_poses(&mesh.turned_by);
     }
 
-    /// Writes the poses of what has come to be worn.
+    /// Writes the poses of new style mixtures.
     fn write_poses(&mut self, turned_by: &[Joint; JOINT_COUNT]) {
         let all = self.bodies.len();
         if self.written.contains(&all) || self.taken > self.poses {
@@ -111,12 +111,12 @@ impl SharedFlock {
         self.flock.upload_poses();
     }
 
-    /// Draws everybody who shares poses and is seen, those who are small with the stand-in.
+    /// Draws the visible walkers with shared poses, the small ones with the stand-in.
     pub(super) fn draw(
         &mut self,
         walkers: &Crowd,
         (planes, small): (&[Vec4], &[bool]),
-        (host, mesh, look): (&Gd<Node3D>, &CrowdMesh, &Look),
+        (host, mesh, look): (&Gd<Node3D>, &CrowdMesh, &DrawSettings),
     ) {
         self.fit(walkers, host, mesh, look);
         let (tiers, drawn) = (walkers.tiers(), walkers.drawn());
@@ -211,7 +211,7 @@ impl Shown<'_> {
     }
 }
 
-fn flock(host: &Gd<Node3D>, mesh: &CrowdMesh, poses: usize, look: &Look) -> Option<Flock> {
+fn flock(host: &Gd<Node3D>, mesh: &CrowdMesh, poses: usize, look: &DrawSettings) -> Option<Flock> {
     let node = host.clone().upcast::<Node>();
     Flock::new(&node, mesh, 1, poses, poses, look.material.as_ref())
 }

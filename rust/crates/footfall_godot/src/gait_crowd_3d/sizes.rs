@@ -17,7 +17,7 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    /// Looks at everybody as they are now; nobody is small without a view.
+    /// Chooses the small walkers anew; without a view there are none.
     pub(super) fn look(&mut self, walkers: &Crowd, view: Option<&Eyesight>) {
         let drawn = walkers.drawn();
         self.small.resize(drawn.len(), false);
@@ -41,7 +41,7 @@ impl Sizes {
     }
 }
 
-/// View of a camera from a crowd whose character is so high; `None` where nobody is to be small.
+/// View of a camera on a crowd whose character has this height; `None` if stand-ins are off.
 pub(super) fn eyesight(
     camera: &Gd<Camera3D>,
     host: &Gd<Node3D>,

@@ -1,7 +1,7 @@
 //! A walk whose character is out of the tree for a while.
 
 use super::GaitGenerator3D;
-use super::session::Session;
+use super::session::WalkSession;
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
@@ -30,7 +30,7 @@ impl GaitGenerator3D {
 
     /// Puts the walk aside: nodes around it change, and who travels is asked anew.
     pub(super) fn put_aside(&mut self) {
-        self.told.problem = None;
+        self.announced.problem = None;
         if let Some(session) = self.session.take() {
             self.absent = Some(Absent {
                 skeleton: session.traveller.skeleton(),
@@ -41,7 +41,7 @@ impl GaitGenerator3D {
     }
 
     /// Goes on with the walk that was put aside, if this is the skeleton that walked it.
-    pub(super) fn resume(&mut self, session: &mut Session, skeleton: &Gd<Skeleton3D>) {
+    pub(super) fn resume(&mut self, session: &mut WalkSession, skeleton: &Gd<Skeleton3D>) {
         if let Some(absent) = self.absent.take()
             && absent.skeleton == skeleton.instance_id()
             // A model that was replaced meanwhile walks anew.

@@ -3,6 +3,7 @@
 mod clip;
 
 use super::GaitGenerator3D;
+use crate::modifier::BodyModifier as _;
 use crate::skeleton_binding::SkeletonBinding;
 use crate::walk_source::WalkSource;
 use clip::Clips;
@@ -122,7 +123,7 @@ impl GaitGenerator3D {
     }
 }
 
-/// The styles to bake by name, with the weights that wear each.
+/// Styles to bake by name, with the weights of each.
 fn worn(source: &WalkSource, names: &[GString]) -> Result<Vec<(String, Vec<f32>)>, String> {
     let known: Vec<&str> = source
         .styles()

@@ -1,28 +1,12 @@
 //! Interface of the generator to the nodes beside it and to the editor.
 
 use super::GaitGenerator3D;
-use super::reign::Reign;
-use crate::character;
+use super::ownership::Ownership;
 use crate::skeleton_binding::LayerWeights;
 use footfall_ik::placement::Landing;
-use godot::classes::{BoneMap, Skeleton3D};
 use godot::prelude::*;
 
 impl GaitGenerator3D {
-    /// The node that travels.
-    ///
-    /// # Errors
-    /// Property to set, when there is none.
-    pub(crate) fn find_character(&self, skeleton: &Gd<Skeleton3D>) -> Result<Gd<Node3D>, String> {
-        let node = self.base().clone().upcast::<Node>();
-        character::find(&node, skeleton, &self.character)
-    }
-
-    /// Map from joints to bones.
-    pub(crate) fn bones(&self) -> Option<Gd<BoneMap>> {
-        self.bone_map.clone()
-    }
-
     /// Returns whether the editor holds the walk.
     pub(crate) fn is_preview_paused(&self) -> bool {
         self.preview_paused.unwrap_or(!self.playing)
@@ -39,12 +23,12 @@ impl GaitGenerator3D {
         let session = self
             .session
             .as_ref()
-            .filter(|_| self.reign == Reign::Walking)?;
+            .filter(|_| self.ownership == Ownership::Walking)?;
         let landings = session.generator.landings();
         Some((session.generator.feet_in_contact(), landings))
     }
 
-    /// Has the step that has just begun land at this share of its way.
+    /// Changes the length of the step that has just begun to this share.
     pub(crate) fn stretch_step(&mut self, share: f32) {
         // A replica's foothold was chosen by the walker that it is one of.
         if let Some(session) = &mut self.session
@@ -108,7 +92,7 @@ impl GaitGenerator3D {
         }
     }
 
-    /// Has the editor draw the way ahead anew. Games without the editor's half have nobody who draws it.
+    /// Makes the editor redraw the path ahead. Exported games have no such drawing.
     pub(super) fn redraw_way(&mut self) {
         if cfg!(feature = "editor") {
             self.base_mut().update_gizmos();

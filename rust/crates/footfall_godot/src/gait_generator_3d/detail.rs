@@ -1,7 +1,7 @@
 //! Detail of a walk: chosen by the user, or by the character's size on screen.
 
 use super::GaitGenerator3D;
-use super::session::Session;
+use super::session::WalkSession;
 use crate::screen_size::ScreenScale;
 use footfall_synth::Detail;
 use godot::prelude::*;
@@ -33,7 +33,7 @@ pub(super) struct AutoDetail {
 
 impl GaitGenerator3D {
     /// Looks at the screen from time to time, and returns the detail of the next step.
-    pub(super) fn choose_detail(&mut self, session: &Session, delta_secs: f64) -> Detail {
+    pub(super) fn choose_detail(&mut self, session: &WalkSession, delta_secs: f64) -> Detail {
         let auto = &mut self.auto_detail;
         auto.wait_secs -= delta_secs;
         if matches!(self.detail, GaitDetail::Auto) && auto.wait_secs <= 0.0 {

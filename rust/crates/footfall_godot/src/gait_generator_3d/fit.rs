@@ -1,6 +1,6 @@
 //! Phase of the stride at which a walk takes over from another motion: where the two poses resemble each other most.
 
-use super::seen::Seen;
+use super::observed_motion::ObservedMotion;
 use crate::walk_source::WalkSource;
 use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
 use footfall_ik::handover::Moving;
@@ -8,14 +8,14 @@ use footfall_ik::placement::Frame;
 use footfall_synth::{Controls, GaitGenerator, GeneratorConfig, SynthError};
 use glam::Vec3;
 
-/// The stride is looked at so often, and for so long at most.
+/// Interval of the compared moments of a stride, seconds, and their greatest number.
 const LOOK_SECS: f32 = 1.0 / 30.0;
 const MOST_LOOKS: usize = 75;
 /// A difference of speed counts as the place that it makes within this time, seconds.
 const SPEED_SECS: f32 = 0.12;
-/// A foot that stands in one motion and not in the other counts as so far away, metres.
+/// Distance that equals a contact in one motion only, metres.
 const CONTACT_M: f32 = 0.15;
-/// The distance of feet that stand in both counts so many times: such a foot stays where it is, and the body has to come along.
+/// Weight of the distance of feet that stand in both motions: such a foot keeps its place, and the body has to follow.
 const STANDING_WEIGHT: f32 = 4.0;
 /// From standing, the foot that is lifted by then goes first, seconds.
 const LIFTED_SECS: f32 = 0.4;
@@ -23,10 +23,10 @@ const LIFTED_SECS: f32 = 0.4;
 /// A walk, and its last two frames in the space where it began.
 pub(super) struct Fitting {
     pub(super) generator: GaitGenerator,
-    pub(super) seen: Seen,
+    pub(super) seen: ObservedMotion,
 }
 
-/// Maker of walks.
+/// Settings of the walks that are compared with a motion.
 pub(super) struct Maker<'a> {
     pub(super) source: &'a WalkSource,
     pub(super) style_weights: &'a [f32],
@@ -40,7 +40,7 @@ impl Maker<'_> {
     ///
     /// # Errors
     /// As [`WalkSource::generator`].
-    pub(super) fn fitting(&self, from: &Seen) -> Result<Fitting, SynthError> {
+    pub(super) fn fitting(&self, from: &ObservedMotion) -> Result<Fitting, SynthError> {
         let wanted = Look::of(self.body, &from.moving(), from.dt_secs);
         let dt_secs = from.dt_secs.max(1e-3);
         let mut standing = self.standing(self.config.phase)?;
@@ -53,7 +53,7 @@ impl Maker<'_> {
             let mut footsteps = 0;
             for look in 1..=MOST_LOOKS {
                 let place = Frame::from(walk.start_from_character());
-                let now = seen.seen_from(&place, 1.0);
+                let now = seen.relative_to(&place, 1.0);
                 let distance = wanted.distance(&Look::of(self.body, &now.moving(), seen.dt_secs));
                 if distance < least {
                     least = distance;
@@ -108,7 +108,7 @@ impl Maker<'_> {
     }
 
     /// Phase from which a standing person starts with the foot that is farther behind.
-    fn first_phase(&self, from: &Seen) -> Result<f32, SynthError> {
+    fn first_phase(&self, from: &ObservedMotion) -> Result<f32, SynthError> {
         if self.controls.is_standing() {
             return Ok(self.config.phase);
         }
@@ -183,17 +183,22 @@ impl Look {
 }
 
 /// The first two frames of a walk.
-fn walked(generator: &mut GaitGenerator, controls: &Controls, dt_secs: f32) -> Seen {
-    let mut seen = Seen::default();
+fn walked(generator: &mut GaitGenerator, controls: &Controls, dt_secs: f32) -> ObservedMotion {
+    let mut seen = ObservedMotion::default();
     one_step(generator, controls, 0.0, &mut seen);
     one_step(generator, controls, dt_secs, &mut seen);
     seen
 }
 
 /// One frame of a walk, in the space where it began.
-fn one_step(generator: &mut GaitGenerator, controls: &Controls, dt_secs: f32, seen: &mut Seen) {
+fn one_step(
+    generator: &mut GaitGenerator,
+    controls: &Controls,
+    dt_secs: f32,
+    seen: &mut ObservedMotion,
+) {
     let mut pose = Pose::default();
     generator.step(dt_secs, controls, &mut pose);
-    super::seen::raise(&Frame::from(generator.start_from_character()), &mut pose);
-    seen.see(&pose, generator.feet_in_contact(), dt_secs);
+    super::observed_motion::raise(&Frame::from(generator.start_from_character()), &mut pose);
+    seen.observe(&pose, generator.feet_in_contact(), dt_secs);
 }

@@ -1,7 +1,7 @@
 //! A walk that another peer leads.
 
-use super::seen::{Seen, raise};
-use super::session::Session;
+use super::observed_motion::{ObservedMotion, raise};
+use super::session::WalkSession;
 use crate::travel::Travel;
 use footfall_ik::handover::Handover;
 use footfall_ik::placement::Frame;
@@ -11,7 +11,7 @@ use footfall_synth::replica::{Followed, WalkFollower};
 /// A walk that is set anew goes over from what was shown within this time, seconds.
 const FADE_SECS: f32 = 0.4;
 
-impl Session {
+impl WalkSession {
     /// Start of the walk, in the space of the travelling node's parent.
     pub(super) fn shared_from_start(&self) -> GroundTransform {
         let ground = self.traveller.ground_place();
@@ -21,7 +21,7 @@ impl Session {
             .global(&ground_from_start)
     }
 
-    /// Lets time pass as another peer's walker has it. With `dt_secs` 0 the pose stays and nothing travels.
+    /// Advances the walk in the steps of another peer's walker. With `dt_secs` 0 the pose stays and nothing travels.
     pub(super) fn follow(&mut self, dt_secs: f64, follower: &mut WalkFollower) -> Travel {
         self.elapsed_secs += dt_secs;
         let dt_secs = dt_secs as f32;
@@ -32,19 +32,19 @@ impl Session {
             let here = self.generator.start_from_character();
             self.traveller.place(here);
             self.traveller.put(&place.global(&here));
-            self.shown = Seen::default();
+            self.shown = ObservedMotion::default();
             self.handover = before.map(|before| self.fade_from(before));
         }
         self.go_to_place(dt_secs)
     }
 
     /// Handover from a motion on the ground under the character to the pose of now.
-    fn fade_from(&self, before: Seen) -> Handover {
+    fn fade_from(&self, before: ObservedMotion) -> Handover {
         let place = Frame::from(self.traveller.ground_place());
-        let (mut pose, mut seen) = (self.pose.clone(), Seen::default());
+        let (mut pose, mut seen) = (self.pose.clone(), ObservedMotion::default());
         raise(&place, &mut pose);
         for _ in 0..2 {
-            seen.see(&pose, self.generator.feet_in_contact(), before.dt_secs);
+            seen.observe(&pose, self.generator.feet_in_contact(), before.dt_secs);
         }
         let body = &self.traveller.binding.body;
         let before = before.raised(&place);

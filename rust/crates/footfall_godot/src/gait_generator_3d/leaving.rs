@@ -1,7 +1,7 @@
 //! The walk's end: another animation takes the body over, and the character comes to rest.
 
-use super::seen::{lower, raise};
-use super::session::Session;
+use super::observed_motion::{lower, raise};
+use super::session::WalkSession;
 use crate::travel::Travel;
 use footfall_core::rotation::from_heading;
 use footfall_ik::handover::Handover;
@@ -11,7 +11,7 @@ use glam::Vec3;
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
-/// A foot that cannot find its place is let go so long after the end, seconds.
+/// Time after the end at which a foot that cannot reach its place is released, seconds.
 const PATIENCE_SECS: f32 = 2.0;
 
 /// Remaining motion of a character whose walk gives the body away: it dies away.
@@ -24,7 +24,7 @@ pub(super) struct Leaving {
     age_secs: f32,
 }
 
-impl Session {
+impl WalkSession {
     /// Begins to leave the body to the animation that was watched.
     pub(super) fn leave(&mut self, secs: f64, velocity_mps: Vec3, turn_rate: f32) {
         let place = Frame::from(self.traveller.ground_place());
@@ -42,7 +42,7 @@ impl Session {
         });
     }
 
-    /// Lets time pass on the way out. Returns the travel, and whether the animation has the body for itself now.
+    /// Advances the transition to other animation. Returns the travel, and whether the animation now has the whole body.
     pub(super) fn go_out(&mut self, skeleton: &Gd<Skeleton3D>, dt_secs: f64) -> (Travel, bool) {
         let dt_secs = dt_secs as f32;
         let mut place = self.traveller.ground_place();
@@ -58,7 +58,7 @@ impl Session {
             handover.step(dt_secs, stands, stands == [true; 2], &mut pose);
         }
         if dt_secs > 0.0 {
-            self.shown.see(&pose, stands, dt_secs);
+            self.shown.observe(&pose, stands, dt_secs);
         }
         lower(&ground, &mut pose);
         self.pose = pose;

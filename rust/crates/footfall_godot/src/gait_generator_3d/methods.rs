@@ -3,7 +3,8 @@
 use super::GaitGenerator3D;
 use super::detail::GaitDetail;
 use super::gait_choice::name_of;
-use crate::root_motion::{advance_of, frame_clock};
+use crate::modifier::BodyModifier as _;
+use crate::root_motion;
 use footfall_core::Side;
 use footfall_synth::Gait;
 use godot::prelude::*;
@@ -22,11 +23,8 @@ impl GaitGenerator3D {
     /// `character.move_and_collide(character.global_basis * gait.get_root_motion_delta().origin)`.
     #[func]
     fn get_root_motion_delta(&mut self) -> Transform3D {
-        let Some(skeleton) = self.base().get_skeleton() else {
-            return Transform3D::IDENTITY;
-        };
-        self.travelled
-            .since_last_frame(advance_of(&skeleton), frame_clock())
+        let skeleton = self.base().get_skeleton();
+        root_motion::delta_for(&mut self.travelled, skeleton)
     }
 
     /// Returns the seed in use: `seed`; if that is 0, the node's own seed, or that of a restored state.
@@ -67,7 +65,7 @@ impl GaitGenerator3D {
     pub(super) fn restart(&mut self) {
         self.session = None;
         self.absent = None;
-        self.told.problem = None;
+        self.announced.problem = None;
         self.base_mut().update_configuration_warnings();
     }
 

@@ -1,7 +1,7 @@
 //! Jumps and pushes of a character, and the signals of a flight.
 
 use super::GaitGenerator3D;
-use super::session::Session;
+use super::session::WalkSession;
 use crate::convert;
 use footfall_core::Side;
 use footfall_synth::JumpPhase;
@@ -80,13 +80,13 @@ impl GaitGenerator3D {
         }
     }
 
-    fn with_session(&mut self, ask: impl FnOnce(&mut Session) -> bool) -> bool {
+    fn with_session(&mut self, ask: impl FnOnce(&mut WalkSession) -> bool) -> bool {
         let session = self.session.as_mut();
         session.filter(|_| !self.replica.is_led()).is_some_and(ask)
     }
 
     /// Emits what became of a jump.
-    pub(super) fn tell_flight(&mut self, flight: Flight, footsteps: &[(Side, Vector3)]) {
+    pub(super) fn emit_flight(&mut self, flight: Flight, footsteps: &[(Side, Vector3)]) {
         if flight.took_off {
             self.signals().took_off().emit();
         }

@@ -1,26 +1,26 @@
 //! Problems that keep a character from walking, for the editor, scripts and the log.
 
 use super::GaitGenerator3D;
-use crate::bones;
 use crate::gait_model::NO_STYLES;
-use crate::report;
+use crate::modifier::BodyModifier as _;
 use footfall_core::Side;
 use footfall_synth::Gait;
 use godot::prelude::*;
 
-/// Facts that were told last, so that each is told once.
+/// Facts that were announced last, so that each is announced once.
 #[derive(Default)]
-pub(super) struct Told {
+pub(super) struct Announced {
     pub(super) gait: Gait,
     /// The foot whose next landing was announced.
     pub(super) landing: Option<Side>,
     pub(super) problem: Option<String>,
-    /// True when other animation has got the body at once, and nobody was told.
+    /// True when other animation has taken the body at once and `handed_over` is still to be emitted.
     pub(super) left: bool,
 }
 
 impl GaitGenerator3D {
-    pub(super) fn problems(&self) -> PackedStringArray {
+    /// Problems of the model, its styles, the skeleton and the node's place.
+    pub(super) fn find_problems(&self) -> PackedStringArray {
         let mut problems = PackedStringArray::new();
         if let Err(problem) = self.find_source() {
             problems.push(&GString::from(&problem));
@@ -35,27 +35,14 @@ impl GaitGenerator3D {
             );
             problems.push(&GString::from(&problem));
         }
-        let Some(skeleton) = self.base().get_skeleton() else {
-            problems.push(&bones::no_skeleton(&self.to_gd().upcast()));
-            return problems;
-        };
-        if skeleton.is_inside_tree()
-            && let Err(problem) = self.bind(&skeleton)
+        if let Some(problem) = self.skeleton_problem() {
+            problems.push(&problem);
+        }
+        if let Some(skeleton) = self.base().get_skeleton()
+            && let Some(problem) = self.find_rivalry(&skeleton)
         {
             problems.push(&GString::from(&problem));
         }
-        if let Some(problem) = self.find_rivalry(&skeleton) {
-            problems.push(&GString::from(&problem));
-        }
         problems
-    }
-
-    /// Logs what keeps the character from walking, once.
-    pub(super) fn report(&mut self, problem: String) {
-        if self.told.problem.as_ref() == Some(&problem) {
-            return;
-        }
-        report::tell(&self.base_mut(), &problem);
-        self.told.problem = Some(problem);
     }
 }

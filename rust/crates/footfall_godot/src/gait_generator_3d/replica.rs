@@ -1,29 +1,30 @@
-//! The walk over a network: told to other peers, or made as another peer tells.
+//! The walk over a network: sent to other peers, or generated from what another peer sends.
 
 use super::GaitGenerator3D;
-use super::session::Session;
+use super::session::WalkSession;
 use crate::character;
+use crate::modifier::BodyModifier as _;
 use core::cell::Cell;
 use footfall_synth::GeneratorConfig;
 use footfall_synth::replica::{ReplicaError, WalkFollower, WalkIdentity, WalkSender};
 use godot::classes::multiplayer_peer::ConnectionStatus;
 use godot::prelude::*;
 
-/// Refusals are told no more often than this, seconds.
+/// Shortest time between two refusals that are reported, seconds.
 const QUIET_SECS: f32 = 5.0;
-/// Updates come before the identity that they belong to, as after a teleport, for so long at most, seconds: identities are sent again where they are lost.
+/// Longest time that updates may come before their identity, as after a teleport, seconds: lost identities are sent again.
 const EARLY_SECS: f32 = 2.0;
 
-/// Walk's part in a multiplayer game.
+/// Part of the walk in a multiplayer game.
 #[derive(Debug, Default)]
 pub(super) struct Replica {
-    /// Asked for by a getter of a property, which may change nothing else.
+    /// In a cell, because the getter of a property reads it.
     sender: Cell<WalkSender>,
     led: Option<Led>,
-    /// Refusal that waits to be told, and the time until another is, seconds.
-    untold: Cell<Option<ReplicaError>>,
+    /// Refusal that waits to be reported, and the time until another may be, seconds.
+    refusal: Cell<Option<ReplicaError>>,
     quiet_secs: Cell<f32>,
-    /// Time since an update belonged to the walker, seconds.
+    /// Time since the last update of the same walker, seconds.
     strange_secs: f32,
 }
 
@@ -32,7 +33,7 @@ pub(super) struct Replica {
 struct Led {
     identity: WalkIdentity,
     follower: WalkFollower,
-    /// True where the walk under way goes by the same model; nothing before that is known.
+    /// True if the walk under way uses the same model; `None` before that is known.
     fits: Option<bool>,
 }
 
@@ -47,10 +48,10 @@ impl GaitGenerator3D {
 
 impl GaitGenerator3D {
     /// Identity of the walk, for other peers.
-    pub(super) fn tell_identity(&self) -> PackedByteArray {
-        let told = match (&self.replica.led, &self.session) {
+    pub(super) fn identity_bytes(&self) -> PackedByteArray {
+        let bytes = match (&self.replica.led, &self.session) {
             (Some(led), _) => led.identity.to_bytes(),
-            // Of a walk that another peer is about to lead there is nothing to tell.
+            // A walk that another peer is about to lead has no identity here.
             (None, Some(session)) if self.leads() => {
                 let identity = self.replica.sender.get().identity(&session.generator);
                 identity
@@ -59,21 +60,21 @@ impl GaitGenerator3D {
             }
             (None, _) => Vec::new(),
         };
-        told.as_slice().into()
+        bytes.as_slice().into()
     }
 
     /// Takes the identity of another peer's walker.
-    pub(super) fn hear_identity(&mut self, identity: &PackedByteArray) {
+    pub(super) fn receive_identity(&mut self, identity: &PackedByteArray) {
         if identity.is_empty() || self.leads() {
             return;
         }
-        if let Err(error) = self.become_replica(identity.as_slice()) {
+        if let Err(error) = self.begin_replica(identity.as_slice()) {
             self.replica.refuse(error);
         }
     }
 
     /// Progress of the walk, for other peers.
-    pub(super) fn tell_state(&self) -> PackedByteArray {
+    pub(super) fn state_bytes(&self) -> PackedByteArray {
         let session = self.session.as_ref();
         let Some(session) = session.filter(|_| !self.replica.is_led()) else {
             return PackedByteArray::new();
@@ -91,11 +92,11 @@ impl GaitGenerator3D {
     }
 
     /// Takes the progress of another peer's walker.
-    pub(super) fn hear_state(&mut self, state: &PackedByteArray) {
+    pub(super) fn receive_state(&mut self, state: &PackedByteArray) {
         if state.is_empty() || self.leads() {
             return;
         }
-        // Without an identity or a walk it belongs to nobody yet; the next one will.
+        // Without an identity or a walk the update has no walker yet; a later one will.
         let (Some(led), Some(session)) = (&mut self.replica.led, &self.session) else {
             return;
         };
@@ -108,7 +109,7 @@ impl GaitGenerator3D {
         }
     }
 
-    /// Returns whether this peer walks the character itself: it has the authority of the node that is put elsewhere. Nodes that are added below that later do not have it.
+    /// Returns whether this peer walks the character itself: it has the authority over the node that travels. Nodes that are added below that one later do not inherit it.
     fn leads(&self) -> bool {
         let skeleton = self.base().get_skeleton();
         let travels = skeleton.and_then(|skeleton| self.find_character(&skeleton).ok());
@@ -128,7 +129,7 @@ impl GaitGenerator3D {
         carrier.is_multiplayer_authority()
     }
 
-    fn become_replica(&mut self, bytes: &[u8]) -> Result<(), ReplicaError> {
+    fn begin_replica(&mut self, bytes: &[u8]) -> Result<(), ReplicaError> {
         let identity = WalkIdentity::from_bytes(bytes)?;
         if let Some(led) = &mut self.replica.led
             && led.identity.is_same_walker(&identity)
@@ -137,7 +138,7 @@ impl GaitGenerator3D {
             led.identity = identity;
             return Ok(());
         }
-        // How often it becomes another counts on.
+        // The new follower keeps the count of how often the walker was replaced.
         let mut follower = self
             .replica
             .led
@@ -154,8 +155,8 @@ impl GaitGenerator3D {
     }
 
     /// Emits what was refused since the last frame.
-    pub(super) fn tell_refusal(&mut self) {
-        if let Some(error) = self.replica.untold.take() {
+    pub(super) fn emit_refusal(&mut self) {
+        if let Some(error) = self.replica.refusal.take() {
             let node = self.base().get_path();
             godot_warn!("{node}: {error}");
             let reason = GString::from(&error.to_string());
@@ -169,8 +170,8 @@ impl GaitGenerator3D {
         Some(led.identity.config())
     }
 
-    /// Lets time pass for other peers' sake, and dresses the walk as theirs.
-    pub(super) fn pass_replica(&mut self, session: &mut Session, dt_secs: f64) {
+    /// Advances the part of the walk that belongs to the network, and takes over another peer's style weights.
+    pub(super) fn advance_replica(&mut self, session: &mut WalkSession, dt_secs: f64) {
         if self.replica.led.is_some() && self.leads() {
             // The authority has come to this peer: its walk goes on from here.
             self.replica = Replica::default();
@@ -195,15 +196,15 @@ impl GaitGenerator3D {
 }
 
 impl Replica {
-    /// Notes a problem with what came, or was to be sent; who sends many is not told of as often.
+    /// Keeps a problem of what was received or was to be sent; of many in a row, one in a while is reported.
     fn refuse(&self, error: ReplicaError) {
         if self.quiet_secs.get() <= 0.0 {
             self.quiet_secs.set(QUIET_SECS);
-            self.untold.set(Some(error));
+            self.refusal.set(Some(error));
         }
     }
 
-    /// Leader of the walk, where that is another peer's.
+    /// Follower of the walk, if another peer leads it.
     pub(super) fn follower(&mut self) -> Option<&mut WalkFollower> {
         let led = self.led.as_mut()?;
         (led.fits == Some(true)).then_some(&mut led.follower)

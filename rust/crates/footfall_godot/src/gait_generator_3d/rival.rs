@@ -24,13 +24,16 @@ impl GaitGenerator3D {
             };
         }
         let walks = |rival: &&Gd<Self>| rival.is_instance_valid() && rival.is_active();
-        self.rivals.above.iter().find(walks).map(told)
+        self.rivals.above.iter().find(walks).map(rivalry_message)
     }
 
     /// As [`rivalry`](Self::rivalry), looked up anew.
     pub(super) fn find_rivalry(&self, skeleton: &Gd<Skeleton3D>) -> Option<String> {
         let above = self.generators_above(skeleton);
-        above.iter().find(|rival| rival.is_active()).map(told)
+        above
+            .iter()
+            .find(|rival| rival.is_active())
+            .map(rivalry_message)
     }
 
     fn generators_above(&self, skeleton: &Gd<Skeleton3D>) -> Vec<Gd<Self>> {
@@ -41,7 +44,7 @@ impl GaitGenerator3D {
     }
 }
 
-fn told(rival: &Gd<GaitGenerator3D>) -> String {
+fn rivalry_message(rival: &Gd<GaitGenerator3D>) -> String {
     let name = rival.get_name();
     format!(
         "{name} above this node already walks the same Skeleton3D, so this node does nothing. Remove one of the two, or turn Active off."

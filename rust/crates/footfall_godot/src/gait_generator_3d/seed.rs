@@ -16,7 +16,7 @@ impl GaitGenerator3D {
 
     /// A seed from the node's place in its scene: the same whenever the scene is run, and another for every node.
     pub(super) fn own_seed(&self) -> u64 {
-        // 0 is nobody's own.
+        // 0 means that the node has no seed of its own.
         fnv1a(self.place_in_scene().bytes()).max(1)
     }
 

@@ -2,7 +2,7 @@
 
 use super::fit::{Fitting, Maker};
 use super::leaving::Leaving;
-use super::seen::{Seen, lower, raise};
+use super::observed_motion::{ObservedMotion, lower, raise};
 use crate::convert;
 use crate::skeleton_binding::{LayerWeights, SkeletonBinding};
 use crate::travel::{Travel, Traveller};
@@ -18,7 +18,7 @@ use godot::prelude::*;
 const SETTLED_FRAMES: u8 = 12;
 
 /// A generator, the skeleton that it poses and the node that travels.
-pub(super) struct Session {
+pub(crate) struct WalkSession {
     pub(super) generator: GaitGenerator,
     pub(super) traveller: Traveller,
     /// Since the walk began.
@@ -26,11 +26,11 @@ pub(super) struct Session {
     source: WalkSource,
     /// In the space above the ground under the character.
     pub(super) pose: Pose,
-    /// Motion that the skeleton showed last, in the space where the walk began.
-    pub(super) shown: Seen,
+    /// Last motion of the skeleton, in the space where the walk began.
+    pub(super) shown: ObservedMotion,
     /// Handover from the motion before.
     pub(super) handover: Option<Handover>,
-    /// Since somebody else began to pose the skeleton.
+    /// Observed motion since other animation began to pose the skeleton.
     pub(super) watched: super::watch::Watch,
     pub(super) leaving: Option<Leaving>,
     size: Size,
@@ -43,8 +43,8 @@ struct Size {
     frames: u8,
 }
 
-impl Session {
-    /// Starts a walk where the character stands; when `controls` ask for none, it stands there.
+impl WalkSession {
+    /// Starts a walk at the character's place; the character stands if `controls` request no motion.
     ///
     /// # Errors
     /// Reason of the generator's refusal, for the user.
@@ -69,7 +69,7 @@ impl Session {
             elapsed_secs: 0.0,
             source: source.clone(),
             traveller: Traveller::new(character, binding, start_from_ground),
-            shown: Seen::default(),
+            shown: ObservedMotion::default(),
             handover: None,
             watched: super::watch::Watch::default(),
             leaving: None,
@@ -77,12 +77,12 @@ impl Session {
         })
     }
 
-    /// Returns whether this walk still is one of the model, its styles, the skeleton and the character.
+    /// Returns whether the walk still has this model with its styles, this skeleton and its character.
     pub(super) fn is_for(&mut self, source: &WalkSource, skeleton: &Gd<Skeleton3D>) -> bool {
         self.source.is(source) && self.traveller.is_for(skeleton)
     }
 
-    /// Returns whether the character has another size than it was measured with, and keeps it.
+    /// Returns whether the character has changed its size and keeps the new one.
     pub(super) fn has_new_size(&mut self) -> bool {
         let scale = self.traveller.scale();
         let kept = (scale - self.size.scale).abs() < 1e-4 * scale;
@@ -108,14 +108,14 @@ impl Session {
         Ok(())
     }
 
-    /// Goes on from another motion, given on the ground under the character in metres of the body: begins where the walk fits that,
-    /// and lets what parts them die away.
+    /// Continues from another motion, given on the ground under the character in metres of the body: begins at the best matching phase
+    /// and lets the difference fade out.
     ///
     /// # Errors
     /// Reason of the generator's refusal, for the user.
     pub(super) fn go_on_from(
         &mut self,
-        from: &Seen,
+        from: &ObservedMotion,
         style_weights: &[f32],
         config: &GeneratorConfig,
         controls: Controls,
@@ -148,10 +148,10 @@ impl Session {
         Ok(())
     }
 
-    /// Motion that the skeleton showed last, on the ground under the character, in metres of the world.
-    pub(super) fn shown_here(&self) -> Seen {
+    /// Last motion of the skeleton, on the ground under the character, in metres of the world.
+    pub(super) fn shown_here(&self) -> ObservedMotion {
         let place = Frame::from(self.traveller.ground_place());
-        self.shown.seen_from(&place, self.traveller.scale())
+        self.shown.relative_to(&place, self.traveller.scale())
     }
 
     /// Height of the hips above the floor in the rest pose, metres of the world.
@@ -165,7 +165,7 @@ impl Session {
         controls
     }
 
-    /// Lets time pass. With `dt_secs` 0 the pose stays and nothing travels.
+    /// Advances the walk. With `dt_secs` 0 the pose stays and nothing travels.
     pub(super) fn advance(&mut self, dt_secs: f64, controls: Controls) -> Travel {
         self.elapsed_secs += dt_secs;
         let dt_secs = dt_secs as f32;
@@ -190,22 +190,22 @@ impl Session {
             );
         }
         if dt_secs > 0.0 {
-            self.shown.see(&self.pose, stands, dt_secs);
+            self.shown.observe(&self.pose, stands, dt_secs);
         }
         lower(&ground, &mut self.pose);
         travel
     }
 
-    /// Returns whether the motion before has just died away.
+    /// Returns whether the previous motion has just faded out.
     pub(super) fn has_arrived(&mut self) -> bool {
         self.handover
             .take_if(|handover| handover.is_over())
             .is_some()
     }
 
-    /// Lets time pass without travelling.
+    /// Advances the walk without travelling.
     pub(super) fn skip(&mut self, secs: f64, controls: Controls) {
-        // The generator takes no more of it at once.
+        // The generator limits a single step to this.
         const MOST_SECS: f64 = 5.0;
         let mut left = secs;
         while left > 0.0 {
@@ -218,7 +218,7 @@ impl Session {
         self.traveller.place(self.generator.start_from_character());
     }
 
-    /// Poses the skeleton, but for what the weights leave to other animation.
+    /// Poses the skeleton, except for the parts that the weights leave to other animation.
     pub(super) fn write(&mut self, skeleton: &mut Gd<Skeleton3D>, weights: &LayerWeights) {
         self.traveller
             .binding

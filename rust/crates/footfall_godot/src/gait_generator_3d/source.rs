@@ -1,22 +1,20 @@
 //! The model with its styles, prepared for walkers.
 
 use super::GaitGenerator3D;
-use crate::gait_model::{GaitModel, NO_MODEL};
+use crate::gait_model::GaitModel;
 use crate::gait_style;
-use crate::shipped;
 use crate::walk_source::WalkSource;
 use footfall_model::WalkModel;
 use godot::obj::Gd;
 use std::sync::Arc;
 
 impl GaitGenerator3D {
-    /// The way of walking, the add-on's own where none was given.
+    /// The model, or the add-on's own if none is set.
     fn used_model(&self) -> Result<Gd<GaitModel>, String> {
-        let used = self.fallback.model(self.model.as_ref(), shipped::WALK);
-        used.ok_or_else(|| NO_MODEL.to_owned())
+        self.fallback.model(self.model.as_ref())
     }
 
-    /// Returns whether there are styles that the model cannot wear.
+    /// Returns whether there are styles although the model supports none.
     pub(super) fn passes_over_styles(&self) -> bool {
         !self.styles.is_empty()
             && self

@@ -3,40 +3,34 @@
 use super::GaitGenerator3D;
 use super::gait_choice::name_of;
 use super::moves::Flight;
-use super::reign::Reign;
-use super::session::Session;
-use crate::convert;
+use super::ownership::Ownership;
+use super::session::WalkSession;
 use crate::gait_model::NO_STYLES;
-use crate::report;
+use crate::modifier::BodyModifier;
 use crate::root_motion::frame_clock;
-use crate::skeleton_binding::SkeletonBinding;
 use footfall_synth::GeneratorConfig;
-use godot::classes::{Engine, Skeleton3D};
+use godot::classes::{BoneMap, Engine, Skeleton3D};
 use godot::prelude::*;
 
-impl GaitGenerator3D {
-    /// Lets a frame pass. It may come before `ready`, outside a frame, and more than once a frame; then `delta` is 0.
-    pub(super) fn pass_frame(&mut self, delta: f64) {
-        let Some(skeleton) = self.base().get_skeleton() else {
-            return;
-        };
-        if !skeleton.is_inside_tree() || convert::is_flat(skeleton.get_global_transform()) {
-            return;
-        }
-        if let Some(problem) = self.rivalry(&skeleton) {
-            self.report(problem);
-            return;
-        }
-        match self.take_session(&skeleton) {
-            Ok(session) => self.walk(session, skeleton, delta),
-            // Without time passing the node may still be about to get what it lacks.
-            Err(problem) if delta > 0.0 => self.report(problem),
-            Err(_) => {}
-        }
+impl BodyModifier for GaitGenerator3D {
+    type Session = WalkSession;
+
+    fn character_path(&self) -> &NodePath {
+        &self.character
     }
 
-    /// The walk under way, or a new one where there is none, the model was replaced or the body changed.
-    pub(super) fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
+    fn bone_map_for(&self, _skeleton: &Gd<Skeleton3D>) -> Option<Gd<BoneMap>> {
+        self.bone_map.clone()
+    }
+
+    fn last_problem(&mut self) -> &mut Option<String> {
+        &mut self.announced.problem
+    }
+
+    fn take_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<WalkSession, String> {
+        if let Some(problem) = self.rivalry(skeleton) {
+            return Err(problem);
+        }
         let source = self.take_source()?;
         if let Some(mut session) = self.session.take() {
             if session.is_for(&source, skeleton) {
@@ -49,17 +43,31 @@ impl GaitGenerator3D {
         self.new_session(skeleton)
     }
 
+    fn advance(&mut self, session: WalkSession, skeleton: Gd<Skeleton3D>, delta: f64) {
+        self.walk(session, skeleton, delta);
+    }
+
+    fn interrupt(&mut self) {
+        self.put_aside();
+    }
+
+    fn problems(&self) -> PackedStringArray {
+        self.find_problems()
+    }
+}
+
+impl GaitGenerator3D {
     /// A walk that begins where the character stands.
-    pub(super) fn new_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<Session, String> {
+    pub(super) fn new_session(&mut self, skeleton: &Gd<Skeleton3D>) -> Result<WalkSession, String> {
         let source = self.take_source()?;
         let (character, binding) = self.bind(skeleton)?;
         if self.passes_over_styles() {
-            report::tell(&self.base_mut(), NO_STYLES);
+            self.warn(NO_STYLES);
         }
         let config = self.config();
         self.redraw_way();
         let weights = self.style_weights.as_slice();
-        let mut session = Session::new(
+        let mut session = WalkSession::new(
             &source,
             weights,
             character,
@@ -88,19 +96,8 @@ impl GaitGenerator3D {
         }
     }
 
-    pub(super) fn bind(
-        &self,
-        skeleton: &Gd<Skeleton3D>,
-    ) -> Result<(Gd<Node3D>, SkeletonBinding), String> {
-        let character = self.find_character(skeleton)?;
-        let binding = SkeletonBinding::new(skeleton, &character, self.bone_map.as_ref())
-            .map_err(|error| error.to_string())?;
-        Ok((character, binding))
-    }
-
     /// One frame: time passes, the character travels, bones are posed, footsteps are emitted.
-    pub(super) fn walk(&mut self, mut session: Session, mut skeleton: Gd<Skeleton3D>, delta: f64) {
-        self.told.problem = None;
+    fn walk(&mut self, mut session: WalkSession, mut skeleton: Gd<Skeleton3D>, delta: f64) {
         let in_editor = Engine::singleton().is_editor_hint();
         let holds = if in_editor {
             self.is_preview_paused()
@@ -111,7 +108,7 @@ impl GaitGenerator3D {
         let dt_secs = if holds { 0.0 } else { delta.max(0.0) };
         let travels = self.root_motion && !in_editor;
         let weights = self.layer_weights();
-        self.pass_replica(&mut session, dt_secs);
+        self.advance_replica(&mut session, dt_secs);
         let detail = self.choose_detail(&session, delta);
         session.generator.set_detail(detail);
         session
@@ -129,12 +126,12 @@ impl GaitGenerator3D {
         if let Err(problem) = self.fulfil(&mut session, &skeleton, delta.max(0.0)) {
             self.report(problem);
         }
-        if self.reign == Reign::Away {
+        if self.ownership == Ownership::Away {
             self.rest(session);
             return;
         }
         let jumped = session.generator.jump_phase();
-        let (travel, arrived, out) = if self.reign == Reign::Leaving {
+        let (travel, arrived, out) = if self.ownership == Ownership::Leaving {
             let (travel, out) = session.go_out(&skeleton, delta.max(0.0));
             (travel, false, out)
         } else {
@@ -158,7 +155,7 @@ impl GaitGenerator3D {
             }
             session.write(&mut skeleton, &weights);
         }
-        let silent = in_editor || self.reign == Reign::Leaving;
+        let silent = in_editor || self.ownership == Ownership::Leaving;
         let footsteps = if silent {
             Vec::new()
         } else {
@@ -168,12 +165,12 @@ impl GaitGenerator3D {
         let gait = session.generator.gait();
         let flight = Flight::between(jumped, session.generator.jump_phase());
         self.session = Some(session);
-        self.tell_refusal();
+        self.emit_refusal();
         if arrived {
             self.signals().taken_over().emit();
         }
         if out {
-            self.reign = Reign::Away;
+            self.ownership = Ownership::Away;
             self.signals().handed_over().emit();
         }
         for (side, position) in &footsteps {
@@ -181,15 +178,15 @@ impl GaitGenerator3D {
             self.signals().footstep().emit(&foot, *position);
         }
         if !silent {
-            self.tell_flight(flight, &footsteps);
+            self.emit_flight(flight, &footsteps);
         }
-        if gait != self.told.gait && !silent {
-            self.told.gait = gait;
+        if gait != self.announced.gait && !silent {
+            self.announced.gait = gait;
             self.signals().gait_changed().emit(&name_of(gait));
         }
         let side = foothold.map(|(side, ..)| side);
-        if side != self.told.landing {
-            self.told.landing = side;
+        if side != self.announced.landing {
+            self.announced.landing = side;
             if let Some((side, position, secs)) = foothold {
                 let foot = StringName::from(side.name());
                 self.signals()

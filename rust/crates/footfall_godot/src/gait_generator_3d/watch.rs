@@ -1,7 +1,7 @@
-//! Watching how somebody else poses the skeleton.
+//! Observation of other animation on the skeleton.
 
-use super::seen::{Seen, raise};
-use super::session::Session;
+use super::observed_motion::{ObservedMotion, raise};
+use super::session::WalkSession;
 use footfall_core::Pose;
 use footfall_ik::placement::Frame;
 use godot::classes::Skeleton3D;
@@ -11,12 +11,12 @@ use godot::prelude::*;
 #[derive(Debug, Default)]
 pub(super) struct Watch {
     /// In the world. A foot of an animation that travels with its character stands here.
-    pub(super) in_world: Seen,
+    pub(super) in_world: ObservedMotion,
     /// On the ground under the character. A foot of an animation that stays in place stands here, though the character still travels.
-    in_place: Seen,
+    in_place: ObservedMotion,
 }
 
-impl Session {
+impl WalkSession {
     /// Reads the pose that the skeleton has, on the ground under the character, and which feet stand in it.
     pub(super) fn watch(&mut self, skeleton: &Gd<Skeleton3D>, dt_secs: f32) -> (Pose, [bool; 2]) {
         let mut pose = Pose::default();
@@ -31,8 +31,8 @@ impl Session {
             in_place: place,
         } = &mut self.watched;
         if dt_secs > 0.0 {
-            place.see_silent(body, &pose, dt_secs, &Frame::IDENTITY, 1.0);
-            world.see_silent(body, &in_world, dt_secs, &ground, scale.recip());
+            place.observe_without_contacts(body, &pose, dt_secs, &Frame::IDENTITY, 1.0);
+            world.observe_without_contacts(body, &in_world, dt_secs, &ground, scale.recip());
         }
         (pose, self.stands_in_place())
     }
@@ -43,9 +43,9 @@ impl Session {
     }
 
     /// The motion that was watched, on the ground under the character as it is now, in metres of the body; its feet stand in the world.
-    pub(super) fn watched_here(&self) -> Seen {
+    pub(super) fn watched_here(&self) -> ObservedMotion {
         let ground = self.traveller.world_from_ground();
         let scale = self.traveller.scale().recip();
-        self.watched.in_world.seen_from(&ground, scale)
+        self.watched.in_world.relative_to(&ground, scale)
     }
 }

@@ -1,7 +1,7 @@
 //! Calibration and problems of the sensors, for scripts and players.
 
 use super::ImuReconstructor3D;
-use super::session::Session;
+use super::session::SensorSession;
 use footfall_model::SensorCalibration;
 use footfall_model::imu_model::MAX_SENSORS;
 use footfall_recon::{CalibrationGuide, GuideStep, SensorProblem};
@@ -11,39 +11,39 @@ use godot::global::Error;
 use godot::prelude::*;
 
 /// Changes since the last frame.
-pub(super) struct News {
+pub(super) struct Changes {
     /// Problems of the sensors now, and whether each is another than before.
     problems: [(Option<SensorProblem>, bool); MAX_SENSORS],
     step: Option<GuideStep>,
 }
 
-impl Session {
-    /// Changes to be told now.
-    pub(super) fn news(&mut self) -> News {
-        let mut news = News {
+impl SensorSession {
+    /// Changes since the last frame, to be emitted.
+    pub(super) fn changes(&mut self) -> Changes {
+        let mut changes = Changes {
             problems: [(None, false); MAX_SENSORS],
             step: None,
         };
-        for (n, told) in self.problems.iter_mut().enumerate() {
+        for (n, emitted) in self.problems.iter_mut().enumerate() {
             let problem = self.reconstructor.problem(n);
-            let alike = match (&problem, &*told) {
-                (Some(now), Some(told)) => now.is_alike(told),
-                (now, told) => now.is_none() && told.is_none(),
+            let alike = match (&problem, &*emitted) {
+                (Some(now), Some(emitted)) => now.is_alike(emitted),
+                (now, emitted) => now.is_none() && emitted.is_none(),
             };
-            news.problems[n] = (problem, !alike);
-            *told = problem;
+            changes.problems[n] = (problem, !alike);
+            *emitted = problem;
         }
         let step = self.guide.map(|guide| guide.step());
-        news.step = step.filter(|_| step != self.asked);
+        changes.step = step.filter(|_| step != self.asked);
         self.asked = step;
-        news
+        changes
     }
 }
 
 impl ImuReconstructor3D {
     /// Emits the signals of what has changed.
-    pub(super) fn tell(&mut self, news: &News) {
-        for (sensor, (problem, is_news)) in (0_i64..).zip(&news.problems) {
+    pub(super) fn emit_changes(&mut self, changes: &Changes) {
+        for (sensor, (problem, is_news)) in (0_i64..).zip(&changes.problems) {
             if *is_news {
                 let name = problem.map_or("", |problem| problem.name());
                 let message = problem.map_or_else(String::new, |problem| problem.to_string());
@@ -54,7 +54,7 @@ impl ImuReconstructor3D {
                 );
             }
         }
-        if let Some(step) = news.step {
+        if let Some(step) = changes.step {
             self.signals().calibration_changed().emit(
                 &StringName::from(step.name()),
                 &GString::from(step.message()),
@@ -137,7 +137,7 @@ impl ImuReconstructor3D {
     #[func]
     fn save_calibration(&self, path: GString) -> GString {
         let path = String::from(path);
-        let Some(calibration) = self.session.as_ref().and_then(Session::calibration) else {
+        let Some(calibration) = self.session.as_ref().and_then(SensorSession::calibration) else {
             return "The mounting of the sensors is not known yet. Calibrate first.".into();
         };
         let bytes = match calibration.to_bytes() {

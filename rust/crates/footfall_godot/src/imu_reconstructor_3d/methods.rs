@@ -1,9 +1,10 @@
 //! Methods of the node that scripts call.
 
-use super::worn::Worn;
+use super::worn_sensor::WornSensor;
 use super::{ImuMounting, ImuReconstructor3D};
 use crate::convert;
-use crate::root_motion::{advance_of, frame_clock};
+use crate::modifier::BodyModifier as _;
+use crate::root_motion;
 use footfall_core::Behaviour;
 use footfall_imu::ImuSample;
 use godot::classes::ProjectSettings;
@@ -57,7 +58,7 @@ impl ImuReconstructor3D {
     #[func]
     fn get_latency(&self) -> f64 {
         let sensors = self.session.iter().flat_map(|session| &session.sensors);
-        sensors.map(Worn::latency_secs).fold(0.0, f64::max)
+        sensors.map(WornSensor::latency_secs).fold(0.0, f64::max)
     }
 
     /// Records a sensor's samples from now on into a file that a `ReplayImuSource` plays. Returns `true` if the file can be created.
@@ -65,14 +66,15 @@ impl ImuReconstructor3D {
     fn start_recording(&mut self, path: GString, #[opt(default = 0)] sensor: i64) -> bool {
         let path = String::from(path);
         let path = ProjectSettings::singleton().globalize_path(path.as_str());
-        let worn = self.worn_mut(sensor);
-        worn.is_some_and(|worn| worn.start_recording(&path.to_string()))
+        let sensor = self.sensor_mut(sensor);
+        sensor.is_some_and(|sensor| sensor.start_recording(&path.to_string()))
     }
 
     /// Ends a recording and renames its temporary file. Returns `true` if all of it was written.
     #[func]
     fn stop_recording(&mut self, #[opt(default = 0)] sensor: i64) -> bool {
-        self.worn_mut(sensor).is_some_and(Worn::stop_recording)
+        self.sensor_mut(sensor)
+            .is_some_and(WornSensor::stop_recording)
     }
 
     /// Returns the body's behaviour: `stand`, `walk`, `run`, `jump`, `hop` or `sidestep`.
@@ -102,19 +104,16 @@ impl ImuReconstructor3D {
             return 1.0;
         }
         let sensor = usize::try_from(sensor).unwrap_or(usize::MAX);
-        let worn = self.session.as_ref().and_then(|s| s.sensors.get(sensor));
-        let mounting = worn.and_then(|worn| worn.mounting);
+        let sensor = self.session.as_ref().and_then(|s| s.sensors.get(sensor));
+        let mounting = sensor.and_then(|sensor| sensor.mounting);
         mounting.map_or(0.0, |mounting| f64::from(mounting.certainty))
     }
 
     /// Returns the body's travel in the character's own space since the previous frame, as `get_root_motion_delta()` of `GaitGenerator3D`.
     #[func]
     fn get_root_motion_delta(&mut self) -> Transform3D {
-        let Some(skeleton) = self.base().get_skeleton() else {
-            return Transform3D::IDENTITY;
-        };
-        self.travelled
-            .since_last_frame(advance_of(&skeleton), frame_clock())
+        let skeleton = self.base().get_skeleton();
+        root_motion::delta_for(&mut self.travelled, skeleton)
     }
 
     /// Returns the problems that keep the character from being driven, each with what to do next, and those of the connected sensors; empty if there are none.

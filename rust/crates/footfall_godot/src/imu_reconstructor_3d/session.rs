@@ -1,7 +1,7 @@
-//! A reconstructor on a skeleton, and the sensors that it hears.
+//! A reconstructor on a skeleton, and its sensors.
 
-use super::worn::Worn;
-use crate::imu_source::Heard;
+use super::worn_sensor::WornSensor;
+use crate::imu_source::SourceSamples;
 use crate::travel::Traveller;
 use footfall_core::{Behaviour, Pose};
 use footfall_imu::ImuSample;
@@ -13,26 +13,26 @@ use footfall_recon::{
 use glam::Quat;
 use std::sync::Arc;
 
-/// Somebody has stood for so long before anything is heard: a second.
+/// Samples of standing that give the pose before the first real sample: a second.
 const STANDING_SAMPLES: u32 = 50;
 const STANDING_RATE_HZ: f64 = 50.0;
 
 /// A reconstructor on a skeleton.
-pub(super) struct Session {
+pub(crate) struct SensorSession {
     pub(super) reconstructor: Reconstructor,
     pub(super) prepared: Arc<Prepared>,
     pub(super) traveller: Traveller,
-    pub(super) sensors: [Worn; MAX_SENSORS],
-    /// True when it is found out how sensors are worn.
+    pub(super) sensors: [WornSensor; MAX_SENSORS],
+    /// True if the mounting of the sensors is estimated.
     pub(super) finds_mountings: bool,
-    /// Pose of the body before anything is heard.
+    /// Pose of the body before the first sample.
     pub(super) standing: Pose,
     pub(super) pose: Pose,
     pub(super) behaviour: Behaviour,
-    /// The calibration under way, and what was asked of the player last.
+    /// The calibration under way, and the last request to the player.
     pub(super) guide: Option<CalibrationGuide>,
     pub(super) asked: Option<GuideStep>,
-    /// Problems of the sensors that were told last.
+    /// Problems of the sensors that were emitted last.
     pub(super) problems: [Option<SensorProblem>; MAX_SENSORS],
     pub(super) state: SensorState,
 }
@@ -51,8 +51,24 @@ pub(super) fn standing(reconstructor: &Reconstructor) -> Pose {
     pose
 }
 
-impl Session {
-    /// Takes a sample that a script gives.
+impl SensorSession {
+    /// Takes over the sensors of an earlier session of the same skeleton and model: their sources, recordings and mountings.
+    pub(super) fn take_over(&mut self, before: Self) {
+        let same = Arc::ptr_eq(&self.prepared, &before.prepared)
+            && self.traveller.skeleton() == before.traveller.skeleton();
+        if !same {
+            return;
+        }
+        if let Some(calibration) = before.reconstructor.calibration()
+            && self.reconstructor.calibrate(&calibration).is_err()
+        {
+            return;
+        }
+        self.sensors = before.sensors;
+        (self.guide, self.asked) = (before.guide, before.asked);
+    }
+
+    /// Takes a sample from a script.
     pub(super) fn push(&mut self, sensor: usize, sample: ImuSample) {
         let Some(worn) = self.sensors.get_mut(sensor) else {
             return;
@@ -63,10 +79,10 @@ impl Session {
         self.take(sensor, sample);
     }
 
-    /// Takes what a source gives in a frame.
-    pub(super) fn hear(&mut self, sensor: usize, heard: Heard, delta: f64) {
+    /// Takes a source's samples of a frame.
+    pub(super) fn hear(&mut self, sensor: usize, samples: SourceSamples, delta: f64) {
         let mut worn = core::mem::take(&mut self.sensors[sensor]);
-        worn.hear(heard, delta, |sample| self.take(sensor, sample));
+        worn.hear(samples, delta, |sample| self.take(sensor, sample));
         self.sensors[sensor] = worn;
     }
 
@@ -87,7 +103,7 @@ impl Session {
         self.reconstructor.reset();
     }
 
-    /// Looks now and then for how sensors are worn, and what is wrong with that.
+    /// Estimates the mounting of the sensors at intervals, and its problems.
     pub(super) fn look(&mut self) {
         let used = self.prepared.model().sites.len();
         let asked = self.guide.is_some_and(|guide| guide.wants_mounting());
@@ -105,7 +121,7 @@ impl Session {
                 }
             }
             self.reconstructor.set_finding(sensor, seen.finding);
-            // A look that began before the steps were taken says nothing about them.
+            // An estimate that began before the steps were taken does not include them.
             if let Some(guide) = &mut self.guide
                 && (seen.asked || !guide.wants_mounting())
             {
@@ -114,7 +130,7 @@ impl Session {
         }
     }
 
-    /// Calibration of wearer and sensors so far; `None` while it is not known how one is worn.
+    /// Calibration of wearer and sensors so far; `None` while a mounting is unknown.
     pub(super) fn calibration(&self) -> Option<SensorCalibration> {
         let mut calibration = self.reconstructor.calibration()?;
         for (sensor, worn) in calibration.sensors.iter_mut().zip(&self.sensors) {

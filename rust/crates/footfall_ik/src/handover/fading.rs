@@ -1,15 +1,15 @@
-//! Offset from one motion to the next: it dies away, beginning at its own speed.
+//! Decay of the offset between two motions, from its initial speed.
 
 use glam::Vec3;
 
-/// An offset with a velocity that comes to rest at nothing.
+/// An offset with a velocity that decays to zero.
 ///
-/// A quintic polynomial: place and velocity are continuous at the beginning, place, velocity and acceleration at the end, and at the
-/// beginning nothing is accelerated but by the motion that goes on.
+/// A quintic polynomial: place and velocity are continuous at the beginning, place, velocity and acceleration at the end, and the
+/// acceleration at the beginning is that of the new motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Fading {
     offset: Vec3,
-    /// Of the offset, a second.
+    /// Change of the offset per second.
     velocity: Vec3,
     secs: f32,
     age_secs: f32,
@@ -42,7 +42,7 @@ impl Fading {
         self.age_secs >= self.secs
     }
 
-    /// Offset that is left now.
+    /// The current offset.
     pub(super) fn left(&self) -> Vec3 {
         let s = self.share();
         if s >= 1.0 {

@@ -1,4 +1,4 @@
-//! A foot while one motion gives way to another: one that stands stays where it is.
+//! A foot in the transition between two motions: a standing foot keeps its place.
 
 use super::fading::Fading;
 use crate::leg::FootTarget;
@@ -6,28 +6,27 @@ use crate::rocker::{RockerFoot, foot_heading, foot_pitch};
 use footfall_core::rotation::{exp_map, from_heading, log_map, wrap_angle};
 use glam::{Quat, Vec3};
 
-/// A held foot comes to the place of the new motion within this time once that lifts it, and so long a step of its own takes, seconds.
+/// Time within which a held foot moves to its place in the new motion once that lifts it, and duration of a step of its own, seconds.
 const SWING_SECS: f32 = 0.3;
-/// Places that are so near need no step, metres.
+/// Distance of places that need no step, metres.
 const NEAR_M: f32 = 0.01;
-/// A turn by a radian counts as so many metres.
+/// Distance that equals a turn of a radian, metres.
 const METRES_A_RADIAN: f32 = 0.1;
-/// A step of its own rises by this share of its length, within these bounds, metres.
+/// Lift of a step of its own, as a share of its length, and the limits of that, metres.
 const RISE: f32 = 0.35;
 const RISES_M: [f32; 2] = [0.02, 0.1];
-/// A foot that has so little left to go has landed, metres.
+/// Remaining distance at which a foot has landed, metres.
 const LANDED_M: f32 = 0.02;
-/// A sole that has so much left to roll counts as so many metres a radian away.
+/// Distance that equals a radian of remaining roll of the sole, metres.
 const ROLL_LEVER_M: f32 = 0.1;
-/// A foot that comes out of the air has landed after this share of its way, however near it was.
+/// Share of its time before which a foot from the air has not landed, however near it is.
 const LANDED_SHARE: f32 = 0.7;
-/// A sole that comes down does so no faster than by so many times its pitch within the time of the hand-over: it stops at the ground and does not roll on to the other
-/// side.
+/// Fastest roll of a landing sole, in its pitches per handover: it stops at the ground and does not roll beyond.
 const SLAP: f32 = 2.8;
-/// A foot in the air that stands in the new motion lands within this time where it is, seconds, if that is no farther away than this, metres.
+/// Time within which a foot in the air that stands in the new motion lands in place, seconds, and the greatest distance for that, metres.
 const LANDING_SECS: f32 = 0.15;
 const REACH_M: f32 = 0.35;
-/// No foot is faster, m/s and rad/s.
+/// Greatest speeds of a foot, m/s and rad/s.
 const MAX_SPEED: f32 = 12.0;
 
 /// A foot of a motion in two frames.
@@ -38,38 +37,38 @@ pub(super) struct MovingFoot {
     pub(super) stands: bool,
 }
 
-/// Way of a foot from where it was to where the motion that goes on has it.
+/// Transition of a foot from its place in the old motion to that in the new one.
 ///
-/// Two things part them. Over the ground and about the vertical it is held where it stands, so that a rolling foot rolls about the place
-/// where it was put, until the new motion lifts it. Its pitch dies away as a roll about that place, and so does the rest: height, tilt and speed.
+/// The difference has two parts. On the ground and about the vertical the foot is held in place, so that a rolling foot rolls about its
+/// plant, until the new motion lifts it. Its pitch decays as a roll about that plant, and so does the rest: height, tilt and speed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeldFoot {
     rocker: RockerFoot,
-    /// Place at which it stands as long as it is held, and its heading.
+    /// Plant and heading while it is held.
     held: Option<(Vec3, f32)>,
     going: Option<Going>,
-    /// Offset over the ground from the motion that goes on: x and z; y is the turn. And its rate.
+    /// Offset on the ground from the new motion, x and z, with the turn in y; and its rate.
     parted: Vec3,
     parting: Vec3,
-    /// Pitch of a foot that stands in both motions beyond that of the motion that goes on, radians in x.
+    /// Pitch beyond that of the new motion, for a foot that stands in both, radians in x.
     roll: Fading,
-    /// True for a foot that came out of the air.
+    /// True for a foot that came from the air.
     lands: bool,
     place: Fading,
     tilt: Fading,
     toes: Fading,
 }
 
-/// A foot that was held, on its way to where the motion that goes on has it.
+/// Motion of a formerly held foot to its place in the new motion.
 #[derive(Clone, Copy, Debug)]
 struct Going {
     parted: Fading,
-    /// Of a step of its own, metres.
+    /// Lift of a step of its own, metres.
     rise: Option<f32>,
 }
 
 impl HeldFoot {
-    /// Between the foot of the motion that ends and that of the motion that goes on, `dt_secs` apart in both.
+    /// Transition between the foot of the old motion and that of the new one, both with frames `dt_secs` apart.
     pub(super) fn new(
         rocker: RockerFoot,
         from: &MovingFoot,
@@ -137,7 +136,7 @@ impl HeldFoot {
         foot
     }
 
-    /// Lets time pass. Takes where the motion that goes on has the foot, and whether it stands there; returns where it is.
+    /// Advances the handover. Takes the foot's place in the new motion and whether it stands there; returns the place to show.
     pub(super) fn step(&mut self, dt_secs: f32, to: &FootTarget, stands: bool) -> FootTarget {
         self.roll.advance(dt_secs);
         self.place.advance(dt_secs);
@@ -178,7 +177,7 @@ impl HeldFoot {
         target
     }
 
-    /// Distance from where it is held to where it should stand, metres; 0 for a foot that is not held.
+    /// Distance from the held place to the place in the new motion, metres; 0 for a foot that is not held.
     pub(super) fn distance(&self) -> f32 {
         if self.held.is_none() {
             return 0.0;
@@ -186,29 +185,29 @@ impl HeldFoot {
         self.parted_m() + METRES_A_RADIAN * self.parted.y.abs()
     }
 
-    /// Returns true when it is held elsewhere than where it should stand.
+    /// Returns true if it is held away from its place in the new motion.
     pub(super) fn is_held_apart(&self) -> bool {
         self.distance() > 0.0
     }
 
-    /// Distance over the ground from where the motion that goes on has it, metres.
+    /// Distance on the ground from its place in the new motion, metres.
     pub(super) fn parted_m(&self) -> f32 {
         level(self.parted).length()
     }
 
-    /// Returns true when it stands, or is as good as there.
+    /// Returns true if it stands, or nearly so.
     pub(super) fn has_landed(&self) -> bool {
         let rolling = ROLL_LEVER_M * self.roll.left().x.abs();
         let settled = !self.lands || self.place.share() >= LANDED_SHARE;
         self.going.is_none() && settled && self.place.left().length() + rolling < LANDED_M
     }
 
-    /// Returns true when it is where the motion that goes on has it.
+    /// Returns true if it is at its place in the new motion.
     pub(super) fn is_over(&self) -> bool {
         self.place.is_over() && self.going.is_none() && self.distance() == 0.0
     }
 
-    /// Makes a step of its own to where it should stand.
+    /// Begins a step of its own to its place in the new motion.
     pub(super) fn step_over(&mut self) {
         let [low, high] = RISES_M;
         let distance = self.distance();
@@ -228,7 +227,7 @@ impl HeldFoot {
         });
     }
 
-    /// A foot moved over the ground and turned about where it would lie flat.
+    /// A foot moved on the ground and turned about its flat place.
     fn moved(&self, foot: &FootTarget, parted: Vec3) -> FootTarget {
         if parted == Vec3::ZERO {
             return *foot;
@@ -242,7 +241,7 @@ impl HeldFoot {
         }
     }
 
-    /// A foot rolled on its sole to a pitch that differs by so much, radians.
+    /// A foot rolled on its sole by a difference in pitch, radians.
     fn rolled(&self, foot: &FootTarget, roll: f32) -> FootTarget {
         if roll == 0.0 {
             return *foot;
@@ -260,7 +259,7 @@ impl HeldFoot {
         }
     }
 
-    /// Returns the place at which it would lie if it were put down flat, and its heading.
+    /// Returns its place if it were put down flat, and its heading.
     fn footprint(&self, foot: &FootTarget) -> (Vec3, f32) {
         let heading = foot_heading(foot.foot);
         let pitch = foot_pitch(foot.foot);

@@ -8,27 +8,27 @@ use crate::placement::terrain::Terrain;
 use crate::rocker::RockerFoot;
 use glam::Vec3;
 
-/// Shorter steps land where they land, metres.
+/// Length below which steps are not aimed, metres.
 const SHORT_STEP_M: f32 = 0.1;
-/// Steps are shortened to this share of their way at least, lengthened by that share at most and so many metres.
+/// Least length of a step, as a share of its own; and its greatest lengthening, as a share and in metres.
 const LEAST_SHARE: f32 = 0.3;
 const MORE_SHARE: f32 = 0.3;
 const MOST_MORE_M: f32 = 0.16;
-/// Distance between the places that are tried, metres.
+/// Distance between candidate places, metres.
 const TRIAL_M: f32 = 0.01;
-/// Footprints are no nearer to each other to the side for an edge's sake, metres.
+/// Least lateral distance of footprints when a foothold avoids an edge, metres.
 const LEAST_BASE_M: f32 = 0.06;
-/// Rises and falls of a step that are no effort and those that are out of reach, in lengths of the leg; what a metre of effort costs.
+/// Height differences of a step without effort, and those out of reach, in leg lengths; and the cost of a metre of effort.
 const EASY_RISE: f32 = 0.28;
 const MOST_RISE: f32 = 0.6;
 const RISE_COST: f32 = 6.0;
 /// Least height of an edge, metres, up or down which a foot lands on its ball.
 const EDGE_M: f32 = 0.08;
-/// On a grade of more than this a tread is taken with one step: a second one on it costs so much, and steps are lengthened by this share at most.
+/// Grade above which each tread takes one step, the cost of a second step on a tread, and the greatest lengthening of a step, as a share.
 const STAIRS_GRADE: f32 = 0.2;
 const SAME_TREAD_COST: f32 = 0.2;
 const STAIRS_MORE_SHARE: f32 = 0.5;
-/// Longer steps cost so much more than shorter ones.
+/// Factor of the cost of lengthening over shortening.
 const LONGER_COST: f32 = 1.5;
 
 /// A place for the foot of a step.
@@ -37,7 +37,7 @@ pub(super) struct Aim {
     pub(super) foothold: Foothold,
     /// Length that the step needs, as a share of its own.
     pub(super) share: f32,
-    /// By how much the ground rises from this foothold to about the next one, metres.
+    /// Rise of the ground from this foothold to about the next one, metres.
     pub(super) next_rise_m: f32,
     /// Grade of the ground ahead over two steps from the standing foot.
     pub(super) grade: f32,
@@ -53,14 +53,14 @@ pub(super) struct Step<'a> {
     pub(super) leg_m: f32,
     /// Grade between the two footholds before it.
     pub(super) grade: f32,
-    /// True when the step can still be made shorter or longer; otherwise only its foot is put elsewhere.
+    /// True if the length of the step can still change; otherwise only its foot is moved.
     pub(super) may_stretch: bool,
 }
 
-/// The ground along it, and what is asked of it.
+/// The ground along the step, and its limits.
 struct Way {
     profile: Profile,
-    /// The sole where the animation puts it, in the world, and how far that is from the standing foot, metres.
+    /// The sole's place in the animation, in the world, and its distance from the standing foot, metres.
     flat: Frame,
     length: f32,
     /// Height of the standing foot, metres.
@@ -143,7 +143,7 @@ impl Step<'_> {
         best
     }
 
-    /// A place so much farther or nearer, and its cost, where that is less than `most`.
+    /// A place at this shift along the step, and its cost if that is less than `most`.
     fn weigh<T: Terrain>(
         &self,
         scene: &mut Scene<'_, T>,
@@ -220,7 +220,7 @@ impl Step<'_> {
         }
     }
 
-    /// A foot that is put beside the other, or behind it.
+    /// A foot that lands beside the other, or behind it.
     fn beside<T: Terrain>(&self, scene: &mut Scene<'_, T>, flat: &Frame) -> Option<Aim> {
         let search = scene.search();
         Some(Aim {

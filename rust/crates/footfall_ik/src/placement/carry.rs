@@ -1,4 +1,4 @@
-//! Way of the pelvis: as high as the ground under it has it, and no higher than the legs reach.
+//! Height of the pelvis: above the ground under it, within the reach of the legs.
 
 use crate::leg::{FootTarget, reach_height};
 use crate::placement::correction::Correction;
@@ -11,16 +11,16 @@ use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Pose, Side};
 use glam::{Quat, Vec3};
 
-/// Legs are stretched to this share of their length for the pelvis' sake, unless the animation stretches them more.
+/// Greatest extension of legs by the pelvis, as a share of their length, unless the animation extends them further.
 const EASY_EXTENSION: f32 = 0.98;
-/// A standing foot raises its heel rather than have its leg stretched to more, unless the animation stretches it more.
+/// Extension of its leg beyond which a standing foot raises its heel, unless the animation extends the leg further.
 const FIRM_EXTENSION: f32 = 0.995;
-/// Legs are never stretched more.
+/// Greatest extension of a leg, as a share of its length.
 const MAX_EXTENSION: f32 = 0.999;
-/// A step takes so long, about, and its rise is reckoned over this time at least, seconds.
+/// Typical duration of a step, and the least time over which its rise is spread, seconds.
 const STEP_SECS: f32 = 0.6;
 const LEAST_STEP_SECS: f32 = 0.2;
-/// A foot of which nobody knows when it lands is about to when it is lower than this, metres.
+/// Height below which a foot without a known landing is about to land, metres.
 const SOON_M: f32 = 0.15;
 /// Distance of the soles beyond which they give the grade, metres, and the time within which the grade follows, seconds.
 const GRADE_RUN_M: f32 = 0.2;
@@ -179,7 +179,7 @@ impl FootPlacer {
                 reach_height(landing.hips, hip, ankle, length, EASY_EXTENSION)
                     .map_or(0.0, |height| height - landing.hips.y)
             };
-            // Whoever comes down on the ball of the foot has the ankle over the flat sole.
+            // In a landing on the ball of the foot the ankle is above the flat sole.
             let on_ball = leg == index && plan.foothold.on_ball;
             let above = if on_ball {
                 Vec3::Y * self.rockers[leg].ankle_height()
@@ -235,7 +235,7 @@ impl FootPlacer {
                 let easy = stretch.clamp(EASY_EXTENSION, MAX_EXTENSION);
                 offset = offset.min(limit(ankle, easy));
             } else {
-                // Nobody knows when it will stand: the lower, the sooner.
+                // The time of its landing is unknown: the lower, the sooner.
                 let lift = ankle.y - foot.sole.position.y - self.rockers[index].ankle_height();
                 let easy = limit(ankle, EASY_EXTENSION).min(offset);
                 offset += smooth_step(1.0 - lift / SOON_M) * (easy - offset);

@@ -70,7 +70,7 @@ impl Residual {
         }
     }
 
-    /// Lets it fade to this share of itself.
+    /// Fades it to this share.
     pub(crate) fn fade(&mut self, share: f32) {
         self.ankle *= share;
         self.foot = Quat::IDENTITY.slerp(self.foot, share);

@@ -1,4 +1,4 @@
-//! One foot: locked where it was put, or on its way to the next place.
+//! One foot: locked to its place, or swinging to the next.
 
 mod heel;
 
@@ -8,18 +8,18 @@ use crate::placement::correction::{Correction, Residual};
 use crate::placement::foothold::{Foothold, MOST_ASIDE_M, Search};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::Follower;
-use crate::placement::swing::Plan;
+use crate::placement::swing::PlannedFoothold;
 use crate::placement::terrain::Terrain;
 use crate::rocker::{Plant, RockerFoot};
 use footfall_core::rotation::{heading, wrap_angle};
 use glam::{Quat, Vec3};
 pub(super) use heel::MAX_PITCH;
 
-/// Time constant with which what is left of a jump fades, seconds.
+/// Time constant with which a discontinuity fades, seconds.
 const RESIDUAL_SECS: f32 = 0.06;
-/// Time constant with which a foot that goes nobody knows where follows the ground under it, seconds.
+/// Time constant with which a foot without a known landing follows the ground under it, seconds.
 pub(super) const FOLLOW_SECS: f32 = 0.08;
-/// A foot that slid too far from its lock is put anew, for at least so long, seconds.
+/// Least time between two new plants of a foot that has drifted from its lock, seconds.
 pub(super) const REPLANT_SECS: f32 = 0.22;
 
 /// Place where the animation will put a foot, relative to the animation's floor now.
@@ -66,7 +66,7 @@ pub(super) struct Foot {
     pub(super) sole: Frame,
     /// Place at which it will stand next, relative to the floor of the animation, as far as that is known.
     pub(super) lands: Option<Vec3>,
-    pub(super) plan: Option<Plan>,
+    pub(super) plan: Option<PlannedFoothold>,
     /// Place in the world of the animation's landing when no ground was found for it.
     pub(super) missed_at: Option<Vec3>,
     /// Correction on the way to a foothold that was given up in this frame.
@@ -95,7 +95,7 @@ pub(super) struct Foot {
     /// Residual between the locked foot and the animated one, beyond its correction.
     pub(super) at_lock: Residual,
     pub(super) begun: bool,
-    /// True when it was let go before the animation lifts it.
+    /// True if it was released before the animation lifts it.
     pub(super) let_go_early: bool,
 }
 
@@ -248,7 +248,7 @@ impl Foot {
         }
     }
 
-    /// Goes over to a mode; where it is to land next stays.
+    /// Changes the mode; the next landing stays.
     fn let_go(&mut self, mode: Mode) {
         self.mode = mode;
         self.hold = None;
@@ -263,7 +263,7 @@ impl Foot {
         self.pushed = Vec3::ZERO;
     }
 
-    /// Locks the foot to the ground where it is put, if there is any.
+    /// Locks the foot to the ground at its place, if there is any.
     fn put<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
@@ -332,7 +332,7 @@ impl Foot {
         world_target(&self.sole, &on_sole)
     }
 
-    /// The pitch on its foothold of a foot at this pitch: nobody lands on a heel under which there is nothing.
+    /// Pitch on the foothold for a foot at this pitch: a heel without ground under it does not land first.
     fn on_ball(&self, pitch: f32) -> f32 {
         let hangs = self.hold.is_some_and(|hold| hold.on_ball);
         if hangs { pitch.max(0.0) } else { pitch }

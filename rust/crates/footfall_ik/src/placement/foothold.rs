@@ -6,23 +6,23 @@ use crate::placement::terrain::{Ground, SupportId, Terrain};
 use crate::rocker::RockerFoot;
 use glam::Vec3;
 
-/// A flat sole is on the ground as long as none of its points is farther from it than this, metres.
+/// Greatest distance of the points of a flat sole from the ground, metres.
 pub(super) const FLAT_M: f32 = 0.008;
 
-/// A foot that would stand across an edge is put so much farther ahead or back, in the order of trial, metres.
+/// Shifts of a foot that would stand across an edge, ahead or back, in the order of trial, metres.
 const SHIFTS_M: [f32; 17] = [
     0.0, 0.02, -0.02, 0.04, -0.04, 0.06, -0.06, 0.08, -0.08, 0.1, -0.1, 0.12, -0.12, 0.14, -0.14,
     0.16, -0.16,
 ];
 
-/// A sole whose rim lies across an edge is put so far to the left or to the right at most, metres, and places so far apart are tried.
+/// Greatest lateral shift of a sole whose rim lies across an edge, and the distance between the candidates, metres.
 pub(crate) const MOST_ASIDE_M: f32 = 0.1;
 const ASIDE_M: f32 = 0.02;
 
 /// A place for a sole, on something that may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Foothold {
-    /// True when the foot comes down on its ball: its heel sticks out over an edge, or it has gone up or down one.
+    /// True if the foot lands on its ball: its heel extends over an edge, or it has gone up or down one.
     pub(crate) on_ball: bool,
     support: SupportId,
     support_from_sole: Frame,
@@ -30,31 +30,31 @@ pub(crate) struct Foothold {
 
 impl Foothold {
     /// Place of the sole in the world now: the origin lies on the ground under the ankle of a flat foot, +Y is the ground's normal
-    /// and +Z points to the toes. `None` when what it stands on is gone.
+    /// and +Z points to the toes. `None` if its support is gone.
     pub(crate) fn world_from_sole(&self, terrain: &mut impl Terrain) -> Option<Frame> {
         let support = terrain.support(self.support)?;
         Some(support.child(&self.support_from_sole))
     }
 
-    /// Support that it stands on.
+    /// Its support.
     pub(crate) fn support(&self) -> SupportId {
         self.support
     }
 }
 
-/// Costs of a place: a metre of shift, higher ground close by, and a heel or toes that stick out over an edge. A sole that is borne
-/// by less costs more than any of them.
+/// Costs of a place: a metre of shift, higher ground nearby, and a heel or toes beyond an edge. A sole with less support
+/// costs more than any of them.
 pub(crate) const SHIFT_COST: f32 = 1.0;
 const TIGHT_COST: f32 = 0.08;
 const OVERHANG_COST: f32 = 0.3;
-/// A sole that does not lie costs so much at least.
+/// Least cost of a sole that does not lie flat.
 pub(crate) const ASKEW_COST: f32 = 1.0;
-/// Costs of a metre to the side, and of each point of the rim with nothing under it.
+/// Costs of a metre to the side, and of each point of the rim without ground.
 const ASIDE_COST: f32 = 1.0;
 const RIM_COST: f32 = 0.05;
 
 impl Lie {
-    /// As a place on what it lies on; `None` when that is gone.
+    /// Converts it to a place on its support; `None` if that is gone.
     pub(crate) fn foothold(&self, terrain: &mut impl Terrain) -> Option<Foothold> {
         Some(Foothold {
             on_ball: self.heel_hangs,
@@ -72,14 +72,14 @@ pub(crate) struct Search {
     /// Range in which ground is looked for above and below the animation's floor, metres.
     pub(crate) above_m: f32,
     pub(crate) below_m: f32,
-    /// A sole is tilted by this much at most, radians.
+    /// Greatest tilt of a sole, radians.
     pub(crate) max_tilt: f32,
-    /// True when the sole may move ahead or back, out of the way of an edge.
+    /// True if the sole may move ahead or back, away from an edge.
     pub(crate) may_shift: bool,
     /// Largest shifts to the left and to the right, metres.
     pub(crate) aside_m: [f32; 2],
-    /// True when it does so also where its middle lies across an edge. Most edges lie across the way, and moving to the side is in vain. Places are then
-    /// [farther apart](Self::spread): thousands of rays in one frame would be felt.
+    /// True if it also does so with an edge under its middle. Most edges lie across the path, where a lateral shift is useless. Candidates are then
+    /// [farther apart](Self::spread): thousands of rays in one frame would cost too much.
     pub(crate) thorough: bool,
 }
 
@@ -239,7 +239,7 @@ mod tests {
         thorough: false,
     };
 
-    /// The same for a foot that stays where it comes down.
+    /// The same for a foot without shifts.
     const FIXED: Search = Search {
         may_shift: false,
         ..SEARCH

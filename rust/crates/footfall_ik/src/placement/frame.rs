@@ -99,7 +99,7 @@ mod tests {
         };
         let frame = Frame::from(place);
         assert_eq!(frame.position, place.position);
-        // Positive headings are to the left, which is +X of somebody who faces +Z.
+        // Positive headings are to the left, which is +X of a body that faces +Z.
         let forward = Vec3::new(0.4_f32.sin(), 0.0, 0.4_f32.cos());
         assert!(frame.forward().distance(forward) < 1e-6);
         assert!(frame.up().distance(Vec3::Y) < 1e-6);

@@ -1,4 +1,4 @@
-//! A swinging foot keeps clear of the ground that it passes over.
+//! Clearance of a swinging foot from the ground below it.
 
 use crate::leg::FootTarget;
 use crate::placement::foot::{Animated, Foot, Scene};
@@ -9,19 +9,19 @@ use crate::rocker::RockerFoot;
 use footfall_core::ease::smooth_step;
 use glam::Vec3;
 
-/// A foot on its way is lifted to so far above what it would touch, metres.
+/// Clearance to which a foot is lifted above an obstacle, metres.
 const GUARD_M: f32 = 0.01;
-/// Time in which a foot that would pass through something goes half of its way over it, seconds.
+/// Half-life of the lift over an obstacle, seconds.
 const GUARD_HALF_LIFE_SECS: f32 = 0.032;
-/// No point of its sole is deeper inside than this, even where the way over it is short, metres.
+/// Greatest depth of a point of the sole in an obstacle, even during the lift, metres.
 const TOUCH_M: f32 = 0.015;
-/// A foot that goes up may graze the risers before its toes by so much and is not lifted over them, metres.
+/// Depth by which a rising foot may graze the risers before its toes without being lifted over them, metres.
 const GRAZE_M: f32 = 0.01;
-/// So long before it lands it is no longer held up, seconds: it comes down where it was meant to.
+/// Time before its landing from which a foot is no longer held up, seconds: it comes down at its foothold.
 const COMING_DOWN_SECS: f32 = 0.05;
 /// Points of a sole's rim.
 pub(super) const RIM: usize = 6;
-/// So far ahead on its way the ground is looked at, seconds.
+/// Time of the foot's path ahead for which the ground is queried, seconds.
 const LOOK_AHEAD_SECS: f32 = 0.07;
 
 impl Foot {

@@ -9,15 +9,15 @@ use glam::{Quat, Vec3};
 /// Distance by which the search reaches beyond heel and toes: a sole whose very edge is over the edge of a step stands badly.
 const MARGIN_M: f32 = 0.005;
 
-/// Heel and toes keep so far from ground that is higher, where they can, metres: the foot comes from above.
+/// Clearance of heel and toes from higher ground, if possible, metres: the foot comes from above.
 const CLEAR_M: f32 = 0.05;
 /// Ground that is higher by less is stepped over.
 const HIGHER_M: f32 = 0.03;
 
-/// A sole follows heel and toes rather than the ground under its ball by so much at most, radians.
+/// Greatest angle by which a sole follows heel and toes rather than the ground under its ball, radians.
 const MAX_BRIDGE: f32 = 0.3;
 
-/// Height above a sole, metres, from which on ground beside it is a wall: nobody stands on it.
+/// Height above a sole, metres, from which on ground beside it is a wall.
 const WALL_M: f32 = 0.25;
 
 /// A sole on the ground.

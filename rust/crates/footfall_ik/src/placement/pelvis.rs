@@ -10,7 +10,7 @@ pub(crate) struct Follower {
 }
 
 impl Follower {
-    /// Comes closer to `target` for a time; `half_life_secs` is how long half of the way takes, about.
+    /// Approaches `target` for a time; `half_life_secs` is the approximate time for half of the distance.
     pub(crate) fn follow(&mut self, target: f32, half_life_secs: f32, dt_secs: f32) {
         // A critically damped spring passes half of the way after 1.68 / omega.
         let omega = 1.68 / half_life_secs.max(1e-3);
@@ -21,7 +21,7 @@ impl Follower {
         self.velocity = (self.velocity - omega * momentum * dt_secs) * decay;
     }
 
-    /// Is at `value` at once, at rest.
+    /// Sets `value` at once, at rest.
     pub(crate) fn jump(&mut self, value: f32) {
         *self = Self {
             value,
@@ -29,7 +29,7 @@ impl Follower {
         };
     }
 
-    /// Is no lower than `value`, and comes down from there.
+    /// Raises it to `value` at least, from where it comes down.
     pub(crate) fn lift_to(&mut self, value: f32) {
         if self.value < value {
             self.jump(value);
@@ -37,7 +37,7 @@ impl Follower {
     }
 }
 
-/// A height that goes where it is to be without a jerk.
+/// A height that reaches its targets smoothly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Ride {
     pub(crate) value: f32,
@@ -55,12 +55,12 @@ struct Course {
     passed_secs: f32,
 }
 
-/// A course is kept as long as its end is within so many metres and seconds of what is asked.
+/// Differences of a request, in metres and seconds, up to which the current course is kept.
 const SAME_M: f32 = 0.004;
 const SAME_SECS: f32 = 0.03;
-/// No course is shorter, seconds.
+/// Least duration of a course, seconds.
 const LEAST_SECS: f32 = 0.1;
-/// A height that is followed over courses that never end has half of its way behind it after this share of theirs.
+/// Share of a course's duration after which half of the distance is covered, for courses that are always replaced before their end.
 const HALF_SHARE: f32 = 0.55;
 
 impl Course {
@@ -87,7 +87,7 @@ impl Course {
 }
 
 impl Ride {
-    /// Goes on towards `target`, which it is to pass in `secs` at a velocity.
+    /// Advances towards `target`, to pass it in `secs` at a velocity.
     pub(crate) fn arrive(&mut self, target: f32, velocity: f32, secs: f32, dt_secs: f32) {
         let kept = self.course.filter(|course| {
             let left = course.secs - course.passed_secs - dt_secs;
@@ -103,7 +103,7 @@ impl Ride {
         self.course = self.course.filter(|_| dt_secs > 0.0 || kept.is_some());
     }
 
-    /// Comes closer to `target` for a time; `half_life_secs` is how long half of the way takes, about.
+    /// Approaches `target` for a time; `half_life_secs` is the approximate time for half of the distance.
     pub(crate) fn settle(&mut self, target: f32, half_life_secs: f32, dt_secs: f32) {
         let course = Course {
             from: [self.value, self.velocity, self.acceleration],
@@ -121,7 +121,7 @@ impl Ride {
         self.course = Some(course);
     }
 
-    /// Is at `value` at once, at rest.
+    /// Sets `value` at once, at rest.
     pub(crate) fn jump(&mut self, value: f32) {
         *self = Self {
             value,
@@ -129,7 +129,7 @@ impl Ride {
         };
     }
 
-    /// Is carried along.
+    /// Moves it along with a support.
     pub(crate) fn carry(&mut self, rise_m: f32) {
         self.value += rise_m;
         if let Some(course) = &mut self.course {
@@ -138,7 +138,7 @@ impl Ride {
         }
     }
 
-    /// Is no higher than `limit`.
+    /// Lowers it to `limit` at most.
     pub(crate) fn hold_below(&mut self, limit: f32) {
         if self.value > limit {
             self.value = limit;

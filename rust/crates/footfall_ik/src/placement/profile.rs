@@ -3,12 +3,12 @@
 use crate::placement::terrain::Terrain;
 use glam::Vec3;
 
-/// Ground is looked at in so many places, so far apart, metres.
+/// Number of places at which the ground is queried, and their distance, metres.
 const SAMPLES: usize = 48;
 const SPACING_M: f32 = 0.05;
 
-/// Heights of the ground on a line, found by following it: what counts as ground goes on from the ground before it. So a staircase of any
-/// height is one, and the floor below it is not.
+/// Heights of the ground along a line, found by following it: ground must connect to the ground before it. So a staircase of any
+/// height belongs to it, and the floor below it does not.
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
     start: Vec3,
@@ -18,7 +18,7 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// From a point of the ground along a unit vector that is level, for so many metres. Ground that rises or falls by more than
+    /// Follows the ground from a point along a level unit vector, for a length in metres. Ground that rises or falls by more than
     /// `max_step_m` at once is a wall or an abyss.
     pub(super) fn trace(
         terrain: &mut impl Terrain,
@@ -43,13 +43,13 @@ impl Profile {
         profile
     }
 
-    /// The place so far along the line, at a height.
+    /// The place at a distance along the line, at a height.
     pub(super) fn at(&self, along_m: f32, height: f32) -> Vec3 {
         let place = self.start + self.along * along_m;
         place + self.up * (height - place.dot(self.up))
     }
 
-    /// Height of the ground so far along; `None` where there is none, and beyond the end.
+    /// Height of the ground at a distance; `None` without ground, and beyond the end.
     pub(super) fn height(&self, along_m: f32) -> Option<f32> {
         let index = (along_m / SPACING_M).round().max(0.0) as usize;
         *self.heights.get(index)?

@@ -1,4 +1,4 @@
-//! A foot on its way: to a planned foothold, or over ground that nobody planned for.
+//! Swing of a foot: to a planned foothold, or over unplanned ground.
 
 use crate::leg::FootTarget;
 use crate::placement::aim::{Aim, Step};
@@ -12,51 +12,51 @@ use core::f32::consts::PI;
 use footfall_core::ease::smooth_step;
 use glam::{Quat, Vec3};
 
-/// A foot that goes down is over its foothold so long before it stands, beginning to hurry so long before, seconds; as one that goes down
-/// counts it from so many metres on.
+/// Times before its landing at which a descending foot is over its foothold, and at which it begins to hurry there, seconds; and the
+/// descent from which this applies, metres.
 const EARLY_SECS: [f32; 2] = [0.25, 0.05];
 const EARLY_FALL_M: f32 = 0.08;
-/// A foot that goes up stays over where it stood until this part of its swing, and has caught up by that one: its toes come over the edge
-/// before it and not through it. As one that goes up counts it from so many metres on.
+/// Parts of the swing until which a rising foot stays over its last place, and at which it has caught up: its toes come over the edge
+/// before it and not through it; and the rise from which this applies, metres.
 const LATE_SHARES: [f32; 2] = [0.1, 0.6];
 pub(super) const LATE_RISE_M: f32 = 0.08;
 /// Height to which it is lifted then, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
-/// A foot that comes down on its ball has its toes no higher than its heel from so long before on, after so long a turn, seconds.
+/// Time before a landing on the ball from which the toes are no higher than the heel, and duration of the rotation before that, seconds.
 const LEVEL_SECS: [f32; 2] = [0.25, 0.02];
-/// Its heel comes down by this share of its height over the toes until this part of the swing, or the knee would have to bend for it.
+/// Share of its height over the toes by which the heel then descends, until this part of the swing; otherwise the knee would bend for it.
 const LEVEL_HEEL: f32 = 0.7;
 const LEVEL_HEEL_SHARE: f32 = 0.4;
-/// Part of the swing in which a foot that goes up, or down, does so: it clears the edge before it, or after it.
+/// Parts of the swing in which a foot rises, or descends: it clears the edge before that, or after it.
 const RISE_SHARE: f32 = 0.5;
-/// A swinging foot keeps this far from ground that it passes over, metres.
+/// Clearance of a swinging foot from the ground, metres.
 const CLEARANCE_M: f32 = 0.03;
-/// The lift that walkers have over flat ground in the middle of the swing, about, metres.
+/// Typical lift on flat ground in the middle of the swing, metres.
 const USUAL_LIFT_M: f32 = 0.05;
-/// Ground that is higher than the way of the sole by less is no obstacle, metres.
+/// Height above the sole's path up to which ground is no obstacle, metres.
 const FLAT_WAY_M: f32 = 0.01;
-/// A foot is lifted by so much more in the middle of its way at most than it has to be over any place on it.
+/// Greatest lift in the middle of the swing, relative to the lift that any place of the path needs.
 const MOST_LIFT_SHARE: f32 = 2.5;
-/// At how many places of its way the ground is looked at.
+/// Number of places of the path at which the ground is queried.
 const WAY_POINTS: usize = 6;
 /// A planned foothold is kept as long as the animation's landing moved less than this, metres.
 const SAME_LANDING_M: f32 = 0.1;
 
 /// A place chosen for the end of a swing.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plan {
+pub(super) struct PlannedFoothold {
     pub(super) foothold: Foothold,
-    /// By how much the ground rises from there to the next foothold, about, metres.
+    /// Approximate rise of the ground from there to the next foothold, metres.
     pub(super) next_rise_m: f32,
-    /// Landing of the animation, as seen from the foothold; `None` until it is given anew, for the animation may change its step for this
-    /// foothold's sake.
+    /// Landing of the animation, relative to the foothold; `None` until it is announced again, since the animation may adapt its step to this
+    /// foothold.
     flat_from_sole: Option<Vec3>,
     /// Height by which it has to be lifted more than usual; `None` until it leaves the ground.
     lift_m: Option<f32>,
 }
 
 impl Foot {
-    /// Returns the target of a foot on its way, over what it passes.
+    /// Returns the target of a swinging foot, above the ground below it.
     pub(super) fn swing<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
@@ -67,8 +67,8 @@ impl Foot {
         self.held = 0.0;
         // In the frame of the contact itself there is nothing more to land.
         let here = (animated.flat, 0.0);
-        let told = animated.landing.map(|landing| (landing.flat, landing.secs));
-        let ends = told.or_else(|| animated.contact.then_some(here));
+        let announced = animated.landing.map(|landing| (landing.flat, landing.secs));
+        let ends = announced.or_else(|| animated.contact.then_some(here));
         let planned = ends.and_then(|end| Some((end, self.toward(scene, animated, &end.0)?)));
         if let Some(((_, secs), (toward, height))) = planned {
             self.over_ground = true;
@@ -122,7 +122,7 @@ impl Foot {
         target
     }
 
-    /// Holds a foot that goes up an edge over where it stood, for the first part of its way.
+    /// Holds a foot that rises over an edge above its last place, in the first part of the swing.
     fn hold_back<T: Terrain>(
         &mut self,
         scene: &Scene<'_, T>,
@@ -153,7 +153,7 @@ impl Foot {
         lifted
     }
 
-    /// The correction at the landing and how high the foot has to be lifted before; `None` where nothing is planned.
+    /// The correction at the landing and the lift before it; `None` without a planned foothold.
     fn toward<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
@@ -166,14 +166,14 @@ impl Foot {
             Some(lift_m) => lift_m,
             None => self.way_lift(scene, animated, &sole),
         };
-        self.plan = Some(Plan {
+        self.plan = Some(PlannedFoothold {
             lift_m: Some(lift_m),
             ..plan
         });
         Some((Correction::between(flat, &sole), lift_m))
     }
 
-    /// Plans where the foot lands next; what is planned stays as long as the animation's landing does.
+    /// Plans the next foothold; a plan is kept while the animation's landing stays.
     pub(super) fn plan<T: Terrain>(&mut self, scene: &mut Scene<'_, T>, step: &Step<'_>) {
         let flat = scene.world_from_floor.child(&step.landing.flat);
         if let Some(plan) = &mut self.plan
@@ -205,9 +205,9 @@ impl Foot {
         self.set_plan(aim.as_ref());
     }
 
-    /// Takes a place for the end of the next swing, or none.
+    /// Sets the place of the next landing, or none.
     pub(super) fn set_plan(&mut self, aim: Option<&Aim>) {
-        self.plan = aim.map(|aim| Plan {
+        self.plan = aim.map(|aim| PlannedFoothold {
             foothold: aim.foothold,
             next_rise_m: aim.next_rise_m,
             flat_from_sole: None,
@@ -245,7 +245,7 @@ impl Foot {
         lift.min(MOST_LIFT_SHARE * highest)
     }
 
-    /// Follows the ground under a foot of which nobody knows where it will land.
+    /// Follows the ground under a foot without a known landing.
     fn follow<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
@@ -268,7 +268,7 @@ impl Foot {
             let share = (scene.config.max_tilt / angle.max(1e-4)).min(1.0);
             toward.tilt = Quat::IDENTITY.slerp(tilt, share);
             if let (Some((heel, _)), Some((tip, _))) = (heel, tip) {
-                // Told under the ankle, which is not the middle of the sole.
+                // Announced under the ankle, which is not the middle of the sole.
                 let [back, _, front] = rocker.sole_points();
                 toward.shift.y = heel - (tip - heel) * back.z / (front.z - back.z);
             }

@@ -1,16 +1,16 @@
-//! A swinging foot comes out of walls sideways, where that is shorter than over them.
+//! Lateral motion of a swinging foot out of walls, where that is shorter than over them.
 
 use crate::placement::foot::{Foot, Scene};
 use crate::placement::guard::RIM;
 use crate::placement::terrain::Terrain;
 use glam::Vec3;
 
-/// A foot is pushed out of a wall by so much at most, metres.
+/// Greatest push of a foot out of a wall, metres.
 const MOST_PUSH_M: f32 = 0.06;
-/// The way out is looked for in steps of this length, metres, the last of which is halved so often.
+/// Length of the search steps for the way out, metres, and the number of bisections of the last one.
 const STEP_M: f32 = 0.01;
 const HALVINGS: usize = 4;
-/// Time constant with which the foot goes it, seconds.
+/// Time constant of that push, seconds.
 const PUSH_SECS: f32 = 0.02;
 /// A point that is no deeper in the ground than this is out of the wall: toes that roll off a tread sink into it by less.
 pub(super) const SUNK_M: f32 = 0.005;
@@ -18,9 +18,9 @@ pub(super) const SUNK_M: f32 = 0.005;
 /// millimetres, faster than it is pushed out of it, is not thrown over it.
 const FARTHER_M: [f32; 4] = [0.0, 0.0015, 0.003, 0.005];
 const FARTHER_DEPTH: f32 = 8.0;
-/// Cosine of the angle to the sole's middle from which on a way leads inwards.
+/// Cosine of the angle to the sole's middle beyond which a direction leads inwards.
 const INWARDS: f32 = 0.25;
-/// Shorter remainders of it count as none, metres.
+/// Length below which a push counts as none, metres.
 const NOTHING_M: f32 = 1e-4;
 /// Ways out, in the axes of the floor.
 const WAYS: [Vec3; 4] = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];

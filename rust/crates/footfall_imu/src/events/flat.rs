@@ -14,11 +14,11 @@ const REST_REACH_SECS: f64 = 0.03;
 /// Shorter rests do not count, seconds.
 const LEAST_REST_SECS: f64 = 0.08;
 
-/// A step moves the foot for at least so long, seconds, and turns it this way and that by so much in all, radians.
+/// Least duration of the foot's motion in a step, seconds, and least sum of its rotations, radians.
 const LEAST_SECS: f64 = 0.2;
 const LEAST_TURN: f32 = 0.6;
 
-/// A step lands so long after it was begun at the earliest, seconds, and has its foot in the air for so long.
+/// Least time from the beginning of a step to its landing, and least time in the air, seconds.
 const LANDS_AFTER_SECS: f64 = 0.1;
 const LEAST_SWING_SECS: f64 = 0.12;
 

@@ -1,7 +1,7 @@
 //! Rate at which a foot pitches, whatever the mounting of its sensor.
 //!
 //! The axis is level, and the foot turns mostly about it. Its sense follows from the way: a heel that rises turns the foot forwards, so that the axis points
-//! to the left of where the foot goes. Somebody who walks backwards is taken to walk forwards. Of a foot that goes nowhere each stance tells which way it
+//! to the left of where the foot goes. Backward walks are taken for forward ones. For a foot without travel each stance determines which way it
 //! turns out of it first: that is the heel rising. The vote of the way is the surer one: of 172 simulated feet in acted walks (Bandai Namco) it is right for all, that
 //! of the rising heel for 170; of 28 that walk backwards, none and 6.
 
@@ -12,21 +12,21 @@ use glam::Vec3;
 /// A foot in motion turns faster than this, rad/s.
 const MOVES_RADPS: f32 = 1.0;
 
-/// A foot rests for at least so long, seconds.
+/// Least duration of a rest, seconds.
 const LEAST_REST_SECS: f64 = 0.08;
 
-/// Two stances are at least so far apart, seconds, and in each the foot turns more slowly than this share of the average.
+/// Least time between two stances, seconds, and the greatest angular rate in a stance, as a share of the average.
 const REST_APART_SECS: f64 = 0.3;
 const REST_SHARE: f32 = 0.6;
 
-/// The direction of the first motion out of rest is looked at for so long, seconds.
+/// Time after a rest in which the direction of the first motion is measured, seconds.
 const RISE_SECS: f64 = 0.25;
 
 /// Turn out of a stance, radians, and way to the next, metres, beyond which a vote is certain.
 const FULL_RISE: f32 = 0.3;
 const FULL_WAY_M: f32 = 0.5;
 
-/// Stances between which a foot goes one way are so far apart, seconds.
+/// Range of the time between stances of steady travel, seconds.
 const STRIDE_SECS: [f64; 2] = [0.4, 2.5];
 
 /// The ways decide when their votes, for and against, add up to this: one alone may lie between moments of a run in which the foot did not rest.

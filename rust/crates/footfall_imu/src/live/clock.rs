@@ -7,7 +7,7 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// The count without rounds, given the counter's value of so many bits: the one nearest to the last.
+    /// The count without wrapping, from a counter of this many bits: the one nearest to the last.
     pub fn unwrapped(&mut self, value: u64, bits: u32) -> u64 {
         let round = 1_u64 << bits;
         let value = value & (round - 1);
@@ -24,7 +24,7 @@ impl Counter {
     }
 }
 
-/// A device's clock is taken to run at most so much faster or slower than ours.
+/// Greatest assumed difference in rate between a device's clock and ours.
 const MOST_DRIFT: f64 = 2e-4;
 
 /// An estimate follows the least delay that fast, seconds a second: slower than anyone sees, faster than clocks drift.

@@ -10,14 +10,14 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
-/// Samples that wait for the game: ten seconds at 400 Hz. When nobody takes them, the oldest go.
+/// Most samples that wait for the game: ten seconds at 400 Hz. Beyond that, the oldest are dropped.
 const MOST_WAITING: usize = 4096;
 
 /// Readings of one device that are taken in a second on average, and at once after silence: what comes beyond them is a flood.
 const MOST_A_SECOND: f64 = 5000.0;
 const MOST_AT_ONCE: f64 = 10_000.0;
 
-/// Units and axes are checked over so long, and so often, seconds.
+/// Length of the checks of units and axes, and their interval, seconds.
 const CHECKED_SECS: f64 = 4.0;
 const CHECK_EVERY_SECS: f64 = 2.0;
 const MOST_CHECKED: usize = 4000;
@@ -55,7 +55,7 @@ pub struct DeviceStatus {
     pub lost: u64,
     /// Readings that were no measurement, late, or too many.
     pub rejected: u64,
-    /// Samples that nobody took in time.
+    /// Samples that were dropped because they were not taken in time.
     pub overflowed: u64,
     /// Samples a second.
     pub rate_hz: f64,

@@ -111,7 +111,7 @@ pub fn parse(text: &[u8], mut give: impl FnMut(Reading)) -> bool {
     let Some(data) = &message.sensordata else {
         return false;
     };
-    // iOS tells what pushes the other way.
+    // iOS reports the force in the opposite direction.
     let vector = |axes: Option<Axes>| axes?.vector();
     let quantities = [
         vector(data.gravity).map(|g| Quantity::Gravity(-g * GRAVITY_MPS2)),

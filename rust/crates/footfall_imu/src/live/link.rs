@@ -14,19 +14,19 @@ pub(super) const MOST_DEVICES: usize = 16;
 /// A thread looks this often whether it is to stop.
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(50);
 
-/// A device of which nothing was heard for so long gives its place to a new one from the same sender, seconds.
+/// Time of silence after which a new device from the same sender takes a device's place, seconds.
 const PLACE_KEPT_SECS: f64 = 2.0;
 
 /// State of a port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkState {
-    /// It is being opened, or what speaks there is being found out.
+    /// It is being opened, or its format is being detected.
     Opening(String),
-    /// It is open; nothing was heard yet.
+    /// It is open; nothing has been received yet.
     Listening(String),
     /// Devices are heard.
     Receiving,
-    /// It cannot be had now: why, and what to do. It is tried again.
+    /// It cannot be opened now: the reason, and what to do. It is tried again.
     Failed(String),
 }
 

@@ -31,7 +31,7 @@ const SAMPLE_BYTES: usize = 32;
 /// Longest message: a second at 200 Hz is shorter.
 const LONGEST: usize = 1 + 256 * SAMPLE_BYTES;
 
-/// A port that is taken is tried again after so long.
+/// Time after which a port in use is tried again.
 const RETRY: Duration = Duration::from_secs(2);
 
 /// Settings of a server of pages.
@@ -97,7 +97,7 @@ impl PhoneServer {
         Some(format!("https://{}:{port}/p/{code}", self.own))
     }
 
-    /// Lets a player's phone vibrate shortly, as for a footstep.
+    /// Makes a player's phone vibrate briefly, as for a footstep.
     pub fn vibrate(&self, player: usize) {
         self.slots.vibrate(player);
     }

@@ -82,9 +82,9 @@ impl SerialFormat {
 enum Taken {
     /// A message that is not whole yet.
     More,
-    /// A message of so many bytes.
+    /// A message of this many bytes.
     Message(usize),
-    /// So many bytes that are no message.
+    /// This many bytes that are no message.
     Garbage(usize),
 }
 
@@ -180,7 +180,7 @@ impl StreamParser {
     }
 }
 
-/// The first `N` bytes at a place, when there are so many.
+/// The first `N` bytes at a place, if there are as many.
 fn bytes_at<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at + N)?.try_into().ok()
 }

@@ -5,7 +5,7 @@ use super::fault::{NAMES, StreamFault};
 use crate::sample::GRAVITY_MPS2;
 use glam::Vec3;
 
-/// The sensor moves while it turns faster than this, rad/s, or its specific force is so far from gravity, m/s².
+/// Angular rate, rad/s, and deviation of the specific force from gravity, m/s², beyond either of which the sensor moves.
 const MOVES_RADPS: f32 = 0.5;
 const MOVES_MPS2: f32 = 1.5;
 

@@ -14,7 +14,7 @@ const OTHER: [f64; 2] = [0.65, 1.5];
 pub(super) struct Pace {
     /// Samples a second that were promised.
     promised_hz: Option<f64>,
-    /// Those of the beginning, where nothing was promised.
+    /// Rate at the beginning, if none was promised.
     first_hz: Option<f64>,
     secs: f64,
     steps: u32,

@@ -9,7 +9,7 @@ const LEAST: [f32; 2] = [18.0, 4.1];
 /// Samples in a row that make the end of a range out of a peak.
 const ROW: u32 = 3;
 
-/// Times that it is reached before it is told, within so many seconds.
+/// Number of times that the end is reached before it is reported, and the seconds within which these must lie.
 const TIMES: u32 = 3;
 const WITHIN_SECS: f32 = 4.0;
 

@@ -41,11 +41,11 @@ fn faults(change: impl Fn(&mut ImuSample)) -> Vec<FaultSpan> {
     StreamMonitor::faults_of(&recording, None)
 }
 
-/// Checks that one fault is told, by this name and text, soon enough.
+/// Checks that one fault is reported, by this name and text, soon enough.
 fn is_told(spans: &[FaultSpan], name: &str, text: &str, by_secs: f64) {
     let first = spans
         .first()
-        .unwrap_or_else(|| panic!("{name} is not told"));
+        .unwrap_or_else(|| panic!("{name} is not reported"));
     assert!(
         spans.iter().all(|span| span.fault.name() == name),
         "{spans:?}"

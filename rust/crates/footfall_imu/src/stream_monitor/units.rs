@@ -21,7 +21,7 @@ const GRAVITY: core::ops::Range<f32> = 0.8 * GRAVITY_MPS2..1.2 * GRAVITY_MPS2;
 /// The same in units of gravity.
 const ONE_G: core::ops::Range<f32> = 0.8..1.2;
 
-/// No limb turns faster than this for so long, rad/s and seconds. It is forgotten slowly: a wearer who stops walking does not change the units.
+/// Angular rate and duration beyond those of any limb, rad/s and seconds. The evidence decays slowly: a wearer who stops walking does not change the units.
 const FASTEST_RADPS: f32 = 45.0;
 const FAST_SECS: f32 = 0.06;
 const FORGOTTEN_SECS: f32 = 60.0;

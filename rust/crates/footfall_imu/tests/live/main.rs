@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests, which may panic")]
 #![expect(
     clippy::disallowed_methods,
-    reason = "what comes over ports takes time: in vain is told by the clock"
+    reason = "data over ports takes time, and only the clock shows that none comes"
 )]
 #![expect(
     clippy::result_large_err,

@@ -165,7 +165,7 @@ fn an_owotrack_phone_is_greeted_and_heard() {
             "{sample:?}"
         );
     }
-    // It is told every second that somebody listens.
+    // The listener announces itself every second.
     let length = socket.recv(&mut reply).unwrap();
     assert_eq!(&reply[..length], [0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0]);
 }

@@ -90,7 +90,7 @@ impl Game {
 }
 
 /// The next text that holds these words.
-fn told(socket: &mut WebSocket<Tls>, words: &str) -> String {
+fn wait_for_message(socket: &mut WebSocket<Tls>, words: &str) -> String {
     wait_for(words, || match socket.read() {
         Ok(Message::Text(text)) if text.contains(words) => Some(text.to_string()),
         _ => None,
@@ -114,13 +114,13 @@ fn a_page_streams_and_is_told_of_its_state() {
         check_same(found, sent, 1e-6);
     }
     assert_eq!(game.server.link().state(), LinkState::Receiving);
-    let state = told(&mut socket, "rate");
+    let state = wait_for_message(&mut socket, "rate");
     assert!(
         state.contains("\"lost\":0") && state.contains("\"fault\":null"),
         "{state}"
     );
     game.server.vibrate(0);
-    told(&mut socket, "vibrate");
+    wait_for_message(&mut socket, "vibrate");
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn strangers_stay_out_and_one_phone_drives_one_player() {
         (game.device(0).status().samples == 1).then_some(())
     });
     second.send(message(2)).unwrap();
-    told(&mut second, "Another phone");
+    wait_for_message(&mut second, "Another phone");
     // The other player's code is free.
     let mut third = game.open(1, "third");
     third.send(message(1)).unwrap();
@@ -235,7 +235,7 @@ fn the_certificate_is_made_once_and_kept_to_the_user() {
             .mode();
         assert_eq!(mode & 0o777, 0o600);
     }
-    // Broken files are told, with what to do.
+    // Broken files are reported, with what to do.
     std::fs::write(kept.join("key.pem"), "nothing").unwrap();
     let broken = PhoneServer::start(PhoneConfig {
         port: 0,

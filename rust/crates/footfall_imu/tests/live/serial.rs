@@ -142,7 +142,7 @@ fn a_sensor_without_rates_says_so() {
         ..SerialConfig::default()
     });
     let device = wait_for("the device is found", || link.device(0));
-    let fault = wait_for("its fault is told", || device.status().fault);
+    let fault = wait_for("its fault is reported", || device.status().fault);
     assert!(fault.contains("BNO085"), "{fault}");
     drop(link);
     sender.stop();
@@ -169,7 +169,7 @@ fn a_port_that_is_not_there_is_named_and_tried_again() {
     assert!(!wait_for_samples(&heard, 50).is_empty());
     sender.stop();
     // It is pulled out, and another is plugged in: the same device goes on.
-    wait_for("the loss is told", || {
+    wait_for("the loss is reported", || {
         matches!(link.state(), LinkState::Failed(_)).then_some(())
     });
     std::fs::remove_file(&port).unwrap();

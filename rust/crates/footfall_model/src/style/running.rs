@@ -17,7 +17,7 @@ const SWING_FACTORS: [f64; 2] = [0.5, 1.6];
 const TEMPO_EXPONENT: f64 = 0.5;
 const TEMPO_FACTORS: [f64; 2] = [0.85, 1.18];
 
-/// Share of what somebody does to the posture of a joint in walking that they do to it in a run.
+/// Share of a style's change of a joint's posture in walking that applies in a run.
 pub fn carried_posture_share(joint: Joint) -> f64 {
     if joint.is_of_lower_body() {
         LEG_POSTURE_SHARE

@@ -17,7 +17,7 @@ fn base() -> GaitModel {
     model
 }
 
-/// A style that differs everywhere; `scale` tells how much.
+/// A style that differs everywhere, by `scale`.
 fn style(base: &GaitModel, name: &str, scale: f64) -> GaitStyle {
     let mut steps = base.steps.clone();
     for step in &mut steps {

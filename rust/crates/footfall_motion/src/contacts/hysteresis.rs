@@ -12,7 +12,7 @@ pub(super) struct Gate {
     pub(super) speed_off: f32,
 }
 
-/// On from a frame below both lower limits, off from one above either upper limit; `swing_speed` is that around each frame.
+/// Contact with hysteresis: on from a frame below both lower limits, off from one above either upper limit; `swing_speed` is that around each frame.
 pub(super) fn gate(signal: &PointSignal, swing_speed: &[f32], limits: &Gate) -> Vec<bool> {
     let mut is_on = false;
     signal

@@ -20,7 +20,7 @@ pub(super) struct Levels {
 impl Levels {
     /// Levels of heel, ball and toe tip: those of the stances nearby where the foot stands, else those of the whole clip.
     ///
-    /// The lie of a sole is known for the clip as a whole. Where somebody stands for long and then walks, it is known for standing, and the
+    /// The lie of a sole is known for the clip as a whole. After long standing and a short walk it is that of standing, and the
     /// ball may pass over the ground at three centimetres in every stance of the walk.
     pub(super) fn of(tracks: &[Vec<Vec3>; 3], rate: f32, size: f32) -> Self {
         let points = tracks.each_ref().map(|track| Point::of(track, rate, size));

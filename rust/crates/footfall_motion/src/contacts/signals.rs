@@ -77,8 +77,8 @@ impl FootSignals {
 
 /// Speed at which feet swing around each frame, metres a second: the fastest swing of either heel nearby.
 ///
-/// Of the swings nearby, for a clip may hold standing, walking and running. Of either foot, for both swing alike, and at the ends
-/// of a clip one of them is not seen to.
+/// Speed of the swings nearby, since a clip may hold standing, walking and running. Of either foot, since both swing alike, and at the ends
+/// of a clip one of them may lack a swing.
 pub(super) fn swing_speeds(heels: [&PointSignal; 2], rate: f32, size: f32) -> Vec<f32> {
     let frames = |secs: f32| (secs * rate).round() as usize;
     let [left, right] = heels.map(|heel| sustained(&heel.speed, frames(0.5 * SWING_PEAK_SECS)));
@@ -94,7 +94,7 @@ fn sustained(values: &[f32], reach: usize) -> Vec<f32> {
     extremes(&extremes(values, reach, f32::min), reach, f32::max)
 }
 
-/// The greatest or the least of so many values before and after each, and itself.
+/// Moving maximum or minimum over this many values on both sides.
 fn extremes(values: &[f32], reach: usize, better: fn(f32, f32) -> f32) -> Vec<f32> {
     (0..values.len())
         .map(|at| {

@@ -1,7 +1,7 @@
 //! People of an index, and each person's hip joints.
 //!
 //! A person is a subject with one skeleton: a subject whose clips have several skeletons is several people. A subject that
-//! the index marks as unsure with a `?` could be anybody, so each of its clips stands for itself. One person under two
+//! the index marks as unsure with a `?` may be any person, so each of its clips stands for itself. One person under two
 //! names is taken for two, and each is found from their own clips; several people under one name with one skeleton are
 //! taken for one.
 
@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 use std::path::{Path, PathBuf};
 
-/// Styles whose clips tell of knees: acted walks bend them on purpose.
+/// Styles whose clips show a person's knees: acted walks bend them on purpose.
 const PLAIN: [&str; 2] = ["neutral", "normal"];
 
 /// A person of a corpus.
@@ -35,7 +35,7 @@ pub struct PersonFile<'a> {
     pub path: &'a Path,
     /// The person.
     pub subject: &'a str,
-    /// True when nobody acts in it; recordings of acted walks do not tell of hip joints.
+    /// True if it is not acted; acted walks are no evidence for hip joints.
     pub is_plain: bool,
 }
 
@@ -114,7 +114,7 @@ fn people_of(witnesses: Vec<Witness<'_>>) -> Vec<Person> {
 }
 
 /// The person whom the clips of a name and skeleton show. A clip in which the joints of all together would stretch a leg beyond its length
-/// is of somebody else on a skeleton that is not theirs, and stands for itself.
+/// shows another person on a foreign skeleton, and stands for itself.
 fn people_of_one_name(clips: Vec<Witness<'_>>) -> Vec<Person> {
     let person = Person::from_clips(&clips);
     let Some(correction) = person.hip_centres.verdict.correction() else {

@@ -13,7 +13,7 @@ const SAME: f32 = 0.5;
 const NEXT: f32 = 1.8;
 /// A slower change is no movement, radians a frame, sum of all joints.
 const LEAST_CHANGE: f32 = 0.02;
-/// A loop is repeated for so long, but no more often than so.
+/// Time for which a loop is repeated, and the greatest number of repetitions.
 const WANTED_SECS: f64 = 9.0;
 const MOST_REPEATS: usize = 12;
 

@@ -8,7 +8,7 @@ use glam::Vec3;
 
 /// Heel, ball and toe tip of both feet.
 const POINTS: usize = 6;
-/// A point bears fully at the level at which it rests, and hardly any more so high above it, metres.
+/// Height above its resting level at which a point hardly bears, metres; at that level it bears fully.
 const BEARING_HEIGHT_M: f32 = 0.004;
 /// Points higher above their level do not bear, metres.
 const MOST_HEIGHT_M: f32 = 0.04;
@@ -18,7 +18,7 @@ const MOST_DIFFERENCE: f32 = 0.6;
 const LEVEL_SHARE: usize = 20;
 /// Slower ground is standing, m/s.
 const LEAST_SPEED_MPS: f32 = 0.15;
-/// A body that travels this share of what its feet tell does not walk in place.
+/// Share of the travel of its feet beyond which a body does not walk in place.
 const MOST_TRAVEL: f32 = 0.3;
 
 /// Offsets of the root that let the feet stand, for a clip that walks in place; `None` for one that travels or stands.
@@ -54,8 +54,8 @@ pub(super) fn way_of_feet(clip: &Clip, first: usize) -> Option<Vec<Vec3>> {
     let root = |frame: usize| poses[frame].root_position.with_y(0.0);
     let travelled = (root(poses.len() - 1) - root(0)) / steps.len() as f32;
     // The ground moves against the body's way: all of it on the spot, nothing of it where the body travels.
-    let told = travelled - ground;
-    if travelled.dot(told) > MOST_TRAVEL * told.length_squared() {
+    let expected = travelled - ground;
+    if travelled.dot(expected) > MOST_TRAVEL * expected.length_squared() {
         return None;
     }
     let shifts = bridged(

@@ -41,7 +41,7 @@ pub struct GlbBuffer {
 }
 
 impl GlbBuffer {
-    /// Appends elements as bytes, so many; returns their accessor.
+    /// Appends this many elements as bytes; returns their accessor.
     pub fn push(&mut self, data: &[u8], count: usize, layout: Layout) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let mut view =

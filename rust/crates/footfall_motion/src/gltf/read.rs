@@ -8,7 +8,7 @@ use gltf::{Animation, Document};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Rate of animations whose keys are too sparse to tell theirs, frames per second.
+/// Rate of animations whose keys are too sparse to determine one, frames per second.
 const USUAL_RATE_HZ: f64 = 30.0;
 /// Rates that are believed.
 const PLAUSIBLE_RATES_HZ: std::ops::RangeInclusive<f64> = 15.0..=240.0;
@@ -42,7 +42,7 @@ pub enum GltfError {
         path: PathBuf,
         /// The problem with what was asked for.
         wrong: String,
-        /// Those that there are.
+        /// Names of the existing animations.
         names: Vec<String>,
     },
 }

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 pub const PHASES: usize = 12;
 
 /// Their times: shares of the stride that begins with the foot's own initial contact. Later the knee bends for the swing,
-/// and hardly tells where the hip is. The time of [`FARTHEST`] is where it is usually.
+/// and hardly constrains the hip. The time of [`FARTHEST`] is where it is usually.
 pub const STRIDE_SHARES: [f32; PHASES] = [
     -0.04, 0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5,
 ];
@@ -31,9 +31,9 @@ const SPREAD_DEG: [f64; PHASES] = [
 const PECULIARITY: f64 = 0.05;
 /// Share of a stride over which legs and strides of one person differ alike.
 const DIFFERENCE: f64 = 0.1;
-/// Legs differ by so many degrees all along, and by as much in shape.
+/// Standard deviation of the difference between legs, constant and in shape, degrees.
 const LEGS_DEG: f64 = 2.0;
-/// Strides differ by so many degrees; of what one stride differs, this share remains in the mean of many.
+/// Standard deviation of strides, degrees, and the share of it that remains in the mean of many.
 const STRIDES_DEG: f64 = 3.0;
 const STRIDES_ALIKE: f64 = 0.1;
 /// Standard deviation between people where joints are placed, degrees: smaller where the knee is nearly straight, since a millimetre of the
@@ -63,7 +63,7 @@ impl Gait {
         }
     }
 
-    /// Covariance of the mean curves of the left and of the right knee from so many strides each, square degrees.
+    /// Covariance of the mean curves of the left and of the right knee for these numbers of strides, square degrees.
     pub(super) fn covariance(self, strides: [usize; 2]) -> DMatrix<f64> {
         let (all_along, wider) = self.freedom();
         DMatrix::from_fn(2 * PHASES, 2 * PHASES, |row, column| {

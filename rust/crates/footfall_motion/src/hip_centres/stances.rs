@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, SVector};
 
 /// Number of a correction's parameters.
 pub(super) const COUNT: usize = 5;
-/// Strides farther from the middle one than so many times the median, and than so many degrees, are no plain walking.
+/// Limits of the distance of a stride of plain walking from the middle one: in medians, and in degrees; beyond both it is excluded.
 const OUTLIER: f64 = 2.5;
 const OUTLIER_DEG: f64 = 4.0;
 

@@ -35,10 +35,7 @@ impl Display for HipFinding {
                  misplaced joint"
             ),
             HipVerdict::TooLittleWalking => {
-                write!(
-                    out,
-                    "left: {strides} strides of plain walking are too few to tell"
-                )
+                write!(out, "left: {strides} strides of plain walking are too few")
             }
         }
     }

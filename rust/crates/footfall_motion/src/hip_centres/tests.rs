@@ -10,7 +10,7 @@ fn walks(bent: f64, strides: usize) -> WalkingEvidence {
     walks_with(strides, |_| bent)
 }
 
-/// The same with so many degrees more than normal gait at each share of the stride.
+/// The same with a difference from normal gait at each share of the stride, degrees.
 fn walks_with(strides: usize, bent: impl Fn(f64) -> f64) -> WalkingEvidence {
     let stances = (0..2 * strides)
         .map(|n| {
@@ -129,7 +129,7 @@ fn what_is_a_persons_own_stays_theirs() {
         leg_factor: 1.0,
     };
     let about = |share: f64, middle: f64| (-0.5 * ((share - middle) / 0.06).powi(2)).exp();
-    // Somebody gives way deeper in loading, somebody hardly does, somebody stays bent in the middle of stance.
+    // Knees that yield more in loading, hardly at all, and that stay bent in the middle of stance.
     for (degrees, middle) in [(10.0, 0.13), (-10.0, 0.13), (9.0, 0.26)] {
         let truth = walks_with(8, |share| degrees * about(share, middle));
         let known = curve(truth.clone(), &NOTHING);
@@ -185,7 +185,7 @@ fn who_crouches_throughout_still_does() {
             assert_eq!(finding.verdict, HipVerdict::OwnManner, "{origin:?} {bent}");
         }
     }
-    // Bent by less, nobody but a skeleton that is known to be misplaced is straightened.
+    // With less flexion, only a skeleton that is known to be misplaced is straightened.
     for bent in [8.0, 12.0, 20.0] {
         let finding = find_hip_centres(&[&walks(bent, 6)]);
         assert_eq!(finding.verdict.correction(), None, "{bent}");
@@ -202,7 +202,7 @@ fn two_strides_tell_only_of_a_known_family() {
     evidence = fitted(evidence);
     let finding = find_hip_centres(&[&evidence]);
     assert!(finding.verdict.correction().is_some());
-    // Many strides of one leg do not tell of the other.
+    // Many strides of one leg are no evidence for the other.
     let left = evidence.stances[0].clone();
     evidence.stances = vec![left; 9];
     assert_eq!(

@@ -8,7 +8,7 @@ use glam::Vec3;
 /// A foot belongs to a take-off or to a landing when its contact ends or begins this close to it, seconds.
 const TOGETHER_SECS: f64 = 0.12;
 
-/// Preparing for a flight and recovering from it belong to it for at most so long, seconds.
+/// Longest preparation of a flight, and longest recovery from it, seconds.
 const AROUND_FLIGHT_SECS: f64 = 0.4;
 
 /// Hips and feet of a body that stands move more slowly than this, m/s.
@@ -26,7 +26,7 @@ const SIDESTEP_MPS: f32 = 0.15;
 /// A body that turns faster walks: a pivot carries the hips sideways of where they face, too, rad/s.
 const SIDESTEP_RADPS: f32 = 0.8;
 
-/// A behaviour lasts at least so long, seconds.
+/// Least duration of a behaviour, seconds.
 const LEAST_SECS: f64 = 0.2;
 
 /// The behaviour of every frame of a clip.

@@ -5,7 +5,7 @@ use footfall_core::rotation::{from_heading, heading};
 use footfall_core::{Clip, FrameSpan, Joint, ModelPose, Side, forward_kinematics};
 use glam::Vec3;
 
-/// Both feet are off the ground for at least so long in a flight, seconds.
+/// Least duration of a flight, with both feet off the ground, seconds.
 const LEAST_FLIGHT_SECS: f64 = 0.04;
 
 /// Positions in the clip's space, frame by frame.

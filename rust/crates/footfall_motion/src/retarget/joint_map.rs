@@ -65,11 +65,11 @@ pub(super) fn place(
         return Ok((family, placement));
     }
     let doubts = doubts.iter().map(|doubt| doubt.describe(&rig));
-    let told: Vec<String> = std::iter::once(String::new()).chain(doubts).collect();
+    let reasons: Vec<String> = std::iter::once(String::new()).chain(doubts).collect();
     Err(RetargetError::UnknownSkeleton {
         missing,
         map: family,
-        doubts: told.join("; "),
+        doubts: reasons.join("; "),
         joints: rig.names().to_vec(),
     })
 }

@@ -57,7 +57,7 @@ pub(super) fn rest_rotations(motion: &SourceMotion) -> RestRotations {
         Some(reference) => (from_reference(reference), true),
         None => (from_structure(motion), false),
     };
-    // A standing reference pose is right about the hinges to within the skill of whoever made it.
+    // A standing reference pose has the hinges as exactly as its author posed them.
     let most_change = if is_known {
         40_f32.to_radians()
     } else {

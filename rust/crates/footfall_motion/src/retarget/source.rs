@@ -115,7 +115,7 @@ impl SourceMotion {
         motion
     }
 
-    /// Moves the body in every frame of the motion proper by so much, in units of which the file's have `scale`.
+    /// Moves the body in every frame of the motion proper by these shifts, in units of which the file's have `scale`.
     pub(super) fn travel(&mut self, way: &[Vec3], scale: f32) {
         for (frame, &offset) in self.frames[self.first_motion_frame..].iter_mut().zip(way) {
             let offset = offset / scale;

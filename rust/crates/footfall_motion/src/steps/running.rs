@@ -1,13 +1,13 @@
 //! Running: steps whose end both feet spend in the air.
 //!
 //! Contacts that are read from feet overlook most of a slow run's flight, as shoes drag. Hips do not: who has no foot on the ground falls,
-//! and nobody who walks comes near free fall.
+//! and walks never come near free fall.
 
 use super::{Step, Walk};
 use footfall_core::Clip;
 use glam::Vec3;
 
-/// The hips' acceleration is that of a parabola fitted over so long on either side, seconds.
+/// Time on either side over which a parabola is fitted for the hips' acceleration, seconds.
 const FIT_SECS: f64 = 0.033;
 /// Share of the acceleration of gravity beyond which nothing bears the body. Fast walks of the corpora reach 0.5.
 const FALLING_SHARE: f64 = 0.85;
@@ -16,7 +16,7 @@ const GRAVITY_MPS2: f64 = 9.81;
 const LEAST_FALL_SECS: f64 = 0.025;
 /// A fall that ends longer before the landing is noise, too.
 const LANDING_SECS: f64 = 0.06;
-/// Nobody who runs is longer in the air than this share of a step; a body that is jumps.
+/// Longest flight of a run, as a share of a step; a longer one is a jump.
 const LONGEST_FLIGHT_SHARE: f64 = 0.6;
 /// Steps of one run are so alike in speed, as a share, and turn so slowly, radians a second.
 const STEADY_SPEED_SHARE: f32 = 0.06;
@@ -99,7 +99,7 @@ fn falls_freely(clip: &Clip, frame: usize, reach: usize) -> bool {
     vertical_acceleration(clip, frame, reach) < -FALLING_SHARE * GRAVITY_MPS2
 }
 
-/// Of the hips, m/s²: twice the curvature of the parabola fitted by least squares to the heights of `reach` frames on either side.
+/// Vertical acceleration of the hips, m/s²: twice the curvature of the parabola fitted by least squares to the heights of `reach` frames on either side.
 fn vertical_acceleration(clip: &Clip, frame: usize, reach: usize) -> f64 {
     let count = (2 * reach + 1) as f64;
     let offsets = || (0..=2 * reach).map(|index| index as f64 - reach as f64);

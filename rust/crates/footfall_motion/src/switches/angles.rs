@@ -9,13 +9,13 @@ use footfall_prob::switching::median;
 /// Hip and knee of both legs.
 pub(super) const CHANNELS: usize = 4;
 
-/// A half cycle is at least so long, frames.
+/// Least length of a half cycle, frames.
 const LEAST_HALF_CYCLE: usize = 8;
 
-/// And its ankles swing at least this share of the usual way apart: less is standing.
+/// Least swing of its ankles, as a share of the usual distance between them: less is standing.
 const LEAST_SWING: f64 = 0.25;
 
-/// And at least so far on the canonical body, metres.
+/// Least swing of its ankles on the canonical body, metres.
 const LEAST_SWING_M: f64 = 0.1;
 
 /// Standard deviation of the window under which half cycles are looked for, frames.

@@ -5,10 +5,10 @@
 use super::legs::{Landed, Legs};
 use footfall_core::Side;
 
-/// A leg that swings beside the other lifts its ankle so far on the canonical body, metres.
+/// Lift of the ankle of a leg that swings beside the other, on the canonical body, metres.
 const LEAST_RISE_M: f64 = 0.05;
 
-/// Such a swing has begun at most so many frames before its highest moment, and ends at most so many after.
+/// Most frames of such a swing before its highest moment, and after it.
 const RISE_REACH: usize = 12;
 const REST_REACH: usize = 36;
 
@@ -16,7 +16,7 @@ const REST_REACH: usize = 36;
 const REST_SHARE: f64 = 0.3;
 const REST_MPS: f64 = 0.25;
 
-/// Landings of one foot are at least so many frames apart.
+/// Least number of frames between landings of one foot.
 const LEAST_APART: f64 = 15.0;
 
 /// Adds the landings of swings that end neither ahead nor behind.

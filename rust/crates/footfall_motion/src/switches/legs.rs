@@ -7,14 +7,14 @@ use footfall_core::Side;
 /// Standard deviation of the window under which extremes of ankle and knee are looked for, frames.
 const SMOOTHING: f64 = 1.0;
 
-/// The ankle is farthest ahead, or behind, within so many frames of where the ankles are farthest apart.
+/// Frames around the greatest distance of the ankles within which an ankle is farthest ahead, or behind.
 const ANKLE_REACH: usize = 12;
 
-/// The landing knee is straightest from so many frames before until so many after that. A straight knee at other times is that of a
+/// Frames before and after that in which the landing knee is straightest. A straight knee at other times is that of a
 /// leg that stands.
 const KNEE_REACH: [usize; 2] = [5, 3];
 
-/// A swinging knee is bent most within so many frames before its ankle is farthest ahead.
+/// Frames before the ankle is farthest ahead within which a swinging knee is bent most.
 const BEND_REACH: usize = 30;
 
 /// Bend of a swinging knee in a walk, radians: 60°.
@@ -89,7 +89,7 @@ impl Legs {
         }
     }
 
-    /// The landing at the end of a half cycle. `None` if neither leg is lifted on the way there: somebody sways.
+    /// The landing at the end of a half cycle. `None` if neither leg is lifted, as in swaying.
     ///
     /// The lifted leg swings. Where that is the leg ahead it lands ahead; else the body walks backwards, and the other leg lands behind.
     /// The first half cycle goes the way of the second.

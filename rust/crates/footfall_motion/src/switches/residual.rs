@@ -8,7 +8,7 @@ use footfall_prob::switching::{ProjectionResidual, median};
 /// Frames of past and future. The noise of captured angles outweighs what longer windows explain.
 const WINDOW: usize = 2;
 
-/// A residual counts for at most so many medians: one glitch of capture is not a switch.
+/// Limit of a residual, in medians: one glitch of capture is not a switch.
 const MOST_RESIDUAL: f64 = 4.0;
 
 /// Share of the trailing leg in the residual.
@@ -64,7 +64,7 @@ impl Residual {
             .map_or(0.0, |(offset, _)| *offset)
     }
 
-    /// The mean so many frames after each moment; 0 where none is seen.
+    /// Mean at these numbers of frames after each moment; 0 without any.
     fn mean(&self, moments: &[(f64, Side)], offset: f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for (moment, side) in moments {
@@ -78,7 +78,7 @@ impl Residual {
         if count > 0.0 { sum / count } else { 0.0 }
     }
 
-    /// Of one leg, between frames.
+    /// Residual of one leg, between frames.
     fn at(&self, side: Side, frame: f64) -> Option<f64> {
         let column = frame - self.first as f64;
         let leg = &self.legs[side.index()];

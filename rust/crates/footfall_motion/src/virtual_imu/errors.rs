@@ -98,14 +98,14 @@ impl Errors {
         Vec3::new(x, y, z)
     }
 
-    /// Place on the body, up to so far from the site.
+    /// Place on the body, up to this distance from the site.
     pub(super) fn place(&mut self, off_m: f32) -> Vec3 {
         let far: f32 = self.random.random();
         // As many places in every part of the ball.
         self.draw().normalize_or_zero() * off_m * far.cbrt()
     }
 
-    /// The sample as the sensor tells it, or `None` when it is lost.
+    /// The sample as the sensor reports it, or `None` if it is lost.
     pub(super) fn add(&mut self, mut sample: ImuSample) -> Option<ImuSample> {
         let Some(noise) = self.noise else {
             return Some(sample);
@@ -167,8 +167,8 @@ mod tests {
     fn a_consumers_sensor_keeps_time_and_scale() {
         let mut phone = errors(SensorNoise::consumer(1.0), 5);
         let fast = Vec3::Y * 20.0 * GRAVITY_MPS2;
-        let told = phone.add(sample(7.0, fast)).expect("nothing is lost");
-        assert!((told.time_secs - 7.0).abs() < 1e-12 && told.force.distance(fast) < 1.0);
+        let reported = phone.add(sample(7.0, fast)).expect("nothing is lost");
+        assert!((reported.time_secs - 7.0).abs() < 1e-12 && reported.force.distance(fast) < 1.0);
     }
 
     #[test]

@@ -30,7 +30,7 @@ impl Wear {
         }
     }
 
-    /// Lets a sensor lag behind the site and swing: a damped mass on a spring, pulled along and turned along.
+    /// Moves a sensor that lags behind the site and swings: a damped mass on a spring, for position and rotation.
     pub(super) fn swing(&self, track: &mut Track, fps: f64) {
         // Along the world's axes, and about the sensor's own.
         let (mut shift, mut tilt) = (Swing::default(), Swing::default());
@@ -57,7 +57,7 @@ struct Swing {
 }
 
 impl Swing {
-    /// Lets a frame pass under a pull, in small steps.
+    /// Integrates a frame under a force, in small steps.
     fn pass(&mut self, wear: &Wear, pull: Vec3, fps: f64) {
         let steps = (LEAST_STEPS_HZ / fps).ceil().max(1.0);
         let dt = (1.0 / (fps * steps)) as f32;

@@ -201,7 +201,7 @@ fn all_clips_of_a_person_tell_and_all_are_corrected() {
     assert!(all[0].correction().is_some());
     assert_eq!(all[1], all[0]);
     assert_eq!(all[2..], [HipVerdict::TooLittleWalking; 3]);
-    // Clips that were not chosen tell of the person all the same.
+    // Clips that were not chosen are evidence for the person all the same.
     assert_eq!(verdicts(&["path=short*"]), all[1..2]);
 }
 

@@ -15,7 +15,7 @@ const MEMORY: usize = 10;
 /// Share of the promised gain that a step must bring.
 const ARMIJO: f64 = 1e-4;
 
-/// A step is halved at most so often.
+/// Most bisections of a step.
 const HALVINGS: usize = 20;
 
 /// Parameters that refinement may change.

@@ -6,7 +6,7 @@ use crate::error::ProbError;
 /// Conditions on a peak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakConfig {
-    /// A peak is the greatest within so many frames; odd.
+    /// Number of frames within which a peak is the greatest value; odd.
     pub span: usize,
     /// A peak exceeds the residual's own median by this factor.
     pub factor: f64,

@@ -12,7 +12,7 @@ use glam::{Quat, Vec3};
 /// A foot comes to stand above the first of these probabilities and leaves the ground below the second.
 const STANDS: [f32; 2] = [0.55, 0.4];
 
-/// A foot whose leg would have to stretch so far to where it stands is put anew, metres.
+/// Stretch of a leg to its standing foot beyond which the foot is planted again, metres.
 const MAX_DRIFT_M: f32 = 0.15;
 
 /// A foot whose own sensor says that it is in the air is held so far off the ground, as a share of the leg's length, where the body moves it as slowly
@@ -20,11 +20,11 @@ const MAX_DRIFT_M: f32 = 0.15;
 const CLEARANCE: f32 = 0.08;
 const CLEARED_SPEEDS: [f32; 2] = [1.5, 3.5];
 
-/// It is raised so far within this time from when it left the ground, seconds.
+/// Time within which it is raised that far after it has left the ground, seconds.
 const CLEARED_AFTER_SECS: f32 = 0.05;
 
-/// A foot whose own sensor says that it stands may drift so much further.
-const TOLD_DRIFT: f32 = 2.0;
+/// Factor on the drift that is allowed to a foot whose own sensor reports contact.
+const MEASURED_DRIFT: f32 = 2.0;
 
 /// Half-life of what remains of a correction when a foot lands, seconds.
 const SETTLE_HALF_LIFE_SECS: f32 = 0.01;
@@ -66,7 +66,7 @@ impl StandingFoot {
         free: Vec3::ZERO,
     };
 
-    /// Lets what remains of a correction die away for some time.
+    /// Fades the rest of a correction.
     fn settle(&mut self, dt_secs: f32) {
         let (left, of_toes) = if self.plant.is_some() {
             let left = 1.0 - follow_share(SETTLE_HALF_LIFE_SECS, dt_secs);
@@ -91,7 +91,7 @@ impl Ground {
         self.rockers[side.index()].stand(plant, pitch)
     }
 
-    /// Height at which a foot that is known to be in the air is held, when the body moves its ankle so far in a step, metres.
+    /// Height at which a foot that is known to be in the air is held, for a motion of its ankle in a frame, metres.
     fn clearance_m(&self, moved: Vec3, dt_secs: f32) -> f32 {
         let [least, most] = CLEARED_SPEEDS.map(|speed| speed * self.leg_length_m * dt_secs);
         let slow = (most - moved.with_y(0.0).length()) / (most - least).max(f32::MIN_POSITIVE);
@@ -118,20 +118,22 @@ impl Ground {
         if let Some(plant) = own.plant {
             let drift = self.standing(side, &plant).ankle.distance(ankle);
             let leaves = match input.contacts[index] {
-                Some(told) => !told.stands || drift > TOLD_DRIFT * MAX_DRIFT_M,
+                Some(measured) => !measured.stands || drift > MEASURED_DRIFT * MAX_DRIFT_M,
                 None => body[CONTACT + index] < STANDS[1] || drift > MAX_DRIFT_M,
             };
             if leaves {
                 own.plant = None;
                 // The frame in which it left counts from when it did.
                 own.free_secs = match input.contacts[index] {
-                    Some(told) if !told.stands => told.for_secs.min(input.dt_secs) - input.dt_secs,
+                    Some(measured) if !measured.stands => {
+                        measured.for_secs.min(input.dt_secs) - input.dt_secs
+                    }
                     _ => 0.0,
                 };
             }
-        } else if input.contacts[index]
-            .map_or(body[CONTACT + index] > STANDS[0], |told| told.stands)
-        {
+        } else if input.contacts[index].map_or(body[CONTACT + index] > STANDS[0], |measured| {
+            measured.stands
+        }) {
             let pitch = settled_pitch(foot_pitch(foot));
             let settled = own.last.0.with_y(0.0);
             let heading = foot_heading(foot);
@@ -143,7 +145,7 @@ impl Ground {
         } else {
             let mut free = FootTarget { ankle, foot, toes };
             own.free_secs += input.dt_secs;
-            if input.contacts[index].is_some_and(|told| !told.stands) {
+            if input.contacts[index].is_some_and(|measured| !measured.stands) {
                 let clearance = self.clearance_m(ankle - own.free, input.dt_secs)
                     * smooth_step(own.free_secs / CLEARED_AFTER_SECS);
                 free.ankle.y += (clearance - self.rockers[index].lowest_point(&free)).max(0.0);
@@ -163,7 +165,7 @@ impl Ground {
             own.toes = own.last.2 * wanted.2.inverse();
         }
         let settles_secs = match input.contacts[index] {
-            Some(told) if own.landed => told.for_secs.min(input.dt_secs),
+            Some(measured) if own.landed => measured.for_secs.min(input.dt_secs),
             _ => input.dt_secs,
         };
         own.settle(settles_secs);

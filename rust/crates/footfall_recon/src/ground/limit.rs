@@ -39,7 +39,7 @@ impl Limit {
     }
 }
 
-/// Turns joints by the same share of what they would turn, so that the fastest of them turns by no more than so much, radians.
+/// Scales the rotations of all joints by one factor, so that the fastest turns by at most this angle, radians.
 fn hold(shown: &[Quat; JOINT_COUNT], joints: &[Joint], most: f32, pose: &mut Pose) {
     let angles = joints.iter().map(|joint| {
         let n = joint.index();

@@ -1,4 +1,4 @@
-//! The backward algorithm: what later frames tell of a recording as a whole.
+//! The backward algorithm: evidence of later frames, for whole recordings.
 
 use super::{Measurement, Tracker};
 use crate::kernels::{scale, weigh};
@@ -24,9 +24,9 @@ impl Tracker {
         self.weigh_segments();
     }
 
-    /// Goes back by a frame: `later` tells of each frame how well it explains all that was measured after the frame of `sensor`, up to a factor,
-    /// and then what was measured in that frame and after it, given the frame before: the backward variable. All frames are looked at.
-    pub(crate) fn step_back(&mut self, sensor: Option<&Measurement>, later: &mut [f32]) {
+    /// Goes back by a frame of the backward algorithm. `later` holds a likelihood for each frame of the model, up to a factor: before the call, of all
+    /// measurements after `sensor`, given its frame; after the call, of `sensor` and all later ones, given the frame before. No frame is pruned.
+    pub fn step_back(&mut self, sensor: Option<&Measurement>, later: &mut [f32]) {
         let prepared = Arc::clone(&self.prepared);
         if let Some(sensor) = sensor {
             self.predicted[..later.len()].copy_from_slice(later);
@@ -53,9 +53,15 @@ impl Tracker {
             let leave = self.entering[place];
             let followed = prepared.is_followed(n);
             let keep = if followed { config.keep_recording } else { 0.0 };
+            let following = if followed {
+                &later[prepared.frames_of(n + 1)]
+            } else {
+                &[]
+            };
             let beyond = |steps: usize| {
-                let over = later.get(frames.end + steps).copied();
-                keep * over.filter(|_| followed).unwrap_or(0.0) + (1.0 - keep) * leave
+                // As forwards, a skip beyond the last frame of the following segment leads nowhere.
+                let over = following.get(steps).copied().unwrap_or(0.0);
+                keep * over + (1.0 - keep) * leave
             };
             for frame in frames.clone() {
                 let at = |steps: usize| {

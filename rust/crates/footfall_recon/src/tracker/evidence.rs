@@ -15,7 +15,7 @@ const LEAST_SHARE: f32 = 0.15;
 
 impl Tracker {
     /// Goes on by a frame in which the phase of the stride counts by as much as the wearer is a stranger, the body is known to walk or run and the model explains it;
-    /// weighs it so in `sensor`. The sensors of whoever moves like people in the model tell more, and what shakes a sensor has a rhythm, too.
+    /// weighs it so in `sensor`. The sensors of a wearer who moves like people in the model are more informative, and a shaken sensor also has a rhythm.
     pub(crate) fn step_striding(&mut self, sensor: Option<&mut Measurement>, explains: Confidence) {
         let strides = self.strangeness.share() * self.strides() * explains.trusted();
         let sensor = sensor.map(|sensor| {

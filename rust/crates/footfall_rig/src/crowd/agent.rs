@@ -1,85 +1,29 @@
-//! One walker of a crowd: where it is, where it wants to go, and how it gets there.
+//! One walker of a crowd: its place, its goal and its motion.
 
-use super::avoidance::Wayfarer;
+use super::drawn::Drawn;
 use super::goal::{Goal, Guidance};
-use super::kit::Outfit;
+use super::mixtures::StyleMixture;
 use super::motion::Steps;
-use super::replica::Led;
+use super::neighbours::Passerby;
+use super::replica::LedWalker;
 use footfall_core::Side;
 use footfall_core::rotation::{from_heading, wrap_angle};
 use footfall_ik::placement::{Frame, Landing};
 use footfall_synth::{Controls, CrowdPose, CrowdWalker, GroundTransform, SharedPose, Workshop};
 use glam::{Vec2, Vec3};
 
-/// Whoever comes to a goal slows down to this speed, m/s, by so much for each metre that is left.
-const ARRIVING_MPS: f32 = 0.5;
-const ARRIVING_RATE: f32 = 0.8;
-/// Whoever is to stop goes on for so long, seconds: half of it in the step that comes to a stand, and half a step that others would take before they decide again.
-const AHEAD_SECS: f32 = 0.7;
-/// Room that a walker needs to turn round in an arc, metres.
-const ARC_M: f32 = 2.0;
-/// Whoever is so near to a goal makes no step towards it, metres.
-const THERE_M: f32 = 0.5;
-/// Rate of turning towards the wanted direction: rad/s for each radian that is missing, and at most.
-const TURN_GAIN: f32 = 1.6;
-const MAX_TURN_RADPS: f32 = 1.3;
-/// Others are seen this far, metres.
-pub(super) const SIGHT_M: f32 = 6.0;
 /// Time constant with which a walker rises and falls with the ground, seconds.
 const RISE_SECS: f32 = 0.15;
 
 /// A tint that changes nothing: red, green, blue and opacity.
 pub(super) const WHITE: [f32; 4] = [1.0; 4];
 
-/// Somebody whom walkers keep clear of: another walker, or whoever else is about.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Passerby {
-    /// Place in the plane of the crowd, metres: x and z of its space.
-    pub place: Vec2,
-    /// Velocity there, m/s.
-    pub velocity: Vec2,
-}
-
-impl Passerby {
-    /// Nobody.
-    pub(super) const NOWHERE: Self = Self {
-        place: Vec2::NAN,
-        velocity: Vec2::ZERO,
-    };
-}
-
-/// Places of a walker for drawing: where it was when it moved last but one, and where it is.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Drawn {
-    /// The two places.
-    pub places: [Vec3; 2],
-    /// Its headings there. The second is within half a turn of the first.
-    pub headings: [f32; 2],
-    /// Time between them, seconds.
-    pub secs: f32,
-    /// Its height against that of the character.
-    pub size: f32,
-    /// Its tint: red, green, blue and opacity.
-    pub tint: [f32; 4],
-}
-
-impl Drawn {
-    /// Place and heading on the way from the one to the other.
-    pub fn at(&self, share: f32) -> (Vec3, f32) {
-        let [from, to] = self.headings;
-        (
-            self.places[0].lerp(self.places[1], share),
-            from + share * (to - from),
-        )
-    }
-}
-
 /// One walker in the space of the crowd: +Y up.
 #[derive(Debug)]
 pub struct Agent {
-    /// Its walk; none before it is made, and for places that nobody has.
+    /// Its walk; `None` before it is made, and in unused rows.
     pub(super) walker: Option<CrowdWalker>,
-    /// Number that distinguishes it from others who had its place or will have it.
+    /// Number that distinguishes it from earlier and later walkers of its row.
     pub(super) ticket: u64,
     /// True when it is one of the node's `count`, not one that a script added.
     pub(super) counted: bool,
@@ -100,8 +44,8 @@ pub struct Agent {
     /// Height of the ground to which it rises or falls, metres.
     pub ground_m: f32,
     pub(super) velocity: Vec2,
-    /// Weights of the styles that it wears, in parts: see [`Kit`](super::kit::Kit).
-    pub(super) outfit: Outfit,
+    /// Weights of its styles.
+    pub(super) mixture: StyleMixture,
     /// Places to go to after its goal, the next one last.
     pub(super) route: Vec<Vec2>,
     pub(super) guidance: Guidance,
@@ -115,12 +59,12 @@ pub struct Agent {
     chance: u64,
     pub(super) walked: GroundTransform,
     pub(super) controls: Controls,
-    /// Knowledge of the walker of another machine whose steps it takes.
-    pub(super) led: Option<Box<Led>>,
+    /// Received steps of another machine's walker, if it follows one.
+    pub(super) led: Option<Box<LedWalker>>,
 }
 
 impl Agent {
-    /// Somebody who stands there until what walks is made.
+    /// A walker that stands at its place until its walk is made.
     pub(super) fn new(ticket: u64, place: Vec3, heading: f32, seed: u64) -> Self {
         Self {
             walked: GroundTransform::default(),
@@ -137,7 +81,7 @@ impl Agent {
             heading,
             ground_m: place.y,
             velocity: Vec2::ZERO,
-            outfit: Outfit::default(),
+            mixture: StyleMixture::default(),
             route: Vec::new(),
             guidance: Guidance::None,
             progress_m: 0.0,
@@ -150,7 +94,7 @@ impl Agent {
         }
     }
 
-    /// Nobody.
+    /// An unused row.
     pub(super) fn absent() -> Self {
         Self::new(u64::MAX, Vec3::ZERO, 0.0, 0)
     }
@@ -172,13 +116,13 @@ impl Agent {
         self.walker.as_mut().or(waiting)
     }
 
-    /// Share of its stride that is behind it: 0 when its left foot lands, 0.5 when its right foot does.
+    /// Phase of its stride: 0 at the left initial contact, 0.5 at the right.
     pub fn phase(&self) -> f32 {
         let walker = self.walker.as_ref();
         walker.map_or(self.start_phase, CrowdWalker::phase)
     }
 
-    /// Returns whether it walks: it was made, and has begun.
+    /// Returns whether it walks: its walk was made and has begun.
     pub fn is_made(&self) -> bool {
         self.walker.is_some()
     }
@@ -219,67 +163,7 @@ impl Agent {
         })
     }
 
-    /// Decides what to do next; what it decides is taken up with the next step. It slows down for its last goal if it `stops` there.
-    pub(super) fn decide(&mut self, others: &[Passerby], stops: bool) {
-        let mut speed = self.speed_mps;
-        let turn = match self.goal {
-            Goal::Turn(rate) => rate,
-            Goal::Place(place) => {
-                let far = place.distance(self.level());
-                let last = self.route.is_empty();
-                let left = if last && far < THERE_M {
-                    0.0
-                } else if last && stops {
-                    (far - AHEAD_SECS * self.present_mps()).max(0.0)
-                } else {
-                    f32::INFINITY
-                };
-                if left <= 0.0 {
-                    speed = 0.0;
-                }
-                speed = speed.min(ARRIVING_MPS + ARRIVING_RATE * left);
-                let (way, room_rad) = self.way_to(place);
-                let mut off = wrap_angle(way.x.atan2(way.y) - self.heading);
-                let wayfarer = Wayfarer {
-                    place: self.level(),
-                    heading: self.heading,
-                    off,
-                    speed_mps: self.speed_mps,
-                    room_rad,
-                };
-                // Who makes no step goes round nobody.
-                if left > 0.0
-                    && let Some(detour) = wayfarer.detour(others.iter())
-                {
-                    off += detour.aside;
-                    speed *= detour.speed;
-                }
-                // Who has to turn far does so first, and on the spot where there is no room left for an arc.
-                let least = if left < ARC_M { 0.0 } else { 0.25 };
-                speed *= (1.2 - off.abs()).clamp(least, 1.0);
-                if left <= 0.0 {
-                    0.0
-                } else {
-                    (TURN_GAIN * off).clamp(-MAX_TURN_RADPS, MAX_TURN_RADPS)
-                }
-            }
-        };
-        // A large body takes longer steps in more time: speeds go with the root of its size (Froude).
-        let froude = self.size.sqrt();
-        self.controls = Controls {
-            speed_mps: speed / froude,
-            turn_rate_radps: turn * froude,
-            ..Controls::STAND
-        };
-    }
-
-    /// Speed at the end of the step that it is in, m/s: the measured one lags behind.
-    fn present_mps(&self) -> f32 {
-        let asked = self.controls.speed_mps * self.size.sqrt();
-        asked.min(self.velocity.length())
-    }
-
-    /// Lets time pass.
+    /// Advances its walk.
     pub(super) fn advance(&mut self, dt_secs: f32, workshop: &mut Workshop) {
         let controls = self.controls;
         self.travel(dt_secs, |walker, secs| {
@@ -287,7 +171,7 @@ impl Agent {
         });
     }
 
-    /// Goes where its walk takes it, which is to step through this time of its own.
+    /// Moves with its walk, which `step` advances by the time scaled to its size.
     pub(super) fn travel(&mut self, dt_secs: f32, step: impl FnOnce(&mut CrowdWalker, f32)) {
         let Some(walker) = &mut self.walker else {
             return;
@@ -315,7 +199,7 @@ impl Agent {
         }
     }
 
-    /// Places for drawing, after it moved from there.
+    /// Places for drawing, after a motion from this place and heading.
     pub(super) fn drawn(&self, from: Vec3, from_heading: f32, secs: f32) -> Drawn {
         let turned = wrap_angle(self.heading - from_heading);
         Drawn {
@@ -327,13 +211,7 @@ impl Agent {
         }
     }
 
-    /// Returns whether it will take up a decision in this time: then is the time to decide.
-    pub(super) fn is_about_to_step(&self, dt_secs: f32) -> bool {
-        let walker = self.walker.as_ref();
-        walker.is_some_and(|walker| walker.secs_to_next_step() <= dt_secs / self.size.sqrt())
-    }
-
-    /// A number between 0 and 1, another one at every call and the same ones for equal seeds (`SplitMix64`).
+    /// The next pseudo-random number between 0 and 1 of its seed (`SplitMix64`).
     pub fn chance(&mut self) -> f32 {
         self.chance = self.chance.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.chance;
@@ -353,7 +231,7 @@ impl Agent {
         }
     }
 
-    /// Has memory bring what [`advance`](Self::advance) reads.
+    /// Prefetches the memory that [`advance`](Self::advance) reads.
     pub(super) fn fetch(&self) {
         core::hint::black_box((self.seed, self.clock_secs, self.controls));
         if let Some(walker) = &self.walker {
@@ -361,25 +239,25 @@ impl Agent {
         }
     }
 
-    /// Has memory bring what [`shared_pose`](Self::shared_pose) reads.
+    /// Prefetches the memory that [`shared_pose`](Self::shared_pose) reads.
     pub fn fetch_shared(&self) {
         core::hint::black_box((self.size, self.is_made()));
     }
 
-    /// Has memory bring what [`pose`](Self::pose) reads.
+    /// Prefetches the memory that [`pose`](Self::pose) reads.
     pub fn fetch_pose(&self) {
         if let Some(walker) = &self.walker {
             walker.fetch_pose();
         }
     }
 
-    /// Its pose so many seconds ago among those that all who wear the same share, and the number of what it wears; `None` while it takes steps of its own.
+    /// Its shared pose, this many seconds ago, and the number of its style mixture; `None` while it takes steps of its own.
     pub fn shared_pose(&self, ago_secs: f32) -> Option<(u32, SharedPose)> {
         let walker = self.walker.as_ref()?;
         walker.shared_pose(ago_secs / self.size.sqrt())
     }
 
-    /// Returns whether it walks in steps of its own: only they can be told.
+    /// Returns whether it walks in steps of its own: only these can be sent to others.
     pub(super) fn takes_own_steps(&self) -> bool {
         let walker = self.walker.as_ref();
         walker.is_some_and(|walker| !walker.is_sharing())

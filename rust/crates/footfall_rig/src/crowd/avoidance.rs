@@ -1,54 +1,54 @@
-//! Steering around others: the direction and the speed, of a few, that cost least.
+//! Collision avoidance: the direction and the speed with the least cost, among a few.
 //!
-//! Each is judged by the detour that it is and by whom it would meet when, as in Moussaïd, Helbing and Theraulaz, "How simple rules determine
-//! pedestrian behavior and crowd disasters", PNAS 2011, with others going on as they do.
+//! Each candidate costs its detour and its expected encounters, as in Moussaïd, Helbing and Theraulaz, "How simple rules determine
+//! pedestrian behavior and crowd disasters", PNAS 2011, if the others keep their velocities.
 
-use super::agent::{Passerby, SIGHT_M};
+use super::neighbours::{Passerby, SIGHT_M};
 use glam::Vec2;
 
-/// Others are avoided when they would come this close within this time: metres and seconds.
+/// Distance and time of an expected encounter within which others are avoided, metres and seconds.
 const PERSONAL_M: f32 = 1.0;
 const FORESIGHT_SECS: f32 = 4.0;
 /// Closer than this two bodies touch, metres.
 const BODIES_M: f32 = 0.5;
-/// The trouble of turning by a radian and of standing, beside coming as near as bodies are and walking into somebody. Chosen by how near
-/// walkers come in crowds of two rows that pass through each other.
+/// Costs of turning by a radian and of standing, relative to those of touching and of walking into another body. Chosen by the distances
+/// in two rows of walkers that pass through each other.
 const TURNING: f32 = 0.15;
 const SLOWING: f32 = 0.4;
 const CLOSENESS: f32 = 0.6;
 const TOUCHING: f32 = 2.0;
-/// So many others are looked at, the most urgent ones.
+/// Number of others that are considered, the most urgent ones.
 const MOST_OTHERS: usize = 8;
-/// Directions beside the one that is wanted, radians to the left.
+/// Candidate directions relative to the desired one, radians to the left.
 const ASIDES: [f32; 9] = [0.0, -0.2, 0.2, -0.4, 0.4, -0.7, 0.7, -1.0, 1.0];
-/// Shares of the speed that is wanted.
+/// Candidate shares of the desired speed.
 const SPEEDS: [f32; 4] = [1.0, 0.75, 0.5, 0.3];
 
-/// Somebody who wants to go somewhere.
+/// A walker with a goal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wayfarer {
     pub(super) place: Vec2,
     /// Direction it faces: 0 along +Z (`y` of the plane), positive to the left, radians.
     pub(super) heading: f32,
-    /// Direction it wants to go in, from that one, radians to the left.
+    /// Desired direction relative to that, radians to the left.
     pub(super) off: f32,
-    /// Speed that it would like, m/s.
+    /// Preferred speed, m/s.
     pub(super) speed_mps: f32,
     /// Most that it can step aside to the right and to the left, radians.
     pub(super) room_rad: [f32; 2],
 }
 
-/// A way round others.
+/// A detour around others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Detour {
-    /// Radians to the left of where it wants to go.
+    /// Angle from the desired direction, radians to the left.
     pub(super) aside: f32,
-    /// Share of the speed that it would like.
+    /// Share of the preferred speed.
     pub(super) speed: f32,
 }
 
 impl Wayfarer {
-    /// The detour that costs least; `None` where nobody is near.
+    /// The detour of least cost; `None` if nobody is near.
     pub(super) fn detour<'a>(&self, others: impl Iterator<Item = &'a Passerby>) -> Option<Detour> {
         let facing = direction(self.heading);
         let velocity = direction(self.heading + self.off) * self.speed_mps;
@@ -56,7 +56,7 @@ impl Wayfarer {
         for other in others {
             let way = other.place - self.place;
             let far = way.length();
-            // Nobody minds who walks behind.
+            // Those behind are ignored.
             if (1e-3..SIGHT_M).contains(&far) && way.dot(facing) >= -0.2 * far {
                 let closing = (velocity - other.velocity).dot(way) / far;
                 near.take((closing + 0.5) / far, way, other.velocity);
@@ -71,7 +71,7 @@ impl Wayfarer {
             .into_iter()
             .filter(|aside| (-right..=left).contains(aside))
         {
-            // Nobody in the way makes a detour cheaper.
+            // An encounter never makes a detour cheaper.
             if detour_cost(aside, 1.0) >= best.0 {
                 continue;
             }
@@ -96,13 +96,13 @@ fn direction(heading: f32) -> Vec2 {
     Vec2::new(heading.sin(), heading.cos())
 }
 
-/// The trouble of a detour; to the right is a little less than to the left, so that two who meet face to face agree.
+/// Cost of a detour; to the right it is slightly less than to the left, so that two who meet face to face agree.
 fn detour_cost(aside: f32, speed: f32) -> f32 {
     let turned = if aside > 0.0 { 1.1 * aside } else { aside };
     TURNING * turned * turned + SLOWING * (1.0 - speed)
 }
 
-/// The others that matter: how urgent they are, where from here, and how fast. Number by number, so that all of them are judged at once.
+/// Others to be considered: urgency, relative place and velocity, as arrays of components, so that SIMD evaluates all of them at once.
 #[derive(Debug, Default)]
 struct Near {
     urgency: [f32; MOST_OTHERS],
@@ -112,7 +112,7 @@ struct Near {
 }
 
 impl Near {
-    /// Takes somebody in, in the place of who is least urgent if there are too many.
+    /// Adds a person; if the list is full, it replaces the least urgent one.
     fn take(&mut self, urgency: f32, way: Vec2, velocity: Vec2) {
         let index = if self.len < MOST_OTHERS {
             self.len += 1;
@@ -149,7 +149,7 @@ impl Near {
     }
 }
 
-/// Cost of approaching somebody who is there at this velocity. Without branches, so that several are judged at once.
+/// Cost of approaching a person at a relative place with this velocity. Without branches, for SIMD.
 #[inline]
 fn meeting_cost(way: Vec2, approach: Vec2) -> f32 {
     let secs = way.dot(approach) / approach.length_squared().max(1e-3);

@@ -1,8 +1,8 @@
-//! Walkers begin to walk, and dress, as they are made.
+//! Start of walkers: those that other threads have made begin to walk, and change their styles.
 
 use super::Crowd;
-use super::kit::Outfit;
 use super::maker::Order;
+use super::mixtures::StyleMixture;
 use footfall_synth::{Detail, StyleSpace, SynthError};
 use std::sync::Arc;
 
@@ -17,35 +17,35 @@ impl Crowd {
         self.maker.is_busy() || self.are_coming()
     }
 
-    /// Lets those begin who were made meanwhile, a few hundred at most; returns what they are made with when that has just come.
+    /// Starts walkers that were made since the last call, a few hundred at most. Returns the style space when it has just been prepared.
     ///
     /// # Errors
-    /// [`SynthError`] when nobody can walk.
+    /// [`SynthError`] if the model and the body give no walk.
     pub fn begin_some(&mut self) -> Result<Option<Arc<StyleSpace>>, Arc<SynthError>> {
         self.began.clear();
         self.come_in(MOST_COME_IN);
         let mut come = None;
-        if self.kit.is_none() {
-            let Some(kit) = self.maker.kit() else {
+        if self.mixtures.is_none() {
+            let Some(mixtures) = self.maker.mixtures() else {
                 return Ok(None);
             };
-            let kit = kit.clone()?;
-            come = Some(Arc::clone(&kit.space));
-            self.kit = Some(kit);
+            let mixtures = mixtures.clone()?;
+            come = Some(Arc::clone(&mixtures.space));
+            self.mixtures = Some(mixtures);
         }
         self.begin(MOST_BEGIN);
         Ok(come)
     }
 
-    /// Waits until everybody is made, and lets them begin.
+    /// Waits until all walkers are made, and starts them.
     ///
     /// # Errors
-    /// [`SynthError`] when nobody can walk.
+    /// [`SynthError`] if the model and the body give no walk.
     pub fn begin_all(&mut self) -> Result<Option<Arc<StyleSpace>>, Arc<SynthError>> {
         self.come_in(usize::MAX);
         self.maker.finish();
         let come = self.begin_some()?;
-        // Who was given another outfit meanwhile is dressed in a second round.
+        // Walkers that got another mixture meanwhile change in a second round.
         for _ in 0..2 {
             self.maker.finish();
             self.begin(usize::MAX);
@@ -53,22 +53,26 @@ impl Crowd {
         Ok(come)
     }
 
-    /// Lets a walker wear a mixture of styles, at once where others wear it already.
+    /// Gives a walker a mixture of styles: at once if the mixture is prepared already.
     pub fn wear(&mut self, place: usize, weights: &[f32]) {
-        let outfit = Outfit::of(&weights[..weights.len().min(self.maker.styles())]);
+        let mixture = StyleMixture::of(&weights[..weights.len().min(self.maker.styles())]);
         let agent = &mut self.agents[place];
-        agent.outfit.clone_from(&outfit);
-        // Who is not made yet is dressed when it comes.
+        agent.mixture.clone_from(&mixture);
+        // A walker that is not made yet gets it when it begins.
         let Some(walker) = agent.own_walker() else {
             return;
         };
-        if let Some(styled) = self.kit.as_ref().and_then(|kit| kit.known(&outfit)) {
+        if let Some(styled) = self
+            .mixtures
+            .as_ref()
+            .and_then(|mixtures| mixtures.get(&mixture))
+        {
             walker.wear(&styled);
         } else {
             let order = Order {
                 place,
                 ticket: agent.ticket,
-                outfit,
+                mixture,
                 config: None,
                 alone: false,
             };
@@ -92,7 +96,7 @@ impl Crowd {
             let Order {
                 place,
                 ticket,
-                outfit,
+                mixture,
                 ..
             } = made.order;
             let Some(agent) = agents.get_mut(place).filter(|agent| agent.ticket == ticket) else {
@@ -109,8 +113,8 @@ impl Crowd {
             } else if let Some(walker) = agent.own_walker() {
                 walker.wear(&made.styled);
             }
-            if agent.outfit != outfit {
-                late.push((place, agent.outfit.weights()));
+            if agent.mixture != mixture {
+                late.push((place, agent.mixture.weights()));
             }
         });
         for (place, weights) in late {

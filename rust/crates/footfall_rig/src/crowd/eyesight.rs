@@ -1,4 +1,4 @@
-//! Height of walkers on screen, and the choice of those who are so small that a stand-in shows them.
+//! Height of walkers on screen, and the choice of those small enough for a stand-in.
 
 use glam::Vec3;
 
@@ -12,7 +12,7 @@ pub struct Eyesight {
     pub place: Vec3,
     /// Height on screen of one metre, pixels: at a distance of one metre, or at any distance where the view is [parallel](Self::is_parallel).
     pub metre_px: f32,
-    /// True where nothing shrinks with the distance.
+    /// True for a parallel projection, in which nothing shrinks with the distance.
     pub is_parallel: bool,
     /// Height of a walker of size 1, metres.
     pub height_m: f32,
@@ -21,8 +21,8 @@ pub struct Eyesight {
 }
 
 impl Eyesight {
-    /// Returns whether a stand-in shows a walker of this size at this place, which one `was` shown by a stand-in or not. The height on screen is that
-    /// in the middle of the picture: it does not change as the camera turns.
+    /// Returns whether a stand-in shows a walker of this size at this place; `was` is the choice of the last frame. The height on screen is that
+    /// in the middle of the picture, so that it does not change as the camera turns.
     pub fn is_small(&self, place: Vec3, size: f32, was: bool) -> bool {
         let far = if self.is_parallel {
             1.0

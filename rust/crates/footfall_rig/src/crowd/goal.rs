@@ -7,13 +7,13 @@ use std::f32::consts::PI;
 /// Distance at which a walker has arrived at a place, metres.
 pub(super) const ARRIVED_M: f32 = 1.0;
 
-/// A walker may turn aside to the right and to the left as far as this where nobody knows the ground, radians.
+/// Most that a walker turns aside to the right and to the left on unknown ground, radians.
 const WIDE: [f32; 2] = [PI; 2];
 
-/// A walker steps aside no nearer to where the ground of its route ends, for it goes on for a step before it turns back, metres.
+/// Distance that a walker keeps from the edge of its ground when it steps aside, metres: it continues for a step before it turns back.
 const MARGIN_M: f32 = 0.2;
 
-/// Knowledge of the ground holds so far from where it was looked at, metres.
+/// Distance from the place of a ground query within which its result holds, metres.
 const KNOWN_M: f32 = 1.5;
 
 /// Goals of a walker.
@@ -28,18 +28,18 @@ pub enum Goal {
 /// Knowledge of the ground on which a walker's route lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Guidance {
-    /// Nobody knows where it may go.
+    /// The ground is unknown.
     None,
-    /// The game found the route around what is in the way, and has not looked at the ground here.
+    /// The game found the route around obstacles, and has not queried the ground here.
     Route,
-    /// It has.
+    /// The game has queried the ground here.
     Ground(Ground),
 }
 
 /// Ground around a walker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ground {
-    /// Place where it was looked at.
+    /// Place of the query.
     at: Vec2,
     /// Direction that stays on the ground, where the one to the goal does not.
     way: Option<Vec2>,
@@ -60,8 +60,8 @@ impl Agent {
         self.goal = Goal::Place(place);
     }
 
-    /// Goes from place to place, a route that the game found around what is in the way, and stops at the last; without places it keeps the goal
-    /// that it has.
+    /// Goes from place to place, a route that the game found around obstacles, and stops at the last; without places it keeps its
+    /// current goal.
     pub fn go_along(&mut self, places: impl DoubleEndedIterator<Item = Vec2>) {
         self.give_up();
         self.route.extend(places.rev());
@@ -76,7 +76,7 @@ impl Agent {
         self.guidance = Guidance::None;
     }
 
-    /// The direction of its goal as a unit vector, where the game found its route and it has not arrived: whoever goes round others, or turns in an arc, may leave that ground.
+    /// The direction of its goal as a unit vector, where the game found its route and it has not arrived: a walker that avoids others, or turns in an arc, may leave that ground.
     pub fn straight_way(&self) -> Option<Vec2> {
         match self.goal {
             Goal::Place(place) if self.guidance != Guidance::None && self.is_on_its_way() => {

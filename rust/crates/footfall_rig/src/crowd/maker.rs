@@ -1,28 +1,28 @@
-//! Walkers made on threads of their own, so that no frame waits for them. Who is made when does not change who they are.
+//! Creation of walkers on separate threads, so that no frame waits for it. The order of creation does not change the walkers.
 
-use super::kit::{CrowdRecipe, Kit, Outfit};
+use super::mixtures::{CrowdRecipe, Mixtures, StyleMixture};
 use footfall_synth::{CrowdWalker, GeneratorConfig, StyledBody, SynthError, Workshop};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::{self, JoinHandle};
 
-/// So many orders are worth more than one thread.
+/// Number of orders from which a second thread is started.
 const FEW: usize = 16;
 /// Most threads of one crowd.
 const MOST_THREADS: usize = 4;
-/// Walkers that a frame makes itself where there are no threads to be had.
+/// Number of walkers that a frame makes itself if no thread can be started.
 const MADE_A_FRAME: usize = 8;
 
-/// Somebody to be made or dressed.
+/// A walker to be made, or to get another mixture of styles.
 #[derive(Debug)]
 pub(super) struct Order {
     pub(super) place: usize,
-    /// Ticket of the walker that it is for: another one may have its place when it is done.
+    /// Ticket of the walker: another walker may have its place when the order is done.
     pub(super) ticket: u64,
-    pub(super) outfit: Outfit,
-    /// Settings of its walk; none for a walker that is there and only dressed.
+    pub(super) mixture: StyleMixture,
+    /// Settings of its walk; `None` for an existing walker that only changes its mixture.
     pub(super) config: Option<GeneratorConfig>,
-    /// True for one who takes steps of its own from the first one on, some milliseconds of work.
+    /// True for a walker with its own steps from the first one on, which takes some milliseconds.
     pub(super) alone: bool,
 }
 
@@ -37,19 +37,19 @@ pub(super) struct Made {
 #[derive(Debug, Default)]
 struct Queue {
     orders: VecDeque<Order>,
-    /// Walkers who left: ten thousand of them take longer to be forgotten than a frame lasts.
+    /// Walkers that left: freeing ten thousand of them takes longer than a frame.
     left: Vec<CrowdWalker>,
-    /// Threads that will look here again.
+    /// Threads that will return here.
     working: usize,
 }
 
-/// A kit, or the reason why nobody can walk.
-pub(super) type Prepared = Result<Arc<Kit>, Arc<SynthError>>;
+/// The mixtures, or the reason why the model gives no walk.
+pub(super) type Prepared = Result<Arc<Mixtures>, Arc<SynthError>>;
 
 #[derive(Debug)]
 struct Shared {
     recipe: CrowdRecipe,
-    kit: OnceLock<Prepared>,
+    mixtures: OnceLock<Prepared>,
     queue: Mutex<Queue>,
     made: Mutex<VecDeque<Made>>,
 }
@@ -59,7 +59,7 @@ struct Shared {
 pub(super) struct Maker {
     shared: Arc<Shared>,
     threads: Vec<JoinHandle<()>>,
-    /// Orders that were given and have not come back.
+    /// Number of orders that are not finished.
     waiting: usize,
 }
 
@@ -68,11 +68,11 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Maker {
-    /// Begins to prepare what walkers are made with.
+    /// Begins to prepare the style mixtures.
     pub(super) fn new(recipe: CrowdRecipe) -> Self {
         let shared = Shared {
             recipe,
-            kit: OnceLock::new(),
+            mixtures: OnceLock::new(),
             queue: Mutex::default(),
             made: Mutex::default(),
         };
@@ -95,12 +95,12 @@ impl Maker {
         self.shared.recipe.styles.len()
     }
 
-    /// Kit with which walkers are made, once it is there, or the reason why it cannot be.
-    pub(super) fn kit(&self) -> Option<&Prepared> {
-        self.shared.kit.get()
+    /// The style mixtures once they are prepared, or the reason why they cannot be.
+    pub(super) fn mixtures(&self) -> Option<&Prepared> {
+        self.shared.mixtures.get()
     }
 
-    /// Returns whether orders have not come back.
+    /// Returns whether orders are not finished.
     pub(super) fn is_busy(&self) -> bool {
         self.waiting > 0
     }
@@ -122,7 +122,7 @@ impl Maker {
         }
     }
 
-    /// Forgets walkers who left.
+    /// Frees walkers that left.
     pub(super) fn forget(&mut self, left: Vec<CrowdWalker>) {
         if left.len() <= FEW {
             return;
@@ -142,7 +142,7 @@ impl Maker {
         self.waiting -= left.len() + made.len();
     }
 
-    /// Hands out at most so many that are made, and never waits for them.
+    /// Returns finished orders, at most this many, without waiting.
     pub(super) fn hand_out(&mut self, most: usize, mut take: impl FnMut(Made)) {
         if !self.is_busy() {
             return;
@@ -161,9 +161,9 @@ impl Maker {
         }
     }
 
-    /// Waits until all orders are carried out, and works along meanwhile.
+    /// Waits until all orders are finished, and helps with them.
     pub(super) fn finish(&mut self) {
-        if self.is_busy() || self.kit().is_none() {
+        if self.is_busy() || self.mixtures().is_none() {
             self.shared.work_at_most(usize::MAX);
             self.join();
         }
@@ -177,7 +177,7 @@ impl Maker {
             let hired = thread::Builder::new()
                 .name("footfall crowd".to_owned())
                 .spawn(move || shared.work());
-            // Where there are no threads, frames do the work.
+            // Without threads, frames do the work.
             let Ok(hired) = hired else {
                 break;
             };
@@ -188,7 +188,7 @@ impl Maker {
 
     fn join(&mut self) {
         for thread in self.threads.drain(..) {
-            // One that panicked has said so.
+            // A thread that panicked has reported so.
             let _ended = thread.join();
         }
     }
@@ -197,20 +197,20 @@ impl Maker {
 impl Drop for Maker {
     fn drop(&mut self) {
         self.cancel();
-        // A library must not be unloaded while threads run in it; they end with the walker that they are at.
+        // A library must not be unloaded while threads run in it; they end after the current walker.
         self.join();
     }
 }
 
 impl Shared {
     fn prepared(&self) -> &Prepared {
-        self.kit
-            .get_or_init(|| Kit::new(&self.recipe).map(Arc::new).map_err(Arc::new))
+        self.mixtures
+            .get_or_init(|| Mixtures::new(&self.recipe).map(Arc::new).map_err(Arc::new))
     }
 
     /// A thread's whole life.
     fn work(&self) {
-        let Ok(kit) = self.prepared() else {
+        let Ok(mixtures) = self.prepared() else {
             locked(&self.queue).working -= 1;
             return;
         };
@@ -228,39 +228,43 @@ impl Shared {
                 return;
             };
             drop(queue);
-            let made = make(kit, order, || {
-                workshop.get_or_insert_with(|| Workshop::new(&kit.plain))
+            let made = make(mixtures, order, || {
+                workshop.get_or_insert_with(|| Workshop::new(&mixtures.plain))
             });
             locked(&self.made).push_back(made);
         }
     }
 
-    /// Carries out so many orders on the caller's thread.
+    /// Carries out this many orders on the caller's thread.
     fn work_at_most(&self, most: usize) {
-        let Ok(kit) = self.prepared() else {
+        let Ok(mixtures) = self.prepared() else {
             return;
         };
         for _ in 0..most {
             let Some(order) = locked(&self.queue).orders.pop_front() else {
                 break;
             };
-            let mut workshop = locked(&kit.workshops[0]);
-            let made = make(kit, order, || &mut workshop);
+            let mut workshop = locked(&mixtures.workshops[0]);
+            let made = make(mixtures, order, || &mut workshop);
             drop(workshop);
             locked(&self.made).push_back(made);
         }
     }
 }
 
-fn make<'a>(kit: &Kit, order: Order, workshop: impl FnOnce() -> &'a mut Workshop) -> Made {
-    let styled = kit.tailor(&order.outfit);
+fn make<'a>(
+    mixtures: &Mixtures,
+    order: Order,
+    workshop: impl FnOnce() -> &'a mut Workshop,
+) -> Made {
+    let styled = mixtures.get_or_make(&order.mixture);
     let walker = order.config.as_ref().and_then(|config| {
         if !order.alone {
             // It takes steps of its own where it is seen to.
             return Some(CrowdWalker::sharing(&styled, config));
         }
         // A walker is of the plain walk when it begins, and dresses with its first step.
-        let mut walker = CrowdWalker::new(&kit.plain, config, false, workshop()).ok()?;
+        let mut walker = CrowdWalker::new(&mixtures.plain, config, false, workshop()).ok()?;
         walker.wear(&styled);
         Some(walker)
     });

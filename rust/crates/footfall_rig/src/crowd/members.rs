@@ -1,14 +1,16 @@
-//! Walkers who come and go, and the row of each.
+//! Addition and removal of walkers.
 
 use super::Crowd;
-use super::agent::{Agent, Drawn, Passerby, WHITE};
+use super::agent::{Agent, WHITE};
+use super::drawn::Drawn;
 use super::goal::Goal;
-use super::kit::Outfit;
 use super::maker::Order;
+use super::mixtures::StyleMixture;
 use super::motion::Stir;
+use super::neighbours::Passerby;
+use super::routing::Routing;
 use super::save::{self, SavedAgent, SavedCrowd};
 use super::tiers::Tier;
-use super::way::Way;
 use footfall_synth::GeneratorConfig;
 use glam::{Vec2, Vec3};
 
@@ -25,8 +27,8 @@ pub(super) struct Coming {
 }
 
 impl Crowd {
-    /// Makes the crowd's own walkers, those that no script added, so many. Who is too much leaves, the last first; returns their
-    /// places. Of a crowd that [follows](Self::follow) another one that says how many there are.
+    /// Sets the number of the crowd's own walkers, which no script added. Surplus walkers leave, the latest first; returns their
+    /// rows. In a crowd that [follows](Self::follow) another, that one determines the number.
     pub fn set_count(&mut self, count: usize) -> Vec<usize> {
         if self.is_following() {
             return Vec::new();
@@ -57,11 +59,11 @@ impl Crowd {
         Vec::new()
     }
 
-    /// Adds the crowd's own walker of this index, one of so many that begin together.
+    /// Adds the crowd's own walker of this index among those that begin together.
     fn add_own(&mut self, index: usize, together: Option<usize>) -> Order {
         let share = |axis: usize| (0.5 + (index + 1) as f32 * PLASTIC[axis]).fract();
-        let (level, heading, progress, aside) = match &self.way {
-            Way::Path(path) => {
+        let (level, heading, progress, aside) = match &self.routing {
+            Routing::Path(path) => {
                 let along = together.map_or_else(
                     || ((index + 1) as f32 * GOLDEN).fract(),
                     |count| index as f32 / count as f32,
@@ -71,7 +73,7 @@ impl Crowd {
                 let (place, direction) = path.beside(progress, aside);
                 (place, direction.x.atan2(direction.y), progress, aside)
             }
-            Way::Told | Way::Wander { .. } | Way::Navigate => {
+            Routing::Scripted | Routing::Wander { .. } | Routing::Navigate => {
                 let across = Vec2::new(share(0), share(1)) * 2.0 - Vec2::ONE;
                 let heading = core::f32::consts::TAU * (index as f32 * GOLDEN * GOLDEN).fract();
                 (across * self.settings.half_area, heading, 0.0, 0.0)
@@ -80,7 +82,7 @@ impl Crowd {
         let (place, order) = self.enter(Vec3::new(level.x, 0.0, level.y), heading);
         let agent = &mut self.agents[place];
         agent.counted = true;
-        if self.way.is_navigated() {
+        if self.routing.is_navigated() {
             agent.goal = Goal::Place(level);
         }
         agent.progress_m = progress;
@@ -110,8 +112,8 @@ impl Crowd {
         !self.coming.is_empty()
     }
 
-    /// Gives so many of those who were added their rows, and orders them to be made. The memory of ten thousand rows takes the system
-    /// longer than a frame to come by.
+    /// Gives rows to this many of the added walkers, and orders their walks. Allocating ten thousand rows at once would take
+    /// longer than a frame.
     pub fn come_in(&mut self, most: usize) {
         let count = self.coming.len().min(most);
         if count == 0 {
@@ -132,7 +134,7 @@ impl Crowd {
         self.maker.take(orders.into_iter());
     }
 
-    /// Goes on with those who were saved, when nobody is there.
+    /// Continues with saved walkers in an empty crowd.
     pub fn restore(&mut self, saved: &SavedCrowd) {
         self.made = saved.made;
         if let Some(roster) = &saved.roster {
@@ -159,7 +161,7 @@ impl Crowd {
         self.maker.take(orders.into_iter());
     }
 
-    /// Removes those who have these places.
+    /// Removes the walkers in these rows.
     pub fn leave(&mut self, places: &[usize]) {
         self.roster.leave(places);
         let mut left = Vec::new();
@@ -174,7 +176,7 @@ impl Crowd {
         self.maker.forget(left);
     }
 
-    /// Removes everybody; returns the places that they had.
+    /// Removes all walkers; returns their rows.
     pub fn clear(&mut self) -> Vec<usize> {
         self.come_in(usize::MAX);
         self.maker.cancel();
@@ -188,7 +190,7 @@ impl Crowd {
         everybody
     }
 
-    /// Everybody as bytes: who walks where, how, in which phase and by which name. Their next steps are drawn anew after [`restore`](Self::restore).
+    /// Saves all walkers: names, places, looks, goals and phases. After [`restore`](Self::restore) their next steps are drawn again.
     pub fn save(&self) -> Vec<u8> {
         let places = self.roster.order().iter();
         let agents = places.map(|place| &self.agents[*place as usize]);
@@ -203,7 +205,7 @@ impl Crowd {
         self.seen.reserve(more);
     }
 
-    /// Gives every one of the first so many places its row.
+    /// Creates rows up to this number.
     pub(super) fn make_room(&mut self, places: usize) {
         let places = places.max(self.agents.len());
         self.agents.resize_with(places, Agent::absent);
@@ -227,7 +229,7 @@ impl Crowd {
         self.put(place, number, (start, heading), None)
     }
 
-    /// Puts a walker into its row, as it was saved or as its number has it.
+    /// Puts a walker into its row, as saved or as derived from its number.
     fn put(
         &mut self,
         place: usize,
@@ -258,7 +260,7 @@ impl Crowd {
         let style = (agent.chance() * (styles + 1) as f32) as usize;
         let amount = settings.style_amount * (0.5 + 0.5 * agent.chance());
         if style < styles {
-            agent.outfit = Outfit::of_one(style, amount);
+            agent.mixture = StyleMixture::of_one(style, amount);
         }
         if let Some(saved) = saved {
             agent.speed_mps = saved.speed_mps;
@@ -270,13 +272,13 @@ impl Crowd {
             agent.goal = saved.target.map_or(Goal::Turn(saved.turn_rate), |target| {
                 Goal::Place(Vec2::from(target))
             });
-            agent.outfit = Outfit::of(&saved.weights[..saved.weights.len().min(styles)]);
+            agent.mixture = StyleMixture::of(&saved.weights[..saved.weights.len().min(styles)]);
         }
         self.drawn[place] = agent.drawn(start, heading, 0.0);
         let order = Order {
             place,
             ticket: self.tickets,
-            outfit: agent.outfit.clone(),
+            mixture: agent.mixture.clone(),
             config: Some(GeneratorConfig {
                 seed,
                 phase,

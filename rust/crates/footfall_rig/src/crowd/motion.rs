@@ -1,9 +1,9 @@
-//! Everybody in a crowd, moved on many threads at once.
+//! Motion of all walkers, on many threads at once.
 
 use super::Crowd;
 use super::neighbours::Sight;
+use super::routing::Routing;
 use super::tiers::Tier;
-use super::way::Way;
 use footfall_core::Side;
 use footfall_synth::{Detail, StyledBody};
 use glam::Vec3;
@@ -14,7 +14,7 @@ use std::sync::PoisonError;
 const CHUNK: usize = 128;
 /// Walkers whose memory is fetched together.
 pub const FETCHED: usize = 16;
-/// Walkers far away are in so many groups, of which one moves in each frame.
+/// Number of groups of distant walkers, one of which moves in each frame.
 pub const GROUPS: usize = 4;
 /// Interval at which neighbours are found anew, in frames.
 const NEIGHBOURS_EVERY: u64 = 4;
@@ -22,27 +22,27 @@ const NEIGHBOURS_EVERY: u64 = 4;
 /// Steps of a walker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Steps {
-    /// It is not made.
+    /// The walker is not made.
     #[default]
     None,
-    /// Its pose is one that others have, too.
+    /// It takes shared steps.
     Shared,
-    /// It takes steps of its own, or shows something of them still.
+    /// It takes steps of its own, or still blends out of them.
     Own,
 }
 
-/// Memory of a row's last frame: everybody's lies together, for most rows are not looked at in a frame.
+/// Record of a row's last frame, in an array of its own because a frame skips most rows.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stir {
-    /// True for one who moved.
+    /// True if the walker moved.
     moved: bool,
-    /// True for one whose foot landed.
+    /// True if a foot landed.
     landed: bool,
     pub(super) steps: Steps,
 }
 
 impl Crowd {
-    /// Lets time pass for everybody.
+    /// Advances all walkers.
     pub fn advance(&mut self, dt_secs: f32, avoidance: bool) {
         if dt_secs <= 0.0 {
             for stir in &mut self.stirs {
@@ -53,7 +53,7 @@ impl Crowd {
         self.frame += 1;
         self.time_secs += f64::from(dt_secs);
         let frame = self.frame;
-        let Some(kit) = self.kit.clone() else {
+        let Some(mixtures) = self.mixtures.clone() else {
             return;
         };
         if avoidance && frame.is_multiple_of(NEIGHBOURS_EVERY) {
@@ -68,14 +68,14 @@ impl Crowd {
             stirs,
             seen,
             neighbours,
-            way,
+            routing,
             repeats,
             standing_motion,
             time_secs,
             following,
             ..
         } = self;
-        let (workshops, neighbours, way) = (&kit.workshops, &*neighbours, &*way);
+        let (workshops, neighbours, routing) = (&mixtures.workshops, &*neighbours, &*routing);
         let (following, now_secs) = (following.as_ref(), *time_secs);
         let repeats = *repeats && following.is_none();
         let standing_motion = *standing_motion;
@@ -92,7 +92,7 @@ impl Crowd {
             let mut workshop = workshop.lock().unwrap_or_else(PoisonError::into_inner);
             let mut sight = Sight::default();
             for (index, (stir, tier)) in stirs.iter_mut().zip(tiers).enumerate() {
-                // Those far away move in their group's frame, for all frames since the last one.
+                // Distant walkers move in their group's frame, by the time since the last one.
                 let group = (chunk * CHUNK + index) % GROUPS;
                 let late = *tier == Tier::Far && !(repeats && stir.steps == Steps::Own);
                 stir.moved = !late || frame % GROUPS as u64 == group as u64;
@@ -117,7 +117,7 @@ impl Crowd {
                 };
                 walker.set_detail(match tier {
                     Tier::Full => Detail::Full,
-                    // Fifteen frames a second, blended: from a dozen metres on nobody sees the difference.
+                    // Fifteen frames a second, blended, look the same from a dozen metres on.
                     Tier::Near | Tier::Far => Detail::Quarter,
                 });
                 walker.set_repeating(repeats && *tier == Tier::Far);
@@ -129,8 +129,8 @@ impl Crowd {
                     agent.follow(secs, following, &mut workshop);
                 } else {
                     if agent.is_about_to_step(secs) {
-                        way.lead(agent);
-                        let stops = matches!(way, Way::Told);
+                        routing.lead(agent);
+                        let stops = matches!(routing, Routing::Scripted);
                         if avoidance {
                             let seen = neighbours.around(agent.level(), &mut sight);
                             agent.decide(seen, stops);
@@ -153,12 +153,12 @@ impl Crowd {
         self.stirs.get(index).is_some_and(|stir| stir.moved)
     }
 
-    /// Returns whether a walker's [pose](super::Agent::shared_pose) is one that others have, too.
+    /// Returns whether a walker's [pose](super::Agent::shared_pose) is shared.
     pub fn shares(&self, index: usize) -> bool {
         self.takes(index, Steps::Shared)
     }
 
-    /// Returns whether a walker takes steps of its own, or its pose comes from one still. One who is far away and [repeats](Self::repeats) moves in every frame for so long, less than a second.
+    /// Returns whether a walker takes steps of its own, or still blends out of them. A distant walker that [repeats](Self::repeats) steps moves in every frame during the blend, less than a second.
     pub fn is_alone(&self, index: usize) -> bool {
         self.takes(index, Steps::Own)
     }
@@ -168,15 +168,19 @@ impl Crowd {
         stir.is_some_and(|stir| stir.steps == steps)
     }
 
-    /// Number of mixtures of styles that walkers wear or wore.
+    /// Number of style mixtures that walkers have or had.
     pub fn worn(&self) -> usize {
-        self.kit.as_ref().map_or(0, |kit| kit.count())
+        self.mixtures
+            .as_ref()
+            .map_or(0, |mixtures| mixtures.count())
     }
 
-    /// These mixtures by their numbers: those from one on.
+    /// The bodies of style mixtures with this number and later ones.
     pub fn worn_from(&self, number: u32) -> Vec<StyledBody> {
-        let kit = self.kit.as_ref();
-        kit.map(|kit| kit.numbered_from(number)).unwrap_or_default()
+        let mixtures = self.mixtures.as_ref();
+        mixtures
+            .map(|mixtures| mixtures.numbered_from(number))
+            .unwrap_or_default()
     }
 
     /// Returns whether a foot of a walker landed in the last frame.
@@ -197,7 +201,9 @@ impl Crowd {
 
 #[cfg(test)]
 mod tests {
-    use super::super::agent::{Agent, Drawn, Passerby};
+    use super::super::agent::Agent;
+    use super::super::drawn::Drawn;
+    use super::super::neighbours::Passerby;
     use super::*;
 
     #[test]

@@ -1,23 +1,41 @@
-//! Neighbours: a grid over the plane, made anew as people move.
+//! Neighbours: a grid over the plane, rebuilt as walkers move.
 
-use super::agent::{Passerby, SIGHT_M};
 use glam::{IVec2, Vec2};
 
+/// Distance at which walkers notice others, metres.
+pub(super) const SIGHT_M: f32 = 6.0;
 /// Side of a cell, metres.
 const CELL_M: f32 = 1.5;
-/// About so many are in sight at most: in a dense crowd people see no farther than those who are nearest, for they hide the others.
+/// Approximate number of visible neighbours: in a dense crowd the nearest hide the others.
 const MOST_IN_SIGHT: f32 = 48.0;
-/// No more than these are looked at where a crowd is denser than around it.
+/// Most neighbours that are considered, where the crowd is denser than around it.
 const MOST_LOOKED_AT: usize = 128;
-/// Everybody so near is seen however many there are, metres.
+/// Distance within which all neighbours count, whatever their number, metres.
 const LEAST_SIGHT_M: f32 = 1.5;
 
-/// So many buckets at least: where there are few, strangers share them.
+/// Least number of buckets: with few buckets, distant walkers share them.
 const LEAST_BUCKETS: usize = 4096;
-/// Factor between rows of cells: cells that follow each other in a row follow each other in memory, too, and rows that are near to each other never lie in the same.
+/// Factor between rows of cells: successive cells of a row are also successive in memory, and nearby rows never share buckets.
 const ROW: u32 = 0x9e37_79b1;
 
-/// Room for who can be seen from a place.
+/// A person whom walkers avoid: another walker, or a player.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Passerby {
+    /// Place in the plane of the crowd, metres: x and z of its space.
+    pub place: Vec2,
+    /// Velocity there, m/s.
+    pub velocity: Vec2,
+}
+
+impl Passerby {
+    /// A person at no place.
+    pub(super) const NOWHERE: Self = Self {
+        place: Vec2::NAN,
+        velocity: Vec2::ZERO,
+    };
+}
+
+/// Space for the neighbours of a place.
 #[derive(Debug)]
 pub(super) struct Sight([Passerby; MOST_LOOKED_AT]);
 
@@ -27,7 +45,7 @@ impl Default for Sight {
     }
 }
 
-/// Walkers in the order of the cells that they are in.
+/// Walkers in the order of their cells.
 #[derive(Debug, Default)]
 pub(super) struct Neighbours {
     seen: Vec<Passerby>,
@@ -36,7 +54,7 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Takes everybody in whose place is finite. Allocates only when there are more than ever.
+    /// Rebuilds the grid from all finite places. Allocates only if there are more walkers than ever before.
     pub(super) fn rebuild(&mut self, everybody: impl Iterator<Item = Passerby> + Clone) {
         let there = everybody.filter(|seen| seen.place.is_finite());
         let count = there.clone().count();
@@ -53,7 +71,7 @@ impl Neighbours {
         }
         self.seen.clear();
         self.seen.resize(count, Passerby::default());
-        // Each bucket is filled from its end, so that `starts` comes to say where it begins.
+        // Each bucket is filled from its end, so that `starts` ends up at its beginning.
         for seen in there {
             let start = &mut self.starts[bucket(cell(seen.place), buckets)];
             *start -= 1;
@@ -61,7 +79,7 @@ impl Neighbours {
         }
     }
 
-    /// Everybody who can be seen from a place: the nearest ones, as far as they can be seen between each other.
+    /// The visible neighbours of a place: the nearest ones, as many as do not hide each other.
     pub(super) fn around<'a>(&self, place: Vec2, found: &'a mut Sight) -> &'a [Passerby] {
         let middle = cell(place);
         let near = rows(middle, 1).flat_map(|row| self.strip(row, 1));
@@ -73,7 +91,7 @@ impl Neighbours {
         let mut count = 0;
         for row in rows(middle, cells) {
             for seen in self.strip(row, cells).into_iter().flatten() {
-                // Strangers may lie in the same memory.
+                // A bucket may hold distant walkers, too.
                 if seen.place.distance_squared(place) < sight * sight {
                     let Some(room) = found.0.get_mut(count) else {
                         break;
@@ -86,7 +104,7 @@ impl Neighbours {
         &found.0[..count]
     }
 
-    /// Everybody who lies in memory where a row of cells does, so many to both sides of one: in two parts where that goes over its end.
+    /// Walkers in the memory of part of a row of cells: in two parts if that wraps around.
     fn strip(&self, middle: IVec2, cells: i32) -> [&[Passerby]; 2] {
         let buckets = self.starts.len().saturating_sub(1);
         if buckets == 0 {
@@ -104,7 +122,7 @@ impl Neighbours {
     }
 }
 
-/// The cells in the middle of the rows that are so many away at most, the nearest first.
+/// The middle cells of the rows within this distance in rows, the nearest first.
 fn rows(middle: IVec2, cells: i32) -> impl Iterator<Item = IVec2> {
     (0..=2 * cells).map(move |row| {
         let off = if row % 2 == 0 {
@@ -129,7 +147,7 @@ fn bucket(cell: IVec2, buckets: usize) -> usize {
 mod tests {
     use super::*;
 
-    /// People strewn evenly, so many on a square metre.
+    /// Evenly distributed people, by their number on a square metre.
     fn strewn(density: f32) -> Vec<Vec2> {
         (0..4000)
             .map(|index| {

@@ -1,4 +1,4 @@
-//! Walkers found by where they are.
+//! Walkers by their places: along a ray, and near a point.
 
 use super::Crowd;
 use super::agent::Agent;
@@ -24,7 +24,7 @@ impl Crowd {
             .map(|(_, place)| place)
     }
 
-    /// The row of the walker that is nearest to a point, at most so far away.
+    /// The row of the walker that is nearest to a point, within a distance.
     pub fn nearest(&self, point: Vec3, reach_m: f32) -> Option<usize> {
         let far = self.there();
         let far = far.map(|(place, agent)| (agent.place.distance_squared(point), place));
@@ -38,7 +38,7 @@ impl Crowd {
     }
 }
 
-/// Share of the way between two points after which it meets an upright capsule; `None` where it passes by.
+/// Share of the line between two points at which it meets an upright capsule; `None` if it misses.
 fn share_to_capsule(from: Vec3, to: Vec3, foot: Vec3, height: f32, radius: f32) -> Option<f32> {
     let low = foot + Vec3::Y * radius;
     let high = foot + Vec3::Y * (height - radius).max(radius);
@@ -53,7 +53,7 @@ fn share_to_capsule(from: Vec3, to: Vec3, foot: Vec3, height: f32, radius: f32) 
     shares.min_by(f32::total_cmp)
 }
 
-/// The share of a way at which it comes within `radius` of the origin; 0 when it begins there.
+/// The share of a line at which it comes within `radius` of the origin; 0 if it begins there.
 fn enter(way: Vec3, from: Vec3, radius: f32) -> Option<f32> {
     let excess = from.length_squared() - radius * radius;
     if excess <= 0.0 {

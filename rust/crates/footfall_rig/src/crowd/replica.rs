@@ -1,25 +1,25 @@
-//! Crowds over a network: one that walks on one machine is shown by others, walker by walker and step by step.
+//! Crowds over a network: a crowd that walks on one machine is repeated on others, walker by walker and step by step.
 //!
-//! Whoever [tells](CrowdSender) a crowd sends who is in it, reliably, and unreliably the steps that they take: [`STEP_BYTES`] a walker and step, as many as a budget
-//! allows, those first of whom others would err most. A crowd that [follows](super::Crowd::follow) has the same walkers by the same names, and each takes the same
-//! steps a little later: drawn by the same chance, begun when they were, and ended where they ended. What is off is walked off with the next steps.
+//! The [sender](CrowdSender) sends its walkers reliably, and their steps unreliably: [`STEP_BYTES`] for each step, as many as a budget allows, and first those
+//! without which peers would have the largest errors. A crowd that [follows](super::Crowd::follow) has the same walkers by the same names. Each takes the same steps a
+//! little later: drawn from the same random numbers, with the same beginning and the same end. The next steps walk off any error.
 //!
-//! Places are those of the crowd's own space, which all machines put in the same place.
+//! Places are in the crowd's own space, which must have the same place in the world on all machines.
 
 mod agent;
 mod error;
 mod following;
 mod led;
 mod message;
+mod pending;
 mod person;
 mod sender;
 mod start;
 mod step;
-mod untold;
 
 pub use error::CrowdReplicaError;
 pub(super) use following::Following;
-pub(super) use led::Led;
+pub(super) use led::LedWalker;
 pub use message::CrowdMessage;
 pub use sender::CrowdSender;
 pub use step::STEP_BYTES;

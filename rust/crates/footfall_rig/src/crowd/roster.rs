@@ -1,41 +1,41 @@
-//! Roster of a crowd: names that last while others come and go, and places in arrays that are used again.
+//! Roster of a crowd: lasting names of walkers, and reused places in arrays.
 
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// Bits of a name that say the place; the rest say whose turn it is there.
+/// Bits of a name that hold the place; the rest count the walkers that had it before.
 const PLACE_BITS: u32 = 17;
 const TURNS: u16 = 1 << (31 - PLACE_BITS);
 
-/// More places than this have no names.
+/// Number of places that names can hold.
 const MOST_PLACES: usize = 1 << PLACE_BITS;
 
-/// One name a walker: the place that it has in all arrays, and how many had it before.
+/// A name for each walker: its place in all arrays, and the count of earlier walkers there.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Roster {
-    /// Per place, how many have left it.
+    /// Per place, the number of walkers that have left it.
     turns: Vec<u16>,
     taken: Vec<bool>,
-    /// Places in the order in which those who have them came.
+    /// Occupied places in the order of their walkers' arrival.
     order: Vec<u32>,
-    /// Places that were left, longest ago first.
+    /// Free places, the longest free first.
     free: VecDeque<u32>,
 }
 
 impl Roster {
-    /// The places of all, in the order in which they came.
+    /// Places of all walkers, in the order of arrival.
     pub fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// Room for so many more.
+    /// Reserves memory for further walkers.
     pub(super) fn reserve(&mut self, more: usize) {
         self.order.reserve(more);
         self.turns.reserve(more);
         self.taken.reserve(more);
     }
 
-    /// Gives somebody a place; it may lie one beyond all there were.
+    /// Assigns a place; it may lie one beyond the last.
     pub(super) fn enter(&mut self) -> usize {
         let place = self.free.pop_front().unwrap_or_else(|| {
             self.turns.push(0);
@@ -47,7 +47,7 @@ impl Roster {
         place as usize
     }
 
-    /// Gives somebody the place that a name says; that place is free. It may lie beyond all there were.
+    /// Assigns the place of a name, which must be free. It may lie beyond the last.
     pub(super) fn enter_as(&mut self, name: i32) {
         let Some((place, turn)) = parts(name) else {
             return;
@@ -57,7 +57,7 @@ impl Roster {
             self.turns.push(0);
             self.taken.push(false);
         }
-        // Who comes last mostly has the place that became free last.
+        // The latest walker mostly has the place that became free last.
         let free = self.free.iter().rposition(|free| *free as usize == place);
         free.and_then(|at| self.free.remove(at));
         self.turns[place] = turn;
@@ -65,7 +65,7 @@ impl Roster {
         self.order.push(place as u32);
     }
 
-    /// Takes the places of those who leave, all of whom are there.
+    /// Frees occupied places.
     pub(super) fn leave(&mut self, places: &[usize]) {
         for place in places {
             self.taken[*place] = false;
@@ -76,7 +76,7 @@ impl Roster {
         self.order.retain(|place| taken[*place as usize]);
     }
 
-    /// Everything, to be saved.
+    /// The roster, to be saved.
     pub(super) fn saved(&self) -> SavedRoster {
         SavedRoster {
             turns: self.turns.clone(),
@@ -85,7 +85,7 @@ impl Roster {
         }
     }
 
-    /// A roster as it was saved; `None` when that cannot be.
+    /// A saved roster; `None` if it is invalid.
     pub(super) fn restored(saved: &SavedRoster) -> Option<Self> {
         let places = saved.turns.len();
         let mut seen = vec![false; places];
@@ -110,18 +110,18 @@ impl Roster {
         })
     }
 
-    /// Number of places, left ones included.
+    /// Number of places, including free ones.
     pub(super) fn places(&self) -> usize {
         self.turns.len()
     }
 
-    /// The name of who has a place.
+    /// The name of the walker at a place.
     pub fn name(&self, place: usize) -> i32 {
         let turn = i32::from(self.turns.get(place).copied().unwrap_or(0));
         turn << PLACE_BITS | i32::try_from(place).unwrap_or(i32::MAX)
     }
 
-    /// The place of who has this name, while it is there.
+    /// The place of the walker of this name, while it is in the crowd.
     pub fn place(&self, name: i32) -> Option<usize> {
         let (place, turn) = parts(name)?;
         let there = self.taken.get(place) == Some(&true) && self.turns[place] == turn;
@@ -129,7 +129,7 @@ impl Roster {
     }
 }
 
-/// A roster as it is kept.
+/// A roster in its saved form.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedRoster {
     turns: Vec<u16>,

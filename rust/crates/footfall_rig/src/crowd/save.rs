@@ -1,4 +1,4 @@
-//! A crowd as bytes.
+//! Saved state of a crowd.
 
 use super::MOST_AGENTS;
 use super::agent::Agent;
@@ -6,20 +6,20 @@ use super::goal::Goal;
 use super::roster::{Roster, SavedRoster};
 use serde::{Deserialize, Serialize};
 
-/// Headers of the bytes, one a version: the first knew no names.
+/// Headers of the versions; the first version had no names.
 const HEADER: &[u8; 8] = b"footcrw2";
 const HEADER_1: &[u8; 8] = b"footcrw1";
 
-/// Reasons why bytes are no crowd.
+/// Reasons why bytes are not a saved crowd.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CrowdStateError {
-    /// The header is another one.
+    /// The header is unknown.
     #[error("these are not the bytes of a crowd, or those of another version of Footfall")]
     NotACrowd,
-    /// The content breaks off, or is none.
+    /// The content is damaged or incomplete.
     #[error("the bytes are damaged ({0})")]
     Damaged(String),
-    /// The crowd is larger than any.
+    /// The crowd is larger than the limit.
     #[error("it has more than {MOST_AGENTS} walkers")]
     TooMany,
 }
@@ -41,12 +41,12 @@ pub(super) struct SavedAgent {
     pub(super) weights: Vec<f32>,
 }
 
-/// A crowd as it is kept, checked.
+/// A saved crowd whose content was checked.
 #[derive(Debug, PartialEq)]
 pub struct SavedCrowd {
-    /// Number of walkers that there ever were.
+    /// Number of walkers so far.
     pub(super) made: u64,
-    /// None for a crowd that was saved before walkers had names.
+    /// `None` for a crowd that was saved before walkers had names.
     pub(super) roster: Option<Roster>,
     /// In the order in which they came.
     pub(super) agents: Vec<SavedAgent>,
@@ -57,7 +57,7 @@ pub struct SavedCrowd {
 /// The layout of the second version.
 type Content = (u64, SavedRoster, Vec<SavedAgent>, Vec<bool>);
 
-/// Writes everybody; `agents` come in the roster's order.
+/// Writes all walkers; `agents` are in the roster's order.
 pub(super) fn write<'a>(
     made: u64,
     roster: &Roster,
@@ -70,7 +70,7 @@ pub(super) fn write<'a>(
         agents.map(|agent| agent.counted).collect(),
     );
     let mut bytes = HEADER.to_vec();
-    // Plain numbers always can be written.
+    // Plain numbers can always be written.
     bytes.extend(postcard::to_stdvec(&content).unwrap_or_default());
     bytes
 }
@@ -79,7 +79,7 @@ impl SavedCrowd {
     /// Reads a crowd that [`Crowd::save`](super::Crowd::save) wrote, in this version or an older one.
     ///
     /// # Errors
-    /// [`CrowdStateError`] for bytes that are no crowd.
+    /// [`CrowdStateError`] if the bytes are not a saved crowd.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CrowdStateError> {
         let damaged = |error: postcard::Error| CrowdStateError::Damaged(error.to_string());
         let saved = if let Some(content) = bytes.strip_prefix(HEADER) {
@@ -136,7 +136,7 @@ impl SavedAgent {
             turn_rate,
             progress_m: agent.progress_m,
             aside_m: agent.aside_m,
-            weights: agent.outfit.weights(),
+            weights: agent.mixture.weights(),
         }
     }
 

@@ -5,11 +5,11 @@ use glam::Vec3;
 /// Ways of drawing a walker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum Tier {
-    /// A whole character with a skeleton and what hangs from it.
+    /// A whole character scene with a skeleton.
     Full,
-    /// An instance whose pose is new in every frame.
+    /// An instance with a new pose in every frame.
     Near,
-    /// An instance whose pose is new in every few frames, and whose steps repeat.
+    /// An instance with a new pose every few frames and with repeated steps.
     #[default]
     Far,
 }
@@ -29,12 +29,12 @@ const KEEP: f32 = 1.1;
 /// Chooses tiers.
 #[derive(Debug, Default)]
 pub(super) struct Chooser {
-    /// Distance as it counts, and index.
+    /// Effective distance, and index.
     order: Vec<(f32, u32)>,
 }
 
 impl Chooser {
-    /// Chooses everybody's tier from where they are, if they are. Who is in a better tier already counts as nearer.
+    /// Chooses the tiers from the walkers' places, `None` for those that are not made. A walker in a better tier counts as nearer.
     pub(super) fn choose(
         &mut self,
         camera: Vec3,
@@ -63,7 +63,7 @@ impl Chooser {
         for (rank, (far, index)) in self.order.iter().enumerate() {
             let tier = &mut tiers[*index as usize];
             let keeps = |own: Tier| if *tier <= own { KEEP } else { 1.0 };
-            // The distance was divided already for who is in a tier that is better than far.
+            // For walkers in a better tier than far, the distance was divided already.
             let real = if *tier == Tier::Far { *far } else { far * KEEP };
             *tier = if rank >= most {
                 Tier::Far

@@ -7,15 +7,15 @@ use glam::{Mat3, Vec2, Vec3};
 
 /// Directions in which a section's width is measured.
 const DIRECTIONS: usize = 8;
-/// Places at which the surface is cut for a ring, in shares of the way to the next ring: what is thick between two rings counts as much as what is at them.
+/// Places at which the surface is cut for a ring, in shares of the distance to the next ring: the surface between two rings counts as much as at them.
 const CUTS: [f32; 5] = [-0.45, -0.2, 0.0, 0.2, 0.45];
-/// Factor on the width of rings. A tube is thinner than what it stands for where it bends, and where that bulges between two rings: without the factor, the
+/// Factor on the width of rings. A tube is thinner than the surface where it bends, and where the surface bulges between two rings: without the factor, the
 /// mannequin's stand-in covers 94 % of its pixels.
 pub(super) const FULLER: f32 = 1.06;
 /// A tube shorter than this has no direction, metres.
 const SHORTEST_M: f32 = 1e-3;
 
-/// Corner of a ring: its place, and the direction in which the surface looks there.
+/// Corner of a ring: its place, and the normal of the surface there.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
     pub(super) place: Vec3,
@@ -73,7 +73,7 @@ pub(super) fn rings(
         Section::mean(cuts.iter().filter_map(|cut| across.cut(facets, *cut)))
     });
     let sections: Vec<Option<Section>> = sections.collect();
-    // Where there is nothing to cut, the ring has the size of the others.
+    // Without a surface at its place, the ring has the size of the others.
     let whole = Section::mean(sections.iter().flatten().copied())?;
     let last = stations.len() - 1;
     let rings = sections.iter().zip(&stations).enumerate();
@@ -100,7 +100,7 @@ struct Across {
     to_local: Mat3,
 }
 
-/// Middle and half sides of what a ring goes around.
+/// Middle and half sides of a section.
 #[derive(Clone, Copy)]
 struct Section {
     middle: Vec2,
@@ -108,7 +108,7 @@ struct Section {
 }
 
 impl Across {
-    /// The section of the surface so far along the axis; `None` where nothing is.
+    /// The section of the surface at this distance along the axis; `None` if it is empty.
     fn cut(&self, facets: &[Facet], at: f32) -> Option<Section> {
         let mut reach = [(f32::MAX, f32::MIN); DIRECTIONS];
         let directions: [Vec2; DIRECTIONS] = core::array::from_fn(|index| {
@@ -147,7 +147,7 @@ impl Across {
         })
     }
 
-    /// The corners of a ring, whose normals look along the axis as well by so much.
+    /// The corners of a ring; `along` is the part of their normals along the axis.
     fn ring(&self, section: &Section, at: f32, along: f32) -> [Corner; SIDES] {
         let to_world = self.to_local.transpose();
         let half = FULLER * section.half.max(Vec2::splat(1e-3));

@@ -1,4 +1,4 @@
-//! The tubes of a body: which part of the surface each goes around, and its rings.
+//! The tubes of a body: the part of the surface that each encloses, and its rings.
 
 use footfall_core::Joint;
 use footfall_core::Joint::{
@@ -9,7 +9,7 @@ use footfall_core::Joint::{
 /// A tube around part of a body.
 #[derive(Clone)]
 pub(super) struct Shape {
-    /// Joints whose surface it goes around.
+    /// Joints whose surface it encloses.
     pub(super) facets: Vec<Joint>,
     /// Its axis: from the first joint to the second.
     pub(super) axis: [Joint; 2],
@@ -17,7 +17,7 @@ pub(super) struct Shape {
     pub(super) is_level: bool,
     /// True where it ends inside another tube.
     pub(super) ends_inside: bool,
-    /// Rings in the direction of the axis: where, and the joints that move each, half each.
+    /// Rings along the axis: their places, and the two joints that move each, half each.
     pub(super) rings: Vec<(Station, [Joint; 2])>,
 }
 

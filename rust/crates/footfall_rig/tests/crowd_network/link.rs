@@ -2,7 +2,7 @@
 
 use footfall_core::Side;
 use footfall_model::GaitModel;
-use footfall_rig::crowd::{Crowd, CrowdMessage, CrowdRecipe, CrowdSender, CrowdSettings, Way};
+use footfall_rig::crowd::{Crowd, CrowdMessage, CrowdRecipe, CrowdSender, CrowdSettings, Routing};
 use glam::{Vec2, Vec3};
 use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
@@ -18,18 +18,18 @@ static MODEL: LazyLock<Arc<GaitModel>> = LazyLock::new(|| {
     Arc::new(GaitModel::from_bytes(&bytes).expect("a walk"))
 });
 
-pub(crate) fn crowd(way: Way) -> Crowd {
+pub(crate) fn crowd(routing: Routing) -> Crowd {
     let recipe = CrowdRecipe {
         model: Arc::clone(&MODEL),
         styles: Vec::new(),
         space: None,
         body: MODEL.skeleton.clone(),
     };
-    Crowd::new(recipe, way, CrowdSettings::default())
+    Crowd::new(recipe, routing, CrowdSettings::default())
 }
 
-pub(crate) fn wander() -> Way {
-    Way::Wander {
+pub(crate) fn wander() -> Routing {
+    Routing::Wander {
         half: Vec2::splat(20.0),
     }
 }
@@ -74,11 +74,11 @@ pub(crate) struct Link {
 }
 
 impl Link {
-    pub(crate) fn new(way: Way, count: usize) -> Self {
-        let mut here = crowd(way);
+    pub(crate) fn new(routing: Routing, count: usize) -> Self {
+        let mut here = crowd(routing);
         here.repeats = false;
         here.set_count(count);
-        let mut there = crowd(Way::Told);
+        let mut there = crowd(Routing::Scripted);
         there.follow();
         Self {
             here,

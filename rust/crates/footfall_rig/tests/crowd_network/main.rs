@@ -9,7 +9,7 @@
 mod link;
 mod strangers;
 
-use footfall_rig::crowd::{STEP_BYTES, Way};
+use footfall_rig::crowd::{Routing, STEP_BYTES};
 use glam::{Vec2, Vec3};
 use link::{DT_SECS, Link, places, wander};
 
@@ -60,7 +60,7 @@ fn who_joins_late_sees_the_same_crowd_within_five_centimetres() {
 
 #[test]
 fn who_stops_and_goes_again_does_so_in_the_same_place() {
-    let mut link = Link::new(Way::Told, 0);
+    let mut link = Link::new(Routing::Scripted, 0);
     let starts = (0..24_u8).map(|index| (Vec3::X * f32::from(index) * 2.0, 0.3));
     let names = link.here.add(starts);
     link.join();

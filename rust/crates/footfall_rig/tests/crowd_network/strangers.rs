@@ -2,12 +2,14 @@
 
 use crate::link::{GUEST, Link, places, wander};
 use footfall_model::{GaitModel, GaitStyle};
-use footfall_rig::crowd::{Crowd, CrowdRecipe, CrowdReplicaError, CrowdSender, CrowdSettings, Way};
+use footfall_rig::crowd::{
+    Crowd, CrowdRecipe, CrowdReplicaError, CrowdSender, CrowdSettings, Routing,
+};
 use proptest::prelude::*;
 use std::sync::Arc;
 
-/// A crowd that was told for a while, and all that was sent to it.
-fn told() -> (Link, Vec<Vec<u8>>) {
+/// A crowd that has followed another for a while, and all messages that were sent to it.
+fn followed() -> (Link, Vec<Vec<u8>>) {
     let mut link = Link::new(wander(), 8);
     link.loss = 0.0;
     link.delay_secs = 0.0;
@@ -27,7 +29,7 @@ fn told() -> (Link, Vec<Vec<u8>>) {
 
 #[test]
 fn messages_of_others_are_refused_and_change_nothing() {
-    let (mut link, sent) = told();
+    let (mut link, sent) = followed();
     let people = sent
         .iter()
         .find(|bytes| bytes[0] & 0x0f == 1)
@@ -73,7 +75,7 @@ fn messages_of_others_are_refused_and_change_nothing() {
 
 #[test]
 fn a_flood_is_cut_off_and_others_are_heard_again_later() {
-    let (mut link, sent) = told();
+    let (mut link, sent) = followed();
     let steps = sent.last().expect("steps");
     let mut heard = 0_usize;
     let refused = loop {
@@ -93,7 +95,7 @@ fn a_flood_is_cut_off_and_others_are_heard_again_later() {
 
 #[test]
 fn crowds_of_other_styles_are_refused() {
-    let (link, sent) = told();
+    let (link, sent) = followed();
     let people = sent
         .iter()
         .find(|bytes| bytes[0] & 0x0f == 1)
@@ -112,7 +114,7 @@ fn crowds_of_other_styles_are_refused() {
         space: None,
         body,
     };
-    let mut styled = Crowd::new(recipe, Way::Told, CrowdSettings::default());
+    let mut styled = Crowd::new(recipe, Routing::Scripted, CrowdSettings::default());
     assert_eq!(styled.hear(people), Ok(Vec::new()), "it follows nobody");
     styled.follow();
     assert_eq!(styled.hear(people), Err(CrowdReplicaError::OtherModel));
@@ -121,7 +123,7 @@ fn crowds_of_other_styles_are_refused() {
 
 #[test]
 fn a_crowd_that_was_made_anew_takes_the_place_of_the_one_before() {
-    let (mut link, _) = told();
+    let (mut link, _) = followed();
     assert_eq!(places(&link.there).len(), 8);
     link.here = crate::link::crowd(wander());
     link.here.repeats = false;
@@ -137,7 +139,7 @@ fn a_crowd_that_was_made_anew_takes_the_place_of_the_one_before() {
 
 #[test]
 fn who_leaves_is_told_no_more_and_who_asks_often_gets_no_more() {
-    let (mut link, _) = told();
+    let (mut link, _) = followed();
     let mut people = 0;
     for _ in 0..120 {
         link.join();
@@ -164,7 +166,7 @@ proptest! {
         damage in proptest::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), any::<u8>()), 1..60),
         noise in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..80), 0..8),
     ) {
-        let (mut link, mut sent) = told();
+        let (mut link, mut sent) = followed();
         for (message, at, byte) in damage {
             let message = message.index(sent.len());
             let bytes = &mut sent[message];

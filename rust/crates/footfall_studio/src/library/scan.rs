@@ -47,7 +47,7 @@ impl Scan {
                 drop(sender.send(ScanEvent::Read(path.clone(), facts)));
                 let done = read.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                 reporter
-                    .tell("checking recordings", done, total)
+                    .report("checking recordings", done, total)
                     .is_continue()
             };
             let unread: Vec<&PathBuf> = found

@@ -13,12 +13,12 @@ use glam::{Quat, Vec3};
 pub(crate) struct Body<'a> {
     pub(crate) skeleton: &'a Skeleton,
     pub(crate) pose: Pose,
-    pub(crate) look: Look,
+    pub(crate) look: BodyPaint,
 }
 
 /// Styles of painting a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Look {
+pub(crate) enum BodyPaint {
     Solid,
     /// Pale, and can be seen through.
     Ghost,
@@ -98,8 +98,8 @@ impl SceneView {
         );
         for body in &scene.bodies {
             let strength = match body.look {
-                Look::Solid => 1.0,
-                Look::Ghost => 0.3,
+                BodyPaint::Solid => 1.0,
+                BodyPaint::Ghost => 0.3,
             };
             floor::shadow(&painter, &projection, body.pose.root_position, strength);
         }
@@ -144,13 +144,13 @@ impl SceneView {
     }
 }
 
-fn limb_color(part: Part, look: Look, dark: bool) -> Color32 {
+fn limb_color(part: Part, look: BodyPaint, dark: bool) -> Color32 {
     let color = match part {
         Part::Trunk => palette::trunk(dark),
         Part::Arm(side) => palette::side(side).lerp_to_gamma(Color32::WHITE, 0.25),
         Part::Leg(side) => palette::side(side),
     };
-    if look == Look::Ghost {
+    if look == BodyPaint::Ghost {
         let pale = if dark {
             Color32::GRAY
         } else {

@@ -120,7 +120,7 @@ const WALKERS: [Column<HeldOutWalker>; 4] = [
     ("frames", |own| own.frames.into()),
 ];
 
-/// Those with a row.
+/// Entries with a row.
 fn filled(mut tables: Vec<Table>) -> Vec<Table> {
     tables.retain(|table| !table.rows.is_empty());
     tables

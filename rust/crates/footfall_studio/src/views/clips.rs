@@ -3,12 +3,12 @@
 use crate::curves::CurvePanel;
 use crate::motion::Motion;
 use crate::playback::Playback;
-use crate::scene::{Body, Footprint, Look, Scene, SceneView, soles};
+use crate::scene::{Body, BodyPaint, Footprint, Scene, SceneView, soles};
 use crate::shell::{Purpose, Shell};
 use eframe::egui::{Panel, Ui, vec2};
 use footfall_core::Side;
 
-/// Footprints are shown so long before and after the playhead, seconds.
+/// Time around the playhead for which footprints are shown, seconds.
 const PRINTS_SECS: f64 = 4.0;
 
 #[derive(Default)]
@@ -111,7 +111,7 @@ pub(crate) fn scene_at<'a>(motion: &'a Motion, ghost: Option<&'a Motion>, secs: 
     scene.bodies.push(Body {
         skeleton: &clip.skeleton,
         pose,
-        look: Look::Solid,
+        look: BodyPaint::Solid,
     });
     if let Some(ghost) = ghost {
         let clip = ghost.clip();
@@ -123,7 +123,7 @@ pub(crate) fn scene_at<'a>(motion: &'a Motion, ghost: Option<&'a Motion>, secs: 
             scene.bodies.push(Body {
                 skeleton: &clip.skeleton,
                 pose,
-                look: Look::Ghost,
+                look: BodyPaint::Ghost,
             });
         }
     }

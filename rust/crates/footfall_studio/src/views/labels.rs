@@ -7,7 +7,7 @@ use crate::labels::Labels;
 use crate::library::Facts;
 use crate::palette;
 use crate::playback::Playback;
-use crate::recovery::{self, Kept};
+use crate::recovery::{self, UnsavedLabels};
 use crate::scene::SceneView;
 use crate::shell::Shell;
 use crate::views::clips::scene_at;
@@ -27,9 +27,9 @@ pub(crate) struct LabelsView {
     timeline: Timeline,
     scene: SceneView,
     /// Corrections that were left unsaved before, by recording.
-    recovered: Vec<Kept>,
+    recovered: Vec<UnsavedLabels>,
     /// Corrections that are kept already, so that they are not written in every frame.
-    kept: Option<Kept>,
+    kept: Option<UnsavedLabels>,
     /// True when the phases are those of other contacts than the ones that are shown.
     phases_are_old: bool,
     phases: Option<Job<Vec<Phase>>>,
@@ -37,7 +37,7 @@ pub(crate) struct LabelsView {
 
 impl LabelsView {
     /// Offers corrections that were unsaved when the studio ended last.
-    pub(crate) fn offer_recovery(&mut self, kept: Vec<Kept>) {
+    pub(crate) fn offer_recovery(&mut self, kept: Vec<UnsavedLabels>) {
         self.recovered = kept;
     }
 
@@ -90,7 +90,7 @@ impl LabelsView {
         let Some(path) = motion.path.as_deref().filter(|_| labels.is_dirty()) else {
             return;
         };
-        let kept = Kept::new(path, motion.clip().poses.len(), labels.all());
+        let kept = UnsavedLabels::new(path, motion.clip().poses.len(), labels.all());
         if self.kept.as_ref() == Some(&kept) {
             return;
         }
@@ -194,7 +194,7 @@ impl LabelsView {
         }
         let Some(motion) = &shell.current else { return };
         let frames = motion.clip().poses.len();
-        let own = |kept: &Kept| motion.path.as_ref() == Some(&kept.recording);
+        let own = |kept: &UnsavedLabels| motion.path.as_ref() == Some(&kept.recording);
         let Some(place) = self.recovered.iter().position(own) else {
             return;
         };

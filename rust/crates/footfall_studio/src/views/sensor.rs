@@ -5,7 +5,7 @@ mod connection;
 mod signals;
 
 use crate::palette;
-use crate::scene::{Body, Look, Scene, SceneView, SensorBox};
+use crate::scene::{Body, BodyPaint, Scene, SceneView, SensorBox};
 use crate::shell::{Purpose, Shell};
 use body::LiveBody;
 use connection::{Connection, SourceChoice};
@@ -133,9 +133,9 @@ impl SensorView {
                 skeleton,
                 pose,
                 look: if self.body.is_mounted() {
-                    Look::Solid
+                    BodyPaint::Solid
                 } else {
-                    Look::Ghost
+                    BodyPaint::Ghost
                 },
             }],
             ..Scene::default()

@@ -12,7 +12,7 @@ const PRIOR_STEPS: f64 = 1.0;
 /// Parts of the body with a factor each.
 const LIMBS: usize = 3;
 
-/// A style's steps differ by at least and at most so much as the base's.
+/// Least and greatest spread of a style's steps, relative to the base's.
 const LIMITS: [f64; 2] = [0.4, 4.0];
 
 /// Least variance of a feature, rad²: what does not move has no spread to compare.

@@ -1,6 +1,6 @@
 //! Contacts of people's feet, found in several ways, against each other.
 //!
-//! Of motion, person by person: the contacts that the detector finds against those of Zeni et al. 2008, and the switches of hip and knee angles
+//! For motion, person by person: the contacts that the detector finds against those of Zeni et al. 2008, and the switches of hip and knee angles
 //! against the detector's initial contacts. Of sensors on feet: switches, swings and the bodies that the sensor drives, against the events of a reference.
 
 mod ablation;
@@ -61,14 +61,14 @@ impl Default for ContactsRequest<'_> {
 pub struct ContactsReport {
     /// Tolerance of the request.
     pub tolerance_ms: f64,
-    /// Of motion, by person.
+    /// Results on motion, by person.
     pub people: BTreeMap<String, Person>,
     /// Switches of motion against contacts, by category.
     pub categories: BTreeMap<String, Agreement>,
     /// The same by what places a switch, where the request asks for it.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub ablation: BTreeMap<&'static str, Ablated>,
-    /// Of sensors, by category and kind of contact.
+    /// Results on sensors, by category and kind of contact.
     pub sensors: BTreeMap<String, Agreement>,
 }
 

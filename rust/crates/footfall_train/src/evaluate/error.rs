@@ -37,7 +37,7 @@ pub enum EvaluateError {
     /// The covariance has no inverse.
     #[error("the features are linearly dependent, so their covariance has no inverse; shrink it")]
     Singular,
-    /// Nothing to tell apart.
+    /// Nothing to classify.
     #[error(
         "the real recordings show {found} style with strides, recognition needs two; widen --where"
     )]

@@ -17,7 +17,7 @@ pub const REACHED: f32 = 0.8;
 /// Hips slower than this stand, m/s.
 pub const STANDING_MPS: f32 = 0.15;
 
-/// The speed of a manoeuvre is the highest within so long, seconds.
+/// Time within which the highest speed is that of a manoeuvre, seconds.
 const SPEED_WITHIN_SECS: f64 = 1.5;
 
 /// Slower travel is no manoeuvre: people shift their weight, m/s.
@@ -71,7 +71,7 @@ impl Travel {
         Self::of_poses(poses, clip.frame_rate_hz)
     }
 
-    /// The way of the hips in poses so many times a second.
+    /// Path of the hips in poses at a frame rate.
     pub fn of_poses(poses: &[Pose], rate_hz: f64) -> Self {
         let places: Vec<_> = poses.iter().map(|pose| pose.root_position).collect();
         let places = low_pass(&places, rate_hz, CUT_OFF_HZ);

@@ -233,7 +233,7 @@ mod tests {
     use super::*;
     use footfall_model::FEATURE_COUNT;
 
-    /// Hips that swing sideways at 0.3 Hz by so many leg lengths.
+    /// Hips that swing sideways at 0.3 Hz with this amplitude in leg lengths.
     fn swinging(amplitude: f64, secs: f64) -> Stretch {
         let frames = (secs * RATE_HZ) as usize;
         let at = |frame: usize| amplitude * (TAU * 0.3 * frame as f64 / RATE_HZ).sin();

@@ -13,8 +13,8 @@ use glam::Vec3;
 
 /// Samples of a time-normalised step.
 pub const PHASES: usize = 20;
-/// Standard deviations of a feature below this (radians, metres, metres per second, hertz) are taken for it: nobody sees a
-/// third of a degree or half a centimetre, and a joint that capture holds still would otherwise decide everything.
+/// Least standard deviation of a feature (radians, metres, metres per second, hertz): a third of a degree or half a centimetre is
+/// invisible, and a joint that capture holds still would otherwise dominate the comparison.
 pub const LEAST_SPREAD: f64 = 0.005;
 /// Angles per frame: three components of each joint.
 const ANGLES: usize = 3 * Joint::ALL.len();

@@ -11,7 +11,7 @@ use footfall_model::{FEATURE_COUNT, GaitModel};
 pub(super) const HIPS_FACTOR: f64 = 1.35;
 
 /// Factors by which the axes together make each joint as lively as captured ones are, beyond what its trajectories do: by the energy of second differences between
-/// points, for what a joint does slowly is told by its steps' means, and an axis has one spectrum for all joints that it moves.
+/// points, for the slow motion of a joint is in its steps' means, and an axis has one spectrum for all joints that it moves.
 pub(super) fn strengths(
     runs: &[Run],
     axes: &[Vec<f64>],

@@ -89,7 +89,7 @@ impl Chain {
         &self.sensor[frame * width..(frame + 1) * width]
     }
 
-    /// Adds some segments to a model; `follows` tells whether they go on from the last that was added.
+    /// Adds some segments to a model; `follows` is true if they continue the last added one.
     pub(super) fn append_to(
         &self,
         model: &mut ImuModel,

@@ -7,10 +7,10 @@ use footfall_model::imu_model::{BODY_COUNT, SENSOR_COUNT};
 use nalgebra::DMatrix;
 
 /// Real sensors differ from virtual ones by at least this much: angular rate (rad/s), specific force (m/s²), up. A mounting is known to a few degrees; were up
-/// trusted more closely, a foot at rest would tell a crouch from standing by them.
+/// trusted more closely, a foot at rest would distinguish a crouch from standing by them.
 const LEAST_DEVIATION: [f64; 3] = [0.25, 2.0, 0.15];
 
-/// Fewer aligned frames tell no regression.
+/// Least number of aligned frames for a regression.
 const LEAST_FRAMES: usize = 60;
 
 /// Statistics of all chains.

@@ -1,6 +1,6 @@
 //! Brings a real sensor's recording onto the time of a clip that was captured at the same time, and into the axes of its site.
 //!
-//! Nobody starts two devices at once. What tells when one began on the other's clock is how fast the site turns: its magnitude does not depend on how
+//! Two devices never start at the same time. The angular rate of the site shows when one began on the other's clock: its magnitude does not depend on how
 //! the sensor is worn, and on a real foot a simulated one agrees with it to r = 0.996 (specific force to 0.53 to 0.73 only). Both clocks are taken to run
 //! alike: over a minute, crystals part by some milliseconds.
 
@@ -15,17 +15,17 @@ use std::ops::Range;
 /// Samples a second at which both are compared.
 const RATE_HZ: f64 = 120.0;
 
-/// The real sensor is smoothed over so many samples, for a clip shows nothing faster.
+/// Number of samples over which the real sensor is smoothed: a clip contains nothing faster.
 const SMOOTHED: usize = 5;
 
 /// With less than this the recording is of something else, or of another site. Two people's walks at the same pace can come to 0.96, so this finds
 /// no mistake between those.
 const LEAST_CORRELATION: f64 = 0.95;
 
-/// A recording that begins or ends with the clip may lack so much of it, seconds.
+/// Greatest part of a clip that a recording may lack at its beginning or end, seconds.
 const MARGIN_SECS: f64 = 0.1;
 
-/// Fewer samples in common tell nothing: a second.
+/// Least number of common samples for an estimate: a second.
 const LEAST_SAMPLES: usize = 120;
 
 /// A recording that goes with a clip.

@@ -3,7 +3,7 @@
 //! A *cycle* is a run of segments until the phase that began it comes again; recordings are kept or left out by whole cycles, so that what is kept
 //! still goes from phase to phase as it was recorded. What is lost by leaving cycles out is the sum, over all frames of all recordings, of how far
 //! their segment is from the nearest of the same phase that is kept of another recording. Cycle after cycle is left out, always the one whose frames
-//! are missed least. What one person does for minutes counts by the square root of its frames: otherwise one actor's runs push out everybody else's.
+//! are missed least. What one person does for minutes counts by the square root of its frames: otherwise one actor's runs displace those of all others.
 
 use super::chain::{Chain, ChainSegment};
 use footfall_core::{Behaviour, PhaseKind};
@@ -21,8 +21,8 @@ const SENSOR_SHARE: f32 = 0.05;
 /// Distance of a frame from a phase of which no segment is kept: farther than any two segments are.
 const MISSED: f32 = 1e2;
 
-/// Weight, beside the distance to what is kept of other recordings, of the distance to all that is kept. Were it only the
-/// latter, everything would be kept that was done once, and nobody does it again in the same way.
+/// Weight, beside the distance to what is kept of other recordings, of the distance to all that is kept. With the
+/// latter alone, every unique motion would be kept, although it never recurs in the same way.
 const OWN_WEIGHT: f64 = 0.05;
 
 /// A run of segments of one chain.
@@ -39,7 +39,7 @@ impl Cycle {
     }
 }
 
-/// The cycles of these chains, in order: all of them, or those that stand best for all within so many frames.
+/// The cycles of these chains, in order: all of them, or the most representative ones within a number of frames.
 pub(super) fn choose(
     chains: &[&Chain],
     deviations: &[f32],
@@ -146,7 +146,7 @@ impl Choice {
         choice
     }
 
-    /// Leaves cycles out until so many frames are left, or one cycle.
+    /// Leaves cycles out until this many frames are left, or one cycle.
     fn reduce(mut self, most_frames: usize) -> Vec<Cycle> {
         let mut left: usize = self.frames.iter().sum();
         let mut losses = vec![0.0; self.cycles.len()];
@@ -293,7 +293,7 @@ mod tests {
         }
     }
 
-    /// A recording of steps, each of two phases, in which a joint is turned so far.
+    /// A recording of steps, each of two phases, with a joint turned by an angle.
     fn chain(behaviour: Behaviour, steps: &[f32]) -> Chain {
         let mut chain = Chain {
             subject: "somebody".to_owned(),

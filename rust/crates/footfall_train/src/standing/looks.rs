@@ -18,7 +18,7 @@ const LEAST_JUMP: f64 = 0.12;
 /// Of looks without any jump: those who never look need a length for one, seconds.
 const USUAL_SHIFT_SECS: f64 = 1.2;
 
-/// Keeps the regression solvable where hardly anybody looks anywhere, rad².
+/// Regularisation of the regression for people who hardly look around, rad².
 const LEAST_ENERGY: f64 = 1e-6;
 
 /// A jump of the gaze between two frames.
@@ -28,7 +28,7 @@ struct Jump {
     to: usize,
 }
 
-/// Takes looks out of all offsets, and tells what they were.
+/// Removes looks from all offsets, and returns them.
 pub(super) fn take_out(people: &[Person], offsets: &mut [Vec<Offsets>]) -> Looks {
     let paths: Vec<Vec<Vec<[f64; 2]>>> = people
         .iter()

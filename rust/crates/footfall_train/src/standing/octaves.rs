@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 const KNOTS_SECS: [f64; OCTAVES] = [8.0, 3.2, 1.28, 0.5, 0.2];
 const OCTAVES: usize = 5;
 
-/// Time between the knots of what tells one leg from the other for long.
+/// Time between the knots of the slow difference between the legs.
 const STANCE_KNOT_SECS: f64 = 40.0;
 
 /// The deviation of the Gaussian that leaves an octave and all slower ones, by the time between its knots.
@@ -35,7 +35,7 @@ const LEAST_VARIANCE: f64 = 1e-14;
 /// Rounds of the fit of covariances.
 const ROUNDS: usize = 20;
 
-/// Frequencies at which spectra are compared: so many of them up to this one, hertz.
+/// Number of frequencies at which spectra are compared, and the highest of them, hertz.
 const FREQUENCIES: usize = 6000;
 const MOST_HZ: f64 = 12.0;
 
@@ -68,7 +68,7 @@ pub(super) fn estimate(people: &[Vec<Offsets>], weights: &[f64]) -> Swayed {
     let count = people.len() as f64;
     let freed = count / (count - 1.0).max(1.0);
     let bands: Bands = core::array::from_fn(|band| {
-        // Everybody as strong as the geometric mean: who fidgets would be all that is seen otherwise.
+        // Each person is scaled to the geometric mean: restless people would dominate otherwise.
         let own_strengths: Vec<f64> = strengths.iter().map(|own| own[band]).collect();
         let usual = mean(&own_strengths);
         let mut sum = DMatrix::zeros(SWAY_COUNT, SWAY_COUNT);

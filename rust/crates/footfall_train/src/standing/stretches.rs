@@ -1,4 +1,4 @@
-//! Stretches of a recording in which somebody stands: upright, on planted feet, with arms that hang.
+//! Stretches of standing in a recording: upright, on planted feet, with hanging arms.
 
 use super::RATE_HZ;
 use footfall_core::rotation::heading;

@@ -98,7 +98,7 @@ impl DynamicsBench {
         Ok(SwitchingBench(SwitchingWorkload::new(&self.model)?))
     }
 
-    /// Fits one system to the segments, in at most so many steps of refinement.
+    /// Fits one system to the segments, in a limited number of refinement steps.
     pub(super) fn fit(&self, refine_steps: usize) -> Result<()> {
         let views: Vec<&[f64]> = self.segments.iter().map(Vec::as_slice).collect();
         let config = DynamicsConfig {

@@ -59,7 +59,7 @@ pub(super) struct ReconstructorBench {
 }
 
 impl ReconstructorBench {
-    /// A model of so many frames, of walkers that the gait model makes, each with a seed and a speed of its own.
+    /// A model of this many frames, from generated walkers, each with its own seed and speed.
     pub(super) fn new(gait: &Arc<GaitModel>, frames: usize) -> Result<Self> {
         let walk = |seed: u64| {
             let config = WalkConfig {

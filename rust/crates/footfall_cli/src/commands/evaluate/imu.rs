@@ -7,6 +7,7 @@ use crate::commands::train::TrainingProgress;
 use crate::motion_input::KneesArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use footfall_core::Site;
 use footfall_model::ImuModel;
 use footfall_motion::corpus::Where;
@@ -58,8 +59,8 @@ pub(crate) struct ImuArgs {
     #[arg(long, value_enum, default_value_t)]
     device: DeviceArg,
     /// Part of the method to use as published, for comparison; comma-separated, repeatable
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "PART")]
-    as_published: Vec<PartArg>,
+    #[arg(long, value_parser = published_parts(), value_delimiter = ',', value_name = "PART")]
+    as_published: Vec<&'static [Published]>,
     /// Show the accelerations at transitions between motions instead of distances: eight transitions of each kind, of people left out
     #[arg(long)]
     transitions: bool,
@@ -90,40 +91,14 @@ impl DeviceArg {
     }
 }
 
-/// Parts of the published method (Mousas 2017).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum PartArg {
-    /// All of them
-    All,
-    /// Equal transitions: a frame is kept, followed or skipped, and phases end at any time
-    Transitions,
-    /// A Gaussian for each phase, refined by its segments, with every frame in full
-    Gaussians,
-    /// Five segments of the most probable phase
-    Interpolation,
-    /// Regression of the body on the sensor
-    Regression,
-    /// Velocity-based blending
-    Blending,
-    /// Bodies of single people, not drawn to those of others
-    Manner,
-    /// Sensors alone, without the time since a foot landed
-    Strides,
-}
-
-impl PartArg {
-    fn parts(self) -> &'static [Published] {
-        match self {
-            Self::All => &Published::ALL,
-            Self::Transitions => &[Published::Transitions],
-            Self::Gaussians => &[Published::Gaussians],
-            Self::Interpolation => &[Published::Interpolation],
-            Self::Regression => &[Published::Regression],
-            Self::Blending => &[Published::Blending],
-            Self::Manner => &[Published::Manner],
-            Self::Strides => &[Published::Strides],
-        }
-    }
+/// Parser of a part of the published method (Mousas 2017), or of `all`.
+fn published_parts() -> impl TypedValueParser<Value = &'static [Published]> {
+    let all = PossibleValue::new("all").help("All of them");
+    let each = Published::ALL.map(|part| PossibleValue::new(part.name()).help(part.summary()));
+    PossibleValuesParser::new([all].into_iter().chain(each)).map(|name| {
+        let index = Published::ALL.iter().position(|part| part.name() == name);
+        index.map_or(&Published::ALL[..], |index| &Published::ALL[index..=index])
+    })
 }
 
 /// Evaluates, and returns the report that is printed as JSON.
@@ -155,12 +130,11 @@ impl ImuArgs {
             None if self.strangers => ImuModels::TrainedOnStrangers(asked.collect()),
             None => ImuModels::Trained(asked.collect()),
         };
-        let parts = self.as_published.iter().flat_map(|part| part.parts());
         Ok(ImuRequest {
             models,
             judged: self.judged.clone(),
             device: self.device.device(),
-            published: parts.copied().collect(),
+            published: self.as_published.concat(),
         })
     }
 }

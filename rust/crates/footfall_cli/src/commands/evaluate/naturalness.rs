@@ -1,4 +1,4 @@
-//! `footfall evaluate naturalness`: can a classifier tell generated walks or runs from captured ones?
+//! `footfall evaluate naturalness`: classification of generated against captured walks or runs.
 
 mod pace;
 mod report;

@@ -58,7 +58,7 @@ fn evaluate(args: &StandingArgs) -> Result<Report> {
     let captured = people(&clips);
     if captured.is_empty() {
         bail!(
-            "{}: in the selected recordings nobody stands at ease for 20 seconds; widen --where",
+            "{}: no selected recording has 20 seconds of standing at ease; widen --where",
             args.judged.corpus.display()
         );
     }
@@ -82,7 +82,7 @@ pub(super) fn standing_clips(corpus: &Corpus) -> Vec<StandingClip> {
         .collect()
 }
 
-/// Measures of everybody who stands long enough.
+/// Measures of all people who stand long enough.
 fn people(clips: &[StandingClip]) -> Vec<Person> {
     let mut names: Vec<&str> = clips.iter().map(|clip| clip.subject.as_str()).collect();
     names.dedup();
@@ -105,7 +105,7 @@ fn people(clips: &[StandingClip]) -> Vec<Person> {
         .collect()
 }
 
-/// Generated people, a seed each, who move by so much.
+/// Generated people, one for each seed, with this amount of motion.
 fn seeds(
     model: &Arc<GaitModel>,
     args: &StandingArgs,
@@ -142,7 +142,7 @@ fn seeds(
     Ok(made)
 }
 
-/// Everybody beside a model of the others, and beside the others themselves.
+/// Each person beside a model of the others, and beside the others themselves.
 fn leave_one_out(
     model: &GaitModel,
     args: &StandingArgs,

@@ -1,4 +1,4 @@
-//! `footfall evaluate style`: are styles told apart, do they resemble their model, do they move like people?
+//! `footfall evaluate style`: classification of styles, their likeness to their model and to human motion.
 
 mod table;
 

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use watch::{Report, Watch};
 
-/// Samples are taken from the ports so often.
+/// Interval at which samples are taken from the ports.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
 
 /// Show the samples of sensors: rates, gaps, axes, and problems

@@ -1,6 +1,6 @@
 //! `footfall imu reconstruct`: recordings of sensors become the motion of a body.
 
-mod worn;
+mod worn_sensors;
 
 use super::read_recording;
 use crate::output;
@@ -14,7 +14,7 @@ use footfall_train::read_model_file;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::Arc;
-use worn::{ProblemReport, WornSensors};
+use worn_sensors::{ProblemReport, WornSensors};
 
 /// Below this confidence a frame is unexplained; more than this share of a recording is warned of.
 const UNEXPLAINED: f32 = 0.1;

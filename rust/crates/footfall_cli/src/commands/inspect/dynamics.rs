@@ -15,7 +15,7 @@ pub(super) struct DynamicsFacts {
     file: FileFacts,
     fps: f64,
     components: usize,
-    /// Of the left foot, then of the right.
+    /// Values of the left foot, then of the right.
     systems: [SystemFacts; 2],
 }
 

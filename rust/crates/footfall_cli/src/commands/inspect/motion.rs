@@ -2,7 +2,7 @@
 
 use super::fact;
 use crate::hip_facts::HipFacts;
-use crate::motion_input::{Walking, read_file};
+use crate::motion_input::{WalkFigures, read_file};
 use anyhow::Result;
 use footfall_core::{Joint, Side};
 use footfall_motion::game_clip;
@@ -28,7 +28,7 @@ pub(super) struct MotionFacts {
     metres_per_unit: f32,
     /// Median height of the hips above the floor, on the canonical body.
     hip_height_m: f32,
-    /// On the canonical body.
+    /// Value on the canonical body.
     mean_speed_mps: f64,
     walks: usize,
     steps: usize,
@@ -54,7 +54,7 @@ pub(super) fn inspect(path: &Path, options: &RetargetOptions) -> Result<MotionFa
     let mut unrolled = motion.clone();
     game_clip::unroll(&mut unrolled);
     let recording = Recording::detected(unrolled);
-    let walking = Walking::of(&recording);
+    let walking = WalkFigures::of(&recording);
     let unrolled = &recording.retargeted;
     let rounds = report.cycle_frames.map_or(1, |_| unrolled.report.repeats);
     let clip = &motion.clip;

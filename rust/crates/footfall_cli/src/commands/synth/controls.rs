@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// The last row holds for so long.
+/// Time for which the last row applies.
 pub(super) const LAST_SECS: f64 = 1.0;
 
 /// Longer recordings are a slip of the keyboard.

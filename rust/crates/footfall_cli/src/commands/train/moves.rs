@@ -40,7 +40,7 @@ impl Moves {
         if let Some(corpus) = &self.crouching {
             let learned = crouching::learn(&clips(corpus)).with_context(|| {
                 format!(
-                    "{}: in the recordings of --crouching nobody walks both upright and crouched for several seconds; widen it",
+                    "{}: the recordings of --crouching have no person who walks both upright and crouched for several seconds; widen it",
                     args.corpus.index.display()
                 )
             })?;

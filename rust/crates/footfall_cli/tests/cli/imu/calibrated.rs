@@ -47,7 +47,7 @@ fn simulate(folder: &Path, site: &str, output: &str) {
 fn problems(report: &Value) -> Vec<&str> {
     let problems = report["problems"].as_array().expect("problems").iter();
     problems
-        .map(|told| told["problem"].as_str().expect("a name"))
+        .map(|problem| problem["problem"].as_str().expect("a name"))
         .collect()
 }
 
@@ -142,7 +142,7 @@ fn calibrations_that_do_not_fit_say_what_to_do() {
 }
 
 #[test]
-fn what_is_wrong_with_a_sensor_is_told_and_reported() {
+fn what_is_wrong_with_a_sensor_is_problem_and_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let model = shipped("right_foot");
@@ -169,11 +169,11 @@ fn what_is_wrong_with_a_sensor_is_told_and_reported() {
         );
         let report = run.json();
         assert_eq!(problems(&report), ["stuck_axis"], "{report}");
-        let told = &report["problems"][0];
-        assert_eq!(told["site"], "right_foot");
+        let problem = &report["problems"][0];
+        assert_eq!(problem["site"], "right_foot");
         assert!(
-            (5.0..9.0).contains(&told["start_s"].as_f64().expect("a time")),
-            "{told}"
+            (5.0..9.0).contains(&problem["start_s"].as_f64().expect("a time")),
+            "{problem}"
         );
         let stood = report["behaviours"].as_array().expect("behaviours").iter();
         let stood: f64 = stood

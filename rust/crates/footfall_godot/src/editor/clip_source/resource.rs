@@ -6,7 +6,7 @@ use godot::classes::{
 };
 use godot::prelude::*;
 
-/// The animation that holds a scene's initial values; nobody walks in it.
+/// The animation that holds a scene's initial values, without a walk.
 const RESET: &str = "RESET";
 
 /// A resource of the project.

@@ -23,7 +23,7 @@ pub(super) struct Form {
     make: Gd<Button>,
     cancel: Gd<Button>,
     progress: Gd<ProgressBar>,
-    told: Gd<Label>,
+    message: Gd<Label>,
     view: Gd<FootfallWalkerView>,
     give: Gd<Button>,
     /// Recordings, what is made of them, and the result: side by side or one below the other.
@@ -92,9 +92,9 @@ impl Form {
         let mut progress = ProgressBar::new_alloc();
         progress.set_visible(false);
         rows.add_child(&progress);
-        let mut told = Label::new_alloc();
-        told.set_autowrap_mode(text_server::AutowrapMode::WORD_SMART);
-        rows.add_child(&told);
+        let mut message = Label::new_alloc();
+        message.set_autowrap_mode(text_server::AutowrapMode::WORD_SMART);
+        rows.add_child(&message);
         let mut rows = VBoxContainer::new_alloc();
         add_part(&mut parts, &rows);
         let mut view = FootfallWalkerView::stage();
@@ -144,7 +144,7 @@ impl Form {
             make,
             cancel,
             progress,
-            told,
+            message,
             view,
             give,
             parts,
@@ -196,18 +196,18 @@ impl Form {
     }
 
     pub(super) fn message(&self) -> GString {
-        self.told.get_text()
+        self.message.get_text()
     }
 
-    pub(super) fn tell(&mut self, message: &str) {
-        self.told.set_text(message);
+    pub(super) fn show_message(&mut self, message: &str) {
+        self.message.set_text(message);
     }
 
-    pub(super) fn show_progress(&mut self, told: &JobProgress) {
-        let total = told.total.max(1);
+    pub(super) fn show_progress(&mut self, progress: &JobProgress) {
+        let total = progress.total.max(1);
         self.progress.set_max(total as f64);
-        self.progress.set_value(told.done.min(total) as f64);
-        self.told.set_text(&told.task);
+        self.progress.set_value(progress.done.min(total) as f64);
+        self.message.set_text(&progress.task);
     }
 
     pub(super) fn show_walker(&mut self, space: &Arc<StyleSpace>) {

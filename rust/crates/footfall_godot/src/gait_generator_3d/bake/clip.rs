@@ -87,13 +87,13 @@ impl Clips {
         let at = |frame: usize| f64::from(frame as f32 * walk.frame_secs);
         let track = animation.add_track(TrackType::POSITION_3D);
         animation.track_set_path(track, &self.bone_path(hips));
-        for frame in told(&places, |a, b| a.distance_to(*b) < SAME_PLACE_M) {
+        for frame in needed_keys(&places, |a, b| a.distance_to(*b) < SAME_PLACE_M) {
             animation.position_track_insert_key(track, at(frame), places[frame]);
         }
         for (bone, keys) in bones.iter().zip(&keys) {
             let track = animation.add_track(TrackType::ROTATION_3D);
             animation.track_set_path(track, &self.bone_path(*bone));
-            for frame in told(keys, |a, b| a.dot(*b).abs() > SAME_TURN) {
+            for frame in needed_keys(keys, |a, b| a.dot(*b).abs() > SAME_TURN) {
                 animation.rotation_track_insert_key(track, at(frame), keys[frame]);
             }
         }
@@ -164,8 +164,8 @@ fn copy_at_rest(skeleton: &Gd<Skeleton3D>) -> Gd<Skeleton3D> {
     copy
 }
 
-/// The frames that say something: both ends, and those that differ from the one before or the one after.
-fn told<T>(keys: &[T], same: impl Fn(&T, &T) -> bool) -> Vec<usize> {
+/// The frames whose keys cannot be interpolated: both ends, and those that differ from the one before or the one after.
+fn needed_keys<T>(keys: &[T], same: impl Fn(&T, &T) -> bool) -> Vec<usize> {
     let last = keys.len().saturating_sub(1);
     (0..keys.len())
         .filter(|&frame| {

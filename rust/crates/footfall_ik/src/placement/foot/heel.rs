@@ -6,12 +6,12 @@ use crate::placement::terrain::Terrain;
 use crate::rocker::RockerFoot;
 use glam::Vec3;
 
-/// The heel of a standing foot is raised to this pitch at most, radians, which is found in so many trials.
+/// Greatest pitch of a standing foot with its heel raised, radians, and the number of trials that find the pitch.
 pub(in crate::placement) const MAX_PITCH: f32 = 0.95;
 const PITCH_TRIALS: usize = 12;
 
 impl Foot {
-    /// A locked foot with its heel so much higher that the leg reaches from the hip; at most [`MAX_PITCH`].
+    /// A locked foot with its heel raised until the leg reaches it from the hip; at most by [`MAX_PITCH`].
     pub(in crate::placement) fn rise(
         &mut self,
         rocker: &RockerFoot,

@@ -22,7 +22,7 @@ pub const DEFAULT_PORT: u16 = 8080;
 /// Longest batch, bytes: a second of eight sensors at 200 Hz is shorter.
 const LONGEST: usize = 512 * 1024;
 
-/// A port that is taken is tried again after so long.
+/// Time after which a port in use is tried again.
 const RETRY: Duration = Duration::from_secs(2);
 
 type Batches = Arc<Mutex<Senders<(IpAddr, String)>>>;
@@ -94,7 +94,7 @@ async fn batch(
     let Some(device) = senders.device(sender, |_| false, name, "sensor_logger") else {
         return StatusCode::TOO_MANY_REQUESTS;
     };
-    // A batch tells each sensor in turn; samples need them in the order of their times.
+    // A batch holds one sensor after the other; samples need the order of their times.
     readings.sort_by(|a, b| {
         a.time_secs
             .unwrap_or(0.0)

@@ -69,7 +69,7 @@ fn part(kind: u32, content: &[u8], give: &mut impl FnMut(u8, Reading)) -> Option
             Quantity::Orientation(Quat::from_vec4(vector()?.extend(number(3)?))),
         ),
         GYROSCOPE => (0, Quantity::Rate(vector()?)),
-        // Newer trackers tell the sensor behind the numbers.
+        // Newer trackers send the sensor after the numbers.
         ACCELERATION => (
             content.get(12).copied().unwrap_or(0),
             Quantity::Acceleration(vector()?),

@@ -21,7 +21,7 @@ const LONGEST: usize = 4096;
 /// Interval of heartbeats to trackers, seconds; they give up after ten without one.
 const HEARTBEAT_SECS: f64 = 1.0;
 
-/// A port that is taken is tried again after so long.
+/// Time after which a port in use is tried again.
 const RETRY: Duration = Duration::from_secs(2);
 
 /// Address to listen on.
@@ -42,7 +42,7 @@ impl Default for UdpConfig {
     }
 }
 
-/// A sender of lines is kept so long after it fell silent, seconds.
+/// Time for which a silent sender of lines is kept, seconds.
 const TEXT_KEPT_SECS: f64 = 10.0;
 
 /// A sender: its address, and which of its sensors.
@@ -97,7 +97,7 @@ fn receive(link: &LinkWriter, socket: &UdpSocket, config: &UdpConfig) -> String 
                 io::ErrorKind::WouldBlock
                 | io::ErrorKind::TimedOut
                 | io::ErrorKind::Interrupted
-                // On Windows an answer that could not be delivered is told here.
+                // Windows reports an answer that could not be delivered here.
                 | io::ErrorKind::ConnectionReset => {}
                 _ => return format!("UDP port {}: {error}", address.port()),
             },

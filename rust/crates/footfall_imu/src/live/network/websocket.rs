@@ -36,7 +36,7 @@ pub fn follow(server: &str) -> Link {
 }
 
 fn connect(server: &str) -> Result<WebSocket<TcpStream>, String> {
-    let told = |error: &dyn core::fmt::Display| {
+    let refused = |error: &dyn core::fmt::Display| {
         format!("{server} does not answer like SensorServer: {error}")
     };
     let mut addresses = server.to_socket_addrs().map_err(|error| {
@@ -46,16 +46,16 @@ fn connect(server: &str) -> Result<WebSocket<TcpStream>, String> {
     })?;
     let address = addresses.find(|address| is_local(address.ip()));
     let address = address.ok_or_else(|| format!("{server} is not on the local network"))?;
-    let stream = TcpStream::connect_timeout(&address, ANSWER).map_err(|error| told(&error))?;
+    let stream = TcpStream::connect_timeout(&address, ANSWER).map_err(|error| refused(&error))?;
     let timeouts = |stream: &TcpStream, time| stream.set_read_timeout(Some(time));
-    timeouts(&stream, ANSWER).map_err(|error| told(&error))?;
+    timeouts(&stream, ANSWER).map_err(|error| refused(&error))?;
     let config = WebSocketConfig::default()
         .max_message_size(Some(LONGEST))
         .max_frame_size(Some(LONGEST));
     let url = format!("ws://{server}{SENSORS}");
     let (socket, _) = tungstenite::client::client_with_config(url, stream, Some(config))
-        .map_err(|error| told(&error))?;
-    timeouts(socket.get_ref(), LOOK_EVERY).map_err(|error| told(&error))?;
+        .map_err(|error| refused(&error))?;
+    timeouts(socket.get_ref(), LOOK_EVERY).map_err(|error| refused(&error))?;
     Ok(socket)
 }
 
@@ -93,7 +93,7 @@ fn receive(
             link.count_garbage(1);
         }
     }
-    // Who is not told finds out by itself.
+    // Who is not refused finds out by itself.
     drop(socket.close(None));
     String::new()
 }

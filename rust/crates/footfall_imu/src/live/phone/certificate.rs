@@ -6,7 +6,7 @@ use std::net::IpAddr;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-/// It is made anew after so long; browsers take certificates for up to 825 days.
+/// Age at which it is made again; browsers accept certificates for up to 825 days.
 const KEPT: Duration = Duration::from_hours(300 * 24);
 const VALID_DAYS: u32 = 397;
 

@@ -25,14 +25,14 @@ const PAGE: &str = include_str!("page.html");
 /// Content policy of the page: it may load itself alone.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// A wrong code is answered after so long: guessing takes for ever.
+/// Delay of the answer to a wrong code, against guessing.
 const WRONG_CODE_DELAY: Duration = Duration::from_millis(500);
 
 /// Interval of the server's looks at footsteps, and the number of looks after which the page is sent its state.
 const LOOK: Duration = Duration::from_millis(25);
 const TELL_EVERY: u32 = 20;
 
-/// A page of which nothing is heard so long is taken for gone, in looks.
+/// Number of checks without a message after which a page counts as gone.
 const SILENT_LOOKS: u32 = 400;
 
 /// Longest number by which a page calls itself.
@@ -116,7 +116,7 @@ fn tls_config(
     ))
 }
 
-/// Lets in who is on the local network and knows a player's code.
+/// Admits clients on the local network that know a player's code.
 async fn guard(
     State(slots): State<Arc<Slots>>,
     ConnectInfo(from): ConnectInfo<SocketAddr>,
@@ -156,7 +156,7 @@ async fn page() -> Response {
 }
 
 /// State that the page shows, as JSON.
-fn told(status: &DeviceStatus) -> String {
+fn status_text(status: &DeviceStatus) -> String {
     let fault = serde_json::to_string(&status.fault).unwrap_or_default();
     format!(
         "{{\"samples\":{},\"lost\":{},\"rate\":{:.1},\"fault\":{fault}}}",
@@ -172,7 +172,7 @@ async fn samples(
 ) -> Response {
     let page: String = page.chars().take(LONGEST_PAGE).collect();
     match shared.slots.take(&shared.link, player, &page, &body) {
-        Ok(status) => told(&status).into_response(),
+        Ok(status) => status_text(&status).into_response(),
         Err(problem) => (StatusCode::CONFLICT, problem).into_response(),
     }
 }
@@ -208,9 +208,9 @@ async fn converse(mut socket: WebSocket, shared: Shared, player: usize, page: St
                 match shared.slots.take(&shared.link, player, &page, &bytes) {
                     Ok(known) => status = Some(known),
                     Err(problem) => {
-                        let told = serde_json::json!({ "problem": problem }).to_string();
+                        let answer = serde_json::json!({ "problem": problem }).to_string();
                         // The page is gone or will go.
-                        drop(socket.send(Message::Text(told.into())).await);
+                        drop(socket.send(Message::Text(answer.into())).await);
                         return;
                     }
                 }
@@ -225,7 +225,7 @@ async fn converse(mut socket: WebSocket, shared: Shared, player: usize, page: St
                     text = Some("{\"vibrate\":30}".to_owned());
                 } else if since_told >= TELL_EVERY {
                     since_told = 0;
-                    text = status.as_ref().map(told);
+                    text = status.as_ref().map(status_text);
                 }
                 if silent > SILENT_LOOKS {
                     return;

@@ -6,7 +6,7 @@ use crate::live::phone::parse;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A phone that is silent for so long may be replaced by another, seconds.
+/// Time of silence after which another phone may take a phone's place, seconds.
 const KEPT_SECS: f64 = 3.0;
 
 /// The players' codes and phones.

@@ -75,7 +75,7 @@ impl Mti {
                     let ticks = u32::from_be_bytes(bytes_at(data, 0)?);
                     time_secs = Some(self.ticks.unwrapped(u64::from(ticks), 32) as f64 / TICKS);
                 }
-                // A counter alone tells no time: its rate is not known.
+                // A counter alone gives no time: its rate is not known.
                 _ => {}
             }
         }

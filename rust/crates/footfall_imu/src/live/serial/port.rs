@@ -11,16 +11,16 @@ use std::time::Duration;
 /// Rates that devices use, most common first.
 pub const BAUD_RATES: [u32; 6] = [115_200, 921_600, 460_800, 230_400, 57_600, 9600];
 
-/// A read waits so long for bytes.
+/// Timeout of a read.
 const READ_TIMEOUT: Duration = Duration::from_millis(20);
 
 /// Time for which each rate is listened to when the device is unknown.
 const LISTEN_SECS: f64 = 0.8;
 
-/// A port that cannot be opened is tried again after so long.
+/// Time after which a port that cannot be opened is tried again.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// After so long without a message, seconds, what speaks is found out anew.
+/// Time without a message after which the format is detected again, seconds.
 const LOST_SECS: f64 = 3.0;
 
 /// A serial port, and what is known of the device there.

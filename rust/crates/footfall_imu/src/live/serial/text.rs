@@ -71,7 +71,7 @@ impl Text {
         }
     }
 
-    /// Of a stream whose first line is whole.
+    /// Parser of a stream whose first line is whole.
     pub(in crate::live) fn of_datagrams(setting: &TextFormat) -> Self {
         Self {
             begun: true,

@@ -41,7 +41,7 @@ impl Format for ThreeSpace {
                     .unwrap_or(bytes.len()),
             );
         }
-        let Some([_, t0, t1, t2, t3, echo, told, length]) = bytes_at::<HEAD>(bytes, 0) else {
+        let Some([_, t0, t1, t2, t3, echo, checksum, length]) = bytes_at::<HEAD>(bytes, 0) else {
             return Taken::More;
         };
         if echo != STREAMED || usize::from(length) != DATA {
@@ -50,7 +50,7 @@ impl Format for ThreeSpace {
         let Some(data) = bytes_at::<DATA>(bytes, HEAD) else {
             return Taken::More;
         };
-        if sum(&data) != told {
+        if sum(&data) != checksum {
             return Taken::Garbage(1);
         }
         let number = |n: usize| {

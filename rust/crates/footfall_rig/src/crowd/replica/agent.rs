@@ -1,15 +1,15 @@
-//! A walker of a crowd that is told to others, or led by what others tell.
+//! Network part of a walker: its own steps for peers, or the steps of a peer's walker.
 
 use super::following::Following;
 use super::led::Now;
-use super::step::ToldStep;
+use super::step::StepUpdate;
 use crate::crowd::agent::Agent;
 use footfall_synth::{Controls, Gait, GaitChoice, GroundTransform, LedBeginning, Workshop};
 use glam::Vec2;
 
 impl Agent {
-    /// The step that it takes, or the place where it rests, for others; nothing before it is made, and while it shares steps.
-    pub(super) fn told(&self, name: i32, now_secs: f64) -> Option<ToldStep> {
+    /// Its current step, or the place where it rests, for peers; `None` before it is made and while it shares steps.
+    pub(super) fn step_update(&self, name: i32, now_secs: f64) -> Option<StepUpdate> {
         let walker = self.walker.as_ref().filter(|_| self.takes_own_steps())?;
         let rests = walker.is_standing();
         let start_from_aim = if rests {
@@ -21,8 +21,8 @@ impl Agent {
         let secs = walker.secs_of_step() * self.size.sqrt();
         let stops = walker.comes_to_rest();
         let turn_rate_radps = self.controls.turn_rate_radps;
-        let (row, turn) = ToldStep::row_and_turn(name);
-        Some(ToldStep {
+        let (row, turn) = StepUpdate::row_and_turn(name);
+        Some(StepUpdate {
             row,
             turn,
             number: walker.number(),
@@ -48,7 +48,7 @@ impl Agent {
         })
     }
 
-    /// Begins to walk where it should, if it is led, waits, and knows where.
+    /// Begins to walk at its place if it follows another machine's walker and knows the place.
     pub(in crate::crowd) fn begin_led(
         &mut self,
         following: &Following,
@@ -98,7 +98,7 @@ impl Agent {
         self.clock_secs = now_secs;
     }
 
-    /// Lets time pass in the steps of another machine's walker.
+    /// Advances its walk in the steps of another machine's walker.
     pub(in crate::crowd) fn follow(
         &mut self,
         dt_secs: f32,

@@ -1,10 +1,10 @@
-//! A crowd that follows another one: what it hears.
+//! A crowd that follows another one: received messages.
 
 use super::CrowdReplicaError;
-use super::led::Led;
+use super::led::LedWalker;
 use super::message::{self, Kind};
 use super::person::Person;
-use super::step::{STEP_BYTES, ToldStep};
+use super::step::{STEP_BYTES, StepUpdate};
 use crate::crowd::agent::Agent;
 use crate::crowd::maker::Order;
 use crate::crowd::{Crowd, MOST_AGENTS};
@@ -12,34 +12,34 @@ use footfall_core::hash::fnv1a;
 use footfall_synth::replica::ReplicaClock;
 use footfall_synth::{GeneratorConfig, GroundTransform};
 
-/// Bytes that are heard in a second: those of the largest crowd, told everything.
+/// Most bytes that are received in a second: those of the largest crowd, sent whole.
 const MOST_BYTES_A_SECOND: u32 = 8_000_000;
 
-/// Steps are taken so much later than the quickest message would allow, seconds: one that is lost is told again after a tenth and two, and who is far away from the sender's camera is
-/// seen to step a few frames late.
+/// Delay of steps beyond that of the quickest message, seconds: a lost step is sent again after 0.1 s and 0.2 s, and steps of walkers far from the sender's camera are
+/// sent a few frames late.
 const LATER_SECS: f64 = 0.3;
 
-/// Without a message for so long everybody stands, seconds.
+/// Time without a message after which all walkers stand, seconds.
 const SILENCE_SECS: f64 = 3.0;
 
-/// Knowledge of a crowd about the one that it follows.
+/// State of a crowd that follows another one.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::crowd) struct Following {
     session: Option<u16>,
     fingerprint: u32,
     clock: ReplicaClock,
-    /// Bytes that may still be heard, and since when.
+    /// Bytes that may still be received, and the time of the last update.
     left: f64,
     left_secs: f64,
 }
 
 impl Following {
-    /// Our time at which a step is taken that began at a time of the sender's.
+    /// Our time at which a step begins that began at this time of the sender.
     pub(super) fn due_secs(&self, sent_secs: f64) -> f64 {
         self.clock.due_secs(sent_secs) + LATER_SECS
     }
 
-    /// Returns true when nothing has come for long.
+    /// Returns true if no message has come for long.
     pub(super) fn is_silent(&self, now_secs: f64) -> bool {
         self.clock.silent_secs(now_secs) > SILENCE_SECS
     }
@@ -58,7 +58,7 @@ impl Following {
 }
 
 impl Crowd {
-    /// A number that crowds of the same model and styles share; 0 where the model has none.
+    /// A number that is equal for crowds of the same model and styles; 0 if the model has none.
     pub(super) fn fingerprint(&self) -> u32 {
         let recipe = self.maker.recipe();
         let model = recipe.model.fingerprint().unwrap_or_default();
@@ -68,7 +68,8 @@ impl Crowd {
         (hash ^ hash >> 32) as u32
     }
 
-    /// Follows another machine's crowd from now on: everybody leaves, and who comes is told by [`hear`](Self::hear). Returns the places of those who left. Add nobody meanwhile.
+    /// Follows another machine's crowd from now on: all walkers leave, and [`hear`](Self::hear) adds those of the other crowd. Returns the rows of those that left. Add no walkers
+    /// while it follows.
     pub fn follow(&mut self) -> Vec<usize> {
         self.following = Some(Following {
             session: None,
@@ -80,31 +81,31 @@ impl Crowd {
         self.clear()
     }
 
-    /// Follows no more: who is there goes on by itself.
+    /// Stops following: the walkers continue by themselves.
     pub fn lead(&mut self) {
         if self.following.take().is_some() {
             for agent in &mut self.agents {
                 agent.led = None;
-                self.way.take_up(agent);
+                self.routing.take_up(agent);
             }
         }
     }
 
-    /// Returns true when it follows another one.
+    /// Returns true if it follows another crowd.
     pub const fn is_following(&self) -> bool {
         self.following.is_some()
     }
 
-    /// Returns true when it follows another one and has heard who is in it.
+    /// Returns true if it follows another crowd whose walkers were introduced.
     pub fn is_introduced(&self) -> bool {
         self.following
             .is_some_and(|following| following.session.is_some())
     }
 
-    /// Hears a message of the crowd that it follows; other crowds hear nothing. Returns the places of those who left.
+    /// Takes a message of the crowd that it follows; a crowd that follows none ignores it. Returns the rows of walkers that left.
     ///
     /// # Errors
-    /// [`CrowdReplicaError`] when it is refused.
+    /// [`CrowdReplicaError`] if the message is refused.
     pub fn hear(&mut self, bytes: &[u8]) -> Result<Vec<usize>, CrowdReplicaError> {
         let now_secs = self.time_secs;
         let Some(following) = &mut self.following else {
@@ -118,7 +119,7 @@ impl Crowd {
             Kind::People => self.hear_people(session, content, damaged),
             Kind::Steps if known => self.hear_steps(content, damaged).map(|()| Vec::new()),
             Kind::Left if known => self.hear_left(content, damaged),
-            // Of a crowd whose people were not introduced yet.
+            // From a crowd whose walkers were not introduced yet.
             Kind::Steps | Kind::Left => Ok(Vec::new()),
         }
     }
@@ -135,14 +136,14 @@ impl Crowd {
         };
         let ticks = u16::from_le_bytes(*ticks);
         let sent_secs = following.clock.hear(self.time_secs, ticks);
-        for step in steps.iter().map(ToldStep::unpack) {
+        for step in steps.iter().map(StepUpdate::unpack) {
             let row = step.row as usize;
-            let (_, turn) = ToldStep::row_and_turn(self.roster.name(row));
+            let (_, turn) = StepUpdate::row_and_turn(self.roster.name(row));
             let led = self
                 .agents
                 .get_mut(row)
                 .and_then(|agent| agent.led.as_mut());
-            // Of somebody who is not introduced yet, or has left.
+            // A walker that is not introduced yet, or has left, is ignored.
             if let Some(led) = led.filter(|_| turn == step.turn) {
                 led.hear(&step, sent_secs);
             }
@@ -181,7 +182,7 @@ impl Crowd {
         if u32::from_le_bytes(*fingerprint) != following.fingerprint {
             return Err(CrowdReplicaError::OtherModel);
         }
-        // Nothing changes before all of it is known to be sound.
+        // All of it is checked before anything changes.
         let mut people = Vec::new();
         while !content.is_empty() {
             let (person, rest): (Person, &[u8]) =
@@ -194,7 +195,7 @@ impl Crowd {
             content = rest;
         }
         let ticks = u16::from_le_bytes(*ticks);
-        // It came in order, after others that were sent before it and waited for.
+        // Reliable messages arrive in order, after earlier ones that had to be waited for.
         let sent_secs = following.clock.hear(self.time_secs, ticks);
         let another = following.session != Some(session);
         following.session = Some(session);
@@ -222,20 +223,23 @@ impl Crowd {
     }
 
     /// Takes in somebody who was introduced; returns the order to make it.
-    fn greet(&mut self, row: usize, name: i32, person: &Person, step: &ToldStep) -> Order {
+    fn greet(&mut self, row: usize, name: i32, person: &Person, step: &StepUpdate) -> Order {
         self.roster.enter_as(name);
         self.make_room(row + 1);
         self.tickets += 1;
         let GroundTransform { position, heading } = step.aim;
         let mut agent = Agent::new(self.tickets, position, heading, person.seed);
         person.dress(&mut agent);
-        agent.outfit = person.outfit(self.maker.styles());
-        agent.led = Some(Box::new(Led::new(step.number, person.chance_position)));
+        agent.mixture = person.mixture(self.maker.styles());
+        agent.led = Some(Box::new(LedWalker::new(
+            step.number,
+            person.chance_position,
+        )));
         self.drawn[row] = agent.drawn(position, heading, 0.0);
         let order = Order {
             place: row,
             ticket: self.tickets,
-            outfit: agent.outfit.clone(),
+            mixture: agent.mixture.clone(),
             config: Some(GeneratorConfig {
                 seed: person.seed,
                 phase: 0.0,
@@ -250,9 +254,9 @@ impl Crowd {
     /// Takes up the looks of somebody who is known.
     fn greet_again(&mut self, row: usize, person: &Person) {
         person.dress(&mut self.agents[row]);
-        let outfit = person.outfit(self.maker.styles());
-        if self.agents[row].outfit != outfit {
-            self.wear(row, &outfit.weights());
+        let mixture = person.mixture(self.maker.styles());
+        if self.agents[row].mixture != mixture {
+            self.wear(row, &mixture.weights());
         }
     }
 }

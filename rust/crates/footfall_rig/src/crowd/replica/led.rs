@@ -1,76 +1,76 @@
-//! A walker that takes the steps of another machine's.
+//! A walker that takes the steps of another machine's walker.
 
 use super::following::Following;
 use super::start::Start;
-use super::step::ToldStep;
+use super::step::StepUpdate;
 use footfall_core::rotation::wrap_angle;
 use footfall_synth::{Controls, CrowdWalker, GroundTransform, LedAim, LedStep};
 
-/// Steps that wait at most; the oldest gives way.
+/// Most steps that wait; a further one drops the oldest.
 const ROOM: usize = 4;
 
-/// Walks go faster or slower by this share at most to keep their time, and by as much of it as makes good what they are late within this time, seconds.
+/// Largest share by which a walk speeds up or slows down to keep time, and the time within which it makes up a delay, seconds.
 const MOST_HASTE: f64 = 0.12;
 const IN_TIME_SECS: f64 = 0.4;
 
-/// Steps so near to the current one tell whether that is in time: a walk that no news reached for long may be whole steps ahead or late.
+/// Greatest distance, in steps, of a received step from the current one for a comparison of their times: without updates a walk may be whole steps ahead or late.
 const NEAR_STEPS: u16 = 2;
 
-/// A walk that is farther from its place or later than this begins anew there, metres and seconds.
+/// Distance, in metres, and delay, in seconds, beyond which a walk begins again at its place.
 const LOST_M: f32 = 3.0;
 const LOST_SECS: f64 = 1.5;
 
-/// A step is no longer begun so long after it was due, for its walker is in the next one, seconds.
+/// Time after which a due step is skipped, seconds: the sender's walker is in the next one.
 const OVER_SECS: f64 = 0.6;
 
-/// Whoever rests so far from the place steps over to it, metres and radians, after resting for so long, seconds.
+/// Errors of a resting walker's place, in metres, and heading, in radians, that it corrects by a step, after resting for this time, seconds.
 const OFF_M: f32 = 0.04;
 const OFF_RAD: f32 = 0.17;
 const OFF_SECS: f32 = 0.4;
 
-/// Turning that is hardly any: asked of whoever is to step on the spot, rad/s.
+/// Turn rate that makes a walker step on the spot, rad/s.
 const ON_THE_SPOT_RADPS: f32 = 0.06;
 
-/// Of several steps of which nothing is told each turns by this share of the one before: nobody turns for long.
+/// Decay of the turn rate from one missing step to the next: turns are short.
 const TURNS_ON: f32 = 0.5;
 
-/// A walk that faces elsewhere by more than a step corrects turns towards it, radians, by so much at most, rad/s, and slows down for it. Steps last about so long, seconds.
+/// Error of the heading that one step cannot correct, radians; the walk then turns by this much more at most, rad/s, and slows down. Typical duration of a step, seconds.
 const ASTRAY_RAD: f32 = 0.6;
 const TURNS_BACK_RADPS: f32 = 1.3;
 const STEP_SECS: f32 = 0.55;
 
-/// A step, as it was told.
+/// A received step, on our clock.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Planning {
+pub(super) struct ScheduledStep {
     pub(super) number: u16,
     /// The sender's time when it began, seconds.
     at_secs: f64,
     pub(super) controls: Controls,
     pub(super) rests: bool,
-    /// Place where it leads, or the walker rests, in the crowd's space.
+    /// Place to which it leads, or at which the walker rests, in the crowd's space.
     pub(super) aim: GroundTransform,
 }
 
-/// Knowledge of another machine's walker.
+/// Received steps of another machine's walker.
 #[derive(Debug)]
-pub(in crate::crowd) struct Led {
-    /// Steps that are not taken yet, the first one first.
-    steps: [Option<Planning>; ROOM],
-    /// The one that was heard last, which may have been taken.
-    last: Option<Planning>,
-    /// The one that is taken.
-    pub(super) made: Option<Planning>,
-    /// Number of a step, and the position of chance in it.
+pub(in crate::crowd) struct LedWalker {
+    /// Steps that are not taken yet, in order.
+    steps: [Option<ScheduledStep>; ROOM],
+    /// The step that was received last, which may have been taken.
+    last: Option<ScheduledStep>,
+    /// The current step.
+    pub(super) made: Option<ScheduledStep>,
+    /// Number of a step, and the position of the random numbers in it.
     pub(super) chance: (u16, u64),
     /// The walker, until it knows where to begin.
     pub(super) walker: Option<CrowdWalker>,
     pub(super) is_lost: bool,
-    /// Since the walker came to rest, seconds.
+    /// Time since the walker came to rest, seconds.
     rested_secs: f32,
 }
 
-impl Led {
-    /// Somebody who is not made yet, and has chance there in the step of this number.
+impl LedWalker {
+    /// A walker that is not made yet, with its random numbers at this position in the step of this number.
     pub(super) fn new(number: u16, chance_position: u64) -> Self {
         Self {
             steps: [None; ROOM],
@@ -83,7 +83,7 @@ impl Led {
         }
     }
 
-    /// Waits with a walker until it knows where to begin.
+    /// Keeps a walker until its place is known.
     pub(in crate::crowd) fn wait(&mut self, walker: CrowdWalker) {
         self.walker = Some(walker);
     }
@@ -93,14 +93,14 @@ impl Led {
         self.walker.as_mut()
     }
 
-    /// Returns true where the walker is to begin, or to begin anew.
+    /// Returns true if the walker has to begin, or to begin again.
     pub(in crate::crowd) const fn is_waiting(&self) -> bool {
         self.walker.is_some() || self.is_lost
     }
 
-    /// Hears of a step, as it was sent at this time of the sender's.
-    pub(super) fn hear(&mut self, step: &ToldStep, sent_secs: f64) {
-        let planning = Planning {
+    /// Takes a step that was sent at this time of the sender.
+    pub(super) fn hear(&mut self, step: &StepUpdate, sent_secs: f64) {
+        let scheduled = ScheduledStep {
             number: step.number,
             at_secs: sent_secs - f64::from(step.age_secs),
             controls: step.controls,
@@ -108,44 +108,44 @@ impl Led {
             aim: step.aim,
         };
         let Some(last) = self.last else {
-            self.push(planning);
+            self.push(scheduled);
             return;
         };
-        if planning.at_secs < last.at_secs && planning.number != last.number {
+        if scheduled.at_secs < last.at_secs && scheduled.number != last.number {
             // Overtaken by later ones.
             return;
         }
-        if planning.number != last.number {
-            self.push(planning);
-        } else if planning.rests && !last.rests {
-            // The step is over; who has not taken it comes to rest there at once.
-            self.last = Some(planning);
+        if scheduled.number != last.number {
+            self.push(scheduled);
+        } else if scheduled.rests && !last.rests {
+            // The step is over; a walker that has not taken it comes to rest there at once.
+            self.last = Some(scheduled);
         }
     }
 
-    fn push(&mut self, planning: Planning) {
-        self.last = Some(planning);
+    fn push(&mut self, scheduled: ScheduledStep) {
+        self.last = Some(scheduled);
         if self.steps[ROOM - 1].is_some() {
             self.take();
         }
         if let Some(free) = self.steps.iter_mut().find(|step| step.is_none()) {
-            *free = Some(planning);
+            *free = Some(scheduled);
         }
     }
 
     /// The step that waits longest.
-    const fn first(&self) -> Option<&Planning> {
+    const fn first(&self) -> Option<&ScheduledStep> {
         self.steps[0].as_ref()
     }
 
-    fn take(&mut self) -> Option<Planning> {
+    fn take(&mut self) -> Option<ScheduledStep> {
         let taken = self.steps[0].take();
         self.steps.rotate_left(1);
         taken
     }
 
     /// The latest step that is due and not over.
-    pub(super) fn due(&mut self, now: &Now<'_>) -> Option<Planning> {
+    pub(super) fn due(&mut self, now: &Now<'_>) -> Option<ScheduledStep> {
         let mut due = None;
         while let Some(next) = self.first().filter(|next| now.late_secs(next) >= 0.0) {
             due = Some(*next);
@@ -174,7 +174,7 @@ impl Led {
             if steps == 0 {
                 return Some(next.step(natural, walker, now));
             }
-            // It came too late to be taken: what the walker is off by now, the next step makes good.
+            // It came too late to be taken: the next step corrects the walker's error.
             if steps == -1
                 && let Some(own) = walker.start_from_aim()
             {
@@ -211,7 +211,7 @@ impl Led {
             self.made = self.take();
             if !next.controls.is_standing() {
                 self.rested_secs = 0.0;
-                // Whoever stands can go off with either foot.
+                // A standing walker can begin with either foot.
                 return Some(next.step(next.number, walker, now));
             }
         }
@@ -236,14 +236,14 @@ impl Led {
         })
     }
 
-    /// Share by which the walk has to go faster to be in time.
+    /// Share by which the walk has to speed up to be in time.
     pub(super) fn haste(&self, walker: &CrowdWalker, now: &Now<'_>) -> f64 {
         if walker.is_standing() {
             return 0.0;
         }
         let passed_secs = walker.secs_of_step();
         let step_secs = passed_secs + walker.secs_to_next_step();
-        let late_secs = |step: &Planning| {
+        let late_secs = |step: &ScheduledStep| {
             let ahead = step.number.wrapping_sub(walker.number()).cast_signed();
             let begins_secs = f32::from(ahead) * step_secs - passed_secs;
             let own_secs = now.start.size.sqrt() * begins_secs;
@@ -254,7 +254,7 @@ impl Led {
         (late_secs / IN_TIME_SECS).clamp(-MOST_HASTE, MOST_HASTE)
     }
 
-    /// Returns true when a walker is too far from where it should be to walk there.
+    /// Returns true if a walker is too far from its place to walk there.
     pub(super) fn loses(&self, walker: &CrowdWalker, now: &Now<'_>) -> bool {
         let late = self
             .first()
@@ -275,8 +275,8 @@ impl Led {
     }
 }
 
-impl Planning {
-    /// The step as it is taken, by another number where feet ask for that.
+impl ScheduledStep {
+    /// The step for the walker, under another number if the feet require one.
     fn step(&self, number: u16, walker: &CrowdWalker, now: &Now<'_>) -> LedStep {
         let aim = now.start.local(&self.aim);
         let mut controls = self.controls;
@@ -298,7 +298,7 @@ impl Planning {
     }
 }
 
-/// The moment in which a walker is led.
+/// Time and place of a walker in one frame.
 pub(super) struct Now<'a> {
     pub(super) secs: f64,
     pub(super) dt_secs: f32,
@@ -308,8 +308,8 @@ pub(super) struct Now<'a> {
 }
 
 impl Now<'_> {
-    /// Seconds since a step was due.
-    pub(super) fn late_secs(&self, step: &Planning) -> f64 {
+    /// Time since a step was due, seconds.
+    pub(super) fn late_secs(&self, step: &ScheduledStep) -> f64 {
         self.secs - self.following.due_secs(step.at_secs)
     }
 }

@@ -1,9 +1,9 @@
-//! Messages about a crowd: what kind they are of, and whose crowd they are about.
+//! Header of messages about a crowd: kind and session.
 //!
 //! | bytes | content |
 //! | --- | --- |
 //! | 0 | format (upper half), kind (lower half) |
-//! | 1–2 | session: another when the crowd was made anew |
+//! | 1–2 | session: another number when the crowd was created again |
 //!
 //! Steps go on with the sender's time (2 bytes, 4 ms) and 19 bytes each; people with the fingerprint of model and styles (4), the sender's time, and one after the
 //! other in `postcard`; those who left with four bytes each, their names.
@@ -13,10 +13,10 @@ use super::CrowdReplicaError;
 /// Format that this build writes and reads.
 pub(super) const FORMAT: u8 = 1;
 
-/// Length of what every message begins with.
+/// Length of the header.
 pub(super) const HEAD_BYTES: usize = 3;
 
-/// Messages are no longer, so that networks pass them on in one piece.
+/// Greatest length of a message, so that networks pass it on in one packet.
 pub(super) const MOST_BYTES: usize = 1200;
 
 /// Kinds of messages.
@@ -27,12 +27,12 @@ pub(super) enum Kind {
     Left = 2,
 }
 
-/// A message about a crowd, to be passed on as it is.
+/// A message about a crowd, to be passed on unchanged.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CrowdMessage {
-    /// The peer that it is for; `None` is everybody who was [introduced](super::CrowdSender::join).
+    /// Recipient; `None` for all peers that have [joined](super::CrowdSender::join).
     pub to: Option<i32>,
-    /// True where it has to arrive, and after those before it; steps may be lost, late, twice and in any order.
+    /// True if it must arrive, in order; messages about steps may be lost, late, repeated and in any order.
     pub reliable: bool,
     /// The message, at most 1200 bytes.
     pub bytes: Vec<u8>,

@@ -1,56 +1,56 @@
-//! Messages about a crowd to others.
+//! Sender of a crowd: the messages from which peers show the same crowd.
 
 use super::message::{self, CrowdMessage, HEAD_BYTES, Kind, MOST_BYTES};
+use super::pending::PendingStep;
 use super::person::Person;
 use super::step::STEP_BYTES;
-use super::untold::Untold;
 use crate::crowd::Crowd;
 use footfall_synth::replica::ReplicaClock;
 use std::collections::VecDeque;
 
-/// Interval between messages about steps, seconds, and the longest without any.
+/// Interval between messages about steps, seconds, and the longest time without one.
 const INTERVAL_SECS: f32 = 1.0 / 30.0;
 const SILENT_SECS: f32 = 0.2;
 
-/// Bytes that were not sent are saved up for so long, seconds.
+/// Time for which unused bytes of the budget accumulate, seconds.
 const SAVED_SECS: f32 = 0.25;
 
-/// Whoever asks again to be told everything waits so long, seconds.
+/// Shortest time between two introductions of the whole crowd to one peer, seconds.
 const ASKED_SECS: f32 = 1.0;
 
-/// Looks are looked at anew in every so many frames.
+/// Number of frames in which the looks of all walkers are compared once.
 const LOOKS_EVERY: usize = 32;
 
 /// Length of a message about steps before the first of them.
 const STEPS_AT: usize = HEAD_BYTES + 2;
 
-/// Names in a message about those who left.
+/// Names in a message about walkers that left.
 const NAMES: usize = (MOST_BYTES - HEAD_BYTES) / 4;
 
-/// A peer that is told.
+/// A peer that follows the crowd.
 #[derive(Debug)]
 struct Peer {
     number: i32,
-    /// Names of those to be introduced.
+    /// Names of walkers that are still to be introduced.
     unknown: VecDeque<i32>,
     /// True until the first message to it.
     is_new: bool,
     asked_secs: f32,
-    /// Bytes that may be spent on it.
+    /// Bytes of the budget that are left for it.
     left: f32,
 }
 
-/// Teller of a crowd: it makes the messages from which others show the same one. As long as nobody has joined it does nothing.
+/// Makes the messages from which peers show the same crowd. Without peers it does nothing.
 #[derive(Debug)]
 pub struct CrowdSender {
     session: u16,
     fingerprint: Option<u32>,
-    rows: Vec<Untold>,
+    rows: Vec<PendingStep>,
     peers: Vec<Peer>,
     messages: Vec<CrowdMessage>,
-    /// Messages that count; the others are kept for their memory.
+    /// Number of messages of this frame; the others are kept for their memory.
     count: usize,
-    /// Worth of telling each row, for their memory.
+    /// Rows by the error that sending them removes, kept for its memory.
     order: Vec<(f32, u32)>,
     left: f32,
     since_secs: f32,
@@ -58,7 +58,7 @@ pub struct CrowdSender {
 }
 
 impl CrowdSender {
-    /// A teller; a crowd that was made anew has another session than the one before.
+    /// Creates a sender. Give a crowd that was created again another session number.
     pub const fn new(session: u16) -> Self {
         Self {
             session,
@@ -74,7 +74,7 @@ impl CrowdSender {
         }
     }
 
-    /// Has a peer told everything from now on: first who is there, at the pace of the budget, some 40 bytes each. Who asks again is told again, once a second.
+    /// Sends the crowd to a peer from now on: first its walkers, about 40 bytes each, as fast as the budget allows. A repeated call introduces them again, at most once a second.
     pub fn join(&mut self, peer: i32) {
         let at = self.peers.iter().position(|other| other.number == peer);
         let at = at.unwrap_or_else(|| {
@@ -92,25 +92,25 @@ impl CrowdSender {
             peer.asked_secs = 0.0;
             peer.is_new = true;
             peer.unknown.clear();
-            // Others are noticed with the next step.
+            // Walkers without a row yet are added by the next step.
             let known = self.rows.iter().map(|row| row.name);
             peer.unknown
-                .extend(known.filter(|name| *name != Untold::NOBODY.name));
+                .extend(known.filter(|name| *name != PendingStep::NOBODY.name));
         }
     }
 
-    /// Has a peer told no more.
+    /// Stops sending to a peer.
     pub fn leave(&mut self, peer: i32) {
         self.peers.retain(|other| other.number != peer);
     }
 
-    /// The peers that are told.
+    /// Returns the peers that follow the crowd.
     pub fn peers(&self) -> impl Iterator<Item = i32> {
         self.peers.iter().map(|peer| peer.number)
     }
 
-    /// Makes this frame's [`messages`](Self::messages), after the crowd has moved: at most so many bytes a second about steps, and as many to each peer that has
-    /// people to be introduced to. Walkers must not [share](Crowd::repeats) steps; those who still do are introduced with their first own step.
+    /// Makes this frame's [`messages`](Self::messages), after the crowd has moved: at most `bytes_per_second` about steps, and as many for introductions to each peer.
+    /// Walkers must not [share](Crowd::repeats) steps; one that still does is introduced with its first own step.
     pub fn step(&mut self, dt_secs: f32, crowd: &Crowd, bytes_per_second: u32) {
         self.count = 0;
         if self.peers.is_empty() {
@@ -130,20 +130,20 @@ impl CrowdSender {
             peer.asked_secs += dt_secs;
             peer.left = (peer.left + more).min(most);
         }
-        self.see_who_is_there(crowd);
-        self.see_steps(dt_secs, crowd);
+        self.find_changes(crowd);
+        self.find_steps(dt_secs, crowd);
         self.introduce(crowd);
         if self.since_secs >= INTERVAL_SECS {
-            self.tell_steps(crowd);
+            self.send_steps(crowd);
         }
     }
 
-    /// The messages of the last [`step`](Self::step), in the order in which they are to be sent.
+    /// Returns the messages of the last [`step`](Self::step), in the order in which they must be sent.
     pub fn messages(&self) -> &[CrowdMessage] {
         &self.messages[..self.count]
     }
 
-    /// The next message, to be written; its memory is used again.
+    /// The next message to be written, in reused memory.
     fn message(&mut self, to: Option<i32>, kind: Kind) -> &mut Vec<u8> {
         if self.count == self.messages.len() {
             self.messages.push(CrowdMessage::default());
@@ -156,18 +156,18 @@ impl CrowdSender {
         &mut message.bytes
     }
 
-    /// Notices who came, left, or looks otherwise.
-    fn see_who_is_there(&mut self, crowd: &Crowd) {
+    /// Finds walkers that came, left, or changed their looks.
+    fn find_changes(&mut self, crowd: &Crowd) {
         let agents = crowd.agents();
-        self.rows.resize(agents.len(), Untold::NOBODY);
+        self.rows.resize(agents.len(), PendingStep::NOBODY);
         let mut left = Vec::new();
         for (index, (row, agent)) in self.rows.iter_mut().zip(agents).enumerate() {
             let name = crowd.roster().name(index);
             let there = crowd.roster().place(name).is_some();
             let same = there && row.name == name;
-            if row.name != Untold::NOBODY.name && !same {
+            if row.name != PendingStep::NOBODY.name && !same {
                 left.push(row.name);
-                *row = Untold::NOBODY;
+                *row = PendingStep::NOBODY;
             }
             let due = index % LOOKS_EVERY == self.frame % LOOKS_EVERY;
             if !agent.takes_own_steps() || !there || (same && !due) {
@@ -175,7 +175,7 @@ impl CrowdSender {
             }
             let look = Person::look(agent);
             if !same {
-                *row = Untold::somebody(name, look);
+                *row = PendingStep::somebody(name, look);
             } else if row.look == look {
                 continue;
             }
@@ -190,20 +190,20 @@ impl CrowdSender {
         }
     }
 
-    /// Notices which steps are new.
-    fn see_steps(&mut self, dt_secs: f32, crowd: &Crowd) {
+    /// Finds new steps.
+    fn find_steps(&mut self, dt_secs: f32, crowd: &Crowd) {
         for (index, row) in self.rows.iter_mut().enumerate() {
-            if row.name == Untold::NOBODY.name {
+            if row.name == PendingStep::NOBODY.name {
                 continue;
             }
             row.pass(dt_secs);
-            if let Some(step) = crowd.agents()[index].told(row.name, crowd.time_secs) {
-                row.look_at(&step);
+            if let Some(step) = crowd.agents()[index].step_update(row.name, crowd.time_secs) {
+                row.observe(&step);
             }
         }
     }
 
-    /// Introduces walkers to peers who do not know them.
+    /// Introduces walkers to peers that do not know them.
     fn introduce(&mut self, crowd: &Crowd) {
         let ticks = ReplicaClock::ticks(crowd.time_secs);
         let mut peers = core::mem::take(&mut self.peers);
@@ -232,8 +232,8 @@ impl CrowdSender {
         self.peers = peers;
     }
 
-    /// Writes of steps, as many as the budget allows, the most worthwhile first.
-    fn tell_steps(&mut self, crowd: &Crowd) {
+    /// Sends steps, as many as the budget allows, those with the largest errors first.
+    fn send_steps(&mut self, crowd: &Crowd) {
         let mut order = core::mem::take(&mut self.order);
         order.clear();
         let rows = self.rows.iter().enumerate();
@@ -253,19 +253,19 @@ impl CrowdSender {
         let mut first = is_due;
         while first || !rest.is_empty() {
             first = false;
-            let (told, later) = rest.split_at(rest.len().min((MOST_BYTES - STEPS_AT) / STEP_BYTES));
+            let (sent, later) = rest.split_at(rest.len().min((MOST_BYTES - STEPS_AT) / STEP_BYTES));
             rest = later;
-            for (_, index) in told {
-                self.rows[*index as usize].tell();
+            for (_, index) in sent {
+                self.rows[*index as usize].mark_sent();
             }
             let ticks = ReplicaClock::ticks(crowd.time_secs);
             let bytes = self.message(None, Kind::Steps);
             bytes.extend(ticks.to_le_bytes());
-            for (_, index) in told {
+            for (_, index) in sent {
                 let index = *index as usize;
                 let name = crowd.roster().name(index);
-                let step = crowd.agents()[index].told(name, crowd.time_secs);
-                // Who is farther away than can be told is not.
+                let step = crowd.agents()[index].step_update(name, crowd.time_secs);
+                // A walker beyond the range of the format is left out.
                 bytes.extend(step.and_then(|step| step.pack()).iter().flatten());
             }
             let length = bytes.len();
@@ -275,9 +275,9 @@ impl CrowdSender {
     }
 }
 
-/// Introduction of a walker who is there and can be told of.
+/// Introduction of a walker, if it is in the crowd, takes its own steps and is within the range of the format.
 fn introduction(name: i32, crowd: &Crowd) -> Option<Person> {
     let agent = &crowd.agents()[crowd.roster().place(name)?];
-    let step = agent.told(name, crowd.time_secs)?.pack()?;
+    let step = agent.step_update(name, crowd.time_secs)?.pack()?;
     Some(Person::of(name, agent, step))
 }

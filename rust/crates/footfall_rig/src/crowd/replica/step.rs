@@ -1,8 +1,8 @@
-//! The form in which a walker's step goes over a network.
+//! Format of a walker's step in a message.
 //!
 //! | bytes | content | unit |
 //! | --- | --- | --- |
-//! | 0–2 | row (17 bits), and the count of those who had it before (7 bits) | |
+//! | 0–2 | row (17 bits), and the count of earlier walkers in it (7 bits) | |
 //! | 3–4 | number of the step: even ones begin with the left foot's contact | |
 //! | 5 | time since it began | 1/128 s |
 //! | 6–7 | speed (12 bits); rests, runs, stops | 2 mm/s |
@@ -33,30 +33,30 @@ const PLACE_UNITS: f32 = 1000.0;
 const HEIGHT_UNITS: f32 = 50.0;
 const HEADING_UNITS: f32 = 65_536.0 / TAU;
 
-/// Places go as far as this, in their units.
+/// Range of places, in their units.
 const MOST_PLACE: f32 = 8_388_607.0;
 const MOST_HEIGHT: f32 = 32_767.0;
 
-/// Slowest speed of who goes anywhere, m/s: less would be standing. Turns from this on are none of a stand, rad/s.
+/// Lowest speed of a moving walker, m/s; less would be standing. Lowest turn rate of a moving walker, rad/s.
 const LEAST_MPS: f32 = 0.1;
 const TURNS_RADPS: f32 = 0.05;
 
 /// A step that a walker takes, or the place where it rests.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ToldStep {
+pub(super) struct StepUpdate {
     pub(super) row: u32,
-    /// Turn of who has it, as much of it as is told.
+    /// Count of earlier walkers in the row, as far as it is sent.
     pub(super) turn: u8,
     pub(super) number: u16,
     pub(super) age_secs: f32,
-    /// Controls that it obeys; the gait is the one it has.
+    /// Controls of the step, with its gait.
     pub(super) controls: Controls,
     pub(super) rests: bool,
-    /// Place of the foot that lands, or of who rests, under the walker's heading then, in the crowd's space.
+    /// Place of the landing foot, or of the resting walker, with the walker's heading there, in the crowd's space.
     pub(super) aim: GroundTransform,
 }
 
-impl ToldStep {
+impl StepUpdate {
     /// Row and turn of a name.
     pub(super) const fn row_and_turn(name: i32) -> (u32, u8) {
         let name = name.cast_unsigned();
@@ -64,12 +64,12 @@ impl ToldStep {
         (name % (1 << ROW_BITS), turn as u8)
     }
 
-    /// Packs it; nothing where its place is farther from the origin than can be told: 8.3 km, and 655 m up or down.
+    /// Packs the step; `None` if its place is out of range: 8.3 km from the origin, or 655 m above or below it.
     pub(super) fn pack(&self) -> Option<[u8; STEP_BYTES]> {
         let place = self.aim.position;
         let [x, z] = [place.x, place.z].map(|part| (PLACE_UNITS * part).round());
         let height = (HEIGHT_UNITS * place.y).round();
-        // What is not a number is within no range.
+        // NaN is within no range.
         let fits = x.abs() <= MOST_PLACE && z.abs() <= MOST_PLACE && height.abs() <= MOST_HEIGHT;
         if !fits || !self.aim.heading.is_finite() {
             return None;
@@ -100,7 +100,7 @@ impl ToldStep {
         Some(bytes)
     }
 
-    /// Unpacks it. All bytes are a step.
+    /// Unpacks a step. Any bytes give one.
     pub(super) fn unpack(bytes: &[u8; STEP_BYTES]) -> Self {
         let short = |at: usize| u16::from_le_bytes([bytes[at], bytes[at + 1]]);
         let place = |at: usize| {
@@ -112,7 +112,7 @@ impl ToldStep {
         let has = |bit: u16| speed & bit != 0;
         let stops = has(STOPS);
         let turn_rate_radps = f32::from(bytes[8].cast_signed()) / TURN_UNITS;
-        // Who goes slowly does not stand for being rounded.
+        // Rounding must not make a slow walker stand.
         let least = if turn_rate_radps.abs() < TURNS_RADPS {
             LEAST_MPS
         } else {

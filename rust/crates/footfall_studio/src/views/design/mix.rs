@@ -3,7 +3,7 @@
 mod pad;
 
 use crate::palette;
-use crate::scene::{Body, Look, Scene, SceneView};
+use crate::scene::{Body, BodyPaint, Scene, SceneView};
 use crate::shell::{Purpose, Shell};
 use eframe::egui::{Align2, Color32, FontId, Panel, Pos2, Sense, Slider, Stroke, Ui, Vec2, vec2};
 use footfall_core::rotation::from_heading;
@@ -160,7 +160,7 @@ impl MixPage {
             bodies: vec![Body {
                 skeleton: &skeleton,
                 pose,
-                look: Look::Solid,
+                look: BodyPaint::Solid,
             }],
             ..Scene::default()
         };

@@ -18,7 +18,7 @@ const LABEL_WIDTH: f32 = 86.0;
 const ROW: f32 = 26.0;
 const GAP: f32 = 6.0;
 
-/// An end of a stance is taken hold of so near, points.
+/// Distance at which the pointer grabs an end of a stance, points.
 const GRIP: f32 = 8.0;
 
 /// The shortest stretch that can be zoomed to, seconds.

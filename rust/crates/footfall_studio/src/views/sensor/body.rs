@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Length of the recording that is kept for finding the mounting, seconds.
 const REMEMBERED_SECS: f64 = 8.0;
 
-/// The mounting is looked for when so much was heard.
+/// Length of the measurement after which the mounting is estimated.
 const LEAST_SECS: f64 = 6.0;
 
 /// Less certain than this, the mounting is looked for again.

@@ -11,7 +11,7 @@ use footfall_imu::live::{Device, Link, LinkState};
 use footfall_imu::{ImuRecording, ImuSample, csv};
 use std::path::Path;
 
-/// A device is silent when nothing was heard for so long, seconds.
+/// Time without samples after which a device counts as silent, seconds.
 const SILENT_SECS: f64 = 0.5;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -12,7 +12,7 @@ use glam::Vec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Bodies are looked at so many times a second: between frames they go on evenly.
+/// Rate at which bodies are sampled, hertz: they are interpolated between frames.
 const LOOK_RATE_HZ: f64 = 100.0;
 
 /// Contact of one foot of a body, on the recording's clock.
@@ -24,7 +24,7 @@ pub(super) struct BodyEvent {
 }
 
 /// Contacts of both feet, from a recording of a sensor on one.
-pub(super) struct Told {
+pub(super) struct SensorEvents {
     /// Swings of the foot that wears it, as samples come.
     pub(super) swings: Vec<Swing>,
     /// Contacts of the body, live and with what comes later.
@@ -70,7 +70,7 @@ impl Bodies {
         path: &Path,
         recording: &ImuRecording,
         foot: Side,
-    ) -> Result<Told, ContactsError> {
+    ) -> Result<SensorEvents, ContactsError> {
         let mirrored = foot != self.worn;
         let recording = if mirrored {
             mirrored_recording(recording)
@@ -104,7 +104,7 @@ impl Bodies {
             });
             Ok(events.collect())
         };
-        Ok(Told {
+        Ok(SensorEvents {
             swings: ContactMeter::swings_of(&turned[0]),
             live: body(true)?,
             whole: body(false)?,

@@ -4,7 +4,7 @@ use super::Agreement;
 use super::people::mean_and_worst_f1;
 use std::collections::BTreeMap;
 
-/// Limits, and how everybody fares under them.
+/// Limits, and the agreement of all people under them.
 pub(super) type Trial<L, P> = (L, BTreeMap<String, P>);
 
 /// The trial with the greatest mean F1 of all people but one, each of their agreements counting once; of equal ones the first.
@@ -27,7 +27,7 @@ pub(super) fn best_without<'a, L, P>(
 mod tests {
     use super::*;
 
-    /// Ten events, so many of which are found.
+    /// Ten events, this many of which are found.
     fn agreement(matched: usize) -> Agreement {
         let known: Vec<f64> = (0..10).map(f64::from).collect();
         let found = known[..matched].to_vec();

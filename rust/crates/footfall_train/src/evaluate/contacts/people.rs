@@ -53,7 +53,7 @@ pub struct Person {
 
 type People = BTreeMap<String, Person>;
 
-/// Judges everybody in the recordings.
+/// Judges all people in the recordings.
 pub(super) fn judge(
     clips: &[Recording],
     tolerance_ms: f64,
@@ -96,7 +96,7 @@ pub(super) fn judge(
     Ok(people)
 }
 
-/// Contacts of everybody under some limits.
+/// Contacts of all people under some limits.
 fn with_limits(clips: &[Recording], published: &[PublishedEvents], limits: Limits) -> People {
     let mut people = People::new();
     for (clip, published) in clips.iter().zip(published) {
@@ -140,7 +140,7 @@ fn with_limits(clips: &[Recording], published: &[PublishedEvents], limits: Limit
     people
 }
 
-/// Mean and least F1 over those agreements that know enough events to tell; `None` without any.
+/// Mean and least F1 over those agreements with enough events; `None` without any.
 pub fn mean_and_worst_f1<'a>(agreements: impl Iterator<Item = &'a Agreement>) -> Option<[f64; 2]> {
     let telling = agreements.filter(|agreement| agreement.known >= LEAST_EVENTS);
     let f1: Vec<f64> = telling.map(|agreement| agreement.f1).collect();

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Events so far outside of the known ones are not judged, seconds: the reference may not have looked there.
+/// Time outside of the known events beyond which events are not judged, seconds: the reference may not cover it.
 const MARGIN_SECS: f64 = 0.2;
 
 /// The column that names a recording's events.
@@ -32,7 +32,7 @@ struct Events {
 #[derive(Deserialize)]
 struct Event {
     time_s: f64,
-    /// Of the foot that wears the sensor when absent.
+    /// The foot that wears the sensor if absent.
     foot: Option<String>,
     kind: String,
 }
@@ -69,15 +69,15 @@ pub(super) fn compare(
             ("swings", worn, swings.collect()),
         ];
         if let Some(bodies) = bodies {
-            let told = bodies.events(&row.path, &recording, worn)?;
-            let swings = events_of(&told.swings).into_iter();
+            let found = bodies.events(&row.path, &recording, worn)?;
+            let swings = events_of(&found.swings).into_iter();
             let swings = swings.map(|event| (event.time_secs, event.kind));
             detectors.push(("swings as they come", worn, swings.collect()));
             for (name, side, found) in [
-                ("body live", worn, &told.live),
-                ("body whole", worn, &told.whole),
-                ("other foot live", worn.other(), &told.live),
-                ("other foot whole", worn.other(), &told.whole),
+                ("body live", worn, &found.live),
+                ("body whole", worn, &found.whole),
+                ("other foot live", worn.other(), &found.live),
+                ("other foot whole", worn.other(), &found.whole),
             ] {
                 let own = found.iter().filter(|event| event.side == side);
                 let own = own.map(|event| (event.time_secs, event.kind));

@@ -22,7 +22,7 @@ pub struct SwitchLimits {
 
 type People = BTreeMap<String, Agreement>;
 
-/// Judges the switches of everybody in the recordings; the limits are absent where nobody is left out.
+/// Judges the switches of all people in the recordings; the limits are absent if no person is left out.
 pub(super) fn judge(
     clips: &[Recording],
     tolerance_ms: f64,

@@ -14,7 +14,7 @@ pub struct ImuFigures {
     pub recordings: usize,
     /// Number of their frames.
     pub frames: usize,
-    /// Those in which the body moves.
+    /// Number of frames in which the body moves.
     pub moving_frames: usize,
     /// Distance as a game shows it.
     pub live_cm: f64,
@@ -44,7 +44,7 @@ pub struct ImuFigures {
     pub median_delay_s: Option<f64>,
     /// Median bend of the knees while the body stands, degrees: recorded, and live.
     pub standing_knee_deg: Option<[f32; 2]>,
-    /// Of the frames of each behaviour, the share that is recognised live as each.
+    /// Share of the frames of each behaviour that is recognised live as each behaviour.
     pub confusion: BTreeMap<&'static str, BTreeMap<&'static str, f64>>,
 }
 

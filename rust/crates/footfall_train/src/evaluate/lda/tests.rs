@@ -1,4 +1,4 @@
-//! Against Bayes' rule with dense Gaussians, and on data that can and cannot be told apart.
+//! Against Bayes' rule with dense Gaussians, and on data that is separable and not separable.
 
 use super::*;
 use proptest::prelude::*;

@@ -13,7 +13,7 @@ const SEED_FOLDS: usize = 8;
 /// Number of divisions of people into two halves.
 const DIVISIONS: u64 = 8;
 
-/// A stride of somebody.
+/// A stride of one person or walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// Whose it is: a number for each person or seed.

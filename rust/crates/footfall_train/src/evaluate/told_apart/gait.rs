@@ -8,7 +8,7 @@ use footfall_core::Clip;
 use footfall_motion::steps::Walk;
 use rayon::prelude::*;
 
-/// Measures of everybody's bouts.
+/// Measures of all bouts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GaitMeasures {
     /// Every bout.

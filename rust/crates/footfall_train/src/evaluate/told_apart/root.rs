@@ -10,9 +10,9 @@ const HIGHEST: usize = 8;
 /// together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RootHarmonics {
-    /// Of the hips' velocity along the stride, m/s. The first is a limp, the last a surge.
+    /// Amplitudes of the hips' velocity along the stride, m/s. The first is a limp, the last a surge.
     pub speed_mps: [f64; 3],
-    /// Of the hips' height, metres. The second is the bob.
+    /// Amplitudes of the hips' height, metres. The second is the bob.
     pub height_m: [f64; 3],
 }
 

@@ -48,7 +48,7 @@ const RUNNING_FOOT: Vec3 = Vec3::new(
     core::f32::consts::FRAC_1_SQRT_2,
 );
 
-/// The line that stands for each part, from one joint to another, and where it points on somebody who stands with hanging arms.
+/// The line of each part, from one joint to another, and its direction on a standing body with hanging arms.
 /// The head's line ends at its top.
 const LINES: [(Joint, Option<Joint>, Vec3); PART_COUNT] = [
     (Joint::RightUpperLeg, Some(Joint::LeftUpperLeg), Vec3::X),

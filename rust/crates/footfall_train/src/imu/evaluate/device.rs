@@ -41,7 +41,7 @@ impl Device {
         }
     }
 
-    /// A sample as the device tells it.
+    /// A sample as the device reports it.
     fn round(self, sample: ImuSample) -> ImuSample {
         let to_steps = |value: Vec3, step: f32| (value / step).round() * step;
         match self {
@@ -66,10 +66,14 @@ mod tests {
             force: Vec3::new(9.84, -0.06, 0.0),
             rate: Vec3::new(0.0, 1.26_f32.to_radians(), -0.04_f32.to_radians()),
         };
-        let told = Device::Phone.round(sample);
-        assert!(told.force.abs_diff_eq(Vec3::new(9.8, -0.1, 0.0), 1e-5));
+        let reported = Device::Phone.round(sample);
+        assert!(reported.force.abs_diff_eq(Vec3::new(9.8, -0.1, 0.0), 1e-5));
         let expected = Vec3::new(0.0, 1.3_f32.to_radians(), 0.0);
-        assert!(told.rate.abs_diff_eq(expected, 1e-5), "{}", told.rate);
+        assert!(
+            reported.rate.abs_diff_eq(expected, 1e-5),
+            "{}",
+            reported.rate
+        );
         assert_eq!(Device::Board.round(sample), sample);
     }
 }

@@ -36,7 +36,7 @@ const GROUPS: usize = 4;
 /// Pairs of moments of which the one is taken at which the sensor lies most alike.
 const PAIRS: usize = 400;
 
-/// Either motion lasts so long before or after the change, seconds.
+/// Duration of either motion before and after the change, seconds.
 const LEAST_SECS: f64 = 0.7;
 
 /// Time round the change in which bodies are looked at, seconds: what is shown follows what is measured.

@@ -42,7 +42,7 @@ pub(super) fn table(report: &ContactsReport) -> String {
     lines.join("\n")
 }
 
-/// Everybody in a line, then the mean and the worst.
+/// A line for each person, then the mean and the worst.
 fn people_table(people: &People, tolerance_ms: f64) -> Vec<String> {
     if people.is_empty() {
         return Vec::new();

@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
 const RATE_HZ: f64 = 60.0;
-/// A walker has come to what it was asked for first after so long, and is watched for so long then, seconds.
+/// Time until a walker has reached its first request, and time of observation after that, seconds.
 const BEFORE_SECS: f64 = 3.0;
 const AFTER_SECS: f64 = 5.0;
 /// Walkers are asked at moments of their stride that differ by this, seconds.
@@ -97,7 +97,7 @@ pub(super) struct Trial {
     pub(super) accelerations: Vec<f32>,
 }
 
-/// Lets walkers take a course.
+/// Runs walkers through a course.
 pub(super) fn run_course(
     model: &Arc<GaitModel>,
     course: &Course,
@@ -167,7 +167,7 @@ fn run_trial(
     })
 }
 
-/// The share of its speed at which somebody goes who has yet to turn so far: nobody keeps all of it who turns back.
+/// Share of the speed that a walker keeps with this much still to turn: a walker that turns back slows down.
 fn pace(left: f32) -> f32 {
     let [full, slow] = SLOWS_RAD;
     let share = (left.abs() - full) / (slow - full);

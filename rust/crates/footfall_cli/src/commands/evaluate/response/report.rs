@@ -18,7 +18,7 @@ pub(crate) struct Report {
 struct Row {
     course: &'static str,
     walkers: usize,
-    /// Those that never came to what was asked for.
+    /// Number of walks that never reached the request.
     never: usize,
     asked_s: Option<[f64; 2]>,
     moved_s: Option<[f64; 2]>,

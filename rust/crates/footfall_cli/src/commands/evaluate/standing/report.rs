@@ -33,7 +33,7 @@ struct Measures {
     head_speed_cm_s: f64,
     knee_tenth_deg: f64,
     knee_ninetieth_deg: f64,
-    /// Greatest correlation of the head's way with itself 20 seconds or more before; nothing where nobody stands so long.
+    /// Greatest autocorrelation of the head's path at lags of 20 seconds or more; `None` if nobody stands that long.
     return_correlation: Option<f64>,
 }
 
@@ -75,7 +75,7 @@ impl Measures {
         }
     }
 
-    /// Each measure made of everybody's.
+    /// Each measure, combined from all people.
     fn made(people: &[Person], of: fn(&[f64]) -> f64) -> Self {
         let all: Vec<Self> = people
             .iter()

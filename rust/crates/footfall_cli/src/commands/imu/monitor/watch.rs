@@ -8,10 +8,10 @@ use footfall_imu::live::{Device, Link};
 use glam::Vec3;
 use serde::Serialize;
 
-/// Weight of a new sample in the mean force, whose direction tells the axis that points up.
+/// Weight of a new sample in the mean force, whose direction gives the axis that points up.
 const MEAN_GAIN: f32 = 0.02;
 
-/// A device is silent when nothing was heard for so long, seconds.
+/// Time without samples after which a device counts as silent, seconds.
 const SILENT_SECS: f64 = 0.5;
 
 /// Report that is printed as JSON.

@@ -117,7 +117,7 @@ impl ForceUnit {
             ..3.0 => Self::G,
             300.0..3000.0 => Self::MilliG,
             10_000.0..25_000.0 => Self::Counts,
-            // What is none of them is told to the person as a fault.
+            // Anything else is reported as a fault.
             _ => Self::MetrePerSecondSquared,
         }
     }

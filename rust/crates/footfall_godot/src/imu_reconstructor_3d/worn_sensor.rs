@@ -1,6 +1,6 @@
-//! One sensor as it is worn: what is heard of it, and how its axes lie.
+//! One worn sensor: its samples and its mounting.
 
-use crate::imu_source::Heard;
+use crate::imu_source::SourceSamples;
 use footfall_imu::live::Device;
 use footfall_imu::live::device::now_secs;
 use footfall_imu::live::recorder::Recorder;
@@ -12,48 +12,48 @@ use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
-/// Samples that are kept to find the mounting from, seconds.
+/// Samples that are window to find the mounting from, seconds.
 const KEPT_SECS: f64 = 8.0;
 
-/// The mounting is looked for when so much was measured since the last time, seconds: the first time sooner.
+/// Length of the measurement before the mounting is estimated for the first time, and before each further time, seconds.
 const FIRST_SECS: f64 = 4.0;
 const AGAIN_SECS: f64 = 12.0;
 
-/// Most samples that are kept.
+/// Most samples that are window.
 const MOST_SAMPLES: usize = 4096;
 
 /// A sensor of one character.
 #[derive(Debug, Default)]
-pub(super) struct Worn {
+pub(super) struct WornSensor {
     replay: Option<Replay>,
     device: Option<Device>,
-    /// When the newest sample of a live sensor was measured, by our clock.
+    /// Time of a live sensor's newest sample, by our clock.
     live_secs: Option<f64>,
     tracked: Tracked,
     recorder: Option<Recorder>,
-    kept: Kept,
+    window: SampleWindow,
     looked_at_secs: Option<f64>,
-    /// The thread that looks, and whether it was asked to.
-    worker: Option<(JoinHandle<Look>, bool)>,
-    /// The best that was found, or the one that was calibrated.
+    /// The thread that estimates the mounting, and whether the calibration asked for it.
+    worker: Option<(JoinHandle<Outcome>, bool)>,
+    /// The best estimate so far, or the calibrated mounting.
     pub(super) mounting: Option<Mounting>,
-    /// True when the mounting is a calibration's, which nothing replaces.
+    /// True if the mounting comes from a calibration, which nothing replaces.
     calibrated: bool,
 }
 
-/// Result of a thread's look at the last samples: nothing when there was too little motion.
-type Look = Option<(Examination, Option<Rest>)>;
+/// Result of an estimate from the last samples; `None` if there was too little motion.
+type Outcome = Option<(Examination, Option<Rest>)>;
 
-/// News about how a sensor is worn.
+/// Result of an estimate of the mounting.
 #[derive(Debug, Default)]
-pub(super) struct Seen {
-    /// True for a look that was asked for, which saw all that was measured by then.
+pub(super) struct MountingReport {
+    /// True for an estimate that the calibration asked for, which includes all samples up to then.
     pub(super) asked: bool,
     /// A mounting to take over.
     pub(super) mounting: Option<Mounting>,
     /// Measurement at rest.
     pub(super) rest: Option<Rest>,
-    /// Problem with how it is worn.
+    /// Problem with the mounting.
     pub(super) finding: Option<SensorProblem>,
 }
 
@@ -67,9 +67,9 @@ struct Tracked {
 
 /// The last samples of a sensor, whose times rise.
 #[derive(Debug, Default)]
-struct Kept(Vec<ImuSample>);
+struct SampleWindow(Vec<ImuSample>);
 
-impl Kept {
+impl SampleWindow {
     fn push(&mut self, sample: ImuSample) {
         let since = sample.time_secs - KEPT_SECS;
         if self.0.len() == MOST_SAMPLES
@@ -105,7 +105,7 @@ struct Replay {
 }
 
 impl Replay {
-    /// The next sample, when its time has come.
+    /// The next sample, if it is due.
     fn next_sample(&mut self, repeats: bool) -> Option<ImuSample> {
         let samples = &self.recording.samples;
         let length = self.recording.duration_secs();
@@ -127,21 +127,26 @@ impl Replay {
     }
 }
 
-impl Worn {
-    /// Gives the samples of the time that passes, and keeps them.
-    pub(super) fn hear(&mut self, heard: Heard, dt_secs: f64, mut give: impl FnMut(ImuSample)) {
+impl WornSensor {
+    /// Passes on the samples of a frame, and keeps them.
+    pub(super) fn hear(
+        &mut self,
+        samples: SourceSamples,
+        dt_secs: f64,
+        mut give: impl FnMut(ImuSample),
+    ) {
         let mut taken = |worn: &mut Self, sample: ImuSample| {
             worn.keep(sample);
             give(sample);
         };
-        match heard {
-            Heard::Recording(recording, repeats) => {
+        match samples {
+            SourceSamples::Recording(recording, repeats) => {
                 self.play(&recording);
                 self.replay(dt_secs, repeats, taken);
             }
-            Heard::Device(device) => {
+            SourceSamples::Device(device) => {
                 if !self.device.as_ref().is_some_and(|known| known.is(&device)) {
-                    // What came while nobody listened is past.
+                    // Samples from before this node listened are dropped.
                     device.take(|_| {});
                     self.device = Some(device.clone());
                 }
@@ -150,18 +155,18 @@ impl Worn {
                     taken(self, sample);
                 });
             }
-            Heard::Now(sample) => {
+            SourceSamples::Now(sample) => {
                 self.live_secs = Some(sample.time_secs);
                 taken(self, sample);
             }
-            Heard::Pose(position, turn) => {
+            SourceSamples::Pose(position, turn) => {
                 self.tracked.played_secs += dt_secs;
                 let secs = self.tracked.played_secs;
                 if let Some(sample) = self.tracked.meter.push(secs, position, turn) {
                     taken(self, sample);
                 }
             }
-            Heard::Nothing => {}
+            SourceSamples::Nothing => {}
         }
     }
 
@@ -184,7 +189,7 @@ impl Worn {
     pub(super) fn forget_mounting(&mut self) {
         (self.mounting, self.worker, self.looked_at_secs) = (None, None, None);
         self.calibrated = false;
-        self.kept = Kept::default();
+        self.window = SampleWindow::default();
     }
 
     /// Plays a recording from its beginning, unless it plays already.
@@ -200,7 +205,7 @@ impl Worn {
         }
     }
 
-    /// Gives the recording's samples of the time that passes.
+    /// Passes on the recording's samples of a frame.
     fn replay(&mut self, dt_secs: f64, repeats: bool, mut give: impl FnMut(&mut Self, ImuSample)) {
         let Some(mut replay) = self.replay.take() else {
             return;
@@ -212,18 +217,18 @@ impl Worn {
         self.replay = Some(replay);
     }
 
-    /// Keeps a sample for finding the mounting, and for the recording.
+    /// Keeps a sample for the estimate of the mounting, and for the recording.
     pub(super) fn keep(&mut self, sample: ImuSample) {
-        self.kept.push(sample);
+        self.window.push(sample);
         if let Some(recorder) = &mut self.recorder
             && recorder.push(sample).is_err()
         {
-            // The disk is full: what was written stays, and `stop_recording` tells.
+            // The disk is full: the file keeps what was written, and `stop_recording` returns false.
             self.recorder = None;
         }
     }
 
-    /// Name of the live sensor that is heard, without the port of an address; empty for others.
+    /// Name of the live sensor, without the port of an address; empty for other sources.
     pub(super) fn device_name(&self) -> String {
         let Some(device) = &self.device else {
             return String::new();
@@ -236,7 +241,7 @@ impl Worn {
         }
     }
 
-    /// Is worn as it was calibrated.
+    /// Takes over a calibrated mounting.
     pub(super) fn calibrate(&mut self, calibrated: &CalibratedSensor) {
         self.forget_mounting();
         self.mounting = Some(Mounting {
@@ -246,26 +251,26 @@ impl Worn {
         self.calibrated = true;
     }
 
-    /// Looks for the mounting on another thread, now and then or at once if `asked` to; gives what was found, once. A mounting that was calibrated, or is said to be
-    /// `aligned`, is examined only.
+    /// Estimates the mounting on another thread, at intervals or at once if `asked` to; returns each result once. A calibrated mounting, or an
+    /// `aligned` one, is only checked.
     pub(super) fn look(
         &mut self,
         prepared: &Arc<Prepared>,
         sensor: usize,
         aligned: Option<Quat>,
         asked: bool,
-    ) -> Option<Seen> {
+    ) -> Option<MountingReport> {
         let calibrated = self.mounting.filter(|_| self.calibrated);
         let believed = aligned.or(calibrated.map(|known| known.site_from_sensor));
-        let finished = |(worker, _): &mut (JoinHandle<Look>, bool)| worker.is_finished();
+        let finished = |(worker, _): &mut (JoinHandle<Outcome>, bool)| worker.is_finished();
         if let Some((worker, asked)) = self.worker.take_if(finished) {
-            let found: Look = worker.join().ok().flatten();
+            let found: Outcome = worker.join().ok().flatten();
             let seen = self.weigh(found, believed.is_some());
-            return Some(Seen { asked, ..seen });
+            return Some(MountingReport { asked, ..seen });
         }
         let (first, last) = (
-            self.kept.0.first()?.time_secs,
-            self.kept.0.last()?.time_secs,
+            self.window.0.first()?.time_secs,
+            self.window.0.last()?.time_secs,
         );
         let due = self
             .looked_at_secs
@@ -273,7 +278,7 @@ impl Worn {
         if self.worker.is_none() && (last >= due || asked) {
             self.looked_at_secs = Some(last);
             let recording = ImuRecording {
-                samples: self.kept.0.clone(),
+                samples: self.window.0.clone(),
             };
             let prepared = Arc::clone(prepared);
             let config = TrackerConfig::default();
@@ -281,29 +286,29 @@ impl Worn {
                 let found = examine(&prepared, sensor, &recording, believed, &config).ok()?;
                 Some((found, find_rest(&recording)))
             };
-            // Without a thread the axes stay as they are; the next look may have one.
+            // Without a thread the mounting stays; the next estimate may get one.
             let thread = std::thread::Builder::new().name("footfall mounting".to_owned());
             self.worker = thread.spawn(look).ok().map(|worker| (worker, asked));
         }
         None
     }
 
-    /// Takes over what was found where it is better than what is known.
-    fn weigh(&mut self, found: Look, believed: bool) -> Seen {
+    /// Takes over an estimate that is better than the known mounting.
+    fn weigh(&mut self, found: Outcome, believed: bool) -> MountingReport {
         let Some((found, rest)) = found else {
-            return Seen::default();
+            return MountingReport::default();
         };
         let finding = found.finding;
-        // A later look replaces what is less certain.
+        // A later estimate replaces a less certain one.
         let better = |known: Mounting| found.mounting.certainty >= 0.9 * known.certainty;
         if believed || !self.mounting.is_none_or(better) {
-            return Seen {
+            return MountingReport {
                 finding,
-                ..Seen::default()
+                ..MountingReport::default()
             };
         }
         self.mounting = Some(found.mounting);
-        Seen {
+        MountingReport {
             asked: false,
             mounting: self.mounting,
             rest,

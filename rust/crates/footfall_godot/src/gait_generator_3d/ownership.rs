@@ -1,7 +1,7 @@
-//! Control of the skeleton: by the walk, by other animation, or on the way from one to the other.
+//! Ownership of the skeleton: by the walk, by other animation, or in transition.
 
 use super::GaitGenerator3D;
-use super::session::Session;
+use super::session::WalkSession;
 use crate::root_motion::frame_clock;
 use crate::travel::Travel;
 use footfall_synth::{Controls, GaitChoice};
@@ -9,19 +9,19 @@ use glam::Vec3;
 use godot::classes::Skeleton3D;
 use godot::prelude::*;
 
-/// A character whose hips are farther from where it walks is moved to them, metres: a ragdoll lies where it fell.
+/// Distance between hips and walk beyond which the character is moved to its hips, metres: a ragdoll lies where it fell.
 const FAR_M: f32 = 0.4;
-/// Longer than this nobody goes over, seconds.
+/// Longest transition, seconds.
 const MOST_SECS: f64 = 10.0;
 /// Time of the transition of a walk that was measured again, seconds.
 const RESIZE_SECS: f64 = 0.3;
 
-/// States of control of the skeleton.
+/// Owner of the skeleton.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Reign {
+pub(super) enum Ownership {
     #[default]
     Walking,
-    /// The walk gives the body away.
+    /// Other animation fades in.
     Leaving,
     /// Other animation poses the skeleton.
     Away,
@@ -29,7 +29,7 @@ pub(super) enum Reign {
 
 /// Requests that have not begun.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Wish {
+pub(super) enum Request {
     TakeOver(f64),
     HandOver(f64),
 }
@@ -44,13 +44,13 @@ impl GaitGenerator3D {
     /// `PhysicalBoneSimulator3D` must be above this node under the skeleton; the character then moves to where the body fell.
     #[func]
     fn take_over(&mut self, seconds: f64) {
-        if self.reign == Reign::Walking {
-            self.reign = Reign::Away;
+        if self.ownership == Ownership::Walking {
+            self.ownership = Ownership::Away;
             if let Some(session) = &mut self.session {
                 session.watched = super::watch::Watch::default();
             }
         }
-        self.wish = Some(Wish::TakeOver(within_reason(seconds)));
+        self.request = Some(Request::TakeOver(within_reason(seconds)));
     }
 
     /// Gives the skeleton to other animation, such as an `AnimationPlayer`: its pose fades in within `seconds`, the character comes
@@ -60,31 +60,31 @@ impl GaitGenerator3D {
     /// With 0 seconds it does nothing from the next frame on.
     #[func]
     fn hand_over(&mut self, seconds: f64) {
-        self.wish = match self.reign {
-            Reign::Walking => Some(Wish::HandOver(within_reason(seconds))),
-            Reign::Leaving | Reign::Away => None,
+        self.request = match self.ownership {
+            Ownership::Walking => Some(Request::HandOver(within_reason(seconds))),
+            Ownership::Leaving | Ownership::Away => None,
         };
     }
 
     /// Returns `true` while other animation has the skeleton: after `hand_over()`, until `take_over()`.
     #[func]
     fn is_handed_over(&self) -> bool {
-        self.reign == Reign::Away
+        self.ownership == Ownership::Away
     }
 }
 
 impl GaitGenerator3D {
-    /// Carries out what was asked for, as soon as enough is known.
+    /// Carries out a request as soon as the motion is known.
     pub(super) fn fulfil(
         &mut self,
-        session: &mut Session,
+        session: &mut WalkSession,
         skeleton: &Gd<Skeleton3D>,
         dt_secs: f64,
     ) -> Result<(), String> {
-        match (self.reign, self.wish) {
-            (Reign::Away, wish) => {
-                // Only what was shown before this frame counts: a ragdoll may just have been switched off.
-                if let Some(Wish::TakeOver(secs)) = wish
+        match (self.ownership, self.request) {
+            (Ownership::Away, request) => {
+                // Only frames before this one count: a ragdoll may just have been switched off.
+                if let Some(Request::TakeOver(secs)) = request
                     && session.watched.in_world.is_known()
                 {
                     self.begin(session, secs)?;
@@ -92,25 +92,25 @@ impl GaitGenerator3D {
                     session.watch(skeleton, dt_secs as f32);
                 }
             }
-            (Reign::Leaving, Some(Wish::TakeOver(secs))) => {
+            (Ownership::Leaving, Some(Request::TakeOver(secs))) => {
                 session.leaving = None;
                 let from = session.shown_here();
                 self.go_on(session, &from, secs)?;
             }
-            (Reign::Walking, Some(Wish::HandOver(secs))) => {
+            (Ownership::Walking, Some(Request::HandOver(secs))) => {
                 session.watch(skeleton, dt_secs as f32);
                 if secs <= 0.0 || !session.shown.is_known() {
                     session.handover = None;
-                    self.reign = Reign::Away;
-                    self.wish = None;
-                    self.told.left = true;
+                    self.ownership = Ownership::Away;
+                    self.request = None;
+                    self.announced.left = true;
                 } else if session.watched.in_world.is_known() {
                     session.leave(secs, self.velocity.0, self.velocity.1);
-                    self.reign = Reign::Leaving;
-                    self.wish = None;
+                    self.ownership = Ownership::Leaving;
+                    self.request = None;
                 }
             }
-            (Reign::Walking, _) if session.has_new_size() => self.resize(session, skeleton)?,
+            (Ownership::Walking, _) if session.has_new_size() => self.resize(session, skeleton)?,
             _ => {}
         }
         Ok(())
@@ -124,16 +124,16 @@ impl GaitGenerator3D {
     }
 
     /// Time passes while other animation poses the skeleton.
-    pub(super) fn rest(&mut self, session: Session) {
+    pub(super) fn rest(&mut self, session: WalkSession) {
         self.session = Some(session);
         self.travelled.add(Transform3D::IDENTITY, frame_clock());
         self.velocity = (Vec3::ZERO, 0.0);
-        if core::mem::take(&mut self.told.left) {
+        if core::mem::take(&mut self.announced.left) {
             self.signals().handed_over().emit();
         }
     }
 
-    fn begin(&mut self, session: &mut Session, secs: f64) -> Result<(), String> {
+    fn begin(&mut self, session: &mut WalkSession, secs: f64) -> Result<(), String> {
         let hips = session.watched_here().hips();
         let away = Vec3::new(hips.x, 0.0, hips.z) * session.traveller.scale();
         if self.root_motion && away.length() > FAR_M {
@@ -146,12 +146,12 @@ impl GaitGenerator3D {
 
     fn go_on(
         &mut self,
-        session: &mut Session,
-        from: &super::seen::Seen,
+        session: &mut WalkSession,
+        from: &super::observed_motion::ObservedMotion,
         secs: f64,
     ) -> Result<(), String> {
-        self.reign = Reign::Walking;
-        self.wish = None;
+        self.ownership = Ownership::Walking;
+        self.request = None;
         let (config, controls) = (self.config(), self.controls());
         let weights = self.style_weights.as_slice();
         session.go_on_from(from, weights, &config, controls, secs)?;
@@ -160,7 +160,11 @@ impl GaitGenerator3D {
     }
 
     /// Measures a character that has grown, and walks on.
-    fn resize(&mut self, session: &mut Session, skeleton: &Gd<Skeleton3D>) -> Result<(), String> {
+    fn resize(
+        &mut self,
+        session: &mut WalkSession,
+        skeleton: &Gd<Skeleton3D>,
+    ) -> Result<(), String> {
         let shown = session.shown.is_known().then(|| session.shown_here());
         let mut grown = self.new_session(skeleton)?;
         if let Some(shown) = shown {
@@ -173,7 +177,7 @@ impl GaitGenerator3D {
     /// The controls that a walk follows now.
     pub(super) fn controls(&self) -> Controls {
         if self.replica.is_led() {
-            // Until its walker is heard of.
+            // Until the first update of its walker.
             return Controls::STAND;
         }
         Controls {

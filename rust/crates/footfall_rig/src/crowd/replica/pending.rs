@@ -1,41 +1,41 @@
-//! News of a walker that peers still have to be told: how far they would err without.
+//! Steps that peers still have to receive, and the position error that they have without them.
 
-use super::step::ToldStep;
+use super::step::StepUpdate;
 use footfall_synth::Controls;
 
-/// Steps last about so long, seconds, and a walk turns in one by this for each rad/s, metres.
+/// Typical duration of a step, seconds, and the lateral error in one for each rad/s of turning, metres.
 const STEP_SECS: f32 = 0.55;
 const TURN_M: f32 = 0.4;
 
-/// Steps of which nothing is told err by this more each, metres, though nothing else was asked for.
+/// Error that each step adds if it is not sent, even with unchanged controls, metres.
 const DRIFT_M: f32 = 0.02;
-/// The same for who comes to rest, or stops doing so, and for each second of rest.
+/// The same for coming to rest and for leaving it, metres; and for each second of rest, m/s.
 const REST_M: f32 = 0.2;
 const RESTING_MPS: f32 = 0.0001;
 
-/// Share of what is told that gets lost, with a margin: steps in which much changes are told three times.
+/// Expected share of lost messages, with a margin: steps with large changes are sent three times.
 const LOSS: f32 = 0.1;
-/// The same is told again no sooner: what delays or loses one packet does so to the next, seconds.
+/// Shortest time before a step is sent again, seconds: a cause that delays or loses one packet affects the next one, too.
 pub(super) const AGAIN_SECS: f32 = 0.1;
-/// Errors below this are not worth telling, metres.
+/// Errors below this are not worth a message, metres.
 const LEAST_M: f32 = 0.000_4;
 
-/// A row, as far as peers know it.
+/// State of a row as peers know it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Untold {
+pub(super) struct PendingStep {
     pub(super) name: i32,
     pub(super) look: u64,
     number: u16,
     rests: bool,
     controls: Controls,
-    /// Error to be expected of peers, metres.
+    /// Expected error of peers, metres.
     off_m: f32,
-    /// Since the step was told, seconds.
+    /// Time since the step was sent, seconds.
     since_secs: f32,
 }
 
-impl Untold {
-    /// Nobody.
+impl PendingStep {
+    /// An unused row.
     pub(super) const NOBODY: Self = Self {
         name: -1,
         look: 0,
@@ -46,7 +46,7 @@ impl Untold {
         since_secs: 0.0,
     };
 
-    /// Somebody of whom nothing was told.
+    /// A walker of which nothing was sent yet.
     pub(super) const fn somebody(name: i32, look: u64) -> Self {
         Self {
             name,
@@ -57,7 +57,7 @@ impl Untold {
         }
     }
 
-    /// Lets time pass.
+    /// Advances the time since the last message.
     pub(super) fn pass(&mut self, secs: f32) {
         self.since_secs += secs;
         if self.rests {
@@ -65,8 +65,8 @@ impl Untold {
         }
     }
 
-    /// Sees which step the walker is in.
-    pub(super) fn look_at(&mut self, step: &ToldStep) {
+    /// Adds the error of a step that peers do not know yet.
+    pub(super) fn observe(&mut self, step: &StepUpdate) {
         if step.rests != self.rests {
             self.off_m += REST_M;
         } else if step.number != self.number {
@@ -80,13 +80,13 @@ impl Untold {
         self.since_secs = AGAIN_SECS;
     }
 
-    /// Error that telling its step now would spare, metres; nothing where that is not worth it.
+    /// Error that sending the step now would remove, metres; `None` if that is not worth a message.
     pub(super) fn worth(&self) -> Option<f32> {
         (self.off_m >= LEAST_M && self.since_secs >= AGAIN_SECS).then_some(self.off_m)
     }
 
-    /// Its step is told.
-    pub(super) fn tell(&mut self) {
+    /// Records that the step was sent.
+    pub(super) fn mark_sent(&mut self) {
         self.off_m *= LOSS;
         self.since_secs = 0.0;
     }
@@ -97,8 +97,8 @@ mod tests {
     use super::*;
     use footfall_synth::GroundTransform;
 
-    fn step(number: u16, turn_rate_radps: f32) -> ToldStep {
-        ToldStep {
+    fn step(number: u16, turn_rate_radps: f32) -> StepUpdate {
+        StepUpdate {
             row: 0,
             turn: 0,
             number,
@@ -114,27 +114,27 @@ mod tests {
     }
 
     #[test]
-    fn a_step_is_told_twice_and_who_turns_comes_first() {
-        let mut walkers = [Untold::somebody(0, 0); 2];
+    fn a_step_is_sent_twice_and_turning_walkers_come_first() {
+        let mut walkers = [PendingStep::somebody(0, 0); 2];
         for walker in &mut walkers {
-            walker.look_at(&step(3, 0.0));
+            walker.observe(&step(3, 0.0));
             for _ in 0..4 {
-                walker.tell();
+                walker.mark_sent();
             }
         }
         for (walker, turn) in walkers.iter_mut().zip([0.0, 1.0]) {
-            walker.look_at(&step(4, turn));
+            walker.observe(&step(4, turn));
         }
         assert!(walkers[1].worth() > walkers[0].worth());
-        let mut told = 0;
+        let mut sent = 0;
         for _ in 0..20 {
             if walkers[0].worth().is_some() {
-                walkers[0].tell();
-                told += 1;
+                walkers[0].mark_sent();
+                sent += 1;
                 assert_eq!(walkers[0].worth(), None, "not again at once");
             }
             walkers[0].pass(0.03);
         }
-        assert_eq!(told, 2);
+        assert_eq!(sent, 2);
     }
 }

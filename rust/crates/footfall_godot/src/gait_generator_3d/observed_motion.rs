@@ -7,7 +7,7 @@ use glam::Vec3;
 
 /// Two frames of a motion.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct ObservedMotion {
     before: Pose,
     now: Pose,
     stands: [bool; 2],
@@ -16,9 +16,9 @@ pub(super) struct Seen {
     frames: u8,
 }
 
-impl Seen {
+impl ObservedMotion {
     /// One frame more.
-    pub(super) fn see(&mut self, pose: &Pose, stands: [bool; 2], dt_secs: f32) {
+    pub(super) fn observe(&mut self, pose: &Pose, stands: [bool; 2], dt_secs: f32) {
         core::mem::swap(&mut self.before, &mut self.now);
         self.now.clone_from(pose);
         self.stands = stands;
@@ -28,7 +28,7 @@ impl Seen {
 
     /// Takes one frame more of a motion without known contacts. The floor is that of a frame of its space in which lengths are
     /// `scale` times as long.
-    pub(super) fn see_silent(
+    pub(super) fn observe_without_contacts(
         &mut self,
         body: &Skeleton,
         pose: &Pose,
@@ -37,8 +37,8 @@ impl Seen {
         scale: f32,
     ) {
         let known = self.frames > 0;
-        self.see(pose, self.stands, dt_secs);
-        let Self { before, now, .. } = self.seen_from(floor, scale);
+        self.observe(pose, self.stands, dt_secs);
+        let Self { before, now, .. } = self.relative_to(floor, scale);
         let before = if known { &before } else { &now };
         self.stands = standing_feet(body, before, &now, dt_secs, self.stands);
     }
@@ -63,7 +63,7 @@ impl Seen {
     }
 
     /// The same motion as it is seen from a frame of its space, in which lengths are `scale` times as long.
-    pub(super) fn seen_from(&self, frame: &Frame, scale: f32) -> Self {
+    pub(super) fn relative_to(&self, frame: &Frame, scale: f32) -> Self {
         let mut seen = self.clone();
         for pose in [&mut seen.before, &mut seen.now] {
             lower(frame, pose);

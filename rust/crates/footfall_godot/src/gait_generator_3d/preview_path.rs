@@ -1,7 +1,8 @@
-//! Preview of the walk's way, for the editor to draw.
+//! Preview of the walk's path, which the editor draws.
 
 use super::GaitGenerator3D;
 use crate::convert;
+use crate::modifier::BodyModifier as _;
 use footfall_core::Pose;
 use footfall_synth::Footstep;
 use glam::{Affine3A, Vec3};
@@ -13,7 +14,7 @@ const MOST_FRAMES: usize = 600;
 const FRAME_SECS: f32 = 1.0 / 30.0;
 
 /// Steps to come.
-pub(crate) struct Way {
+pub(crate) struct PreviewPath {
     /// Places of the walker on the ground, from where it stands now.
     pub(crate) path: Vec<Vec3>,
     /// Places of its feet.
@@ -23,8 +24,8 @@ pub(crate) struct Way {
 }
 
 impl GaitGenerator3D {
-    /// The way of the walk from its beginning, under the controls as they are; `None` where nobody can walk.
-    pub(crate) fn foresee(&self) -> Option<Way> {
+    /// Path of the walk from its beginning, with the current controls; `None` if the character cannot walk.
+    pub(crate) fn preview_path(&self) -> Option<PreviewPath> {
         let controls = self.controls();
         let skeleton = self.base().get_skeleton()?;
         if controls.is_standing() || !skeleton.is_inside_tree() {
@@ -46,7 +47,7 @@ impl GaitGenerator3D {
             }
         }
         let world_from_character = convert::unscaled(character.get_global_transform());
-        Some(Way {
+        Some(PreviewPath {
             path,
             footsteps,
             world_from_ground: convert::affine(world_from_character)

@@ -1,4 +1,4 @@
-//! The forward algorithm against a slow one that writes down the whole transition matrix.
+//! The forward and the backward algorithm against slow ones with the whole transition matrix.
 
 use footfall_core::{Behaviour, PhaseKind, PhaseStart, Side, Site, Skeleton};
 use footfall_model::imu_model::{BODY_COUNT, SENSOR_COUNT, Segment};
@@ -134,82 +134,129 @@ fn transitions(model: &ImuModel, config: &TrackerConfig) -> Vec<Vec<f64>> {
     matrix
 }
 
-#[test]
-fn the_forward_algorithm_is_that_of_the_whole_matrix() {
-    check_against_the_whole_matrix(TrackerConfig {
+/// Squared distance of a frame from a measurement, in deviations.
+fn squares(model: &ImuModel, frame: usize, sensor: &Measurement) -> f64 {
+    let row = &model.sensor[frame * SENSOR_COUNT..(frame + 1) * SENSOR_COUNT];
+    let numbers = row.iter().zip(&sensor.values).zip(&sensor.weights);
+    let squares = numbers
+        .map(|((own, value), weight)| f64::from(*weight) * (f64::from(own - value) / 0.7).powi(2));
+    squares.sum()
+}
+
+/// Likelihood of a measurement in a frame, up to a factor. Beyond a squared distance of 12 all frames are equal.
+fn likelihood(config: &TrackerConfig, squares: f64) -> f64 {
+    (-0.5 * f64::from(config.evidence) * squares.min(12.0)).exp()
+}
+
+/// The project's transitions and the published ones: settings, whole matrix and tracker.
+fn cases(model: &ImuModel) -> [(TrackerConfig, Vec<Vec<f64>>, Tracker); 2] {
+    let mut published = ReconConfig::default();
+    Published::Transitions.set(&mut published);
+    let own = TrackerConfig {
         exit: 0.0,
         ..TrackerConfig::default()
-    });
-}
-
-#[test]
-fn the_published_transitions_are_those_of_the_whole_matrix() {
-    let mut config = ReconConfig::default();
-    Published::Transitions.set(&mut config);
-    check_against_the_whole_matrix(config.tracker);
-}
-
-fn check_against_the_whole_matrix(config: TrackerConfig) {
-    let model = model();
-    let config = TrackerConfig {
-        // Of what is measured here some frames are farther and some are not.
-        farthest: 12.0,
-        ..config
     };
-    let matrix = transitions(&model, &config);
-    let frames = matrix.len();
     let prepared =
         Arc::new(Prepared::new(Arc::new(model.clone())).expect("a model that fits together"));
-    let mut tracker = Tracker::new(&prepared, config);
-    let mut slow = vec![1.0 / frames as f64; frames];
-    let (mut near, mut far) = (0, 0);
-    for n in 0..60 {
-        // Every seventh frame is missing.
-        let sensor = (n % 7 != 6).then(|| measured(n));
-        tracker.step(sensor.as_ref());
-        let mut after = vec![0.0; frames];
-        for (to, after) in after.iter_mut().enumerate() {
-            *after = (0..frames).map(|from| slow[from] * matrix[from][to]).sum();
-            if let Some(sensor) = &sensor {
-                let row = &model.sensor[to * SENSOR_COUNT..(to + 1) * SENSOR_COUNT];
-                let numbers = row.iter().zip(&sensor.values).zip(&sensor.weights);
-                let squares = numbers.map(|((own, value), weight)| {
-                    f64::from(*weight) * (f64::from(own - value) / 0.7).powi(2)
-                });
-                let squares = squares.sum::<f64>();
-                (near, far) = (
-                    near + usize::from(squares < 12.0),
-                    far + usize::from(squares > 12.0),
-                );
-                *after *= (-0.5 * f64::from(config.evidence) * squares.min(12.0)).exp();
-            }
-        }
-        let sum: f64 = after.iter().sum();
-        slow = after.iter().map(|p| p / sum).collect();
-        for (fast, slow) in tracker.probabilities().iter().zip(&slow) {
-            assert!(
-                (f64::from(*fast) - slow).abs() < 2e-4,
-                "{fast} is not {slow} at {n}"
-            );
-        }
-    }
-    assert!(near > 100 && far > 100, "{near} frames near, {far} far");
+    [own, published.tracker].map(|config| {
+        // Some of the measured frames are farther, and some are not.
+        let config = TrackerConfig {
+            farthest: 12.0,
+            ..config
+        };
+        let matrix = transitions(model, &config);
+        (config, matrix, Tracker::new(&prepared, config))
+    })
+}
+
+/// The measurement of each frame; every seventh is missing.
+fn sensor(n: usize) -> Option<Measurement> {
+    (n % 7 != 6).then(|| measured(n))
 }
 
 #[test]
-fn what_fits_nothing_tells_nothing() {
-    let prepared = Arc::new(Prepared::new(Arc::new(model())).unwrap());
-    let mut told = Tracker::new(&prepared, TrackerConfig::default());
-    for n in 0..20 {
-        told.step(Some(&measured(n)));
+fn the_forward_algorithm_is_that_of_the_whole_matrix() {
+    let model = model();
+    for (config, matrix, mut tracker) in cases(&model) {
+        let frames = matrix.len();
+        let mut slow = vec![1.0 / frames as f64; frames];
+        let (mut near, mut far) = (0, 0);
+        for n in 0..60 {
+            let sensor = sensor(n);
+            tracker.step(sensor.as_ref());
+            let mut after = vec![0.0; frames];
+            for (to, after) in after.iter_mut().enumerate() {
+                *after = (0..frames).map(|from| slow[from] * matrix[from][to]).sum();
+                if let Some(sensor) = &sensor {
+                    let squares = squares(&model, to, sensor);
+                    near += usize::from(squares < 12.0);
+                    far += usize::from(squares > 12.0);
+                    *after *= likelihood(&config, squares);
+                }
+            }
+            let sum: f64 = after.iter().sum();
+            slow = after.iter().map(|p| p / sum).collect();
+            for (fast, slow) in tracker.probabilities().iter().zip(&slow) {
+                assert!(
+                    (f64::from(*fast) - slow).abs() < 2e-4,
+                    "{fast} is not {slow} at {n}"
+                );
+            }
+        }
+        assert!(near > 100 && far > 100, "{near} frames near, {far} far");
     }
-    let mut silent = told.clone();
+}
+
+#[test]
+fn the_backward_algorithm_is_that_of_the_whole_matrix() {
+    let model = model();
+    for (config, matrix, mut tracker) in cases(&model) {
+        let frames = matrix.len();
+        let mut fast = vec![1.0_f32; frames];
+        let mut slow = vec![1.0_f64; frames];
+        for n in (0..60).rev() {
+            let sensor = sensor(n);
+            tracker.step_back(sensor.as_ref(), &mut fast);
+            let explained = slow.iter().enumerate().map(|(frame, later)| {
+                let likelihood = sensor.as_ref().map_or(1.0, |sensor| {
+                    likelihood(&config, squares(&model, frame, sensor))
+                });
+                likelihood * later
+            });
+            let explained: Vec<f64> = explained.collect();
+            let before = matrix.iter().map(|row| {
+                let pairs = row.iter().zip(&explained);
+                pairs.map(|(share, later)| share * later).sum::<f64>()
+            });
+            slow = before.collect();
+            let mean = slow.iter().sum::<f64>() / frames as f64;
+            for value in &mut slow {
+                *value /= mean;
+            }
+            for (fast, slow) in fast.iter().zip(&slow) {
+                assert!(
+                    (f64::from(*fast) - slow).abs() < 2e-3 * slow.max(1.0),
+                    "{fast} is not {slow} at {n}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_measurement_that_fits_nothing_is_no_evidence() {
+    let prepared = Arc::new(Prepared::new(Arc::new(model())).unwrap());
+    let mut heard = Tracker::new(&prepared, TrackerConfig::default());
+    for n in 0..20 {
+        heard.step(Some(&measured(n)));
+    }
+    let mut silent = heard.clone();
     let mut odd = measured(20);
     odd.values[3] = 1e3;
-    told.step(Some(&odd));
+    heard.step(Some(&odd));
     silent.step(None);
-    for (told, silent) in told.probabilities().iter().zip(silent.probabilities()) {
-        assert!((told - silent).abs() < 0.01, "{told} is not {silent}");
+    for (heard, silent) in heard.probabilities().iter().zip(silent.probabilities()) {
+        assert!((heard - silent).abs() < 0.01, "{heard} is not {silent}");
     }
 }
 

@@ -1,26 +1,26 @@
-//! Ways that walkers of a crowd take by themselves.
+//! Routing: the goals that a crowd sets for its walkers.
 
 use super::agent::Agent;
 use super::goal::Goal;
 use glam::Vec2;
 
-/// Distance that a walker looks ahead on its path, metres.
+/// Distance of a walker's goal ahead of it on the path, metres.
 const AHEAD_M: f32 = 2.5;
 
-/// Ways of all walkers of a crowd.
+/// Source of the walkers' goals.
 #[derive(Debug, Default)]
-pub enum Way {
-    /// As each walker is told.
+pub enum Routing {
+    /// The game sets the goal of each walker.
     #[default]
-    Told,
-    /// From one place of a rectangle about the origin to another.
+    Scripted,
+    /// Random places of a rectangle around the origin.
     Wander {
         /// Half its sides, metres.
         half: Vec2,
     },
-    /// Along a path, beside each other.
+    /// A path, on which walkers go side by side.
     Path(Path),
-    /// From one place to another along ways that the game finds for each walker that is not on its way.
+    /// Routes that the game finds for each walker without a goal.
     Navigate,
 }
 
@@ -58,7 +58,7 @@ impl Path {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// The place and the direction at so many metres from its beginning. A closed path goes round, an open one there and back.
+    /// Place and direction at a distance from the beginning, metres. A closed path goes around, an open one there and back.
     pub fn at(&self, along: f32) -> (Vec2, Vec2) {
         let length = self.length();
         let (along, sign) = if self.closed {
@@ -82,7 +82,7 @@ impl Path {
         )
     }
 
-    /// Way from its beginning to the place of it that is nearest to another, to a metre.
+    /// Distance from the beginning to the point of the path that is nearest to a place, to a metre.
     fn nearest(&self, place: Vec2) -> f32 {
         let metres = (0..=self.length() as u32).map(|metre| metre as f32);
         let far = |along: &f32| self.at(*along).0.distance_squared(place);
@@ -90,7 +90,7 @@ impl Path {
         nearest.unwrap_or(0.0)
     }
 
-    /// The place beside it: positive to the left.
+    /// Place beside the path, `aside` metres to the left, and the path's direction there.
     pub fn beside(&self, along: f32, aside: f32) -> (Vec2, Vec2) {
         let (place, direction) = self.at(along);
         // Seen from above with +X to the right and +Z towards the viewer, left of +Z is +X.
@@ -99,25 +99,25 @@ impl Path {
     }
 }
 
-impl Way {
-    /// Returns whether walkers wait until the game finds ways for them.
+impl Routing {
+    /// Returns whether walkers wait for routes from the game.
     pub const fn is_navigated(&self) -> bool {
         matches!(self, Self::Navigate)
     }
 
-    /// Takes up a walker that another machine has led.
+    /// Sets the goal of a walker that another machine has led so far.
     pub(super) fn take_up(&self, agent: &mut Agent) {
         match self {
-            Self::Told => agent.goal = Goal::Turn(0.0),
+            Self::Scripted => agent.goal = Goal::Turn(0.0),
             Self::Wander { .. } | Self::Navigate => agent.goal = Goal::Place(agent.level()),
             Self::Path(path) => agent.progress_m = path.nearest(agent.level()),
         }
     }
 
-    /// Sets a walker's goal, if the crowd goes anywhere by itself.
+    /// Sets a walker's next goal when it has reached the last one.
     pub(super) fn lead(&self, agent: &mut Agent) {
         match self {
-            Self::Told | Self::Navigate => agent.follow_route(),
+            Self::Scripted | Self::Navigate => agent.follow_route(),
             Self::Wander { half } => {
                 if !agent.is_on_its_way() {
                     let next = [agent.chance(), agent.chance()].map(|share| 2.0 * share - 1.0);

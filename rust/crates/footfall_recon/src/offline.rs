@@ -14,7 +14,7 @@ use crate::tracker::{Measurement, Tracker};
 use crate::travel::Travel;
 use footfall_core::{Behaviour, Clip, Pose, Skeleton, SkeletonError};
 use footfall_imu::events::{Swing, detect_swings};
-use footfall_imu::{ImuRecording, ImuSample, ToldContact};
+use footfall_imu::{ImuRecording, ImuSample, SensorContact};
 use footfall_model::imu_model::MAX_SENSORS;
 use std::sync::Arc;
 
@@ -76,7 +76,7 @@ pub fn reconstruct_recording(
             confidences: Vec::with_capacity(frames.len()),
             stride: config.stride,
         },
-        // What later frames tell is smooth already.
+        // With later frames the result is smooth already.
         blend: Blend::new(
             if live { config.blending } else { Blending::Off },
             rate as f32,
@@ -99,7 +99,7 @@ pub fn reconstruct_recording(
         }
         return Ok(shown.done());
     }
-    // Where in the stride the other leg is, later frames tell better than the time since a landing.
+    // Later frames locate the other leg in its stride better than the time since a landing does.
     let mut back = Tracker::new(prepared, config.tracker);
     let mut filtered: Vec<Vec<f32>> = Vec::new();
     let mut log_densities = Vec::with_capacity(frames.len());
@@ -200,13 +200,13 @@ fn tell_swings(prepared: &Prepared, recordings: &[ImuRecording], frames: &mut [S
 }
 
 /// Contact of a foot with these swings, in order.
-fn contact_at(swings: &[Swing], time_secs: f64) -> ToldContact {
+fn contact_at(swings: &[Swing], time_secs: f64) -> SensorContact {
     let begun = swings.partition_point(|swing| swing.terminal_secs <= time_secs);
     let last = begun.checked_sub(1).map(|n| swings[n]);
     let swings = last.filter(|swing| time_secs < swing.initial_secs);
     let since = swings.map(|swing| swing.terminal_secs);
     let since = since.or(last.map(|swing| swing.initial_secs));
-    ToldContact {
+    SensorContact {
         stands: swings.is_none(),
         for_secs: since.map_or(f32::INFINITY, |since| (time_secs - since) as f32),
     }
@@ -214,7 +214,7 @@ fn contact_at(swings: &[Swing], time_secs: f64) -> ToldContact {
 
 /// Writer of the frames that are shown.
 struct Shown<'a> {
-    /// Those of the sensor that measures strides which were not heard yet.
+    /// Swings of the sensor that measures strides that were not used yet.
     samples: &'a [ImuSample],
     travel: Travel,
     prepared: &'a Prepared,
@@ -270,7 +270,7 @@ impl Shown<'_> {
             frames,
             dt_secs: self.frame_secs,
             stride: self.travel.step(self.frame_secs),
-            contacts: self.told_contacts(&sensors),
+            contacts: self.sensor_contacts(&sensors),
         };
         let mut pose = Pose::default();
         self.ground.step(body, &input, &mut pose);
@@ -292,10 +292,10 @@ impl Shown<'_> {
     }
 
     /// Contacts of the feet, as far as sensors on them report them.
-    fn told_contacts(&self, sensors: &SensorFrames) -> [Option<ToldContact>; 2] {
+    fn sensor_contacts(&self, sensors: &SensorFrames) -> [Option<SensorContact>; 2] {
         let heard = self.confidence.is_trusted();
-        let told = |sensor: usize| sensors[sensor]?.contact.filter(|_| heard);
-        self.prepared.told_contacts(told)
+        let contact_of = |sensor: usize| sensors[sensor]?.contact.filter(|_| heard);
+        self.prepared.sensor_contacts(contact_of)
     }
 
     /// Measures strides up to the end of a frame.

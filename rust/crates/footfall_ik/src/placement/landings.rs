@@ -1,4 +1,4 @@
-//! Steps whose landings the animation knows beforehand.
+//! Steps whose landings the animation announces.
 
 use crate::placement::aim::Step;
 use crate::placement::effort::slowed_by;

@@ -1,4 +1,4 @@
-//! Kit of a crowd's walkers: the model with its styles on the crowd's body, and mixtures of them.
+//! Style mixtures of a crowd: the model with its styles on the crowd's body, prepared once for all walkers with the same weights.
 
 use footfall_core::Skeleton;
 use footfall_model::{GaitModel, GaitStyle};
@@ -6,15 +6,15 @@ use footfall_synth::{StyleSpace, StyledBody, SynthError, Workshop};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Weights of styles are rounded to such parts, so that a crowd needs few mixtures.
+/// Weights of styles are rounded to multiples of 1/8, so that a crowd needs few mixtures.
 const WEIGHT_PARTS: f32 = 8.0;
 
-/// A mixture of styles: a weight each, in parts; styles at its end that nothing is worn of are left out.
+/// Weights of styles in eighths; zeros at the end are left out.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub(super) struct Outfit(Vec<i8>);
+pub(super) struct StyleMixture(Vec<i8>);
 
-impl Outfit {
-    /// The nearest to these weights; what is not finite counts as 0.
+impl StyleMixture {
+    /// The nearest mixture to these weights; non-finite weights count as 0.
     pub(super) fn of(weights: &[f32]) -> Self {
         let part = |weight: &f32| {
             let weight = if weight.is_finite() { *weight } else { 0.0 };
@@ -27,7 +27,7 @@ impl Outfit {
         Self(parts)
     }
 
-    /// One that was told in parts.
+    /// A mixture from its weights in eighths.
     pub(super) fn of_parts(parts: &[i8]) -> Self {
         let weights: Vec<f32> = parts
             .iter()
@@ -36,7 +36,7 @@ impl Outfit {
         Self::of(&weights)
     }
 
-    /// Its parts.
+    /// The weights in eighths.
     pub(super) fn parts(&self) -> &[i8] {
         &self.0
     }
@@ -59,74 +59,77 @@ impl Outfit {
 pub struct CrowdRecipe {
     /// The walk.
     pub model: Arc<GaitModel>,
-    /// Styles that walkers wear.
+    /// Styles of walkers.
     pub styles: Vec<Arc<GaitStyle>>,
-    /// The two prepared, if somebody else has done so.
+    /// Model and styles prepared together, if that was done before.
     pub space: Option<Arc<StyleSpace>>,
     /// Proportions of the character.
     pub body: Skeleton,
 }
 
-/// Everything that all walkers of a crowd share.
+/// Bodies of all style mixtures in use, and the workshops of a crowd.
 #[derive(Debug)]
-pub(super) struct Kit {
+pub(super) struct Mixtures {
     pub(super) space: Arc<StyleSpace>,
     pub(super) plain: StyledBody,
     pub(super) workshops: Vec<Mutex<Workshop>>,
-    worn: Mutex<HashMap<Outfit, StyledBody>>,
+    bodies: Mutex<HashMap<StyleMixture, StyledBody>>,
 }
 
-impl Kit {
-    /// Prepares it, some 10 ms a style.
+impl Mixtures {
+    /// Prepares model and styles, about 10 ms for each style.
     ///
     /// # Errors
-    /// [`SynthError`] when nobody can walk.
+    /// [`SynthError`] if the model and the body give no walk.
     pub(super) fn new(recipe: &CrowdRecipe) -> Result<Self, SynthError> {
         let space = match &recipe.space {
             Some(space) => Arc::clone(space),
             None => Arc::new(StyleSpace::new(&recipe.model, &recipe.styles)?),
         };
         let plain = StyledBody::new(&space, &[], &recipe.body)?;
-        // One for each thread, and one for who calls.
+        // One for each thread, and one for the caller.
         let threads = rayon::current_num_threads() + 1;
         let workshops = (0..threads).map(|_| Mutex::new(Workshop::new(&plain)));
         Ok(Self {
             workshops: workshops.collect(),
-            worn: Mutex::new(HashMap::from([(Outfit::default(), plain.clone())])),
+            bodies: Mutex::new(HashMap::from([(StyleMixture::default(), plain.clone())])),
             plain,
             space,
         })
     }
 
-    /// A mixture, if somebody wears it already.
-    pub(super) fn known(&self, outfit: &Outfit) -> Option<StyledBody> {
-        self.worn().get(outfit).cloned()
+    /// The body of a mixture, if one was prepared already.
+    pub(super) fn get(&self, mixture: &StyleMixture) -> Option<StyledBody> {
+        self.bodies().get(mixture).cloned()
     }
 
-    /// A mixture, measured if nobody wears it yet, some 2 ms.
-    pub(super) fn tailor(&self, outfit: &Outfit) -> StyledBody {
-        if let Some(known) = self.known(outfit) {
+    /// The body of a mixture; the first call for a mixture prepares it, which takes about 2 ms.
+    pub(super) fn get_or_make(&self, mixture: &StyleMixture) -> StyledBody {
+        if let Some(known) = self.get(mixture) {
             return known;
         }
         let body = self.plain.skeleton();
-        // A mixture that gives no walk is not worn.
-        let styled = StyledBody::new(&self.space, &outfit.weights(), body)
+        // A mixture that gives no walk is replaced by the plain body.
+        let styled = StyledBody::new(&self.space, &mixture.weights(), body)
             .unwrap_or_else(|_| self.plain.clone());
-        let mut worn = self.worn();
-        let number = worn.len() as u32;
+        let mut bodies = self.bodies();
+        let number = bodies.len() as u32;
         let numbered = || styled.numbered(number);
-        worn.entry(outfit.clone()).or_insert_with(numbered).clone()
+        bodies
+            .entry(mixture.clone())
+            .or_insert_with(numbered)
+            .clone()
     }
 
     /// Number of mixtures.
     pub(super) fn count(&self) -> usize {
-        self.worn().len()
+        self.bodies().len()
     }
 
     /// Mixtures by their numbers: those from this one on.
     pub(super) fn numbered_from(&self, number: u32) -> Vec<StyledBody> {
-        let worn = self.worn();
-        let mut fresh: Vec<StyledBody> = worn
+        let bodies = self.bodies();
+        let mut fresh: Vec<StyledBody> = bodies
             .values()
             .filter(|styled| styled.number() >= number)
             .cloned()
@@ -135,8 +138,8 @@ impl Kit {
         fresh
     }
 
-    fn worn(&self) -> MutexGuard<'_, HashMap<Outfit, StyledBody>> {
-        self.worn.lock().unwrap_or_else(PoisonError::into_inner)
+    fn bodies(&self) -> MutexGuard<'_, HashMap<StyleMixture, StyledBody>> {
+        self.bodies.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -146,9 +149,12 @@ mod tests {
 
     #[test]
     fn weights_are_rounded_and_nonsense_is_nothing() {
-        assert_eq!(Outfit::of(&[0.0, 0.52, f32::NAN]).weights(), [0.0, 0.5]);
-        assert_eq!(Outfit::of(&[0.0; 3]), Outfit::default());
-        assert_eq!(Outfit::of_one(2, 1.0).weights(), [0.0, 0.0, 1.0]);
-        assert_eq!(Outfit::of(&[1e9]).weights(), [4.0]);
+        assert_eq!(
+            StyleMixture::of(&[0.0, 0.52, f32::NAN]).weights(),
+            [0.0, 0.5]
+        );
+        assert_eq!(StyleMixture::of(&[0.0; 3]), StyleMixture::default());
+        assert_eq!(StyleMixture::of_one(2, 1.0).weights(), [0.0, 0.0, 1.0]);
+        assert_eq!(StyleMixture::of(&[1e9]).weights(), [4.0]);
     }
 }
