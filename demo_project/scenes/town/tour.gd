@@ -7,15 +7,19 @@ const VIEWS: Array[Array] = [
 	[0.0, Vector3(1.2, 1.8, 15.3), Vector3(6.6, 1.5, 5.0), Vector3(5.4, 0, 12.2), 155.0],
 	[3.7, Vector3(5.7, 1.3, -2.4), Vector3(9.5, 1.05, 0.4)],
 	[6.3, Vector3(-2.8, 2.2, -4.6), Vector3(0.8, 1.5, -11.0), Vector3(2.3, 0, -6.3), 195.0],
+	[12.0, Vector3(-7.7, 1.75, -6.2), Vector3(-10.7, 0.75, -3.3), Vector3(-10.5, 0, -0.6), 180.0],
 ]
-## Seconds → what the player does then: where it goes, at which speed, and true for a leap.
+## Seconds → what the player does then: where it goes (infinite: straight north), at which speed, and true for a jump.
 const ORDERS: Array[Array] = [
 	[0.0, Vector3(9.0, 0, 3.0), 1.4, false],
 	[1.6, Vector3(9.4, 0, -3.2), 3.4, false],
 	[4.7, Vector3(9.4, 0, -3.2), 3.4, true],
 	[6.3, Vector3(0.6, TownPlan.RISE, -13.4), 1.4, false],
+	[12.0, Vector3.INF, 1.4, false],
+	[14.35, Vector3.INF, 1.4, true],
+	[15.5, Vector3.INF, 0.0, false],
 ]
-const SECS := 12.5
+const SECS := 17.0
 
 var _begun := -1
 var _seen := -1
@@ -33,7 +37,12 @@ func play(seconds: float, town: Node3D, player: GaitCharacter3D, camera: Camera3
 			player.teleport(Transform3D(Basis(Vector3.UP, deg_to_rad(view[4])), view[3]))
 	while _begun + 1 < ORDERS.size() and seconds >= ORDERS[_begun + 1][0]:
 		_begun += 1
-		town.send_player(ORDERS[_begun][1])
+		var goal: Vector3 = ORDERS[_begun][1]
+		if goal.is_finite():
+			town.send_player(goal)
+		else:
+			player.navigation = null
+			player.autopilot = Vector3.FORWARD
 		player.walk_speed = ORDERS[_begun][2]
 		if ORDERS[_begun][3]:
 			player.jump()
