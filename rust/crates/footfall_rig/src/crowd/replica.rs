@@ -7,6 +7,7 @@
 //! Places are in the crowd's own space, which must have the same place in the world on all machines.
 
 mod agent;
+mod early;
 mod error;
 mod following;
 mod led;

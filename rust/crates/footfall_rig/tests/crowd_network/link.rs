@@ -63,6 +63,8 @@ pub(crate) struct Link {
     pub(crate) secs: f32,
     pub(crate) loss: f32,
     pub(crate) delay_secs: f32,
+    /// Further delay of reliable messages.
+    pub(crate) reliable_secs: f32,
     pub(crate) bytes_per_second: u32,
     pub(crate) chance: u32,
     pub(crate) made: Prints,
@@ -88,6 +90,7 @@ impl Link {
             secs: 0.0,
             loss: 0.05,
             delay_secs: 0.2,
+            reliable_secs: 0.0,
             bytes_per_second: 1_000_000,
             chance: 5,
             made: Prints::new(),
@@ -122,7 +125,12 @@ impl Link {
             let lost = self.chance() < self.loss;
             let again = if lost { 0.5 } else { 0.0 };
             if message.reliable || !lost {
-                let at = self.secs + self.delay_secs + late + again;
+                let reliably = if message.reliable {
+                    self.reliable_secs
+                } else {
+                    0.0
+                };
+                let at = self.secs + self.delay_secs + late + again + reliably;
                 // What is reliable keeps its order.
                 let before = self.under_way.iter().rev();
                 let least = before

@@ -58,6 +58,22 @@ fn who_joins_late_sees_the_same_crowd_within_five_centimetres() {
     assert!(link.fastest_mps < FASTEST_MPS, "{} m/s", link.fastest_mps);
 }
 
+/// An introduction that is lost arrives after steps that were sent later, and they are sent no more.
+#[test]
+fn steps_that_overtake_their_walkers_are_taken() {
+    let mut link = Link::new(wander(), 60);
+    link.loss = 0.0;
+    link.reliable_secs = 1.2;
+    link.walk(20.0);
+    link.join();
+    let joined = link.secs;
+    link.walk(5.0);
+    let all = link.differences(joined + JOINED_SECS);
+    assert!(all.len() > 200, "only {} steps", all.len());
+    let worst = all[all.len() - 1];
+    assert!(worst < SAME_PLACE_M, "{worst} m");
+}
+
 #[test]
 fn who_stops_and_goes_again_does_so_in_the_same_place() {
     let mut link = Link::new(Routing::Scripted, 0);

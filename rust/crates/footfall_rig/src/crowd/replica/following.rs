@@ -1,6 +1,7 @@
 //! A crowd that follows another one: received messages.
 
 use super::CrowdReplicaError;
+use super::early::EarlySteps;
 use super::led::LedWalker;
 use super::message::{self, Kind};
 use super::person::Person;
@@ -23,11 +24,12 @@ const LATER_SECS: f64 = 0.3;
 const SILENCE_SECS: f64 = 3.0;
 
 /// State of a crowd that follows another one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(in crate::crowd) struct Following {
     session: Option<u16>,
     fingerprint: u32,
     clock: ReplicaClock,
+    early: EarlySteps,
     /// Bytes that may still be received, and the time of the last update.
     left: f64,
     left_secs: f64,
@@ -75,6 +77,7 @@ impl Crowd {
             session: None,
             fingerprint: self.fingerprint(),
             clock: ReplicaClock::new(),
+            early: EarlySteps::default(),
             left: f64::from(MOST_BYTES_A_SECOND),
             left_secs: self.time_secs,
         });
@@ -98,8 +101,8 @@ impl Crowd {
 
     /// Returns true if it follows another crowd whose walkers were introduced.
     pub fn is_introduced(&self) -> bool {
-        self.following
-            .is_some_and(|following| following.session.is_some())
+        let following = self.following.as_ref();
+        following.is_some_and(|following| following.session.is_some())
     }
 
     /// Takes a message of the crowd that it follows; a crowd that follows none ignores it. Returns the rows of walkers that left.
@@ -117,15 +120,25 @@ impl Crowd {
         let known = following.session == Some(session);
         match kind {
             Kind::People => self.hear_people(session, content, damaged),
-            Kind::Steps if known => self.hear_steps(content, damaged).map(|()| Vec::new()),
+            Kind::Steps if known => {
+                let heard = self.hear_steps(session, now_secs, content, damaged);
+                heard.map(|()| Vec::new())
+            }
             Kind::Left if known => self.hear_left(content, damaged),
             // From a crowd whose walkers were not introduced yet.
-            Kind::Steps | Kind::Left => Ok(Vec::new()),
+            Kind::Steps => {
+                following.early.keep(session, now_secs, content);
+                Ok(Vec::new())
+            }
+            Kind::Left => Ok(Vec::new()),
         }
     }
 
+    /// Takes steps that arrived at this time of ours.
     fn hear_steps(
         &mut self,
+        session: u16,
+        arrived_secs: f64,
         content: &[u8],
         damaged: CrowdReplicaError,
     ) -> Result<(), CrowdReplicaError> {
@@ -135,7 +148,8 @@ impl Crowd {
             return Err(damaged);
         };
         let ticks = u16::from_le_bytes(*ticks);
-        let sent_secs = following.clock.hear(self.time_secs, ticks);
+        let sent_secs = following.clock.hear(arrived_secs, ticks);
+        let mut is_early = false;
         for step in steps.iter().map(StepUpdate::unpack) {
             let row = step.row as usize;
             let (_, turn) = StepUpdate::row_and_turn(self.roster.name(row));
@@ -143,10 +157,14 @@ impl Crowd {
                 .agents
                 .get_mut(row)
                 .and_then(|agent| agent.led.as_mut());
-            // A walker that is not introduced yet, or has left, is ignored.
-            if let Some(led) = led.filter(|_| turn == step.turn) {
-                led.hear(&step, sent_secs);
+            match led.filter(|_| turn == step.turn) {
+                Some(led) => led.hear(&step, sent_secs),
+                // It is not introduced yet, or has left.
+                None => is_early = true,
             }
+        }
+        if is_early {
+            following.early.keep(session, arrived_secs, content);
         }
         Ok(())
     }
@@ -219,7 +237,20 @@ impl Crowd {
             }
         }
         self.maker.take(orders.into_iter());
+        self.hear_early_steps(session)?;
         Ok(left)
+    }
+
+    /// Takes steps that have arrived before the introduction of their walkers.
+    fn hear_early_steps(&mut self, session: u16) -> Result<(), CrowdReplicaError> {
+        let Some(following) = &mut self.following else {
+            return Ok(());
+        };
+        for early in following.early.take(session).collect::<Vec<_>>() {
+            let damaged = CrowdReplicaError::Damaged(early.content.len());
+            self.hear_steps(session, early.arrived_secs, &early.content, damaged)?;
+        }
+        Ok(())
     }
 
     /// Takes in somebody who was introduced; returns the order to make it.
