@@ -13,7 +13,7 @@ use std::path::PathBuf;
 const SCENE: &str = "res://scenes/town/town.tscn";
 const PICTURE: &str = "demo_project/pictures/tour.gif";
 /// Size of the film, pixels, and pictures a second as the scene saves them.
-const SIZE: (u16, u16) = (416, 234);
+const SIZE: (u16, u16) = (368, 207);
 const RATE_HZ: u16 = 12;
 /// Bits of each colour that are kept: fewer colours make smaller files.
 const COLOUR_BITS: u32 = 5;

@@ -65,7 +65,7 @@ mod tests {
         assert_eq!(taken, [2, 4]);
         assert_eq!(early.take(1).count(), 0);
         for _ in 0..3 {
-            early.keep(1, 4.0, &[0; MOST_BYTES / 2]);
+            early.keep(1, 4.0, &vec![0; MOST_BYTES / 2]);
         }
         assert_eq!(early.take(1).count(), 2);
     }
