@@ -127,6 +127,7 @@ impl Crowd {
             Kind::Left if known => self.hear_left(content, damaged),
             // From a crowd whose walkers were not introduced yet.
             Kind::Steps => {
+                split_steps(content).ok_or(damaged)?;
                 following.early.keep(session, now_secs, content);
                 Ok(Vec::new())
             }
@@ -142,12 +143,10 @@ impl Crowd {
         content: &[u8],
         damaged: CrowdReplicaError,
     ) -> Result<(), CrowdReplicaError> {
-        let (ticks, steps) = content.split_first_chunk().ok_or(damaged)?;
-        let (steps, rest) = steps.as_chunks::<STEP_BYTES>();
-        let Some(following) = self.following.as_mut().filter(|_| rest.is_empty()) else {
-            return Err(damaged);
+        let (ticks, steps) = split_steps(content).ok_or(damaged)?;
+        let Some(following) = &mut self.following else {
+            return Ok(());
         };
-        let ticks = u16::from_le_bytes(*ticks);
         let sent_secs = following.clock.hear(arrived_secs, ticks);
         let mut is_early = false;
         for step in steps.iter().map(StepUpdate::unpack) {
@@ -290,4 +289,12 @@ impl Crowd {
             self.wear(row, &mixture.weights());
         }
     }
+}
+
+/// The sender's time, in ticks, and the packed steps in the content of a message about steps; `None` for a damaged one.
+fn split_steps(content: &[u8]) -> Option<(u16, &[[u8; STEP_BYTES]])> {
+    let (ticks, steps) = content.split_first_chunk()?;
+    let (steps, rest) = steps.as_chunks();
+    rest.is_empty()
+        .then_some((u16::from_le_bytes(*ticks), steps))
 }

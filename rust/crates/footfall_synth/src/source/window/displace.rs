@@ -2,7 +2,7 @@
 
 use super::StepWindow;
 use crate::ground::Displacement;
-use crate::plan::{StepDraw, TIE, WINDOW};
+use crate::plan::{StepDraw, WINDOW};
 use crate::source::buffers::StepBuffers;
 
 impl StepWindow {
@@ -14,14 +14,7 @@ impl StepWindow {
         self.origin.displacement = self.origin.displacement.and(more);
         self.planted.resume(&feet);
         // The solved trajectory was not kept.
-        let changes = self.blend_before.gait != self.blend.gait;
-        buffers.go_on(
-            &self.blend.statistics,
-            &self.plans,
-            &self.origin.tie,
-            changes,
-        );
-        self.plant(1, TIE - 1, buffers);
+        self.solve_and_plant(buffers);
         true
     }
 
