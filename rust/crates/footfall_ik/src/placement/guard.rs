@@ -15,7 +15,7 @@ const GUARD_M: f32 = 0.01;
 const GUARD_HALF_LIFE_SECS: f32 = 0.032;
 /// Greatest depth of a point of the sole in an obstacle, even during the lift, metres.
 const TOUCH_M: f32 = 0.015;
-/// Depth by which a rising foot may graze the risers before its toes without being lifted over them, metres.
+/// Depth by which a rising foot may graze the risers before its toes, and a descending one those behind its heel, without being lifted over them, metres.
 const GRAZE_M: f32 = 0.01;
 /// Time before its landing from which a foot is no longer held up, seconds: it comes down at its foothold.
 const COMING_DOWN_SECS: f32 = 0.05;
@@ -48,7 +48,8 @@ impl Foot {
             let to_go = (lands - place) * Vec3::new(1.0, 0.0, 1.0);
             ahead = ahead.clamp_length_max(to_go.dot(ahead.normalize_or_zero()).max(0.0));
             let rise = lands.y - self.lifted(scene).shift.y;
-            back = animated.flat.forward() * (GRAZE_M * smooth_step(rise / LATE_RISE_M));
+            let [up, down] = [rise, -rise].map(|way| smooth_step(way / LATE_RISE_M));
+            back = animated.flat.forward() * (GRAZE_M * (up - down));
         }
         let share = secs_left.map_or(1.0, |secs| smooth_step(secs / COMING_DOWN_SECS));
         let rim = |foot: &FootTarget| -> [Vec3; RIM] {

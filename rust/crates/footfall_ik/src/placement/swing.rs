@@ -14,12 +14,14 @@ use glam::{Quat, Vec3};
 
 /// Times before its landing at which a descending foot is over its foothold, and at which it begins to hurry there, seconds; and the
 /// descent from which this applies, metres.
-const EARLY_SECS: [f32; 2] = [0.25, 0.05];
+const EARLY_SECS: [f32; 2] = [0.28, 0.07];
 const EARLY_FALL_M: f32 = 0.08;
 /// Parts of the swing until which a rising foot stays over its last place, and at which it has caught up: its toes come over the edge
 /// before it and not through it; and the rise from which this applies, metres.
 const LATE_SHARES: [f32; 2] = [0.1, 0.6];
 pub(super) const LATE_RISE_M: f32 = 0.08;
+/// Greatest distance by which a foot swings past a foothold with an edge above it, metres.
+const MOST_PAST_M: f32 = 0.008;
 /// Height to which it is lifted then, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
 /// Time before a landing on the ball from which the toes are no higher than the heel, and duration of the rotation before that, seconds.
@@ -103,6 +105,7 @@ impl Foot {
             self.correction.shift += early * left * Vec3::new(1.0, 0.0, 1.0);
             let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
             self.hold_back(scene, animated, &flat, &toward, share);
+            self.stay_before_edge(animated, &(flat.position + toward.shift));
         }
         let mut foot = animated.foot;
         if let Some(((_, secs), _)) = planned
@@ -144,6 +147,16 @@ impl Foot {
         self.held = smooth_step((until - share) / (until - from)) * smooth_step(rise / LATE_RISE_M);
         let come = start - animated.flat.position;
         self.correction.shift += self.held * come * Vec3::new(1.0, 0.0, 1.0);
+    }
+
+    /// Keeps a foot that swings past its foothold, and back to it, from the edge above that: it would be thrown over it.
+    fn stay_before_edge(&mut self, animated: &Animated, lands: &Vec3) {
+        let rise = self.plan.map_or(0.0, |plan| plan.next_rise_m);
+        let past = (animated.flat.position + self.correction.shift - lands).with_y(0.0);
+        let forward = animated.flat.forward().with_y(0.0).normalize_or_zero();
+        let past_m = past.dot(forward).max(0.0);
+        let back_m = past_m * past_m / (past_m + MOST_PAST_M);
+        self.correction.shift -= forward * (back_m * smooth_step(rise / LATE_RISE_M));
     }
 
     /// Correction that carried the foot when it was lifted, over the floor as it is now.
