@@ -6,9 +6,9 @@ pub(super) const TICK_SECS: f64 = 0.004;
 /// Rate at which a slower sender's clock is followed, seconds per second.
 const DRIFT: f64 = 0.01;
 
-/// Delay behind the quickest update: this many intervals between updates, so that three may be lost, plus this multiple of their lateness.
+/// Delay behind the quickest update: this many intervals between updates, so that three may be lost, plus this multiple of their mean lateness: twice the mean is the most where frames are long.
 const INTERVALS: f64 = 3.2;
-const LATENESSES: f64 = 1.5;
+const LATENESSES: f64 = 2.0;
 const MARGIN_SECS: [f64; 2] = [0.03, 0.5];
 
 /// Interval between updates before any is known, and the longest that counts, seconds.
