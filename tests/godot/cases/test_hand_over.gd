@@ -65,9 +65,14 @@ func test_a_walk_begins_from_a_stand_and_feet_stay() -> void:
 
 
 func test_a_walk_takes_over_what_moves() -> void:
-	# A dash by the game: the character travels at 1.5 m/s while another walk poses it, as a clip would. Nothing is jerked more than in a
-	# walk that goes on.
-	var own: float = _watch(add_walker(), 240).acceleration
+	# A dash by the game: the character travels at 1.5 m/s while another walk poses it, as a clip would. Nothing is jerked more than in
+	# walks that go on at that speed.
+	var own := 0.0
+	for seed_of_walk: int in range(1, 5):
+		var walk := add_walker()
+		walk.gait.speed = 1.5
+		walk.gait.seed = seed_of_walk
+		own = maxf(own, _watch(walk, 240).acceleration)
 	check_below(own, 110.0, "a walk that goes on")
 	for begin: int in [60, 67, 74, 81, 88]:
 		var clip := add_walker()

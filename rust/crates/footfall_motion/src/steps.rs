@@ -46,6 +46,11 @@ impl Step {
         }
     }
 
+    /// Returns true for a running step: the body flies at its end.
+    pub const fn flies(&self) -> bool {
+        self.take_off.is_some()
+    }
+
     /// Length in frames.
     pub const fn frames(&self) -> usize {
         self.end - self.first

@@ -27,13 +27,21 @@ static MODEL: LazyLock<Arc<GaitModel>> = LazyLock::new(|| {
 });
 
 fn crowd(routing: Routing) -> Crowd {
+    crowd_of(0, routing)
+}
+
+fn crowd_of(seed: u64, routing: Routing) -> Crowd {
     let recipe = CrowdRecipe {
         model: Arc::clone(&MODEL),
         styles: Vec::new(),
         space: None,
         body: MODEL.skeleton.clone(),
     };
-    Crowd::new(recipe, routing, CrowdSettings::default())
+    let settings = CrowdSettings {
+        seed,
+        ..CrowdSettings::default()
+    };
+    Crowd::new(recipe, routing, settings)
 }
 
 fn places(crowd: &Crowd) -> Vec<Vec3> {
@@ -126,8 +134,8 @@ fn who_is_sent_somewhere_arrives_there_by_way_of_the_places_between() {
 }
 
 /// Seconds for which two of eight walkers touch, of two rows that pass through each other.
-fn touching_secs(avoidance: bool) -> f32 {
-    let mut crowd = crowd(Routing::Scripted);
+fn touching_secs(seed: u64, avoidance: bool) -> f32 {
+    let mut crowd = crowd_of(seed, Routing::Scripted);
     let row = |z: f32, heading: f32| {
         (0..4_u8).map(move |index| (Vec3::new(1.5 * f32::from(index), 0.0, z), heading))
     };
@@ -138,7 +146,8 @@ fn touching_secs(avoidance: bool) -> f32 {
         agent.go_to(Vec2::new(agent.place.x, -2.0 * agent.place.z));
     }
     let mut frames = 0;
-    walk_with(&mut crowd, 10.0, avoidance, |crowd| {
+    // The slowest is there after 8 s if nobody is in the way.
+    walk_with(&mut crowd, 12.0, avoidance, |crowd| {
         let places = places(crowd);
         let others = |index: usize| places[index + 1..].iter();
         let touch = |(index, place): (usize, &Vec3)| {
@@ -148,14 +157,19 @@ fn touching_secs(avoidance: bool) -> f32 {
     });
     let agents = crowd.agents().iter().zip(0..8);
     let passed = agents.filter(|(agent, index)| (agent.place.z > 2.0) == (*index < 4));
-    assert_eq!(passed.count(), 8, "{:?}", places(&crowd));
+    assert_eq!(passed.count(), 8, "seed {seed}: {:?}", places(&crowd));
     frames as f32 * DT_SECS
 }
 
 #[test]
 fn rows_that_meet_pass_through_each_other_without_bumping() {
-    let [avoiding, straight] = [true, false].map(touching_secs);
-    assert!(straight > 0.3, "the rows meet: {straight} s");
+    let [avoiding, straight] = [true, false].map(|avoidance| {
+        let seeds = 0..12;
+        seeds
+            .map(|seed| touching_secs(seed, avoidance))
+            .sum::<f32>()
+    });
+    assert!(straight > 6.0, "the rows meet: {straight} s");
     assert!(avoiding < 0.2 * straight, "{avoiding} of {straight} s");
 }
 

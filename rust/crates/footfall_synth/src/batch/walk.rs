@@ -32,7 +32,8 @@ pub struct WalkConfig {
 pub struct SynthesizedWalk {
     /// Motion: first frame at the origin and facing +Z, an initial contact of the left foot or standing.
     pub clip: Clip,
-    /// Contacts of the left and the right foot.
+    /// Contacts of the left and the right foot, from the frame in which the foot is at rest to the one in which its toes leave the ground. The shipped walk's feet touch the
+    /// ground 25 ms before they rest.
     pub contacts: [Vec<FrameSpan>; 2],
 }
 

@@ -19,7 +19,7 @@ const MOST: [f32; 2] = [0.15, 0.06];
 
 /// The same harmonics in a walk forwards, cosine and sine from the landing on: means of CMU's neutral walkers, all eight of whom are fastest 50 to 110 ms after a
 /// landing, as the leg behind pushes off, and slowest in the middle of the stance.
-const FORWARDS: [Vec2; 2] = [Vec2::new(0.097, 0.086), Vec2::new(-0.009, 0.034)];
+const FORWARDS: [Vec2; 2] = [Vec2::new(0.117, 0.055), Vec2::new(0.011, 0.034)];
 
 /// Blend from the harmonics of the generated legs to those. With 1 legs would stretch too fast before a change of speed.
 const PEOPLE_S: f32 = 0.35;

@@ -13,11 +13,11 @@ use footfall_ik::{Plant, RockerFoot};
 use glam::Quat;
 
 /// Fraction of the straight leg beyond which the heel rises instead, and the range over which it sets in.
-const RISING_EXTENSION: f32 = 0.9965;
+const RISING_EXTENSION: f32 = 0.997;
 const RISING_SOFTNESS: f32 = 0.0014;
 
 /// Time before the end of contact at which a leaving leg begins to bend, seconds, and half of its extra knee flexion by then, radians; without it the knee would snap.
-const LEAVING_BEND: f32 = 0.055;
+const LEAVING_BEND: f32 = 0.08;
 const LEAVING_SECS: f32 = 0.05;
 
 /// Limit of the excess stretch, as a multiple of that range, to keep the exponential finite.

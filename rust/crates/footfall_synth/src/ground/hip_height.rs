@@ -7,13 +7,15 @@
 use super::frame::PlantedFrame;
 use super::generated::GeneratedFrame;
 use super::planter::Planter;
-use super::travel::MEETING_FROM;
 use crate::plan::StepTiming;
 use footfall_core::ease::{settled, smooth_step};
 use glam::Vec3Swizzles as _;
 
 /// Least share of a leg's squared length that is left of it from the side.
 const LEAST_HEIGHT: f32 = 0.25;
+
+/// Part of a step from which on the hips come to the height of the leg that lands.
+const MEETING_FROM: f32 = 0.15;
 
 impl Planter {
     /// Moves the hips in every frame of a walked step to the height at which the standing leg has its generated length.

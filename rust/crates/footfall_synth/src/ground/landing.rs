@@ -14,7 +14,7 @@ use glam::Vec3;
 /// Largest fraction of the straight leg at landing; the remainder keeps the pelvis from dropping at once. A forward step lands straighter than
 /// one to the side; a backward step lands on the toes, over a bent knee.
 const LANDING_EXTENSION: f32 = 0.985;
-const LANDING_FORWARDS: f32 = 0.011;
+const LANDING_FORWARDS: f32 = 0.0115;
 const LANDING_BACKWARDS: f32 = 0.005;
 /// Share of the turn between the landing and the flat foot by which a foot is turned at landing, and the largest such turn, radians.
 const TURNED_SHARE: f32 = 0.6;

@@ -30,6 +30,9 @@ const REACH_RELEASE_SECS: f32 = 0.05;
 /// share of the leg's length.
 const RELEASE_SHARE: f32 = 0.03;
 
+/// Pitch of a flat foot that has not passed its heel yet, radians: its heel is not to rise.
+const FLAT: f32 = -f32::EPSILON;
+
 impl Planter {
     /// Fills the targets of both feet in their stances: on the plant, under its heading, at the generated pitch.
     pub(super) fn fill_stances(&self, generated: &mut [GeneratedFrame], timing: &StepTiming) {
@@ -40,6 +43,7 @@ impl Planter {
         ];
         for (side, last) in stances {
             let Some(last) = last else { continue };
+            pass_flat(&mut generated[..=last], side);
             self.stand(side, &mut generated[..=last], |leg| Some(leg.pitch));
         }
     }
@@ -223,6 +227,24 @@ impl Landing {
             hips,
             hip: frame.level * generated.legs[side.index()].hip,
             ankle: free_foot(generated, side, hips, frame.level).ankle,
+        }
+    }
+}
+
+/// Lays a standing foot flat in the frame in which it passes from heel to ball, or back: it would slide between the two pivots. The first and the last frame belong to
+/// other steps, too.
+fn pass_flat(generated: &mut [GeneratedFrame], side: Side) {
+    let side = side.index();
+    let last = generated.len() - 1;
+    for index in 1..=last {
+        let [before, now] = [index - 1, index].map(|at| generated[at].legs[side].pitch);
+        if before * now < 0.0 {
+            let nearer = if before.abs() < now.abs() {
+                index - 1
+            } else {
+                index
+            };
+            generated[nearer.clamp(1, last.saturating_sub(1).max(1))].legs[side].pitch = FLAT;
         }
     }
 }

@@ -35,7 +35,7 @@ const LEAP_DEPARTURE_SECS: f32 = 0.5;
 const BRAKING_SECS: [f32; 2] = [0.16, 0.1];
 
 /// Share of the straight leg to which a swinging leg can be stretched.
-const SWING_EXTENSION: f32 = 0.9993;
+const SWING_EXTENSION: f32 = 0.9985;
 
 /// Difference between planted and generated foot, from the last frame of one stance to the first of the next.
 pub(super) struct Swing {

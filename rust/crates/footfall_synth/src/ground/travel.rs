@@ -13,7 +13,7 @@ use footfall_core::{Joint, Side};
 use glam::{Quat, Vec3};
 
 /// Time constant with which the hips settle onto the path of the foot that has just landed, seconds.
-const SETTLE_SECS: f32 = 0.05;
+const SETTLE_SECS: f32 = 0.06;
 
 /// Relative increase of that time for a step of no length: shortened steps, as on stairs, still lift and lower the hips as long ones
 /// do.
@@ -29,7 +29,7 @@ pub(super) const TURN_ONSET: f32 = 0.6;
 /// Generated legs disagree by a few centimetres about the hips' height when a foot lands beside the other or behind it. This share of the gap is closed
 /// before the landing, from this part of the step on, and the rest after it.
 const MEETING_SHARE: f32 = 0.5;
-pub(super) const MEETING_FROM: f32 = 0.4;
+const MEETING_FROM: f32 = 0.4;
 
 impl Planter {
     /// Fills hips, heading and ground position of every frame, and carries the last two on to the next step.

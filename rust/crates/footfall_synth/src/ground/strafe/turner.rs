@@ -48,6 +48,8 @@ struct Swing {
     freed: f32,
     /// Pitch at the mirrored time of the swing: backward steps swing as forward steps in reverse.
     mirrored: f32,
+    /// Pitch at the landing.
+    landing: f32,
 }
 
 impl Turner<'_> {
@@ -62,6 +64,7 @@ impl Turner<'_> {
         let trailing = timing.leading.other();
         let last = timing.frames;
         let freed_by = FREED_BY * (last - timing.terminal) as f32;
+        let landing = generated[last].legs[trailing.index()].free_pitch;
         for (index, frame) in frames.iter_mut().enumerate().take(last + 1) {
             let strafe = before.between(now, index as f32 / last as f32);
             let mirrored = (timing.terminal + last).saturating_sub(index).min(last);
@@ -69,6 +72,7 @@ impl Turner<'_> {
             let swing = (index > timing.terminal).then(|| Swing {
                 freed: smooth_step((index - timing.terminal) as f32 / freed_by),
                 mirrored,
+                landing,
             });
             let legs = &mut generated[index].legs;
             let rise =
@@ -125,7 +129,9 @@ impl Turner<'_> {
         let mut pitch = standing;
         if let Some(swing) = swing {
             let swinging = turned_pitch(strafe, leg.free_pitch, swing.mirrored);
-            let free = place(foot.tilt(leg.free_pitch)) + foot.tilt(swinging);
+            // Toes that come down as the foot lands would make a flat foot fall.
+            let tilted = leg.free_pitch.max(swing.landing.min(0.0));
+            let free = place(foot.tilt(tilted)) + foot.tilt(swinging);
             ankle = ankle.lerp(free, swing.freed);
             pitch += swing.freed * (swinging - pitch);
         }
