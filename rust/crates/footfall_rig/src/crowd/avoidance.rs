@@ -7,12 +7,16 @@ use super::neighbours::{Passerby, SIGHT_M};
 use glam::Vec2;
 
 /// Distance and time of an expected encounter within which others are avoided, metres and seconds.
-const PERSONAL_M: f32 = 1.0;
-const FORESIGHT_SECS: f32 = 4.0;
+const PERSONAL_M: f32 = 0.9;
+const FORESIGHT_SECS: f32 = 8.0;
+/// Time for which a walker continues as it goes, seconds: it takes half a step to turn or slow down.
+const LAG_SECS: f32 = 0.25;
+/// Least cosine of the angle between the direction it faces and another person: those behind are ignored.
+const BEHIND: f32 = -0.5;
 /// Closer than this two bodies touch, metres.
 const BODIES_M: f32 = 0.5;
-/// Costs of turning by a radian and of standing, relative to those of touching and of walking into another body. Chosen by the distances
-/// in two rows of walkers that pass through each other.
+/// Costs of turning by a radian and of standing, relative to those of touching and of walking into another body. Chosen, as the distances and times above, by how near
+/// walkers come in two rows that pass through each other and in a square in which they wander.
 const TURNING: f32 = 0.15;
 const SLOWING: f32 = 0.4;
 const CLOSENESS: f32 = 0.6;
@@ -34,6 +38,8 @@ pub(super) struct Wayfarer {
     pub(super) off: f32,
     /// Preferred speed, m/s.
     pub(super) speed_mps: f32,
+    /// Speed now, m/s.
+    pub(super) present_mps: f32,
     /// Most that it can step aside to the right and to the left, radians.
     pub(super) room_rad: [f32; 2],
 }
@@ -56,8 +62,7 @@ impl Wayfarer {
         for other in others {
             let way = other.place - self.place;
             let far = way.length();
-            // Those behind are ignored.
-            if (1e-3..SIGHT_M).contains(&far) && way.dot(facing) >= -0.2 * far {
+            if (1e-3..SIGHT_M).contains(&far) && way.dot(facing) >= BEHIND * far {
                 let closing = (velocity - other.velocity).dot(way) / far;
                 near.take((closing + 0.5) / far, way, other.velocity);
             }
@@ -81,7 +86,9 @@ impl Wayfarer {
                 if detour >= best.0 {
                     break;
                 }
-                let cost = detour + near.cost(direction * (speed * self.speed_mps));
+                let wanted = direction * (speed * self.speed_mps);
+                let ahead = (facing * self.present_mps - wanted) * LAG_SECS;
+                let cost = detour + near.cost(wanted, ahead);
                 if cost < best.0 {
                     best = (cost, Some(Detour { aside, speed }));
                 }
@@ -137,13 +144,13 @@ impl Near {
         }
     }
 
-    /// Cost of meeting them at this velocity.
-    fn cost(&self, velocity: Vec2) -> f32 {
+    /// Cost of meeting them at this velocity, from a place so far ahead.
+    fn cost(&self, velocity: Vec2, ahead: Vec2) -> f32 {
         let mut costs = [0.0; MOST_OTHERS];
         for (index, cost) in costs.iter_mut().enumerate() {
             let way = Vec2::new(self.way[0][index], self.way[1][index]);
             let other = Vec2::new(self.velocity[0][index], self.velocity[1][index]);
-            *cost = meeting_cost(way, velocity - other);
+            *cost = meeting_cost(way - ahead, velocity - other);
         }
         costs[..self.len].iter().sum()
     }
@@ -171,6 +178,7 @@ mod tests {
         heading: 0.0,
         off: 0.0,
         speed_mps: 1.3,
+        present_mps: 1.3,
         room_rad: [PI; 2],
     };
     const STRAIGHT_ON: Detour = Detour {

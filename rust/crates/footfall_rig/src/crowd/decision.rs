@@ -47,6 +47,7 @@ impl Agent {
                     heading: self.heading,
                     off,
                     speed_mps: self.speed_mps,
+                    present_mps: self.present_mps(),
                     room_rad,
                 };
                 // A walker that takes no step avoids nobody.
