@@ -7,7 +7,7 @@ using Godot;
 namespace Footfall
 {
     /// <summary>Replays the recording of a sensor as if the sensor were worn now.</summary>
-    /// <remarks>The file has the columns <c>time_s,ax,ay,az,gx,gy,gz</c>: seconds, specific force in m/s² (including gravity) and angular rate in rad/s, as <c>footfall imu simulate</c> writes it. Godot imports <c>.csv</c> files as translations: give the file another extension, such as <c>.imu</c>, and add it to the export filters.</remarks>
+    /// <remarks>The file has the columns <c>time_s,ax,ay,az,gx,gy,gz</c>: seconds, specific force in m/s² (including gravity) and angular rate in rad/s, as <c>footfall imu simulate</c> writes it, or names and units of other programs, such as <c>Time (s)</c>, <c>Gyroscope X (deg/s)</c> and <c>Accelerometer X (g)</c>. Godot imports <c>.csv</c> files as translations: give the file another extension, such as <c>.imu</c>, and add it to the export filters.</remarks>
     public class ReplayImuSource : FootfallObject
     {
         /// <summary>Name of the class in the engine.</summary>

@@ -9,34 +9,25 @@ use std::path::Path;
 /// Numbers of samples that were lost on the way are missing, so that times show it.
 pub fn ipol(data: &Path, person: u32, trial: u32, foot: &str) -> ImuRecording {
     let file = format!("imu/ipol_voisard/GaitData/{person}-{trial}_{foot}.txt");
-    let rows = rows(&data.join(file), 2, '\t');
+    let rows = rows(&data.join(file));
     let sample = |row: Vec<f64>| (row[0] / 100.0, [1, 2, 3, 4, 5, 6].map(|n| row[n]));
     recording(rows.into_iter().map(sample))
 }
 
 /// A loop that ends where it began, of x-io: `short_walk` or `long_walk`.
 pub fn xio(data: &Path, name: &str) -> ImuRecording {
-    let rows = rows(
-        &data.join(format!("imu/xio_gait_tracking/{name}.csv")),
-        1,
-        ',',
-    );
-    let sample = |row: Vec<f64>| {
-        let [fx, fy, fz] = [4, 5, 6].map(|n| row[n] * f64::from(footfall_imu::GRAVITY_MPS2));
-        let [rx, ry, rz] = [1, 2, 3].map(|n| row[n].to_radians());
-        (row[0], [fx, fy, fz, rx, ry, rz])
-    };
-    recording(rows.into_iter().map(sample))
+    let path = data.join(format!("imu/xio_gait_tracking/{name}.csv"));
+    footfall_imu::csv::read(&path).expect("a recording")
 }
 
-/// Rows of seven numbers or more, after so many lines.
-fn rows(path: &Path, skipped: usize, separator: char) -> Vec<Vec<f64>> {
+/// Rows of seven numbers or more, after two lines.
+fn rows(path: &Path) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(path).expect("a recording");
     let row = |line: &str| -> Vec<f64> {
-        let fields = line.split(separator);
+        let fields = line.split('\t');
         fields.filter_map(|f| f.trim().parse().ok()).collect()
     };
-    let rows = text.lines().skip(skipped).map(row);
+    let rows = text.lines().skip(2).map(row);
     rows.filter(|row| row.len() >= 7).collect()
 }
 

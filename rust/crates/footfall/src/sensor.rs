@@ -1,7 +1,7 @@
 //! Inertial sensors: samples, recordings, orientation, gait events and strides of a foot, and live ports.
 //!
 //! An [`ImuSample`] is a time, a specific force in m/s² (at rest [`GRAVITY_MPS2`] along up) and an angular rate in rad/s. An [`ImuRecording`] is a sequence of samples; the
-//! module [`csv`] reads and writes its file, with an [`ImuCsvError`] that names line and column. [`check_recording`] detects wrong units, axes and rates, each a [`RecordingFault`].
+//! module [`csv`] reads and writes its file, and reads those of other programs whose header names units, with an [`ImuCsvError`] that names line and column. [`check_recording`] detects wrong units, axes and rates, each a [`RecordingFault`].
 //!
 //! ```
 //! use footfall::glam::Vec3;

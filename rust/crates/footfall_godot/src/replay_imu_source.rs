@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// Replays the recording of a sensor as if the sensor were worn now.
 ///
 /// The file has the columns `time_s,ax,ay,az,gx,gy,gz`: seconds, specific force in m/s² (including gravity) and angular rate in rad/s, as
-/// `footfall imu simulate` writes it. Godot imports `.csv` files as translations: give the file another extension, such as `.imu`, and add it
+/// `footfall imu simulate` writes it, or names and units of other programs, such as `Time (s)`, `Gyroscope X (deg/s)` and `Accelerometer X (g)`. Godot imports `.csv` files as translations: give the file another extension, such as `.imu`, and add it
 /// to the export filters.
 #[derive(GodotClass)]
 #[class(tool, init, base = Resource)]

@@ -1,5 +1,6 @@
-//! Recordings as CSV: header `time_s,ax,ay,az,gx,gy,gz`; specific force in m/s², angular rate in rad/s.
+//! Recordings as CSV: header `time_s,ax,ay,az,gx,gy,gz`; specific force in m/s², angular rate in rad/s. Files of other programs are read if their header has units.
 
+use crate::columns::Columns;
 use crate::sample::{ImuRecording, ImuSample};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -21,7 +22,7 @@ pub enum ImuCsvError {
         source: csv::Error,
     },
     /// The header is another.
-    #[error("{}, line 1: the columns are {found}; they must be time_s,ax,ay,az,gx,gy,gz", path.display())]
+    #[error("{}, line 1: the columns are {found}; they must be time_s,ax,ay,az,gx,gy,gz, or have names and units such as 'Time (s)', 'Gyroscope X (deg/s)' and 'Accelerometer X (g)'", path.display())]
     Header {
         /// The file.
         path: PathBuf,
@@ -79,19 +80,24 @@ fn parse(
         source,
     };
     let header = reader.headers().map_err(csv_error)?;
-    if header.iter().map(str::trim).ne(HEADER) {
-        return Err(ImuCsvError::Header {
-            path: path.to_owned(),
-            found: header.iter().collect::<Vec<_>>().join(","),
-        });
-    }
+    let cells = Cells::of(header).ok_or_else(|| ImuCsvError::Header {
+        path: path.to_owned(),
+        found: header.iter().collect::<Vec<_>>().join(","),
+    })?;
     let mut samples: Vec<ImuSample> = Vec::new();
+    let mut before = csv::StringRecord::new();
     for record in reader.records() {
         let record = record.map_err(csv_error)?;
+        // Other programs write a line twice.
+        if cells != Cells::OWN && record == before {
+            continue;
+        }
         let last = samples.last().map(|sample| sample.time_secs);
         let mut row = [0.0; 7];
-        for ((value, text), column) in row.iter_mut().zip(&record).zip(HEADER) {
-            let number = text.trim().parse().ok().filter(|number: &f64| {
+        let texts = cells.of_record(&record).zip(HEADER);
+        for (value, ((text, scale), column)) in row.iter_mut().zip(texts) {
+            let number = text.trim().parse().map(|number: f64| number * scale);
+            let number = number.ok().filter(|number| {
                 let in_order = column != HEADER[0] || last.is_none_or(|last| *number > last);
                 // Values are kept as f32, and what overflows there is no measurement.
                 number.abs() < 1e30 && in_order
@@ -112,6 +118,7 @@ fn parse(
         if samples.len() > MAX_SAMPLES {
             break;
         }
+        before = record;
     }
     if !(2..=MAX_SAMPLES).contains(&samples.len()) {
         return Err(ImuCsvError::Samples {
@@ -120,6 +127,41 @@ fn parse(
         });
     }
     Ok(ImuRecording { samples })
+}
+
+/// Places of time, specific force and angular rate in a line, and the factors to their units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cells {
+    places: [usize; 7],
+    scales: [f64; 7],
+}
+
+impl Cells {
+    /// Those of [`HEADER`].
+    const OWN: Self = Self {
+        places: [0, 1, 2, 3, 4, 5, 6],
+        scales: [1.0; 7],
+    };
+
+    /// Returns those of a header; `None` if it is not [`HEADER`] and does not name all channels and their units.
+    fn of(header: &csv::StringRecord) -> Option<Self> {
+        if header.iter().map(str::trim).eq(HEADER) {
+            return Some(Self::OWN);
+        }
+        let columns = Columns::of_names(header.iter())?;
+        let mut cells = Self::OWN;
+        cells.places[0] = columns.time?;
+        cells.places[1..].copy_from_slice(&columns.values);
+        cells.scales[0] = columns.units.time?.seconds();
+        cells.scales[1..4].fill(columns.units.force?.mps2());
+        cells.scales[4..].fill(columns.units.rate?.radps());
+        Some(cells)
+    }
+
+    fn of_record<'a>(&self, record: &'a csv::StringRecord) -> impl Iterator<Item = (&'a str, f64)> {
+        let cells = self.places.into_iter().zip(self.scales);
+        cells.map(|(place, scale)| (record.get(place).unwrap_or_default(), scale))
+    }
 }
 
 /// The first line of a recording's file.
@@ -173,6 +215,35 @@ mod tests {
         ] {
             let error = read_text(&text).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_recording_of_another_program_is_read_in_its_units() {
+        let text = "Time (s),Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s),Accelerometer X (g),Accelerometer Y (g),Accelerometer Z (g)\n\
+                    0,180,0,0,0,1,0\n0,180,0,0,0,1,0\n0.01,0,0,90,0,0,-2\n";
+        let recording = read_text(text).unwrap();
+        let [first, second] = recording.samples[..] else {
+            panic!("{recording:?}")
+        };
+        assert!(
+            (first.force - Vec3::Y * 9.80665).length() < 1e-4,
+            "{first:?}"
+        );
+        assert!((first.rate - Vec3::X * core::f32::consts::PI).length() < 1e-6);
+        assert!((second.rate.z - core::f32::consts::FRAC_PI_2).abs() < 1e-6);
+        let micros = text.replace("Time (s)", "Timestamp (us)");
+        let micros = micros.replace("\n0.01,", "\n10000,");
+        assert_eq!(read_text(&micros).unwrap(), recording);
+        for (part, other, fault) in [
+            ("0.01,", "0,", "line 4: time_s"),
+            (" (deg/s)", "", "line 1"),
+            (" (g)", "", "line 1"),
+            ("Accelerometer Z", "Magnetometer Z", "line 1"),
+            ("Time (s)", "Packet", "line 1"),
+        ] {
+            let error = read_text(&text.replace(part, other)).unwrap_err();
+            assert!(error.to_string().contains(fault), "{other}: {error}");
         }
     }
 }

@@ -8,6 +8,7 @@
 //! right-handed.
 
 pub mod checks;
+mod columns;
 pub mod contact_meter;
 pub mod csv;
 pub mod events;
@@ -22,6 +23,7 @@ pub mod sample;
 pub mod stream_monitor;
 pub mod stride_meter;
 pub mod strides;
+mod units;
 mod zero_velocity;
 
 pub use checks::{RecordingFault, check_recording};
@@ -34,3 +36,4 @@ pub use rest::{Rest, find_rest};
 pub use sample::{GRAVITY_MPS2, ImuRecording, ImuSample};
 pub use stream_monitor::{FaultSpan, StreamFault, StreamMonitor};
 pub use stride_meter::StrideMeter;
+pub use units::{ForceUnit, RateUnit, TimeUnit};

@@ -6,12 +6,12 @@
 mod columns;
 mod units;
 
-pub use units::{ForceUnit, RateUnit, TimeUnit};
+pub use crate::units::{ForceUnit, RateUnit, TimeUnit};
 
 use super::{Format, Taken};
 use crate::live::json;
 use crate::live::reading::Reading;
-use columns::{Columns, Row};
+use columns::{LineColumns, Row};
 use units::Scale;
 
 /// A line that is longer is no message, bytes.
@@ -39,7 +39,7 @@ impl TextFormat {
     /// # Errors
     /// Text that names the fault and the remedy.
     pub fn check(&self) -> Result<(), String> {
-        let named = |columns: &String| Columns::of_header(columns).is_some();
+        let named = |columns: &String| LineColumns::of_header(columns).is_some();
         match &self.columns {
             Some(columns) if !named(columns) => Err(format!(
                 "the columns '{columns}' do not name all six axes; write them like t,ax,ay,az,gx,gy,gz"
@@ -52,7 +52,7 @@ impl TextFormat {
 /// Lines of a stream or a datagram.
 pub(in crate::live) struct Text {
     setting: TextFormat,
-    columns: Option<Columns>,
+    columns: Option<LineColumns>,
     scale: Option<Scale>,
     /// Rows whose units are not known yet.
     waiting: Vec<Row>,
@@ -63,7 +63,7 @@ pub(in crate::live) struct Text {
 impl Text {
     pub(in crate::live) fn new(setting: &TextFormat) -> Self {
         Self {
-            columns: setting.columns.as_deref().and_then(Columns::of_header),
+            columns: setting.columns.as_deref().and_then(LineColumns::of_header),
             setting: setting.clone(),
             scale: None,
             waiting: Vec::new(),
@@ -90,11 +90,11 @@ impl Text {
         }
         // A stream whose objects are columns is not taken for an app's first.
         let is_object = text.starts_with('{');
-        let flat = self.columns.as_ref().is_some_and(Columns::has_labels);
+        let flat = self.columns.as_ref().is_some_and(LineColumns::has_labels);
         if is_object && !flat && json::parse(line, &mut *give) {
             return true;
         }
-        if let Some(columns) = Columns::of_header(text) {
+        if let Some(columns) = LineColumns::of_header(text) {
             // A header that comes again, after a reset of the board, is the same.
             if self.setting.columns.is_none() && self.columns.as_ref() != Some(&columns) {
                 self.columns = Some(columns);
@@ -110,7 +110,7 @@ impl Text {
             return true;
         }
         self.waiting.push(row);
-        let units = self.columns.as_ref().map(Columns::units);
+        let units = self.columns.as_ref().map(LineColumns::units);
         let units = units.unwrap_or_default();
         if self.waiting.len() >= GUESS_AFTER || units.are_told(&self.setting, &row) {
             let scale = Scale::new(&self.setting, units, &self.waiting);
@@ -137,8 +137,8 @@ impl Format for Text {
             };
         };
         let line = &bytes[..end];
-        let header =
-            core::str::from_utf8(line).is_ok_and(|text| Columns::of_header(text.trim()).is_some());
+        let header = core::str::from_utf8(line)
+            .is_ok_and(|text| LineColumns::of_header(text.trim()).is_some());
         let part = !core::mem::replace(&mut self.begun, true) && !header;
         if part || !self.line(line, give) {
             return Taken::Garbage(end + 1);

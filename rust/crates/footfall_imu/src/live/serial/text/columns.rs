@@ -1,7 +1,7 @@
 //! Columns of lines of numbers, and JSON objects whose members are such columns.
 
 use super::TextFormat;
-use super::units::{ForceUnit, RateUnit, TimeUnit};
+use crate::columns::{Columns, Units};
 use crate::live::json::Number;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -13,14 +13,6 @@ pub(super) struct Row {
     pub(super) time: Option<f64>,
     /// Specific force x, y, z, then angular rate x, y, z.
     pub(super) values: [f64; 6],
-}
-
-/// Units that a header names.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Units {
-    pub(super) time: Option<TimeUnit>,
-    pub(super) force: Option<ForceUnit>,
-    pub(super) rate: Option<RateUnit>,
 }
 
 impl Units {
@@ -35,23 +27,13 @@ impl Units {
 
 /// Columns of the quantities in a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Columns {
+pub(super) struct LineColumns {
     /// The names of a stream whose every line has them.
     labels: Vec<String>,
-    time: Option<usize>,
-    values: [usize; 6],
-    units: Units,
+    columns: Columns,
 }
 
-/// Meaning of a column.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Channel {
-    Time,
-    Value(usize),
-    Other,
-}
-
-impl Columns {
+impl LineColumns {
     /// Columns of a header of names; `None` when it does not name all six axes.
     pub(super) fn of_header(line: &str) -> Option<Self> {
         // Numbers begin otherwise, and labelled lines are no header.
@@ -59,30 +41,7 @@ impl Columns {
         if !named || line.contains(':') {
             return None;
         }
-        Self::of_names(fields(line))
-    }
-
-    fn of_names<'a>(names: impl Iterator<Item = &'a str>) -> Option<Self> {
-        let mut units = Units::default();
-        let mut time = None;
-        let mut values = [None; 6];
-        for (place, name) in names.enumerate() {
-            match channel(name, &mut units) {
-                Channel::Time => time = time.or(Some(place)),
-                Channel::Value(n) => values[n] = values[n].or(Some(place)),
-                Channel::Other => {}
-            }
-        }
-        let mut found = [0; 6];
-        for (found, place) in found.iter_mut().zip(values) {
-            *found = place?;
-        }
-        Some(Self {
-            labels: Vec::new(),
-            time,
-            values: found,
-            units,
-        })
+        Columns::of_names(fields(line)).map(Self::unlabelled)
     }
 
     /// The usual order.
@@ -92,12 +51,18 @@ impl Columns {
             6 => 0,
             _ => 1,
         };
-        Some(Self {
-            labels: Vec::new(),
+        Some(Self::unlabelled(Columns {
             time: (first == 1).then_some(0),
             values: core::array::from_fn(|n| first + n),
             units: Units::default(),
-        })
+        }))
+    }
+
+    const fn unlabelled(columns: Columns) -> Self {
+        Self {
+            labels: Vec::new(),
+            columns,
+        }
     }
 
     /// Returns true when every line has the names of its columns.
@@ -106,7 +71,7 @@ impl Columns {
     }
 
     pub(super) const fn units(&self) -> Units {
-        self.units
+        self.columns.units
     }
 }
 
@@ -114,7 +79,7 @@ impl Columns {
 const MOST: usize = 32;
 
 /// The numbers of a line; its columns become those of the stream when that has none yet, or when the line has labels of its own.
-pub(super) fn row(text: &str, columns: &mut Option<Columns>) -> Option<Row> {
+pub(super) fn row(text: &str, columns: &mut Option<LineColumns>) -> Option<Row> {
     let mut numbers = [0.0; MOST];
     let mut count = 0;
     if text.starts_with('{') {
@@ -134,10 +99,10 @@ pub(super) fn row(text: &str, columns: &mut Option<Columns>) -> Option<Row> {
             let name = |field| str::split_once(field, ':').map_or(field, |(name, _)| name);
             label(columns, fields(text).map(name))?;
         } else if columns.is_none() {
-            *columns = Some(Columns::of_count(count)?);
+            *columns = Some(LineColumns::of_count(count)?);
         }
     }
-    let columns = columns.as_ref()?;
+    let columns = &columns.as_ref()?.columns;
     let at = |place: usize| {
         (place < count)
             .then(|| numbers[place])
@@ -156,7 +121,7 @@ pub(super) fn row(text: &str, columns: &mut Option<Columns>) -> Option<Row> {
 
 /// Makes the columns those of a line that has labels; mostly they are the ones before.
 fn label<'a>(
-    columns: &mut Option<Columns>,
+    columns: &mut Option<LineColumns>,
     names: impl Iterator<Item = &'a str> + Clone,
 ) -> Option<()> {
     let known = columns
@@ -164,9 +129,9 @@ fn label<'a>(
         .is_some_and(|columns| columns.labels.iter().map(String::as_str).eq(names.clone()));
     if !known {
         let labels = names.clone().map(str::to_owned).collect();
-        *columns = Some(Columns {
+        *columns = Some(LineColumns {
             labels,
-            ..Columns::of_names(names)?
+            columns: Columns::of_names(names)?,
         });
     }
     Some(())
@@ -215,61 +180,4 @@ fn fields(line: &str) -> impl Iterator<Item = &str> + Clone {
         Some(fields) => fields.next(),
         None => blank.next(),
     })
-}
-
-/// Names of a quantity, longest first: what follows is an axis.
-const FORCE_NAMES: [&str; 6] = [
-    "acceleration",
-    "accelerometer",
-    "accel",
-    "acc",
-    "force",
-    "a",
-];
-const RATE_NAMES: [&str; 7] = ["gyroscope", "gyro", "gyr", "omega", "rate", "g", "w"];
-const TIME_NAMES: [&str; 8] = [
-    "timestamp",
-    "time",
-    "millis",
-    "micros",
-    "seconds",
-    "ms",
-    "us",
-    "t",
-];
-
-fn channel(name: &str, units: &mut Units) -> Channel {
-    let name = name.trim().trim_matches('"').to_ascii_lowercase();
-    let axis_after = |names: &[&str]| {
-        names.iter().find_map(|prefix| {
-            let rest = name
-                .strip_prefix(prefix)?
-                .trim_start_matches(['_', ' ', '.']);
-            let axis = rest.chars().next().and_then(|axis| "xyz".find(axis))?;
-            let unit = &rest[1..];
-            // "accelerate" is no axis.
-            (!unit.starts_with(|c: char| c.is_ascii_alphanumeric()))
-                .then(|| (axis, unit.to_owned()))
-        })
-    };
-    if let Some((axis, unit)) = axis_after(&FORCE_NAMES) {
-        units.force = units.force.or_else(|| ForceUnit::of_label(&unit));
-        return Channel::Value(axis);
-    }
-    if let Some((axis, unit)) = axis_after(&RATE_NAMES) {
-        units.rate = units.rate.or_else(|| RateUnit::of_label(&unit));
-        return Channel::Value(3 + axis);
-    }
-    let time = TIME_NAMES.iter().find_map(|prefix| {
-        let rest = name.strip_prefix(prefix)?;
-        (!rest.starts_with(|c: char| c.is_ascii_alphanumeric())).then_some((*prefix, rest))
-    });
-    if let Some((prefix, rest)) = time {
-        units.time = units
-            .time
-            .or_else(|| TimeUnit::of_label(prefix))
-            .or_else(|| TimeUnit::of_label(rest));
-        return Channel::Time;
-    }
-    Channel::Other
 }
