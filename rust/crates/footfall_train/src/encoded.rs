@@ -157,3 +157,31 @@ pub(crate) fn steady_part(walk: &Walk) -> Walk {
             .collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use footfall_core::{Pose, Side, Skeleton};
+
+    #[test]
+    fn steps_are_cut_at_rest_but_not_where_the_body_falls_onto_a_foot() {
+        let skeleton = Skeleton::standard();
+        let clip = Clip {
+            frame_rate_hz: 120.0,
+            poses: vec![Pose::rest(&skeleton); 300],
+            skeleton,
+        };
+        let ends = [(0, 60), (60, 120), (120, 180), (180, 299)];
+        let steps = ends.into_iter().zip([Side::Left, Side::Right].repeat(2));
+        let mut steps: Vec<Step> = steps
+            .map(|((first, end), side)| Step::inside(side, first, end))
+            .collect();
+        steps[0].other_terminal = Some(1);
+        steps[1].take_off = Some(110);
+        let cut = cut_at_rest(Walk { steps }, &clip).steps;
+        let ends: Vec<_> = cut.iter().map(|step| (step.first, step.end)).collect();
+        // The second step ends in flight, and the last one with the clip.
+        assert_eq!(ends, [(3, 63), (63, 120), (120, 183), (183, 299)]);
+        assert_eq!(cut[0].other_terminal, Some(3));
+    }
+}
