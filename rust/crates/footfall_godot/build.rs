@@ -1,6 +1,6 @@
 //! Passes an argument of `cargo xtask library` to the linker.
 
-/// Set for libraries that are built as games ship them.
+/// Set for libraries that are built as games ship them, and for Windows.
 const ARGUMENT: &str = "FOOTFALL_LINK_ARG";
 
 fn main() {

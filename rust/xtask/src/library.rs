@@ -20,9 +20,19 @@ pub(crate) const MACOS_UNIVERSAL: &str = "universal-apple-darwin";
 
 /// Linker script of libraries as games ship them, in the workspace.
 const SCRIPT: &str = "crates/footfall_godot/shipped.ld";
+/// Exports of the library for Windows, in the workspace. Without them zig exports every function, so that none can be dropped.
+const EXPORTS: &str = "crates/footfall_godot/windows.def";
 /// Level of the package whose one function fills the engine's method table. At level z LLVM's outliner, which arm64 alone has, takes more than a quarter of an hour for it; elsewhere level z makes
 /// the library 0.6 MB smaller.
 const METHOD_TABLE: &str = r#"profile.shipped.package.godot-ffi.opt-level="s""#;
+
+/// Settings of the editor's flavour for other platforms: zig's linkers keep much code that nothing calls.
+const CROSS_EDITOR: [&str; 4] = [
+    "--config",
+    r#"profile.release.lto="thin""#,
+    "--config",
+    r#"profile.release.strip="symbols""#,
+];
 
 /// Settings of a build of the library.
 #[derive(Args, Debug, Clone, Default)]
@@ -149,13 +159,20 @@ fn run(
         _ => "release",
     };
     cargo.args(["--profile", profile]);
-    if profile == "shipped"
-        && let Some(argument) = platform.link_argument(&paths::workspace().join(SCRIPT))
-    {
+    let workspace = paths::workspace();
+    let argument = match platform.system() {
+        "windows" if options.cross => Some(workspace.join(EXPORTS).display().to_string()),
+        _ if profile == "shipped" => platform.link_argument(&workspace.join(SCRIPT)),
+        _ => None,
+    };
+    if let Some(argument) = argument {
         cargo.env("FOOTFALL_LINK_ARG", argument);
     }
     if profile == "shipped" && is_arm64(options.target.as_deref()) {
         cargo.args(["--config", METHOD_TABLE]);
+    }
+    if flavour == Flavour::Editor && profile == "release" && options.cross {
+        cargo.args(CROSS_EDITOR);
     }
     process::run(&mut cargo)?;
     let folder = paths::target_folder().join(folder);

@@ -53,12 +53,17 @@ impl Platform {
     /// Argument by which the platform's linker follows a script as well, where it knows scripts.
     pub(super) fn link_argument(&self, script: &Path) -> Option<String> {
         let script = script.display();
-        match self.folder.split('-').next() {
-            Some("linux") => Some(format!("-Wl,-T,{script}")),
+        match self.system() {
+            "linux" => Some(format!("-Wl,-T,{script}")),
             // There `rust-lld` is called itself.
-            Some("android") => Some(format!("-T{script}")),
+            "android" => Some(format!("-T{script}")),
             _ => None,
         }
+    }
+
+    /// Operating system, as the folder names it.
+    pub(super) fn system(&self) -> &str {
+        self.folder.split('-').next().unwrap_or_default()
     }
 
     /// Cargo's name of the library.
