@@ -22,7 +22,7 @@ const LATE_SHARES: [f32; 2] = [0.1, 0.6];
 pub(super) const LATE_RISE_M: f32 = 0.08;
 /// Greatest distance by which a foot swings past a foothold with an edge above it, metres.
 const MOST_PAST_M: f32 = 0.008;
-/// Height to which it is lifted then, metres.
+/// Height to which a foot is lifted that is planted anew, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
 /// Time before a landing on the ball from which the toes are no higher than the heel, and duration of the rotation before that, seconds.
 const LEVEL_SECS: [f32; 2] = [0.25, 0.02];
@@ -95,7 +95,8 @@ impl Foot {
             }
         }
         let secs_left = planned.map(|((_, secs), _)| secs);
-        if let Some(((flat, secs), (toward, _))) = planned {
+        self.lands = planned.map(|((flat, _), (toward, _))| flat.position + toward.shift);
+        if let (Some(lands), Some(((flat, secs), (toward, _)))) = (self.lands, planned) {
             // A foot that goes down does so where it is to stand: its heel keeps clear of the edge behind it.
             let fall = self.lifted(scene).shift.y - toward.shift.y;
             let [from, until] = EARLY_SECS;
@@ -104,8 +105,8 @@ impl Foot {
             let left = flat.position - animated.flat.position;
             self.correction.shift += early * left * Vec3::new(1.0, 0.0, 1.0);
             let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
-            self.hold_back(scene, animated, &flat, &toward, share);
-            self.stay_before_edge(animated, &(flat.position + toward.shift));
+            self.hold_back(scene, animated, lands, &toward, share);
+            self.stay_before_edge(animated, lands);
         }
         let mut foot = animated.foot;
         if let Some(((_, secs), _)) = planned
@@ -116,7 +117,6 @@ impl Foot {
         }
         let mut target = self.correction.apply(&animated.flat, &foot);
         target.ankle.y += lift;
-        self.lands = planned.map(|((flat, _), (toward, _))| flat.position + toward.shift);
         self.guard(scene, rocker, animated, secs_left, &mut target);
         self.sole = Frame {
             position: animated.flat.position + self.correction.shift,
@@ -130,7 +130,7 @@ impl Foot {
         &mut self,
         scene: &Scene<'_, T>,
         animated: &Animated,
-        flat: &Frame,
+        lands: Vec3,
         toward: &Correction,
         share: f32,
     ) {
@@ -138,7 +138,7 @@ impl Foot {
         let start = *self.left_from.get_or_insert(place);
         let start = scene.world_from_floor.local_point(start);
         let lifted = self.lifted(scene);
-        let way = flat.position + toward.shift - (start + lifted.shift);
+        let way = lands - (start + lifted.shift);
         // A slope on which it stood goes on: it is no edge.
         let normal = lifted.tilt * Vec3::Y;
         let slope = -(normal.x * way.x + normal.z * way.z) / normal.y.max(0.5);
@@ -150,7 +150,7 @@ impl Foot {
     }
 
     /// Keeps a foot that swings past its foothold, and back to it, from the edge above that: it would be thrown over it.
-    fn stay_before_edge(&mut self, animated: &Animated, lands: &Vec3) {
+    fn stay_before_edge(&mut self, animated: &Animated, lands: Vec3) {
         let rise = self.plan.map_or(0.0, |plan| plan.next_rise_m);
         let past = (animated.flat.position + self.correction.shift - lands).with_y(0.0);
         let forward = animated.flat.forward().with_y(0.0).normalize_or_zero();

@@ -244,7 +244,7 @@ fn pass_flat(generated: &mut [GeneratedFrame], side: Side) {
             } else {
                 index
             };
-            generated[nearer.clamp(1, last.saturating_sub(1).max(1))].legs[side].pitch = FLAT;
+            generated[nearer.clamp(1, (last - 1).max(1))].legs[side].pitch = FLAT;
         }
     }
 }
