@@ -26,7 +26,7 @@ const EXPORTS: &str = "crates/footfall_godot/windows.def";
 /// the library 0.6 MB smaller.
 const METHOD_TABLE: &str = r#"profile.shipped.package.godot-ffi.opt-level="s""#;
 
-/// Settings of the editor's flavour for Windows and macOS: zig's linkers for them keep much code that nothing calls.
+/// Settings of the editor's flavour for Android, macOS and Windows, whose linkers keep much code that nothing calls.
 const CROSS_EDITOR: [&str; 4] = [
     "--config",
     r#"profile.release.lto="thin""#,
@@ -171,8 +171,8 @@ fn run(
     if profile == "shipped" && is_arm64(options.target.as_deref()) {
         cargo.args(["--config", METHOD_TABLE]);
     }
-    let by_zig = options.cross && matches!(platform.system(), "windows" | "macos");
-    if flavour == Flavour::Editor && profile == "release" && by_zig {
+    let keeps_much = matches!(platform.system(), "android" | "macos" | "windows");
+    if flavour == Flavour::Editor && profile == "release" && options.cross && keeps_much {
         cargo.args(CROSS_EDITOR);
     }
     process::run(&mut cargo)?;
