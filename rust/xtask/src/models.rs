@@ -58,15 +58,16 @@ const WALKS_OF_ONE: [&str; 4] = [
 /// The recordings that are free for commercial use: neutral walks.
 const NEUTRAL_WALKS: [&str; 4] = ["--where", "category=neutral_walk", "--where", "path=cmu/*"];
 
-/// Runs of one actor at an even speed on the straight. Other people's runs are too few to separate their manner from errors of their skeletons: CMU's misplace ankles by
-/// another angle.
-const RUNNING: [&str; 6] = [
+/// Runs at an even speed on the straight, of all people whose recordings are free for commercial use: one actor's, and two people's of a few steps.
+const RUNNING: [&str; 8] = [
     "--running",
-    "path=o3de/*",
+    "license!=CC*",
     "--running",
     "path!=*Acceleration*",
     "--running",
-    "path!=*Jumps*",
+    "path!=*ump*",
+    "--running",
+    "category!=hopping",
 ];
 
 /// Takes of jumps off both feet, and of one actor's crouch: other crouches are none that is held.
@@ -141,7 +142,7 @@ fn train_locomotion(data: &Data) -> Result<()> {
         .args(MOVES)
         .args([
             "--describe",
-            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), walks and how they begin and end, and jumps; standing from ReActIdle (github.com/Enekoassets/ReActIdle) and the O3DE Motion Matching gem, running and crouching from the latter",
+            "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu), walks and how they begin and end, runs and jumps; standing from ReActIdle (github.com/Enekoassets/ReActIdle) and the O3DE Motion Matching gem, running and crouching from the latter",
             "-o",
             WALK,
         ]);

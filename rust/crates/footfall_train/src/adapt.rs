@@ -60,6 +60,8 @@ pub struct AdaptConfig {
     pub method: AdaptMethod,
     /// Number of the clips' first steps to use; all if absent.
     pub steps: Option<usize>,
+    /// Use the mirror image of every clip, too: a style whose sides are alike.
+    pub mirror: bool,
 }
 
 impl AdaptConfig {
@@ -68,6 +70,7 @@ impl AdaptConfig {
         Self {
             method: AdaptMethod::Csmaplr,
             steps: Some(steps),
+            mirror: false,
         }
     }
 }
@@ -106,7 +109,7 @@ pub fn adapt_style(
     let encoding = TrainConfig {
         frame_rate_hz: base.frame_rate_hz,
         windows: base.windows,
-        mirror: false,
+        mirror: config.mirror,
         em: EmConfig {
             max_iterations: 0,
             min_gain_per_frame: 0.0,
@@ -138,6 +141,7 @@ pub fn adapt_style(
         states.hsmm.expect_in_order(&corpus)?.log_likelihood,
     ];
     let frames: usize = corpus.iter().map(Sequence::frames).sum();
+    let steps: usize = corpus.iter().map(|sequence| sequence.steps.len()).sum();
     let style = GaitStyle {
         name: name.to_owned(),
         base_fingerprint: base.fingerprint()?,
@@ -149,7 +153,7 @@ pub fn adapt_style(
         // Of the recordings that show different steps.
         step_spread: spread::step_spread(base, &encoded.distinct().steady().0),
         speed_mps: mean_speed(&corpus),
-        cadence_hz: counts.steps as f64 * base.frame_rate_hz / frames as f64,
+        cadence_hz: steps as f64 * base.frame_rate_hz / frames as f64,
         provenance: Provenance {
             clips: counts.clips,
             subjects: counts.subjects,
@@ -343,7 +347,8 @@ fn global_variance(base: &GaitModel, corpus: &[Sequence]) -> GlobalVarianceModel
     GlobalVarianceModel { mean, variance }
 }
 
-fn mean_speed(corpus: &[Sequence]) -> f64 {
+/// Mean speed of walks, m/s.
+pub(crate) fn mean_speed(corpus: &[Sequence]) -> f64 {
     let frames: f64 = corpus.iter().map(|sequence| sequence.frames() as f64).sum();
     let way: f64 = corpus
         .iter()
@@ -353,4 +358,4 @@ fn mean_speed(corpus: &[Sequence]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,5 +1,7 @@
 //! Running, as a part of a gait model.
 
+mod few;
+
 use crate::error::TrainError;
 use crate::progress::Progress;
 use crate::train::{TrainConfig, train_average};
@@ -14,8 +16,11 @@ use footfall_motion::recording::Recording;
 /// Share of a walker's own tempo that is theirs in a run, too.
 const TEMPO_SHARE: f64 = 0.5;
 
-/// Learns the run of a walk's model from the runs in recordings, few people's as a rule. Those who run differ as those who walk do: each of the
-/// walk's components between walkers becomes one of the run, of how the body is held and of tempo.
+/// Fewest steps of one person that a run is trained on.
+const ENOUGH_STEPS: usize = 40;
+
+/// Learns the run of a walk's model from the runs in recordings. People with many steps train it; it is adapted to those with few, and each person counts once.
+/// Those who run differ as those who walk do: each of the walk's components between walkers becomes one of the run, of how the body is held and of tempo.
 ///
 /// # Errors
 /// [`TrainError`] if the recordings have no runs, or training on them fails.
@@ -32,7 +37,8 @@ pub fn learn_running(
         .map(Recording::running)
         .filter(|clip| !clip.walks.is_empty())
         .collect();
-    let mut run = train_average(&clips, config, provenance, progress)?.model;
+    let [many, few] = few::split(clips, ENOUGH_STEPS);
+    let mut run = train_average(&many, config, provenance, progress)?.model;
     let components = walk.variation.walker.iter();
     run.variation.walker = components
         .map(|component| {
@@ -45,6 +51,7 @@ pub fn learn_running(
         fine.walker.clear();
         fine.chance.walker_strength.clear();
     }
+    few::include(&mut run, &many, &few, config, progress)?;
     Ok(run)
 }
 

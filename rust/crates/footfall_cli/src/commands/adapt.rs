@@ -105,6 +105,7 @@ pub(crate) fn run(args: &AdaptArgs) -> Result<()> {
             MethodArg::Csmaplr => AdaptMethod::Csmaplr,
         },
         steps: args.steps.map(|steps| steps as usize),
+        mirror: false,
     };
     let read = run.seconds();
     let adapted = adapt_style(

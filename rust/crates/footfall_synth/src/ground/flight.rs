@@ -8,10 +8,10 @@ use super::frame::PlantedFrame;
 use super::generated::{GeneratedFrame, free_foot};
 use super::planter::Planter;
 use super::planter_state::Airborne;
-use super::support::LET_GO_EXTENSION;
 use super::swing::Swing;
 use crate::gait::GRAVITY_MPS2;
 use crate::plan::StepTiming;
+use footfall_core::Side;
 use footfall_core::rotation::from_heading;
 use footfall_ik::FootTarget;
 use glam::Quat;
@@ -28,8 +28,16 @@ const LEAVING_SHARE: f32 = 0.15;
 const LEAP_SECS: f32 = 0.22;
 const LEAP_SPEED_SHARE: f32 = 0.85;
 
-/// Fraction of the straight leg at which a foot that leaps leaves the ground: hips rise so fast then that a knee would snap straight.
+/// Share of a runner's stance in which the leg bears: as the toes leave the ground there is hardly any force on them.
+const BEARING_SHARE: f32 = 0.9;
+
+/// Fraction of the straight leg at which a foot that runs leaves the ground, a frame ahead, and one that leaps: hips go so fast then that a knee would snap straight.
+const RUN_EXTENSION: f32 = 0.995;
 const LEAP_EXTENSION: f32 = 0.98;
+
+/// Greatest speed at which a knee gives way as its foot lands, rad/s, and the sine of half its greatest bend for that.
+const GIVING_WAY: f32 = 20.0;
+const MOST_BENT: f32 = 0.5;
 
 impl Planter {
     /// Moves the hips over the ground at constant velocity in the frames after the take-off; a leap keeps most of its initial
@@ -60,6 +68,20 @@ impl Planter {
         }
     }
 
+    /// Returns how much lower than over the generated leg the hips land when they fall at a speed, metres: a leg that is nearly straight would have to fold at once.
+    fn give(&self, generated: &GeneratedFrame, side: Side, fall_mps: f32) -> f32 {
+        let length = self.leg_lengths[side.index()];
+        // Half a leg's length times the sine of half the bend is what the leg loses per radian of the knee.
+        let half_bend = (fall_mps / (0.5 * length * GIVING_WAY)).clamp(0.0, MOST_BENT);
+        let reach = length * (1.0 - half_bend * half_bend).sqrt();
+        let leg = &generated.legs[side.index()];
+        let down = leg.ankle - leg.hip;
+        let most = (reach * reach - down.with_y(0.0).length_squared())
+            .max(0.0)
+            .sqrt();
+        (-down.y - most).max(0.0)
+    }
+
     /// Time from the take-off to the end of the step, seconds.
     fn flight_secs(&self, timing: &StepTiming) -> f32 {
         let frames = timing.take_off.map_or(0, |last| timing.frames - last);
@@ -87,9 +109,16 @@ impl Planter {
         let Some(take_off) = timing.take_off else {
             return;
         };
-        let landing = self.landing_height(&generated[timing.frames], timing.leading.other());
-        let flight_secs = self.flight_secs(timing);
+        let take_off = if self.runs_on(timing) {
+            (BEARING_SHARE * take_off as f32).round() as usize
+        } else {
+            take_off
+        };
+        let flight_secs = (timing.frames - take_off) as f32 * self.frame_secs;
         let even = 0.5 * GRAVITY_MPS2 * flight_secs;
+        let lands = timing.leading.other();
+        let landing = self.landing_height(&generated[timing.frames], lands)
+            - self.give(&generated[timing.frames], lands, even);
         let stance_secs = take_off as f32 * self.frame_secs;
         let limited = |lift: f32| even + lift.clamp(-MOST_LIFT_MPS, MOST_LIFT_MPS);
         let rise = match self.state.hips_velocity {
@@ -137,24 +166,37 @@ impl Planter {
         frames: &mut [PlantedFrame],
     ) -> Option<usize> {
         let take_off = timing.take_off?;
-        let side = timing.leading.index();
         let extension = if self.leaps(timing) {
             LEAP_EXTENSION
         } else {
-            LET_GO_EXTENSION
+            RUN_EXTENSION
         };
-        let reach = extension * self.leg_lengths[side];
-        let beyond = (2..=take_off).find(|index| {
-            let frame = &frames[*index];
-            let leg = &generated[*index].legs[side];
-            let hip = frame.pose.root_position + frame.level * leg.hip;
-            hip.distance(leg.target.ankle) > reach
-        });
-        let last = beyond.map_or(take_off, |beyond| beyond - 1);
+        let last = self.last_within(extension, generated, timing, frames)?;
         for frame in &mut frames[last + 1..=take_off] {
-            frame.contact[side] = false;
+            frame.contact[timing.leading.index()] = false;
         }
         Some(last)
+    }
+
+    /// Returns the last frame of the stance from which the leg will not be longer than this share of its length a frame later: hips fly on, and draw the foot with them.
+    fn last_within(
+        &self,
+        extension: f32,
+        generated: &[GeneratedFrame],
+        timing: &StepTiming,
+        frames: &[PlantedFrame],
+    ) -> Option<usize> {
+        let take_off = timing.take_off?;
+        let side = timing.leading.index();
+        let reach = extension * self.leg_lengths[side];
+        let length = |index: usize| {
+            let frame = &frames[index];
+            let leg = &generated[index].legs[side];
+            let hip = frame.pose.root_position + frame.level * leg.hip;
+            hip.distance(leg.target.ankle)
+        };
+        let beyond = (2..=take_off).find(|index| 2.0 * length(*index) - length(index - 1) > reach);
+        Some(beyond.map_or(take_off, |beyond| beyond - 1))
     }
 
     /// Fills the targets of the foot that took off until the end of the step, and keeps them for the next one.
@@ -221,11 +263,7 @@ impl Planter {
     }
 
     /// Height of the hips over the leg of a landing foot, metres.
-    pub(super) fn landing_height(
-        &self,
-        generated: &GeneratedFrame,
-        side: footfall_core::Side,
-    ) -> f32 {
+    pub(super) fn landing_height(&self, generated: &GeneratedFrame, side: Side) -> f32 {
         let leg = &generated.legs[side.index()];
         let foot = &self.feet[side.index()];
         foot.ankle_height() + foot.roll(leg.pitch).y - leg.ankle.y

@@ -20,6 +20,10 @@ const RISING_SOFTNESS: f32 = 0.0014;
 const LEAVING_BEND: f32 = 0.08;
 const LEAVING_SECS: f32 = 0.05;
 
+/// The same of a leg that takes off into a flight: a runner's knees stay bent.
+const TAKE_OFF_BEND: f32 = 0.18;
+const TAKE_OFF_SECS: f32 = 0.1;
+
 /// Limit of the excess stretch, as a multiple of that range, to keep the exponential finite.
 const MOST_BEYOND: f32 = 50.0;
 
@@ -63,11 +67,17 @@ impl Planter {
                 length: self.leg_lengths[side.index()],
             };
             let leaves = side != timing.leading && !timing.rests;
+            let flies = side == timing.leading && timing.take_off.is_some();
+            let (bend, secs) = if flies {
+                (TAKE_OFF_BEND, TAKE_OFF_SECS)
+            } else {
+                (LEAVING_BEND, LEAVING_SECS)
+            };
             let most_extension = |index: usize| {
                 let left_secs = last.saturating_sub(index) as f32 * self.frame_secs;
-                if leaves && left_secs < LEAVING_SECS {
-                    let left = 1.0 - left_secs / LEAVING_SECS;
-                    (half_bend + LEAVING_BEND * left * left).cos()
+                if (leaves || flies) && left_secs < secs {
+                    let left = 1.0 - left_secs / secs;
+                    (half_bend + bend * left * left).cos()
                 } else {
                     RISING_EXTENSION
                 }

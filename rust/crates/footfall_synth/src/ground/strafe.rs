@@ -20,6 +20,9 @@ pub(crate) use turner::Turner;
 /// Largest factor by which steps are lengthened to their intended length.
 const MOST_LENGTHENED: f32 = 1.8;
 
+/// Likeness to a walk forwards, less than 1, from which steps are lengthened in full.
+const ASIDE: f32 = 0.1;
+
 /// Feet that pass each other sideways keep this far from the middle, as a share of the leg, so that legs do not cross.
 const PASSING_SHARE: f32 = 0.085;
 
@@ -81,13 +84,15 @@ impl Strafe {
         self
     }
 
-    /// Lengthens the legs' reach to the intended length of the step: a shortened step of a quick walk covers less than its share of a whole one. `flat_m` is its length
-    /// forwards, `wanted_m` the intended one, metres.
+    /// Lengthens the legs' reach to the intended length of the step: a shortened step of a quick walk covers less than its share of a whole one. The nearer to straight ahead, the
+    /// less it is, for there paces are measured. `flat_m` is its length forwards, `wanted_m` the intended one, metres.
     pub(crate) fn lengthened(mut self, flat_m: f32, wanted_m: Option<f32>) -> Self {
         if let Some(wanted_m) = wanted_m
             && flat_m > 0.0
         {
-            let factor = (wanted_m / flat_m).clamp(1.0, MOST_LENGTHENED);
+            let longer = (wanted_m / flat_m).clamp(1.0, MOST_LENGTHENED) - 1.0;
+            let aside = smooth_step((1.0 - self.forwardness) / ASIDE);
+            let factor = 1.0 + aside * longer;
             self.reach = self.reach.map(|axis| axis * factor);
         }
         self

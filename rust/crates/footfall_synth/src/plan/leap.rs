@@ -7,9 +7,12 @@ use footfall_model::STATES_PER_STEP;
 
 /// Rise of the hips at the take-off from one foot above their height in walking and in running, metres. The rest of a leap's rise is
 /// flight, within these bounds.
-const LEAP_GAINS_M: [f32; 2] = [0.04, -0.01];
+const LEAP_GAINS_M: [f32; 2] = [0.03, 0.015];
 const LEAST_LEAP_M: f32 = 0.02;
 const MOST_LEAP_M: f32 = 0.6;
+
+/// Share of the rise by which the hips land lower than they took off: who falls lands on a bent leg.
+const LANDING_LOWER: f32 = 0.1;
 
 /// Minimum duration of a leap's stance, seconds: a high leap takes a longer push-off than a run.
 const LEAP_STANCE_SECS: f64 = 0.28;
@@ -22,7 +25,8 @@ impl StepPlan<f32> {
             return;
         };
         let rise = (rise_m - LEAP_GAINS_M[before as usize]).clamp(LEAST_LEAP_M, MOST_LEAP_M);
-        let flight = 2.0 * (2.0 * f64::from(rise / GRAVITY_MPS2)).sqrt() * frame_rate_hz;
+        let secs = |way: f32| f64::from(2.0 * way / GRAVITY_MPS2).sqrt();
+        let flight = (secs(rise) + secs(rise * (1.0 + LANDING_LOWER))) * frame_rate_hz;
         let least = LEAP_STANCE_SECS * frame_rate_hz;
         let mut stance = (take_off as f64).max(least);
         if stance + flight > MOST_GROUND_FRAMES as f64 {

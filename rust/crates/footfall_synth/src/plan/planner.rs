@@ -15,6 +15,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, StandardNormal};
 use std::sync::Arc;
 
+/// Least share of a running step that is flight, however slow the runner: a step without it would be a walk on bent knees.
+const LEAST_FLIGHT: f64 = 0.06;
+
 /// Largest weight of a walker component, standard deviations, so that every walker is plausible.
 const MAX_WALKER_WEIGHT: f64 = 2.0;
 
@@ -207,7 +210,10 @@ impl Planner {
         let from_state = plan.state_at(whole.saturating_sub(last_frames));
         let within = from_state * OBSERVATION_COUNT..STEP_MEANS;
         offsets.add_means(statistics, draw.side, within, &mut plan.means);
-        let terminal = step.other_terminal + offsets.other_terminal();
+        let mut terminal = step.other_terminal + offsets.other_terminal();
+        if step.other_terminal < 0.0 {
+            terminal = terminal.min(-LEAST_FLIGHT);
+        }
         plan.shape = StepShape::of_walk(draw.side, whole, terminal, pace.stride, detail);
         plan.fine = FineDraw::new(model, &self.walker, draw, self.variation);
     }

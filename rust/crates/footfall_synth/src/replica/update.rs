@@ -90,6 +90,11 @@ impl Planned {
         f32::from(self.passed) / PASSED_UNITS
     }
 
+    /// Returns true when less of the step has passed than this share, which was rounded.
+    pub(super) fn is_after(self, share: f32) -> bool {
+        PASSED_UNITS * share < f32::from(self.passed) - 0.5
+    }
+
     /// Returns the number of steps from another number to this one; negative for earlier ones.
     pub(super) const fn steps_from(self, number: u16) -> i16 {
         self.number.wrapping_sub(number).cast_signed()
@@ -254,6 +259,19 @@ mod tests {
             if let Ok(update) = WalkUpdate::unpack(&bytes) {
                 prop_assert!(update.aim.position.is_finite() && update.controls.speed_mps.is_finite());
                 prop_assert_eq!(bytes.len(), UPDATE_BYTES);
+            }
+        }
+    }
+
+    /// A share that was rounded up would have its frame pass unnoticed.
+    #[test]
+    fn a_step_is_replanned_in_the_frame_in_which_the_sender_did() {
+        for frames in 6..65_u16 {
+            for frame in 1..frames {
+                let share = |frame: u16| f32::from(frame) / f32::from(frames);
+                let planned = Planned::of(0, share(frame));
+                assert!(!planned.is_after(share(frame)), "{frame} of {frames}");
+                assert!(planned.is_after(share(frame - 1)), "{frame} of {frames}");
             }
         }
     }

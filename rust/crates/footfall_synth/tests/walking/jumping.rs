@@ -147,6 +147,9 @@ fn walkers_and_runners_leap() {
         (3, 2.8, 0.4),
         (4, 3.4, 0.4),
         (5, 1.0, 0.4),
+        (6, 1.0, 0.5),
+        (7, 1.2, 0.5),
+        (8, 2.4, 0.5),
     ] {
         let mut generator = generator(Kind::Styled, seed);
         let (before, _) = run(&mut generator, &skeleton, &walking(speed), 240);

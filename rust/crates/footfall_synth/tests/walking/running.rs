@@ -139,6 +139,34 @@ fn runs_go_where_they_are_sent() {
     }
 }
 
+/// Steps that go on to the side are lengthened; those of a run that follows are not, nor is a walk that hardly turns aside.
+#[test]
+fn who_walked_aside_runs_and_walks_no_faster_for_it() {
+    let skeleton = Skeleton::standard();
+    for (seed, speed, direction_rad) in [(1, 2.2, 0.0), (2, 2.6, 0.0), (3, 1.7, 0.005)] {
+        let speed_after = |aside_rad: f32| {
+            let mut generator = generator(Kind::Styled, seed);
+            let aside = Controls {
+                direction_rad: aside_rad,
+                ..walking(1.6)
+            };
+            run(&mut generator, &skeleton, &aside, 300);
+            let ahead = Controls {
+                direction_rad,
+                ..walking(speed)
+            };
+            let (frames, _) = run(&mut generator, &skeleton, &ahead, 600);
+            let way = frames[599].place - frames[120].place;
+            way.length() / (479.0 * DT)
+        };
+        let (straight, aside) = (speed_after(0.0), speed_after(0.5));
+        assert!(
+            (aside / straight - 1.0).abs() < 0.03 && (aside / speed - 1.0).abs() < 0.06,
+            "{aside} m/s after steps aside, {straight} after none, {speed} asked"
+        );
+    }
+}
+
 /// The foot that lands brakes the hips, and pushes them on before it leaves.
 #[test]
 fn hips_are_slowest_in_the_first_half_of_a_stance() {

@@ -6,7 +6,7 @@ use footfall_prob::gaussian::GaussianStats;
 use footfall_prob::windows::Windows;
 use std::path::Path;
 
-fn clips(condition: &str) -> Vec<Recording> {
+pub(crate) fn clips(condition: &str) -> Vec<Recording> {
     let index = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/data/index.csv");
     let condition: Where = condition.parse().unwrap();
     let mut clips = Corpus::read(index, &[condition]).unwrap().clips;
@@ -16,7 +16,7 @@ fn clips(condition: &str) -> Vec<Recording> {
     clips
 }
 
-fn base() -> GaitModel {
+pub(crate) fn base() -> GaitModel {
     let config = TrainConfig {
         frame_rate_hz: 60.0,
         windows: Windows::Compact,
@@ -38,7 +38,11 @@ fn adapt(
     method: AdaptMethod,
     steps: Option<usize>,
 ) -> Result<Adapted, TrainError> {
-    let config = AdaptConfig { method, steps };
+    let config = AdaptConfig {
+        method,
+        steps,
+        mirror: false,
+    };
     adapt_style(base, clips, "test", &config, Provenance::default(), &mut ())
 }
 

@@ -21,7 +21,7 @@ impl WalkFollower {
             let (number, share) = generator.progress();
             let steps = next.planned.steps_from(number);
             let walks = !generator.is_standing();
-            if steps > 0 || !walks || (steps == 0 && share < next.planned.share()) {
+            if steps > 0 || !walks || (steps == 0 && next.planned.is_after(share)) {
                 break;
             }
             self.made = self.queue.take();
