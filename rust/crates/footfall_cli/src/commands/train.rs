@@ -40,7 +40,7 @@ pub(crate) struct TrainArgs {
     #[arg(long = "standing", value_name = "COLUMN=VALUE")]
     standing: Vec<Where>,
     /// Condition on recordings in which people run, for example `category=running`; repeatable. The model learns running from
-    /// them; without them it only walks
+    /// them, and without them it only walks. People with fewer than 40 steps adapt the run of those with more
     #[arg(long = "running", value_name = "COLUMN=VALUE")]
     running: Vec<Where>,
     /// Condition on recordings of two-footed jumps out of standing, for example `category=jumping`; repeatable
