@@ -235,6 +235,28 @@ func test_it_leaps_while_it_runs_and_goes_on() -> void:
 	check_equal(character.gait.playing, true, "and lives on")
 
 
+func test_it_leaps_to_a_place_while_it_runs() -> void:
+	_floor()
+	var character := _character()
+	character.walk_speed = 3.0
+	character.autopilot = Vector3.BACK
+	await _frames(150)
+	var flew := [false]
+	var landings: Array[Vector3] = []
+	character.gait.took_off.connect(func() -> void: flew[0] = true)
+	character.gait.footstep.connect(func(_foot: StringName, at: Vector3) -> void:
+		if flew[0] and landings.is_empty():
+			landings.append(at))
+	var place := character.global_position + Vector3(0.2, 0.0, 5.5)
+	character.jump_to(place)
+	var slowest := [INF]
+	await _frames(150, func() -> void: slowest[0] = minf(slowest[0], character.velocity.z))
+	check_equal(landings.size(), 1, "it leapt")
+	check_near(landings[0].z, place.z, 0.05, "it lands at the place")
+	check_below(absf(landings[0].x - place.x), 0.25, "with one foot beside its middle")
+	check(slowest[0] > 1.5, "without a stop: %.1f m/s" % slowest[0])
+
+
 func test_it_jumps_onto_a_wall_and_down() -> void:
 	_floor()
 	_box(Vector3(0, 0.2, 2.0), Vector3(4, 0.4, 2.0))

@@ -7,6 +7,7 @@ mod facts;
 mod footholds;
 mod jumping;
 mod pose;
+mod run_up;
 mod state;
 
 use crate::config::{GeneratorConfig, MAX_DT_SECS, check};
@@ -15,7 +16,7 @@ use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
 use crate::gait::StepControls;
-use crate::moves::{Leap, Moves};
+use crate::moves::Moves;
 use crate::plan::StepShape;
 use crate::source::{Steps, StyleSpace, StyledSteps, SwitchingSteps};
 use crate::standing::Life;
@@ -23,6 +24,7 @@ use footfall_core::{GroundTransform, Pose, Skeleton};
 use footfall_model::DynamicsModel;
 use std::sync::Arc;
 
+pub(crate) use jumping::PendingJump;
 pub use state::StateError;
 
 /// Maximum number of initial contacts that one call of [`GaitGenerator::step`] reports.
@@ -48,7 +50,7 @@ pub struct GaitGenerator {
     /// Crouches and jumps; `None` with a switching model.
     pub(crate) moves: Option<Moves>,
     /// Pending jump.
-    pub(crate) pending_jump: Option<Leap>,
+    pub(crate) pending_jump: Option<PendingJump>,
     pub(crate) footsteps: Vec<Footstep>,
     /// Last requested forward speed, m/s.
     pub(crate) requested_mps: f32,
@@ -173,11 +175,15 @@ impl GaitGenerator {
     /// Generates the next step and reports its initial contact.
     pub(crate) fn next_step(&mut self, controls: &Controls) {
         let fastest = self.steps.source().fastest_mps();
+        let (leap_m, run_up) = self.next_leap(controls);
         let step_controls = StepControls {
-            leap_m: self.next_leap(controls),
+            leap_m,
             ..StepControls::after(self.shape().amplitude, *controls, fastest, self.detail)
         };
         self.steps.source_mut().advance(&step_controls);
+        if let Some(run_up) = run_up {
+            self.lead(&run_up);
+        }
         self.answered = None;
         let side = self.shape().timing.leading;
         if let Some(plant) = self.steps.source().planted().plant(side) {

@@ -3,7 +3,10 @@
 use super::GaitGenerator;
 use crate::ground::{PlantedStep, landings};
 use crate::plan::StepShape;
+use crate::source::{Aim, Steps};
+use footfall_core::GroundTransform;
 use footfall_ik::placement::Landing;
+use std::sync::Arc;
 
 /// Share of a step until which it can still change.
 const STRETCHED_UNTIL: f32 = 0.25;
@@ -22,6 +25,24 @@ impl GaitGenerator {
     pub fn landings(&self) -> [Option<Landing>; 2] {
         let arrival = &self.steps.source().planted().arrival;
         landings(self.next_footstep(), &self.plan_from_character(), arrival)
+    }
+
+    /// Returns the place where the current step ends, relative to the start of the walk: that of the landing foot, under the walker's heading, or that of a
+    /// resting walker.
+    pub(crate) fn start_from_aim(&self, rests: bool) -> GroundTransform {
+        let source = self.steps.source();
+        source
+            .planted()
+            .aim(&self.plan_from_start, self.shape(), rests)
+    }
+
+    /// Displaces the current step, which has just been planned, towards its aim, as far as one step can.
+    pub(crate) fn aim_at(&mut self, aim: &Aim) {
+        let plan_from_start = self.plan_from_start;
+        if let Steps::Styled(steps) = &mut self.steps {
+            let (space, window) = (Arc::clone(&steps.space), &mut steps.window);
+            space.with_buffers(|buffers| window.aim_at(aim, &plan_from_start, buffers));
+        }
     }
 
     /// Keeps the current step unchanged: new controls wait for the next one. For callers that have chosen a foothold for it.

@@ -1,9 +1,11 @@
 //! Jumps of a walker, from request to landing; and pushes.
 //!
 //! A standing walker jumps off both feet ([`moves`](crate::moves)). One that walks or runs forwards leaps: the next step is a step of the run whose flight lasts as
-//! long as the rise takes ([`StepPlan::leap`](crate::plan::StepPlan::leap)). One that goes sideways, backwards or very slowly stops first.
+//! long as the rise takes ([`StepPlan::leap`](crate::plan::StepPlan::leap)), or the step that reaches the place that it is to land on
+//! ([`run_up`](super::run_up)). One that goes sideways, backwards or very slowly stops first.
 
 use super::GaitGenerator;
+use super::run_up::RunUp;
 use crate::controls::{Controls, FASTEST_RUN_MPS};
 use crate::footstep::Footstep;
 use crate::gait::WIDEST_RUN_RAD;
@@ -24,6 +26,21 @@ const RISE_ABOVE_PLACE_M: f32 = 0.25;
 /// Smallest rise of a jump, metres.
 const LEAST_RISE_M: f32 = 0.01;
 
+/// Pending jump.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PendingJump {
+    /// Rise of the hips above their height before the jump, metres; `None` for what the place requires.
+    pub(crate) rise_m: Option<f32>,
+    /// Place to land on, relative to the start of the walk; its height is that above the ground before the jump.
+    pub(crate) place: Option<Vec3>,
+}
+
+/// Returns the rise of a jump to a place relative to the character, metres.
+fn rise_to(place: Vec3) -> f32 {
+    let level = RISE_TO_PLACE_M + RISE_BY_DISTANCE * place.with_y(0.0).length();
+    level.max(place.y + RISE_ABOVE_PLACE_M)
+}
+
 impl GaitGenerator {
     /// Requests one jump in which the hips rise by this height above their current one, standing, walking or running, metres; 0.1 to 0.5 is typical of adults. It begins as soon as
     /// the feet allow: at once for a standing walker, with the next step for one that walks or runs forwards faster than 0.8 m/s (a leap off one foot onto the other),
@@ -31,36 +48,48 @@ impl GaitGenerator {
     ///
     /// Returns true if there will be a jump: not with a model without jumps, nor for a rise that is not finite or too small.
     pub fn jump(&mut self, rise_m: f32) -> bool {
-        self.request_jump(Leap {
-            rise_m,
-            way: Vec3::ZERO,
-        })
+        self.request_jump(Some(rise_m), None)
     }
 
-    /// Requests one two-footed jump that lands at a place relative to the standing character: metres to the left, up and ahead. A moving walker
-    /// stops first. A place beyond the reach of people (about twice the leg length ahead, two thirds of it to the side or
-    /// back) is not reached: the jump goes as far as it can in that direction.
+    /// Requests one jump that lands at a place relative to the character as it is now: metres to the left, up and ahead.
+    ///
+    /// Whoever walks or runs forwards towards a place on the level leaps there without stopping, off one foot onto the other, once the place is near enough: the foot lands at it,
+    /// along the way, and the body passes over it. A leap takes 0.3 to 0.64 s of flight, so places nearer than 0.6 s of the way are too near for it, and so are those more than
+    /// 0.15 m higher or lower, or more than 0.35 m to the side of the way. For these, and for walkers who go another way, the walker stops first and jumps off both feet. Then a place
+    /// beyond the reach of people (about twice the leg length ahead, two thirds of it to the side or back) is not reached: the jump goes as far as it can in that direction.
     ///
     /// Returns true if there will be a jump, as [`jump`](Self::jump) does.
     pub fn jump_to(&mut self, place: Vec3) -> bool {
-        let level = RISE_TO_PLACE_M + RISE_BY_DISTANCE * place.with_y(0.0).length();
-        self.request_jump(Leap {
-            rise_m: level.max(place.y + RISE_ABOVE_PLACE_M),
-            way: place,
-        })
+        self.request_jump(None, Some(place))
     }
 
-    /// Requests this jump, as [`jump`](Self::jump) does.
-    pub(crate) fn request_jump(&mut self, leap: Leap) -> bool {
+    /// Requests a jump by this rise, or by what its place requires, to a place relative to the character if there is one, as [`jump`](Self::jump) does.
+    pub(crate) fn request_jump(&mut self, rise_m: Option<f32>, to: Option<Vec3>) -> bool {
         let possible = self.moves.as_ref().is_some_and(Moves::can_jump);
-        let sensible = leap.way.is_finite() && leap.rise_m.is_finite();
-        if !possible || !sensible || leap.rise_m < LEAST_RISE_M {
+        let sensible = to.is_none_or(Vec3::is_finite)
+            && rise_m.is_none_or(|rise| rise.is_finite() && rise >= LEAST_RISE_M);
+        if !possible || !sensible {
             return false;
         }
         if self.pending_jump.is_none() && self.jump_phase().is_none() {
-            self.pending_jump = Some(leap);
+            self.pending_jump = Some(PendingJump {
+                rise_m,
+                place: to.map(|to| self.start_from_seen(to)),
+            });
         }
         true
+    }
+
+    /// Returns a place relative to the start of the walk, given relative to the character.
+    pub(crate) fn start_from_seen(&self, place: Vec3) -> Vec3 {
+        let character = self.start_from_character();
+        character.position + from_heading(character.heading) * place
+    }
+
+    /// Returns a place relative to the character, given relative to the start of the walk.
+    pub(crate) fn seen_from_start(&self, place: Vec3) -> Vec3 {
+        let character = self.start_from_character();
+        from_heading(-character.heading) * (place - character.position)
     }
 
     /// Returns the phase of the current jump; `None` while it is pending.
@@ -128,27 +157,35 @@ impl GaitGenerator {
 
     /// Returns true when the requested jump can be a step.
     fn leaps(&self, controls: &Controls) -> bool {
-        let Some(leap) = self.pending_jump else {
+        let Some(jump) = self.pending_jump else {
             return false;
         };
         let velocity = controls.velocity();
         let direction = velocity.x.atan2(velocity.y).abs();
         let walks = self.shape().amplitude.to >= 1.0;
         let runs = matches!(&self.steps, Steps::Styled(steps) if steps.blend().running.is_some());
-        leap.way == Vec3::ZERO
-            && walks
-            && runs
-            && direction < WIDEST_RUN_RAD
-            && velocity.length() >= LEAST_LEAP_MPS
+        let forwards =
+            walks && runs && direction < WIDEST_RUN_RAD && velocity.length() >= LEAST_LEAP_MPS;
+        forwards
+            && jump
+                .place
+                .is_none_or(|place| self.run_up(place, controls).is_some())
     }
 
-    /// Returns the rise of the next step's leap, if it is one.
-    pub(crate) fn next_leap(&mut self, controls: &Controls) -> Option<f32> {
-        if self.leaps(controls) {
-            self.pending_jump.take().map(|leap| leap.rise_m)
-        } else {
-            None
+    /// Returns the rise of the next step's leap, if it is one, and the aim of the next step if it leads to a place.
+    pub(crate) fn next_leap(&mut self, controls: &Controls) -> (Option<f32>, Option<RunUp>) {
+        let Some(jump) = self.pending_jump.filter(|_| self.leaps(controls)) else {
+            return (None, None);
+        };
+        let run_up = jump.place.and_then(|place| self.run_up(place, controls));
+        let rise_m = match run_up {
+            Some(run_up) => run_up.rise_m,
+            None => jump.rise_m,
+        };
+        if rise_m.is_some() {
+            self.pending_jump = None;
         }
+        (rise_m, run_up)
     }
 
     /// Advances crouches and jumps, and begins pending ones.
@@ -161,9 +198,15 @@ impl GaitGenerator {
             self.shift(way);
         } else if before.is_none()
             && stands
-            && let Some(leap) = self.pending_jump.take()
+            && let Some(jump) = self.pending_jump.take()
         {
-            moves.jump(leap);
+            let way = jump
+                .place
+                .map_or(Vec3::ZERO, |place| self.seen_from_start(place));
+            let rise_m = jump.rise_m.unwrap_or_else(|| rise_to(way));
+            if let Some(moves) = &mut self.moves {
+                moves.jump(Leap { rise_m, way });
+            }
         } else if before != moves.phase() && moves.phase() == Some(JumpPhase::Landing) {
             self.report_landing();
         }

@@ -29,9 +29,10 @@ use quick::Quick;
 use running::Running;
 use serde::{Deserialize, Serialize};
 
-/// Version of the layout that this build writes. It also reads earlier versions, which lack corrections of the way, climbs, balance, jumps and steps that change in their middle,
+/// Version of the layout that this build writes. It also reads earlier versions, whose pending jumps go from the character, and which lack corrections of the way, climbs, balance, jumps and steps that change in their middle,
 /// running and standing motion.
-const VERSION: u8 = 10;
+const VERSION: u8 = 11;
+const SEEN_VERSION: u8 = 10;
 const UNLED_VERSION: u8 = 9;
 const LEVEL_VERSION: u8 = 8;
 const UNBALANCED_VERSION: u8 = 7;
@@ -223,7 +224,7 @@ impl GaitGenerator {
         let (still, level) = (Moving::default(), Climbing::default());
         let free = Led::default();
         let (alive, more): (Alive, More) = match state.version {
-            VERSION => postcard::from_bytes(rest)?,
+            VERSION | SEEN_VERSION => postcard::from_bytes(rest)?,
             UNLED_VERSION => {
                 let (alive, (running, quick, moving, balance, climbing)) =
                     postcard::from_bytes(rest)?;
@@ -300,9 +301,9 @@ impl GaitGenerator {
         };
         let frames = self.steps.source().shape().timing.frames as f32;
         self.position = state.position.clamp(0.0, frames);
-        moving.resume(self);
         climbing.resume(self);
         self.tell_place();
+        moving.resume(self, state.version < VERSION);
         Ok(())
     }
 }

@@ -39,13 +39,24 @@ impl Displacement {
         }
     }
 
-    /// Displaces the hips in the course of a step.
-    pub(super) fn lead(&self, timing: &StepTiming, out: &mut [PlantedFrame]) {
+    /// Displaces the hips in the course of a step; those of a leap by the push-off, for nothing moves them aside in the air.
+    pub(super) fn lead(&self, timing: &StepTiming, leaps: bool, out: &mut [PlantedFrame]) {
         if self.way == Vec3::ZERO {
             return;
         }
+        let frames = timing.frames as f32;
+        let pushed = timing.take_off.filter(|_| leaps).map(|last| last as f32);
         for (index, frame) in out.iter_mut().enumerate() {
-            let share = smooth_step(index as f32 / timing.frames as f32);
+            let time = index as f32;
+            let share = match pushed {
+                // The speed rises with the square of the time, and then stays.
+                Some(last) => {
+                    let gained = (time.min(last) / last).powi(3) / 3.0;
+                    let whole = frames / last - 2.0 / 3.0;
+                    (gained + (time - last).max(0.0) / last) / whole
+                }
+                None => smooth_step(time / frames),
+            };
             frame.pose.root_position += share * self.way;
         }
     }

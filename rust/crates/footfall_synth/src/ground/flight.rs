@@ -94,7 +94,7 @@ impl Planter {
     }
 
     /// Returns true when the flight that ends the step is that of a leap.
-    fn leaps(&self, timing: &StepTiming) -> bool {
+    pub(super) fn leaps(&self, timing: &StepTiming) -> bool {
         self.flight_secs(timing) > LEAP_SECS
     }
 

@@ -75,7 +75,7 @@ impl Planter {
         self.drift(timing, out);
         self.even(timing, course, out);
         self.thrust(timing, course, out);
-        course.displacement.lead(timing, out);
+        course.displacement.lead(timing, self.leaps(timing), out);
         if course.keeps_lengths {
             self.keep_lengths(generated, timing, out);
         }

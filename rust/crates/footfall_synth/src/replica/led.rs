@@ -8,8 +8,7 @@ use crate::generator::GaitGenerator;
 use crate::ground::Displacement;
 use crate::plan::StepDraw;
 use crate::source::{Aim, StepSource as _, Steps, StyledSteps, planner_of};
-use footfall_core::{GroundTransform, Side};
-use std::sync::Arc;
+use footfall_core::Side;
 
 /// Moment of a walk at which to begin.
 #[derive(Clone, Copy, Debug)]
@@ -111,15 +110,6 @@ impl GaitGenerator {
         )
     }
 
-    /// Returns the place where the current step ends, relative to the start of the walk: that of the landing foot, under the walker's heading, or that of a
-    /// resting walker.
-    pub(super) fn start_from_aim(&self, rests: bool) -> GroundTransform {
-        let source = self.steps.source();
-        source
-            .planted()
-            .aim(&self.plan_from_start, self.shape(), rests)
-    }
-
     /// Restarts at the origin, in the middle of a step; returns true on success.
     pub(super) fn begin_led(&mut self, at: &Beginning) -> bool {
         let (config, detail) = (self.config, self.detail);
@@ -196,15 +186,6 @@ impl GaitGenerator {
     /// Returns the displacement from the end of the current step to its aim, relative to the start of the walk.
     pub(super) fn off(&self, aim: &Aim) -> Displacement {
         aim.off(&self.start_from_aim(aim.rests))
-    }
-
-    /// Displaces the current step, which has just been planned, towards its aim, as far as one step can.
-    pub(super) fn aim_at(&mut self, aim: &Aim) {
-        let plan_from_start = self.plan_from_start;
-        if let Some(steps) = self.styled_mut() {
-            let (space, window) = (Arc::clone(&steps.space), &mut steps.window);
-            space.with_buffers(|buffers| window.aim_at(aim, &plan_from_start, buffers));
-        }
     }
 
     /// Returns the frames of the current step since this share of it.

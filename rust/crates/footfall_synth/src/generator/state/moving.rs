@@ -1,11 +1,14 @@
 //! Part of a state for crouches and jumps.
 
 use super::is_reasonable;
-use crate::generator::GaitGenerator;
+use crate::generator::{GaitGenerator, PendingJump};
 use crate::moves::{CrouchMoment, Leap, Moves, PushMoment};
 use crate::source::Steps;
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
+
+/// Place of a jump that goes to none: far below any ground.
+const NOWHERE: Vec3 = Vec3::new(0.0, -1e6, 0.0);
 
 /// Crouch, push and jump of a walker, behind a [`State`](super::State).
 #[derive(Default, Serialize, Deserialize)]
@@ -16,7 +19,7 @@ pub(super) struct Moving {
     push: Option<[[f32; 2]; 3]>,
     /// Two-footed jump under way: rise, displacement to the left, up and ahead, and time since its beginning.
     jump: Option<([f32; 4], f32)>,
-    /// Pending jump.
+    /// Pending jump: rise, 0 for what its place requires, and its place relative to the start of the walk or [`NOWHERE`].
     asked: Option<[f32; 4]>,
     /// Rise of the current step if it is a leap.
     pub(super) leap_m: Option<f32>,
@@ -33,7 +36,10 @@ impl Moving {
             push: (push != PushMoment::default())
                 .then(|| [push.velocity, push.away, push.speed].map(|way| way.to_array())),
             jump: jump.map(|(leap, secs)| (numbers_of(&leap), secs)),
-            asked: generator.pending_jump.as_ref().map(numbers_of),
+            asked: generator.pending_jump.map(|jump| {
+                let place = jump.place.unwrap_or(NOWHERE);
+                [jump.rise_m.unwrap_or(0.0), place.x, place.y, place.z]
+            }),
             leap_m: match &generator.steps {
                 Steps::Styled(steps) => steps.window.origin().request.leap_m,
                 Steps::Switching(_) => None,
@@ -41,9 +47,19 @@ impl Moving {
         }
     }
 
-    /// Restores the moves of a walker.
-    pub(super) fn resume(&self, generator: &mut GaitGenerator) {
-        generator.pending_jump = self.asked.map(leap_of);
+    /// Restores the moves of a walker; the place of a pending jump may be relative to the character, as it was in earlier versions.
+    pub(super) fn resume(&self, generator: &mut GaitGenerator, is_seen: bool) {
+        generator.pending_jump = self.asked.map(|[rise_m, x, y, z]| {
+            let place = Vec3::new(x, y, z);
+            PendingJump {
+                rise_m: (rise_m > 0.0).then_some(rise_m),
+                place: if is_seen {
+                    (place != Vec3::ZERO).then(|| generator.start_from_seen(place))
+                } else {
+                    (place != NOWHERE).then_some(place)
+                },
+            }
+        });
         if let Some(moves) = &mut generator.moves {
             let [amount, speed] = self.crouch;
             let jump = self.jump.map(|(leap, secs)| (leap_of(leap), secs));

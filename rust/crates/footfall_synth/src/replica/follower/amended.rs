@@ -2,7 +2,6 @@
 
 use super::WalkFollower;
 use crate::generator::GaitGenerator;
-use crate::moves::Leap;
 use crate::replica::update::WalkUpdate;
 use footfall_core::GroundTransform;
 
@@ -58,16 +57,7 @@ impl WalkFollower {
         let jumps = heard.rests && heard.rise_m > 0.0;
         if jumps && !self.jumped && generator.is_standing() {
             let lands = shared_from_start.local(&heard.aim).position;
-            generator.request_jump(Leap {
-                rise_m: heard.rise_m,
-                way: generator
-                    .start_from_character()
-                    .local(&GroundTransform {
-                        position: lands,
-                        heading: 0.0,
-                    })
-                    .position,
-            });
+            generator.request_jump(Some(heard.rise_m), Some(generator.seen_from_start(lands)));
         }
         self.jumped = jumps && (self.jumped || generator.is_standing());
     }

@@ -13,8 +13,9 @@ use glam::Vec3;
 const SAME_PLACE_M: f32 = 0.002;
 const SAME_HEADING_RAD: f32 = 0.004;
 
-/// Largest displacement and turn by one step, metres and radians.
+/// Largest displacement and turn by one step, metres and radians; a leap is longer.
 const MOST_DISPLACEMENT_M: f32 = 0.2;
+const MOST_LEAP_DISPLACEMENT_M: f32 = 0.6;
 const MOST_TURN_RAD: f32 = 0.35;
 
 /// Maximum number of trials: a turn and displaced hips both move the end of a step.
@@ -75,11 +76,16 @@ impl StepWindow {
         buffers: &mut StepBuffers,
     ) {
         let rotation = from_heading(plan_from_start.heading);
+        let most_m = if self.origin.request.leap_m.is_some() {
+            MOST_LEAP_DISPLACEMENT_M
+        } else {
+            MOST_DISPLACEMENT_M
+        };
         let mut trial: Option<Trial> = None;
         for _ in 0..TRIALS {
             let leads = self.planted().aim(plan_from_start, self.step(), aim.rests);
             let off = aim.off(&leads);
-            let most = off.within(MOST_DISPLACEMENT_M, MOST_TURN_RAD);
+            let most = off.within(most_m, MOST_TURN_RAD);
             let next = match trial {
                 None => Trial {
                     off: most.way,
