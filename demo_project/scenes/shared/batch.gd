@@ -4,6 +4,7 @@ extends Node
 ## `--pictures FOLDER` saves what the scene shows, a picture every quarter of a second, then three close-ups, and quits.
 ## `--film FOLDER` saves twelve pictures a second of the scene's tour, and quits.
 ## `--frames N` runs N frames, checks what the scene promises, prints `DEMO OK` and quits; the exit code is 1 when it did not keep it.
+## `--speed MPS`, with one of these, asks all walkers of a scene of walkers for another speed.
 ## `--every-scene N` goes to the menu, which looks into all of them.
 ##
 ## The scene defines what is shown and checked: `close_ups()`, name → [place, heading and height in degrees, distance in metres] of
@@ -26,6 +27,8 @@ func _ready() -> void:
 			_take_pictures(arguments[index + 1])
 		elif arguments[index] == "--film":
 			_film(arguments[index + 1])
+		elif arguments[index] == "--speed":
+			_scene.set_all.call_deferred(&"speed", arguments[index + 1].to_float())
 		elif arguments[index] == "--frames":
 			_run_frames(arguments[index + 1].to_int())
 		elif arguments[index] == "--every-scene":

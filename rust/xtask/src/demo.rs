@@ -46,7 +46,7 @@ pub(crate) fn command() -> Result<()> {
     eprintln!("no display: rendering pictures in software …");
     for (topic, scene) in SCENES {
         let folder = folder.join(topic);
-        let pictures = stage.photograph(scene, &[], &folder)?;
+        let pictures = stage.photograph(scene, &[], &[], &folder)?;
         let sheet = folder.join("contact_sheet.png");
         contact_sheet::write(&pictures, &sheet)?;
         eprintln!("{} pictures in {}", pictures.len(), folder.display());
@@ -86,7 +86,7 @@ impl Stage {
         open::on(&self.engine, &self.display, &self.project)
     }
 
-    /// Lets a scene take pictures of itself; `options` are the engine's.
+    /// Lets a scene take pictures of itself; `options` are the engine's, `asked` the scene's.
     ///
     /// # Errors
     /// When the scene fails, or leaves no pictures.
@@ -94,6 +94,7 @@ impl Stage {
         &self,
         scene: &str,
         options: &[&str],
+        asked: &[&str],
         folder: &Path,
     ) -> Result<Vec<PathBuf>> {
         fs::create_dir_all(folder)
@@ -104,7 +105,8 @@ impl Stage {
             .args([scene, "--fixed-fps", "60"])
             .args(options)
             .args(["--", "--pictures"])
-            .arg(folder);
+            .arg(folder)
+            .args(asked);
         let log = folder.join("godot.log");
         engine_run::judged(&mut command, &log)?;
         let pictures = contact_sheet::pictures(folder)?;

@@ -11,9 +11,10 @@ const SIZE: &str = "1280x720";
 const SHOWN: (u32, u32) = (960, 540);
 
 /// Pictures of the README, in `demo_project/pictures`: name, topic, and the picture that its scene takes.
-const README: [(&str, &str, &str); 11] = [
+const README: [(&str, &str, &str); 12] = [
     ("town.png", "town", "hero_square.png"),
     ("walk.png", "walk", "hero_side.png"),
+    ("run.png", "run", "hero_side.png"),
     ("styles.png", "styles", "hero_front.png"),
     ("stairs.png", "uneven", "hero_stairs.png"),
     ("slope.png", "uneven", "hero_ramp.png"),
@@ -24,6 +25,9 @@ const README: [(&str, &str, &str); 11] = [
     ("live_sensor.png", "live_sensor", "frame_0008.png"),
     ("switching.png", "switching", "hero_three_quarter.png"),
 ];
+/// Scenes that are asked for something else than they begin with: topic, scene, and what is asked.
+const ASKED: [(&str, &str, [&str; 2]); 1] =
+    [("run", "res://scenes/walk/walk.tscn", ["--speed", "3.4"])];
 /// Picture of a store's list, at its full size, and where it comes from.
 const THUMBNAIL: (&str, &str, &str) = ("rust/store/thumbnail.png", "town", "hero_square.png");
 
@@ -35,12 +39,16 @@ pub(crate) fn command() -> Result<()> {
     let stage = Stage::build("pictures")?;
     let folder = paths::target_folder().join("pictures");
     paths::make_empty(&folder)?;
-    for (topic, scene) in SCENES {
+    let plain = SCENES.map(|(topic, scene)| (topic, scene, None));
+    let asked = ASKED.map(|(topic, scene, asked)| (topic, scene, Some(asked)));
+    for (topic, scene, asked) in plain.into_iter().chain(asked) {
         if README.iter().all(|(_, of, _)| *of != topic) {
             continue;
         }
         eprintln!("{topic} …");
-        stage.photograph(scene, &["--resolution", SIZE], &folder.join(topic))?;
+        let asked = asked.as_ref().map_or(&[][..], |asked| asked);
+        let options = ["--resolution", SIZE];
+        stage.photograph(scene, &options, asked, &folder.join(topic))?;
     }
     let root = paths::repository_root();
     for (name, topic, picture) in README {

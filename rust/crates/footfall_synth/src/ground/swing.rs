@@ -23,10 +23,11 @@ const CLEARANCE_SOFTNESS_M: f32 = 0.004;
 const SETTLE_RATE: f32 = 8.0;
 
 /// Maximum landing speed of a walking and of a running foot, m/s: people brake their swing before the heel strikes.
-const MOST_LANDING_MPS: [f32; 2] = [1.2, 2.2];
+const MOST_LANDING_MPS: [f32; 2] = [1.2, 1.5];
 
-/// Part of the swing after which a foot is independent of its stance.
+/// Part of the swing, or of the flight, after which a foot is independent of its stance.
 const FREED_BY: f32 = 0.3;
+const DEPARTED_BY: f32 = 0.25;
 
 /// Time after which a leaping foot is independent of its stance, seconds: the hips rise fast and draw the leg with them at once.
 const LEAP_DEPARTURE_SECS: f32 = 0.5;
@@ -34,8 +35,9 @@ const LEAP_DEPARTURE_SECS: f32 = 0.5;
 /// Longest time over which a faster foot is braked, seconds.
 const BRAKING_SECS: [f32; 2] = [0.16, 0.1];
 
-/// Share of the straight leg to which a swinging leg can be stretched.
+/// Share of the straight leg to which a swinging leg can be stretched; that of a leg that has taken off, and the share from which it yields.
 const SWING_EXTENSION: f32 = 0.9985;
+const FLYING_EXTENSIONS: [f32; 2] = [0.965, 0.99];
 
 /// Difference between planted and generated foot, from the last frame of one stance to the first of the next.
 pub(super) struct Swing {
@@ -50,6 +52,8 @@ pub(super) struct Swing {
     braking: f32,
     /// Frames of the swing after which the foot is independent of its stance.
     freed_after: f32,
+    /// True for a foot that has just taken off.
+    departs: bool,
 }
 
 /// A correction at both ends of the swing, and how fast it changes when the foot leaves the ground (per swing).
@@ -112,7 +116,12 @@ impl Swing {
             frames
         };
         Self {
-            freed_after: if leaps { 0.0 } else { flight as f32 },
+            freed_after: if leaps {
+                0.0
+            } else {
+                DEPARTED_BY * flight as f32
+            },
+            departs: true,
             ..Self::between(ends, None, take_off, frames)
         }
     }
@@ -145,6 +154,7 @@ impl Swing {
             excess: Vec3::ZERO,
             braking: frames,
             freed_after: FREED_BY * frames,
+            departs: false,
         }
     }
 
@@ -200,8 +210,12 @@ impl Planter {
         frames: &[PlantedFrame],
     ) {
         let side = side.index();
-        let extensions = [self.landing_extension(), SWING_EXTENSION]
-            .map(|share| f32x8::splat(share * self.leg_lengths[side]));
+        let extensions = if swing.departs {
+            FLYING_EXTENSIONS
+        } else {
+            [self.landing_extension(), SWING_EXTENSION]
+        };
+        let extensions = extensions.map(|share| f32x8::splat(share * self.leg_lengths[side]));
         let end = within.end;
         for index in within.step_by(LANES) {
             let at = |lane: usize| (index + lane).min(end - 1);

@@ -9,6 +9,10 @@ use footfall_model::layout::feature_offset;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use std::sync::{Mutex, PoisonError};
 
+/// Time constant with which the motion before a change of gait swings out, and the time after which it has, frames.
+const SWINGING_OUT: f32 = 6.0;
+const SWINGING_FRAMES: usize = 48;
+
 /// Number of generated features: all but those of the right toes, which come last. The planter turns toes.
 const WALKED: usize = feature_offset(Joint::RightToes);
 
@@ -77,6 +81,9 @@ impl StepBuffers {
             // A checked model does not get here; if it did, a rough pose would beat none.
             self.solver.fill_with_means(&mut self.trajectory, TIE);
         }
+        if changes_gait {
+            swing_out(&mut self.trajectory);
+        }
     }
 
     /// Returns the frames, from this one on, that tie the next window to this one.
@@ -87,6 +94,23 @@ impl StepBuffers {
             frame[WALKED..].fill(0.0);
         }
         tie
+    }
+}
+
+/// Lets what moved before a change of gait swing out: the likeliest trajectory turns a trunk that went forwards back from one frame to the next.
+fn swing_out(trajectory: &mut [f32]) {
+    let (known, new) = trajectory.split_at_mut(TIE_LEN);
+    let [before, last] = [2, 1].map(|back| &known[TIE_LEN - back * FEATURE_COUNT..][..WALKED]);
+    let mut missing = [0.0; FEATURE_COUNT];
+    for (dim, missing) in missing[..WALKED].iter_mut().enumerate() {
+        *missing = 2.0 * last[dim] - before[dim] - new[dim];
+    }
+    let swinging = new.chunks_exact_mut(FEATURE_COUNT).take(SWINGING_FRAMES);
+    for (index, frame) in swinging.enumerate() {
+        let share = (1.0 + index as f32) * (-(index as f32) / SWINGING_OUT).exp();
+        for (value, missing) in frame[..WALKED].iter_mut().zip(&missing) {
+            *value += share * missing;
+        }
     }
 }
 

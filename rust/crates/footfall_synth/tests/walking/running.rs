@@ -139,6 +139,34 @@ fn runs_go_where_they_are_sent() {
     }
 }
 
+/// A trunk that bends forwards in a run goes back with the first steps of a walk, and not within a frame; a leg that takes off does not snap straight.
+#[test]
+fn heads_and_knees_go_smoothly_through_changes_of_gait() {
+    let skeleton = Skeleton::standard();
+    for seed in 1..20 {
+        let mut generator = generator(Kind::Styled, seed);
+        run(&mut generator, &skeleton, &walking(1.3), 180);
+        let mut frames = Vec::new();
+        for speed in [3.2, 1.3, 3.2, 1.3] {
+            frames.extend(run(&mut generator, &skeleton, &walking(speed), 180).0);
+        }
+        for (joint, most_mps2) in [
+            (Joint::Head, 75.0),
+            (Joint::LeftLowerLeg, 160.0),
+            (Joint::RightLowerLeg, 160.0),
+        ] {
+            for (index, triple) in frames.windows(3).enumerate() {
+                let [a, b, c] = [0, 1, 2].map(|at: usize| triple[at].model.position(joint));
+                let mps2 = (a - 2.0 * b + c).length() / (DT * DT);
+                assert!(
+                    mps2 < most_mps2,
+                    "{joint:?} by {mps2} m/s² in frame {index}, seed {seed}"
+                );
+            }
+        }
+    }
+}
+
 /// Steps that go on to the side are lengthened; those of a run that follows are not, nor is a walk that hardly turns aside.
 #[test]
 fn who_walked_aside_runs_and_walks_no_faster_for_it() {
