@@ -400,7 +400,7 @@ namespace Footfall
 
         /// <summary>Requests one jump that lands at <c>position</c>, in global space: onto a wall, over a gap, down from a ledge. The character does not turn: face the place before the jump. The jump is as high as its distance requires.</summary>
         /// <remarks>
-        /// <para>A character that walks or runs forwards towards a level place leaps there without stopping, off one foot onto the other, as soon as it is near enough: the foot lands on the place, along the way. It stops first, and jumps off both feet, if the place is nearer than about 0.6 s of its way, more than 0.15 m higher or lower, or more than 0.35 m beside its way, and if it goes sideways or backwards.</para>
+        /// <para>A character that walks or runs forwards towards a level place leaps there without stopping, off one foot onto the other, as soon as it is near enough: the foot lands on the place, along the way. It stops first, and jumps off both feet, if the place is nearer than about 0.6 s or farther than 4 s of its way, more than 0.15 m higher or lower, or more than 0.35 m beside its way, and if it goes sideways or backwards.</para>
         /// <para>A place beyond the reach of a two-footed jump (about twice the leg length ahead, two thirds of it to the side or back, and six tenths of it up) is not reached; the jump goes as far as it can in that direction. Returns <c>true</c> if the character will jump, as <see cref="Jump"/> does.</para>
         /// </remarks>
         public bool JumpTo(Vector3 position) => Native.Call(MethodName.JumpTo, position).AsBool();

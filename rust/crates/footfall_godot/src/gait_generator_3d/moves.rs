@@ -52,7 +52,7 @@ impl GaitGenerator3D {
     /// jump is as high as its distance requires.
     ///
     /// A character that walks or runs forwards towards a level place leaps there without stopping, off one foot onto the other, as soon as it is near enough: the foot lands on the
-    /// place, along the way. It stops first, and jumps off both feet, if the place is nearer than about 0.6 s of its way, more than 0.15 m higher or lower, or more than 0.35 m beside
+    /// place, along the way. It stops first, and jumps off both feet, if the place is nearer than about 0.6 s or farther than 4 s of its way, more than 0.15 m higher or lower, or more than 0.35 m beside
     /// its way, and if it goes sideways or backwards.
     ///
     /// A place beyond the reach of a two-footed jump (about twice the leg length ahead, two thirds of it to the side or back, and six tenths of it up) is not

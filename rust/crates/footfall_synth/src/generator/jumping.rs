@@ -54,8 +54,8 @@ impl GaitGenerator {
     /// Requests one jump that lands at a place relative to the character as it is now: metres to the left, up and ahead.
     ///
     /// Whoever walks or runs forwards towards a place on the level leaps there without stopping, off one foot onto the other, once the place is near enough: the foot lands at it,
-    /// along the way, and the body passes over it. A leap takes 0.3 to 0.64 s of flight, so places nearer than 0.6 s of the way are too near for it, and so are those more than
-    /// 0.15 m higher or lower, or more than 0.35 m to the side of the way. For these, and for walkers who go another way, the walker stops first and jumps off both feet. Then a place
+    /// along the way, and the body passes over it. No leap lands on places nearer than about 0.6 s or farther than 4 s of the way, more than 0.15 m higher or lower, or more than
+    /// 0.35 m to the side of the way. For these, and for walkers who go another way, the walker stops first and jumps off both feet. Then a place
     /// beyond the reach of people (about twice the leg length ahead, two thirds of it to the side or back) is not reached: the jump goes as far as it can in that direction.
     ///
     /// Returns true if there will be a jump, as [`jump`](Self::jump) does.

@@ -26,6 +26,9 @@ const KEPT: [f32; 2] = [1.05, 0.85];
 const NEAREST: f32 = 0.8;
 const FARTHEST: f32 = 1.08;
 
+/// Longest run-up, seconds: who is sent farther is not held to the way there for so long.
+const LONGEST_SECS: f32 = 4.0;
+
 /// Share by which the next step may be longer than this one.
 const LONGER: f32 = 1.1;
 
@@ -72,7 +75,7 @@ impl GaitGenerator {
         let least = LEAST_RISE_M + place.y.max(0.0);
         let [shortest, longest] = [least, MOST_RISE_M].map(|rise| pace.length(rise));
         let possible = place.y.abs() <= LEVEL_M && off.abs() <= MOST_OFF_M && pace.mps > 0.0;
-        if !possible || ahead < NEAREST * shortest {
+        if !possible || ahead < NEAREST * shortest || ahead > LONGEST_SECS * pace.mps {
             return None;
         }
         let step = LONGER * pace.mps * self.shape().timing.frames as f32 / self.frame_rate_hz;

@@ -86,7 +86,7 @@ fn walkers_leap_on_a_parabola_to_a_place() {
     }
 }
 
-/// Places that no leap reaches: too near, too high and too far aside.
+/// Places that no leap reaches: too near, too high and too far aside. Those that are too far away are not reached at all.
 #[test]
 fn who_cannot_leap_there_stops_and_jumps_there() {
     let skeleton = Skeleton::standard();
@@ -105,6 +105,12 @@ fn who_cannot_leap_there_stops_and_jumps_there() {
         let came = generator.start_from_character().position;
         assert!(came.distance(there) < 0.01, "{came} for {there}");
     }
+    let mut generator = generator(Kind::Styled, 2);
+    run(&mut generator, &skeleton, &walking(1.3), 240);
+    assert!(generator.jump_to(Vec3::new(0.0, 0.0, 12.0)));
+    let (frames, landing) = until_landed(&mut generator, 1.3, 5.0);
+    assert!(landing.is_some(), "stops for it at once");
+    assert!(frames.len() < 180, "{} frames", frames.len());
 }
 
 #[test]
