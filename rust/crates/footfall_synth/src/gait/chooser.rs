@@ -122,7 +122,9 @@ impl StepChooser {
         let left = (1.0 - passed) * secs;
         let braking = f64::from(velocity_mps.length()) / left;
         let forwards = velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y;
-        let closes = passed < CLOSED_FROM && braking < HARDEST_BRAKING_MPS2 && forwards;
+        let closes = controls
+            .closes
+            .unwrap_or(passed < CLOSED_FROM && braking < HARDEST_BRAKING_MPS2 && forwards);
         if controls.amplitude.to < 1.0 && closes {
             return StepRequest {
                 amplitude: Amplitude { from: 1.0, to: 0.0 },

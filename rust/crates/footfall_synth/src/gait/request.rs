@@ -18,6 +18,8 @@ pub(crate) struct StepControls {
     pub(crate) gait: GaitChoice,
     /// Rise of the hips in a leap, metres; `None` for other steps.
     pub(crate) leap_m: Option<f32>,
+    /// True if a step that changes in its middle brings the feet together, false if not; `None` to choose.
+    pub(crate) closes: Option<bool>,
     pub(crate) detail: Detail,
 }
 
@@ -38,6 +40,7 @@ impl StepControls {
             },
             gait: controls.gait,
             leap_m: None,
+            closes: None,
             detail,
         }
     }

@@ -294,7 +294,10 @@ impl WalkFollower {
             (Some(next), Some(..=0)) => next.planned.number.wrapping_add(1),
             _ => natural,
         };
-        if next.is_some_and(|next| next.planned.number == number) {
+        // A step whose beginning is lost begins like the one before, and changes when the sender's did.
+        let begins =
+            |next: Planning| next.planned.number == number && (rests || next.planned.passed == 0);
+        if next.is_some_and(begins) {
             self.made = self.queue.take();
         }
         let made = self.made.filter(|made| made.planned.number == number);

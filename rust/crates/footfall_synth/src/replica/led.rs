@@ -1,6 +1,6 @@
 //! Led walks: steps with the numbers, controls and ends of another walker's.
 
-use super::update::Planned;
+use super::queue::Planning;
 use crate::config::GeneratorConfig;
 use crate::controls::{Controls, GaitChoice};
 use crate::gait::{Amplitude, AppliedControls, Gait, StepControls};
@@ -158,19 +158,21 @@ impl GaitGenerator {
     /// Replans the current step at the sender's frame, or later if necessary; returns true if it did. `before` is the position in the previous frame.
     pub(super) fn replan_led(
         &mut self,
-        planned: Planned,
-        controls: &Controls,
+        as_planned: &Planning,
         (before, must): (f32, bool),
     ) -> bool {
         let frames = self.shape().timing.frames as f32;
         let (position, detail) = (self.position, self.detail);
         let fastest = self.steps.source().fastest_mps();
-        let step_controls = StepControls::after(self.shape().amplitude, *controls, fastest, detail);
+        let step_controls = StepControls {
+            closes: Some(as_planned.closes),
+            ..StepControls::after(self.shape().amplitude, as_planned.controls, fastest, detail)
+        };
         let Some(steps) = self.styled_mut() else {
             return false;
         };
         let passed = steps.passed();
-        let wanted = ((planned.share() - passed) / (1.0 - passed) * frames).round();
+        let wanted = ((as_planned.planned.share() - passed) / (1.0 - passed) * frames).round();
         // Frames already shown stay.
         let in_time = wanted > before && wanted <= position;
         let frame = if in_time { wanted } else { position.floor() };

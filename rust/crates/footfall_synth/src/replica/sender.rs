@@ -81,6 +81,7 @@ impl WalkSender {
             age_frames: generator.position as u8,
             controls: controls(steps, generator),
             rests,
+            closes: generator.comes_to_rest(),
             rise_m: rise_m(steps, generator),
             aim,
         };

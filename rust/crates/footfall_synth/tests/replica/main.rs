@@ -106,11 +106,15 @@ fn steps_agree_whatever_is_walked() {
 
 #[test]
 fn steps_agree_with_a_player_who_never_keeps_still() {
-    for seed in 1..9 {
+    for seed in 1..41 {
         let mut link = Link::new(seed);
         play(&mut link, 40.0);
         assert_same_steps(&link, JOINED_SECS, 45);
         assert_eq!(anew(&link), 1, "seed {seed}");
+        if seed > 8 {
+            // The places of more players, and the feet of some.
+            continue;
+        }
         let there = slip(&link.there.frames, DT);
         let alone = slip_alone(seed, 40.0);
         assert!(

@@ -24,7 +24,7 @@ impl WalkFollower {
                 break;
             }
             self.made = self.queue.take();
-            let replanned = generator.replan_led(next.planned, &next.controls, (before, false));
+            let replanned = generator.replan_led(&next, (before, false));
             if replanned && steps == 0 {
                 generator.aim_at(&next.aim(shared_from_start));
             }
@@ -41,7 +41,7 @@ impl WalkFollower {
         };
         let aim = made.aim(shared_from_start);
         let off = generator.off(&aim).way.length() > LATE_OFF_M;
-        if off && generator.replan_led(made.planned, &made.controls, (f32::INFINITY, true)) {
+        if off && generator.replan_led(&made, (f32::INFINITY, true)) {
             generator.aim_at(&aim);
             self.amended = Some(made.planned);
         }
