@@ -11,9 +11,12 @@ const MOST_A_FRAME: usize = 32;
 /// Walkers whose ground is checked in one frame, to keep them off walls: this many, or as many as are needed to check all of them within this many frames.
 const MOST_KEPT: usize = 32;
 const MOST_FRAMES: usize = 60;
-/// Distances of the checked ground ahead of a walker, and beside that, metres.
+/// Distances of the checked ground ahead of a walker, and beside that, metres; a runner looks ahead for this time, seconds, for a turn begins with the next step.
 const AHEAD_M: f32 = 1.0;
+const AHEAD_SECS: f32 = 0.6;
 const ASIDE_M: f32 = 1.5;
+/// Turns from the way that are tried, radians.
+const TURNS_RAD: [f32; 4] = [0.35, 0.7, 1.1, 1.5];
 /// A place counts as on the map when it is no farther off, metres. A map keeps clear of walls by the radius of its agents.
 const ON_MAP_M: f32 = 0.05;
 
@@ -75,12 +78,13 @@ impl Navigation {
             let Some(straight) = agent.straight_way() else {
                 continue;
             };
-            let bent = self.bent(agent.place, straight);
+            let ahead_m = AHEAD_M.max(AHEAD_SECS * agent.speed_mps);
+            let bent = self.bent(agent.place, straight, ahead_m);
             let way = bent.unwrap_or(straight);
-            let ahead = agent.place + AHEAD_M * Vec3::new(way.x, 0.0, way.y);
+            let ahead = agent.place + ahead_m * Vec3::new(way.x, 0.0, way.y);
             let to_right = ASIDE_M * Vec3::new(-way.y, 0.0, way.x);
             let room = [to_right, -to_right].map(|side| ASIDE_M - self.off_map(ahead + side));
-            agent.guide(bent, AHEAD_M, room);
+            agent.guide(bent, ahead_m, room);
             left -= 1;
             if left == 0 {
                 return row + 1;
@@ -89,12 +93,21 @@ impl Navigation {
         0
     }
 
-    /// Direction that stays on the map, or leads back to it, for a walker whose way does not.
-    fn bent(&mut self, place: Vec3, way: Vec2) -> Option<Vec2> {
-        let ahead = place.xz() + AHEAD_M * way;
-        let on_map = self.on_map(Vec3::new(ahead.x, place.y, ahead.y))?;
-        let off = on_map.distance(ahead) > ON_MAP_M;
-        off.then(|| (on_map - place.xz()).try_normalize()).flatten()
+    /// Direction that stays on the map, or leads back to it, for a walker whose way does not: the one nearest to its way. The map's place nearest to one inside a stall that it is to
+    /// go round would be the stall's own end.
+    fn bent(&mut self, place: Vec3, way: Vec2, ahead_m: f32) -> Option<Vec2> {
+        let mut off_map = |way: Vec2| {
+            let ahead = place.xz() + ahead_m * way;
+            let on_map = self.on_map(Vec3::new(ahead.x, place.y, ahead.y))?;
+            (on_map.distance(ahead) > ON_MAP_M).then_some(on_map)
+        };
+        let nearest = off_map(way)?;
+        let turned = TURNS_RAD
+            .into_iter()
+            .flat_map(|turn| [turn, -turn])
+            .map(|turn| Vec2::from_angle(turn).rotate(way))
+            .find(|way| off_map(*way).is_none());
+        turned.or_else(|| (nearest - place.xz()).try_normalize())
     }
 
     /// Distance of a place from the map, metres; 0 where nothing is known.
