@@ -10,6 +10,9 @@ use footfall_core::Joint;
 /// Share of what the style does to the posture of hips and legs in walking: bent knees of a walk would double those of a run.
 const LEG_POSTURE_SHARE: f64 = 0.4;
 
+/// The same of the elbows, which runners bend anyway.
+const ELBOW_POSTURE_SHARE: f64 = 0.3;
+
 /// Greatest factor by which trunk and arms swing farther or less.
 const SWING_FACTORS: [f64; 2] = [0.5, 1.6];
 
@@ -35,8 +38,12 @@ impl GaitModel {
         let mut shift = [0.0; FEATURE_COUNT];
         let mut factor = [1.0; FEATURE_COUNT];
         for joint in Joint::ALL {
+            let share = match joint {
+                Joint::LeftLowerArm | Joint::RightLowerArm => ELBOW_POSTURE_SHARE,
+                _ => carried_posture_share(joint),
+            };
             for dim in feature_offset(joint)..feature_offset(joint) + 3 {
-                shift[dim] = carried_posture_share(joint) * (to[dim] - from[dim]);
+                shift[dim] = share * (to[dim] - from[dim]);
                 if !joint.is_of_lower_body() {
                     let variances = [walk, styled].map(|model| model.global_variance.mean[dim]);
                     let swing = (variances[1] / variances[0]).sqrt();
