@@ -41,4 +41,4 @@ pub use standing::{
     Breath, LOOK_DIRECTIONS, Looks, MAX_SWAY_DIRECTIONS, MAX_SWAY_OCTAVES, SWAY_COUNT,
     StandingModel, SwayOctave,
 };
-pub use style::{GaitStyle, StepSpread, StyleError, carried_posture_share};
+pub use style::{FINE_SCALES, GaitStyle, StepSpread, StyleError, carried_posture_share};

@@ -97,9 +97,8 @@ const LOG_MARGIN: f64 = 0.5;
 /// Number of steps below which a style depends on chance.
 const FEW_STEPS: usize = 6;
 
-/// Fine motion is scaled with the swing of its joint in a style, within these bounds.
-const LEAST_FINE_SCALE: f64 = 0.5;
-const MOST_FINE_SCALE: f64 = 2.0;
+/// Least and greatest factor on the fine motion of a joint, which is scaled with its swing.
+pub const FINE_SCALES: [f64; 2] = [0.5, 2.0];
 
 impl GaitStyle {
     /// Returns a warning for a style of so few steps that chance is part of it.
@@ -247,9 +246,7 @@ impl GaitModel {
             let swings = mixed.global_variance.mean.iter();
             let pairs = swings.zip(&self.global_variance.mean);
             for (scale, (swing, base)) in fine.scale.iter_mut().zip(pairs) {
-                *scale *= (swing / base)
-                    .sqrt()
-                    .clamp(LEAST_FINE_SCALE, MOST_FINE_SCALE);
+                *scale *= (swing / base).sqrt().clamp(FINE_SCALES[0], FINE_SCALES[1]);
             }
         }
         if self.standing.is_some() {

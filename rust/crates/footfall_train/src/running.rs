@@ -51,7 +51,7 @@ pub fn learn_running(
         fine.walker.clear();
         fine.chance.walker_strength.clear();
     }
-    few::include(&mut run, &many, &few, config, progress)?;
+    few::include(&mut run, &few, config, progress)?;
     Ok(run)
 }
 

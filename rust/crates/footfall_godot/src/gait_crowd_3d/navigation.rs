@@ -96,17 +96,17 @@ impl Navigation {
     /// Direction that stays on the map, or leads back to it, for a walker whose way does not: the one nearest to its way. The map's place nearest to one inside a stall that it is to
     /// go round would be the stall's own end.
     fn bent(&mut self, place: Vec3, way: Vec2, ahead_m: f32) -> Option<Vec2> {
-        let mut off_map = |way: Vec2| {
+        let mut nearest_if_off = |way: Vec2| {
             let ahead = place.xz() + ahead_m * way;
             let on_map = self.on_map(Vec3::new(ahead.x, place.y, ahead.y))?;
             (on_map.distance(ahead) > ON_MAP_M).then_some(on_map)
         };
-        let nearest = off_map(way)?;
+        let nearest = nearest_if_off(way)?;
         let turned = TURNS_RAD
             .into_iter()
             .flat_map(|turn| [turn, -turn])
             .map(|turn| Vec2::from_angle(turn).rotate(way))
-            .find(|way| off_map(*way).is_none());
+            .find(|way| nearest_if_off(*way).is_none());
         turned.or_else(|| (nearest - place.xz()).try_normalize())
     }
 

@@ -53,7 +53,7 @@ impl GaitGenerator {
 
     /// Requests one jump that lands at a place relative to the character as it is now: metres to the left, up and ahead.
     ///
-    /// Whoever walks or runs forwards towards a place on the level leaps there without stopping, off one foot onto the other, once the place is near enough: the foot lands at it,
+    /// A walker or runner that goes forwards to a place on the level leaps there without stopping, off one foot onto the other, once the place is near enough: the foot lands at it,
     /// along the way, and the body passes over it. No leap lands on places nearer than about 0.6 s or farther than 4 s of the way, more than 0.15 m higher or lower, or more than
     /// 0.35 m to the side of the way. For these, and for walkers who go another way, the walker stops first and jumps off both feet. Then a place
     /// beyond the reach of people (about twice the leg length ahead, two thirds of it to the side or back) is not reached: the jump goes as far as it can in that direction.

@@ -9,11 +9,10 @@ use crate::error::TrainError;
 use crate::progress::Progress;
 use crate::train::TrainConfig;
 use footfall_core::Side;
-use footfall_model::{FEATURE_COUNT, GaitModel, GaitStyle, OBSERVATION_COUNT, StepOffset};
+use footfall_model::{
+    FEATURE_COUNT, FINE_SCALES, GaitModel, GaitStyle, OBSERVATION_COUNT, StepOffset,
+};
 use footfall_motion::recording::Recording;
-
-/// Greatest and least factor on the strength of the fine motion.
-const FINE_SCALES: [f64; 2] = [0.5, 2.0];
 
 /// Recordings of the people with `enough` steps, and of those with fewer. If nobody has enough, all recordings count as having them.
 pub(super) fn split(clips: Vec<Recording>, enough: usize) -> [Vec<Recording>; 2] {
@@ -35,22 +34,13 @@ pub(super) fn split(clips: Vec<Recording>, enough: usize) -> [Vec<Recording>; 2]
     split
 }
 
-/// Number of people in recordings.
-fn people(clips: &[Recording]) -> usize {
-    let mut subjects: Vec<&str> = clips.iter().map(Recording::subject).collect();
-    subjects.sort_unstable();
-    subjects.dedup();
-    subjects.len()
-}
-
-/// Brings a run of `many` to the mean of all people, each counting once, and lets runners differ along the way from the one to the other.
+/// Brings a run to the mean of its own people and the `few`, each counting once, and lets runners differ along the way from the ones to the others.
 /// A run stays as it is if `few` show no two steps in a row.
 ///
 /// # Errors
 /// [`TrainError`] if the run cannot explain the steps of the few.
 pub(super) fn include(
     run: &mut GaitModel,
-    many: &[Recording],
     few: &[Recording],
     config: &TrainConfig,
     progress: &mut dyn Progress,
@@ -79,7 +69,8 @@ pub(super) fn include(
         Err(error) => return Err(error),
     };
     let difference = Side::BOTH.map(|side| difference(&at_their_speed, &style, side));
-    let share = people(few) as f64 / (people(few) + people(many)) as f64;
+    let more = &style.provenance;
+    let share = more.subjects as f64 / (run.provenance.subjects + more.subjects) as f64;
     for (side, offset) in Side::BOTH.into_iter().zip(&difference) {
         add(run, side, offset, share);
     }
@@ -91,9 +82,9 @@ pub(super) fn include(
         component.add_scaled(&evenly_timed(offset), deviation);
         component
     }));
-    run.provenance.clips += style.provenance.clips;
-    run.provenance.subjects += style.provenance.subjects;
-    run.provenance.steps += style.provenance.steps;
+    run.provenance.clips += more.clips;
+    run.provenance.subjects += more.subjects;
+    run.provenance.steps += more.steps;
     Ok(())
 }
 
@@ -187,13 +178,13 @@ mod tests {
         },
     };
 
-    /// Recordings of one person, and of another whose steps take a quarter longer.
-    fn many_and_few() -> [Vec<Recording>; 2] {
-        let [many, mut few] = ["path=walker_1_*", "path=walker_2_slow*"].map(clips);
+    /// Recordings of a person other than that of the run, whose steps take a quarter longer.
+    fn few() -> Vec<Recording> {
+        let mut few = clips("path=walker_2_slow*");
         for clip in &mut few {
             clip.retargeted.clip.frame_rate_hz *= 0.8;
         }
-        [many, few]
+        few
     }
 
     /// A model whose walkers share their fine motion, as those of a run do.
@@ -209,10 +200,10 @@ mod tests {
 
     #[test]
     fn two_people_meet_half_way() {
-        let [many, few] = many_and_few();
+        let few = few();
         let before = run();
         let mut run = before.clone();
-        include(&mut run, &many, &few, &CONFIG, &mut ()).unwrap();
+        include(&mut run, &few, &CONFIG, &mut ()).unwrap();
 
         let (corpus, counts) = EncodedCorpus::of(&few, &CONFIG).unwrap().steady();
         let speed_mps = mean_speed(&corpus);
@@ -243,12 +234,12 @@ mod tests {
 
     #[test]
     fn sides_stay_alike() {
-        let [many, few] = many_and_few();
+        let few = few();
         let mut run = run();
         let apart =
             |run: &GaitModel| (run.steps[0].mean_frames() - run.steps[1].mean_frames()).abs();
         let before = apart(&run);
-        include(&mut run, &many, &few, &CONFIG, &mut ()).unwrap();
+        include(&mut run, &few, &CONFIG, &mut ()).unwrap();
         assert!(apart(&run) < before + 0.02, "{} {before}", apart(&run));
     }
 
