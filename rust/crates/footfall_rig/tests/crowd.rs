@@ -266,7 +266,7 @@ fn ground_that_ends_leads_along_itself() {
         let ends = agent.place.x < 5.0;
         if let Some(straight) = agent.straight_way() {
             let blocked = ends && agent.place.z + straight.y > 3.0;
-            agent.guide(blocked.then_some(Vec2::X), 1.0, [1.0; 2]);
+            agent.guide(blocked.then_some(Vec2::X), [0.7; 2]);
         }
         if ends {
             farthest = farthest.max(agent.place.z);

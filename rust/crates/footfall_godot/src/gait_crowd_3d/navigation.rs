@@ -11,10 +11,14 @@ const MOST_A_FRAME: usize = 32;
 /// Walkers whose ground is checked in one frame, to keep them off walls: this many, or as many as are needed to check all of them within this many frames.
 const MOST_KEPT: usize = 32;
 const MOST_FRAMES: usize = 60;
-/// Distances of the checked ground ahead of a walker, and beside that, metres; a runner looks ahead for this time, seconds, for a turn begins with the next step.
+/// Distance of the checked ground ahead of a walker, metres; a runner looks ahead for this time, seconds, for a turn begins with the next step.
 const AHEAD_M: f32 = 1.0;
 const AHEAD_SECS: f32 = 0.6;
+/// Ground that is checked for detours, to both sides: beside that ahead, metres, and as far ahead after a slight turn, radians; and the distance kept from the edges, metres, for a walker
+/// continues for a step before it turns back.
 const ASIDE_M: f32 = 1.5;
+const SLIGHT_RAD: f32 = 0.4;
+const MARGIN_M: f32 = 0.2;
 /// Turns from the way that are tried, radians.
 const TURNS_RAD: [f32; 4] = [0.35, 0.7, 1.1, 1.5];
 /// A place counts as on the map when it is no farther off, metres. A map keeps clear of walls by the radius of its agents.
@@ -66,6 +70,8 @@ impl Navigation {
             let place = self.crowd_from_world * *place;
             Vec2::new(place.x, place.z)
         }));
+        // Its next step may begin before its turn comes to be looked at.
+        self.look(agent);
         true
     }
 
@@ -75,17 +81,8 @@ impl Navigation {
         let mut left = MOST_KEPT.max(rows / MOST_FRAMES);
         for row in (from.min(rows)..rows).chain(0..from.min(rows)) {
             let agent = &mut walkers.agents_mut()[row];
-            let Some(straight) = agent.straight_way() else {
-                continue;
-            };
-            let ahead_m = AHEAD_M.max(AHEAD_SECS * agent.speed_mps);
-            let bent = self.bent(agent.place, straight, ahead_m);
-            let way = bent.unwrap_or(straight);
-            let ahead = agent.place + ahead_m * Vec3::new(way.x, 0.0, way.y);
-            let to_right = ASIDE_M * Vec3::new(-way.y, 0.0, way.x);
-            let room = [to_right, -to_right].map(|side| ASIDE_M - self.off_map(ahead + side));
-            agent.guide(bent, ahead_m, room);
-            left -= 1;
+            agent.follow_route();
+            left -= usize::from(self.look(agent));
             if left == 0 {
                 return row + 1;
             }
@@ -93,27 +90,51 @@ impl Navigation {
         0
     }
 
+    /// Looks at the ground ahead of a walker; whether it is on its way.
+    fn look(&mut self, agent: &mut Agent) -> bool {
+        let Some(straight) = agent.straight_way() else {
+            return false;
+        };
+        let ahead_m = AHEAD_M.max(AHEAD_SECS * agent.speed_mps);
+        let bent = self.bent(agent.place, straight, ahead_m);
+        let way = bent.unwrap_or(straight);
+        let room_rad = [1.0, -1.0].map(|side| self.room(agent.place, way, ahead_m, side));
+        agent.guide(bent, room_rad);
+        true
+    }
+
     /// Direction that stays on the map, or leads back to it, for a walker whose way does not: the one nearest to its way. The map's place nearest to one inside a stall that it is to
     /// go round would be the stall's own end.
     fn bent(&mut self, place: Vec3, way: Vec2, ahead_m: f32) -> Option<Vec2> {
-        let mut nearest_if_off = |way: Vec2| {
-            let ahead = place.xz() + ahead_m * way;
-            let on_map = self.on_map(Vec3::new(ahead.x, place.y, ahead.y))?;
-            (on_map.distance(ahead) > ON_MAP_M).then_some(on_map)
-        };
-        let nearest = nearest_if_off(way)?;
+        let (nearest, _) = self.off_map(place, ahead_m * way)?;
         let turned = TURNS_RAD
             .into_iter()
             .flat_map(|turn| [turn, -turn])
             .map(|turn| Vec2::from_angle(turn).rotate(way))
-            .find(|way| nearest_if_off(*way).is_none());
+            .find(|way| self.off_map(place, ahead_m * *way).is_none());
         turned.or_else(|| (nearest - place.xz()).try_normalize())
     }
 
-    /// Distance of a place from the map, metres; 0 where nothing is known.
-    fn off_map(&mut self, place: Vec3) -> f32 {
-        let on_map = self.on_map(place);
-        on_map.map_or(0.0, |on_map| on_map.distance(place.xz()))
+    /// Most that a walker may turn aside to one side (1 right, -1 left), radians, so that the ground ahead of it is on the map. The corner of a block that it passes lies between the way and the
+    /// place beside it, which may be on the map again.
+    fn room(&mut self, place: Vec3, way: Vec2, ahead_m: f32, side: f32) -> f32 {
+        let beside = place + (ahead_m * way).extend(0.0).xzy();
+        let off_m = |found: Option<(Vec2, f32)>| found.map_or(0.0, |(_, off_m)| off_m);
+        let beside_m = ASIDE_M - off_m(self.off_map(beside, side * ASIDE_M * way.perp()));
+        let room = (beside_m - MARGIN_M).max(0.0).atan2(ahead_m);
+        let turned = Vec2::from_angle(side * SLIGHT_RAD).rotate(way);
+        match self.off_map(place, ahead_m * turned) {
+            Some((_, off_m)) => room.min((SLIGHT_RAD - (off_m + MARGIN_M) / ahead_m).max(0.0)),
+            None => room,
+        }
+    }
+
+    /// The map's place nearest to one that a step of this length leads to, and its distance, metres; `None` where the step stays on the map or nothing is known.
+    fn off_map(&mut self, from: Vec3, step: Vec2) -> Option<(Vec2, f32)> {
+        let to = from.xz() + step;
+        let on_map = self.on_map(Vec3::new(to.x, from.y, to.y))?;
+        let off_m = on_map.distance(to);
+        (off_m > ON_MAP_M).then_some((on_map, off_m))
     }
 
     /// The map's place nearest to one of the crowd's space.

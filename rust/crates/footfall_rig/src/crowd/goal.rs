@@ -10,9 +10,6 @@ pub(super) const ARRIVED_M: f32 = 1.0;
 /// Most that a walker turns aside to the right and to the left on unknown ground, radians.
 const WIDE: [f32; 2] = [PI; 2];
 
-/// Distance that a walker keeps from the edge of its ground when it steps aside, metres: it continues for a step before it turns back.
-const MARGIN_M: f32 = 0.2;
-
 /// Distance from the place of a ground query within which its result holds, metres.
 const KNOWN_M: f32 = 1.5;
 
@@ -86,13 +83,13 @@ impl Agent {
         }
     }
 
-    /// Sets the ground around it: a direction that stays on it, where the [straight way](Self::straight_way) does not, and the room to the right and to the left so far ahead, metres. It steps
-    /// aside no farther.
-    pub fn guide(&mut self, way: Option<Vec2>, ahead_m: f32, sides_m: [f32; 2]) {
+    /// Sets the ground around it: a direction that stays on it, where the [straight way](Self::straight_way) does not, and how far it may turn aside from that to the right and to the left,
+    /// radians.
+    pub fn guide(&mut self, way: Option<Vec2>, room_rad: [f32; 2]) {
         self.guidance = Guidance::Ground(Ground {
             at: self.level(),
             way,
-            room_rad: sides_m.map(|side| (side - MARGIN_M).max(0.0).atan2(ahead_m)),
+            room_rad,
         });
     }
 
@@ -115,8 +112,8 @@ impl Agent {
         }
     }
 
-    /// Goes on to the next place of its route once it has come to its goal.
-    pub(super) fn follow_route(&mut self) {
+    /// Goes on to the next place of its route once it has come to its goal. Each decision does so; before the ground is queried, it has the query be about that place.
+    pub fn follow_route(&mut self) {
         if let Goal::Place(place) = self.goal
             && self.is_at(place)
             && let Some(next) = self.route.pop()
