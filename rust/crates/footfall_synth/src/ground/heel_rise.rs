@@ -66,7 +66,7 @@ impl Planter {
                 from_level: level.inverse(),
                 length: self.leg_lengths[side.index()],
             };
-            let leaves = side != timing.leading && !timing.rests;
+            let leaves = side != timing.leading;
             let flies = side == timing.leading && timing.take_off.is_some();
             let (bend, secs) = if flies {
                 (TAKE_OFF_BEND, TAKE_OFF_SECS)
