@@ -2,6 +2,7 @@
 //!
 //! One program, for linking is what a test that crosses all crates costs most. Tests that count what is allocated are programs of their own.
 
+mod arms;
 mod bad_input;
 mod climbs;
 mod confidence;

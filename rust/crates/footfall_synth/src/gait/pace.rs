@@ -29,6 +29,14 @@ pub(crate) struct Pace {
     pub(crate) stride: f64,
 }
 
+impl Pace {
+    /// Returns the sum of the differences from another pace, m/s and factors alike.
+    pub(crate) fn distance(&self, other: &Self) -> f64 {
+        let covariate = (self.covariate_mps - other.covariate_mps).abs();
+        covariate + (self.tempo - other.tempo).abs() + (self.stride - other.stride).abs()
+    }
+}
+
 /// Speeds of one walker at the paces of the model.
 #[derive(Clone, Debug)]
 pub(crate) struct PaceTable {

@@ -25,6 +25,9 @@ const SETTLE_RATE: f32 = 8.0;
 /// Maximum landing speed of a walking and of a running foot, m/s: people brake their swing before the heel strikes.
 const MOST_LANDING_MPS: [f32; 2] = [1.2, 1.5];
 
+/// Maximum speed of descent of a walking foot as it lands, m/s.
+const MOST_DESCENT_MPS: f32 = 0.22;
+
 /// Part of the swing, or of the flight, after which a foot is independent of its stance.
 const FREED_BY: f32 = 0.3;
 const DEPARTED_BY: f32 = 0.25;
@@ -87,13 +90,17 @@ impl Swing {
         let landing = ends[2].1.ankle - arrival;
         let runs = usize::from(timing.airborne);
         let (most_landing_mps, braking_secs) = (MOST_LANDING_MPS[runs], BRAKING_SECS[runs]);
+        let mut braked = landing.clamp_length_max(most_landing_mps * frame_secs);
+        if !timing.airborne {
+            braked.y = braked.y.max(-MOST_DESCENT_MPS * frame_secs);
+        }
         Self {
             freed_after: if timing.airborne {
                 0.0
             } else {
                 FREED_BY * frames
             },
-            excess: landing - landing.clamp_length_max(most_landing_mps * frame_secs),
+            excess: landing - braked,
             braking: (braking_secs / frame_secs).min(frames),
             ..Self::between(&[ends[0], ends[1]], Some(&ends[2]), first, frames)
         }

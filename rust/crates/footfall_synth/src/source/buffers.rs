@@ -4,17 +4,41 @@ use crate::error::SynthError;
 use crate::ground::{GeneratedFrame, PlantedStep};
 use crate::plan::{Planner, Statistics, StepPlan, TIE, TIE_LEN, WINDOW};
 use crate::trajectory::{FineBuffers, TrajectorySolver};
+use core::ops::Range;
 use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use std::sync::{Mutex, PoisonError};
 
-/// Time constant with which the motion before a change of gait swings out, and the time after which it has, frames.
+/// Time constant with which the motion before a change swings out, and the time after which it has, frames.
 const SWINGING_OUT: f32 = 6.0;
 const SWINGING_FRAMES: usize = 48;
 
 /// Number of generated features: all but those of the right toes, which come last. The planter turns toes.
 const WALKED: usize = feature_offset(Joint::RightToes);
+
+/// Features of both arms.
+const ARMS: Range<usize> = feature_offset(Joint::LeftShoulder)..feature_offset(Joint::LeftUpperLeg);
+
+/// Change from one step to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Change {
+    None,
+    /// Another pace in the same gait.
+    Pace,
+    Gait,
+}
+
+impl Change {
+    /// Returns the features whose motion before it swings out.
+    fn swinging(self) -> Range<usize> {
+        match self {
+            Self::None => 0..0,
+            Self::Pace => ARMS,
+            Self::Gait => 0..WALKED,
+        }
+    }
+}
 
 /// Buffers for solving and planting a step.
 #[derive(Debug)]
@@ -66,9 +90,9 @@ impl StepBuffers {
         statistics: &Statistics<f32>,
         plans: &[StepPlan<f32>; WINDOW],
         tie: &[f32; TIE_LEN],
-        changes_gait: bool,
+        change: Change,
     ) {
-        self.solver.pulls = !changes_gait;
+        self.solver.pulls = change != Change::Gait;
         let skip = (plans[0].shape.timing.frames + 1).saturating_sub(TIE);
         let frames = self.solver.load(statistics, plans, skip);
         self.trajectory.resize(frames * FEATURE_COUNT, 0.0);
@@ -81,9 +105,7 @@ impl StepBuffers {
             // A checked model does not get here; if it did, a rough pose would beat none.
             self.solver.fill_with_means(&mut self.trajectory, TIE);
         }
-        if changes_gait {
-            swing_out(&mut self.trajectory);
-        }
+        swing_out(&mut self.trajectory, change.swinging());
     }
 
     /// Returns the frames, from this one on, that tie the next window to this one.
@@ -97,18 +119,22 @@ impl StepBuffers {
     }
 }
 
-/// Lets what moved before a change of gait swing out: the likeliest trajectory turns a trunk that went forwards back from one frame to the next.
-fn swing_out(trajectory: &mut [f32]) {
+/// Lets the motion of these features before a change swing out: the likeliest trajectory turns a trunk or a hand that went forwards back from one frame to the next.
+fn swing_out(trajectory: &mut [f32], features: Range<usize>) {
+    if features.is_empty() {
+        return;
+    }
     let (known, new) = trajectory.split_at_mut(TIE_LEN);
-    let [before, last] = [2, 1].map(|back| &known[TIE_LEN - back * FEATURE_COUNT..][..WALKED]);
+    let [before, last] = [2, 1].map(|back| &known[TIE_LEN - back * FEATURE_COUNT..]);
     let mut missing = [0.0; FEATURE_COUNT];
-    for (dim, missing) in missing[..WALKED].iter_mut().enumerate() {
-        *missing = 2.0 * last[dim] - before[dim] - new[dim];
+    for dim in features.clone() {
+        missing[dim] = 2.0 * last[dim] - before[dim] - new[dim];
     }
     let swinging = new.chunks_exact_mut(FEATURE_COUNT).take(SWINGING_FRAMES);
     for (index, frame) in swinging.enumerate() {
         let share = (1.0 + index as f32) * (-(index as f32) / SWINGING_OUT).exp();
-        for (value, missing) in frame[..WALKED].iter_mut().zip(&missing) {
+        let missing = &missing[features.clone()];
+        for (value, missing) in frame[features.clone()].iter_mut().zip(missing) {
             *value += share * missing;
         }
     }

@@ -5,12 +5,15 @@ use super::origin::Origin;
 use crate::gait::{Gait, Manner};
 use crate::ground::{Displacement, Placing};
 use crate::plan::{Planner, Remainder, StepPlan, TIE, WINDOW};
-use crate::source::buffers::StepBuffers;
+use crate::source::buffers::{Change, StepBuffers};
 use crate::source::style_space::Blend;
 use crate::trajectory::{Scale, neighbours};
 use footfall_core::StepPosition;
 use footfall_model::FEATURE_COUNT;
 use glam::Vec2;
+
+/// Distance below which two paces are the same.
+const SAME_PACE: f64 = 0.05;
 
 /// No fine motion.
 const NO_SCALE: Scale = [0.0; FEATURE_COUNT];
@@ -71,14 +74,22 @@ impl StepWindow {
 
     /// Solves the current step and the one ahead, tied to the previous step, and plants the current one.
     pub(super) fn solve_and_plant(&mut self, buffers: &mut StepBuffers) {
-        let changes = self.blend_before.gait != self.blend.gait;
-        buffers.go_on(
-            &self.blend.statistics,
-            &self.plans,
-            &self.origin.tie,
-            changes,
-        );
+        self.solve(buffers);
         self.plant(1, TIE - 1, buffers);
+    }
+
+    /// Solves the window, tied to the previous step.
+    pub(super) fn solve(&self, buffers: &mut StepBuffers) {
+        let before = self.origin.manner_before.pace;
+        let change = if self.blend_before.gait != self.blend.gait {
+            Change::Gait
+        } else if self.origin.request.manner.pace.distance(&before) > SAME_PACE {
+            Change::Pace
+        } else {
+            Change::None
+        };
+        let statistics = &self.blend.statistics;
+        buffers.go_on(statistics, &self.plans, &self.origin.tie, change);
     }
 
     /// Plants a step of the window, which begins at frame `first` of the solved trajectory.

@@ -36,7 +36,7 @@ impl StepWindow {
             return false;
         };
         // The solved trajectory was not kept.
-        buffers.go_on(&self.blend.statistics, &self.plans, &self.origin.tie, false);
+        self.solve(buffers);
         let tie = buffers.tie_at(frame);
         let whole = shape.timing.frames as f64 / (1.0 - self.passed());
         let [facing_before, facing] = [self.origin.facing_before, before.facing];
