@@ -2,13 +2,14 @@
 
 use crate::data::repository;
 use footfall_core::rotation::from_heading;
-use footfall_core::{Clip, Pose, Site, Skeleton};
+use footfall_core::{Clip, ModelPose, Pose, Site, Skeleton};
 use footfall_model::{GaitModel, Provenance};
 use footfall_recon::Prepared;
 use footfall_synth::{
     Controls, GaitChoice, GaitGenerator, GeneratorConfig, StyleSpace, WalkConfig, synthesize,
 };
 use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
+use glam::Vec3;
 use std::sync::{Arc, OnceLock};
 
 /// A model of the repository, by its path from the root.
@@ -41,6 +42,31 @@ pub fn step_in_world(walker: &mut GaitGenerator, dt_secs: f32, controls: &Contro
     pose.root_position = place.position + turn * pose.root_position;
     pose.rotations[0] = turn * pose.rotations[0];
     pose
+}
+
+/// Bodies of so many frames of a walker of the shipped walk, sixty a second, and the feet that stand in them. It is out of standing, under these controls.
+pub fn shown(
+    seed: u64,
+    frames: usize,
+    controls: impl Fn(usize) -> Controls,
+) -> Vec<(ModelPose, [bool; 2])> {
+    let skeleton = Skeleton::standard();
+    let mut walker = generator(&skeleton, seed);
+    (0..frames)
+        .map(|frame| {
+            let pose = step_in_world(&mut walker, 1.0 / 60.0, &controls(frame));
+            (ModelPose::of(&skeleton, &pose), walker.feet_in_contact())
+        })
+        .collect()
+}
+
+/// Greatest change of velocity along places of sixty frames a second, m/s².
+pub fn most_acceleration(places: &[Vec3]) -> f32 {
+    let changes = places.windows(3).map(|frames| {
+        let [before, now, after] = [0, 1, 2].map(|index| frames[index]);
+        (before - 2.0 * now + after).length() * 3600.0
+    });
+    changes.fold(0.0, f32::max)
 }
 
 /// A walk of 24 steps, as if it had been recorded.

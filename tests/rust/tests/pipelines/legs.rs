@@ -1,6 +1,6 @@
 //! Feet and knees of the shipped walk: where standing feet point, and how gently knees let go of the ground.
 
-use footfall_core::{Joint, ModelPose, Side, Skeleton};
+use footfall_core::{Joint, ModelPose, Side};
 use footfall_synth::{Controls, GaitChoice};
 use footfall_tests::walkers;
 use glam::Vec3;
@@ -10,24 +10,17 @@ type Shown = (ModelPose, [bool; 2]);
 
 /// Five seconds of a walk straight ahead, out of standing; it is asked to stop from this frame on.
 fn walk_until(seed: u64, speed_mps: f32, stops: usize) -> Vec<Shown> {
-    let skeleton = Skeleton::standard();
-    let mut walker = walkers::generator(&skeleton, seed);
-    let controls = Controls {
-        speed_mps,
-        gait: GaitChoice::Walk,
-        ..Controls::STAND
-    };
-    (0..300)
-        .map(|frame| {
-            let controls = if frame < stops {
-                &controls
-            } else {
-                &Controls::STAND
-            };
-            let pose = walkers::step_in_world(&mut walker, 1.0 / 60.0, controls);
-            (ModelPose::of(&skeleton, &pose), walker.feet_in_contact())
-        })
-        .collect()
+    walkers::shown(seed, 300, |frame| {
+        if frame < stops {
+            Controls {
+                speed_mps,
+                gait: GaitChoice::Walk,
+                ..Controls::STAND
+            }
+        } else {
+            Controls::STAND
+        }
+    })
 }
 
 /// Five seconds of a walk straight ahead, out of standing.
@@ -37,14 +30,11 @@ fn walk(seed: u64, speed_mps: f32) -> Vec<Shown> {
 
 /// Greatest change of a knee's velocity, m/s².
 fn fastest_knee(walk: &[Shown]) -> f32 {
-    let knee = |frame: &Shown, side: Side| frame.0.position(side.lower_leg());
-    let changes = walk.windows(3).flat_map(|frames| {
-        Side::BOTH.map(|side| {
-            let [before, now, after] = [0, 1, 2].map(|index| knee(&frames[index], side));
-            (before - 2.0 * now + after).length() * 3600.0
-        })
+    let fastest = Side::BOTH.map(|side| {
+        let places = walk.iter().map(|(body, _)| body.position(side.lower_leg()));
+        walkers::most_acceleration(&places.collect::<Vec<_>>())
     });
-    changes.fold(0.0, f32::max)
+    fastest[0].max(fastest[1])
 }
 
 #[test]

@@ -22,7 +22,7 @@ impl StepWindow {
     /// Plans the steps of the window from this one on.
     pub(super) fn plan(&mut self, planner: &mut Planner, first: usize, buffers: &mut StepBuffers) {
         let request = self.origin.request;
-        let changes = first <= 1 && self.blend_before.gait != self.blend.gait;
+        let changes = first <= 1 && self.changes_gait();
         if changes {
             planner.set_model(&self.blend_before.model);
             let before = &self.blend_before.statistics;
@@ -72,6 +72,11 @@ impl StepWindow {
         }
     }
 
+    /// Returns true when the current step goes over from one gait to another.
+    fn changes_gait(&self) -> bool {
+        self.blend_before.gait != self.blend.gait
+    }
+
     /// Solves the current step and the one ahead, tied to the previous step, and plants the current one.
     pub(super) fn solve_and_plant(&mut self, buffers: &mut StepBuffers) {
         self.solve(buffers);
@@ -81,7 +86,7 @@ impl StepWindow {
     /// Solves the window, tied to the previous step.
     pub(super) fn solve(&self, buffers: &mut StepBuffers) {
         let before = self.origin.manner_before.pace;
-        let change = if self.blend_before.gait != self.blend.gait {
+        let change = if self.changes_gait() {
             Change::Gait
         } else if self.origin.request.manner.pace.distance(&before) > SAME_PACE {
             Change::Pace
@@ -109,7 +114,9 @@ impl StepWindow {
         let trajectory = &trajectory[first * FEATURE_COUNT..];
         let [before, now] = [&self.blend_before, &self.blend];
         // Each gait has its own fine motion; they cross-fade in a change of gait.
-        let fading = (before.gait != now.gait).then_some((before, [&before.fine_scale, &NO_SCALE]));
+        let fading = self
+            .changes_gait()
+            .then_some((before, [&before.fine_scale, &NO_SCALE]));
         let scale_before = if fading.is_some() {
             &NO_SCALE
         } else {
