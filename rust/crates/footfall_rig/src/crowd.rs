@@ -20,6 +20,7 @@ mod replica;
 mod roster;
 mod routing;
 mod save;
+mod steering;
 mod tiers;
 
 pub use agent::Agent;

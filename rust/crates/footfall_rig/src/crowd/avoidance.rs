@@ -4,6 +4,7 @@
 //! pedestrian behavior and crowd disasters", PNAS 2011, if the others keep their velocities.
 
 use super::neighbours::{Passerby, SIGHT_M};
+use super::steering::{ARC_SPEED, direction, turn_rate, turning_speed};
 use glam::Vec2;
 
 /// Distance and time of an expected encounter within which others are avoided, metres and seconds.
@@ -11,6 +12,9 @@ const PERSONAL_M: f32 = 0.9;
 const FORESIGHT_SECS: f32 = 8.0;
 /// Time for which a walker continues as it goes, seconds: it takes half a step to turn or slow down.
 const LAG_SECS: f32 = 0.25;
+/// Time that a walker takes to go as it decided, seconds, and the share of its present speed that it has meanwhile.
+const TURNING_SECS: f32 = 0.7;
+const PRESENT_SHARE: f32 = 0.15;
 /// Least cosine of the angle between the direction it faces and another person: those behind are ignored.
 const BEHIND: f32 = -0.5;
 /// Closer than this two bodies touch, metres.
@@ -21,6 +25,11 @@ const TURNING: f32 = 0.15;
 const SLOWING: f32 = 0.4;
 const CLOSENESS: f32 = 0.6;
 const TOUCHING: f32 = 2.0;
+/// Distance after that time below which two are too near, metres, and the cost of being at one place then.
+const APART_M: f32 = 0.6;
+const TOGETHER: f32 = 6.0;
+/// Speed at which those count as approaching who stay where they are, for the choice of the most urgent, m/s.
+const PRESENCE_MPS: f32 = 1.5;
 /// Number of others that are considered, the most urgent ones.
 const MOST_OTHERS: usize = 8;
 /// Candidate directions relative to the desired one, radians to the left.
@@ -64,7 +73,7 @@ impl Wayfarer {
             let far = way.length();
             if (1e-3..SIGHT_M).contains(&far) && way.dot(facing) >= BEHIND * far {
                 let closing = (velocity - other.velocity).dot(way) / far;
-                near.take((closing + 0.5) / far, way, other.velocity);
+                near.take((closing + PRESENCE_MPS) / far, way, other.velocity);
             }
         }
         if near.len == 0 {
@@ -80,15 +89,24 @@ impl Wayfarer {
             if detour_cost(aside, 1.0) >= best.0 {
                 continue;
             }
-            let direction = direction(self.heading + self.off + aside);
+            let off = self.off + aside;
+            let wanted = direction(self.heading + off);
+            let turning = direction(self.heading + 0.5 * TURNING_SECS * turn_rate(off));
+            let slowed = turning_speed(off, ARC_SPEED);
             for speed in SPEEDS {
                 let detour = detour_cost(aside, speed);
                 if detour >= best.0 {
                     break;
                 }
-                let wanted = direction * (speed * self.speed_mps);
-                let ahead = (facing * self.present_mps - wanted) * LAG_SECS;
-                let cost = detour + near.cost(wanted, ahead);
+                let pace = speed * self.speed_mps;
+                let turned = slowed * pace;
+                let turned = turned + PRESENT_SHARE * (self.present_mps - turned);
+                let course = Course {
+                    velocity: wanted * pace,
+                    ahead: (facing * self.present_mps - wanted * pace) * LAG_SECS,
+                    turned: turning * turned * TURNING_SECS,
+                };
+                let cost = detour + near.cost(&course);
                 if cost < best.0 {
                     best = (cost, Some(Detour { aside, speed }));
                 }
@@ -98,9 +116,14 @@ impl Wayfarer {
     }
 }
 
-/// The unit vector of a heading.
-fn direction(heading: f32) -> Vec2 {
-    Vec2::new(heading.sin(), heading.cos())
+/// Motion of a walker after a decision.
+struct Course {
+    /// Velocity in the end, m/s.
+    velocity: Vec2,
+    /// Lead over a walker who has had this velocity from the beginning, metres.
+    ahead: Vec2,
+    /// Displacement in the time that it takes to turn, metres.
+    turned: Vec2,
 }
 
 /// Cost of a detour; to the right it is slightly less than to the left, so that two who meet face to face agree.
@@ -144,13 +167,15 @@ impl Near {
         }
     }
 
-    /// Cost of meeting them at this velocity, from a place so far ahead.
-    fn cost(&self, velocity: Vec2, ahead: Vec2) -> f32 {
+    /// Cost of meeting them on a course.
+    fn cost(&self, course: &Course) -> f32 {
         let mut costs = [0.0; MOST_OTHERS];
         for (index, cost) in costs.iter_mut().enumerate() {
             let way = Vec2::new(self.way[0][index], self.way[1][index]);
             let other = Vec2::new(self.velocity[0][index], self.velocity[1][index]);
-            *cost = meeting_cost(way - ahead, velocity - other);
+            let then = way + other * TURNING_SECS - course.turned;
+            *cost = meeting_cost(way - course.ahead, course.velocity - other)
+                + TOGETHER * (1.0 - then.length() / APART_M).max(0.0);
         }
         costs[..self.len].iter().sum()
     }

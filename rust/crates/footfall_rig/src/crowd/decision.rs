@@ -4,6 +4,7 @@ use super::agent::Agent;
 use super::avoidance::Wayfarer;
 use super::goal::Goal;
 use super::neighbours::Passerby;
+use super::steering::{ARC_SPEED, turn_rate, turning_speed};
 use footfall_core::rotation::wrap_angle;
 use footfall_synth::Controls;
 
@@ -16,9 +17,6 @@ const AHEAD_SECS: f32 = 0.7;
 const ARC_M: f32 = 2.0;
 /// Distance to the goal below which a walker takes no further step, metres.
 const THERE_M: f32 = 0.5;
-/// Rate of turning towards the desired direction: rad/s for each radian of difference, and its limit.
-const TURN_GAIN: f32 = 1.6;
-const MAX_TURN_RADPS: f32 = 1.3;
 
 impl Agent {
     /// Sets speed and turning for the next step. The walker slows down for its last goal if it `stops` there.
@@ -58,13 +56,9 @@ impl Agent {
                     speed *= detour.speed;
                 }
                 // A large turn comes first, on the spot if there is no space for an arc.
-                let least = if left < ARC_M { 0.0 } else { 0.25 };
-                speed *= (1.2 - off.abs()).clamp(least, 1.0);
-                if left <= 0.0 {
-                    0.0
-                } else {
-                    (TURN_GAIN * off).clamp(-MAX_TURN_RADPS, MAX_TURN_RADPS)
-                }
+                let least = if left < ARC_M { 0.0 } else { ARC_SPEED };
+                speed *= turning_speed(off, least);
+                if left <= 0.0 { 0.0 } else { turn_rate(off) }
             }
         };
         // A large body takes longer steps in more time: speeds go with the root of its size (Froude).
